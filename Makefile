@@ -1,0 +1,51 @@
+# Two commands do everything: `make demo` and `make test`.
+PYTHON ?= python3
+VENV   ?= .venv
+BIN    := $(VENV)/bin
+PIP    := $(BIN)/python -m pip --disable-pip-version-check install -q -c constraints.txt
+
+.PHONY: help demo test lint bench bank mazes clean
+help:
+	@echo "make demo   environment + plan through the shipped level-3 maze -> out/demo.png, out/demo.json"
+	@echo "make test   environment + lint + all tests"
+	@echo "make lint   ruff and mypy"
+	@echo "make bench  the slow tables and timings -> out/bench/"
+	@echo "make bank   rebuild (or finish) the shipped point sets"
+	@echo "make mazes  redraw the shipped mazes"
+	@echo "make clean  remove the environment and out/"
+
+# A stamp a file that pip finished: a stopped install is taken up again, a finished one costs nothing.
+$(VENV)/.core: pyproject.toml constraints.txt
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "evenroad needs Python >= 3.11; set PYTHON=")'
+	$(PYTHON) -m venv $(VENV)
+	$(PIP) -e .
+	@touch $@
+
+$(VENV)/.dev: $(VENV)/.core
+	$(PIP) -e '.[dev]'
+	@touch $@
+
+demo: $(VENV)/.core
+	@mkdir -p out
+	$(BIN)/evenroad demo --out out/demo
+
+lint: $(VENV)/.dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+test: lint
+	$(BIN)/pytest -n 2
+
+bench: $(VENV)/.dev
+	@mkdir -p out/bench
+	$(BIN)/python -m benchmarks --out out/bench
+
+bank: $(VENV)/.core
+	$(BIN)/python -m evenroad.points.bank.build
+
+mazes: $(VENV)/.core
+	$(BIN)/python tools/draw_mazes.py
+
+clean:
+	rm -rf $(VENV) out

@@ -1,0 +1,69 @@
+"""Writing files so that a reader only ever sees the old content or the whole new content."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO
+
+from evenroad.errors import BrokenFile
+
+
+@contextmanager
+def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
+    """Open a temporary file beside `path`; on success it replaces `path`, on any error it is removed.
+
+    Raises
+    ------
+    BrokenFile
+        If the folder does not exist, cannot be written, or the disk is full; `path` is then as it was.
+    """
+    target = Path(path)
+    require_writable_folder(target)
+    handle, name = tempfile.mkstemp(prefix=f".{target.name}.", suffix=".part", dir=target.parent)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            yield file
+            file.flush()
+            os.fsync(file.fileno())
+        os.chmod(name, 0o666 & ~_umask())
+        os.replace(name, target)
+    except OSError as error:
+        _remove(name)
+        if isinstance(error, BrokenFile):
+            raise
+        raise BrokenFile(f"cannot write {target}: {error.strerror or error}") from error
+    except BaseException:
+        _remove(name)
+        raise
+
+
+def require_writable_folder(path: str | os.PathLike[str]) -> None:
+    """Raise BrokenFile unless a file at `path` could be created now: early, before any long work."""
+    target = Path(path)
+    folder = target.parent
+    if not folder.is_dir():
+        raise BrokenFile(f"cannot write {target}: the folder {folder} does not exist")
+    if target.is_dir():
+        raise BrokenFile(f"cannot write {target}: it is a folder")
+    try:
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise BrokenFile(f"cannot write into the folder {folder}: {error.strerror or error}") from error
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def _remove(name: str) -> None:
+    try:
+        os.unlink(name)
+    except FileNotFoundError:
+        pass

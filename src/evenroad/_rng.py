@@ -1,0 +1,42 @@
+"""Seeds and generators, the same way everywhere: ``rng`` is an int, a SeedSequence or a Generator."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+
+from evenroad.errors import InvalidValue
+
+RngLike: TypeAlias = int | np.integer | np.random.SeedSequence | np.random.Generator
+
+
+def generator(rng: RngLike) -> np.random.Generator:
+    """Return the generator that `rng` stands for.
+
+    Parameters
+    ----------
+    rng : int, numpy.random.SeedSequence or numpy.random.Generator
+        An int (>= 0) or SeedSequence seeds a fresh PCG64, so the same value gives the same bits.  A passed
+        Generator is spawned, as ``scipy.stats.qmc`` does, so the caller's own stream is not consumed.
+
+    Raises
+    ------
+    InvalidValue
+        For ``None`` (hidden entropy), booleans, negative ints and any other type.
+    """
+    if isinstance(rng, np.random.Generator):
+        return rng.spawn(1)[0]
+    if isinstance(rng, np.random.SeedSequence):
+        return np.random.default_rng(rng)
+    if isinstance(rng, int | np.integer) and not isinstance(rng, bool) and rng >= 0:
+        return np.random.default_rng(int(rng))
+    raise InvalidValue(
+        f"rng must be an int >= 0, a numpy SeedSequence or a numpy Generator, got {rng!r}"
+        " (nothing here draws hidden entropy: pass a seed)"
+    )
+
+
+def seed_of(rng: RngLike) -> int | None:
+    """Return the int seed of `rng` when it is one, else None: what an origin can honestly record."""
+    return int(rng) if isinstance(rng, int | np.integer) else None

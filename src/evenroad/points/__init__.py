@@ -1,0 +1,6 @@
+"""Point sets of the unit cube: what they are, how to draw them, how to measure them. Knows nothing of robots."""
+
+from evenroad.points.npz import load_points as load_points
+from evenroad.points.npz import save_points as save_points
+from evenroad.points.pointset import Origin as Origin
+from evenroad.points.pointset import PointSet as PointSet

@@ -1,0 +1,69 @@
+"""Point sets on disk: one .npz with the coordinates and the origin as JSON, checked on load."""
+
+from __future__ import annotations
+
+import json
+import os
+import zipfile
+from dataclasses import asdict, fields
+
+import numpy as np
+
+from evenroad._files import atomic_write
+from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.points.pointset import Origin, PointSet
+
+_NAMES = {"points", "origin", "hash"}
+
+
+def save_points(path: str | os.PathLike[str], points: PointSet) -> None:
+    """Write a point set as ``.npz`` (arrays `points`, `origin`, `hash`), atomically.
+
+    Raises
+    ------
+    BrokenFile
+        If the file cannot be written; whatever was at `path` is then untouched.
+    """
+    with atomic_write(path) as file:
+        np.savez(file, points=points.points, origin=json.dumps(asdict(points.origin)), hash=points.hash)
+
+
+def load_points(path: str | os.PathLike[str]) -> PointSet:
+    """Read a point set written by :func:`save_points`, checking names, dtype, shape, range and hash.
+
+    Raises
+    ------
+    BrokenFile
+        If the file is missing, is no such npz, or any of the checks fails; the text says which.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            if not isinstance(archive, np.lib.npyio.NpzFile):
+                raise BrokenFile(f"{path} is a plain array, not a .npz point set")
+            names = set(archive.files)
+            if names != _NAMES:
+                raise BrokenFile(f"{path} holds {sorted(names)}, a point set holds {sorted(_NAMES)}")
+            coordinates, origin, digest = archive["points"], str(archive["origin"]), str(archive["hash"])
+    except FileNotFoundError:
+        raise BrokenFile(f"no such file: {path}") from None
+    except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile) as error:
+        if isinstance(error, BrokenFile):
+            raise
+        raise BrokenFile(f"{path} is not a readable .npz point set: {error}") from error
+    if coordinates.dtype != np.float64:
+        raise BrokenFile(f"{path}: points have dtype {coordinates.dtype}, expected float64")
+    try:
+        loaded = PointSet(coordinates, _origin_from_json(origin))
+    except (InvalidValue, TypeError, ValueError) as error:
+        raise BrokenFile(f"{path}: {error}") from error
+    if loaded.hash != digest:
+        raise BrokenFile(f"{path}: the points do not match their hash; the file was changed or damaged")
+    return loaded
+
+
+def _origin_from_json(text: str) -> Origin:
+    record = json.loads(text)
+    known = {f.name for f in fields(Origin)}
+    if not isinstance(record, dict) or not set(record) <= known:
+        raise ValueError(f"the origin must be an object with keys among {sorted(known)}")
+    return Origin(**record)

@@ -1,0 +1,141 @@
+"""PointSet: a read-only array of points in the unit cube, and where it came from."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad import __version__
+from evenroad.errors import InvalidValue
+
+BELOW_ONE = float(np.nextafter(np.float32(1.0), np.float32(0.0)))
+"""Largest float32 below 1: what a coordinate that rounds up to 1 becomes."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Origin:
+    """Where a point set came from: enough to make it, or find it, again.
+
+    Attributes
+    ----------
+    family : str
+        Name of the sampler or family: ``halton``, ``hickernell``, ...
+    method : str
+        How it was made: ``plain``, ``scrambled``, ``annealed``, ``given``, ...
+    objective : str
+        The expression that was minimised, or "" for constructions.
+    seed : int or None
+        The seed it was drawn with; None when a Generator was passed, or none was used.
+    replica : int or None
+        Index of the set in its pool (trained families).
+    start : int
+        Index of the first point in its sequence (sequences only, else 0).
+    version : str
+        Version of evenroad that made it.
+    """
+
+    family: str
+    method: str = "plain"
+    objective: str = ""
+    seed: int | None = None
+    replica: int | None = None
+    start: int = 0
+    version: str = __version__
+
+    def __str__(self) -> str:
+        parts = [self.family, self.method]
+        if self.replica is not None:
+            parts.append(f"set {self.replica}")
+        if self.start:
+            parts.append(f"from index {self.start}")
+        return " ".join(parts)
+
+
+@dataclass(frozen=True, eq=False)
+class PointSet:
+    """`n` points of the unit cube [0, 1)^d, frozen, with their origin.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, d)
+        Coordinates in [0, 1), finite, d >= 1; copied to a read-only C-contiguous float64 array.
+    origin : Origin
+        Where they came from.
+
+    Raises
+    ------
+    InvalidValue
+        If the array is not two-dimensional and numeric, or a coordinate is NaN or outside [0, 1).
+    """
+
+    points: npt.NDArray[np.float64]
+    origin: Origin = field(default_factory=lambda: Origin(family="given", method="given"))
+
+    def __post_init__(self) -> None:
+        checked = as_unit_points(self.points).copy()
+        checked.setflags(write=False)
+        object.__setattr__(self, "points", checked)
+
+    @property
+    def n(self) -> int:
+        """Number of points."""
+        return self.points.shape[0]
+
+    @property
+    def d(self) -> int:
+        """Dimension of the cube."""
+        return self.points.shape[1]
+
+    @property
+    def hash(self) -> str:
+        """SHA-256 (hex) of shape and coordinates as little-endian float64: the identity of the set."""
+        digest = hashlib.sha256(f"{self.n}x{self.d}:".encode())
+        digest.update(self.points.astype("<f8", copy=False).tobytes())
+        return digest.hexdigest()
+
+    def with_origin(self, **changes: Any) -> PointSet:
+        """Return the same points with some fields of the origin replaced."""
+        return PointSet(self.points, replace(self.origin, **changes))
+
+    def __len__(self) -> int:
+        return self.n
+
+    def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
+        return np.array(self.points, dtype=dtype, copy=True) if copy else np.asarray(self.points, dtype=dtype)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, PointSet):
+            return NotImplemented
+        return self.origin == other.origin and np.array_equal(self.points, other.points)
+
+    def __hash__(self) -> int:
+        return hash(self.hash)
+
+    def __repr__(self) -> str:
+        return f"PointSet(n={self.n}, d={self.d}, origin={str(self.origin)!r}, hash={self.hash[:12]})"
+
+
+def as_unit_points(points: object) -> npt.NDArray[np.float64]:
+    """Return `points` as a C-contiguous float64 array of shape (n, d), checked to lie in [0, 1).
+
+    Raises
+    ------
+    InvalidValue
+        Naming the shape, or the first bad coordinate and its place.
+    """
+    try:
+        array = np.ascontiguousarray(points, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InvalidValue(f"points must be an (n, d) array of numbers: {error}") from None
+    if array.ndim != 2 or array.shape[1] < 1:
+        raise InvalidValue(f"points must have shape (n, d) with d >= 1, got {array.shape}")
+    bad = ~((array >= 0.0) & (array < 1.0))
+    if bad.any():
+        i, k = np.argwhere(bad)[0]
+        raise InvalidValue(f"points must lie in [0, 1): coordinate [{i}, {k}] is {float(array[i, k])!r}")
+    return array
+
