@@ -1,0 +1,164 @@
+"""Reading the bank: one folder a family, one float32 array (sets, n, d) a cell, one index for all.
+
+::
+
+    data/index.json                    {"hickernell": {"2": {"512": {cell record}}}}
+    data/hickernell/d02-n0512.npy
+
+The index alone says what is in the bank: a file without a record is a build that has not finished.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.errors import BrokenFile, NotAvailable, UnknownName
+from evenroad.points.pointset import PointSet
+
+DATA = Path(__file__).parent / "data"
+INDEX = "index.json"
+
+
+@dataclass(frozen=True)
+class Cell:
+    """The pool of one family at one n and d.
+
+    Attributes
+    ----------
+    method, objective, version : str
+        How its sets were made, and by which version.
+    hashes : tuple of str
+        ``PointSet.hash`` of every set, of the stored float32 values.
+    measures : dict of str to tuple of float
+        Measures of every set, of the stored values.
+    """
+
+    path: Path
+    n: int
+    d: int
+    method: str
+    objective: str
+    version: str
+    hashes: tuple[str, ...]
+    measures: dict[str, tuple[float, ...]]
+
+    @property
+    def sets(self) -> int:
+        """How many sets the pool has."""
+        return len(self.hashes)
+
+    def load(self) -> npt.NDArray[np.float32]:
+        """Return the sets, shape (sets, n, d), float32 in [0, 1), checked against the index.
+
+        Raises
+        ------
+        BrokenFile
+            If the file is missing or damaged, or a set does not have the hash of the index.
+        """
+        return _load_checked(self.path, (self.sets, self.n, self.d), self.hashes)
+
+
+@dataclass(frozen=True)
+class Bank:
+    """A folder of trained sets; see the module for its layout."""
+
+    folder: Path
+
+    def families(self) -> list[str]:
+        """Return the names of the families, sorted."""
+        return sorted(_index(self.folder))
+
+    def counts(self, family: str, d: int) -> list[int]:
+        """Return the n that a family has in d dimensions, ascending; empty when it has none."""
+        index = _index(self.folder)
+        if family not in index:
+            raise UnknownName.among("family", family, index)
+        return sorted(int(n) for n in index[family].get(str(d), {}))
+
+    def cell(self, family: str, n: int, d: int) -> Cell:
+        """Return the pool of one family at one n and d.
+
+        Raises
+        ------
+        UnknownName
+            If the bank has no such family.
+        NotAvailable
+            If the family has no set of this n and d; the text names the n (or the d) it has.
+        """
+        counts = self.counts(family, d)
+        if n not in counts:
+            raise NotAvailable(self._what_there_is(family, n, d, counts))
+        record = _index(self.folder)[family][str(d)][str(n)]
+        return Cell(
+            path=self.folder / family / cell_name(n, d),
+            n=n,
+            d=d,
+            method=record["method"],
+            objective=record["objective"],
+            version=record["version"],
+            hashes=tuple(record["hashes"]),
+            measures={name: tuple(values) for name, values in record["measures"].items()},
+        )
+
+    def has(self, family: str, n: int, d: int) -> bool:
+        """Say whether the bank holds a pool of this family at this n and d."""
+        return family in _index(self.folder) and n in self.counts(family, d)
+
+    def _what_there_is(self, family: str, n: int, d: int, counts: list[int]) -> str:
+        if counts:
+            return f"{family} has no set of n={n} in d={d}; it has n = {', '.join(map(str, counts))}"
+        dimensions = sorted(int(each) for each in _index(self.folder)[family])
+        return f"{family} has no sets in d={d}; it has d = {', '.join(map(str, dimensions))}"
+
+
+def open_bank(folder: str | os.PathLike[str] | None = None) -> Bank:
+    """Return the bank in `folder`; by default the one that ships with evenroad."""
+    return Bank(Path(folder) if folder is not None else DATA)
+
+
+def cell_name(n: int, d: int) -> str:
+    """Return the file name of a cell inside its family's folder."""
+    return f"d{d:02d}-n{n:04d}.npy"
+
+
+def _index(folder: Path) -> dict[str, Any]:
+    path = folder / INDEX
+    try:
+        return _parse_index(path, path.stat().st_mtime_ns)
+    except FileNotFoundError:
+        return {}
+
+
+@lru_cache(maxsize=8)
+def _parse_index(path: Path, mtime_ns: int) -> dict[str, Any]:
+    """Parse the index; `mtime_ns` is part of the key so that a bank being built is seen to grow."""
+    try:
+        index = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise BrokenFile(f"the bank's index {path} cannot be read: {error}") from error
+    if not isinstance(index, dict):
+        raise BrokenFile(f"the bank's index {path} must be a JSON object")
+    return index
+
+
+@lru_cache(maxsize=32)
+def _load_checked(path: Path, shape: tuple[int, ...], hashes: tuple[str, ...]) -> npt.NDArray[np.float32]:
+    try:
+        sets = np.load(path, allow_pickle=False)
+    except (OSError, ValueError, EOFError) as error:
+        raise BrokenFile(f"the bank's file {path} cannot be read: {error}") from error
+    if not isinstance(sets, np.ndarray) or sets.dtype != np.float32 or sets.shape != shape:
+        raise BrokenFile(f"the bank's file {path} is not a float32 array of shape {shape}")
+    for replica, expected in enumerate(hashes):
+        if PointSet(sets[replica]).hash != expected:
+            raise BrokenFile(f"{path}: set {replica} does not match the hash in the index")
+    sets.setflags(write=False)
+    return sets

@@ -1,0 +1,77 @@
+"""Samplers behind one interface, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from evenroad._rng import RngLike
+from evenroad.errors import InvalidValue, UnknownName
+from evenroad.points.pointset import PointSet
+from evenroad.points.samplers.banked import Banked as Banked
+from evenroad.points.samplers.lattice import Lattice as Lattice
+from evenroad.points.samplers.sampler import Sampler as Sampler
+from evenroad.points.samplers.sukharev import Sukharev as Sukharev
+from evenroad.points.samplers.uniform import Uniform as Uniform
+
+
+def _halton(**options: Any) -> Sampler:
+    # scipy.stats takes half a second to import: only those who ask for a sequence pay for it.
+    from evenroad.points.samplers.sequences import Halton
+
+    return Halton(**options)
+
+
+def _sobol(**options: Any) -> Sampler:
+    from evenroad.points.samplers.sequences import Sobol
+
+    return Sobol(**options)
+
+
+SAMPLERS: dict[str, Callable[..., Sampler]] = {
+    "uniform": Uniform,
+    "halton": _halton,
+    "sobol": _sobol,
+    "sukharev": Sukharev,
+    "lattice": Lattice,
+    "hickernell": partial(Banked, "hickernell"),
+}
+"""Name -> how to make the sampler from its options."""
+
+
+def make_sampler(name: str, **options: Any) -> Sampler:
+    """Return the sampler of this name.
+
+    Parameters
+    ----------
+    name : str
+        One of :data:`SAMPLERS`.
+    **options
+        The sampler's own parameters, e.g. ``scramble`` and ``start`` of ``halton``.
+
+    Raises
+    ------
+    UnknownName
+        If there is no such sampler; the text lists them.
+    InvalidValue
+        If the sampler does not take an option.
+    """
+    if name not in SAMPLERS:
+        raise UnknownName.among("sampler", name, SAMPLERS)
+    try:
+        return SAMPLERS[name](**options)
+    except TypeError as error:
+        raise InvalidValue(f"sampler {name!r} does not take these options: {error}") from None
+
+
+def draw(name: str, n: int, d: int, *, rng: RngLike = 0, **options: Any) -> PointSet:
+    """Draw n points in d dimensions from the sampler of this name: ``make_sampler(...).draw(...)``.
+
+    Examples
+    --------
+    >>> from evenroad.points import draw
+    >>> draw("uniform", 3, 2, rng=1).points.shape
+    (3, 2)
+    """
+    return make_sampler(name, **options).draw(n, d, rng=rng)

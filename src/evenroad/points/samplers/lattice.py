@@ -1,0 +1,93 @@
+"""The A_d* lattice, randomly turned and shifted: the thinnest known lattice covering in low dimensions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._checks import require_count
+from evenroad._rng import RngLike, generator, seed_of
+from evenroad.errors import InvalidValue
+from evenroad.points.pointset import Origin, PointSet
+
+MAX_D = 12
+"""Beyond this the ball around the cube holds thousands of lattice points for each one inside the cube."""
+
+
+@dataclass(frozen=True)
+class Lattice:
+    """A_d* (Conway and Sloane 1999, chapter 4.6.6), under a random rotation and a random shift.
+
+    The rule that keeps exactly n points: around a uniformly random centre in the turned lattice of unit density,
+    grow a cube until it holds n lattice points, go on half way to the point that would enter next, and scale that
+    cube to the unit cube.
+    """
+
+    name = "lattice"
+
+    def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
+        """Return n lattice points of the unit cube, shape (n, d); see :class:`Sampler`.
+
+        Raises
+        ------
+        InvalidValue
+            Also if d > 12.
+        """
+        n, d = require_count("n", n), require_count("d", d)
+        if d > MAX_D:
+            raise InvalidValue(f"d must be at most {MAX_D} for the lattice sampler, got {d}")
+        random = generator(rng)
+        rotation, shift = _random_rotation(d, random), random.random(d)
+        basis = _unit_density_basis(d)
+        half = 0.5 * (n + 1) ** (1 / d)
+        while True:
+            # A small margin: what the loop tries does not change the points, only how many it looks at.
+            half *= 1.03
+            offsets = _points_in_ball(basis, shift, radius=half * np.sqrt(d)) @ rotation
+            reach = np.abs(offsets).max(axis=1)
+            inside = np.flatnonzero(reach <= half)
+            if inside.size > n:
+                break
+        inside = inside[np.argsort(reach[inside], kind="stable")]
+        edge = 0.5 * (reach[inside[n - 1]] + reach[inside[n]])
+        points = np.clip(0.5 + 0.5 * offsets[inside[:n]] / edge, 0.0, np.nextafter(1.0, 0.0))
+        return PointSet(points, Origin(family=self.name, method="A_d* turned and shifted", seed=seed_of(rng)))
+
+
+def _unit_density_basis(d: int) -> npt.NDArray[np.float64]:
+    """Return a lower-triangular basis (rows are vectors) of A_d* with determinant 1.
+
+    The rows have the Gram matrix I - J/(d+1), an obtuse superbase of A_d*, scaled to unit density.
+    """
+    gram = np.eye(d) - np.full((d, d), 1.0 / (d + 1))
+    return np.linalg.cholesky(gram) * (d + 1) ** (0.5 / d)
+
+
+def _random_rotation(d: int, random: np.random.Generator) -> npt.NDArray[np.float64]:
+    """Return a Haar-distributed orthogonal matrix: QR of a Gaussian one, signs fixed (Mezzadri 2007)."""
+    q, r = np.linalg.qr(random.standard_normal((d, d)))
+    return q * np.sign(np.diagonal(r))
+
+
+def _points_in_ball(
+    basis: npt.NDArray[np.float64], shift: npt.NDArray[np.float64], radius: float
+) -> npt.NDArray[np.float64]:
+    """Return every (z + shift) @ basis, z integer, within `radius` of the origin, shape (m, d).
+
+    The basis is lower triangular, so coordinate k depends on z_k .. z_d only: fix the last coefficient first and
+    keep the partial vectors that can still end inside (Fincke and Pohst 1985), all of them at once.
+    """
+    d = basis.shape[0]
+    partial = np.zeros((1, d))
+    for k in range(d - 1, -1, -1):
+        room = np.sqrt(np.maximum(radius**2 - (partial[:, k + 1 :] ** 2).sum(axis=1), 0.0))
+        step = basis[k, k]
+        lowest = np.ceil((-room - partial[:, k]) / step - shift[k]).astype(np.int64)
+        highest = np.floor((room - partial[:, k]) / step - shift[k]).astype(np.int64)
+        count = np.maximum(highest - lowest + 1, 0)
+        parent = np.repeat(np.arange(len(partial)), count)
+        z = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count) + lowest[parent]
+        partial = partial[parent] + (z + shift[k])[:, None] * basis[k]
+    return partial

@@ -1,0 +1,105 @@
+"""Halton's and Sobol's sequences, plain or scrambled, from any start index (engines: scipy.stats.qmc)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy.typing as npt
+from scipy.stats import qmc
+
+from evenroad._checks import require_count
+from evenroad._rng import RngLike, generator, seed_of
+from evenroad.errors import InvalidValue
+from evenroad.points.pointset import Origin, PointSet
+
+SOBOL_LENGTH = 2**30
+"""How many distinct points SciPy's Sobol engine has at its default 30 bits."""
+
+
+@dataclass(frozen=True)
+class Halton:
+    """Halton's sequence in the first d prime bases (Halton 1960).
+
+    Parameters
+    ----------
+    scramble : bool
+        Random digit permutations (Owen 2017) drawn from `rng`; else the plain sequence, which ignores `rng`.
+    start : int
+        Index of the first point, >= 0.  Index 0 of the plain sequence is the origin of the cube.
+    """
+
+    scramble: bool = True
+    start: int = 0
+    name = "halton"
+
+    def __post_init__(self) -> None:
+        require_count("start", self.start, at_least=0)
+
+    def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
+        """Return points start .. start + n - 1 of the sequence, shape (n, d); see :class:`Sampler`."""
+        n, d = require_count("n", n), require_count("d", d)
+        engine = qmc.Halton(d, scramble=self.scramble, rng=generator(rng))
+        if self.start:
+            engine.fast_forward(self.start)
+        return _with_origin(self, engine.random(n), rng)
+
+
+@dataclass(frozen=True)
+class Sobol:
+    """Sobol's sequence with the direction numbers of Joe and Kuo (2008).
+
+    Parameters
+    ----------
+    scramble : bool
+        Linear matrix scramble with a digital shift (Matousek 1998) drawn from `rng`; else plain, ignoring `rng`.
+    start : int
+        Index of the first point, >= 0.  Index 0 of the plain sequence is the origin of the cube.
+    """
+
+    scramble: bool = True
+    start: int = 0
+    name = "sobol"
+
+    def __post_init__(self) -> None:
+        require_count("start", self.start, at_least=0)
+
+    def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
+        """Return points start .. start + n - 1 of the sequence, shape (n, d); see :class:`Sampler`.
+
+        Raises
+        ------
+        InvalidValue
+            Also if start + n exceeds 2**30 points, or d exceeds the 21201 dimensions of the direction numbers.
+        """
+        n, d = require_count("n", n), require_count("d", d)
+        if self.start + n > SOBOL_LENGTH:
+            raise InvalidValue(f"the Sobol sequence ends at index {SOBOL_LENGTH}, asked for {self.start + n}")
+        if d > qmc.Sobol.MAXDIM:
+            raise InvalidValue(f"d must be at most {qmc.Sobol.MAXDIM} for Sobol points, got {d}")
+        engine = qmc.Sobol(d, scramble=self.scramble, rng=generator(rng))
+        if self.start:
+            engine.fast_forward(self.start)
+            points = engine.random(n)
+        else:
+            # From index 0 SciPy warns unless n is a power of two; users of a roadmap choose n freely.
+            points = engine.random_base2((n - 1).bit_length())[:n]
+        return _with_origin(self, points, rng)
+
+
+def paper_block(sampler: Halton | Sobol, run: int, n: int) -> Halton | Sobol:
+    """Return the plain sequence for one run of the paper: points (run-1) n + 1 .. run n, with run >= 1.
+
+    Chahine et al. (2025), section 4.1: every run goes on where the previous one ended.
+    """
+    run, n = require_count("run", run), require_count("n", n)
+    return type(sampler)(scramble=False, start=(run - 1) * n + 1)
+
+
+def _with_origin(sampler: Halton | Sobol, points: npt.ArrayLike, rng: RngLike) -> PointSet:
+    origin = Origin(
+        family=sampler.name,
+        method="scrambled" if sampler.scramble else "plain",
+        seed=seed_of(rng) if sampler.scramble else None,
+        start=sampler.start,
+    )
+    return PointSet(points, origin)  # type: ignore[arg-type]

@@ -1,0 +1,55 @@
+"""Sukharev's grid: the centres of k^d equal cells."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from evenroad._checks import require_count
+from evenroad._rng import RngLike
+from evenroad.errors import NotAvailable
+from evenroad.points.pointset import Origin, PointSet
+
+
+@dataclass(frozen=True)
+class Sukharev:
+    """The grid of smallest l_inf dispersion among k^d points (Sukharev 1971).
+
+    Parameters
+    ----------
+    allow_fewer : bool
+        For n that is no k^d, give the largest grid with at most n points instead of refusing.
+    """
+
+    allow_fewer: bool = False
+    name = "sukharev"
+
+    def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
+        """Return the k^d cell centres ((i + 1/2) / k per axis), first axis slowest; `rng` is not used.
+
+        Raises
+        ------
+        NotAvailable
+            If n is no k^d and `allow_fewer` is off; the text names the two nearest.
+        """
+        n, d = require_count("n", n), require_count("d", d)
+        k = _floor_root(n, d)
+        if k**d != n and not self.allow_fewer:
+            raise NotAvailable(
+                f"a Sukharev grid in d={d} has k^{d} points: n={n} is none, the nearest are"
+                f" {k**d} and {(k + 1) ** d} (or allow fewer)"
+            )
+        axis = (np.arange(k) + 0.5) / k
+        grid = np.stack(np.meshgrid(*[axis] * d, indexing="ij"), axis=-1).reshape(-1, d)
+        return PointSet(grid, Origin(family=self.name, method="grid"))
+
+
+def _floor_root(n: int, d: int) -> int:
+    """Return the largest integer k with k**d <= n, without trusting the float root."""
+    k = max(1, round(n ** (1.0 / d)))
+    while k**d > n:
+        k -= 1
+    while (k + 1) ** d <= n:
+        k += 1
+    return k
