@@ -1,0 +1,27 @@
+"""How even a set of points is: discrepancies, dispersion, separation, energy.
+
+``MEASURES`` holds the L2 discrepancies by name: ``MEASURES["hickernell"].rooted(points)``.
+"""
+
+from evenroad.errors import UnknownName
+from evenroad.points.measures.average_squared import AVERAGE_SQUARED as AVERAGE_SQUARED
+from evenroad.points.measures.centred import CENTRED as CENTRED
+from evenroad.points.measures.hickernell import HICKERNELL as HICKERNELL
+from evenroad.points.measures.measure import Measure as Measure
+from evenroad.points.measures.mixture import MIXTURE as MIXTURE
+from evenroad.points.measures.star import STAR as STAR
+from evenroad.points.measures.symmetric import SYMMETRIC as SYMMETRIC
+from evenroad.points.measures.wrap_around import WRAP_AROUND as WRAP_AROUND
+
+MEASURES: dict[str, Measure] = {
+    measure.name: measure
+    for measure in (STAR, HICKERNELL, CENTRED, WRAP_AROUND, MIXTURE, SYMMETRIC, AVERAGE_SQUARED)
+}
+"""The L2 discrepancies by name."""
+
+
+def measure_named(name: str) -> Measure:
+    """Return the measure of this name, or raise UnknownName with the known ones."""
+    if name not in MEASURES:
+        raise UnknownName.among("measure", name, MEASURES)
+    return MEASURES[name]
