@@ -1,0 +1,4 @@
+"""Spaces: from the unit cube to configurations, with a metric and shortest interpolation."""
+
+from evenroad.space.protocol import Space as Space
+from evenroad.space.rectangle import Rectangle as Rectangle

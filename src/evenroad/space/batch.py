@@ -1,0 +1,53 @@
+"""Reading a caller's configurations: a float64 batch of known width, or an error that names what is wrong."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.errors import InvalidValue
+
+
+def as_batch(name: str, values: object, dim: int) -> npt.NDArray[np.float64]:
+    """Return `values` as a C-contiguous float64 array of shape (n, dim) with finite entries.
+
+    Parameters
+    ----------
+    name : str
+        What the caller calls the argument, for the error text.
+    values : array_like, shape (n, dim)
+        Not copied when it already is such an array; never written to.
+    dim : int
+        Number of columns wanted.
+
+    Raises
+    ------
+    InvalidValue
+        Naming the shape, or the first entry that is NaN or infinite and its place.
+    """
+    try:
+        array = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InvalidValue(f"{name} must be an (n, {dim}) array of numbers: {error}") from None
+    if array.ndim != 2 or array.shape[1] != dim:
+        raise InvalidValue(f"{name} must have shape (n, {dim}), got {array.shape}")
+    batch = np.ascontiguousarray(array)
+    finite = np.isfinite(batch)
+    if not finite.all():
+        i, k = np.argwhere(~finite)[0]
+        raise InvalidValue(f"{name} must be finite: entry [{i}, {k}] is {float(batch[i, k])!r}")
+    return batch
+
+
+def as_batch_pair(a: object, b: object, dim: int) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Return the two ends `a` and `b` of a batch of motions, both checked by `as_batch`, of one length.
+
+    Raises
+    ------
+    InvalidValue
+        As `as_batch`, or if the two have different lengths.
+    """
+    first, second = as_batch("a", a, dim), as_batch("b", b, dim)
+    if len(first) != len(second):
+        raise InvalidValue(f"a and b must have the same length, got {len(first)} and {len(second)}")
+    return first, second

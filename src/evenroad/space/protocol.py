@@ -1,0 +1,38 @@
+"""Space: what a planner needs to know about the configurations of a robot."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+
+class Space(Protocol):
+    """A set of configurations with a metric, and a map onto it from the unit cube, batch-first.
+
+    Implementations never write to their arguments and raise InvalidValue for a wrong shape or an entry that
+    is not finite.
+    """
+
+    @property
+    def dim(self) -> int:
+        """Number of coordinates of a configuration."""
+        ...
+
+    def from_cube(self, u: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Map points of the unit cube, (n, dim), to configurations, (n, dim), preserving measure."""
+        ...
+
+    def distance(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Return the distance of each row of `a` from the same row of `b`: two (n, dim) arrays -> (n,)."""
+        ...
+
+    def interpolate(
+        self,
+        a: npt.NDArray[np.float64],
+        b: npt.NDArray[np.float64],
+        t: npt.NDArray[np.float64] | float,
+    ) -> npt.NDArray[np.float64]:
+        """Return the points a fraction `t` (scalar or (n,), in [0, 1]) from `a` to `b`, (n, dim)."""
+        ...

@@ -1,0 +1,101 @@
+"""Rectangle: a rectangle in the plane, possibly turned, with the Euclidean metric."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.errors import InvalidValue
+from evenroad.space.batch import as_batch, as_batch_pair
+
+_LARGEST_COSINE = 1e-9
+"""Edges count as perpendicular up to this cosine: room for the rounding of a yaw, not for a slanted frame."""
+
+
+@dataclass(frozen=True)
+class Rectangle:
+    """The rectangle ``corner + s * edge_u + t * edge_v`` for s, t in [0, 1].
+
+    Parameters
+    ----------
+    corner : tuple of two floats
+        The corner that the cube's origin goes to.
+    edge_u, edge_v : tuple of two floats
+        The sides that leave `corner`, perpendicular and not of length zero, in the units of `corner`.
+
+    Raises
+    ------
+    InvalidValue
+        If an entry is not a finite number, an edge has length zero, or the edges are not perpendicular.
+    """
+
+    corner: tuple[float, float]
+    edge_u: tuple[float, float]
+    edge_v: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        for name in ("corner", "edge_u", "edge_v"):
+            object.__setattr__(self, name, _as_pair(name, getattr(self, name)))
+        lengths = math.hypot(*self.edge_u), math.hypot(*self.edge_v)
+        if min(lengths) == 0.0 or not math.isfinite(lengths[0] * lengths[1]):
+            raise InvalidValue(
+                f"edge_u and edge_v must have a finite length > 0, got {self.edge_u} and {self.edge_v}"
+            )
+        cosine = sum(u / lengths[0] * (v / lengths[1]) for u, v in zip(self.edge_u, self.edge_v, strict=True))
+        if abs(cosine) > _LARGEST_COSINE:
+            raise InvalidValue(
+                f"edge_u and edge_v must be perpendicular, got {self.edge_u} and {self.edge_v}"
+            )
+
+    @property
+    def dim(self) -> int:
+        """Number of coordinates: 2."""
+        return 2
+
+    @property
+    def area(self) -> float:
+        """Area, in squared units of `corner`."""
+        return math.hypot(*self.edge_u) * math.hypot(*self.edge_v)
+
+    def from_cube(self, u: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Return ``corner + u[:, 0] edge_u + u[:, 1] edge_v`` for `u` of shape (n, 2), as (n, 2)."""
+        unit = as_batch("u", u, 2)
+        # Written out instead of a matrix product: BLAS may round a row differently in a longer batch.
+        return np.column_stack(
+            [self.corner[k] + unit[:, 0] * self.edge_u[k] + unit[:, 1] * self.edge_v[k] for k in (0, 1)]
+        )
+
+    def distance(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Return the Euclidean distances of the rows of `a` and `b`, both (n, 2), as (n,)."""
+        first, second = as_batch_pair(a, b, 2)
+        return np.hypot(second[:, 0] - first[:, 0], second[:, 1] - first[:, 1])
+
+    def interpolate(
+        self,
+        a: npt.NDArray[np.float64],
+        b: npt.NDArray[np.float64],
+        t: npt.NDArray[np.float64] | float,
+    ) -> npt.NDArray[np.float64]:
+        """Return ``(1 - t) a + t b`` for `a`, `b` of shape (n, 2) and `t` in [0, 1], scalar or (n,)."""
+        first, second = as_batch_pair(a, b, 2)
+        fraction = np.asarray(t, dtype=np.float64)
+        if fraction.shape not in ((), (len(first),)):
+            raise InvalidValue(f"t must be a scalar or have shape ({len(first)},), got {fraction.shape}")
+        if not ((fraction >= 0.0) & (fraction <= 1.0)).all():
+            raise InvalidValue("t must lie in [0, 1]")
+        column = np.broadcast_to(fraction, (len(first),))[:, np.newaxis]
+        # This form, unlike a + t (b - a), is exact at both ends.
+        return (1.0 - column) * first + column * second
+
+
+def _as_pair(name: str, value: object) -> tuple[float, float]:
+    try:
+        x, y = (float(entry) for entry in value)  # type: ignore[attr-defined]
+    except (TypeError, ValueError):
+        raise InvalidValue(f"{name} must be two finite numbers, got {value!r}") from None
+    if not (math.isfinite(x) and math.isfinite(y)):
+        raise InvalidValue(f"{name} must be two finite numbers, got {value!r}")
+    return x, y

@@ -1,0 +1,6 @@
+"""Worlds: which configurations and motions are free, in batches."""
+
+from evenroad.world.gridmap import GridMap as GridMap
+from evenroad.world.gridmap import MapFrame as MapFrame
+from evenroad.world.gridmap import load_map as load_map
+from evenroad.world.protocol import World as World

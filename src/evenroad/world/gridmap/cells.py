@@ -1,0 +1,125 @@
+"""Per-cell knowledge about a disk on a grid of occupied cells: most questions end with one look at it.
+
+The grid is *padded*: one ring of occupied cells surrounds the map, which for a point of the map is exactly
+the outside.  Lengths are in pixels.  `radius` is the disk's.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+BLOCKED = 0
+"""Every point of the closed cell is nearer than `radius` to an obstacle."""
+UNDECIDED = 1
+"""The cell needs the exact test."""
+FREE = 2
+"""FREE + s: every point of the closed cell is at least `radius` + s from every obstacle."""
+
+_LARGEST_SLACK = 255 - FREE
+_LARGEST_RUN = 65535
+
+
+@njit(cache=True, nogil=True)
+def vertical_runs(padded: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.uint16], npt.NDArray[np.uint16]]:
+    """Return how many rows up, and how many down, the nearest occupied cell of the same column is.
+
+    Both are 0 in an occupied cell.  Runs end at 65535: the nearest obstacle of a point is never that far in
+    any map that fits in memory (half its shorter side), so a longer run never decides anything.
+    """
+    rows, cols = padded.shape
+    above = np.empty((rows, cols), np.uint16)
+    below = np.empty((rows, cols), np.uint16)
+    for row in range(rows):
+        for col in range(cols):
+            before = above[row - 1, col] if row > 0 else _LARGEST_RUN
+            above[row, col] = 0 if padded[row, col] else min(before + 1, _LARGEST_RUN)
+    for row in range(rows - 1, -1, -1):
+        for col in range(cols):
+            before = below[row + 1, col] if row < rows - 1 else _LARGEST_RUN
+            below[row, col] = 0 if padded[row, col] else min(before + 1, _LARGEST_RUN)
+    return above, below
+
+
+@njit(cache=True, nogil=True)
+def classify(
+    above: npt.NDArray[np.uint16], below: npt.NDArray[np.uint16], radius: float
+) -> npt.NDArray[np.uint8]:
+    """Return the class of every cell of the padded grid: BLOCKED, UNDECIDED or FREE + slack.
+
+    Two exact distances decide.  The farthest that a point of a cell can be from a square (dc, dr) cells away
+    is hypot(dc, dr), so a cell whose nearest occupied cell is nearer than the radius, centre to centre, is
+    blocked.  The nearest is hypot(max(dc - 1, 0), max(dr - 1, 0)): the distance from the obstacles grown by
+    one cell all round, so a cell where that is at least the radius is free, and the rest is slack.
+    """
+    rows, cols = above.shape
+    squared_radius = radius * radius
+    cells = np.zeros((rows, cols), np.uint8)
+    centre_heights = np.empty(cols, np.int64)
+    gap_heights = np.empty(cols, np.int64)
+    centre_squared = np.empty(cols, np.int64)
+    gap_squared = np.empty(cols, np.int64)
+    apexes = np.empty(cols, np.int64)
+    starts = np.empty(cols, np.int64)
+    for row in range(1, rows - 1):
+        for col in range(cols):
+            centre_heights[col] = min(above[row, col], below[row, col])
+        for col in range(cols):
+            lowest = centre_heights[col]
+            if col > 0:
+                lowest = min(lowest, centre_heights[col - 1])
+            if col < cols - 1:
+                lowest = min(lowest, centre_heights[col + 1])
+            gap_heights[col] = max(lowest - 1, 0)
+        _squared_distances(centre_heights, centre_squared, apexes, starts)
+        _squared_distances(gap_heights, gap_squared, apexes, starts)
+        for col in range(1, cols - 1):
+            if centre_squared[col] == 0 or centre_squared[col] < squared_radius:
+                cells[row, col] = BLOCKED
+            elif gap_squared[col] >= squared_radius:
+                slack = math.floor(math.sqrt(gap_squared[col]) - radius)
+                cells[row, col] = FREE + min(slack, _LARGEST_SLACK)
+            else:
+                cells[row, col] = UNDECIDED
+    return cells
+
+
+@njit(cache=True, nogil=True)
+def _squared_distances(heights: Any, squared: Any, apexes: Any, starts: Any) -> None:
+    """Write ``min over j of (i - j)**2 + heights[j]**2`` into `squared`, in linear time.
+
+    The parabolas' lower envelope, built from left to right and then read off (Meijster, Roerdink and
+    Hesselink 2000, section 2.2); `apexes` and `starts` are work space of the same length.
+    """
+    count = len(heights)
+    last = 0
+    apexes[0] = 0
+    starts[0] = 0
+    for new in range(1, count):
+        height = heights[new]
+        while last >= 0:
+            old = apexes[last]
+            at = starts[last]
+            if (at - old) ** 2 + heights[old] ** 2 <= (at - new) ** 2 + height**2:
+                break
+            last -= 1
+        if last < 0:
+            last = 0
+            apexes[0] = new
+            starts[0] = 0
+            continue
+        old = apexes[last]
+        crossing = (new * new - old * old + height * height - heights[old] ** 2) // (2 * (new - old))
+        if crossing + 1 < count:
+            last += 1
+            apexes[last] = new
+            starts[last] = crossing + 1
+    for i in range(count - 1, -1, -1):
+        apex = apexes[last]
+        squared[i] = (i - apex) ** 2 + heights[apex] ** 2
+        if i == starts[last]:
+            last -= 1

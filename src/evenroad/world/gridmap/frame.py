@@ -1,0 +1,98 @@
+"""MapFrame: where the pixels of a map lie in the plane."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._checks import require_count, require_positive
+from evenroad.errors import InvalidValue
+from evenroad.space import Rectangle
+
+
+@dataclass(frozen=True, kw_only=True)
+class MapFrame:
+    """The transform between pixels and map coordinates.
+
+    Pixel (column c, row r), row 0 on top, is the square [c, c+1] x [r, r+1] of the pixel plane, whatever the
+    frame.  Two conventions place that plane in the map:
+
+    * ``y_up=False``, a bare image: x to the right, y DOWN, `origin` is the image's top-left corner;
+    * ``y_up=True``, a ROS map: `origin` is the lower-left corner of the lower-left pixel, y up along the
+      image's left side, the whole image turned by `yaw` (anticlockwise) about `origin`.
+
+    Parameters
+    ----------
+    rows, cols : int
+        Size of the image in pixels.
+    resolution : float
+        Side of a pixel in map units (metres in a ROS map).
+    origin : tuple of two floats
+        In map units.
+    yaw : float
+        In radians; 0 for a bare image.
+    y_up : bool
+        Which of the two conventions.
+
+    Raises
+    ------
+    InvalidValue
+        If a size is not positive, or a number is not finite.
+    """
+
+    rows: int
+    cols: int
+    resolution: float = 1.0
+    origin: tuple[float, float] = (0.0, 0.0)
+    yaw: float = 0.0
+    y_up: bool = False
+
+    def __post_init__(self) -> None:
+        require_count("rows", self.rows)
+        require_count("cols", self.cols)
+        require_positive("resolution", self.resolution)
+        if len(self.origin) != 2 or not all(math.isfinite(value) for value in (*self.origin, self.yaw)):
+            raise InvalidValue(f"origin and yaw must be finite, got {self.origin!r} and {self.yaw!r}")
+        if self.yaw != 0.0 and not self.y_up:
+            raise InvalidValue(f"a frame with y down cannot be turned: yaw must be 0, got {self.yaw!r}")
+
+    @property
+    def rectangle(self) -> Rectangle:
+        """The image's outline in the map: the cube's origin goes to `origin`, its axes along the image's."""
+        width, height = self.cols * self.resolution, self.rows * self.resolution
+        cosine, sine = math.cos(self.yaw), math.sin(self.yaw)
+        return Rectangle(
+            corner=self.origin,
+            edge_u=(width * cosine, width * sine),
+            edge_v=(-height * sine, height * cosine),
+        )
+
+    def coefficients(self) -> npt.NDArray[np.float64]:
+        """Return the eight numbers with which the kernels turn map coordinates into pixels.
+
+        They are origin x, y; the map directions of increasing column (x, y) and of increasing row (x, y);
+        the resolution; and the row of the origin.  A point's column is then ``(q - origin) . direction /
+        resolution``: subtracting first and dividing last keeps round numbers round, so that a disk that
+        just touches is seen to just touch.
+        """
+        cosine, sine = math.cos(self.yaw), math.sin(self.yaw)
+        if not self.y_up:
+            return np.array([*self.origin, 1.0, 0.0, 0.0, 1.0, self.resolution, 0.0])
+        return np.array([*self.origin, cosine, sine, sine, -cosine, self.resolution, float(self.rows)])
+
+    def to_pixels(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Return the pixel coordinates (column, row), (n, 2), of the map points `q`, (n, 2)."""
+        x0, y0, column_x, column_y, row_x, row_y, scale, first_row = self.coefficients()
+        x, y = q[:, 0] - x0, q[:, 1] - y0
+        return np.column_stack(
+            [(column_x * x + column_y * y) / scale, first_row + (row_x * x + row_y * y) / scale]
+        )
+
+    def to_map(self, pixels: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Return the map points, (n, 2), at pixel coordinates (column, row), (n, 2)."""
+        x0, y0, column_x, column_y, row_x, row_y, scale, first_row = self.coefficients()
+        column, row = pixels[:, 0] * scale, (pixels[:, 1] - first_row) * scale
+        return np.column_stack([x0 + column_x * column + row_x * row, y0 + column_y * column + row_y * row])

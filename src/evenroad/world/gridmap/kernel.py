@@ -1,0 +1,212 @@
+"""The compiled exact tests of a disk on a grid: points and motions.
+
+Everything happens in the pixel plane of the *padded* grid (see `cells`), whose coordinates are one larger
+than the map's.  Obstacles are closed squares; a disk is free if its centre is at least `radius` from all of
+them, so touching is free.
+
+Seen from a point of cell (row, col), only one or two squares of each other column can be the nearest: the
+one in the same row if it is occupied, else the first above and the first below (`above`, `below`), because
+the point's y lies between `row` and `row + 1`.  Only columns within `reach` = ceil(radius) matter.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from evenroad.world.gridmap.cells import BLOCKED, FREE, UNDECIDED
+
+_SMALLEST_SQUARE = np.finfo(np.float64).tiny
+"""Keeps the square of a tiny radius above 0: a disk of any size touches what its centre lies on."""
+
+
+@njit(cache=True, nogil=True)
+def points_are_free(
+    q: npt.NDArray[np.float64], frame: Any, cells: Any, above: Any, below: Any, radius: float
+) -> npt.NDArray[np.bool_]:
+    """Return for each finite map point, (n, 2), whether the disk there is free, (n,)."""
+    free = np.empty(len(q), np.bool_)
+    for i in range(len(q)):
+        x, y = _to_padded(q[i, 0], q[i, 1], frame)
+        free[i] = _point_is_free(x, y, cells, above, below, radius)
+    return free
+
+
+@njit(cache=True, nogil=True)
+def motions_are_free(
+    a: npt.NDArray[np.float64],
+    b: npt.NDArray[np.float64],
+    frame: Any,
+    cells: Any,
+    above: Any,
+    below: Any,
+    radius: float,
+) -> npt.NDArray[np.bool_]:
+    """Return for each pair of finite map points, (m, 2), whether the disk can move straight, (m,)."""
+    free = np.empty(len(a), np.bool_)
+    for i in range(len(a)):
+        ax, ay = _to_padded(a[i, 0], a[i, 1], frame)
+        bx, by = _to_padded(b[i, 0], b[i, 1], frame)
+        ends_are_free = _point_is_free(ax, ay, cells, above, below, radius) and _point_is_free(
+            bx, by, cells, above, below, radius
+        )
+        if not ends_are_free:
+            free[i] = False
+        elif bx < ax or (bx == ax and by < ay):
+            # One direction for both orders: a motion and its reverse round alike.
+            free[i] = _way_is_free(bx, by, ax, ay, cells, above, below, radius)
+        else:
+            free[i] = _way_is_free(ax, ay, bx, by, cells, above, below, radius)
+    return free
+
+
+@njit(cache=True, nogil=True)
+def _to_padded(x: float, y: float, frame: Any) -> tuple[float, float]:
+    """Return the padded pixel coordinates of a map point; `frame` is `MapFrame.coefficients()`."""
+    x -= frame[0]
+    y -= frame[1]
+    column = (frame[2] * x + frame[3] * y) / frame[6]
+    row = frame[7] + (frame[4] * x + frame[5] * y) / frame[6]
+    return column + 1.0, row + 1.0
+
+
+@njit(cache=True, nogil=True)
+def _point_is_free(x: float, y: float, cells: Any, above: Any, below: Any, radius: float) -> bool:
+    rows, cols = cells.shape
+    # On the border the distance to the outside is 0, so it is no place for a disk either.
+    if not (1.0 < x < cols - 1.0 and 1.0 < y < rows - 1.0):
+        return False
+    col, row = int(x), int(y)
+    state = cells[row, col]
+    if state != UNDECIDED:
+        return state >= FREE
+    squared_radius = max(radius * radius, _SMALLEST_SQUARE)
+    reach = math.ceil(radius)
+    for other in range(max(col - reach, 0), min(col + reach, cols - 1) + 1):
+        gap_x = max(other - x, x - (other + 1), 0.0)
+        gap_y = 0.0
+        if above[row, other] > 0:
+            gap_y = min(y - (row + 1 - above[row, other]), row + below[row, other] - y)
+        if gap_x * gap_x + gap_y * gap_y < squared_radius:
+            return False
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _way_is_free(
+    ax: float, ay: float, bx: float, by: float, cells: Any, above: Any, below: Any, radius: float
+) -> bool:
+    """Follow the segment from a to b (ax <= bx), both free, cell by cell; parameter t runs from 0 to 1.
+
+    Every piece [t, leaving] of the segment lies in the closed cell that is looked at and the pieces leave no
+    gap, so nothing is stepped over.  The grid lines' t are computed from whole numbers, never added up.
+    """
+    dx, dy = bx - ax, by - ay
+    squared_length = dx * dx + dy * dy
+    if squared_length < 1e-200:  # shorter than any rounding, and its ends are free
+        return True
+    crosses_columns, crosses_rows = dx > 1e-300, abs(dy) > 1e-300  # below, 1 / d would overflow
+    per_column = 1.0 / dx if crosses_columns else 0.0
+    per_row = 1.0 / dy if crosses_rows else 0.0
+    per_pixel = 1.0 / math.sqrt(squared_length)
+    row_step = 1 if dy > 0.0 else -1
+    next_line = 1 if dy > 0.0 else 0
+    col, row = int(ax), int(ay)
+    t, x, y = 0.0, ax, ay
+    while True:
+        state = cells[row, col]
+        if state == BLOCKED:
+            return False
+        next_column = (col + 1 - ax) * per_column if crosses_columns else 2.0
+        next_row = (row + next_line - ay) * per_row if crosses_rows else 2.0
+        leaving = max(t, min(next_column, next_row))
+        if leaving >= 1.0:
+            leave_x, leave_y = bx, by
+        else:
+            leave_x, leave_y = ax + leaving * dx, ay + leaving * dy
+        if state == UNDECIDED and _piece_is_too_close(
+            row, col, x, y, leave_x, leave_y, ax, ay, dx, dy, squared_length, above, below, radius
+        ):
+            return False
+        if leaving >= 1.0:
+            return True
+        t, x, y = leaving, leave_x, leave_y
+        if state > FREE:
+            # The slack holds at the point of leaving, so that much way beyond it is free as well.
+            t += (state - FREE) * per_pixel
+            if t >= 1.0:
+                return True
+            x, y = ax + t * dx, ay + t * dy
+            col, row = int(x), int(y)
+        elif next_column <= next_row:
+            col += 1
+        else:
+            row += row_step
+
+
+@njit(cache=True, nogil=True)
+def _piece_is_too_close(
+    row: int,
+    col: int,
+    x0: float,
+    y0: float,
+    x1: float,
+    y1: float,
+    ax: float,
+    ay: float,
+    dx: float,
+    dy: float,
+    squared_length: float,
+    above: Any,
+    below: Any,
+    radius: float,
+) -> bool:
+    """Say whether the piece (x0, y0)-(x1, y1), x0 <= x1, in cell (row, col) comes nearer than the radius.
+
+    A square in the same row or column faces the cell with a side: its distance is least at an end of the
+    piece.  Any other faces it with one corner, whose distance from the whole segment is what counts.
+    """
+    squared_radius = max(radius * radius, _SMALLEST_SQUARE)
+    limit = squared_radius * squared_length
+    reach = math.ceil(radius)
+    top, bottom = min(y0, y1), max(y0, y1)
+    for other in range(max(col - reach, 0), min(col + reach, above.shape[1] - 1) + 1):
+        up, down = above[row, other], below[row, other]
+        if other == col:
+            if top - (row + 1 - up) < radius or row + down - bottom < radius:
+                return True
+            continue
+        corner_x = other + 1 if other < col else other
+        if up == 0:
+            if (x0 - corner_x if other < col else corner_x - x1) < radius:
+                return True
+            continue
+        if up <= reach and _corner_is_too_close(
+            corner_x - ax, row + 1 - up - ay, dx, dy, squared_length, limit
+        ):
+            return True
+        if down <= reach and _corner_is_too_close(
+            corner_x - ax, row + down - ay, dx, dy, squared_length, limit
+        ):
+            return True
+    return False
+
+
+@njit(cache=True, nogil=True)
+def _corner_is_too_close(
+    x: float, y: float, dx: float, dy: float, squared_length: float, limit: float
+) -> bool:
+    """Say whether a corner at (x, y) from the segment's start is nearer than the radius to its inside.
+
+    The ends were tested as points, so only a foot strictly between them counts; its squared distance is
+    cross**2 / length**2, compared without dividing: `limit` = radius**2 * length**2.
+    """
+    along = x * dx + y * dy
+    if along <= 0.0 or along >= squared_length:
+        return False
+    cross = dx * y - dy * x
+    return cross * cross < limit
