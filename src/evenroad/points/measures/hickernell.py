@@ -1,4 +1,4 @@
-"""Hickernell's modified L2 discrepancy: the star discrepancies of all projections (Hickernell 1998; Joe 1997)."""
+"""Hickernell's modified L2 discrepancy: the star discrepancies of all projections together."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from evenroad.points.measures.terms import Array, MaximumPairs, ProductTerms
 def hickernell_terms(columns: Array, weights: Array) -> ProductTerms:
     """Sum the squared L2 star discrepancies of all 2^d - 1 projections in closed form (Joe 1997).
 
-    (4/3)^d - (2/n) sum_i prod_k (3 - x_ik^2)/2 + (1/n^2) sum_ij prod_k (2 - max(x_ik, x_jk)); a projection onto
-    the coordinates s is weighted by the product of their weights.
+    (4/3)^d - (2/n) sum_i prod_k (3 - x_ik^2)/2 + (1/n^2) sum_ij prod_k (2 - max(x_ik, x_jk)); a projection
+    onto some coordinates is weighted by the product of their weights.
     """
     gamma = weights[:, np.newaxis]
     return ProductTerms(

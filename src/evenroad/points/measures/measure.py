@@ -115,7 +115,7 @@ def squared_of_columns(
 ) -> tuple[float, Array]:
     """Return the squared measure and its gradient at checked points of shape (d, n): for inner loops.
 
-    The gradient has shape (d, n), or is empty where it is not wanted.  Rounding below zero is cut off.
+    The gradient has shape (d, n), and is zero where it is not wanted.  Rounding below zero is cut off.
     """
     n = columns.shape[1]
     terms = measure.terms(columns, weights)

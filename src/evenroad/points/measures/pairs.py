@@ -1,8 +1,8 @@
 """Sums over all pairs of points of a product kernel, with the gradient: O(n^2 d) time, O(n d) memory.
 
-The only compiled code of the L2 discrepancies: one kernel for factors in max(x, y), where the gradient needs no
-division, and one for factors in |x - y|.  Points come in tiles that stay in the first cache, and fastmath lets
-the inner loops run as vectors; input is finite because ``as_unit_points`` refused everything else.
+The only compiled code of the L2 discrepancies: one kernel for factors in max(x, y), where the gradient needs
+no division, and one for factors in |x - y|.  Points come in tiles that stay in the first caches, and fastmath
+lets the inner loops run as vectors; input is finite because ``as_unit_points`` refused everything else.
 """
 
 from __future__ import annotations
@@ -30,15 +30,15 @@ def pair_sums(
     pairs : MaximumPairs or DistancePairs
         The factors.
     want_gradient : bool
-        False leaves the second result empty, in about half the time.
+        False leaves the second result zero, in about half the time.
 
     Returns
     -------
     sums : ndarray, shape (n,)
         ``sum_j prod_k K_k(x_ik, x_jk)`` of every i.
     gradient : ndarray, shape (d, n)
-        Derivative of ``sums.sum()`` by every coordinate.  Where two points share a coordinate the kernels have
-        a kink; the gradient is then one of the one-sided ones.
+        Derivative of ``sums.sum()`` by every coordinate.  Where two points share a coordinate the kernels
+        have a kink; the gradient is then one of the one-sided ones.
     """
     if isinstance(pairs, MaximumPairs):
         return _maximum_pair_sums(columns, pairs.ceiling, pairs.slope, want_gradient)
@@ -51,7 +51,7 @@ def pair_sums(
 def _maximum_pair_sums(columns, ceiling, slope, want_gradient):  # type: ignore[no-untyped-def]
     d, n = columns.shape
     sums = np.zeros(n)
-    gradient = np.zeros((d, n)) if want_gradient else np.zeros((0, 0))
+    gradient = np.zeros((d, n))
     product = np.empty(TILE)
     for first in range(0, n, TILE):
         size = min(TILE, n - first)
@@ -76,8 +76,8 @@ def _maximum_pair_sums(columns, ceiling, slope, want_gradient):  # type: ignore[
                         below += product[j] if others[j] < at else 0.0
                     gradient[k, i] += below
     if want_gradient:
-        # Where the other point is below, the factor is ceiling - slope * x_ik: the same for all of them, so one
-        # division a coordinate is enough.  Each such pair counts twice, the pair of a point with itself once.
+        # Where the other point is below, the factor is ceiling - slope * x_ik: the same for all of them, so
+        # one division a coordinate is enough.  Such a pair counts twice, a point with itself once.
         for i in range(n):
             itself = 1.0
             for k in range(d):
@@ -92,7 +92,7 @@ def _maximum_pair_sums(columns, ceiling, slope, want_gradient):  # type: ignore[
 def _distance_pair_sums(columns, level, slope, curvature, own, own_slope, want_gradient):  # type: ignore[no-untyped-def]
     d, n = columns.shape
     sums = np.zeros(n)
-    gradient = np.zeros((d, n)) if want_gradient else np.zeros((0, 0))
+    gradient = np.zeros((d, n))
     # Products of the factors before and after a coordinate replace the division of the whole product by the
     # coordinate's factor: three times faster.
     before = np.ones((d + 1, TILE))

@@ -9,7 +9,10 @@ from evenroad.points.measures.terms import Array, MaximumPairs, ProductTerms
 
 
 def star_terms(columns: Array, weights: Array) -> ProductTerms:
-    """3^-d - (2/n) sum_i prod_k (1 - x_ik^2)/2 + (1/n^2) sum_ij prod_k (1 - max(x_ik, x_jk)); Warnock 1972."""
+    """3^-d - (2/n) sum_i prod_k (1 - x_ik^2)/2 + (1/n^2) sum_ij prod_k (1 - max(x_ik, x_jk)).
+
+    Warnock (1972).
+    """
     d = columns.shape[0]
     return ProductTerms(
         constant=3.0**-d,
