@@ -7,7 +7,7 @@ the outside.  Lengths are in pixels.  `radius` is the disk's.
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,29 @@ UNDECIDED = 1
 """The cell needs the exact test."""
 FREE = 2
 """FREE + s: every point of the closed cell is at least `radius` + s from every obstacle."""
+
+
+class DiskTables(NamedTuple):
+    """What the kernels know of one disk on one map; a named tuple because compiled code takes those.
+
+    Attributes
+    ----------
+    frame : ndarray, shape (8,)
+        `MapFrame.coefficients()`.
+    cells : ndarray of uint8, shape (rows + 2, cols + 2)
+        The class of each cell of the padded grid.
+    above, below : ndarray of uint16, shape (rows + 2, cols + 2)
+        Rows to the nearest occupied cell of the column, see `vertical_runs`.
+    radius : float
+        In pixels.
+    """
+
+    frame: npt.NDArray[np.float64]
+    cells: npt.NDArray[np.uint8]
+    above: npt.NDArray[np.uint16]
+    below: npt.NDArray[np.uint16]
+    radius: float
+
 
 _LARGEST_SLACK = 255 - FREE
 _LARGEST_RUN = 65535

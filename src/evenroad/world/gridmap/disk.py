@@ -2,45 +2,57 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._checks import require_positive
 from evenroad.space import Rectangle
 from evenroad.space.batch import as_batch, as_batch_pair
-from evenroad.world.gridmap.cells import classify, vertical_runs
-from evenroad.world.gridmap.frame import MapFrame
+from evenroad.world.gridmap.cells import DiskTables, classify, vertical_runs
+from evenroad.world.gridmap.gridmap import GridMap
 from evenroad.world.gridmap.kernel import motions_are_free, points_are_free
+from evenroad.world.gridmap.nearest import nearest_obstacle_points
+
+_SMALLEST_RADIUS = 1e-150
+"""In pixels: its square is still above 0, so that a disk of any size touches what its centre lies on."""
 
 
 @dataclass(frozen=True, eq=False)
 class DiskWorld:
-    """A disk of one radius on one map (make it with `GridMap.world`, or `disk_world`).
+    """A disk of one radius on one map: what `GridMap.world` returns.
 
     Obstacles are the closed squares of the occupied cells and everything outside the map; a disk is free if
     its centre is at least `radius` away from all of them, so touching is free.  Motions are swept disks along
-    straight segments, tested exactly: there is no step length.  "Exact" means up to float rounding, about
-    1e-12 pixels.
+    straight segments.  They are tested exactly, without any step length: up to float rounding, about 1e-12
+    pixels, a motion reported free never comes closer and one reported blocked does.
 
-    Attributes
+    Parameters
     ----------
-    frame : MapFrame
-        Where the map lies.
+    grid : GridMap
+        The map.
     radius : float
-        Of the disk, with any clearance added, in map units.
+        Of the disk with any clearance added, in map units, > 0.
+
+    Raises
+    ------
+    InvalidValue
+        If `radius` is not such a number.
     """
 
-    frame: MapFrame
+    grid: GridMap
     radius: float
-    _cells: npt.NDArray[np.uint8]
-    _above: npt.NDArray[np.uint16]
-    _below: npt.NDArray[np.uint16]
+    _tables: DiskTables = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "radius", require_positive("radius", self.radius))
+        object.__setattr__(self, "_tables", _tables_of(self.grid, self.radius))
 
     @property
     def space(self) -> Rectangle:
         """The map's rectangle, in map units."""
-        return self.frame.rectangle
+        return self.grid.space
 
     def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
         """Return whether the disk is free at each map point, (n, 2) -> (n,); False outside the map.
@@ -50,7 +62,7 @@ class DiskWorld:
         InvalidValue
             If `q` has another shape or an entry that is not finite.
         """
-        return points_are_free(as_batch("q", q, 2), *self._tables())
+        return points_are_free(as_batch("q", q, 2), self._tables)
 
     def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
         """Return whether the disk can move straight from each row of `a` to that of `b`: two (m, 2) -> (m,).
@@ -60,22 +72,32 @@ class DiskWorld:
         InvalidValue
             If the two differ in length, or as `valid`.
         """
-        return motions_are_free(*as_batch_pair(a, b, 2), *self._tables())
+        return motions_are_free(*as_batch_pair(a, b, 2), self._tables)
 
-    def _tables(self) -> tuple[npt.NDArray[np.generic] | float, ...]:
-        return (
-            self.frame.coefficients(),
-            self._cells,
-            self._above,
-            self._below,
-            self.radius / self.frame.resolution,
-        )
+    def clearance(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Return the distance from each map point, (n, 2), to the nearest obstacle, (n,), in map units.
+
+        It is measured from the disk's centre, so the disk is free where it is at least `radius`; it is 0 in
+        an obstacle and outside the map.  Errors as `valid`.
+        """
+        _, distance = nearest_obstacle_points(as_batch("q", q, 2), self._tables)
+        return distance * self.grid.frame.resolution
+
+    def nearest_obstacle(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Return the obstacle point nearest to each map point, (n, 2) -> (n, 2), in map units.
+
+        A point in an obstacle or outside the map is its own; of several equally near ones, always the same
+        is returned.  Errors as `valid`.
+        """
+        centres = as_batch("q", q, 2)
+        pixels, distance = nearest_obstacle_points(centres, self._tables)
+        # A centre that is its own nearest point is returned as it came, without the way through pixels.
+        return np.where(distance[:, np.newaxis] > 0.0, self.grid.frame.to_map(pixels), centres)
 
 
-def disk_world(occupied: npt.NDArray[np.bool_], frame: MapFrame, radius: float) -> DiskWorld:
-    """Build the world of a disk of `radius` map units among the True cells of `occupied`, (rows, cols)."""
-    above, below = vertical_runs(np.pad(occupied, 1, constant_values=True))
-    cells = classify(above, below, radius / frame.resolution)
-    for table in (cells, above, below):
-        table.setflags(write=False)
-    return DiskWorld(frame, radius, cells, above, below)
+def _tables_of(grid: GridMap, radius: float) -> DiskTables:
+    radius_in_pixels = max(radius / grid.frame.resolution, _SMALLEST_RADIUS)
+    # The ring of occupied cells stands for everything outside the map.
+    above, below = vertical_runs(np.pad(grid.occupied, 1, constant_values=True))
+    cells = classify(above, below, radius_in_pixels)
+    return DiskTables(grid.frame.coefficients(), cells, above, below, radius_in_pixels)

@@ -86,10 +86,12 @@ class MapFrame:
     def to_pixels(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """Return the pixel coordinates (column, row), (n, 2), of the map points `q`, (n, 2)."""
         x0, y0, column_x, column_y, row_x, row_y, scale, first_row = self.coefficients()
-        x, y = q[:, 0] - x0, q[:, 1] - y0
-        return np.column_stack(
-            [(column_x * x + column_y * y) / scale, first_row + (row_x * x + row_y * y) / scale]
-        )
+        # Points that are absurdly far away may overflow: infinite, or NaN, is as good an "outside" as any.
+        with np.errstate(over="ignore", invalid="ignore"):
+            x, y = q[:, 0] - x0, q[:, 1] - y0
+            column = (column_x * x + column_y * y) / scale
+            row = first_row + (row_x * x + row_y * y) / scale
+        return np.column_stack([column, row])
 
     def to_map(self, pixels: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """Return the map points, (n, 2), at pixel coordinates (column, row), (n, 2)."""

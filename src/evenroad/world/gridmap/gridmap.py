@@ -84,10 +84,10 @@ class GridMap:
             If one of them is not such a number.
         """
         # Here, so that reading a map needs no compiled code.
-        from evenroad.world.gridmap.disk import disk_world
+        from evenroad.world.gridmap.disk import DiskWorld
 
         radius = require_positive("robot_radius", robot_radius)
         radius = require_positive(
             "robot_radius + clearance", radius + require_positive("clearance", clearance, or_zero=True)
         )
-        return disk_world(self.occupied, self.frame, radius)
+        return DiskWorld(self, radius)

@@ -18,54 +18,40 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from evenroad.world.gridmap.cells import BLOCKED, FREE, UNDECIDED
-
-_SMALLEST_SQUARE = np.finfo(np.float64).tiny
-"""Keeps the square of a tiny radius above 0: a disk of any size touches what its centre lies on."""
+from evenroad.world.gridmap.cells import BLOCKED, FREE, UNDECIDED, DiskTables
 
 
 @njit(cache=True, nogil=True)
-def points_are_free(
-    q: npt.NDArray[np.float64], frame: Any, cells: Any, above: Any, below: Any, radius: float
-) -> npt.NDArray[np.bool_]:
+def points_are_free(q: npt.NDArray[np.float64], disk: DiskTables) -> npt.NDArray[np.bool_]:
     """Return for each finite map point, (n, 2), whether the disk there is free, (n,)."""
     free = np.empty(len(q), np.bool_)
     for i in range(len(q)):
-        x, y = _to_padded(q[i, 0], q[i, 1], frame)
-        free[i] = _point_is_free(x, y, cells, above, below, radius)
+        x, y = to_padded(q[i, 0], q[i, 1], disk.frame)
+        free[i] = _point_is_free(x, y, disk)
     return free
 
 
 @njit(cache=True, nogil=True)
 def motions_are_free(
-    a: npt.NDArray[np.float64],
-    b: npt.NDArray[np.float64],
-    frame: Any,
-    cells: Any,
-    above: Any,
-    below: Any,
-    radius: float,
+    a: npt.NDArray[np.float64], b: npt.NDArray[np.float64], disk: DiskTables
 ) -> npt.NDArray[np.bool_]:
     """Return for each pair of finite map points, (m, 2), whether the disk can move straight, (m,)."""
     free = np.empty(len(a), np.bool_)
     for i in range(len(a)):
-        ax, ay = _to_padded(a[i, 0], a[i, 1], frame)
-        bx, by = _to_padded(b[i, 0], b[i, 1], frame)
-        ends_are_free = _point_is_free(ax, ay, cells, above, below, radius) and _point_is_free(
-            bx, by, cells, above, below, radius
-        )
-        if not ends_are_free:
+        ax, ay = to_padded(a[i, 0], a[i, 1], disk.frame)
+        bx, by = to_padded(b[i, 0], b[i, 1], disk.frame)
+        if not _point_is_free(ax, ay, disk) or not _point_is_free(bx, by, disk):
             free[i] = False
         elif bx < ax or (bx == ax and by < ay):
             # One direction for both orders: a motion and its reverse round alike.
-            free[i] = _way_is_free(bx, by, ax, ay, cells, above, below, radius)
+            free[i] = _way_is_free(bx, by, ax, ay, disk)
         else:
-            free[i] = _way_is_free(ax, ay, bx, by, cells, above, below, radius)
+            free[i] = _way_is_free(ax, ay, bx, by, disk)
     return free
 
 
 @njit(cache=True, nogil=True)
-def _to_padded(x: float, y: float, frame: Any) -> tuple[float, float]:
+def to_padded(x: float, y: float, frame: Any) -> tuple[float, float]:
     """Return the padded pixel coordinates of a map point; `frame` is `MapFrame.coefficients()`."""
     x -= frame[0]
     y -= frame[1]
@@ -75,31 +61,29 @@ def _to_padded(x: float, y: float, frame: Any) -> tuple[float, float]:
 
 
 @njit(cache=True, nogil=True)
-def _point_is_free(x: float, y: float, cells: Any, above: Any, below: Any, radius: float) -> bool:
-    rows, cols = cells.shape
+def _point_is_free(x: float, y: float, disk: DiskTables) -> bool:
+    rows, cols = disk.cells.shape
     # On the border the distance to the outside is 0, so it is no place for a disk either.
     if not (1.0 < x < cols - 1.0 and 1.0 < y < rows - 1.0):
         return False
     col, row = int(x), int(y)
-    state = cells[row, col]
+    state = disk.cells[row, col]
     if state != UNDECIDED:
         return state >= FREE
-    squared_radius = max(radius * radius, _SMALLEST_SQUARE)
-    reach = math.ceil(radius)
+    squared_radius = disk.radius * disk.radius
+    reach = math.ceil(disk.radius)
     for other in range(max(col - reach, 0), min(col + reach, cols - 1) + 1):
         gap_x = max(other - x, x - (other + 1), 0.0)
         gap_y = 0.0
-        if above[row, other] > 0:
-            gap_y = min(y - (row + 1 - above[row, other]), row + below[row, other] - y)
+        if disk.above[row, other] > 0:
+            gap_y = min(y - (row + 1 - disk.above[row, other]), row + disk.below[row, other] - y)
         if gap_x * gap_x + gap_y * gap_y < squared_radius:
             return False
     return True
 
 
 @njit(cache=True, nogil=True)
-def _way_is_free(
-    ax: float, ay: float, bx: float, by: float, cells: Any, above: Any, below: Any, radius: float
-) -> bool:
+def _way_is_free(ax: float, ay: float, bx: float, by: float, disk: DiskTables) -> bool:
     """Follow the segment from a to b (ax <= bx), both free, cell by cell; parameter t runs from 0 to 1.
 
     Every piece [t, leaving] of the segment lies in the closed cell that is looked at and the pieces leave no
@@ -118,7 +102,7 @@ def _way_is_free(
     col, row = int(ax), int(ay)
     t, x, y = 0.0, ax, ay
     while True:
-        state = cells[row, col]
+        state = disk.cells[row, col]
         if state == BLOCKED:
             return False
         next_column = (col + 1 - ax) * per_column if crosses_columns else 2.0
@@ -129,7 +113,7 @@ def _way_is_free(
         else:
             leave_x, leave_y = ax + leaving * dx, ay + leaving * dy
         if state == UNDECIDED and _piece_is_too_close(
-            row, col, x, y, leave_x, leave_y, ax, ay, dx, dy, squared_length, above, below, radius
+            row, col, x, y, leave_x, leave_y, ax, ay, dx, dy, squared_length, disk
         ):
             return False
         if leaving >= 1.0:
@@ -161,21 +145,19 @@ def _piece_is_too_close(
     dx: float,
     dy: float,
     squared_length: float,
-    above: Any,
-    below: Any,
-    radius: float,
+    disk: DiskTables,
 ) -> bool:
     """Say whether the piece (x0, y0)-(x1, y1), x0 <= x1, in cell (row, col) comes nearer than the radius.
 
     A square in the same row or column faces the cell with a side: its distance is least at an end of the
     piece.  Any other faces it with one corner, whose distance from the whole segment is what counts.
     """
-    squared_radius = max(radius * radius, _SMALLEST_SQUARE)
-    limit = squared_radius * squared_length
+    radius = disk.radius
+    limit = radius * radius * squared_length
     reach = math.ceil(radius)
     top, bottom = min(y0, y1), max(y0, y1)
-    for other in range(max(col - reach, 0), min(col + reach, above.shape[1] - 1) + 1):
-        up, down = above[row, other], below[row, other]
+    for other in range(max(col - reach, 0), min(col + reach, disk.cells.shape[1] - 1) + 1):
+        up, down = disk.above[row, other], disk.below[row, other]
         if other == col:
             if top - (row + 1 - up) < radius or row + down - bottom < radius:
                 return True
