@@ -37,7 +37,9 @@ def load_points(path: str | os.PathLike[str]) -> PointSet:
         If the file is missing, is no such npz, or any of the checks fails; the text says which.
     """
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        # Opened here, not by NumPy, which leaves the handle open when the archive is broken.
+        with open(path, "rb") as file:
+            archive = np.load(file, allow_pickle=False)
             if not isinstance(archive, np.lib.npyio.NpzFile):
                 raise BrokenFile(f"{path} is a plain array, not a .npz point set")
             names = set(archive.files)

@@ -138,4 +138,3 @@ def as_unit_points(points: object) -> npt.NDArray[np.float64]:
         i, k = np.argwhere(bad)[0]
         raise InvalidValue(f"points must lie in [0, 1): coordinate [{i}, {k}] is {float(array[i, k])!r}")
     return array
-

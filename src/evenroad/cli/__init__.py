@@ -1,0 +1,13 @@
+"""The command line: one verb a module, each a frozen dataclass of its options and a function that runs it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run ``evenroad`` and return its exit code: 0 solved, 1 any other answer, 2 bad input, 130 interrupted."""
+    from evenroad.cli.verbs import run
+
+    return run(sys.argv[1:] if arguments is None else arguments)

@@ -1,0 +1,34 @@
+"""``evenroad demo``: the main job on a map that ships with the package."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from evenroad.cli.plan import Plan
+
+
+@dataclass(frozen=True, kw_only=True)
+class Demo:
+    """Plan through a maze that ships with evenroad."""
+
+    level: int = 3
+    """Which maze: 1, 2 or 3, of rising difficulty."""
+    n: int = 1024
+    """How many points to draw."""
+    out: Path = Path("demo")
+    """Where results go: OUT.png and OUT.json."""
+
+    def run(self) -> int:
+        """Run ``evenroad plan`` on the maze with its own start and goal."""
+        from evenroad.mazes import load_maze
+
+        maze = load_maze(self.level)
+        return Plan(
+            map=maze.path,
+            start=maze.start,
+            goal=maze.goal,
+            robot_radius=maze.robot_radius,
+            n=self.n,
+            out=self.out,
+        ).run()

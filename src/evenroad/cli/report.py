@@ -1,0 +1,36 @@
+"""What the terminal shows after a plan: a short table, within 100 columns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from evenroad.roadmap import PlanResult
+
+WIDTH = 100
+
+
+def print_plan(result: PlanResult, note: str, files: Sequence[Path]) -> None:
+    """Print a plan as a table of two columns."""
+    table = Table(show_header=False, box=None, pad_edge=False)
+    table.add_column(style="bold", no_wrap=True)
+    table.add_column(overflow="fold")
+    colour = "green" if result.solved else "red"
+    table.add_row("status", f"[{colour}]{result.status}[/]: {result.message}")
+    table.add_row("points", f"{result.origin}" + (f" ({note})" if note else ""))
+    if result.roadmap is not None:
+        counts = result.counts
+        table.add_row("milestones", f"{counts['valid']} valid of {counts['points']}")
+        table.add_row(
+            "edges", f"{counts['edges_free']} free of {counts['edges_checked']} checked ({result.rule})"
+        )
+    if result.cost is not None and result.milestone_cost is not None:
+        table.add_row("cost", f"{result.cost:.6g} (along the roadmap {result.milestone_cost:.6g})")
+    phases = ", ".join(f"{phase} {1e3 * value:.1f}" for phase, value in result.seconds.items())
+    table.add_row("time [ms]", phases)
+    table.add_row("files", ", ".join(map(str, files)))
+    console = Console(highlight=False)
+    console.print(table, width=min(WIDTH, console.width))

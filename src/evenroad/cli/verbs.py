@@ -1,0 +1,49 @@
+"""Parses the command line, runs one verb, and turns our errors into one line and exit code 2."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from typing import Annotated
+
+import tyro
+
+from evenroad import __version__
+from evenroad.cli.demo import Demo
+from evenroad.cli.plan import Plan
+from evenroad.errors import EvenroadError
+
+BAD_INPUT = 2
+INTERRUPTED = 130
+
+Verb = (
+    Annotated[Plan, tyro.conf.subcommand("plan", prefix_name=False)]
+    | Annotated[Demo, tyro.conf.subcommand("demo", prefix_name=False)]
+)
+
+DESCRIPTION = f"""evenroad {__version__}: point sets that make sampling-based motion planners need fewer samples.
+
+Exit codes: 0 solved / done, 1 any other answer (no path), 2 bad input, 130 interrupted.
+"""
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run the verb that the arguments ask for and return the exit code."""
+    if list(arguments) == ["--version"]:
+        print(f"evenroad {__version__}")
+        return 0
+    verb = tyro.cli(
+        Verb,
+        prog="evenroad",
+        description=DESCRIPTION,
+        args=list(arguments) or ["--help"],
+        config=(tyro.conf.OmitArgPrefixes, tyro.conf.FlagCreatePairsOff),
+    )
+    try:
+        return verb.run()
+    except EvenroadError as error:
+        print(f"evenroad: error: {' '.join(str(error).split())}", file=sys.stderr)
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        print("evenroad: interrupted; what was finished is kept", file=sys.stderr)
+        return INTERRUPTED

@@ -1,0 +1,212 @@
+"""A kd-tree for roadmaps: k nearest with a fixed order among ties, and all pairs within a radius.
+
+SciPy's tree leaves open which of several equally far points it returns; a deterministic roadmap needs the lower
+index.  Every node keeps the tight bounding box of its points, in one heap-ordered array.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+LEAF_SIZE = 12
+
+
+def k_nearest(points: npt.NDArray[np.float64], k: int) -> npt.NDArray[np.int32]:
+    """Return the k nearest other points of every point, nearest first, ties to the lower index.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, d)
+        Finite coordinates; the metric is Euclidean.
+    k : int
+        At least 1.
+
+    Returns
+    -------
+    ndarray of int32, shape (n, min(k, n - 1))
+    """
+    n = points.shape[0]
+    k = min(k, n - 1)
+    if k < 1:
+        return np.empty((n, 0), dtype=np.int32)
+    order, boxes = _build(points, LEAF_SIZE)
+    return _k_nearest(points, order, boxes, k, LEAF_SIZE)
+
+
+def pairs_within(points: npt.NDArray[np.float64], radius: float) -> npt.NDArray[np.int32]:
+    """Return every pair i < j at distance <= `radius`, shape (m, 2), in no particular order."""
+    if points.shape[0] < 2:
+        return np.empty((0, 2), dtype=np.int32)
+    order, boxes = _build(points, LEAF_SIZE)
+    return _pairs_within(points, order, boxes, radius, LEAF_SIZE)
+
+
+@njit(cache=True, nogil=True)
+def _build(points, leaf_size):  # type: ignore[no-untyped-def]
+    """Split at the median of the widest axis; node v has children 2v + 1 and 2v + 2."""
+    n, d = points.shape
+    depth = 0
+    while (n >> depth) > leaf_size:
+        depth += 1
+    order = np.arange(n)
+    boxes = np.empty(((1 << (depth + 1)) - 1, 2, d))
+    stack = [(0, 0, n)]
+    while stack:
+        node, first, last = stack.pop()
+        for axis in range(d):
+            low = np.inf
+            high = -np.inf
+            for i in range(first, last):
+                x = points[order[i], axis]
+                low = min(low, x)
+                high = max(high, x)
+            boxes[node, 0, axis] = low
+            boxes[node, 1, axis] = high
+        if 2 * node + 2 < boxes.shape[0]:
+            axis = 0
+            for other in range(1, d):
+                if (
+                    boxes[node, 1, other] - boxes[node, 0, other]
+                    > boxes[node, 1, axis] - boxes[node, 0, axis]
+                ):
+                    axis = other
+            middle = (first + last) // 2
+            _partition(points, order, axis, first, last, middle)
+            stack.append((2 * node + 1, first, middle))
+            stack.append((2 * node + 2, middle, last))
+    return order, boxes
+
+
+@njit(cache=True, nogil=True)
+def _partition(points, order, axis, first, last, middle):  # type: ignore[no-untyped-def]
+    """Quickselect: afterwards order[first:middle] has the smaller coordinates along `axis`."""
+    low, high = first, last - 1
+    while low < high:
+        pivot = points[order[(low + high) // 2], axis]
+        i, j = low, high
+        while i <= j:
+            while points[order[i], axis] < pivot:
+                i += 1
+            while points[order[j], axis] > pivot:
+                j -= 1
+            if i <= j:
+                order[i], order[j] = order[j], order[i]
+                i += 1
+                j -= 1
+        if middle <= j:
+            high = j
+        elif middle >= i:
+            low = i
+        else:
+            return
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _box_distance(box, point):  # type: ignore[no-untyped-def]
+    """Squared distance from a point to a box, summed in the order of `_k_nearest`, so never too large."""
+    total = 0.0
+    for axis in range(point.shape[0]):
+        gap = max(box[0, axis] - point[axis], point[axis] - box[1, axis], 0.0)
+        total += gap * gap
+    return total
+
+
+@njit(cache=True, nogil=True)
+def _k_nearest(points, order, boxes, k, leaf_size):  # type: ignore[no-untyped-def]
+    n, d = points.shape
+    nearest = np.empty((n, k), dtype=np.int32)
+    distance = np.empty(k)
+    # The depth of the tree bounds the stack: two entries a level.
+    nodes = np.empty(128, dtype=np.int64)
+    firsts = np.empty(128, dtype=np.int64)
+    lasts = np.empty(128, dtype=np.int64)
+    bounds = np.empty(128)
+    # Queries in tree order touch the same leaves one after the other, which keeps them in the cache.
+    for position in range(n):
+        query = order[position]
+        point = points[query]
+        found = nearest[query]
+        count = 0
+        nodes[0], firsts[0], lasts[0], bounds[0] = 0, 0, n, 0.0
+        top = 1
+        while top > 0:
+            top -= 1
+            node, first, last = nodes[top], firsts[top], lasts[top]
+            if count == k and bounds[top] > distance[k - 1]:
+                continue
+            if 2 * node + 2 < boxes.shape[0]:
+                middle = (first + last) // 2
+                left, right = 2 * node + 1, 2 * node + 2
+                to_left = _box_distance(boxes[left], point)
+                to_right = _box_distance(boxes[right], point)
+                nearer_last = to_right < to_left
+                for turn in range(2):
+                    # The nearer child is pushed last, so that it is visited first.
+                    if (turn == 1) == nearer_last:
+                        nodes[top], firsts[top], lasts[top], bounds[top] = right, middle, last, to_right
+                    else:
+                        nodes[top], firsts[top], lasts[top], bounds[top] = left, first, middle, to_left
+                    top += 1
+                continue
+            for i in range(first, last):
+                other = order[i]
+                if other == query:
+                    continue
+                total = 0.0
+                for axis in range(d):
+                    gap = points[other, axis] - point[axis]
+                    total += gap * gap
+                if count == k and (
+                    total > distance[k - 1] or (total == distance[k - 1] and other > found[k - 1])
+                ):
+                    continue
+                slot = count if count < k else k - 1
+                while slot > 0 and (
+                    distance[slot - 1] > total or (distance[slot - 1] == total and found[slot - 1] > other)
+                ):
+                    distance[slot] = distance[slot - 1]
+                    found[slot] = found[slot - 1]
+                    slot -= 1
+                distance[slot] = total
+                found[slot] = other
+                count = min(count + 1, k)
+    return nearest
+
+
+@njit(cache=True, nogil=True)
+def _pairs_within(points, order, boxes, radius, leaf_size):  # type: ignore[no-untyped-def]
+    n, d = points.shape
+    limit = radius * radius
+    pairs = np.empty((max(16, 4 * n), 2), dtype=np.int32)
+    count = 0
+    for query in range(n):
+        point = points[query]
+        stack = [(0, 0, n)]
+        while stack:
+            node, first, last = stack.pop()
+            if _box_distance(boxes[node], point) > limit:
+                continue
+            if 2 * node + 2 < boxes.shape[0]:
+                middle = (first + last) // 2
+                stack.append((2 * node + 1, first, middle))
+                stack.append((2 * node + 2, middle, last))
+                continue
+            for i in range(first, last):
+                other = order[i]
+                if other <= query:
+                    continue
+                total = 0.0
+                for axis in range(d):
+                    gap = points[other, axis] - point[axis]
+                    total += gap * gap
+                if total <= limit:
+                    if count == pairs.shape[0]:
+                        grown = np.empty((2 * count, 2), dtype=np.int32)
+                        grown[:count] = pairs
+                        pairs = grown
+                    pairs[count, 0] = query
+                    pairs[count, 1] = other
+                    count += 1
+    return pairs[:count].copy()

@@ -1,0 +1,12 @@
+"""Colours and weights shared by every picture, chosen to stay apart in greyscale and for colour-blind eyes."""
+
+OBSTACLE = "#3b3f46"
+FREE = "#ffffff"
+EDGE = "#b9c6d3"
+MILESTONE = "#6b8aa8"
+RAW_PATH = "#e6a23c"
+PATH = "#d1343b"
+START = "#1b9e5a"
+GOAL = "#2f5fd0"
+COLLISION = "#d1343b"
+HALO = "#ffffff"

@@ -1,0 +1,133 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.points import Origin, PointSet, load_points, save_points
+
+unit = st.floats(0, 1, exclude_max=True, allow_subnormal=True)
+arrays = hnp.arrays(np.float64, st.tuples(st.integers(0, 20), st.integers(1, 6)), elements=unit)
+
+
+def test_the_array_cannot_be_written_to():
+    points = PointSet([[0.5, 0.25]])
+    with pytest.raises(ValueError, match="read-only"):
+        points.points[0, 0] = 0.1
+
+
+def test_the_callers_array_is_copied():
+    given_array = np.array([[0.5, 0.25]])
+    points = PointSet(given_array)
+    given_array[0, 0] = 0.75
+    assert points.points[0, 0] == 0.5
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -0.1, 1.0, 1.5])
+def test_a_coordinate_outside_the_cube_is_named_with_its_place(bad):
+    with pytest.raises(InvalidValue, match=r"\[1, 0\]"):
+        PointSet([[0.5, 0.5], [bad, 0.5]])
+
+
+@pytest.mark.parametrize("shape", [(3,), (3, 0), (2, 2, 2), ()])
+def test_only_matrices_are_point_sets(shape):
+    with pytest.raises(InvalidValue, match="shape"):
+        PointSet(np.zeros(shape))
+
+
+def test_text_is_refused():
+    with pytest.raises(InvalidValue, match="array of numbers"):
+        PointSet([["a", "b"]])
+
+
+@given(arrays)
+def test_equal_points_have_equal_hashes_whatever_the_layout(array):
+    assert PointSet(array).hash == PointSet(np.asfortranarray(array)).hash
+
+
+def test_the_hash_tells_shapes_and_values_apart():
+    hashes = {PointSet(np.zeros(shape)).hash for shape in [(2, 3), (3, 2), (6, 1), (1, 6)]}
+    assert len(hashes) == 4
+    assert PointSet([[0.5]]).hash != PointSet([[0.5 + 1e-16 * 2]]).hash
+
+
+@given(array=arrays, seed=st.none() | st.integers(0, 2**40), replica=st.none() | st.integers(0, 99))
+def test_a_saved_set_comes_back_bit_for_bit_with_its_origin(tmp_path_factory, array, seed, replica):
+    path = tmp_path_factory.mktemp("sets") / "set.npz"
+    points = PointSet(array, Origin(family="x", method="y", objective="a+b", seed=seed, replica=replica))
+    save_points(path, points)
+    loaded = load_points(path)
+    assert loaded == points
+    assert loaded.points.tobytes() == points.points.tobytes()
+
+
+def _rewrite(path, **changes):
+    with np.load(path) as archive:
+        content = dict(archive) | changes
+    np.savez(path, **{name: value for name, value in content.items() if value is not None})
+
+
+@pytest.fixture
+def saved(tmp_path):
+    path = tmp_path / "set.npz"
+    save_points(path, PointSet(np.linspace(0, 0.9, 10).reshape(5, 2)))
+    return path
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ({"points": np.zeros((5, 2))}, "do not match their hash"),
+        ({"points": np.zeros((5, 2), dtype=np.float32)}, "dtype float32"),
+        ({"points": np.full((5, 2), 1.5)}, "must lie in"),
+        ({"points": np.full((5, 2), np.nan)}, "must lie in"),
+        ({"points": np.zeros(10)}, "shape"),
+        ({"hash": None}, "holds"),
+        ({"extra": np.zeros(1)}, "holds"),
+        ({"origin": "{"}, "set.npz"),
+        ({"origin": '{"family": "a", "colour": "red"}'}, "keys among"),
+        ({"origin": "[1]"}, "keys among"),
+    ],
+)
+def test_a_file_that_was_changed_is_refused_with_the_reason(saved, changes, says):
+    _rewrite(saved, **changes)
+    with pytest.raises(BrokenFile, match=says):
+        load_points(saved)
+
+
+def test_a_missing_file_is_refused_by_name(tmp_path):
+    with pytest.raises(BrokenFile, match=r"no such file: .*nothing\.npz"):
+        load_points(tmp_path / "nothing.npz")
+
+
+def test_a_plain_array_is_refused(tmp_path):
+    np.save(tmp_path / "array.npy", np.zeros((2, 2)))
+    with pytest.raises(BrokenFile, match="plain array"):
+        load_points(tmp_path / "array.npy")
+
+
+def test_a_truncated_file_is_refused(saved):
+    saved.write_bytes(saved.read_bytes()[:-40])
+    with pytest.raises(BrokenFile):
+        load_points(saved)
+
+
+def test_a_pickle_is_never_opened(tmp_path):
+    path = tmp_path / "evil.npz"
+    np.savez(path, points=np.array([object()], dtype=object), origin="{}", hash="")
+    with pytest.raises(BrokenFile):
+        load_points(path)
+
+
+def test_a_failed_save_leaves_the_old_file_and_no_litter(saved, monkeypatch):
+    before = saved.read_bytes()
+
+    def full_disk(*_args, **_kwargs):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(np, "savez", full_disk)
+    with pytest.raises(BrokenFile, match="No space left"):
+        save_points(saved, PointSet([[0.5]]))
+    assert saved.read_bytes() == before
+    assert list(saved.parent.iterdir()) == [saved]

@@ -1,0 +1,145 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from evenroad.errors import InvalidValue
+from evenroad.points import PointSet, draw
+from evenroad.roadmap import KNearest, Radius, Status, plan
+from evenroad.roadmap.shortcut import path_length, shortcut
+from evenroad.world import GridMap
+
+
+def _map(*rows):
+    return GridMap(np.array([[cell == "#" for cell in row] for row in rows]))
+
+
+OPEN = _map(*["." * 20] * 20)
+WALL = _map(*(["." * 20] * 9 + ["#" * 20] + ["." * 20] * 10))
+GAP = _map(*(["." * 20] * 9 + ["#" * 14 + "." * 6] + ["." * 20] * 10))
+
+
+def test_an_open_map_is_solved_by_a_straight_line():
+    result = plan(OPEN.world(1.0), (2, 2), (18, 18), draw("halton", 50, 2))
+    assert result.status is Status.SOLVED
+    np.testing.assert_array_equal(result.path, [[2, 2], [18, 18]])
+    assert result.cost == pytest.approx(16 * np.sqrt(2))
+
+
+def test_no_way_around_a_wall_is_an_answer_with_its_reason():
+    result = plan(WALL.world(0.5), (2, 2), (18, 18), draw("halton", 64, 2))
+    assert result.status is Status.NOT_CONNECTED
+    assert not result.solved
+    assert result.path is None
+    assert result.counts["start_piece"] + result.counts["goal_piece"] <= result.counts["valid"]
+    assert f"start reaches {result.counts['start_piece']}" in result.message
+    assert "try n=128" in result.message
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "status"),
+    [
+        ((2, 9.5), (18, 18), Status.START_INVALID),
+        ((2, 2), (18, 9.5), Status.GOAL_INVALID),
+        ((0.5, 2), (18, 18), Status.START_INVALID),
+        ((2, 9.5), (18, 9.5), Status.START_INVALID),
+    ],
+)
+def test_an_end_in_collision_is_an_answer_and_nothing_is_searched(start, goal, status):
+    result = plan(WALL.world(1.0), start, goal, draw("halton", 64, 2))
+    assert result.status is status
+    assert result.path is None
+    assert result.roadmap is None
+    assert str(status).split("_")[0] in result.message
+
+
+def test_the_path_begins_at_the_start_and_ends_at_the_goal_and_every_motion_is_free():
+    world = GAP.world(1.0)
+    result = plan(world, (2, 2), (2, 18), draw("halton", 200, 2))
+    for path in (result.path, result.milestone_path):
+        np.testing.assert_array_equal(path[[0, -1]], [[2, 2], [2, 18]])
+        assert world.motion_valid(path[:-1], path[1:]).all()
+    assert result.cost <= result.milestone_cost
+    assert result.cost == pytest.approx(path_length(result.path, world.space))
+    assert result.milestone_cost == pytest.approx(path_length(result.milestone_path, world.space))
+
+
+def test_the_same_question_gets_the_same_answer_bit_for_bit():
+    answers = [plan(GAP.world(1.0), (2, 2), (2, 18), draw("uniform", 200, 2, rng=3)) for _ in range(2)]
+    assert answers[0].path.tobytes() == answers[1].path.tobytes()
+    assert answers[0].counts == answers[1].counts
+
+
+def test_the_path_agrees_with_a_plain_reading_of_algorithm_1():
+    world, k = GAP.world(1.0), 6
+    points = draw("uniform", 120, 2, rng=5)
+    samples = world.space.from_cube(points.points)
+    nodes = [*samples[world.valid(samples)], np.array([2.0, 2.0]), np.array([2.0, 18.0])]
+    distances = np.array([[np.hypot(*(a - b)) for b in nodes] for a in nodes])
+    edges = set()
+    for i in range(len(nodes)):
+        near = sorted((j for j in range(len(nodes)) if j != i), key=lambda j: (distances[i][j], j))[:k]
+        edges |= {frozenset((i, j)) for j in near}
+    free = {edge for edge in edges if world.motion_valid(*(nodes[i][None] for i in sorted(edge)))[0]}
+    cost = np.full(len(nodes), np.inf)
+    cost[-2] = 0
+    for _ in nodes:
+        for i, j in map(sorted, free):
+            cost[i], cost[j] = (
+                min(cost[i], cost[j] + distances[i][j]),
+                min(cost[j], cost[i] + distances[i][j]),
+            )
+    result = plan(world, (2, 2), (2, 18), points, rule=KNearest(k))
+    assert result.counts["edges_checked"] == len(edges)
+    assert result.counts["edges_free"] == len(free)
+    assert result.milestone_cost == pytest.approx(cost[-1])
+
+
+def test_without_shortcut_the_path_is_the_milestone_path():
+    result = plan(GAP.world(1.0), (2, 2), (2, 18), draw("halton", 200, 2), shorten=False)
+    np.testing.assert_array_equal(result.path, result.milestone_path)
+    assert "shortcut" not in result.seconds
+
+
+def test_no_points_at_all_still_joins_ends_that_see_each_other():
+    empty = PointSet(np.empty((0, 2)))
+    assert plan(OPEN.world(1.0), (2, 2), (18, 18), empty).solved
+    assert plan(GAP.world(1.0), (2, 2), (2, 18), empty).status is Status.NOT_CONNECTED
+
+
+def test_start_may_equal_goal():
+    result = plan(OPEN.world(1.0), (5, 5), (5, 5), draw("halton", 10, 2))
+    assert result.solved
+    assert result.cost == 0.0
+
+
+def test_the_radius_rule_is_named_in_the_result():
+    result = plan(OPEN.world(1.0), (2, 2), (18, 18), draw("halton", 50, 2), rule=Radius(6.0))
+    assert result.solved
+    assert result.rule == "radius=6"
+
+
+@pytest.mark.parametrize("bad", [(1, 2, 3), (np.nan, 1), "ab", 5.0])
+def test_a_query_of_the_wrong_kind_is_refused_by_name(bad):
+    with pytest.raises(InvalidValue, match="start must be 2 finite numbers"):
+        plan(OPEN.world(1.0), bad, (1, 1), draw("halton", 10, 2))
+
+
+def test_points_of_another_dimension_are_refused():
+    with pytest.raises(InvalidValue, match="d=3"):
+        plan(OPEN.world(1.0), (2, 2), (3, 3), draw("halton", 10, 3))
+
+
+@settings(max_examples=25, deadline=None)
+@given(seed=st.integers(0, 10**6))
+def test_shortcutting_never_lengthens_and_only_uses_free_motions(seed):
+    random = np.random.default_rng(seed)
+    world = GridMap(random.random((20, 20)) < 0.12).world(0.4)
+    result = plan(world, (0.5, 0.5), (19.5, 19.5), draw("uniform", 150, 2, rng=seed), shorten=False)
+    if not result.solved:
+        return
+    path, motions = shortcut(result.path, world)
+    assert motions > 0
+    assert path_length(path, world.space) <= result.cost * (1 + 1e-12)
+    assert world.motion_valid(path[:-1], path[1:]).all()
+    np.testing.assert_array_equal(path[[0, -1]], result.path[[0, -1]])

@@ -1,0 +1,77 @@
+"""The shape of the package: who may import whom, and how long a module may be."""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import evenroad
+
+ROOT = Path(evenroad.__file__).parent
+
+BASE = {"errors", "_checks", "_rng", "_files"}
+MAY_IMPORT = {
+    "points": BASE,
+    "space": BASE,
+    "world": BASE | {"space"},
+    "roadmap": BASE | {"points", "space", "world"},
+    "mazes": BASE | {"world"},
+    "io": BASE | {"points", "space", "world", "roadmap"},
+    "viz": BASE | {"points", "space", "world", "roadmap"},
+    "cli": BASE | {"points", "space", "world", "roadmap", "mazes", "io", "viz"},
+    **dict.fromkeys(BASE, BASE),
+}
+"""Part -> the parts it may import: the arrows of docs/design.md."""
+
+MODULES = sorted(ROOT.rglob("*.py"))
+
+
+def _imported_parts(path):
+    for node in ast.walk(ast.parse(path.read_text())):
+        names = []
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: imports are absolute"
+            names = (
+                [f"{node.module}.{alias.name}" for alias in node.names]
+                if node.module == "evenroad"
+                else [node.module]
+            )
+        for name in names:
+            top, _, rest = name.partition(".")
+            if top == "evenroad" and rest and rest != "__version__":
+                yield rest.partition(".")[0]
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_imports_go_in_one_direction(path):
+    part = path.relative_to(ROOT).parts[0].removesuffix(".py")
+    if part == "__init__":
+        return
+    assert part in MAY_IMPORT, f"{part} is new: give it a place in MAY_IMPORT and docs/design.md"
+    assert set(_imported_parts(path)) - {part} <= MAY_IMPORT[part]
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_no_module_is_longer_than_400_lines(path):
+    assert len(path.read_text().splitlines()) <= 400
+
+
+def test_importing_evenroad_loads_nothing_heavy():
+    heavy = {"numba", "scipy", "matplotlib", "torch", "tyro", "rich", "PIL"}
+    code = f"import sys, evenroad; print(sorted({heavy!r} & set(sys.modules)))"
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert loaded.stdout.strip() == "[]"
+
+
+def test_every_public_name_can_be_loaded():
+    for name in evenroad.__all__:
+        assert getattr(evenroad, name) is not None
+
+
+def test_an_unknown_public_name_is_an_attribute_error():
+    with pytest.raises(AttributeError, match="nonsense"):
+        _ = evenroad.nonsense
