@@ -9,6 +9,11 @@ from evenroad.points.measures.centred import CENTRED as CENTRED
 from evenroad.points.measures.hickernell import HICKERNELL as HICKERNELL
 from evenroad.points.measures.measure import Measure as Measure
 from evenroad.points.measures.mixture import MIXTURE as MIXTURE
+from evenroad.points.measures.riesz import riesz_energy as riesz_energy
+from evenroad.points.measures.riesz import riesz_energy_with_gradient as riesz_energy_with_gradient
+from evenroad.points.measures.riesz import riesz_rooted as riesz_rooted
+from evenroad.points.measures.riesz import riesz_rooted_with_gradient as riesz_rooted_with_gradient
+from evenroad.points.measures.separation import separation as separation
 from evenroad.points.measures.star import STAR as STAR
 from evenroad.points.measures.symmetric import SYMMETRIC as SYMMETRIC
 from evenroad.points.measures.wrap_around import WRAP_AROUND as WRAP_AROUND

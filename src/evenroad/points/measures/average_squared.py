@@ -12,7 +12,7 @@ def average_squared_terms(columns: Array, weights: Array) -> ProductTerms:
     """Mean of the squared L2 star discrepancy over all 2^d corners taken as the origin, in closed form.
 
     3^-d - (2/n) sum_i prod_k (1 + 2 x_ik - 2 x_ik^2)/4 + (1/n^2) sum_ij prod_k (1 - |x_ik - x_jk|)/2:
-    Warnock's formula with x and 1 - x averaged, coordinate by coordinate (Clement, Kirk, Owen and Rusch 2025).
+    Warnock's formula averaged over x and 1 - x in every coordinate (Clement, Kirk, Owen and Rusch 2025).
     """
     d = columns.shape[0]
     nothing = np.zeros_like(columns)

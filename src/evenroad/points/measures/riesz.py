@@ -29,8 +29,8 @@ def riesz_energy(points: object, s: int | None = None, periodic: bool = True) ->
     Returns
     -------
     float
-        The energy in units of ``spacing = n^(-1/d)``, so that it hardly depends on n: about 1 to 10^2 for even
-        sets.  ``inf`` where it exceeds the range of a float, as for coincident points.
+        The energy in units of ``spacing = n^(-1/d)``, so that it hardly depends on n;
+        ``inf`` where it exceeds the range of a float, as for coincident points.
 
     Raises
     ------
@@ -44,7 +44,7 @@ def riesz_energy(points: object, s: int | None = None, periodic: bool = True) ->
 def riesz_rooted(points: object, s: int | None = None, periodic: bool = True) -> float:
     """Return :func:`riesz_energy` to the power 1/s: as s grows, the spacing over the smallest distance.
 
-    It stays in the range of a float where the energy does not, and is ``inf`` only for coincident points.
+    It stays in the range of a float where the energy does not; coincident points count as 10^-100 apart.
     """
     return riesz_rooted_with_gradient(points, s, periodic)[0]
 
@@ -70,8 +70,9 @@ def riesz_rooted_with_gradient(
 def log_riesz_of_columns(columns: Array, s: int, periodic: bool, want_gradient: bool) -> tuple[float, Array]:
     """Return log(riesz_energy) and its gradient, shape (d, n), at checked points of shape (d, n).
 
-    Every power is taken relative to the largest of its row, and rows are joined in the log: nothing overflows,
-    whatever d.  Coincident points count as 10^-100 apart and do not push each other: there is no direction.
+    Every power is taken relative to the largest of its row, and rows are joined in the log: nothing
+    overflows, whatever d.  Coincident points count as 10^-100 apart and do not push each other: there is no
+    direction.
     """
     d, n = columns.shape
     nearest, rows, pushes = _row_energies(columns, s, periodic, want_gradient)
@@ -117,6 +118,7 @@ def _row_energies(columns, s, periodic, want_gradient):  # type: ignore[no-untyp
     rows = np.empty(n)
     pushes = np.zeros((d, n))
     squared = np.empty(n)
+    inverse = np.empty(n)
     power = np.empty(n)
     base = np.empty(n)
     wrap = 1.0 if periodic else 0.0
@@ -134,18 +136,24 @@ def _row_energies(columns, s, periodic, want_gradient):  # type: ignore[no-untyp
         for j in range(n):
             squared[j] = max(squared[j], SMALLEST_SQUARED)
             smallest = min(smallest, squared[j])
-        # Powers by repeated squaring of whole rows: exact multiplications, no exp or log in the pair loop.
         for j in range(n):
-            base[j] = smallest / squared[j]
-            power[j] = math.sqrt(base[j]) if s % 2 == 1 else 1.0
+            inverse[j] = 1.0 / squared[j]
+            base[j] = smallest * inverse[j]
+            power[j] = 1.0
+        # Powers by repeated squaring of whole rows: a few multiplications, no exp or log in the pair loop.
+        if s % 2 == 1:
+            for j in range(n):
+                power[j] = math.sqrt(base[j])
         half = s // 2
         while half > 0:
-            if half % 2 == 1:
+            odd = half % 2
+            half //= 2
+            if odd == 1:
                 for j in range(n):
                     power[j] *= base[j]
-            for j in range(n):
-                base[j] *= base[j]
-            half //= 2
+            if half > 0:
+                for j in range(n):
+                    base[j] *= base[j]
         power[i] = 0.0
         row = 0.0
         for j in range(n):
@@ -154,7 +162,7 @@ def _row_energies(columns, s, periodic, want_gradient):  # type: ignore[no-untyp
         nearest[i] = smallest
         if want_gradient:
             for j in range(n):
-                power[j] /= squared[j]
+                power[j] *= inverse[j]
             for k in range(d):
                 at, others = columns[k, i], columns[k]
                 push = 0.0

@@ -17,8 +17,8 @@ TINY = 1e-30
 def adam_step(columns, first, second, gradient, noise, step, rate, spread, low, high, wrap):  # type: ignore[no-untyped-def]
     """Move `columns` (d, n) against `gradient` by Adam and along `noise`; update both moments.
 
-    `step` counts from 1, `rate` is the learning rate, `spread` the standard deviation of the noise.  Coordinates
-    stay in [low, high]: wrapped modulo 1 first if `wrap`, then clipped.
+    `step` counts from 1, `rate` is the learning rate, `spread` the standard deviation of the noise.
+    Coordinates stay in [low, high]: wrapped modulo 1 first if `wrap`, then clipped.
     """
     first_scale = 1.0 / (1.0 - FIRST_DECAY**step)
     second_scale = 1.0 / (1.0 - SECOND_DECAY**step)

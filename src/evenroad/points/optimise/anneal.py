@@ -63,8 +63,8 @@ def anneal(
 ) -> Annealed:
     """Make the objective of n points in [0, 1)^d small; deterministic for a seed, on one thread.
 
-    Adam (.9, .999) with a learning rate that falls from .02 to 1e-5 along a half cosine, plus Gaussian noise in
-    proportion to the rate: the noise is what finds a good basin.  The best points seen are kept.
+    Adam (.9, .999) with a learning rate that falls from .02 to 1e-5 along a half cosine, plus Gaussian noise
+    in proportion to the rate: the noise is what finds a good basin.  The best points seen are kept.
 
     Parameters
     ----------

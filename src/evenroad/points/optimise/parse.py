@@ -3,11 +3,11 @@
     expression := term { "+" term }
     term       := [ number "*" ] ( name | "log(" name ")" )
 
-A discrepancy has no unit and an energy is an inverse length, so a plain sum of the two would mean something else
-for every n, d and unit of length: at d = 2, n = 128 the discrepancy is .005 and the rooted energy about 1.  Only
-the sum of their logs is free of units.  So where an energy stands without ``log`` beside other terms, all terms
-are taken in the log: ``hickernell+10*riesz`` is short for ``log(hickernell) + 10*log(riesz)``, that is
-log D + 10 log(E)/s, and its ``str`` says so.
+A discrepancy D falls with n and an energy is an inverse length, so the weight of a plain sum of the two would
+mean something else for every n and d: at d = 2, n = 128, D is .005 and the rooted energy 1.5.  In the sum of
+their logs a weight is a ratio of relative changes, whatever the units.  So where an energy stands without ``log``
+beside other terms, all terms are taken in the log: ``hickernell+10*riesz`` is short for
+``log(hickernell) + 10*log(riesz)``, that is log D + 10 log(E)/s with s = 2d, and its ``str`` says so.
 """
 
 from __future__ import annotations
