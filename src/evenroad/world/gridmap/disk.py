@@ -92,7 +92,10 @@ class DiskWorld:
         centres = as_batch("q", q, 2)
         pixels, distance = nearest_obstacle_points(centres, self._tables)
         # A centre that is its own nearest point is returned as it came, without the way through pixels.
-        return np.where(distance[:, np.newaxis] > 0.0, self.grid.frame.to_map(pixels), centres)
+        nearest = centres.copy()
+        away = distance > 0.0
+        nearest[away] = self.grid.frame.to_map(pixels[away])
+        return nearest
 
 
 def _tables_of(grid: GridMap, radius: float) -> DiskTables:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 from pathlib import Path
+from typing import IO
 
 import numpy as np
 import numpy.typing as npt
@@ -61,30 +62,35 @@ def open_image(path: str | os.PathLike[str]) -> Image.Image:
         As `load_image`.
     """
     file = Path(path)
-    if not file.is_file():
-        raise BrokenFile(
-            f"cannot read the image {file}: {'it is a folder' if file.is_dir() else 'no such file'}"
-        )
+    try:
+        with file.open("rb") as stream:
+            return _decoded(stream, file)
+    except BrokenFile:
+        raise
+    except (OSError, ValueError) as error:  # ValueError: a name that no file can have
+        raise BrokenFile(f"cannot read the image {file}: {getattr(error, 'strerror', error)}") from error
+
+
+def _decoded(stream: IO[bytes], file: Path) -> Image.Image:
     try:
         with warnings.catch_warnings():
             # Pillow warns from 89 million pixels on; the limit here is ours.
             warnings.simplefilter("ignore", Image.DecompressionBombWarning)
-            image = Image.open(file, formats=_FORMATS)
+            image = Image.open(stream, formats=_FORMATS)
     except Image.DecompressionBombError:
         raise BrokenFile(f"the image {file} is too large: at most {LARGEST_IMAGE} pixels are read") from None
     except Exception as error:  # a decoder fed with garbage may raise anything
         raise BrokenFile(f"{file} is not a PNG or PGM image{_reason(error)}") from error
-    with image:
-        columns, rows = image.size
-        if columns * rows > LARGEST_IMAGE:
-            raise BrokenFile(
-                f"the image {file} is too large: {columns} x {rows} pixels, at most {LARGEST_IMAGE} are read"
-            )
-        try:
-            image.load()
-            return _in_known_mode(image)
-        except Exception as error:
-            raise BrokenFile(f"the image {file} is broken or cut short{_reason(error)}") from error
+    columns, rows = image.size
+    if columns * rows > LARGEST_IMAGE:
+        raise BrokenFile(
+            f"the image {file} is too large: {columns} x {rows} pixels, at most {LARGEST_IMAGE} are read"
+        )
+    try:
+        image.load()
+        return _in_known_mode(image)
+    except Exception as error:
+        raise BrokenFile(f"the image {file} is broken or cut short{_reason(error)}") from error
 
 
 def _in_known_mode(image: Image.Image) -> Image.Image:

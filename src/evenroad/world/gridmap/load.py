@@ -8,7 +8,7 @@ from pathlib import Path
 from evenroad.errors import UnknownName
 from evenroad.world.gridmap.gridmap import GridMap
 from evenroad.world.gridmap.image import load_image
-from evenroad.world.gridmap.ros import load_ros_map
+from evenroad.world.gridmap.ros import load_ros_map, read_ros_meta
 
 _IMAGES = (".png", ".pgm")
 _ROS_MAPS = (".yaml", ".yml")
@@ -37,3 +37,9 @@ def load_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False) -> 
     if suffix in _ROS_MAPS:
         return load_ros_map(path, unknown_is_free=unknown_is_free)
     raise UnknownName.among(f"kind of map file {os.fspath(path)!r}: suffix", suffix, _IMAGES + _ROS_MAPS)
+
+
+def map_files(path: str | os.PathLike[str]) -> tuple[Path, ...]:
+    """Return the files that `load_map` reads for `path`: itself and, for a ROS map, its image."""
+    file = Path(path)
+    return (file, read_ros_meta(file).image) if file.suffix.lower() in _ROS_MAPS else (file,)

@@ -1,0 +1,262 @@
+"""ROS map_server files: what each pixel means in each mode, and files that are refused."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
+from evenroad.world import load_map
+from evenroad.world.gridmap import load_ros_map
+
+META = {
+    "image": "map.png",
+    "resolution": 0.05,
+    "origin": "[-1.0, 2.0, 0.0]",
+    "negate": 0,
+    "occupied_thresh": 0.65,
+    "free_thresh": 0.196,
+}
+
+
+def written(folder, pixels, *, drop=(), **changes):
+    """Write map.png and map.yaml with META, changed; return the YAML file's path."""
+    if pixels is not None:
+        Image.fromarray(np.array(pixels)).save(folder / "map.png")
+    values = {key: value for key, value in {**META, **changes}.items() if key not in drop}
+    path = folder / "map.yaml"
+    path.write_text("".join(f"{key}: {value}\n" for key, value in values.items()))
+    return path
+
+
+def verdicts(path):
+    """One letter a pixel of the first row: o(ccupied), u(nknown) or f(ree)."""
+    obstacles = load_ros_map(path).occupied[0]
+    occupied = load_ros_map(path, unknown_is_free=True).occupied[0]
+    assert not (occupied & ~obstacles).any()
+    return "".join("o" if o else "u" if b else "f" for o, b in zip(occupied, obstacles, strict=True))
+
+
+def row(*levels, dtype=np.uint8):
+    return np.array([levels], dtype=dtype)
+
+
+# ---- what a pixel means
+
+
+def test_trinary_is_the_default_and_has_map_servers_usual_levels(tmp_path):
+    # 0, 205 and 254 are what map_saver writes; 89 and 90 lie on both sides of occupancy 0.65.
+    path = written(tmp_path, row(0, 89, 90, 205, 206, 254, 255))
+    assert verdicts(path) == "oouufff"
+    assert verdicts(written(tmp_path, None, mode="trinary")) == "oouufff"
+
+
+def test_205_is_free_when_the_free_threshold_says_so(tmp_path):
+    assert verdicts(written(tmp_path, row(205), free_thresh=0.25)) == "f"
+
+
+@pytest.mark.parametrize("negate", [1, "true"])
+def test_negate_makes_white_the_obstacle(tmp_path, negate):
+    assert verdicts(written(tmp_path, row(0, 49, 50, 165, 166, 255), negate=negate)) == "ffuuoo"
+
+
+def test_a_value_equal_to_a_threshold_is_unknown(tmp_path):
+    # 51 / 255 and 204 / 255 are the thresholds 0.2 and 0.8 themselves.
+    path = written(tmp_path, row(50, 51, 204, 205), negate=1, free_thresh=0.2, occupied_thresh=0.8)
+    assert verdicts(path) == "fuuo"
+
+
+def test_the_shade_is_the_plain_mean_of_the_colours(tmp_path):
+    # Green is bright to the eye (0.587), but one third here: occupancy 2/3 > 0.65.
+    pixels = np.array([[[0, 255, 0], [255, 255, 0], [255, 255, 102]]], dtype=np.uint8)
+    assert verdicts(written(tmp_path, pixels)) == "ouu"
+
+
+def test_alpha_is_one_more_channel_of_the_mean_in_trinary_mode(tmp_path):
+    pixels = np.zeros((1, 4, 4), dtype=np.uint8)
+    pixels[0, 0] = [0, 0, 0, 255]  # shade 1/4
+    pixels[0, 1] = [60, 60, 60, 255]  # shade 0.426
+    pixels[0, 2] = [255, 255, 255, 0]  # shade 3/4
+    pixels[0, 3] = [255, 255, 255, 255]
+    assert verdicts(written(tmp_path, pixels)) == "ouuf"
+
+
+def test_grey_with_alpha_counts_its_grey_three_times(tmp_path):
+    image = Image.fromarray(np.array([[[0, 255], [255, 0], [255, 255]]], dtype=np.uint8))
+    path = written(tmp_path, None)
+    image.save(tmp_path / "map.png")
+    assert image.mode == "LA"
+    assert verdicts(path) == "ouf"
+
+
+def test_in_scale_mode_graded_cells_are_unknown(tmp_path):
+    path = written(tmp_path, row(0, 89, 90, 127, 205, 206, 255), mode="scale")
+    assert verdicts(path) == "oouuuff"
+
+
+def test_in_scale_mode_pixels_that_are_not_opaque_are_unknown(tmp_path):
+    pixels = np.zeros((1, 5, 4), dtype=np.uint8)
+    pixels[0, :, :3] = [[0] * 3, [255] * 3, [0] * 3, [255] * 3, [127] * 3]
+    pixels[0, :, 3] = [255, 255, 254, 0, 255]
+    assert verdicts(written(tmp_path, pixels, mode="scale")) == "ofuuu"
+
+
+def test_in_raw_mode_the_pixel_is_the_occupancy_in_percent(tmp_path):
+    path = written(tmp_path, row(0, 19, 20, 65, 66, 100, 101, 205, 255), mode="raw")
+    assert verdicts(path) == "ffuuoouuu"
+
+
+def test_in_raw_mode_negate_changes_nothing(tmp_path):
+    assert verdicts(written(tmp_path, row(0, 50, 100, 255), mode="raw", negate=1)) == "fuou"
+
+
+def test_sixteen_bit_images_mean_the_same_as_eight_bit_ones(tmp_path):
+    levels = [0, 89, 90, 205, 206, 255]
+    deep = row(*(257 * level for level in levels), dtype=np.uint16)
+    assert verdicts(written(tmp_path, deep)) == "oouuff"
+    assert verdicts(written(tmp_path, deep, mode="raw")) == "foouuu"
+
+
+def test_every_grey_level_agrees_with_the_rule_written_out(tmp_path):
+    for negate in (0, 1):
+        path = written(tmp_path, np.arange(256, dtype=np.uint8)[None], negate=negate)
+        expected = ""
+        for level in range(256):
+            occupancy = level / 255 if negate else 1 - level / 255
+            expected += "o" if occupancy > 0.65 else "f" if occupancy < 0.196 else "u"
+        assert verdicts(path) == expected
+
+
+# ---- where the map lies
+
+
+def test_the_frame_is_the_files(tmp_path):
+    grid = load_map(written(tmp_path, np.zeros((4, 6), np.uint8), origin="[-1, 2.5, 0.3]"))
+    assert (grid.frame.origin, grid.frame.yaw, grid.frame.resolution) == ((-1.0, 2.5), 0.3, 0.05)
+    assert grid.frame.y_up
+    assert math.isclose(grid.space.area, 0.3 * 0.2)
+
+
+def test_the_first_row_of_the_image_is_the_top_of_the_map(tmp_path):
+    pixels = np.full((4, 6), 254, dtype=np.uint8)
+    pixels[0, 0] = 0
+    world = load_map(written(tmp_path, pixels)).world(0.001)
+    np.testing.assert_array_equal(world.valid([[-0.975, 2.175], [-0.975, 2.025]]), [False, True])
+
+
+def test_the_image_is_looked_for_beside_the_yaml_file(tmp_path, monkeypatch):
+    (tmp_path / "maps").mkdir()
+    path = written(tmp_path / "maps", row(0, 255))
+    monkeypatch.chdir(tmp_path)
+    assert load_map("maps/map.yaml").occupied.tolist() == [[True, False]]
+    absolute = written(tmp_path, None, image=f'"{tmp_path / "maps" / "map.png"}"')
+    np.testing.assert_array_equal(load_map(absolute).occupied, load_map(path).occupied)
+
+
+# ---- files that are refused
+
+
+def refusal(path, kind):
+    with pytest.raises(kind) as caught:
+        load_map(path)
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("key", META)
+def test_a_missing_key_is_named(tmp_path, key):
+    text = refusal(written(tmp_path, row(0), drop=[key]), BrokenFile)
+    assert f"map.yaml lacks {key};" in text
+
+
+def test_an_unknown_key_is_named_with_the_known_ones(tmp_path):
+    text = refusal(written(tmp_path, row(0), ocupied_thresh=0.7), UnknownName)
+    assert "'ocupied_thresh'" in text
+    assert "free_thresh, image, mode, negate, occupied_thresh, origin, resolution" in text
+
+
+def test_an_unknown_mode_is_named_with_the_known_ones(tmp_path):
+    text = refusal(written(tmp_path, row(0), mode="Trinary"), UnknownName)
+    assert "'Trinary'; known: raw, scale, trinary" in text
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        ("resolution", "0", "resolution"),
+        ("resolution", "-0.05", "-0.05"),
+        ("resolution", ".nan", "nan"),
+        ("resolution", "fine", "'fine'"),
+        ("resolution", "5e-2", "1.0e-2, not 1e-2"),
+        ("resolution", "true", "True"),
+        ("resolution", "", "None"),
+        ("origin", "[0, 0]", "[x, y, yaw]"),
+        ("origin", "[0, 0, 0, 0]", "[x, y, yaw]"),
+        ("origin", "0", "[x, y, yaw]"),
+        ("origin", "[0, .inf, 0]", "inf"),
+        ("origin", "[0, 1e3, 0]", "'1e3'"),
+        ("negate", "2", "negate"),
+        ("negate", "1.0", "negate"),
+        ("negate", "maybe", "'maybe'"),
+        ("occupied_thresh", "1.01", "1.01"),
+        ("occupied_thresh", "0.196", "free_thresh < occupied_thresh"),
+        ("occupied_thresh", "high", "'high'"),
+        ("free_thresh", "-0.1", "-0.1"),
+        ("free_thresh", "0.7", "0.7"),
+        ("image", "''", "name of a file"),
+        ("image", "[a.png]", "name of a file"),
+        ("image", "7", "name of a file"),
+        ("mode", "7", "known: raw, scale, trinary"),
+        ("mode", "", "known: raw, scale, trinary"),
+        ("mode", "[raw]", "known: raw, scale, trinary"),
+    ],
+)
+def test_a_value_of_the_wrong_type_or_range_is_named(tmp_path, key, value, words):
+    text = refusal(written(tmp_path, row(0), **{key: value}), (InvalidValue, UnknownName))
+    assert words in text
+    assert "map.yaml" in text
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        "",
+        "just text",
+        "- a\n- b\n",
+        "a: [1",
+        "a: b: c",
+        "image: !!python/object:os.system x",
+        "a: 2001-99-99",
+    ],
+)
+def test_a_file_that_is_no_yaml_mapping_is_refused(tmp_path, content):
+    path = tmp_path / "map.yaml"
+    path.write_text(content)
+    assert "map.yaml" in refusal(path, BrokenFile)
+
+
+def test_bytes_that_are_no_text_are_refused(tmp_path):
+    path = tmp_path / "map.yml"
+    path.write_bytes(b"\xff\xfe\x00image: \x80")
+    assert "map.yml" in refusal(path, BrokenFile)
+
+
+def test_a_file_nested_too_deeply_is_refused(tmp_path):
+    path = tmp_path / "map.yaml"
+    path.write_text("[" * 5000)
+    refusal(path, BrokenFile)
+
+
+def test_a_missing_yaml_file_or_image_is_named(tmp_path):
+    assert "nowhere.yaml" in refusal(tmp_path / "nowhere.yaml", BrokenFile)
+    assert "gone.png: No such file" in refusal(written(tmp_path, row(0), image="gone.png"), BrokenFile)
+
+
+def test_keys_that_are_no_text_are_refused_by_name(tmp_path):
+    path = written(tmp_path, row(0))
+    path.write_text(path.read_text() + "7: x\n[1, 2]: y\n")
+    with pytest.raises(EvenroadError):
+        load_map(path)
