@@ -14,11 +14,33 @@ if TYPE_CHECKING:
     from evenroad.errors import EvenroadError as EvenroadError
     from evenroad.points import Origin as Origin
     from evenroad.points import PointSet as PointSet
+    from evenroad.points import draw as draw
+    from evenroad.points import load_points as load_points
+    from evenroad.points import save_points as save_points
+    from evenroad.roadmap import KNearest as KNearest
+    from evenroad.roadmap import PlanResult as PlanResult
+    from evenroad.roadmap import Radius as Radius
+    from evenroad.roadmap import Status as Status
+    from evenroad.roadmap import plan as plan
+    from evenroad.viz import save_plan_picture as save_plan_picture
+    from evenroad.world import GridMap as GridMap
+    from evenroad.world import load_map as load_map
 
 _HOMES = {
     "EvenroadError": "evenroad.errors",
     "Origin": "evenroad.points",
     "PointSet": "evenroad.points",
+    "draw": "evenroad.points",
+    "load_points": "evenroad.points",
+    "save_points": "evenroad.points",
+    "KNearest": "evenroad.roadmap",
+    "PlanResult": "evenroad.roadmap",
+    "Radius": "evenroad.roadmap",
+    "Status": "evenroad.roadmap",
+    "plan": "evenroad.roadmap",
+    "save_plan_picture": "evenroad.viz",
+    "GridMap": "evenroad.world",
+    "load_map": "evenroad.world",
 }
 
 __all__ = ["__version__", *_HOMES]

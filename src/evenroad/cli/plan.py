@@ -51,8 +51,8 @@ class Plan:
     """sukharev: take the largest grid with at most n points."""
     seed: int = 0
     """Seed of everything random; the same command gives the same path."""
-    shortcut: bool = True
-    """Straighten the path; the raw one stays under milestone_path."""
+    raw: bool = False
+    """Leave the path as it runs along the roadmap, without shortcutting it."""
     unknown_is_free: bool = False
     """Let the robot pass through unknown cells of a ROS map."""
     out: Path | None = None
@@ -71,15 +71,15 @@ class Plan:
 
         rule = self._rule()
         gridmap = load_map(self.map, unknown_is_free=self.unknown_is_free)
-        files = self._files(gridmap)
+        files = self._files()
         world = gridmap.world(self.robot_radius, clearance=self.clearance)
         self._require_on_map(gridmap)
         points, note = self._points()
-        result = plan(world, self.start, self.goal, points, rule=rule, shorten=self.shortcut)
+        result = plan(world, self.start, self.goal, points, rule=rule, shorten=not self.raw)
         save_json(files["json"], plan_record(result, self._query()))
         if "csv" in files and result.path is not None:
             save_path_csv(files["csv"], result.path, ("x", "y"))
-        save_plan_picture(files["png"], result, gridmap, world)
+        save_plan_picture(files["png"], result, world)
         print_plan(result, note, [path for path in files.values() if path.exists()])
         return 0 if result.solved else 1
 
@@ -124,12 +124,13 @@ class Plan:
             return {"scramble": not self.plain, "start": self.skip}
         return {"allow_fewer": self.allow_fewer} if "allow_fewer" in takes else {}
 
-    def _files(self, gridmap: GridMap) -> dict[str, Path]:
+    def _files(self) -> dict[str, Path]:
         """Return where results go, refusing what cannot be written or would overwrite the map."""
         from evenroad._files import require_writable_folder
         from evenroad.errors import InvalidValue
+        from evenroad.world.gridmap.load import map_files
 
-        inputs = {source.resolve() for source in (self.map, *getattr(gridmap, "sources", ()))}
+        inputs = {source.resolve() for source in map_files(self.map)}
         stem = self.out if self.out is not None else Path(self.map.stem)
         if self.out is None and any(path.resolve() in inputs for path in self._named(stem).values()):
             stem = Path(f"{self.map.stem}-plan")

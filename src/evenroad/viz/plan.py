@@ -27,28 +27,26 @@ LONG_SIDE_INCHES = 10.0
 DPI = 130
 
 
-def save_plan_picture(
-    path: str | os.PathLike[str], result: PlanResult, gridmap: GridMap, world: DiskWorld
-) -> None:
+def save_plan_picture(path: str | os.PathLike[str], result: PlanResult, world: DiskWorld) -> None:
     """Draw a plan as PNG, atomically; see :func:`draw_plan`."""
-    low, high = _outline(gridmap)
+    low, high = _outline(world.grid)
     width, height = high - low
     scale = LONG_SIDE_INCHES / max(width, height)
     figure = Figure(
         figsize=(max(4.0, width * scale), max(3.0, height * scale) + 0.8), dpi=DPI, layout="constrained"
     )
     FigureCanvasAgg(figure)
-    draw_plan(figure.add_subplot(), result, gridmap, world)
+    draw_plan(figure.add_subplot(), result, world)
     with atomic_write(path) as file:
         figure.savefig(file, format="png")
 
 
-def draw_plan(axes: Axes, result: PlanResult, gridmap: GridMap, world: DiskWorld) -> None:
+def draw_plan(axes: Axes, result: PlanResult, world: DiskWorld) -> None:
     """Draw map, milestones, free edges, raw path, path, start and goal into matplotlib axes, in map units.
 
     An end whose disk is in collision gets a cross, with a line to the obstacle that is nearest.
     """
-    _draw_map(axes, gridmap)
+    _draw_map(axes, world.grid)
     if result.roadmap is not None:
         nodes, edges = result.roadmap.configurations, result.roadmap.edges
         axes.add_collection(LineCollection(list(nodes[edges]), colors=style.EDGE, linewidths=0.5, zorder=2))
@@ -65,7 +63,7 @@ def draw_plan(axes: Axes, result: PlanResult, gridmap: GridMap, world: DiskWorld
         axes.plot(*end, "o", color=colour, markersize=8, markeredgecolor="white", zorder=8, label=name)
     if result.status in (Status.START_INVALID, Status.GOAL_INVALID):
         _mark_collision(axes, result, world)
-    _set_frame(axes, result, gridmap)
+    _set_frame(axes, result, world.grid)
 
 
 def _draw_map(axes: Axes, gridmap: GridMap) -> None:

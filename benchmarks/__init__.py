@@ -1,0 +1,1 @@
+"""Slow tables and timings: ``make bench``."""

@@ -1,0 +1,12 @@
+"""Plan through a shipped maze, and keep the picture and the machine-readable result."""
+
+import evenroad as er
+from evenroad.io import plan_record, save_json
+from evenroad.mazes import load_maze
+
+maze = load_maze(3)
+world = maze.world()
+result = er.plan(world, maze.start, maze.goal, er.draw("hickernell", n=1024, d=2))
+print(result.status, result.message)
+save_json("maze.json", plan_record(result, {"map": maze.path.name}))
+er.save_plan_picture("maze-plan.png", result, world)

@@ -1,0 +1,14 @@
+"""How often does each sampler solve the level-1 maze with 128 points?  (The real table: docs/reproduce.md.)"""
+
+import evenroad as er
+from evenroad.mazes import load_maze
+
+maze = load_maze(1)
+world = maze.world()
+for sampler in ("uniform", "halton", "sobol", "lattice", "hickernell"):
+    runs = 50
+    solved = sum(
+        er.plan(world, maze.start, maze.goal, er.draw(sampler, 128, 2, rng=run), shorten=False).solved
+        for run in range(runs)
+    )
+    print(f"{sampler:12} {100 * solved / runs:.0f} %")

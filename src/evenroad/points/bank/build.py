@@ -1,0 +1,119 @@
+"""Build the bank, or finish it: ``python -m evenroad.points.bank.build``.
+
+Every set is written to a work folder as soon as it is made, and every cell enters the index in one atomic step when all
+its sets are there: a stop at any moment loses at most the sets that were being made, and the bank stays whole.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._files import atomic_write
+from evenroad.points.bank.bank import DATA, INDEX, Bank, cell_name
+from evenroad.points.bank.recipe import SEED, Recipe, recipes
+from evenroad.points.measures import MEASURES, separation
+from evenroad.points.optimise import anneal_many
+from evenroad.points.pointset import BELOW_ONE, PointSet
+
+MEASURED: dict[str, Callable[[npt.NDArray[np.float64]], float]] = {
+    "hickernell_rooted": MEASURES["hickernell"].rooted,
+    "star_rooted": MEASURES["star"].rooted,
+    "average_squared_rooted": MEASURES["average_squared"].rooted,
+    "separation_periodic": lambda points: separation(points, periodic=True),
+}
+"""What the index tells of every set."""
+
+
+def build(recipe: Recipe, folder: Path, work: Path, jobs: int, report: Callable[[str], object]) -> None:
+    """Make the sets of one cell that are not in the work folder yet, then put the cell into the bank."""
+    own_work = work / f"{recipe.family}-d{recipe.d:02d}-n{recipe.n:04d}"
+    own_work.mkdir(parents=True, exist_ok=True)
+    progress = Progress(f"{recipe.family} d={recipe.d} n={recipe.n}, {recipe.sets} sets", report)
+    sets = anneal_many(
+        recipe.n,
+        recipe.d,
+        recipe.objective,
+        recipe.sets,
+        steps=recipe.steps,
+        rng=SEED,
+        workers=jobs,
+        folder=own_work,
+        family=recipe.family,
+        callback=progress,
+    )
+    store(recipe, sets, folder)
+
+
+def store(recipe: Recipe, sets: Sequence[PointSet], folder: Path) -> None:
+    """Write the sets of a cell as float32, then its record in the index; measures are those of the stored values."""
+    rounded = np.minimum(np.stack([each.points for each in sets]).astype(np.float32), np.float32(BELOW_ONE))
+    path = folder / recipe.family / cell_name(recipe.n, recipe.d)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with atomic_write(path) as file:
+        np.save(file, rounded)
+    stored = [PointSet(each) for each in rounded]
+    record = {
+        "method": sets[0].origin.method,
+        "objective": recipe.objective,
+        "steps": recipe.steps,
+        "seed": SEED,
+        "version": sets[0].origin.version,
+        "hashes": [each.hash for each in stored],
+        "measures": {name: [_six_digits(measure(each.points)) for each in stored] for name, measure in MEASURED.items()},
+    }
+    index_path = folder / INDEX
+    index = json.loads(index_path.read_text(encoding="utf-8")) if index_path.exists() else {}
+    index.setdefault(recipe.family, {}).setdefault(str(recipe.d), {})[str(recipe.n)] = record
+    with atomic_write(index_path) as file:
+        file.write((json.dumps(index, indent=1, sort_keys=True) + "\n").encode())
+
+
+class Progress:
+    """A callback that reports a line every few seconds, with the time left at the pace so far."""
+
+    def __init__(self, title: str, report: Callable[[str], object], every: float = 10.0) -> None:
+        self.title, self.report, self.every = title, report, every
+        self.began = self.last = time.monotonic()
+        self.first_step: int | None = None
+
+    def __call__(self, step: int, steps: int, best: float) -> None:
+        """Take note of `step` of `steps`, counted over all sets."""
+        now = time.monotonic()
+        if self.first_step is None:
+            self.first_step = step
+        if now - self.last < self.every or step <= self.first_step:
+            return
+        self.last = now
+        left = (now - self.began) / (step - self.first_step) * (steps - step)
+        self.report(f"{self.title}: {100 * step / steps:.0f} %, {left:.0f} s left, best {best:.5g}")
+
+
+def _six_digits(value: float) -> float:
+    return float(f"{value:.6g}")
+
+
+def main() -> None:
+    """Build every cell that the bank does not hold yet."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--folder", type=Path, default=DATA, help="the bank")
+    parser.add_argument("--work", type=Path, default=Path("out/bank"), help="where finished sets wait for their cell")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
+    options = parser.parse_args()
+    options.folder.mkdir(parents=True, exist_ok=True)
+    bank = Bank(options.folder)
+    for recipe in recipes():
+        if not bank.has(recipe.family, recipe.n, recipe.d):
+            build(recipe, options.folder, options.work, options.jobs, lambda line: print(line, flush=True))
+    print(f"the bank in {options.folder} is complete: {len(recipes())} cells")
+
+
+if __name__ == "__main__":
+    main()

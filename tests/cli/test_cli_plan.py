@@ -1,0 +1,255 @@
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from evenroad.cli import main
+from evenroad.mazes import load_maze
+
+MAZE = load_maze(1)
+
+
+@pytest.fixture(autouse=True)
+def _in_an_empty_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def run(capsys, *arguments):
+    """Run the command line in this process; return exit code, standard output and standard error."""
+    try:
+        code = main([str(each) for each in arguments])
+    except SystemExit as leave:
+        code = leave.code
+    captured = capsys.readouterr()
+    return code, captured.out, captured.err
+
+
+def plan_arguments(map_path=MAZE.path, start=MAZE.start, goal=MAZE.goal, radius=MAZE.robot_radius, **options):
+    extra = [each for key, value in options.items() for each in (f"--{key.replace('_', '-')}", value)]
+    return ["plan", map_path, "--start", *start, "--goal", *goal, "--robot-radius", radius, *extra]
+
+
+@pytest.fixture
+def room(tmp_path):
+    """A 40 x 30 room with a wall across it that leaves a gap on the right."""
+    pixels = np.full((30, 40), 255, dtype=np.uint8)
+    pixels[14:16, :30] = 0
+    Image.fromarray(pixels).save(tmp_path / "room.png")
+    return tmp_path / "room.png"
+
+
+@pytest.fixture
+def ros_room(room):
+    path = room.with_suffix(".yaml")
+    path.write_text(
+        "image: room.png\nresolution: 0.1\norigin: [-1.0, 2.0, 0.0]\nnegate: 0\n"
+        "occupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    )
+    return path
+
+
+def test_a_solved_plan_writes_picture_and_json_and_exits_with_0(capsys, tmp_path):
+    code, out, err = run(capsys, *plan_arguments(out="result"), "-n", 512)
+    assert (code, err) == (0, "")
+    record = json.loads((tmp_path / "result.json").read_text())
+    assert {
+        "status", "path", "milestone_path", "cost", "counts", "seconds", "origin", "versions",
+    } <= set(record)  # fmt: skip
+    assert record["status"] == "solved"
+    assert record["path"][0] == list(MAZE.start)
+    assert record["path"][-1] == list(MAZE.goal)
+    assert record["cost"] <= record["milestone_cost"]
+    world = MAZE.world()
+    path = np.array(record["path"])
+    assert world.motion_valid(path[:-1], path[1:]).all()
+    with Image.open(tmp_path / "result.png") as picture:
+        assert picture.size[0] > 1000
+    assert "solved" in out
+    assert max(map(len, out.splitlines())) <= 100
+
+
+def test_the_default_set_comes_from_the_bank_and_the_output_says_so(capsys, tmp_path):
+    _, out, _ = run(capsys, *plan_arguments(out="a"))
+    assert "hickernell annealed set" in out
+    assert json.loads((tmp_path / "a.json").read_text())["counts"]["points"] == 512
+
+
+def test_for_another_n_scrambled_halton_steps_in_and_the_output_says_so(capsys):
+    _, out, _ = run(capsys, *plan_arguments(out="a"), "-n", 500)
+    assert "halton scrambled" in out
+    assert "no set of n=500" in out
+
+
+def test_the_same_command_gives_the_same_path_and_another_seed_another(capsys, tmp_path):
+    for name, seed in (("a", 3), ("b", 3), ("c", 4)):
+        run(capsys, *plan_arguments(out=name, seed=seed, sampler="halton"), "-n", 600)
+    a, b, c = (json.loads((tmp_path / f"{name}.json").read_text())["milestone_path"] for name in "abc")
+    assert a == b
+    assert a != c
+
+
+def test_csv_has_one_waypoint_a_row(capsys, tmp_path):
+    run(capsys, *plan_arguments(out="a"), "--csv")
+    rows = (tmp_path / "a.csv").read_text().splitlines()
+    path = json.loads((tmp_path / "a.json").read_text())["path"]
+    assert rows[0] == "x,y"
+    assert [[float(x) for x in row.split(",")] for row in rows[1:]] == path
+
+
+def test_the_default_name_is_the_maps_stem_in_the_current_folder(capsys, tmp_path):
+    run(capsys, *plan_arguments())
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["level1.json", "level1.png"]
+
+
+def test_the_default_name_never_overwrites_the_map(capsys, room):
+    before = room.read_bytes()
+    code, _, _ = run(capsys, *plan_arguments(room, (5, 5), (5, 25), 2))
+    assert code == 0
+    assert room.read_bytes() == before
+    assert (room.parent / "room-plan.png").exists()
+
+
+def test_the_default_name_does_not_overwrite_the_image_of_a_ros_map_either(capsys, ros_room):
+    before = ros_room.with_suffix(".png").read_bytes()
+    code, _, _ = run(capsys, *plan_arguments(ros_room, (-0.5, 2.5), (-0.5, 4.5), 0.2))
+    assert code == 0
+    assert ros_room.with_suffix(".png").read_bytes() == before
+
+
+def test_a_ros_map_is_planned_in_metres(capsys, ros_room, tmp_path):
+    code, _, _ = run(capsys, *plan_arguments(ros_room, (-0.5, 2.5), (-0.5, 4.5), 0.2, out="a"))
+    path = np.array(json.loads((tmp_path / "a.json").read_text())["path"])
+    assert code == 0
+    # The way round the wall leads through the gap at x = 2 .. 3 m, at half the height of the room.
+    assert path[:, 0].max() > 2.0
+
+
+def test_a_way_that_is_not_found_exits_with_1_and_says_what_to_try(capsys, tmp_path):
+    code, out, _ = run(capsys, *plan_arguments(out="a", sampler="uniform"), "-n", 16)
+    assert code == 1
+    record = json.loads((tmp_path / "a.json").read_text())
+    assert record["status"] == "not_connected"
+    assert record["path"] is None
+    assert {"start_piece", "goal_piece"} <= set(record["counts"])
+    assert "try n=32" in " ".join(out.split())
+    assert (tmp_path / "a.png").exists()
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "status"), [((3, 3), (20, 25), "start_invalid"), ((5, 5), (20, 16.5), "goal_invalid")]
+)
+def test_an_end_that_touches_an_obstacle_is_a_result_with_a_picture(capsys, room, tmp_path, start, goal, status):
+    code, out, err = run(capsys, *plan_arguments(room, start, goal, 4, out="a"))
+    assert (code, err) == (1, "")
+    assert json.loads((tmp_path / "a.json").read_text())["status"] == status
+    assert (tmp_path / "a.png").exists()
+    assert status in out
+
+
+def test_clearance_adds_to_the_radius(capsys, room, tmp_path):
+    assert run(capsys, *plan_arguments(room, (5, 5), (5, 25), 4, out="a"))[0] == 0
+    code, _, _ = run(capsys, *plan_arguments(room, (5, 5), (5, 25), 4, out="a", clearance=1.5))
+    assert code == 1
+    assert json.loads((tmp_path / "a.json").read_text())["query"]["clearance"] == 1.5
+
+
+BAD = {
+    "a missing image": ({"map_path": "nowhere.png"}, "nowhere.png"),
+    "a broken image": ({"map_path": "broken.png"}, "broken.png"),
+    "another kind of file": ({"map_path": "map.txt"}, "map.txt"),
+    "an unknown YAML key": ({"map_path": "bad-key.yaml"}, "colour"),
+    "an unknown YAML mode": ({"map_path": "bad-mode.yaml"}, "quaternary"),
+    "a start outside the map": ({"start": (700, 5)}, "start 700 5 lies outside the map"),
+    "a goal outside the map": ({"goal": (5, -1)}, "goal 5 -1 lies outside the map"),
+    "a start that is not a number": ({"start": ("nan", 5)}, "finite"),
+    "a radius of zero": ({"radius": 0}, "robot_radius must be a finite number > 0, got 0"),
+    "a negative radius": ({"radius": -1}, "robot_radius"),
+    "a negative clearance": ({"clearance": -1}, "clearance"),
+    "no points": ({"n": 0}, "n must be an integer >= 1, got 0"),
+    "k of zero": ({"k": 0}, "k must be"),
+    "a connection radius of zero": ({"connect_radius": 0}, "connection radius"),
+    "both rules": ({"connect_radius": 5, "k": 5}, "not both"),
+    "a negative seed": ({"seed": -1}, "rng must be"),
+    "an unknown sampler": ({"sampler": "sobel"}, "known: .*halton.*sobol"),
+    "a family without this n": ({"sampler": "hickernell", "n": 100}, "it has n = 32, 64, 128, 256, 512, 1024"),
+    "a grid without this n": ({"sampler": "sukharev", "n": 100_000}, "the nearest are 99856 and 100489"),
+    "an option of another sampler": ({"sampler": "uniform", "skip": 5}, "--skip does not go with"),
+    "a folder that does not exist": ({"out": "no/where/result"}, "does not exist"),
+    "a folder that is a file": ({"out": "map.txt/result"}, "map.txt"),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_bad_input_gets_one_line_and_exit_code_2_and_nothing_is_written(case, capsys, tmp_path, room):
+    (tmp_path / "broken.png").write_bytes(room.read_bytes()[:60])
+    (tmp_path / "map.txt").write_text("hello")
+    good = "image: room.png\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.6\nfree_thresh: 0.2\n"
+    (tmp_path / "bad-key.yaml").write_text(good + "colour: red\n")
+    (tmp_path / "bad-mode.yaml").write_text(good + "mode: quaternary\n")
+    before = sorted(tmp_path.rglob("*"))
+    changes, says = BAD[case]
+    code, out, err = run(capsys, *plan_arguments(**changes))
+    assert code == 2
+    assert out == ""
+    assert err.count("\n") == 1
+    assert err.startswith("evenroad: error: ")
+    import re
+
+    assert re.search(says, err)
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_out_may_not_overwrite_the_map(capsys, room):
+    before = room.read_bytes()
+    code, _, err = run(capsys, *plan_arguments(room, (5, 5), (5, 25), 2, out="room"))
+    assert code == 2
+    assert "overwrite the map" in err
+    assert room.read_bytes() == before
+
+
+def test_an_interrupt_exits_with_130_and_leaves_no_half_file(capsys, tmp_path, monkeypatch):
+    import evenroad.roadmap
+
+    def interrupted(*_args, **_kwargs):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(evenroad.roadmap, "plan", interrupted)
+    code, _, err = run(capsys, *plan_arguments(out="a"))
+    assert code == 130
+    assert "interrupted" in err
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["plan", "--help"], ["demo", "--help"]])
+def test_help_is_there_for_every_verb(capsys, arguments):
+    code, out, _ = run(capsys, *arguments)
+    assert code == 0
+    assert "usage: evenroad" in out
+
+
+def test_without_arguments_the_help_is_shown(capsys):
+    assert "usage: evenroad" in run(capsys)[1]
+
+
+def test_the_version_is_printed(capsys):
+    import evenroad
+
+    assert run(capsys, "--version")[1].strip() == f"evenroad {evenroad.__version__}"
+
+
+def test_the_demo_solves_the_level_3_maze(capsys, tmp_path):
+    code, _, _ = run(capsys, "demo", "--out", "demo")
+    assert code == 0
+    record = json.loads((tmp_path / "demo.json").read_text())
+    assert record["status"] == "solved"
+    assert record["query"]["map"].endswith("level3.png")
+
+
+def test_the_installed_command_works_in_a_process_of_its_own(tmp_path):
+    command = [sys.executable, "-c", "from evenroad.cli import main; raise SystemExit(main())"]
+    done = subprocess.run([*command, *map(str, plan_arguments(out="a"))], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert (tmp_path / "a.png").exists()
