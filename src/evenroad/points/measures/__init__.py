@@ -6,6 +6,9 @@
 from evenroad.errors import UnknownName
 from evenroad.points.measures.average_squared import AVERAGE_SQUARED as AVERAGE_SQUARED
 from evenroad.points.measures.centred import CENTRED as CENTRED
+from evenroad.points.measures.dispersion import dispersion_l2 as dispersion_l2
+from evenroad.points.measures.dispersion import dispersion_linf as dispersion_linf
+from evenroad.points.measures.dispersion import dispersion_lower_bound as dispersion_lower_bound
 from evenroad.points.measures.hickernell import HICKERNELL as HICKERNELL
 from evenroad.points.measures.measure import Measure as Measure
 from evenroad.points.measures.mixture import MIXTURE as MIXTURE
@@ -15,6 +18,7 @@ from evenroad.points.measures.riesz import riesz_rooted as riesz_rooted
 from evenroad.points.measures.riesz import riesz_rooted_with_gradient as riesz_rooted_with_gradient
 from evenroad.points.measures.separation import separation as separation
 from evenroad.points.measures.star import STAR as STAR
+from evenroad.points.measures.star_discrepancy import star_discrepancy as star_discrepancy
 from evenroad.points.measures.symmetric import SYMMETRIC as SYMMETRIC
 from evenroad.points.measures.wrap_around import WRAP_AROUND as WRAP_AROUND
 

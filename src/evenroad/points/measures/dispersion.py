@@ -1,0 +1,155 @@
+"""Dispersion: the distance from the loneliest place of the cube to the nearest point."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial import Voronoi, cKDTree
+
+from evenroad._checks import require_count
+from evenroad._rng import RngLike, generator
+from evenroad.errors import InvalidValue, NotAvailable, UnknownName
+from evenroad.points.measures.largest_hole import largest_hole
+from evenroad.points.measures.terms import Array
+from evenroad.points.pointset import as_unit_points
+
+EXACT_UP_TO = 3
+"""Largest dimension with an exact algorithm."""
+
+NORMS: dict[str, float] = {"l2": 2.0, "linf": np.inf}
+"""The norms by name, as the exponent that scipy takes."""
+
+
+def dispersion_l2(points: object) -> float:
+    """Return the exact l2-dispersion: the supremum over [0, 1]^d of the Euclidean distance to the nearest point.
+
+    The distance is largest at a vertex of the Voronoi cells cut by the cube.  With the points mirrored at every
+    face the mirrored cells meet at the faces, so those vertices are plain Voronoi vertices.
+
+    Parameters
+    ----------
+    points : array_like or PointSet, shape (n, d)
+        Coordinates in [0, 1), n >= 1, d <= 3.
+
+    Raises
+    ------
+    InvalidValue
+        For no points or bad coordinates.
+    NotAvailable
+        For d > 3: see :func:`dispersion_lower_bound`.
+    """
+    coordinates = _checked(points, "dispersion_l2")
+    if coordinates.shape[1] == 1:
+        return _dispersion_of_line(coordinates[:, 0])
+    distinct = np.unique(coordinates, axis=0)
+    mirrored = [distinct]
+    for axis in range(distinct.shape[1]):
+        for face in (0.0, 1.0):
+            image = distinct.copy()
+            image[:, axis] = 2.0 * face - image[:, axis]
+            mirrored.append(image)
+    vertices = Voronoi(np.unique(np.concatenate(mirrored), axis=0)).vertices
+    # Rounding puts vertices of the faces slightly outside; clipped they are places of the cube again, and the
+    # distance at any place of the cube is at most the supremum.
+    near = ((vertices > -1e-9) & (vertices < 1.0 + 1e-9)).all(axis=1)
+    places = np.concatenate([np.clip(vertices[near], 0.0, 1.0), _corners(distinct.shape[1])])
+    return float(np.max(cKDTree(distinct).query(places)[0]))
+
+
+def dispersion_linf(points: object) -> float:
+    """Return the exact linf-dispersion: half the side of the largest cube centred in [0, 1]^d without a point.
+
+    By bisection to the last bit on whether open cubes around the points cover the unit cube.
+
+    Parameters
+    ----------
+    points : array_like or PointSet, shape (n, d)
+        Coordinates in [0, 1), n >= 1, d <= 3.  In d = 3 a few thousand points take seconds.
+
+    Raises
+    ------
+    InvalidValue
+        For no points or bad coordinates.
+    NotAvailable
+        For d > 3: see :func:`dispersion_lower_bound`.
+    """
+    coordinates = _checked(points, "dispersion_linf")
+    if coordinates.shape[1] == 1:
+        return _dispersion_of_line(coordinates[:, 0])
+    return largest_hole(coordinates)
+
+
+def dispersion_lower_bound(
+    points: object, norm: str = "l2", *, rng: RngLike = 0, starts: int = 8192, rounds: int = 60
+) -> float:
+    """Return a lower bound of the dispersion in any dimension: the best place that a random search found.
+
+    Random places and corners, then hill climbing from the best sixteenth of them with shrinking steps.  Every
+    place that is looked at gives a true lower bound; how close it comes is not known.
+
+    Parameters
+    ----------
+    points : array_like or PointSet, shape (n, d)
+        Coordinates in [0, 1), n >= 1.
+    norm : str
+        ``"l2"`` or ``"linf"``.
+    rng : int, SeedSequence or Generator
+        Draws the places.
+    starts, rounds : int
+        Places drawn at first, and rounds of climbing.
+
+    Raises
+    ------
+    InvalidValue
+        For no points, bad coordinates, starts or rounds.
+    UnknownName
+        For another norm.
+    """
+    coordinates = _checked(points, None)
+    if norm not in NORMS:
+        raise UnknownName.among("norm", norm, NORMS)
+    starts, rounds = require_count("starts", starts), require_count("rounds", rounds)
+    draws = generator(rng)
+    d = coordinates.shape[1]
+    tree = cKDTree(coordinates)
+
+    def emptiness(places: Array) -> Array:
+        return np.asarray(tree.query(places, p=NORMS[norm])[0])
+
+    corners = np.round(draws.random((starts // 4 + 1, d)))
+    places = np.concatenate([draws.random((starts, d)), corners])
+    heights = emptiness(places)
+    climbers = np.argsort(-heights, kind="stable")[: max(starts // 16, 1)]
+    places, heights = places[climbers], heights[climbers]
+    steps = np.full((places.shape[0], 1), float(coordinates.shape[0]) ** (-1.0 / d))
+    for _ in range(rounds):
+        # A step along some of the coordinates only: in high dimensions one along all hardly ever climbs.
+        along = draws.random(places.shape) < max(0.3, 1.0 / d)
+        moved = np.clip(places + steps * along * draws.standard_normal(places.shape), 0.0, 1.0)
+        moved_heights = emptiness(moved)
+        better = moved_heights > heights
+        places[better], heights[better] = moved[better], moved_heights[better]
+        steps[better] *= 1.5
+        steps[~better] *= 0.8
+    return float(heights.max())
+
+
+def _checked(points: object, exact: str | None) -> Array:
+    coordinates = as_unit_points(points)
+    n, d = coordinates.shape
+    if n == 0:
+        raise InvalidValue(f"dispersion needs at least one point, got an array of shape (0, {d})")
+    if exact is not None and d > EXACT_UP_TO:
+        raise NotAvailable(
+            f"{exact} is exact for d <= {EXACT_UP_TO}, got d={d}; dispersion_lower_bound searches in any dimension"
+        )
+    return coordinates
+
+
+def _dispersion_of_line(coordinates: Array) -> float:
+    ordered = np.sort(coordinates)
+    return float(max(ordered[0], 1.0 - ordered[-1], np.diff(ordered).max(initial=0.0) / 2.0))
+
+
+def _corners(d: int) -> npt.NDArray[np.float64]:
+    return np.array(np.meshgrid(*[[0.0, 1.0]] * d)).reshape(d, -1).T
