@@ -152,6 +152,13 @@ def test_a_map_longer_than_the_longest_run_is_no_problem():
     assert tall.clearance([[1.0, 35_000.0]])[0] == 1.0
 
 
+def test_an_open_space_wider_than_the_largest_slack_is_free():
+    world = GridMap(with_cells(empty(700, 700), (350, 600))).world(1.0)
+    assert world.valid([[350.0, 350.0], [300.0, 300.0]]).all()
+    assert world.motion_valid([[2.0, 340.0]], [[690.0, 347.0]])[0]
+    assert not world.motion_valid([[2.0, 350.0]], [[690.0, 351.0]])[0]
+
+
 def test_motions_too_short_to_measure_are_as_free_as_their_ends():
     world = GridMap(with_cells(empty(), (20, 30))).world(1.0)
     a = np.array([[29.0, 20.5], [29.5, 20.5], [10.0, 10.0]])

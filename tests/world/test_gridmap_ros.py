@@ -11,6 +11,7 @@ from PIL import Image
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
 from evenroad.world import load_map
 from evenroad.world.gridmap import load_ros_map
+from evenroad.world.gridmap.load import map_files
 
 META = {
     "image": "map.png",
@@ -154,6 +155,12 @@ def test_the_image_is_looked_for_beside_the_yaml_file(tmp_path, monkeypatch):
     assert load_map("maps/map.yaml").occupied.tolist() == [[True, False]]
     absolute = written(tmp_path, None, image=f'"{tmp_path / "maps" / "map.png"}"')
     np.testing.assert_array_equal(load_map(absolute).occupied, load_map(path).occupied)
+
+
+def test_the_files_of_a_map_are_its_own_and_its_image(tmp_path):
+    path = written(tmp_path, None, image="pictures/office.pgm")
+    assert map_files(path) == (path, tmp_path / "pictures" / "office.pgm")
+    assert map_files(tmp_path / "maze.png") == (tmp_path / "maze.png",)
 
 
 # ---- files that are refused

@@ -9,14 +9,16 @@ from evenroad.errors import InvalidValue
 
 
 def as_batch(name: str, values: object, dim: int) -> npt.NDArray[np.float64]:
-    """Return `values` as a C-contiguous float64 array of shape (n, dim) with finite entries.
+    """Return `values` as a read-only C-contiguous float64 array of shape (n, dim) with finite entries.
+
+    Read-only whatever `values` is: compiled code is compiled anew for each mix of read-only and other arrays.
 
     Parameters
     ----------
     name : str
         What the caller calls the argument, for the error text.
     values : array_like, shape (n, dim)
-        Not copied when it already is such an array; never written to.
+        Copied only when it is not such an array; never written to.
     dim : int
         Number of columns wanted.
 
@@ -31,7 +33,8 @@ def as_batch(name: str, values: object, dim: int) -> npt.NDArray[np.float64]:
         raise InvalidValue(f"{name} must be an (n, {dim}) array of numbers: {error}") from None
     if array.ndim != 2 or array.shape[1] != dim:
         raise InvalidValue(f"{name} must have shape (n, {dim}), got {array.shape}")
-    batch = np.ascontiguousarray(array)
+    batch = np.ascontiguousarray(array).view()
+    batch.setflags(write=False)
     finite = np.isfinite(batch)
     if not finite.all():
         i, k = np.argwhere(~finite)[0]

@@ -103,4 +103,7 @@ def _tables_of(grid: GridMap, radius: float) -> DiskTables:
     # The ring of occupied cells stands for everything outside the map.
     above, below = vertical_runs(np.pad(grid.occupied, 1, constant_values=True))
     cells = classify(above, below, radius_in_pixels)
-    return DiskTables(grid.frame.coefficients(), cells, above, below, radius_in_pixels)
+    frame = grid.frame.coefficients()
+    for table in (frame, cells, above, below):
+        table.setflags(write=False)
+    return DiskTables(frame, cells, above, below, radius_in_pixels)

@@ -86,8 +86,12 @@ def _point_is_free(x: float, y: float, disk: DiskTables) -> bool:
 def _way_is_free(ax: float, ay: float, bx: float, by: float, disk: DiskTables) -> bool:
     """Follow the segment from a to b (ax <= bx), both free, cell by cell; parameter t runs from 0 to 1.
 
-    Every piece [t, leaving] of the segment lies in the closed cell that is looked at and the pieces leave no
-    gap, so nothing is stepped over.  The grid lines' t are computed from whole numbers, never added up.
+    Every piece of the segment from one t to the next lies in the closed cell that is looked at and the pieces
+    leave no gap, so nothing is stepped over.  The grid lines' t are computed from whole numbers, never added
+    up.
+
+    Where the segment comes nearest to a square that it does not meet, either the segment ends, which was
+    tested as a point, or the square has a corner.  So corners are all that an undecided cell asks about.
     """
     dx, dy = bx - ax, by - ay
     squared_length = dx * dx + dy * dy
@@ -100,46 +104,33 @@ def _way_is_free(ax: float, ay: float, bx: float, by: float, disk: DiskTables) -
     row_step = 1 if dy > 0.0 else -1
     next_line = 1 if dy > 0.0 else 0
     col, row = int(ax), int(ay)
-    t, x, y = 0.0, ax, ay
+    t = 0.0
     while True:
         state = disk.cells[row, col]
         if state == BLOCKED:
             return False
+        if state == UNDECIDED and _passes_a_corner(row, col, ax, ay, dx, dy, squared_length, disk):
+            return False
         next_column = (col + 1 - ax) * per_column if crosses_columns else 2.0
         next_row = (row + next_line - ay) * per_row if crosses_rows else 2.0
-        leaving = max(t, min(next_column, next_row))
-        if leaving >= 1.0:
-            leave_x, leave_y = bx, by
-        else:
-            leave_x, leave_y = ax + leaving * dx, ay + leaving * dy
-        if state == UNDECIDED and _piece_is_too_close(
-            row, col, x, y, leave_x, leave_y, ax, ay, dx, dy, squared_length, disk
-        ):
-            return False
-        if leaving >= 1.0:
-            return True
-        t, x, y = leaving, leave_x, leave_y
+        # Rounding may put a grid line a hair before the place that a leap ended at: never go back.
+        t = max(t, min(next_column, next_row))
         if state > FREE:
             # The slack holds at the point of leaving, so that much way beyond it is free as well.
             t += (state - FREE) * per_pixel
-            if t >= 1.0:
-                return True
-            x, y = ax + t * dx, ay + t * dy
-            col, row = int(x), int(y)
+            col, row = int(ax + t * dx), int(ay + t * dy)
         elif next_column <= next_row:
             col += 1
         else:
             row += row_step
+        if t >= 1.0:
+            return True
 
 
 @njit(cache=True, nogil=True)
-def _piece_is_too_close(
+def _passes_a_corner(
     row: int,
     col: int,
-    x0: float,
-    y0: float,
-    x1: float,
-    y1: float,
     ax: float,
     ay: float,
     dx: float,
@@ -147,41 +138,27 @@ def _piece_is_too_close(
     squared_length: float,
     disk: DiskTables,
 ) -> bool:
-    """Say whether the piece (x0, y0)-(x1, y1), x0 <= x1, in cell (row, col) comes nearer than the radius.
+    """Say whether a corner that faces cell (row, col) is nearer than the radius to the whole segment.
 
-    A square in the same row or column faces the cell with a side: its distance is least at an end of the
-    piece.  Any other faces it with one corner, whose distance from the whole segment is what counts.
+    A square in the cell's own row or column faces it with a side, not a corner.  It needs no test from here:
+    where such a side ends, a cell of the next row or column that the segment goes to sees the corner.
     """
-    radius = disk.radius
-    limit = radius * radius * squared_length
-    reach = math.ceil(radius)
-    top, bottom = min(y0, y1), max(y0, y1)
+    limit = disk.radius * disk.radius * squared_length
+    reach = math.ceil(disk.radius)
     for other in range(max(col - reach, 0), min(col + reach, disk.cells.shape[1] - 1) + 1):
         up, down = disk.above[row, other], disk.below[row, other]
-        if other == col:
-            if top - (row + 1 - up) < radius or row + down - bottom < radius:
-                return True
+        if other == col or up == 0:
             continue
-        corner_x = other + 1 if other < col else other
-        if up == 0:
-            if (x0 - corner_x if other < col else corner_x - x1) < radius:
-                return True
-            continue
-        if up <= reach and _corner_is_too_close(
-            corner_x - ax, row + 1 - up - ay, dx, dy, squared_length, limit
-        ):
+        x = (other + 1 if other < col else other) - ax
+        if up <= reach and _is_too_close(x, row + 1 - up - ay, dx, dy, squared_length, limit):
             return True
-        if down <= reach and _corner_is_too_close(
-            corner_x - ax, row + down - ay, dx, dy, squared_length, limit
-        ):
+        if down <= reach and _is_too_close(x, row + down - ay, dx, dy, squared_length, limit):
             return True
     return False
 
 
 @njit(cache=True, nogil=True)
-def _corner_is_too_close(
-    x: float, y: float, dx: float, dy: float, squared_length: float, limit: float
-) -> bool:
+def _is_too_close(x: float, y: float, dx: float, dy: float, squared_length: float, limit: float) -> bool:
     """Say whether a corner at (x, y) from the segment's start is nearer than the radius to its inside.
 
     The ends were tested as points, so only a foot strictly between them counts; its squared distance is
