@@ -102,7 +102,11 @@ def picture(rows: list[Row], path: Path) -> None:
     figure = Figure(figsize=(13, 4.6), dpi=120, layout="constrained")
     FigureCanvasAgg(figure)
     panels = figure.subplots(1, len(LEVELS), sharey=True)
-    styles = {"uniform": ("#555555", "-", "o"), "halton": ("#1b9e5a", "-", "s"), "sobol": ("#2f5fd0", "-", "^")}
+    styles = {
+        "uniform": ("#555555", "-", "o"),
+        "halton": ("#1b9e5a", "-", "s"),
+        "sobol": ("#2f5fd0", "-", "^"),
+    }
     styles |= {"hickernell": ("#d1343b", "-", "D"), "lattice": ("#e6a23c", "-", "v")}
     for axes, level in zip(panels, LEVELS, strict=True):
         for sampler in DRAWS:
@@ -133,15 +137,22 @@ def picture(rows: list[Row], path: Path) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--runs", type=int, default=400)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--out", type=Path, default=Path("out/bench"))
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
-    cells = [(level, rule, s, n) for rule in ("k=10", "radius") for level in LEVELS for s in DRAWS for n in COUNTS]
+    cells = [
+        (level, rule, s, n) for rule in ("k=10", "radius") for level in LEVELS for s in DRAWS for n in COUNTS
+    ]
     rows = []
-    with ProcessPoolExecutor(options.jobs) as pool, open(options.out / "maze_success.csv", "w", newline="") as file:
+    with (
+        ProcessPoolExecutor(options.jobs) as pool,
+        open(options.out / "maze_success.csv", "w", newline="") as file,
+    ):
         writer = csv.DictWriter(file, fieldnames=list(Row.__dataclass_fields__))
         writer.writeheader()
         futures = [pool.submit(measure, *cell, options.runs) for cell in cells]
@@ -149,7 +160,10 @@ def main() -> None:
             rows.append(future.result())
             writer.writerow(asdict(rows[-1]))
             file.flush()
-            print(f"{done}/{len(cells)} {rows[-1].level} {rows[-1].rule} {rows[-1].sampler} {rows[-1].n}", end="\r")
+            print(
+                f"{done}/{len(cells)} {rows[-1].level} {rows[-1].rule} {rows[-1].sampler} {rows[-1].n}",
+                end="\r",
+            )
     text = "\n".join(table(rows, rule) for rule in ("k=10", "radius"))
     (options.out / "maze_success.md").write_text(text)
     picture(rows, options.out / "maze_success.png")

@@ -41,7 +41,9 @@ def test_the_readmes_python_runs_and_is_five_lines_long(capsys):
 
 
 def test_the_readmes_commands_are_understood():
-    commands = [line for block in _blocks("sh") for line in block.splitlines() if line.startswith("evenroad ")]
+    commands = [
+        line for block in _blocks("sh") for line in block.splitlines() if line.startswith("evenroad ")
+    ]
     assert len(commands) >= 2
     for command in commands:
         # A maze that these few points do not solve is an answer (1); a misspelt option would be 2.
@@ -49,7 +51,9 @@ def test_the_readmes_commands_are_understood():
 
 
 def test_the_readmes_make_targets_exist():
-    targets = {line.split(":")[0] for line in (ROOT / "Makefile").read_text().splitlines() if re.match(r"\w+:", line)}
+    targets = {
+        line.split(":")[0] for line in (ROOT / "Makefile").read_text().splitlines() if re.match(r"\w+:", line)
+    }
     assert set(re.findall(r"^make (\w+)", README, flags=re.MULTILINE)) <= targets
 
 

@@ -141,7 +141,9 @@ def test_a_way_that_is_not_found_exits_with_1_and_says_what_to_try(capsys, tmp_p
 @pytest.mark.parametrize(
     ("start", "goal", "status"), [((3, 3), (20, 25), "start_invalid"), ((5, 5), (20, 16.5), "goal_invalid")]
 )
-def test_an_end_that_touches_an_obstacle_is_a_result_with_a_picture(capsys, room, tmp_path, start, goal, status):
+def test_an_end_that_touches_an_obstacle_is_a_result_with_a_picture(
+    capsys, room, tmp_path, start, goal, status
+):
     code, out, err = run(capsys, *plan_arguments(room, start, goal, 4, out="a"))
     assert (code, err) == (1, "")
     assert json.loads((tmp_path / "a.json").read_text())["status"] == status
@@ -174,7 +176,10 @@ BAD = {
     "both rules": ({"connect_radius": 5, "k": 5}, "not both"),
     "a negative seed": ({"seed": -1}, "rng must be"),
     "an unknown sampler": ({"sampler": "sobel"}, "known: .*halton.*sobol"),
-    "a family without this n": ({"sampler": "hickernell", "n": 100}, "it has n = 32, 64, 128, 256, 512, 1024"),
+    "a family without this n": (
+        {"sampler": "hickernell", "n": 100},
+        "it has n = 32, 64, 128, 256, 512, 1024",
+    ),
     "a grid without this n": ({"sampler": "sukharev", "n": 100_000}, "the nearest are 99856 and 100489"),
     "an option of another sampler": ({"sampler": "uniform", "skip": 5}, "--skip does not go with"),
     "a folder that does not exist": ({"out": "no/where/result"}, "does not exist"),
@@ -250,6 +255,8 @@ def test_the_demo_solves_the_level_3_maze(capsys, tmp_path):
 
 def test_the_installed_command_works_in_a_process_of_its_own(tmp_path):
     command = [sys.executable, "-c", "from evenroad.cli import main; raise SystemExit(main())"]
-    done = subprocess.run([*command, *map(str, plan_arguments(out="a"))], capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [*command, *map(str, plan_arguments(out="a"))], capture_output=True, text=True, check=False
+    )
     assert (done.returncode, done.stderr) == (0, "")
     assert (tmp_path / "a.png").exists()

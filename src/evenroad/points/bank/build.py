@@ -67,7 +67,9 @@ def store(recipe: Recipe, sets: Sequence[PointSet], folder: Path) -> None:
         "seed": SEED,
         "version": sets[0].origin.version,
         "hashes": [each.hash for each in stored],
-        "measures": {name: [_six_digits(measure(each.points)) for each in stored] for name, measure in MEASURED.items()},
+        "measures": {
+            name: [_six_digits(value(each.points)) for each in stored] for name, value in MEASURED.items()
+        },
     }
     index_path = folder / INDEX
     index = json.loads(index_path.read_text(encoding="utf-8")) if index_path.exists() else {}
@@ -104,15 +106,21 @@ def main() -> None:
     """Build every cell that the bank does not hold yet."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--folder", type=Path, default=DATA, help="the bank")
-    parser.add_argument("--work", type=Path, default=Path("out/bank"), help="where finished sets wait for their cell")
+    parser.add_argument(
+        "--work", type=Path, default=Path("out/bank"), help="where finished sets wait for their cell"
+    )
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--list", action="store_true", help="only name the cells that are not built yet")
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)
     bank = Bank(options.folder)
-    for recipe in recipes():
-        if not bank.has(recipe.family, recipe.n, recipe.d):
+    missing = [each for each in recipes() if not bank.has(each.family, each.n, each.d)]
+    print(f"{len(recipes()) - len(missing)} of {len(recipes())} cells are in the bank", flush=True)
+    for recipe in missing:
+        if options.list:
+            print(f"missing: {recipe.family} d={recipe.d} n={recipe.n}")
+        else:
             build(recipe, options.folder, options.work, options.jobs, lambda line: print(line, flush=True))
-    print(f"the bank in {options.folder} is complete: {len(recipes())} cells")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,52 @@
+"""The user's cache of sets that were annealed on demand."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+from pathlib import Path
+
+from evenroad.errors import BrokenFile
+from evenroad.points.npz import load_points, save_points
+from evenroad.points.pointset import PointSet
+
+
+def cache_folder() -> Path:
+    """Return where sets made on demand are kept: ``$EVENROAD_CACHE``, or the platform's cache folder."""
+    if named := os.environ.get("EVENROAD_CACHE"):
+        return Path(named)
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Caches" / "evenroad"
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA", Path.home())) / "evenroad" / "cache"
+    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "evenroad"
+
+
+def cached(family: str, objective: str, steps: int, n: int, d: int, replica: int) -> PointSet | None:
+    """Return the set from the cache; None when it is not there, or damaged and to be made again."""
+    try:
+        points = load_points(_file(family, objective, steps, n, d, replica))
+    except BrokenFile:
+        return None
+    return points if points.points.shape == (n, d) and points.origin.objective == objective else None
+
+
+def keep(family: str, objective: str, steps: int, n: int, d: int, replica: int, points: PointSet) -> None:
+    """Put a set into the cache.
+
+    The same set is made bit for bit by whoever makes it, and a file appears in one step: two processes that
+    anneal it at once write the same content, whichever comes last.
+    """
+    path = _file(family, objective, steps, n, d, replica)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise BrokenFile(f"cannot make the cache folder {path.parent}: {error.strerror or error}") from error
+    save_points(path, points)
+
+
+def _file(family: str, objective: str, steps: int, n: int, d: int, replica: int) -> Path:
+    # The objective and steps are part of the name: sets of an earlier recipe are not mistaken for today's.
+    recipe = hashlib.sha256(f"{objective}|{steps}".encode()).hexdigest()[:8]
+    return cache_folder() / "sets" / f"{family}-{recipe}-d{d:02d}-n{n:05d}-{replica:03d}.npz"

@@ -1,0 +1,86 @@
+import json
+import os
+
+import numpy as np
+import pytest
+
+from evenroad._files import atomic_write, require_writable_folder
+from evenroad.errors import BrokenFile
+from evenroad.io import plan_record, save_json, save_path_csv
+from evenroad.points import draw
+from evenroad.roadmap import plan
+from evenroad.world import GridMap
+
+
+def test_a_reader_sees_the_old_file_until_the_new_one_is_whole(tmp_path):
+    path = tmp_path / "a.txt"
+    path.write_text("old")
+    with atomic_write(path) as file:
+        file.write(b"new")
+        file.flush()
+        assert path.read_text() == "old"
+    assert path.read_text() == "new"
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, ValueError, OSError])
+def test_an_error_while_writing_leaves_the_old_file_and_no_litter(tmp_path, error):
+    path = tmp_path / "a.txt"
+    path.write_text("old")
+
+    def stopped_half_way():
+        with atomic_write(path) as file:
+            file.write(b"half")
+            raise error
+
+    with pytest.raises((error, BrokenFile)):
+        stopped_half_way()
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_files_are_readable_as_the_umask_says(tmp_path):
+    path = tmp_path / "a.txt"
+    old = os.umask(0o022)
+    try:
+        with atomic_write(path) as file:
+            file.write(b"x")
+    finally:
+        os.umask(old)
+    assert path.stat().st_mode & 0o777 == 0o644
+
+
+@pytest.mark.parametrize("name", ["no/such/folder.txt", "file.txt/inside.txt", ""])
+def test_a_folder_that_cannot_be_written_is_known_before_the_work(tmp_path, name):
+    (tmp_path / "file.txt").write_text("")
+    with pytest.raises(BrokenFile, match="cannot write"):
+        require_writable_folder(tmp_path / name)
+
+
+def _record():
+    world = GridMap(np.zeros((20, 20), dtype=bool)).world(1.0)
+    return plan(world, (2, 2), (18, 18), draw("halton", 20, 2))
+
+
+def test_the_record_survives_json_and_holds_what_was_asked():
+    record = json.loads(json.dumps(plan_record(_record(), {"map": "x.png"})))
+    assert record["query"] == {"start": [2, 2], "goal": [18, 18], "map": "x.png"}
+    assert record["origin"]["family"] == "halton"
+    assert {"evenroad", "python", "numpy", "numba", "scipy"} == set(record["versions"])
+    assert set(record["seconds"]) == {"validity", "neighbours", "motions", "search", "shortcut"}
+
+
+def test_numbers_that_are_not_json_are_refused_and_the_old_file_stays(tmp_path):
+    path = tmp_path / "a.json"
+    save_json(path, {"x": 1})
+    with pytest.raises(ValueError, match="JSON"):
+        save_json(path, {"x": float("nan")})
+    assert json.loads(path.read_text()) == {"x": 1}
+
+
+def test_csv_floats_come_back_bit_for_bit(tmp_path):
+    waypoints = np.random.default_rng(0).random((5, 3))
+    save_path_csv(tmp_path / "a.csv", waypoints, ["a", "b", "c"])
+    rows = (tmp_path / "a.csv").read_text().splitlines()
+    assert rows[0] == "a,b,c"
+    back = np.array([[float(x) for x in row.split(",")] for row in rows[1:]])
+    assert back.tobytes() == waypoints.tobytes()

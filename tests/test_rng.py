@@ -1,0 +1,29 @@
+import numpy as np
+import pytest
+
+from evenroad._rng import generator, seed_of
+from evenroad.errors import InvalidValue
+
+
+def test_equal_seeds_give_equal_streams():
+    assert (
+        generator(3).random()
+        == generator(np.int64(3)).random()
+        == generator(np.random.SeedSequence(3)).random()
+    )
+
+
+def test_a_generator_is_spawned_so_that_two_calls_differ():
+    given = np.random.default_rng(1)
+    assert generator(given).random() != generator(given).random()
+
+
+@pytest.mark.parametrize("bad", [None, -1, 1.0, "1", True, [1]])
+def test_anything_else_is_refused(bad):
+    with pytest.raises(InvalidValue, match="rng must be"):
+        generator(bad)
+
+
+def test_only_an_int_is_a_seed_that_can_be_recorded():
+    assert seed_of(4) == 4
+    assert seed_of(np.random.default_rng(4)) is None
