@@ -122,6 +122,13 @@ def test_any_text_parses_or_is_refused_in_words(text):
     assert "column" in message
 
 
+def test_a_term_checks_its_name_and_weight():
+    with pytest.raises(UnknownName, match="unknown term 'sobol'; known: average_squared"):
+        Term("sobol")
+    with pytest.raises(InvalidValue, match="weight must be a finite number > 0"):
+        Term("star", -1.0)
+
+
 def test_something_else_than_text_is_refused():
     with pytest.raises(InvalidValue, match="an objective is text such as"):
         parse_objective(3)  # type: ignore[arg-type]

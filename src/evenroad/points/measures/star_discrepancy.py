@@ -11,7 +11,7 @@ from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.points.pointset import as_unit_points
 
-BUDGET = 2e10
+BUDGET = 1e10
 """Default limit on the estimated work: about a minute."""
 
 
@@ -28,8 +28,8 @@ def star_discrepancy(points: object, budget: float = BUDGET) -> float:
     points : array_like or PointSet, shape (n, d)
         Coordinates in [0, 1), n >= 1.
     budget : float
-        Limit on the estimated work, n^d / d!: at the default n is about 200000, 4900, 830, 300 and 150 at most
-        for d = 2 .. 6.
+        Limit on the estimated work, n^d / d!: at the default n is 140000, 3900, 700, 260 and 139 at most for
+        d = 2 .. 6.
 
     Raises
     ------

@@ -85,6 +85,11 @@ def anneal(
     ------
     InvalidValue
         For n, d, steps or a start out of range, or an objective that does not parse (UnknownName for a name).
+
+    Notes
+    -----
+    "Deterministic" means the same bits on the same kind of processor and versions of numpy and numba: sums run
+    as vectors, whose width, and so the order of additions, is the processor's.
     """
     n, d, steps = require_count("n", n), require_count("d", d), require_count("steps", steps)
     target = parse_objective(objective)

@@ -175,12 +175,16 @@ def _share(steps_done: Any, best_values: Any, stop: Any) -> None:
 def _make_set_shared(slot: int, task: SetTask) -> PointSet:
     assert _shared is not None  # set by the initializer
     steps_done, best_values, stop = _shared
+    parent = os.getppid()
 
     def report(step: int, steps: int, best: float) -> None:
         steps_done[slot] = step
         best_values[slot] = best
         if stop.value:
             raise _Stopped
+        if os.getppid() != parent:
+            # The parent was killed and nobody is left to take the set, nor to end this process.
+            os._exit(1)
 
     return make_set(task, report)
 

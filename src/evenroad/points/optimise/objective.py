@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evenroad.errors import InvalidValue
+from evenroad._checks import require_positive
+from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points.measures import MEASURES
 from evenroad.points.measures.measure import rooted_of_columns
 from evenroad.points.measures.riesz import log_riesz_of_columns
@@ -33,11 +34,23 @@ class Term:
         Positive factor.
     logarithm : bool
         Whether the natural log is taken.
+
+    Raises
+    ------
+    UnknownName
+        For another name.
+    InvalidValue
+        For a weight that is not a finite number > 0.
     """
 
     name: str
     weight: float = 1.0
     logarithm: bool = False
+
+    def __post_init__(self) -> None:
+        if self.name not in MEASURES and self.name not in ENERGIES:
+            raise UnknownName.among("term", self.name, [*MEASURES, *ENERGIES])
+        require_positive("weight", self.weight)
 
     def __str__(self) -> str:
         inner = f"log({self.name})" if self.logarithm else self.name
