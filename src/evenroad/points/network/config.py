@@ -1,0 +1,93 @@
+"""What a training is asked for: sizes of the network and of the sets, objective, schedule, seed."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from evenroad._checks import require_count, require_positive
+from evenroad.points.optimise.objective import require_points_for
+from evenroad.points.optimise.parse import parse_objective
+
+POINTS_AT_ONCE = 4096
+"""Points whose activations are held in memory together, unless a micro-batch is asked for."""
+
+
+@dataclass(frozen=True)
+class NetworkConfig:
+    """All that decides the result of a training; two equal configs give the same bits on one machine's CPU.
+
+    Attributes
+    ----------
+    n, d : int
+        Number of points of a set, >= 2, and dimension, >= 1.
+    objective : str
+        What the mean over the sets is taken of, see :func:`~evenroad.points.optimise.parse_objective`; kept in
+        the spelling that ``str`` of the parsed objective gives.
+    sets : int
+        How many sets are trained together: they share the network, each has its own random start.
+    width, layers : int
+        Numbers that describe a point inside the network, and message-passing layers.
+    k : int
+        Nearest neighbours that a point hears of, or n - 1 where there are not so many.
+    radius : float or None
+        If given, a point hears of all within this distance instead, itself included.
+    steps : int
+        Steps of Adam at most; the learning rate falls to zero along a half cosine over them.
+    rate, weight_decay : float
+        First learning rate and L2 penalty of Adam.
+    micro_batch : int or None
+        Sets that are in memory at once.  It bounds the memory and hardly changes the speed; None takes as many
+        as make about 4096 points.
+    patience : int or None
+        Stop after so many steps without a new best mean; None never stops early.
+    seed : int
+        Draws the starts and the first weights; nothing is drawn later.
+
+    Raises
+    ------
+    InvalidValue
+        For a value out of range, or an objective that does not parse (UnknownName for a name in it).
+    """
+
+    n: int
+    d: int
+    objective: str = "hickernell"
+    sets: int = 16
+    width: int = 128
+    layers: int = 3
+    k: int = 8
+    radius: float | None = None
+    steps: int = 5000
+    rate: float = 1e-3
+    weight_decay: float = 1e-6
+    micro_batch: int | None = None
+    patience: int | None = 1000
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        # Instance norm over a set of one point would leave nothing of it.
+        require_count("n", self.n, at_least=2)
+        require_count("seed", self.seed, at_least=0)
+        for name in ("d", "sets", "width", "layers", "k", "steps"):
+            require_count(name, getattr(self, name))
+        for name in ("micro_batch", "patience"):
+            if getattr(self, name) is not None:
+                require_count(name, getattr(self, name))
+        if self.radius is not None:
+            require_positive("radius", self.radius)
+        require_positive("rate", self.rate)
+        require_positive("weight_decay", self.weight_decay, or_zero=True)
+        objective = parse_objective(self.objective)
+        require_points_for(objective, self.n)
+        object.__setattr__(self, "objective", str(objective))
+
+    @property
+    def sets_at_once(self) -> int:
+        """Sets of a micro-batch."""
+        wanted = POINTS_AT_ONCE // self.n if self.micro_batch is None else self.micro_batch
+        return min(max(wanted, 1), self.sets)
+
+    def as_record(self) -> dict[str, Any]:
+        """Return the fields as plain values, for JSON."""
+        return asdict(self)
