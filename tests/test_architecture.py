@@ -18,6 +18,7 @@ MAY_IMPORT = {
     "world": BASE | {"space"},
     "roadmap": BASE | {"points", "space", "world"},
     "mazes": BASE | {"world"},
+    "qmc": BASE | {"points"},
     "io": BASE | {"points", "space", "world", "roadmap"},
     "viz": BASE | {"points", "space", "world", "roadmap"},
     "cli": BASE | {"points", "space", "world", "roadmap", "mazes", "io", "viz"},

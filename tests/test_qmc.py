@@ -1,0 +1,216 @@
+"""The engines: what users of scipy.stats.qmc expect of one, and that a set has an end."""
+
+import numpy as np
+import pytest
+from scipy.integrate import qmc_quad
+from scipy.stats import qmc as scipy_qmc
+
+from evenroad import qmc
+from evenroad.errors import Exhausted, InvalidValue, NotAvailable
+from evenroad.points.measures import MEASURES, riesz_rooted, separation
+
+SEED = 170382760648021597650530316304495310428
+
+
+class EngineContract:
+    """Subclass it as ``class TestMine(EngineContract): engine_class = Mine``; n and d are ones that it has."""
+
+    engine_class: type[qmc.FamilyEngine]
+    n = 64
+    d = 2
+
+    def engine(self, **options):
+        return self.engine_class(**{"d": self.d, "n": self.n, "rng": SEED, **options})
+
+    def test_it_is_an_engine_of_scipy(self):
+        engine = self.engine()
+        assert isinstance(engine, scipy_qmc.QMCEngine)
+        assert (engine.d, engine.n, engine.num_generated) == (self.d, self.n, 0)
+
+    def test_all_points_lie_in_the_cube(self):
+        sample = self.engine().random(self.n)
+        assert sample.shape == (self.n, self.d)
+        assert sample.dtype == np.float64
+        assert (sample >= 0).all()
+        assert (sample < 1).all()
+
+    def test_no_points_and_one_point_have_two_axes(self):
+        engine = self.engine()
+        assert engine.random(0).shape == (0, self.d)
+        assert engine.num_generated == 0
+        assert engine.random().shape == (1, self.d)
+        assert engine.num_generated == 1
+
+    def test_two_halves_are_the_whole(self):
+        whole = self.engine().random(self.n)
+        engine = self.engine()
+        halves = [engine.random(self.n // 2), engine.random(np.int64(self.n - self.n // 2))]
+        np.testing.assert_array_equal(np.concatenate(halves), whole)
+        assert engine.num_generated == self.n
+
+    def test_all_points_are_the_set(self):
+        engine = self.engine()
+        np.testing.assert_array_equal(engine.random(self.n), engine.points.points)
+        assert engine.points.origin.family == self.engine_class.family
+
+    def test_what_was_handed_out_can_be_changed_without_changing_the_set(self):
+        engine = self.engine()
+        engine.random(4)[:] = 0.5
+        np.testing.assert_array_equal(engine.reset().random(4), self.engine().random(4))
+
+    @pytest.mark.parametrize("make_rng", [
+        lambda: 5, lambda: np.random.default_rng(5), lambda: np.random.SeedSequence(5), lambda: None,
+    ], ids=["int", "generator", "seed sequence", "entropy"])  # fmt: skip
+    def test_reset_goes_back_to_the_first_point(self, make_rng):
+        engine = self.engine(rng=make_rng())
+        first = engine.random(8)
+        assert engine.reset() is engine
+        assert engine.num_generated == 0
+        np.testing.assert_array_equal(engine.random(8), first)
+
+    def test_fast_forward_skips(self):
+        whole = self.engine().random(8)
+        engine = self.engine()
+        assert engine.fast_forward(4) is engine
+        assert engine.num_generated == 4
+        np.testing.assert_array_equal(engine.random(4), whole[4:])
+        engine.reset()
+        odd = [engine.fast_forward(1).random() for _ in range(4)]
+        np.testing.assert_array_equal(np.concatenate(odd), whole[1::2])
+
+    def test_asking_for_more_than_is_left_raises_and_hands_out_nothing(self):
+        engine = self.engine()
+        engine.random(self.n - 3)
+        for ask in (engine.random, engine.fast_forward, lambda n: engine.integers(10, n=n)):
+            with pytest.raises(Exhausted, match=f"asked for 4 more points, but 3 of the {self.n} are left"):
+                ask(4)
+        assert engine.num_generated == self.n - 3
+        last = engine.random(3)
+        np.testing.assert_array_equal(last, engine.points.points[-3:])
+        assert engine.random(0).shape == (0, self.d)
+        with pytest.raises(Exhausted):
+            engine.random()
+
+    def test_the_same_seed_gives_the_same_bits(self):
+        for seed in (SEED, 0):
+            first, second = self.engine(rng=seed), self.engine(rng=seed)
+            assert first.points == second.points
+
+    def test_other_seeds_give_other_sets(self):
+        assert len({self.engine(rng=seed).points.hash for seed in range(8)}) > 4
+
+    def test_a_passed_generator_is_spawned_so_that_engines_differ_and_the_stream_stays(self):
+        given, untouched = np.random.default_rng(6), np.random.default_rng(6)
+        hashes = {self.engine(rng=given).points.hash for _ in range(6)}
+        assert len(hashes) > 3
+        assert given.random() == untouched.random()
+        assert self.engine(rng=np.random.default_rng(6)).points.hash in hashes
+
+    def test_without_a_seed_every_engine_is_fresh(self):
+        assert len({self.engine(rng=None).points.hash for _ in range(8)}) > 1
+
+    def test_the_old_name_of_the_seed_works_but_not_beside_the_new_one(self):
+        assert self.engine(rng=None, seed=3).points == self.engine(rng=3).points
+        with pytest.raises(InvalidValue, match="not both"):
+            self.engine(rng=3, seed=3)
+
+    def test_integers_are_the_points_scaled_and_rounded_down(self):
+        points = self.engine().random(self.n)
+        engine = self.engine()
+        integers = engine.integers([-3] * self.d, u_bounds=[4] * self.d, n=self.n, endpoint=True)
+        assert integers.dtype == np.int64
+        np.testing.assert_array_equal(integers, np.floor(points * 8 - 3))
+        assert engine.num_generated == self.n
+
+    @pytest.mark.parametrize("bad", [0, -1, 1.5, "2", None, True])
+    def test_a_dimension_or_size_that_is_no_positive_integer_is_refused(self, bad):
+        with pytest.raises(InvalidValue, match="d must be an integer >= 1"):
+            self.engine(d=bad)
+        with pytest.raises(InvalidValue, match="n must be an integer >= 1"):
+            self.engine(n=bad)
+
+    @pytest.mark.parametrize("bad", [-1, 1.5, "2", None])
+    def test_a_number_of_points_that_is_no_count_is_refused(self, bad):
+        engine = self.engine()
+        for ask in (engine.random, engine.fast_forward):
+            with pytest.raises(InvalidValue, match="n must be an integer >= 0"):
+                ask(bad)
+        assert engine.num_generated == 0
+
+    @pytest.mark.parametrize("bad", [-1, "7", 0.5, True])
+    def test_a_seed_of_another_kind_is_refused(self, bad):
+        with pytest.raises(InvalidValue, match="rng must be"):
+            self.engine(rng=bad)
+
+    def test_an_option_that_the_family_does_not_have_is_refused(self):
+        with pytest.raises(InvalidValue, match="scramble"):
+            self.engine(scramble=True)
+
+    def test_an_unknown_optimization_is_refused(self):
+        with pytest.raises(ValueError, match="'toto' is not a valid optimization method"):
+            self.engine(optimization="toto")
+
+    def test_scipys_optimization_is_applied_to_what_is_handed_out(self):
+        plain, optimised = self.engine(), self.engine(optimization="random-cd")
+        sample = optimised.random(self.n)
+        assert scipy_qmc.discrepancy(sample) <= scipy_qmc.discrepancy(plain.random(self.n))
+        np.testing.assert_array_equal(np.sort(sample, axis=0), np.sort(plain.points.points, axis=0))
+
+    def test_scipys_own_tools_take_it(self):
+        quadrature = qmc_quad(
+            lambda x: np.prod(x, axis=0),
+            [0] * self.d,
+            [1] * self.d,
+            n_points=self.n,
+            n_estimates=4,
+            qrng=self.engine(),
+        )
+        assert quadrature.integral == pytest.approx(0.5**self.d, rel=0.15)
+        normal = scipy_qmc.MultivariateNormalQMC(np.zeros(self.d), engine=self.engine())
+        assert normal.random(self.n).shape == (self.n, self.d)
+
+
+class TestHickernell(EngineContract):
+    engine_class = qmc.Hickernell
+
+    def test_its_sets_have_the_discrepancy_of_the_bank(self):
+        for seed in range(4):
+            assert MEASURES["hickernell"].rooted(self.engine(rng=seed).points) < 0.0115
+
+    def test_a_size_that_does_not_ship_is_refused_and_those_that_do_are_named(self, monkeypatch, tmp_path):
+        monkeypatch.setenv("EVENROAD_CACHE", str(tmp_path))
+        with pytest.raises(NotAvailable, match="n=61 in d=2; it has n = .*64"):
+            self.engine(n=61)
+
+
+class TestKorobov(EngineContract):
+    engine_class = qmc.Korobov
+
+    def test_all_seeds_are_equally_good(self):
+        energies = [riesz_rooted(self.engine(d=5, n=97, rng=seed).points) for seed in range(5)]
+        np.testing.assert_allclose(energies, energies[0], rtol=1e-11)
+
+
+class TestKorobovOfMoreDimensions(EngineContract):
+    engine_class = qmc.Korobov
+    n, d = 101, 7
+
+    def test_scipys_own_tools_take_it(self):
+        assert self.engine().random(self.n).mean() == pytest.approx(0.5, abs=0.01)
+
+
+class TestLattice(EngineContract):
+    engine_class = qmc.Lattice
+
+    def test_seeds_keep_points_apart(self):
+        for seed in range(4):
+            # A_2* of unit density has its shortest vector at 1.07, in a cube of about 64.
+            assert separation(self.engine(rng=seed).points) > 0.9 / 8
+
+
+class TestEven(EngineContract):
+    engine_class = qmc.Even
+    n, d = 128, 6
+
+    def test_it_is_the_default_family_whatever_the_dimension(self):
+        assert self.engine(d=9, n=50).points.origin.family == "even"
