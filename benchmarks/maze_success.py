@@ -21,7 +21,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from benchmarks.statistics import wilson
+from benchmarks.intervals import wilson
 from evenroad.mazes import LEVELS, load_maze
 from evenroad.points import PointSet, draw
 from evenroad.points.samplers.sequences import Halton, Sobol, paper_block
