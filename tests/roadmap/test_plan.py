@@ -53,6 +53,29 @@ def test_an_end_in_collision_is_an_answer_and_nothing_is_searched(start, goal, s
     assert str(status).split("_")[0] in result.message
 
 
+def test_an_end_in_collision_says_with_what_and_by_how_much():
+    touching = plan(WALL.world(1.0), (2, 8.5), (18, 18), draw("halton", 64, 2))
+    assert touching.message == (
+        "the start is in collision: the obstacle at (2, 9) is 0.5 away, the disk needs 1"
+    )
+    inside = plan(WALL.world(1.0), (2, 2), (18, 9.5), draw("halton", 64, 2))
+    assert inside.message == "the goal is in collision: its centre lies in an obstacle or outside the map"
+
+
+def test_a_world_that_cannot_explain_itself_is_planned_in_all_the_same():
+    class Silent:
+        space = WALL.space
+
+        def valid(self, q):
+            return q[:, 0] > 5
+
+        def motion_valid(self, a, b):
+            return self.valid(a) & self.valid(b)
+
+    assert plan(Silent(), (2, 8), (18, 18), draw("halton", 64, 2)).message == "the start is in collision"
+    assert plan(Silent(), (6, 8), (18, 18), draw("halton", 64, 2)).solved
+
+
 def test_the_path_begins_at_the_start_and_ends_at_the_goal_and_every_motion_is_free():
     world = GAP.world(1.0)
     result = plan(world, (2, 2), (2, 18), draw("halton", 200, 2))

@@ -14,7 +14,7 @@ from evenroad.roadmap.rules import KNearest, Rule
 from evenroad.roadmap.search import pieces, shortest_path
 from evenroad.roadmap.shortcut import path_length, shortcut
 from evenroad.roadmap.stopwatch import Stopwatch
-from evenroad.world import World
+from evenroad.world import Explains, World
 
 
 def plan(
@@ -59,7 +59,7 @@ def plan(
     with watch("validity"):
         free_ends = world.valid(ends)
         if not free_ends.all():
-            return PlanResult(**_end_in_collision(free_ends), **answer, seconds=watch.seconds)
+            return PlanResult(**_end_in_collision(free_ends, ends, world), **answer, seconds=watch.seconds)
         samples = world.space.from_cube(points.points)
         milestones = samples[world.valid(samples)]
     configurations = np.concatenate([milestones, ends])
@@ -103,10 +103,12 @@ def _ends(start: npt.ArrayLike, goal: npt.ArrayLike, points: PointSet, dim: int)
     return np.stack(rows)
 
 
-def _end_in_collision(free: npt.NDArray[np.bool_]) -> dict[str, Any]:
-    if not free[0]:
-        return dict(status=Status.START_INVALID, message="the start is in collision")
-    return dict(status=Status.GOAL_INVALID, message="the goal is in collision")
+def _end_in_collision(
+    free: npt.NDArray[np.bool_], ends: npt.NDArray[np.float64], world: World
+) -> dict[str, Any]:
+    end, name, status = (1, "goal", Status.GOAL_INVALID) if free[0] else (0, "start", Status.START_INVALID)
+    reason = f": {world.explain(ends[end])}" if isinstance(world, Explains) else ""
+    return {"status": status, "message": f"the {name} is in collision{reason}"}
 
 
 def _not_connected(

@@ -3,4 +3,5 @@
 from evenroad.world.gridmap import GridMap as GridMap
 from evenroad.world.gridmap import MapFrame as MapFrame
 from evenroad.world.gridmap import load_map as load_map
+from evenroad.world.protocol import Explains as Explains
 from evenroad.world.protocol import World as World

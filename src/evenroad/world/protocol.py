@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 import numpy.typing as npt
@@ -29,4 +29,13 @@ class World(Protocol):
 
     def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
         """Return for each pair of rows of two (m, dim) arrays whether the motion is free: (m,)."""
+        ...
+
+
+@runtime_checkable
+class Explains(Protocol):
+    """A world that can say in words why a configuration is not free; planners put it into their answers."""
+
+    def explain(self, q: npt.NDArray[np.float64]) -> str:
+        """Return for one configuration, (dim,), that is not free, what it collides with."""
         ...

@@ -97,6 +97,15 @@ class DiskWorld:
         nearest[away] = self.grid.frame.to_map(pixels[away])
         return nearest
 
+    def explain(self, q: npt.NDArray[np.float64]) -> str:
+        """Return in words how near an obstacle is to a disk at the map point `q`, (2,)."""
+        centre = np.asarray(q, dtype=np.float64)[np.newaxis]
+        distance = float(self.clearance(centre)[0])
+        if distance == 0.0:
+            return "its centre lies in an obstacle or outside the map"
+        x, y = self.nearest_obstacle(centre)[0]
+        return f"the obstacle at ({x:.6g}, {y:.6g}) is {distance:.6g} away, the disk needs {self.radius:.6g}"
+
 
 def _tables_of(grid: GridMap, radius: float) -> DiskTables:
     radius_in_pixels = max(radius / grid.frame.resolution, _SMALLEST_RADIUS)
