@@ -1,5 +1,6 @@
 import json
 
+import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue, UnknownName
@@ -47,6 +48,13 @@ def test_two_spellings_of_an_objective_are_the_same_config():
 def test_a_config_survives_json():
     config = NetworkConfig(16, 2, "star", radius=0.35, patience=None)
     assert NetworkConfig(**json.loads(json.dumps(config.as_record()))) == config
+
+
+def test_numbers_of_numpy_are_kept_as_plain_ones():
+    config = NetworkConfig(np.int64(16), np.int32(2), rate=np.float32(0.5), radius=1)
+    assert (
+        json.loads(json.dumps(config.as_record())) == NetworkConfig(16, 2, rate=0.5, radius=1.0).as_record()
+    )
 
 
 @pytest.mark.parametrize(

@@ -66,18 +66,19 @@ class NetworkConfig:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        # Instance norm over a set of one point would leave nothing of it.
-        require_count("n", self.n, at_least=2)
-        require_count("seed", self.seed, at_least=0)
-        for name in ("d", "sets", "width", "layers", "k", "steps"):
-            require_count(name, getattr(self, name))
+        # Kept as plain ints and floats, whatever kind of number came in: they go into JSON.
+        # Two points at least: the instance norm over a set of one would leave nothing of it.
+        counts = {"n": 2, "d": 1, "sets": 1, "width": 1, "layers": 1, "k": 1, "steps": 1, "seed": 0}
+        for name, least in counts.items():
+            object.__setattr__(self, name, require_count(name, getattr(self, name), at_least=least))
         for name in ("micro_batch", "patience"):
             if getattr(self, name) is not None:
-                require_count(name, getattr(self, name))
+                object.__setattr__(self, name, require_count(name, getattr(self, name)))
         if self.radius is not None:
-            require_positive("radius", self.radius)
-        require_positive("rate", self.rate)
-        require_positive("weight_decay", self.weight_decay, or_zero=True)
+            object.__setattr__(self, "radius", require_positive("radius", self.radius))
+        object.__setattr__(self, "rate", require_positive("rate", self.rate))
+        decay = require_positive("weight_decay", self.weight_decay, or_zero=True)
+        object.__setattr__(self, "weight_decay", decay)
         objective = parse_objective(self.objective)
         require_points_for(objective, self.n)
         object.__setattr__(self, "objective", str(objective))
