@@ -26,8 +26,8 @@ class FamilyEngine(QMCEngine):
 
     The set is drawn from the family and then randomised in every way that keeps its quality
     (:func:`evenroad.points.randomise.randomise`).  ``random`` hands its points out in their order and raises
-    Exhausted when fewer are left than asked for.  A set is even as a whole, its first points alone are not: a
-    lattice starts in a corner of the torus.  Choose n to be what you will use.
+    Exhausted when fewer are left than asked for.  A set is even as a whole, but its first points alone are
+    not, those of a lattice least of all: choose as n what you will use.
 
     Parameters
     ----------

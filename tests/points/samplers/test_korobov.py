@@ -71,10 +71,26 @@ def test_the_generator_is_that_of_a_slow_search(n, d):
     assert korobov_generator(n, d) == expected
 
 
-@pytest.mark.parametrize(("n", "d"), [(300, 2), (521, 3), (263, 14)])
-def test_lattices_of_several_blocks_are_searched_to_the_end_too(n, d):
-    assert n // 2 > korobov.BLOCK
+@pytest.mark.parametrize(("n", "d"), [(300, 2), (401, 3), (263, 14)])
+def test_the_generator_of_a_larger_lattice_is_that_of_a_slow_search(n, d):
     assert korobov_generator(n, d) == slow_generator(n, d)
+
+
+@pytest.mark.parametrize("block", [1, 200, 10**6])
+@pytest.mark.parametrize(("n", "d"), [(144, 2), (199, 3), (360, 7), (97, 20)])
+def test_how_often_the_race_is_looked_at_does_not_change_who_wins(n, d, block, monkeypatch):
+    expected = korobov_generator(n, d)
+    monkeypatch.setattr(korobov, "BLOCK", block)
+    assert korobov._searched.__wrapped__(n, d) == expected
+
+
+@pytest.mark.parametrize(("n", "d"), [(8, 2), (15, 4), (30, 1), (31, 14)])
+def test_the_energy_of_a_lattice_is_that_of_its_points(n, d):
+    vector = np.array([[pow(7, k, n) for k in range(d)]], dtype=float)
+    halved = korobov._log_energies(vector, n, 1, n // 2)[0]
+    # Both halves, from units of 1/n to those of the mean spacing.
+    log_energy = np.log(2) + halved + 2 * d * (np.log(n) - np.log(n) / d)
+    assert log_energy == pytest.approx(2 * d * np.log(riesz_rooted(lattice_points(7, n, d))), rel=1e-12)
 
 
 @settings(max_examples=20, deadline=None)

@@ -10,6 +10,7 @@ from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points.families.trained import TRAINED_FAMILIES, Trained
 from evenroad.points.pointset import PointSet
+from evenroad.points.samplers.korobov import Korobov as Korobov
 from evenroad.points.samplers.lattice import Lattice as Lattice
 from evenroad.points.samplers.sampler import Sampler as Sampler
 from evenroad.points.samplers.sukharev import Sukharev as Sukharev
@@ -29,20 +30,13 @@ def _sobol(**options: Any) -> Sampler:
     return Sobol(**options)
 
 
-def _korobov(**options: Any) -> Sampler:
-    # Its search is compiled: only those who ask for it import numba.
-    from evenroad.points.samplers.korobov import Korobov
-
-    return Korobov(**options)
-
-
 SAMPLERS: dict[str, Callable[..., Sampler]] = {
     "uniform": Uniform,
     "halton": _halton,
     "sobol": _sobol,
     "sukharev": Sukharev,
     "lattice": Lattice,
-    "korobov": _korobov,
+    "korobov": Korobov,
     **{family: partial(Trained, family) for family in TRAINED_FAMILIES},
 }
 """Name -> how to make the sampler from its options."""

@@ -14,7 +14,6 @@ from math import gcd
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
@@ -24,17 +23,17 @@ from evenroad.points.pointset import Origin, PointSet
 MAX_N = 2**26
 """Up to here products of two residues, and the multiple of n next to them, are exact in float64."""
 
-WORK = 10**8
+WORK = 3 * 10**7
 """Coordinates of lattice points that a search may look at: it limits how many multipliers are tried."""
 
 FEWEST_TRIED = 32
 """Multipliers that are tried however large n and d are."""
 
-BLOCK = 128
-"""Lattice points between two looks at whether a multiplier can still win; their buffers stay in the first cache."""
+BLOCK = 2**14
+"""Lattice points, of all multipliers together, between two looks at which multipliers can still win."""
 
 TIE = 1e-9
-"""Energies closer than this, relatively, are equal: rounding must not decide between mirrored lattices."""
+"""Energies closer than this, relatively, are equal: rounding does not choose between mirrored lattices."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +67,7 @@ def korobov_generator(n: int, d: int) -> int:
     """Return the multiplier a whose Korobov lattice of n points has the smallest periodic Riesz energy, s = 2d.
 
     a, n - a and the inverse of a modulo n give the same lattice up to a reflection or the order of the axes; one
-    of the four is tried, and the smallest is returned.  While n^2 d <= 4 10^8 all multipliers without a common
+    of the four is tried, and the smallest is returned.  While n^2 d <= 10^8 all multipliers without a common
     divisor with n are tried, so a is the best one; above that a fixed choice of them spread over 1 .. n/2, as
     many as :data:`WORK` allows.
 
@@ -94,7 +93,7 @@ def _searched(n: int, d: int) -> int:
         return 1
     tried = islice(_multipliers(n), max(FEWEST_TRIED, WORK // (n // 2 * d)))
     candidates = np.array(sorted({_smallest_equivalent(a, n) for a in tried}), dtype=np.int64)
-    return int(_least_energy(candidates, n, d))
+    return _least_energy(candidates, n, d)
 
 
 def _multipliers(n: int) -> Iterator[int]:
@@ -121,67 +120,66 @@ def _powers(a: int, n: int, d: int) -> npt.NDArray[np.int64]:
     return np.array([pow(a, k, n) for k in range(d)], dtype=np.int64)
 
 
-@njit(cache=True)
-def _least_energy(candidates, n, d):  # type: ignore[no-untyped-def]
-    """Return the candidate of least energy, the first of equal ones.
+def _least_energy(candidates: npt.NDArray[np.int64], n: int, d: int) -> int:
+    """Return the smallest of the candidates whose energy is the least.
 
-    Energies are relative to the shortest squared distance in the best lattice so far, which keeps the best one
-    between 1 and n whatever d is; one that overflows has lost.
+    A race: all partial sums grow together, point by point, and a candidate is out as soon as its sum exceeds the
+    whole energy of one that looks good.  The first coordinate of point j is j / n, so the short distances, which
+    decide, come early.
     """
-    vector = np.empty(d)
-    best, least, shortest = candidates[0], np.inf, 1.0
-    for a in candidates:
-        power = 1 % n
-        for k in range(d):
-            vector[k] = power
-            power = power * a % n
-        energy, own_shortest = _energy(vector, n, shortest, least * (1.0 - TIE))
-        if energy < least * (1.0 - TIE):
-            best, shortest = a, own_shortest
-            least = _energy(vector, n, shortest, np.inf)[0]
-    return best
+    vectors = np.empty((len(candidates), d))
+    power = np.ones_like(candidates)
+    for k in range(d):
+        vectors[:, k] = power
+        power = power * candidates % n
+    half = n // 2
+    log_sums = np.full(len(candidates), -np.inf)
+    limit = np.inf
+    first, looks = 1, 0
+    while first <= half:
+        last = min(half, first + BLOCK // len(vectors))
+        log_sums = np.logaddexp(log_sums, _log_energies(vectors, n, first, last))
+        first, looks = last + 1, looks + 1
+        if looks & (looks - 1) == 0:
+            # A whole energy costs as much as many looks: ever more rarely, after 1, 2, 4, 8, ... looks.
+            promising = vectors[[np.argmin(log_sums)]]
+            limit = min(limit, _log_energies(promising, n, 1, half)[0] + TIE)
+        in_race = log_sums <= limit
+        candidates, vectors, log_sums = candidates[in_race], vectors[in_race], log_sums[in_race]
+    return int(candidates[log_sums <= log_sums.min() + TIE][0])
 
 
-@njit(cache=True)
-def _energy(vector, n, unit, limit):  # type: ignore[no-untyped-def]
-    """Sum of (unit / squared distance)^d over the lattice points up to sign, and the shortest squared distance.
+def _log_energies(vectors: npt.NDArray[np.float64], n: int, first: int, last: int) -> npt.NDArray[np.float64]:
+    """Return the log of the sum of distance^(-2d) over the points first .. last <= n/2 of every lattice.
 
-    Distances are in units of 1/n: integers, so they are exact.  Gives up as soon as the sum exceeds `limit`.
-    The first coordinate of point j is j, so the shortest distances come early and a bad lattice is left early.
+    Point n - j is the mirror image of j, so half of the points are enough; n/2 is its own and counts half.
+    Distances are in units of 1/n: squared they are integers, and exact.  Powers are taken relative to the
+    shortest one, so that nothing overflows whatever d is.
     """
-    d = vector.size
-    squared = np.empty(BLOCK)
-    power = np.empty(BLOCK)
-    total, shortest = 0.0, np.inf
-    for first in range(1, n // 2 + 1, BLOCK):
-        size = min(BLOCK, n // 2 + 1 - first)
-        for j in range(size):
-            squared[j] = 0.0
-            power[j] = 1.0
-        for k in range(d):
-            step = vector[k]
-            for j in range(size):
-                product = (first + j) * step
-                # The nearest multiple of n: where rounding could choose the other of two, both are n/2 away.
-                gap = product - n * np.floor(product / n + 0.5)
-                squared[j] += gap * gap
-        for j in range(size):
-            shortest = min(shortest, squared[j])
-            squared[j] = unit / squared[j]
-        exponent = d
-        while exponent > 0:
-            if exponent % 2 == 1:
-                for j in range(size):
-                    power[j] *= squared[j]
-            exponent //= 2
-            if exponent > 0:
-                for j in range(size):
-                    squared[j] *= squared[j]
-        if n % 2 == 0 and first + size == n // 2 + 1:
-            # Point n/2 is its own mirror image: half a pair.
-            power[size - 1] *= 0.5
-        for j in range(size):
-            total += power[j]
-        if total > limit:
-            break
-    return total, shortest
+    d = vectors.shape[1]
+    j = np.arange(first, last + 1, dtype=np.float64)
+    squared = np.zeros((len(vectors), len(j)))
+    gap, multiple = np.empty_like(squared), np.empty_like(squared)
+    for k in range(d):
+        # To the nearest multiple of n; where rounding could choose the other of two, both are n/2 away.
+        np.multiply(vectors[:, k, np.newaxis], j, out=gap)
+        np.rint(np.multiply(gap, 1.0 / n, out=multiple), out=multiple)
+        gap -= np.multiply(multiple, n, out=multiple)
+        squared += np.multiply(gap, gap, out=gap)
+    shortest = squared.min(axis=1)
+    terms = _integer_power(shortest[:, np.newaxis] / squared, d)
+    if 2 * last == n:
+        terms[:, -1] *= 0.5
+    return np.log(terms.sum(axis=1)) - d * np.log(shortest)
+
+
+def _integer_power(base: npt.NDArray[np.float64], exponent: int) -> npt.NDArray[np.float64]:
+    """Return base**exponent, exponent >= 1, by repeated squaring: several times faster than NumPy's power."""
+    result = np.ones_like(base)
+    while True:
+        if exponent % 2 == 1:
+            result *= base
+        exponent //= 2
+        if exponent == 0:
+            return result
+        base = base * base
