@@ -7,7 +7,7 @@ from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points import PointSet
 from evenroad.points.measures import MEASURES, separation
 from evenroad.points.optimise import anneal, parse_objective
-from evenroad.points.optimise.anneal import FIRST_RATE, LAST_RATE, learning_rate, noise_over_rate
+from evenroad.points.optimise.anneal import first_rate, learning_rate, noise_over_rate
 
 
 def test_the_same_seed_gives_the_same_bits():
@@ -91,11 +91,26 @@ def test_the_callback_sees_every_step_and_may_stop():
         anneal(5, 2, steps=4, callback=stop)
 
 
-def test_rate_and_noise_follow_the_recipe():
-    assert learning_rate(1, 100) == FIRST_RATE
-    assert learning_rate(100, 100) == pytest.approx(LAST_RATE)
-    assert learning_rate(1, 1) == FIRST_RATE
-    assert [noise_over_rate(64, 10), noise_over_rate(128, 10), noise_over_rate(128, 2)] == [0.3, 0.2, 0.1]
+def test_the_rate_falls_along_a_half_cosine():
+    rates = [learning_rate(step, 101, 0.02) for step in range(1, 102)]
+    assert rates[0] == 0.02
+    assert rates[50] == pytest.approx(0.010005)
+    assert rates[100] == pytest.approx(1e-5)
+    assert rates == sorted(rates, reverse=True)
+    assert learning_rate(1, 1, 0.02) == 0.02
+
+
+def test_a_step_is_never_long_beside_the_spacing():
+    assert first_rate(128, 10) == 0.02
+    assert first_rate(1024, 2) == pytest.approx(1 / 32 / 5)
+
+
+@pytest.mark.parametrize(("text", "n", "d", "noise"), [
+    ("hickernell", 16, 3, 0.3), ("hickernell", 128, 10, 0.2), ("hickernell", 512, 10, 0.1),
+    ("star", 128, 2, 0.1), ("star", 2048, 2, 0.05), ("riesz", 1024, 2, 0.1), ("star+riesz", 128, 10, 0.3),
+])  # fmt: skip
+def test_the_noise_follows_its_rule(text, n, d, noise):
+    assert noise_over_rate(parse_objective(text), n, d) == pytest.approx(noise)
 
 
 @pytest.mark.parametrize(("changes", "text"), [
