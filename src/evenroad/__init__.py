@@ -43,12 +43,14 @@ _HOMES = {
     "load_map": "evenroad.world",
 }
 
-__all__ = ["__version__", *_HOMES]
+__all__ = ["__version__", "qmc", *_HOMES]
 
 
 def __getattr__(name: str) -> Any:
     if name in _HOMES:
         return getattr(importlib.import_module(_HOMES[name]), name)
+    if name == "qmc":
+        return importlib.import_module("evenroad.qmc")
     raise AttributeError(f"module 'evenroad' has no attribute {name!r}")
 
 

@@ -10,7 +10,10 @@ import tyro
 
 from evenroad import __version__
 from evenroad.cli.demo import Demo
+from evenroad.cli.measure import Measure
 from evenroad.cli.plan import Plan
+from evenroad.cli.points import Points
+from evenroad.cli.train import Train
 from evenroad.errors import EvenroadError
 
 BAD_INPUT = 2
@@ -18,6 +21,9 @@ INTERRUPTED = 130
 
 Verb = (
     Annotated[Plan, tyro.conf.subcommand("plan", prefix_name=False)]
+    | Annotated[Points, tyro.conf.subcommand("points", prefix_name=False)]
+    | Annotated[Measure, tyro.conf.subcommand("measure", prefix_name=False)]
+    | Annotated[Train, tyro.conf.subcommand("train", prefix_name=False)]
     | Annotated[Demo, tyro.conf.subcommand("demo", prefix_name=False)]
 )
 

@@ -1,4 +1,4 @@
-"""Point sets on disk: one .npz with the coordinates and the origin as JSON, checked on load."""
+"""Point sets on disk: .npz with the coordinates and the origin as JSON, checked on load; or plain .npy arrays."""
 
 from __future__ import annotations
 
@@ -26,6 +26,34 @@ def save_points(path: str | os.PathLike[str], points: PointSet) -> None:
     """
     with atomic_write(path) as file:
         np.savez(file, points=points.points, origin=json.dumps(asdict(points.origin)), hash=points.hash)
+
+
+def save_array(path: str | os.PathLike[str], points: PointSet) -> None:
+    """Write the bare coordinates as ``.npy`` (float64, shape (n, d)), atomically; the origin is not kept."""
+    with atomic_write(path) as file:
+        np.save(file, points.points)
+
+
+def read_points(path: str | os.PathLike[str]) -> PointSet:
+    """Read a point set from ``.npz`` (see :func:`load_points`) or a plain ``.npy`` array, which has no origin.
+
+    Raises
+    ------
+    BrokenFile
+        If the file is missing or is neither.
+    InvalidValue
+        If a plain array is no point set: its shape, or a coordinate that is not in [0, 1).
+    """
+    if os.fspath(path).endswith(".npz"):
+        return load_points(path)
+    try:
+        with open(path, "rb") as file:
+            array = np.load(file, allow_pickle=False)
+    except FileNotFoundError:
+        raise BrokenFile(f"no such file: {path}") from None
+    except (OSError, ValueError, EOFError) as error:
+        raise BrokenFile(f"{path} is not a readable .npy array: {error}") from error
+    return PointSet(array, Origin(family="given", method="given"))
 
 
 def load_points(path: str | os.PathLike[str]) -> PointSet:

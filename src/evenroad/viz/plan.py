@@ -122,6 +122,7 @@ def _set_frame(axes: Axes, result: PlanResult, gridmap: GridMap) -> None:
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(*((low[1], high[1]) if gridmap.frame.y_up else (high[1], low[1])))
     axes.set_aspect("equal")
+    axes.set_facecolor(style.OUTSIDE)
     axes.set_xlabel("x" if gridmap.frame.y_up else "x (right)")
     axes.set_ylabel("y" if gridmap.frame.y_up else "y (down)")
     axes.set_title(

@@ -2,6 +2,7 @@
 
 OBSTACLE = "#3b3f46"
 FREE = "#ffffff"
+OUTSIDE = "#9a9fa6"
 EDGE = "#b9c6d3"
 MILESTONE = "#6b8aa8"
 RAW_PATH = "#e6a23c"

@@ -9,7 +9,6 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -17,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._files import atomic_write
+from evenroad._progress import LineProgress
 from evenroad.points.bank.bank import DATA, INDEX, Bank, cell_name
 from evenroad.points.bank.recipe import SEED, Recipe, recipes
 from evenroad.points.measures import MEASURES, separation
@@ -36,7 +36,7 @@ def build(recipe: Recipe, folder: Path, work: Path, jobs: int, report: Callable[
     """Make the sets of one cell that are not in the work folder yet, then put the cell into the bank."""
     own_work = work / f"{recipe.family}-d{recipe.d:02d}-n{recipe.n:04d}"
     own_work.mkdir(parents=True, exist_ok=True)
-    progress = Progress(f"{recipe.family} d={recipe.d} n={recipe.n}, {recipe.sets} sets", report)
+    progress = LineProgress(f"{recipe.family} d={recipe.d} n={recipe.n}, {recipe.sets} sets", report)
     sets = anneal_many(
         recipe.n,
         recipe.d,
@@ -76,26 +76,6 @@ def store(recipe: Recipe, sets: Sequence[PointSet], folder: Path) -> None:
     index.setdefault(recipe.family, {}).setdefault(str(recipe.d), {})[str(recipe.n)] = record
     with atomic_write(index_path) as file:
         file.write((json.dumps(index, indent=1, sort_keys=True) + "\n").encode())
-
-
-class Progress:
-    """A callback that reports a line every few seconds, with the time left at the pace so far."""
-
-    def __init__(self, title: str, report: Callable[[str], object], every: float = 10.0) -> None:
-        self.title, self.report, self.every = title, report, every
-        self.began = self.last = time.monotonic()
-        self.first_step: int | None = None
-
-    def __call__(self, step: int, steps: int, best: float) -> None:
-        """Take note of `step` of `steps`, counted over all sets."""
-        now = time.monotonic()
-        if self.first_step is None:
-            self.first_step = step
-        if now - self.last < self.every or step <= self.first_step:
-            return
-        self.last = now
-        left = (now - self.began) / (step - self.first_step) * (steps - step)
-        self.report(f"{self.title}: {100 * step / steps:.0f} %, {left:.0f} s left, best {best:.5g}")
 
 
 def _six_digits(value: float) -> float:

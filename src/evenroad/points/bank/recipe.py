@@ -46,24 +46,28 @@ def recipes() -> list[Recipe]:
         (2, "hickernell"),
         (2, "even"),
         (10, "hickernell"),
-        (3, "even"),
         (3, "hickernell"),
         (5, "hickernell"),
+        (3, "even"),
     ]
-    cells = [(d, "even") for d in EVEN] + [(d, "hickernell") for d in HICKERNELL_DIMENSIONS]
-    order = first + [cell for cell in cells if cell not in first]
+    cells = [(d, "hickernell") for d in HICKERNELL_DIMENSIONS] + [(d, "even") for d in EVEN]
+    order = first + sorted((cell for cell in cells if cell not in first), key=lambda cell: abs(cell[0] - 6))
     return [_recipe(family, d, n) for d, family in order for n in COUNTS]
 
 
 def _recipe(family: str, d: int, n: int) -> Recipe:
     objective = "hickernell" if family == "hickernell" else EVEN[d]
-    return Recipe(family, d, n, sets=_sets(d, n), objective=objective, steps=_steps(family, d, n))
+    return Recipe(family, d, n, sets=_sets(family, d, n), objective=objective, steps=_steps(family, d, n))
 
 
-def _sets(d: int, n: int) -> int:
+def _sets(family: str, d: int, n: int) -> int:
     """Success depends on which set is drawn, most in low dimensions: larger pools there."""
     if n == 2048:
         return 4 if d <= 3 else 2
+    if family == "even" and d == 1:
+        return 4  # all but the same: an even grid
+    if family == "even" and n > 256:
+        return 32 if d == 2 else 16 if d == 3 else 8
     return {1: 32, 2: 64, 3: 32}.get(d, 8)
 
 

@@ -1,0 +1,84 @@
+"""``evenroad measure``: how even a point set is, by every measure."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import tyro
+
+if TYPE_CHECKING:
+    from evenroad.points import PointSet
+
+
+@dataclass(frozen=True, kw_only=True)
+class Measure:
+    """Print every measure of a point set: discrepancies, dispersion, separation, energy."""
+
+    file: Annotated[Path, tyro.conf.Positional]
+    """A .npy array of shape (n, d), or a .npz point set."""
+    json: bool = False
+    """Print JSON instead of a table."""
+
+    def run(self) -> int:
+        """Measure and print."""
+        from evenroad.points.npz import read_points
+
+        points = read_points(self.file)
+        rows = measure_all(points)
+        if self.json:
+            record = {"file": str(self.file), "n": points.n, "d": points.d, "hash": points.hash}
+            print(json.dumps(record | {name: value for name, value, _ in rows}, indent=2))
+        else:
+            _print_table(f"{self.file}: n={points.n}, d={points.d}, {points.origin}", rows)
+        return 0
+
+
+def measure_all(points: PointSet) -> list[tuple[str, float | None, str]]:
+    """Return (name, value, note) of every measure; a value is None where it cannot be had, and the note says why."""
+    from evenroad.errors import InvalidValue
+    from evenroad.points import measures
+    from evenroad.points.measures.dispersion import EXACT_UP_TO
+
+    rows: list[tuple[str, float | None, str]] = []
+
+    def add(name: str, note: str, compute: Callable[[], float]) -> None:
+        try:
+            rows.append((name, compute(), note))
+        except InvalidValue as error:
+            rows.append((name, None, str(error)))
+
+    for measure in measures.MEASURES.values():
+        add(f"{measure.name}_rooted", "L2 discrepancy", partial(measure.rooted, points))
+        add(f"{measure.name}_squared", "its square", partial(measure.squared, points))
+    add("star_discrepancy", "L-infinity, exact", lambda: measures.star_discrepancy(points))
+    for norm in ("l2", "linf"):
+        if points.d <= EXACT_UP_TO:
+            exact = partial(getattr(measures, f"dispersion_{norm}"), points)
+            add(f"dispersion_{norm}", "largest hole, exact", exact)
+        else:
+            bound = partial(measures.dispersion_lower_bound, points, norm)
+            add(f"dispersion_{norm}_lower_bound", "by search", bound)
+    add("separation", "smallest distance", lambda: measures.separation(points))
+    add("separation_periodic", "on the torus", lambda: measures.separation(points, periodic=True))
+    add("riesz_rooted", "periodic, s = 2d", lambda: measures.riesz_rooted(points))
+    add("riesz_open_rooted", "not periodic, s = 2d", lambda: measures.riesz_rooted(points, periodic=False))
+    return [(name, None if value is None else float(value), note) for name, value, note in rows]
+
+
+def _print_table(title: str, rows: list[tuple[str, float | None, str]]) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(title=title, title_justify="left", box=None, pad_edge=False)
+    table.add_column("measure", no_wrap=True)
+    table.add_column("value", justify="right")
+    table.add_column("")
+    for name, value, note in rows:
+        table.add_row(name, "-" if value is None else f"{value:.6g}", note)
+    console = Console(highlight=False)
+    console.print(table, width=min(100, console.width))

@@ -1,0 +1,59 @@
+"""``evenroad points``: a point set of any family, n and d, as a file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import tyro
+
+if TYPE_CHECKING:
+    from evenroad.points import PointSet
+
+
+@dataclass(frozen=True, kw_only=True)
+class Points:
+    """Write a point set: shipped, constructed, from the cache, or annealed on demand."""
+
+    n: Annotated[int, tyro.conf.arg(aliases=["-n"])]
+    """How many points."""
+    d: Annotated[int, tyro.conf.arg(aliases=["-d"])]
+    """How many dimensions."""
+    family: str = "even"
+    """even, hickernell, mpmc, korobov, lattice, halton, sobol, sukharev or uniform."""
+    seed: int = 0
+    """Which set of the family's pool, and every other random choice."""
+    no_train: bool = False
+    """Refuse a set that is neither shipped nor cached, instead of annealing it now."""
+    out: Annotated[Path, tyro.conf.arg(aliases=["-o"])]
+    """The file: .npy for the plain array, .npz to keep the origin."""
+
+    def run(self) -> int:
+        """Find or make the set, and write it."""
+        from evenroad._files import require_writable_folder
+        from evenroad.errors import UnknownName
+        from evenroad.points.npz import save_array, save_points
+
+        if self.out.suffix not in (".npy", ".npz"):
+            raise UnknownName.among(
+                f"kind of file {str(self.out)!r}: suffix", self.out.suffix, (".npy", ".npz")
+            )
+        require_writable_folder(self.out)
+        points, source = self._find()
+        (save_points if self.out.suffix == ".npz" else save_array)(self.out, points)
+        print(
+            f"{self.out}: {points.n} points in d={points.d}, {points.origin} ({source}), hash {points.hash[:12]}"
+        )
+        return 0
+
+    def _find(self) -> tuple[PointSet, str]:
+        from evenroad.cli.progress import progress_bar
+        from evenroad.points import make_sampler
+        from evenroad.points.families import TRAINED_FAMILIES, Trained
+
+        if self.family not in TRAINED_FAMILIES:
+            return make_sampler(self.family).draw(self.n, self.d, rng=self.seed), "exact"
+        with progress_bar(f"annealing {self.family} n={self.n} d={self.d}") as callback:
+            family = Trained(self.family, train=not self.no_train, callback=callback)
+            return family.find(self.n, self.d, rng=self.seed)

@@ -1,0 +1,44 @@
+"""A progress bar with the time that remains, on standard error, as a callback for the library."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from evenroad._progress import LineProgress
+
+REDRAW_SECONDS = 0.2
+
+
+@contextmanager
+def progress_bar(title: str) -> Iterator[Callable[[int, int, float], None]]:
+    """Yield a ``callback(step, steps, best)`` that draws a bar until the block ends; in a log, lines."""
+    console = Console(file=sys.stderr)
+    if not console.is_terminal:
+        yield LineProgress(title, lambda line: print(line, file=sys.stderr, flush=True))
+        return
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.percentage:3.0f} %  best {task.fields[best]:.5g}"),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task(title, total=None, best=float("inf"))
+        last = 0.0
+
+        def callback(step: int, steps: int, best: float) -> None:
+            nonlocal last
+            now = time.monotonic()
+            if now - last >= REDRAW_SECONDS or step == steps:
+                last = now
+                bar.update(task, total=steps, completed=step, best=best)
+
+        yield callback

@@ -1,0 +1,24 @@
+import pytest
+
+from evenroad.cli import main
+
+
+@pytest.fixture
+def run(capsys):
+    """Run the command line in this process; return exit code, standard output and standard error."""
+
+    def run(*arguments):
+        try:
+            code = main([str(each) for each in arguments])
+        except SystemExit as leave:
+            code = leave.code
+        captured = capsys.readouterr()
+        return code, captured.out, captured.err
+
+    return run
+
+
+@pytest.fixture(autouse=True)
+def _in_an_empty_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("EVENROAD_CACHE", str(tmp_path / ".cache"))

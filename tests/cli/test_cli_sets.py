@@ -1,0 +1,205 @@
+"""The verbs that make and measure point sets: points, measure, train."""
+
+import json
+import re
+import sys
+
+import numpy as np
+import pytest
+
+from evenroad.points import PointSet, draw, load_points, save_points
+
+
+def test_a_shipped_set_is_written_as_a_plain_array(run, tmp_path):
+    code, out, err = run("points", "-n", 64, "-d", 2, "--family", "hickernell", "-o", "set.npy")
+    assert (code, err) == (0, "")
+    assert "(exact)" in out
+    array = np.load(tmp_path / "set.npy")
+    np.testing.assert_array_equal(array, draw("hickernell", 64, 2).points)
+
+
+def test_npz_keeps_the_origin(run, tmp_path):
+    run("points", "-n", 64, "-d", 2, "--family", "hickernell", "--seed", 3, "-o", "set.npz")
+    assert load_points(tmp_path / "set.npz") == draw("hickernell", 64, 2, rng=3)
+
+
+def test_any_other_n_is_fresh_once_and_then_cached(run, tmp_path):
+    arguments = ("points", "-n", 11, "-d", 2, "--family", "hickernell")
+    assert "(fresh)" in run(*arguments, "-o", "a.npy")[1]
+    assert "(cached)" in run(*arguments, "-o", "b.npy")[1]
+    np.testing.assert_array_equal(np.load(tmp_path / "a.npy"), np.load(tmp_path / "b.npy"))
+
+
+def test_no_train_refuses_and_names_what_there_is(run, tmp_path):
+    code, _, err = run("points", "-n", 11, "-d", 2, "--family", "hickernell", "--no-train", "-o", "a.npy")
+    assert code == 2
+    assert "it has n = 16, 32" in err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_default_family_in_ten_dimensions_is_there_at_once(run, tmp_path):
+    code, _, _ = run("points", "-n", 512, "-d", 10, "-o", "a.npz")
+    assert code == 0
+    assert load_points(tmp_path / "a.npz").origin.family == "even"
+
+
+def test_constructed_families_are_written_too(run, tmp_path):
+    for family in ("korobov", "lattice", "halton", "uniform"):
+        assert run("points", "-n", 20, "-d", 3, "--family", family, "-o", f"{family}.npy")[0] == 0
+        assert np.load(tmp_path / f"{family}.npy").shape == (20, 3)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (("-n", 0, "-d", 2, "-o", "a.npy"), "n must be an integer >= 1, got 0"),
+        (("-n", 8, "-d", 0, "-o", "a.npy"), "d must be an integer >= 1, got 0"),
+        (("-n", 8, "-d", 2, "-o", "a.txt"), r"known: \.npy, \.npz"),
+        (("-n", 8, "-d", 2, "-o", "no/a.npy"), "does not exist"),
+        (("-n", 8, "-d", 2, "--family", "evn", "-o", "a.npy"), "unknown sampler 'evn'; known: .*even"),
+        (("-n", 8, "-d", 2, "--seed", -1, "-o", "a.npy"), "rng must be"),
+    ],
+)
+def test_bad_requests_for_points_get_one_line(run, tmp_path, arguments, says):
+    code, out, err = run("points", *arguments)
+    assert (code, out) == (2, "")
+    assert err.count("\n") == 1
+    assert re.search(says, err)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_measures_are_printed_as_a_table_within_100_columns(run):
+    np.save("set.npy", draw("halton", 50, 2).points)
+    code, out, err = run("measure", "set.npy")
+    assert (code, err) == (0, "")
+    for name in (
+        "hickernell_rooted",
+        "star_rooted",
+        "star_squared",
+        "star_discrepancy",
+        "dispersion_l2",
+        "riesz_rooted",
+    ):
+        assert name in out
+    assert max(map(len, out.splitlines())) <= 100
+
+
+def test_json_has_the_same_measures(run):
+    points = draw("halton", 50, 2)
+    save_points("set.npz", points)
+    record = json.loads(run("measure", "set.npz", "--json")[1])
+    from evenroad.points.measures import MEASURES, separation
+
+    assert record["hash"] == points.hash
+    assert record["hickernell_rooted"] == MEASURES["hickernell"].rooted(points)
+    assert record["separation"] == separation(points)
+    assert record["star_squared"] == pytest.approx(record["star_rooted"] ** 2)
+
+
+def test_in_high_dimensions_the_dispersion_is_called_a_lower_bound(run):
+    np.save("set.npy", draw("halton", 64, 6).points)
+    record = json.loads(run("measure", "set.npy", "--json")[1])
+    assert "dispersion_l2_lower_bound" in record
+    assert "dispersion_l2" not in record
+
+
+def test_a_measure_that_cannot_be_had_is_empty_and_says_why(run):
+    np.save("one.npy", [[0.5, 0.5]])
+    code, out, _ = run("measure", "one.npy")
+    assert code == 0
+    assert "at least 2 points" in " ".join(out.split())
+
+
+@pytest.mark.parametrize(
+    ("array", "says"),
+    [
+        (np.array([[0.5, 1.5]]), r"coordinate \[0, 1\] is 1.5"),
+        (np.array([[np.nan, 0.5]]), "nan"),
+        (np.zeros(5), "shape"),
+        (np.array([["a"]]), "array of numbers"),
+    ],
+)
+def test_an_array_that_is_no_point_set_is_refused(run, array, says):
+    np.save("bad.npy", array)
+    code, out, err = run("measure", "bad.npy")
+    assert (code, out) == (2, "")
+    assert re.search(says, err)
+
+
+@pytest.mark.parametrize("name", ["nothing.npy", "nothing.npz"])
+def test_a_missing_set_is_refused_by_name(run, name):
+    code, _, err = run("measure", name)
+    assert code == 2
+    assert name in err
+
+
+def test_training_writes_sets_and_the_same_line_goes_on(run, tmp_path):
+    line = ("train", "-n", 12, "-d", 2, "--sets", 2, "--steps", 50, "--jobs", 1, "-o", "sets")
+    line += ("--objective", "hickernell+10*riesz")
+    code, out, _ = run(*line)
+    assert code == 0
+    assert "2 sets" in out
+    first = load_points(tmp_path / "sets" / "set-0000.npz")
+    (tmp_path / "sets" / "set-0001.npz").unlink()
+    assert run(*line)[1] == out
+    assert load_points(tmp_path / "sets" / "set-0000.npz") == first
+    assert first.origin.objective == "log(hickernell) + 10*log(riesz)"
+
+
+def test_the_network_trains_from_the_command_line(run, tmp_path):
+    line = (
+        "train",
+        "-n",
+        12,
+        "-d",
+        2,
+        "--method",
+        "mpmc",
+        "--sets",
+        2,
+        "--steps",
+        5,
+        "--refine",
+        20,
+        "-o",
+        "sets",
+    )
+    assert run(*line)[0] == 0
+    assert load_points(tmp_path / "sets" / "set-0001.npz").origin.family == "mpmc"
+    assert load_points(tmp_path / "sets" / "refined-0001.npz").origin.method.endswith("+annealed")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (("--objective", "hickernel"), "known: .*hickernell"),
+        (("--objective", "hickernell+"), "column"),
+        (("--steps", 0), "steps"),
+        (("--sets", 0), "sets"),
+        (("-o", "no/where"), "does not exist"),
+        (("-o", "file"), "not a folder"),
+    ],
+)
+def test_bad_requests_to_train_get_one_line(run, tmp_path, arguments, says):
+    (tmp_path / "file").write_text("")
+    line = ["train", "-n", 8, "-d", 2, "--jobs", 1, *arguments]
+    code, out, err = run(*line, *(() if "-o" in arguments else ("-o", "sets")))
+    assert (code, out) == (2, "")
+    assert err.strip().count("\n") == 0
+    assert re.search(says, err)
+
+
+def test_without_torch_the_network_says_what_to_install(run, monkeypatch):
+    for name in [name for name in sys.modules if name.startswith("evenroad.points.network")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "torch", None)
+    code, _, err = run("train", "-n", 8, "-d", 2, "--method", "mpmc", "--sets", 1, "-o", "sets")
+    assert code == 2
+    assert "evenroad[train]" in err
+
+
+def test_given_points_are_the_family_of_plain_arrays():
+    from evenroad.points.npz import read_points
+
+    np.save("set.npy", [[0.5, 0.25]])
+    assert read_points("set.npy") == PointSet([[0.5, 0.25]])
