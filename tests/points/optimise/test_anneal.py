@@ -45,6 +45,12 @@ def test_one_dimension_finds_the_midpoints():
     np.testing.assert_allclose(np.sort(annealed.points[:, 0]), (np.arange(8) + 0.5) / 8, atol=1e-3)
 
 
+def test_an_energy_settles_even_for_many_points_on_a_line():
+    points = anneal(200, 1, "average_squared+10*riesz", steps=500).points
+    assert separation(points, periodic=True) * 200 > 0.95
+    assert MEASURES["star"].rooted(points) < 1.05 / (200 * 12**0.5)  # that of the midpoints is the best
+
+
 def test_discrepancy_in_ten_dimensions_is_near_the_record_already_after_few_steps():
     # 0.197 after 20000 steps; Owen-scrambled Sobol points have 0.2455, random ones 0.54.
     assert anneal(128, 10, steps=1500).value < 0.21

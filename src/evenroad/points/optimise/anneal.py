@@ -153,7 +153,9 @@ def noise_over_rate(objective: Objective, n: int, d: int) -> float:
 
 def _first_columns(n: int, d: int, start: npt.ArrayLike | None, draws: np.random.Generator) -> Array:
     if start is None:
-        return np.ascontiguousarray(draws.random((n, d)).T)
+        random = np.ascontiguousarray(draws.random((n, d)).T)
+        # On a line points would have to pass each other: there one point a cell is the place to start.
+        return (np.arange(n) + random) / n if d == 1 else random
     given = as_unit_points(start)
     if given.shape != (n, d):
         raise InvalidValue(f"start must have shape ({n}, {d}), got {given.shape}")
