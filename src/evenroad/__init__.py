@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from evenroad.roadmap import PlanResult as PlanResult
     from evenroad.roadmap import Radius as Radius
     from evenroad.roadmap import Status as Status
-    from evenroad.roadmap import plan as plan
+    from evenroad.roadmap.plan import plan as plan
     from evenroad.viz import save_plan_picture as save_plan_picture
     from evenroad.world import GridMap as GridMap
     from evenroad.world import load_map as load_map

@@ -40,7 +40,7 @@ class Measure:
 
 def measure_all(points: PointSet) -> list[tuple[str, float | None, str]]:
     """Return (name, value, note) of every measure; a value is None where it cannot be had, and the note says why."""
-    from evenroad.errors import InvalidValue
+    from evenroad.errors import EvenroadError
     from evenroad.points import measures
     from evenroad.points.measures.dispersion import EXACT_UP_TO
 
@@ -49,7 +49,7 @@ def measure_all(points: PointSet) -> list[tuple[str, float | None, str]]:
     def add(name: str, note: str, compute: Callable[[], float]) -> None:
         try:
             rows.append((name, compute(), note))
-        except InvalidValue as error:
+        except EvenroadError as error:
             rows.append((name, None, str(error)))
 
     for measure in measures.MEASURES.values():

@@ -15,9 +15,9 @@ d     family                                success                    uniform
 10    korobov                               46.3 / 65.1                44.0 / 62.6
 ====  ====================================  =========================  ================
 
-Discrepancy alone does not plan better than scrambled Sobol points; together with separation it does in d = 2 .. 5.  From d =
-6 on, the best rank-1 lattice plans like annealed sets and costs milliseconds.  The table is to be decided again by the
-fair benchmark suite, on tuning seeds.
+Discrepancy alone does not plan better than scrambled Sobol points; together with separation it does in d = 2 .. 5.
+From d = 6 on, the best rank-1 lattice plans like annealed sets and costs milliseconds.  The table is to be decided
+again by the fair benchmark suite, on tuning seeds.
 """
 
 from __future__ import annotations

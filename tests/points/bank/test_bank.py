@@ -9,9 +9,9 @@ from evenroad.points.bank import Bank, open_bank
 from evenroad.points.bank.bank import DATA, INDEX
 from evenroad.points.bank.build import MEASURED, build, store
 from evenroad.points.bank.recipe import SEED, Recipe, recipes
+from evenroad.points.families import Trained
 from evenroad.points.optimise import anneal_many
 from evenroad.points.pointset import PointSet
-from evenroad.points.families import Trained
 
 SHIPPED = [each for each in recipes() if open_bank().has(each.family, each.n, each.d)]
 QUICK = [each for each in SHIPPED if each.n <= 512]

@@ -12,8 +12,8 @@ from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import NotAvailable, UnknownName
 from evenroad.points.bank import Bank, open_bank
 from evenroad.points.bank.recipe import SEED
-from evenroad.points.families.cache import cached, keep
 from evenroad.points.even import KOROBOV, even_choice
+from evenroad.points.families.cache import cached, keep
 from evenroad.points.pointset import BELOW_ONE, Origin, PointSet
 
 ON_DEMAND_SETS = 8
