@@ -282,7 +282,7 @@ def test_no_points_have_no_discrepancy(name):
         MEASURES[name].squared(np.zeros((0, 3)))
 
 
-@pytest.mark.parametrize("weights", [[1.0], [1.0, -0.1], [1.0, math.nan], [[1.0, 1.0]]])
+@pytest.mark.parametrize("weights", [[1.0], [1.0, -0.1], [1.0, math.nan], [[1.0, 1.0]], ["a", "b"]])
 def test_bad_weights_are_refused(weights):
     with pytest.raises(InvalidValue, match="weights must be 2 finite numbers"):
         MEASURES["hickernell"].squared([[0.5, 0.5]], weights)

@@ -104,7 +104,10 @@ class Measure:
                 f"{self.name} takes no coordinate weights: its factors have no constant part that a weight"
                 " could leave alone"
             )
-        gamma = np.asarray(weights, dtype=np.float64)
+        try:
+            gamma = np.asarray(weights, dtype=np.float64)
+        except (TypeError, ValueError):
+            gamma = np.array(np.nan)
         if gamma.shape != (d,) or not np.isfinite(gamma).all() or (gamma < 0).any():
             raise InvalidValue(f"weights must be {d} finite numbers >= 0, one a coordinate, got {weights!r}")
         return gamma
