@@ -67,7 +67,7 @@ def _sets(family: str, d: int, n: int) -> int:
     if family == "even" and d == 1:
         return 4  # all but the same: an even grid
     if family == "even" and n > 256:
-        return 32 if d == 2 else 16 if d == 3 else 8
+        return 32 if (d, n) == (2, 512) else 16 if d <= 3 else 8
     return {1: 32, 2: 64, 3: 32}.get(d, 8)
 
 

@@ -110,7 +110,7 @@ class Trained:
         return PointSet(cell.load()[replica], origin)
 
     def _korobov(self, n: int, d: int, rng: RngLike) -> PointSet:
-        # Here, because the bank alone needs no compiled code.
+        # Here, because the samplers by name include this one.
         from evenroad.points.samplers.korobov import Korobov
 
         return Korobov().draw(n, d, rng=rng).with_origin(family=self.family)
