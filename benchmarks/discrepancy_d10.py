@@ -1,0 +1,109 @@
+"""The paper's discrepancy figure, redrawn: Hickernell L2 discrepancy in d = 10, N = 128 .. 1024, every family.
+
+    python -m benchmarks.discrepancy_d10 --out out/bench
+
+Each number is the mean over 20 draws (8 where a trained pool has 8 sets), with its standard deviation.  Both conventions
+for Halton are shown: its first block from index 0, which holds the origin of the cube, and the blocks from index 1 that
+the paper describes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from evenroad.points import PointSet, draw
+from evenroad.points.bank import open_bank
+from evenroad.points.measures import MEASURES
+from evenroad.points.samplers.sequences import Halton, Sobol, paper_block
+
+D = 10
+COUNTS = (128, 256, 512, 1024)
+DRAWS = 20
+
+
+def _pool(family: str, n: int) -> list[PointSet]:
+    bank = open_bank()
+    return [PointSet(each) for each in bank.cell(family, n, D).load()] if bank.has(family, n, D) else []
+
+
+def _drawn(name: str) -> Callable[[int], list[PointSet]]:
+    return lambda n: [draw(name, n, D, rng=run) for run in range(DRAWS)]
+
+
+FAMILIES: dict[str, Callable[[int], list[PointSet]]] = {
+    "uniform": _drawn("uniform"),
+    "halton from index 0": lambda n: [Halton(scramble=False).draw(n, D)],
+    "halton paper-blocks": lambda n: [
+        paper_block(Halton(), run, n).draw(n, D) for run in range(1, DRAWS + 1)
+    ],
+    "halton scrambled": _drawn("halton"),
+    "sobol paper-blocks": lambda n: [paper_block(Sobol(), run, n).draw(n, D) for run in range(1, DRAWS + 1)],
+    "sobol scrambled": _drawn("sobol"),
+    "lattice": _drawn("lattice"),
+    "korobov (even)": _drawn("korobov"),
+    "mpmc": lambda n: _pool("mpmc", n),
+    "hickernell": lambda n: _pool("hickernell", n),
+}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--out", type=Path, default=Path("out/bench"))
+    options = parser.parse_args()
+    options.out.mkdir(parents=True, exist_ok=True)
+    measure = MEASURES["hickernell"].rooted
+    figure = Figure(figsize=(7.5, 5), dpi=130, layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.add_subplot()
+    rows = []
+    print(f"| D_H, d={D} | " + " | ".join(f"N={n}" for n in COUNTS) + " |\n|---" + "|---" * len(COUNTS) + "|")
+    for place, (name, sets_of) in enumerate(FAMILIES.items()):
+        cells = []
+        for n in COUNTS:
+            values = [measure(points) for points in sets_of(n)]
+            if values:
+                cells.append((n, np.mean(values), np.std(values), np.min(values), len(values)))
+        rows += [(name, *cell) for cell in cells]
+        text = {
+            n: f"{mean:.4f} ± {spread:.4f} (best {best:.4f}, {count})"
+            for n, mean, spread, best, count in cells
+        }
+        print(f"| {name} | " + " | ".join(text.get(n, "no set") for n in COUNTS) + " |", flush=True)
+        if cells:
+            trained = name in ("hickernell", "mpmc")
+            axes.plot(
+                [cell[0] for cell in cells],
+                [cell[1] for cell in cells],
+                marker="os^vD"[place % 5],
+                linestyle="-" if trained or "scrambled" in name or name == "uniform" else "--",
+                linewidth=2.4 if trained else 1.4,
+                color=f"C{place}",
+                label=name,
+            )
+    axes.set_xscale("log", base=2)
+    axes.set_yscale("log")
+    axes.set_xticks(COUNTS, [str(n) for n in COUNTS])
+    axes.set_yticks((0.05, 0.1, 0.2, 0.5), ("0.05", "0.1", "0.2", "0.5"))
+    axes.set_xlabel("N")
+    axes.set_ylabel("Hickernell L2 discrepancy (rooted)")
+    axes.set_title("d = 10")
+    axes.grid(alpha=0.3, which="both")
+    axes.legend(fontsize=8)
+    figure.savefig(options.out / "discrepancy_d10.png")
+    with open(options.out / "discrepancy_d10.csv", "w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(["family", "n", "mean", "standard deviation", "best", "sets"])
+        writer.writerows(rows)
+
+
+if __name__ == "__main__":
+    main()
