@@ -7,12 +7,15 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
+from evenroad.space.flat import FlatMetric
+
 
 class Space(Protocol):
     """A set of configurations with a metric, and a map onto it from the unit cube, batch-first.
 
     Implementations never write to their arguments and raise InvalidValue for a wrong shape or an entry that
-    is not finite.
+    is not finite.  A class that inherits from Space needs to write `dim`, `from_cube`, `distance` and
+    `interpolate` only; ``evenroad.testing.SpaceContract`` checks the rest.
     """
 
     @property
@@ -20,8 +23,18 @@ class Space(Protocol):
         """Number of coordinates of a configuration."""
         ...
 
+    @property
+    def cube_dim(self) -> int:
+        """Number of coordinates of a point of the cube; not `dim` where that has redundant numbers."""
+        return self.dim
+
+    @property
+    def flat(self) -> FlatMetric | None:
+        """The metric as scales and periods of the coordinates, or None where it is not of that kind."""
+        return None
+
     def from_cube(self, u: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-        """Map points of the unit cube, (n, dim), to configurations, (n, dim), preserving measure."""
+        """Map points of the unit cube, (n, cube_dim), to configurations, (n, dim), preserving measure."""
         ...
 
     def distance(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:

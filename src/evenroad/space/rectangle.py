@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from evenroad.errors import InvalidValue
 from evenroad.space.batch import as_batch, as_batch_pair
+from evenroad.space.flat import FlatMetric
 
 _LARGEST_COSINE = 1e-9
 """Edges count as perpendicular up to this cosine: room for the rounding of a yaw, not for a slanted frame."""
@@ -54,6 +55,16 @@ class Rectangle:
     def dim(self) -> int:
         """Number of coordinates: 2."""
         return 2
+
+    @property
+    def cube_dim(self) -> int:
+        """Number of coordinates of a point of the cube: 2."""
+        return 2
+
+    @property
+    def flat(self) -> FlatMetric:
+        """The Euclidean metric: scales of 1, nothing wraps."""
+        return FlatMetric(scale=np.ones(2), period=np.full(2, np.inf))
 
     @property
     def area(self) -> float:

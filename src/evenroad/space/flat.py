@@ -1,0 +1,81 @@
+"""FlatMetric: a metric that is Euclidean in scaled coordinates, some of which may wrap."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.errors import InvalidValue
+
+
+@dataclass(frozen=True, eq=False)
+class FlatMetric:
+    """The metric ``sqrt(sum_k (scale_k wrap_k(b_k - a_k))^2)``: what a neighbour tree needs to know of a space.
+
+    ``wrap_k(x)`` is `x` shifted by the multiple of ``period_k`` that brings it nearest to 0.
+
+    Parameters
+    ----------
+    scale : array_like, shape (dim,)
+        What a unit of each coordinate counts, finite and > 0.
+    period : array_like, shape (dim,)
+        After how much each coordinate repeats, > 0; ``inf`` where it does not.
+
+    Raises
+    ------
+    InvalidValue
+        If the two are not such arrays of one length >= 1.
+    """
+
+    scale: npt.NDArray[np.float64]
+    period: npt.NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        for name in ("scale", "period"):
+            try:
+                array = np.array(getattr(self, name), dtype=np.float64)
+            except (TypeError, ValueError):
+                raise InvalidValue(f"{name} must be numbers, got {getattr(self, name)!r}") from None
+            if array.ndim != 1 or array.size == 0 or not (array > 0.0).all():
+                raise InvalidValue(f"{name} must be a row of numbers > 0, got {array!r}")
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)
+        if not np.isfinite(self.scale).all():
+            raise InvalidValue(f"scale must be finite, got {self.scale!r}")
+        if len(self.scale) != len(self.period):
+            raise InvalidValue(
+                f"scale and period must have one length, got {len(self.scale)} and {len(self.period)}"
+            )
+
+    @property
+    def dim(self) -> int:
+        """Number of coordinates."""
+        return len(self.scale)
+
+    @property
+    def wrapping(self) -> npt.NDArray[np.bool_]:
+        """Which coordinates wrap, (dim,)."""
+        return np.isfinite(self.period)
+
+    def difference(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Return ``b - a`` the short way round, not scaled, for two (n, dim) arrays as (n, dim).
+
+        Opposite places of a wrapping coordinate keep the sign of ``b - a``, so that the way between two of
+        them is one and the same in both directions and, within one period, does not cross its ends.
+        """
+        difference = b - a
+        for k in np.flatnonzero(self.wrapping):
+            # rint takes one half to zero: exactly opposite places are left as they are.
+            difference[:, k] -= self.period[k] * np.rint(difference[:, k] / self.period[k])
+        return difference
+
+    def distance(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Return the distances of the rows of two float64 arrays, (n, dim), as (n,)."""
+        scaled = self.difference(a, b) * self.scale
+        # Column by column: the sum of a row then never depends on how long the batch is, nor does it overflow.
+        total = np.abs(scaled[:, 0])
+        for k in range(1, self.dim):
+            total = np.hypot(total, scaled[:, k])
+        return total
