@@ -14,7 +14,8 @@ import torch
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 from evenroad.points import load_points
 from evenroad.points.network import NetworkConfig, train
-from evenroad.points.network.state import TrainingState, is_finished, learning_rate
+from evenroad.points.network.device import choose_device
+from evenroad.points.network.state import TrainingState, advance, first_state, is_finished, learning_rate
 from evenroad.points.optimise import anneal_many, parse_objective
 
 TINY = NetworkConfig(16, 2, sets=3, width=8, layers=2, k=3, steps=40, seed=5)
@@ -59,13 +60,23 @@ def test_training_makes_the_sets_much_better_than_random_ones():
 
 
 def test_the_points_are_the_best_of_all_steps_not_those_of_the_last():
-    # So large a rate makes the later steps worse than the best one.
+    # So large a rate makes points worse and better by turns.
     config = replace(TINY, rate=0.3)
-    means = []
-    sets = train_on_cpu(config, callback=lambda step, steps, best: means.append(best))
-    assert means == sorted(means, reverse=True)
-    values = [parse_objective("hickernell").value(each.points) for each in sets]
-    assert np.mean(values) <= means[-1]
+    objective = parse_objective(config.objective)
+    state, (batch,) = first_state(config, torch.device("cpu"))
+    seen, values = [], []
+    for _ in range(15):
+        with torch.no_grad():
+            seen.append(state.network(batch.starts, batch.sender, batch.receiver).numpy())
+        values.append([objective.value(each) for each in seen[-1]])
+        advance(state, (batch,), config, objective)
+    best_steps = np.argmin(values, axis=0)
+    assert (best_steps != 14).any()
+    for index, step in enumerate(best_steps):
+        assert np.array_equal(state.best_points[index], seen[step][index])
+        assert state.best_values[index] == values[step][index]
+    assert state.best_mean == pytest.approx(np.mean(values, axis=1).min())
+    assert state.last_improved == np.mean(values, axis=1).argmin() + 1
 
 
 def test_the_callback_counts_every_step():
@@ -247,6 +258,22 @@ def test_torch_is_left_as_it_was():
 def test_a_device_that_is_none_is_refused(name):
     with pytest.raises(InvalidValue, match="device must be auto, cpu, cuda"):
         train(TINY, device=name)
+
+
+@pytest.mark.parametrize(("is_there", "kind"), [(True, "cuda"), (False, "cpu")])
+def test_auto_takes_a_gpu_when_there_is_one(monkeypatch, is_there, kind):
+    monkeypatch.setattr(torch.cuda, "is_available", lambda: is_there)
+    assert choose_device("auto").type == kind
+
+
+def test_auto_trains_on_whatever_is_here(tmp_path):
+    # Where there is a GPU this runs on it, checkpoint and resume included.
+    seen = []
+    with pytest.raises(Stop):
+        train(TINY, folder=tmp_path, callback=stop_at(20))
+    sets = train(TINY, folder=tmp_path, callback=lambda step, steps, best: seen.append(best))
+    assert len(seen) == 20
+    assert np.mean([parse_objective("hickernell").value(each.points) for each in sets]) <= seen[-1]
 
 
 def test_a_gpu_that_is_not_there_is_not_available():

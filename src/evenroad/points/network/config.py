@@ -40,7 +40,8 @@ class NetworkConfig:
         Sets that are in memory at once.  It bounds the memory and hardly changes the speed; None takes as many
         as make about 4096 points.
     patience : int or None
-        Stop after so many steps without a new best mean; None never stops early.
+        Stop after so many steps without a new best mean; None, since the last steps with their small rates
+        usually still gain, never stops early.
     seed : int
         Draws the starts and the first weights; nothing is drawn later.
 
@@ -62,7 +63,7 @@ class NetworkConfig:
     rate: float = 1e-3
     weight_decay: float = 1e-6
     micro_batch: int | None = None
-    patience: int | None = 1000
+    patience: int | None = None
     seed: int = 0
 
     def __post_init__(self) -> None:
