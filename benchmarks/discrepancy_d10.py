@@ -2,9 +2,9 @@
 
     python -m benchmarks.discrepancy_d10 --out out/bench
 
-Each number is the mean over 20 draws (8 where a trained pool has 8 sets), with its standard deviation.  Both conventions
-for Halton are shown: its first block from index 0, which holds the origin of the cube, and the blocks from index 1 that
-the paper describes.
+Each number is the mean over 20 draws (over the pool for trained families), with its standard deviation.  Both
+conventions for Halton are shown: its first block from index 0, which holds the origin of the cube, and the blocks from
+index 1 that the paper describes.
 """
 
 from __future__ import annotations

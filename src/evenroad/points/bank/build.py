@@ -37,7 +37,12 @@ def build(recipe: Recipe, folder: Path, work: Path, jobs: int, report: Callable[
     own_work = work / f"{recipe.family}-d{recipe.d:02d}-n{recipe.n:04d}"
     own_work.mkdir(parents=True, exist_ok=True)
     progress = LineProgress(f"{recipe.family} d={recipe.d} n={recipe.n}, {recipe.sets} sets", report)
-    sets = anneal_many(
+    make = _train if recipe.method == "network" else _anneal
+    store(recipe, make(recipe, own_work, jobs, progress), folder)
+
+
+def _anneal(recipe: Recipe, work: Path, jobs: int, progress: LineProgress) -> tuple[PointSet, ...]:
+    return anneal_many(
         recipe.n,
         recipe.d,
         recipe.objective,
@@ -45,11 +50,20 @@ def build(recipe: Recipe, folder: Path, work: Path, jobs: int, report: Callable[
         steps=recipe.steps,
         rng=SEED,
         workers=jobs,
-        folder=own_work,
+        folder=work,
         family=recipe.family,
         callback=progress,
     )
-    store(recipe, sets, folder)
+
+
+def _train(recipe: Recipe, work: Path, jobs: int, progress: LineProgress) -> tuple[PointSet, ...]:
+    # Here, because only these cells need torch.
+    from evenroad.points.network import NetworkConfig, train
+
+    config = NetworkConfig(
+        n=recipe.n, d=recipe.d, objective=recipe.objective, sets=recipe.sets, steps=recipe.steps, seed=SEED
+    )
+    return train(config, folder=work, callback=progress, threads=jobs)
 
 
 def store(recipe: Recipe, sets: Sequence[PointSet], folder: Path) -> None:
@@ -90,12 +104,14 @@ def main() -> None:
         "--work", type=Path, default=Path("out/bank"), help="where finished sets wait for their cell"
     )
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--family", help="only the cells of this family")
     parser.add_argument("--list", action="store_true", help="only name the cells that are not built yet")
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)
     bank = Bank(options.folder)
-    missing = [each for each in recipes() if not bank.has(each.family, each.n, each.d)]
-    print(f"{len(recipes()) - len(missing)} of {len(recipes())} cells are in the bank", flush=True)
+    wanted = [each for each in recipes() if options.family in (None, each.family)]
+    missing = [each for each in wanted if not bank.has(each.family, each.n, each.d)]
+    print(f"{len(wanted) - len(missing)} of {len(wanted)} cells are in the bank", flush=True)
     for recipe in missing:
         if options.list:
             print(f"missing: {recipe.family} d={recipe.d} n={recipe.n}")
