@@ -35,7 +35,9 @@ def save_checkpoint(folder: Path, config: NetworkConfig, state: TrainingState) -
         If it cannot be written; the checkpoint before is then still whole.
     """
     data = safetensors.torch.save(tensors_of(state))
-    tensors_path = folder / f"checkpoint-{state.step:08d}.safetensors"
+    digest = hashlib.sha256(data).hexdigest()
+    # A name of its own for every content, so that nothing which the old JSON file names is overwritten.
+    tensors_path = folder / f"checkpoint-{digest[:16]}.safetensors"
     with atomic_write(tensors_path) as file:
         file.write(data)
     record = {
@@ -46,7 +48,7 @@ def save_checkpoint(folder: Path, config: NetworkConfig, state: TrainingState) -
         # JSON knows no infinity; before the first step there is no mean.
         "best_mean": state.best_mean if math.isfinite(state.best_mean) else None,
         "tensors": tensors_path.name,
-        "sha256": hashlib.sha256(data).hexdigest(),
+        "sha256": digest,
     }
     with atomic_write(folder / CHECKPOINT_FILE) as file:
         file.write(json.dumps(record, indent=1).encode())
