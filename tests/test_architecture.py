@@ -20,6 +20,7 @@ MAY_IMPORT = {
     "mazes": BASE | {"world"},
     "qmc": BASE | {"points"},
     "io": BASE | {"points", "space", "world", "roadmap"},
+    "testing": BASE | {"space", "world"},
     "viz": BASE | {"points", "space", "world", "roadmap"},
     "cli": BASE | {"points", "space", "world", "roadmap", "mazes", "io", "viz"},
     **dict.fromkeys(BASE, BASE),

@@ -9,21 +9,22 @@ import pytest
 
 from evenroad.errors import InvalidValue
 from evenroad.space import Rectangle
-from tests.space.space_contract import SpaceContract
+from evenroad.testing import SpaceContract
 
 TURNED = Rectangle(corner=(-3.0, 2.0), edge_u=(4.0, 3.0), edge_v=(-1.2, 1.6))
 
 
 class TestUprightRectangle(SpaceContract):
-    @pytest.fixture
-    def space(self):
-        return Rectangle(corner=(0.0, 0.0), edge_u=(640.0, 0.0), edge_v=(0.0, 480.0))
+    space = Rectangle(corner=(0.0, 0.0), edge_u=(640.0, 0.0), edge_v=(0.0, 480.0))
 
 
 class TestTurnedRectangle(SpaceContract):
-    @pytest.fixture
-    def space(self):
-        return TURNED
+    space = TURNED
+
+
+def test_only_the_rectangle_is_contained():
+    inside = TURNED.contains([[-3, 2], [1, 5], [-0.2, 6.6], [-1, 4], [-3.01, 2], [1, 5.01], [-0.3, 6.7]])
+    assert inside.tolist() == [True, True, True, True, False, False, False]
 
 
 def test_the_corners_of_the_square_go_to_the_corners_of_the_rectangle():

@@ -54,3 +54,38 @@ def as_batch_pair(a: object, b: object, dim: int) -> tuple[npt.NDArray[np.float6
     if len(first) != len(second):
         raise InvalidValue(f"a and b must have the same length, got {len(first)} and {len(second)}")
     return first, second
+
+
+def as_cube_batch(u: object, cube_dim: int) -> npt.NDArray[np.float64]:
+    """Return `u` checked by `as_batch` and to lie in the closed unit cube.
+
+    Raises
+    ------
+    InvalidValue
+        As `as_batch`, or naming the first entry outside [0, 1] and its place.
+    """
+    unit = as_batch("u", u, cube_dim)
+    outside = (unit < 0.0) | (unit > 1.0)
+    if outside.any():
+        i, k = np.argwhere(outside)[0]
+        raise InvalidValue(f"u must lie in [0, 1]: entry [{i}, {k}] is {float(unit[i, k])!r}")
+    return unit
+
+
+def as_fractions(t: object, n: int) -> npt.NDArray[np.float64]:
+    """Return the fractions `t` of `n` motions, a scalar or (n,) in [0, 1], as a column (n, 1).
+
+    Raises
+    ------
+    InvalidValue
+        If `t` has another shape, is no number, or lies outside [0, 1].
+    """
+    try:
+        fraction = np.asarray(t, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InvalidValue(f"t must be numbers in [0, 1]: {error}") from None
+    if fraction.shape not in ((), (n,)):
+        raise InvalidValue(f"t must be a scalar or have shape ({n},), got {fraction.shape}")
+    if not ((fraction >= 0.0) & (fraction <= 1.0)).all():
+        raise InvalidValue("t must lie in [0, 1]")
+    return np.broadcast_to(fraction, (n,))[:, np.newaxis]

@@ -37,6 +37,10 @@ class Space(Protocol):
         """Map points of the unit cube, (n, cube_dim), to configurations, (n, dim), preserving measure."""
         ...
 
+    def contains(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Return for each row of `q`, (n, dim), whether it lies in the space, bounds included: (n,)."""
+        return np.ones(len(q), dtype=np.bool_)
+
     def distance(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """Return the distance of each row of `a` from the same row of `b`: two (n, dim) arrays -> (n,)."""
         ...

@@ -9,11 +9,14 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.errors import InvalidValue
-from evenroad.space.batch import as_batch, as_batch_pair
+from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions
 from evenroad.space.flat import FlatMetric
 
 _LARGEST_COSINE = 1e-9
 """Edges count as perpendicular up to this cosine: room for the rounding of a yaw, not for a slanted frame."""
+
+_ROUNDING = 1e-9
+"""Share of an edge by which a point may be outside: room for the rounding of a turned frame far from the origin."""
 
 
 @dataclass(frozen=True)
@@ -73,11 +76,20 @@ class Rectangle:
 
     def from_cube(self, u: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """Return ``corner + u[:, 0] edge_u + u[:, 1] edge_v`` for `u` of shape (n, 2), as (n, 2)."""
-        unit = as_batch("u", u, 2)
+        unit = as_cube_batch(u, 2)
         # Written out instead of a matrix product: BLAS may round a row differently in a longer batch.
         return np.column_stack(
             [self.corner[k] + unit[:, 0] * self.edge_u[k] + unit[:, 1] * self.edge_v[k] for k in (0, 1)]
         )
+
+    def contains(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Return for each row of `q`, (n, 2), whether it lies in the rectangle, up to rounding: (n,)."""
+        offset = as_batch("q", q, 2) - np.array(self.corner)
+        inside = np.ones(len(offset), dtype=np.bool_)
+        for edge in (self.edge_u, self.edge_v):
+            along = (offset[:, 0] * edge[0] + offset[:, 1] * edge[1]) / math.hypot(*edge) ** 2
+            inside &= (along >= -_ROUNDING) & (along <= 1.0 + _ROUNDING)
+        return inside
 
     def distance(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """Return the Euclidean distances of the rows of `a` and `b`, both (n, 2), as (n,)."""
@@ -92,12 +104,7 @@ class Rectangle:
     ) -> npt.NDArray[np.float64]:
         """Return ``(1 - t) a + t b`` for `a`, `b` of shape (n, 2) and `t` in [0, 1], scalar or (n,)."""
         first, second = as_batch_pair(a, b, 2)
-        fraction = np.asarray(t, dtype=np.float64)
-        if fraction.shape not in ((), (len(first),)):
-            raise InvalidValue(f"t must be a scalar or have shape ({len(first)},), got {fraction.shape}")
-        if not ((fraction >= 0.0) & (fraction <= 1.0)).all():
-            raise InvalidValue("t must lie in [0, 1]")
-        column = np.broadcast_to(fraction, (len(first),))[:, np.newaxis]
+        column = as_fractions(t, len(first))
         # This form, unlike a + t (b - a), is exact at both ends.
         return (1.0 - column) * first + column * second
 

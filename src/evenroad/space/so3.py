@@ -1,0 +1,116 @@
+"""SO3: rotations of space as unit quaternions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.errors import InvalidValue
+from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions
+
+_UNIT_TOLERANCE = 1e-6
+"""How far a norm may be from 1: room for quaternions read from a text file with seven digits."""
+
+_SMALL_ANGLE = 1e-8
+"""Below it a chord and its arc agree to the last bit, and sin(angle) is too small to divide by safely."""
+
+
+@dataclass(frozen=True)
+class SO3:
+    """The rotations of space as unit quaternions (w, x, y, z), of which q and -q are one rotation.
+
+    The metric is ``arccos |q . q'|``, in radians: half the angle of the rotation from one to the other, at
+    most pi / 2.  Points of the cube have 3 coordinates, configurations 4.  Norms may differ from 1 by 1e-6.
+    """
+
+    @property
+    def dim(self) -> int:
+        """Numbers in a quaternion: 4."""
+        return 4
+
+    @property
+    def cube_dim(self) -> int:
+        """Number of coordinates of a point of the cube: 3."""
+        return 3
+
+    @property
+    def flat(self) -> None:
+        """None: rotations are curved."""
+        return None
+
+    def from_cube(self, u: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Map `u`, (n, 3) in [0, 1]^3, to quaternions, (n, 4), so that equal volumes get equal measure.
+
+        K. Shoemake, "Uniform random rotations", Graphics Gems III, 1992, pp. 124-132.  All unit quaternions
+        are reached, so each rotation twice.
+        """
+        unit = as_cube_batch(u, 3)
+        near, far = np.sqrt(1.0 - unit[:, 0]), np.sqrt(unit[:, 0])
+        first, second = 2.0 * np.pi * unit[:, 1], 2.0 * np.pi * unit[:, 2]
+        x, y, z, w = near * np.sin(first), near * np.cos(first), far * np.sin(second), far * np.cos(second)
+        return np.column_stack([w, x, y, z])
+
+    def contains(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Return for each row of `q`, (n, 4), whether its norm is 1 up to 1e-6: (n,)."""
+        return np.abs(_norm(as_batch("q", q, 4)) - 1.0) <= _UNIT_TOLERANCE
+
+    def distance(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Return ``arccos |a . b|`` of the rows of two (n, 4) arrays, (n,), in [0, pi / 2].
+
+        Raises
+        ------
+        InvalidValue
+            If the shapes differ from that, or a row is not a unit quaternion.
+        """
+        first, second = self._unit_pair(a, b)
+        return _angle(first, _nearer_sign(first, second)[:, np.newaxis] * second)
+
+    def interpolate(
+        self,
+        a: npt.NDArray[np.float64],
+        b: npt.NDArray[np.float64],
+        t: npt.NDArray[np.float64] | float,
+    ) -> npt.NDArray[np.float64]:
+        """Return the rotations a fraction `t`, scalar or (n,) in [0, 1], of the shortest turn from `a` to `b`.
+
+        Spherical linear interpolation (K. Shoemake, SIGGRAPH 1985) towards b or -b, whichever is nearer, and
+        towards b where they are equally near.  Exact at both ends.  Errors as `distance`.
+        """
+        first, second = self._unit_pair(a, b)
+        fraction = as_fractions(t, len(first))
+        nearer = _nearer_sign(first, second)[:, np.newaxis] * second
+        angle = _angle(first, nearer)[:, np.newaxis]
+        sine = np.where(angle < _SMALL_ANGLE, 1.0, np.sin(angle))
+        from_first = np.where(angle < _SMALL_ANGLE, 1.0 - fraction, np.sin((1.0 - fraction) * angle) / sine)
+        from_second = np.where(angle < _SMALL_ANGLE, fraction, np.sin(fraction * angle) / sine)
+        between = from_first * first + from_second * nearer
+        between /= _norm(between)[:, np.newaxis]
+        return np.where(fraction == 0.0, first, np.where(fraction == 1.0, second, between))
+
+    def _unit_pair(self, a: object, b: object) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        first, second = as_batch_pair(a, b, 4)
+        for name, batch in (("a", first), ("b", second)):
+            norm = _norm(batch)
+            wrong = np.flatnonzero(np.abs(norm - 1.0) > _UNIT_TOLERANCE)
+            if len(wrong):
+                raise InvalidValue(
+                    f"{name} must hold unit quaternions: row {wrong[0]} has norm {float(norm[wrong[0]])!r}"
+                )
+        return first, second
+
+
+def _norm(q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    # Written out: the bits of a row must not depend on the length of the batch, nor huge entries overflow.
+    return np.hypot(np.hypot(q[:, 0], q[:, 1]), np.hypot(q[:, 2], q[:, 3]))
+
+
+def _nearer_sign(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    dot = a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2] + a[:, 3] * b[:, 3]
+    return np.where(dot < 0.0, -1.0, 1.0)
+
+
+def _angle(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Return the angle between unit vectors; unlike arccos it keeps all digits of small angles (Kahan)."""
+    return 2.0 * np.arctan2(_norm(a - b), _norm(a + b))

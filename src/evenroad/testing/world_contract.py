@@ -1,0 +1,114 @@
+"""WorldContract: what every world must do, as tests."""
+
+# ruff: noqa: D102 -- the name of a test says what it tests
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from evenroad.errors import InvalidValue
+from evenroad.world import World
+
+
+class WorldContract:
+    """Tests of a world: batch = loop, symmetry, free motions have free ends, and errors for bad batches.
+
+    Attributes
+    ----------
+    world : World
+        Set it in the subclass.  It must have free and blocked places, and free and blocked motions, among
+        400 random ones.
+    free_between : bool
+        Whether places of a free motion are free wherever they are, as in a world that tests motions
+        exactly.  Set it to False for one that tests states some way apart.
+    """
+
+    world: World
+    free_between = True
+
+    def places(self) -> npt.NDArray[np.float64]:
+        """Return 400 random configurations, (400, dim)."""
+        return self.world.space.from_cube(np.random.default_rng(11).random((400, self.world.space.cube_dim)))
+
+    def motions(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Return the two ends of 400 motions, short ones and long ones."""
+        q = self.places()
+        reach = np.random.default_rng(12).random(len(q)) ** 3
+        return q, self.world.space.interpolate(q, np.roll(q, 1, axis=0), reach)
+
+    def test_answers_are_booleans_one_a_row(self) -> None:
+        q = self.places()
+        for answer in (self.world.valid(q), self.world.motion_valid(*self.motions())):
+            assert answer.shape == (len(q),)
+            assert answer.dtype == np.bool_
+            assert 0 < answer.sum() < len(q), "the contract needs both verdicts to mean anything"
+
+    def test_a_batch_gives_what_its_rows_give(self) -> None:
+        q, (a, b) = self.places(), self.motions()
+        rows, world = [slice(i, i + 1) for i in range(len(q))], self.world
+        np.testing.assert_array_equal(world.valid(q), [world.valid(q[i])[0] for i in rows])
+        np.testing.assert_array_equal(
+            world.motion_valid(a, b), [world.motion_valid(a[i], b[i])[0] for i in rows]
+        )
+
+    def test_a_motion_and_its_reverse_get_one_verdict(self) -> None:
+        a, b = self.motions()
+        np.testing.assert_array_equal(self.world.motion_valid(a, b), self.world.motion_valid(b, a))
+
+    def test_a_free_motion_has_free_ends(self) -> None:
+        a, b = self.motions()
+        free = self.world.motion_valid(a, b)
+        assert self.world.valid(a[free]).all()
+        assert self.world.valid(b[free]).all()
+
+    def test_a_free_motion_is_free_along_its_way(self) -> None:
+        if not self.free_between:
+            pytest.skip("free_between is False")
+        a, b = self.motions()
+        free = self.world.motion_valid(a, b)
+        for t in np.linspace(0.0, 1.0, 21):
+            assert self.world.valid(self.world.space.interpolate(a[free], b[free], t)).all()
+
+    def test_a_motion_of_no_length_is_free_where_its_place_is(self) -> None:
+        q = self.places()
+        np.testing.assert_array_equal(self.world.motion_valid(q, q), self.world.valid(q))
+
+    def test_an_empty_batch_gives_an_empty_answer(self) -> None:
+        empty = np.empty((0, self.world.space.dim))
+        assert self.world.valid(empty).shape == (0,)
+        assert self.world.motion_valid(empty, empty).shape == (0,)
+
+    def test_arguments_are_left_alone_and_may_be_read_only_or_strided(self) -> None:
+        a, b = self.motions()
+        expected = self.world.motion_valid(a, b)
+        a_before, b_before = a.copy(), b.copy()
+        a.setflags(write=False)
+        b.setflags(write=False)
+        np.testing.assert_array_equal(self.world.motion_valid(a, b), expected)
+        np.testing.assert_array_equal(self.world.motion_valid(np.asfortranarray(a), b), expected)
+        np.testing.assert_array_equal(self.world.motion_valid(a[::2], b[::2]), expected[::2])
+        np.testing.assert_array_equal(self.world.valid(np.repeat(a, 2, axis=0)[::2]), self.world.valid(a))
+        np.testing.assert_array_equal(a, a_before)
+        np.testing.assert_array_equal(b, b_before)
+
+    def test_a_wrong_shape_is_refused(self) -> None:
+        q = self.places()
+        for wrong in (q[0], np.hstack([q, q[:, :1]]), q[np.newaxis]):
+            with pytest.raises(InvalidValue):
+                self.world.valid(wrong)
+            with pytest.raises(InvalidValue):
+                self.world.motion_valid(q, wrong)
+        with pytest.raises(InvalidValue):
+            self.world.motion_valid(q[:3], q[:4])
+
+    @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+    def test_an_entry_that_is_not_finite_is_refused(self, bad: float) -> None:
+        q = self.places()
+        wrong = q.copy()
+        wrong[5, 0] = bad
+        with pytest.raises(InvalidValue):
+            self.world.valid(wrong)
+        with pytest.raises(InvalidValue):
+            self.world.motion_valid(q, wrong)
