@@ -3,29 +3,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from evenroad.errors import InvalidValue
 from evenroad.points import draw
-from evenroad.roadmap import KNearest, Radius
-from evenroad.roadmap.kdtree import k_nearest, pairs_within
-
-
-def nearest_by_sorting(points, k):
-    """The definition: all others, by distance, then by index."""
-    rows = []
-    for i, point in enumerate(points):
-        squared = ((points - point) ** 2).sum(axis=1)
-        others = [j for j in np.lexsort((np.arange(len(points)), squared)) if j != i]
-        rows.append(others[:k])
-    return np.array(rows, dtype=np.int32).reshape(len(points), min(k, max(len(points) - 1, 0)))
-
-
-@st.composite
-def clouds(draw_value):
-    """Random points, or points of a coarse grid, which are full of ties and duplicates."""
-    n, d = draw_value(st.integers(0, 60)), draw_value(st.integers(1, 5))
-    random = np.random.default_rng(draw_value(st.integers(0, 10**6)))
-    points = random.random((n, d))
-    return np.floor(points * 4) if draw_value(st.booleans()) else points
+from evenroad.roadmap.neighbours import nearest, within
+from evenroad.roadmap.neighbours.kdtree import k_nearest, pairs_within
+from tests.roadmap.clouds import clouds, nearest_by_sorting
+from tests.roadmap.spaces import Great, Torus
 
 
 @settings(max_examples=200, deadline=None)
@@ -62,40 +44,72 @@ def test_pairs_within_a_radius_are_those_that_a_double_loop_finds(points, radius
 
 
 @settings(max_examples=100, deadline=None)
-@given(points=clouds(), k=st.integers(1, 6))
-def test_symmetrised_edges_join_i_and_j_when_either_is_near_the_other(points, k):
-    near = nearest_by_sorting(points, k)
-    expected = sorted({(min(i, j), max(i, j)) for i, row in enumerate(near.tolist()) for j in row})
-    assert [tuple(edge) for edge in KNearest(k).edges(points).tolist()] == expected
+@given(points=clouds(), k=st.integers(1, 12))
+def test_earlier_neighbours_are_the_nearest_of_those_before(points, k):
+    found = nearest(points, k, earlier=True)
+    for i in range(len(points)):
+        squared = ((points[:i] - points[i]) ** 2).sum(axis=1)
+        expected = np.argsort(squared, kind="stable")[:k].tolist()
+        assert found[i].tolist() == expected + [-1] * (found.shape[1] - len(expected))
 
 
-@pytest.mark.parametrize("rule", [KNearest(3), Radius(0.3)])
-def test_edges_are_sorted_unique_and_smaller_index_first(rule):
-    edges = rule.edges(draw("sukharev", 64, 2).points)
-    assert (edges[:, 0] < edges[:, 1]).all()
-    assert edges.tolist() == np.unique(edges, axis=0).tolist()
+def _all_distances(space, q):
+    return np.stack([space.distance(np.broadcast_to(row, q.shape), q) for row in q])
 
 
-@pytest.mark.parametrize("count", [0, 1, 2])
-@pytest.mark.parametrize("rule", [KNearest(3), Radius(2.0)])
-def test_tiny_sets_have_the_edges_that_they_can_have(rule, count):
-    edges = rule.edges(np.linspace(0, 1, 2 * count).reshape(count, 2))
-    assert edges.shape == (1 if count == 2 else 0, 2)
-    assert edges.dtype == np.int32
+@settings(max_examples=100, deadline=None)
+@given(seed=st.integers(0, 10**6), n=st.integers(2, 60), d=st.integers(1, 4), earlier=st.booleans())
+def test_wrapping_and_scaled_axes_are_searched_as_their_metric_says(seed, n, d, earlier):
+    random = np.random.default_rng(seed)
+    period = np.where(random.random(d) < 0.6, random.uniform(0.5, 7.0, d), np.inf)
+    space = Torus(d, random.uniform(0.2, 3.0, d), period)
+    q = random.uniform(-9.0, 9.0, (n, d))
+    distance = _all_distances(space, q)
+    np.fill_diagonal(distance, np.inf)
+    if earlier:
+        distance[np.triu_indices(n)] = np.inf
+    found = nearest(q, 5, space, earlier=earlier)
+    for i in range(n):
+        expected = np.sort(distance[i])[: found.shape[1]]
+        row = found[i][found[i] >= 0]
+        np.testing.assert_allclose(distance[i, row], expected[np.isfinite(expected)], rtol=1e-12)
+        assert len(set(row.tolist())) == len(row)
+    if not earlier:
+        radius = float(np.median(distance))
+        if np.isfinite(radius):
+            pairs = {tuple(pair) for pair in within(q, radius, space).tolist()}
+            sure = {(i, j) for i, j in np.argwhere(distance < radius * (1 - 1e-12)).tolist() if i < j}
+            maybe = {(i, j) for i, j in np.argwhere(distance <= radius * (1 + 1e-12)).tolist() if i < j}
+            assert sure <= pairs <= maybe
 
 
-@pytest.mark.parametrize("k", [0, -3, 2.5, True])
-def test_a_k_below_one_is_refused(k):
-    with pytest.raises(InvalidValue, match="k must be"):
-        KNearest(k)
+def test_neighbours_across_the_seam_are_found_and_ties_go_to_the_lower_index():
+    q = np.array([[1 / 16], [15 / 16], [0.5], [1.0], [-1e-30]])
+    space = Torus(1)
+    assert nearest(q, 2, space).tolist() == [[3, 4], [3, 4], [0, 1], [4, 0], [3, 0]]
+    assert [0, 1] in within(q, 0.125, space).tolist()
 
 
-@pytest.mark.parametrize("r", [0, -1, np.nan, np.inf, "1"])
-def test_a_radius_that_is_not_positive_and_finite_is_refused(r):
-    with pytest.raises(InvalidValue, match="radius"):
-        Radius(r)
+@settings(max_examples=50, deadline=None)
+@given(points=clouds(), k=st.integers(1, 8), earlier=st.booleans())
+def test_any_metric_is_searched_by_all_distances_with_the_same_rule_for_ties(points, k, earlier):
+    space = Great()
+    found = nearest(points, k, space, earlier=earlier)
+    n = len(points)
+    assert found.shape == (n, max(min(k, n - 1), 0))
+    if n < 2:
+        return
+    distance = _all_distances(space, points)
+    for i in range(n):
+        others = [j for j in np.argsort(distance[i], kind="stable") if (j < i if earlier else j != i)][:k]
+        assert found[i][found[i] >= 0].tolist() == others
+    expected = {(i, j) for i, j in np.argwhere(distance <= 1.0).tolist() if i < j}
+    assert {tuple(pair) for pair in within(points, 1.0, space).tolist()} == expected
 
 
-def test_rules_say_their_name():
-    assert str(KNearest(10)) == "k=10 symmetrised"
-    assert str(Radius(0.5)) == "radius=0.5"
+def test_blocks_of_rows_give_what_one_block_gives(monkeypatch):
+    points = np.floor(draw("uniform", 50, 2, rng=4).points * 6)
+    whole = nearest(points, 6, Great()), within(points, 2.0, Great())
+    monkeypatch.setattr("evenroad.roadmap.neighbours.brute.BLOCK", 120)
+    np.testing.assert_array_equal(nearest(points, 6, Great()), whole[0])
+    np.testing.assert_array_equal(within(points, 2.0, Great()), whole[1])

@@ -65,7 +65,7 @@ def plan(
     configurations = np.concatenate([milestones, ends])
     start_node, goal_node = len(milestones), len(milestones) + 1
     with watch("neighbours"):
-        edges = rule.edges(configurations)
+        edges = rule.edges(configurations, world.space, ends=2)
     with watch("motions"):
         free = edges[world.motion_valid(configurations[edges[:, 0]], configurations[edges[:, 1]])]
     with watch("search"):

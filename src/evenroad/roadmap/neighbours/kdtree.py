@@ -1,7 +1,8 @@
 """A kd-tree for roadmaps: k nearest with a fixed order among ties, and all pairs within a radius.
 
 SciPy's tree leaves open which of several equally far points it returns; a deterministic roadmap needs the lower
-index.  Every node keeps the tight bounding box of its points, in one heap-ordered array.
+index.  Every node keeps the tight bounding box of its points and their lowest index, in heap-ordered arrays.
+Axes may wrap: a gap is then the shorter of the two ways round.
 """
 
 from __future__ import annotations
@@ -13,34 +14,54 @@ from numba import njit
 LEAF_SIZE = 12
 
 
-def k_nearest(points: npt.NDArray[np.float64], k: int) -> npt.NDArray[np.int32]:
+def k_nearest(
+    points: npt.NDArray[np.float64],
+    k: int,
+    period: npt.NDArray[np.float64] | None = None,
+    *,
+    earlier: bool = False,
+) -> npt.NDArray[np.int32]:
     """Return the k nearest other points of every point, nearest first, ties to the lower index.
 
     Parameters
     ----------
     points : ndarray, shape (n, d)
-        Finite coordinates; the metric is Euclidean.
+        Finite coordinates; the metric is Euclidean, those of wrapping axes lie in [0, period).
     k : int
         At least 1.
+    period : ndarray, shape (d,), optional
+        After how much each axis repeats, inf where it does not; default: none does.
+    earlier : bool
+        Only points of a lower index count.  A tree over all points serves here too: parts of it without
+        a lower index are skipped.
 
     Returns
     -------
     ndarray of int32, shape (n, min(k, n - 1))
+        With `earlier`, row i has -1 after its min(k, i) neighbours.
     """
-    n = points.shape[0]
+    n, d = points.shape
     k = min(k, n - 1)
     if k < 1:
         return np.empty((n, 0), dtype=np.int32)
-    order, boxes = _build(points, LEAF_SIZE)
-    return _k_nearest(points, order, boxes, k, LEAF_SIZE)
+    period = np.full(d, np.inf) if period is None else period.copy()
+    order, boxes, lowest = _build(points, LEAF_SIZE)
+    return _k_nearest(points, period, order, boxes, lowest, k, earlier, LEAF_SIZE)
 
 
-def pairs_within(points: npt.NDArray[np.float64], radius: float) -> npt.NDArray[np.int32]:
-    """Return every pair i < j at distance <= `radius`, shape (m, 2), in no particular order."""
-    if points.shape[0] < 2:
+def pairs_within(
+    points: npt.NDArray[np.float64], radius: float, period: npt.NDArray[np.float64] | None = None
+) -> npt.NDArray[np.int32]:
+    """Return every pair i < j at distance <= `radius`, shape (m, 2), in no particular order.
+
+    `points` and `period` are those of :func:`k_nearest`.
+    """
+    n, d = points.shape
+    if n < 2:
         return np.empty((0, 2), dtype=np.int32)
-    order, boxes = _build(points, LEAF_SIZE)
-    return _pairs_within(points, order, boxes, radius, LEAF_SIZE)
+    period = np.full(d, np.inf) if period is None else period.copy()
+    order, boxes, _ = _build(points, LEAF_SIZE)
+    return _pairs_within(points, period, order, boxes, radius, LEAF_SIZE)
 
 
 @njit(cache=True, nogil=True)
@@ -52,9 +73,11 @@ def _build(points, leaf_size):  # type: ignore[no-untyped-def]
         depth += 1
     order = np.arange(n)
     boxes = np.empty(((1 << (depth + 1)) - 1, 2, d))
+    lowest = np.empty(boxes.shape[0], dtype=np.int64)
     stack = [(0, 0, n)]
     while stack:
         node, first, last = stack.pop()
+        lowest[node] = order[first:last].min()
         for axis in range(d):
             low = np.inf
             high = -np.inf
@@ -76,7 +99,7 @@ def _build(points, leaf_size):  # type: ignore[no-untyped-def]
             _partition(points, order, axis, first, last, middle)
             stack.append((2 * node + 1, first, middle))
             stack.append((2 * node + 2, middle, last))
-    return order, boxes
+    return order, boxes, lowest
 
 
 @njit(cache=True, nogil=True)
@@ -104,19 +127,42 @@ def _partition(points, order, axis, first, last, middle):  # type: ignore[no-unt
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _box_distance(box, point):  # type: ignore[no-untyped-def]
-    """Squared distance from a point to a box, summed in the order of `_k_nearest`, so never too large."""
+def _box_distance(boxes, node, point, period, wraps):  # type: ignore[no-untyped-def]
+    """Squared distance from a point to a node's box, rounded like `_distance` in each step, so never too large."""
     total = 0.0
     for axis in range(point.shape[0]):
-        gap = max(box[0, axis] - point[axis], point[axis] - box[1, axis], 0.0)
+        to_low = boxes[node, 0, axis] - point[axis]
+        to_high = point[axis] - boxes[node, 1, axis]
+        gap = max(to_low, to_high, 0.0)
+        if wraps and gap > 0.0:
+            # The way round ends at the other side of the box.
+            gap = min(gap, period[axis] + min(to_low, to_high))
         total += gap * gap
     return total
 
 
+@njit(cache=True, nogil=True, inline="always")
+def _distance(points, i, j, period, wraps):  # type: ignore[no-untyped-def]
+    """Squared distance of two points, by number: a row of its own costs more than the sum."""
+    total = 0.0
+    # The test stands outside of the loop: without wrapping axes it would cost as much as the sum.
+    if wraps:
+        for axis in range(points.shape[1]):
+            gap = abs(points[i, axis] - points[j, axis])
+            gap = min(gap, period[axis] - gap)
+            total += gap * gap
+    else:
+        for axis in range(points.shape[1]):
+            gap = points[i, axis] - points[j, axis]
+            total += gap * gap
+    return total
+
+
 @njit(cache=True, nogil=True)
-def _k_nearest(points, order, boxes, k, leaf_size):  # type: ignore[no-untyped-def]
-    n, d = points.shape
-    nearest = np.empty((n, k), dtype=np.int32)
+def _k_nearest(points, period, order, boxes, lowest, k, earlier, leaf_size):  # type: ignore[no-untyped-def]
+    n = points.shape[0]
+    wraps = np.isfinite(period).any()
+    nearest = np.full((n, k), -1, dtype=np.int32)
     distance = np.empty(k)
     # The depth of the tree bounds the stack: two entries a level.
     nodes = np.empty(128, dtype=np.int64)
@@ -128,19 +174,20 @@ def _k_nearest(points, order, boxes, k, leaf_size):  # type: ignore[no-untyped-d
         query = order[position]
         point = points[query]
         found = nearest[query]
+        end = query if earlier else n
         count = 0
         nodes[0], firsts[0], lasts[0], bounds[0] = 0, 0, n, 0.0
         top = 1
         while top > 0:
             top -= 1
             node, first, last = nodes[top], firsts[top], lasts[top]
-            if count == k and bounds[top] > distance[k - 1]:
+            if (count == k and bounds[top] > distance[k - 1]) or lowest[node] >= end:
                 continue
             if 2 * node + 2 < boxes.shape[0]:
                 middle = (first + last) // 2
                 left, right = 2 * node + 1, 2 * node + 2
-                to_left = _box_distance(boxes[left], point)
-                to_right = _box_distance(boxes[right], point)
+                to_left = _box_distance(boxes, left, point, period, wraps)
+                to_right = _box_distance(boxes, right, point, period, wraps)
                 nearer_last = to_right < to_left
                 for turn in range(2):
                     # The nearer child is pushed last, so that it is visited first.
@@ -152,12 +199,9 @@ def _k_nearest(points, order, boxes, k, leaf_size):  # type: ignore[no-untyped-d
                 continue
             for i in range(first, last):
                 other = order[i]
-                if other == query:
+                if other == query or other >= end:
                     continue
-                total = 0.0
-                for axis in range(d):
-                    gap = points[other, axis] - point[axis]
-                    total += gap * gap
+                total = _distance(points, other, query, period, wraps)
                 if count == k and (
                     total > distance[k - 1] or (total == distance[k - 1] and other > found[k - 1])
                 ):
@@ -176,8 +220,9 @@ def _k_nearest(points, order, boxes, k, leaf_size):  # type: ignore[no-untyped-d
 
 
 @njit(cache=True, nogil=True)
-def _pairs_within(points, order, boxes, radius, leaf_size):  # type: ignore[no-untyped-def]
-    n, d = points.shape
+def _pairs_within(points, period, order, boxes, radius, leaf_size):  # type: ignore[no-untyped-def]
+    n = points.shape[0]
+    wraps = np.isfinite(period).any()
     limit = radius * radius
     pairs = np.empty((max(16, 4 * n), 2), dtype=np.int32)
     count = 0
@@ -186,7 +231,7 @@ def _pairs_within(points, order, boxes, radius, leaf_size):  # type: ignore[no-u
         stack = [(0, 0, n)]
         while stack:
             node, first, last = stack.pop()
-            if _box_distance(boxes[node], point) > limit:
+            if _box_distance(boxes, node, point, period, wraps) > limit:
                 continue
             if 2 * node + 2 < boxes.shape[0]:
                 middle = (first + last) // 2
@@ -197,11 +242,7 @@ def _pairs_within(points, order, boxes, radius, leaf_size):  # type: ignore[no-u
                 other = order[i]
                 if other <= query:
                     continue
-                total = 0.0
-                for axis in range(d):
-                    gap = points[other, axis] - point[axis]
-                    total += gap * gap
-                if total <= limit:
+                if _distance(points, other, query, period, wraps) <= limit:
                     if count == pairs.shape[0]:
                         grown = np.empty((2 * count, 2), dtype=np.int32)
                         grown[:count] = pairs
