@@ -1,5 +1,9 @@
 """Worlds: which configurations and motions are free, in batches."""
 
+from evenroad.world.corridor import Corridor as Corridor
+from evenroad.world.corridor import hypercube_legacy6 as hypercube_legacy6
+from evenroad.world.counting import Counting as Counting
+from evenroad.world.function import FunctionWorld as FunctionWorld
 from evenroad.world.gridmap import GridMap as GridMap
 from evenroad.world.gridmap import MapFrame as MapFrame
 from evenroad.world.gridmap import load_map as load_map

@@ -1,0 +1,53 @@
+"""In which order the states of motions are looked at: halves, quarters, eighths, all motions together.
+
+A motion of n segments has the states 1 .. n - 1 between its ends.  Level l holds the multiples of n / 2^l,
+rounded down, that no level before it held: van der Corput's order, taken level by level.  A motion that is
+blocked somewhere is thus found out after few states, long before a walk from one end would come there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+
+_STATES_AT_ONCE = 65536
+"""States handed out at a time: many enough to hide the cost of a call, few enough to stay in memory."""
+
+
+def between_ends(
+    segments: npt.NDArray[np.int64], open_motions: npt.NDArray[np.bool_]
+) -> Iterator[tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]]:
+    """Yield the states of all motions level by level, as the motions' indices and the states' numbers.
+
+    Parameters
+    ----------
+    segments : int64 array, shape (m,)
+        In how many segments each motion is divided, below 2^31.
+    open_motions : bool array, shape (m,)
+        Which motions are still of interest.  The caller may clear entries between two steps; no further
+        states of those motions are then yielded.
+
+    Yields
+    ------
+    motion, state : int64 arrays of one length
+        State k of n lies a fraction k / n along its motion.  All levels together hold each state once.
+    """
+    level = 1
+    while True:
+        per_motion = 1 << (level - 1)
+        motions = np.flatnonzero(open_motions & (segments > per_motion))
+        if len(motions) == 0:
+            return
+        for start in range(0, len(motions) * per_motion, _STATES_AT_ONCE):
+            place = np.arange(start, min(start + _STATES_AT_ONCE, len(motions) * per_motion))
+            motion, multiple = motions[place // per_motion], 2 * (place % per_motion) + 1
+            count = segments[motion]
+            state = (multiple * count) >> level
+            # Rounded down, an odd multiple may fall on an even one beside it, which has another level.
+            before, after = ((multiple - 1) * count) >> level, ((multiple + 1) * count) >> level
+            wanted = (before < state) & (state < after) & open_motions[motion]
+            if wanted.any():
+                yield motion[wanted], state[wanted]
+        level += 1

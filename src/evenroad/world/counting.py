@@ -1,0 +1,55 @@
+"""Counting: a world that keeps count of what it is asked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.space import Space
+from evenroad.world.protocol import Explains, World
+
+
+@dataclass(eq=False)
+class Counting:
+    """Another world's answers, with a count of the questions.  Not for several threads at once.
+
+    Parameters
+    ----------
+    world : World
+        The world that answers.
+
+    Attributes
+    ----------
+    configurations : int
+        How many configurations `valid` was asked for.
+    motions : int
+        How many motions `motion_valid` was asked for; the states inside them are not configurations here.
+    """
+
+    world: World
+    configurations: int = 0
+    motions: int = 0
+
+    def __post_init__(self) -> None:
+        # An attribute, and only where the world has it, so that Explains holds of both or of neither.
+        if isinstance(self.world, Explains):
+            self.explain = self.world.explain
+
+    @property
+    def space(self) -> Space:
+        """The world's space."""
+        return self.world.space
+
+    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Return the world's `valid`; each row counts as a configuration."""
+        answer = self.world.valid(q)
+        self.configurations += len(answer)
+        return answer
+
+    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Return the world's `motion_valid`; each row counts as a motion."""
+        answer = self.world.motion_valid(a, b)
+        self.motions += len(answer)
+        return answer

@@ -1,0 +1,181 @@
+"""FunctionWorld: a world out of a user's own function."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._checks import require_positive
+from evenroad.errors import InvalidValue
+from evenroad.space import Product, Space
+from evenroad.space.axes import as_row
+from evenroad.space.batch import as_batch, as_batch_pair
+from evenroad.world.bisection import between_ends
+
+_MOST_SEGMENTS = 2**30
+"""More of them in one motion would take hours: then the resolution is a slip."""
+
+
+@dataclass(frozen=True, eq=False)
+class FunctionWorld:
+    """The configurations that a function calls free, and motions that are free at states close together.
+
+    A motion is divided into ``n = ceil(distance / resolution)`` segments of one length and free if all
+    n + 1 ends of segments are: the states of OMPL's DiscreteMotionValidator, which takes the first of them
+    for granted.  What lies between two states is not seen, so the resolution should be small beside the
+    thinnest obstacle.  The ends come first, then halves, quarters and so on (van der Corput's order), and a
+    motion is given up at the first state found blocked.  All motions of a batch advance together, so that
+    a vectorised function is called few times, with many states.
+
+    Parameters
+    ----------
+    space : Space
+        Where the configurations live.  What it does not contain is not free; the function is not asked.
+    is_valid : callable
+        Vectorised: from configurations, a read-only float64 (n, dim) array, to a bool array (n,).  Else: from
+        one configuration (dim,) to a bool.  Must give equal answers to equal configurations.
+    resolution : float, or a sequence of floats for a Product
+        The largest distance between neighbouring states, > 0, in the space's metric.  Several: one for each
+        part in the part's own metric; n is then the largest that any part asks for.
+    vectorised : bool
+        Whether `is_valid` takes many configurations at once.
+
+    Raises
+    ------
+    InvalidValue
+        If `is_valid` cannot be called, or `resolution` is not of that kind.
+    """
+
+    space: Space
+    is_valid: Callable[[npt.NDArray[np.float64]], Any]
+    resolution: float | Sequence[float]
+    vectorised: bool = True
+
+    def __post_init__(self) -> None:
+        if not callable(self.is_valid):
+            raise InvalidValue(f"is_valid must be a function, got {self.is_valid!r}")
+        object.__setattr__(self, "resolution", _as_resolution(self.resolution, self.space))
+
+    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Return which configurations, (n, dim), the space contains and the function calls free: (n,).
+
+        Raises
+        ------
+        InvalidValue
+            If `q` has another shape or an entry that is not finite, or the function's answer is not of the
+            kind described above.
+        """
+        batch = as_batch("q", q, self.space.dim)
+        free = self.space.contains(batch)
+        inside = np.flatnonzero(free)
+        self._clear_blocked(free, inside, batch[inside])
+        return free
+
+    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
+
+        Raises
+        ------
+        InvalidValue
+            As `valid`; if the two differ in length; or if a motion has more than 2^30 states.
+        """
+        first, second = as_batch_pair(a, b, self.space.dim)
+        free = self.valid(first)
+        free[free] = self.valid(second[free])
+        segments = np.zeros(len(free), dtype=np.int64)
+        segments[free] = self._segments(first[free], second[free])
+        start, end = _in_fixed_order(first, second)
+        for motion, state in between_ends(segments, free):
+            fraction = state / segments[motion]
+            states = self.space.interpolate(start[motion], end[motion], fraction)
+            self._clear_blocked(free, motion, states)
+        return free
+
+    def explain(self, q: npt.NDArray[np.float64]) -> str:
+        """Return in words why one configuration, (dim,), is not free."""
+        if not self.space.contains(np.asarray(q, dtype=np.float64)[np.newaxis])[0]:
+            return "it lies outside the bounds of the space"
+        return f"{_name_of(self.is_valid)} does not call it free"
+
+    def _segments(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
+        if isinstance(self.resolution, float):
+            segments = np.ceil(self.space.distance(a, b) / self.resolution)
+        else:
+            assert isinstance(self.space, Product)  # as __post_init__ has seen to
+            lengths = np.column_stack(self.space.part_distances(a, b))
+            segments = np.ceil(lengths / np.array(self.resolution)).max(axis=1)
+        if (segments > _MOST_SEGMENTS).any():
+            raise InvalidValue(
+                f"resolution must be larger: {self.resolution!r} divides a motion into {segments.max():.3g}"
+                f" segments, more than 2^30"
+            )
+        return segments.astype(np.int64)
+
+    def _clear_blocked(
+        self,
+        free: npt.NDArray[np.bool_],
+        owner: npt.NDArray[np.int64],
+        states: npt.NDArray[np.float64],
+    ) -> None:
+        """Set ``free[owner[i]]`` to False for every state i that the function does not call free."""
+        if len(states) == 0:
+            return
+        states = states.view()
+        states.setflags(write=False)
+        if self.vectorised:
+            free[owner[~self._ask(states)]] = False
+            return
+        for i, state in zip(owner, states, strict=True):
+            if free[i]:
+                free[i] = self._ask_one(state)
+
+    def _ask(self, states: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        answer = np.asarray(self.is_valid(states))
+        if answer.shape != (len(states),) or answer.dtype != np.bool_:
+            raise InvalidValue(
+                f"{_name_of(self.is_valid)} must return a bool array of shape ({len(states)},) for"
+                f" configurations of shape {states.shape}, got {answer.dtype} of shape {answer.shape};"
+                " pass vectorised=False if it takes one configuration at a time"
+            )
+        return answer
+
+    def _ask_one(self, state: npt.NDArray[np.float64]) -> bool:
+        answer = self.is_valid(state)
+        if not isinstance(answer, bool | np.bool_):
+            raise InvalidValue(
+                f"{_name_of(self.is_valid)} must return a bool for one configuration, got {answer!r}"
+            )
+        return bool(answer)
+
+
+def _as_resolution(resolution: object, space: Space) -> float | tuple[float, ...]:
+    if not isinstance(resolution, Sequence | np.ndarray) or isinstance(resolution, str):
+        return require_positive("resolution", resolution)
+    if not isinstance(space, Product):
+        raise InvalidValue(
+            f"resolution must be one number, unless the space is a Product, got {resolution!r}"
+        )
+    row = as_row("resolution", list(resolution), len(space.parts))
+    for value in row:
+        require_positive("resolution", value)
+    return row
+
+
+def _in_fixed_order(
+    a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Return the ends with the smaller (in dictionary order) first.
+
+    States are rounded: without a fixed order a motion and its reverse could be judged differently.
+    """
+    first_difference = (a != b).argmax(axis=1)[:, np.newaxis]
+    swap = np.take_along_axis(a, first_difference, axis=1) > np.take_along_axis(b, first_difference, axis=1)
+    return np.where(swap, b, a), np.where(swap, a, b)
+
+
+def _name_of(function: Callable[..., Any]) -> str:
+    return getattr(function, "__name__", repr(function))

@@ -1,0 +1,248 @@
+"""FunctionWorld: the states it asks for, their order, how many calls, and answers that are none."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from evenroad.errors import InvalidValue
+from evenroad.space import SE2, SE3, Box, Circle, JointSpace, Product
+from evenroad.testing import WorldContract
+from evenroad.world import Corridor, Explains, FunctionWorld
+from evenroad.world.bisection import between_ends
+
+SQUARE = Box([0.0, 0.0], [1.0, 1.0])
+
+
+def outside_a_disk(q):
+    return np.hypot(q[:, 0] - 0.5, q[:, 1] - 0.5) > 0.3
+
+
+class TestVectorisedFunction(WorldContract):
+    world = FunctionWorld(SQUARE, outside_a_disk, 0.01)
+    free_between = False
+
+
+class TestFunctionOfOneConfiguration(WorldContract):
+    world = FunctionWorld(SQUARE, lambda q: math.dist(q, (0.5, 0.5)) > 0.3, 0.01, vectorised=False)
+    free_between = False
+
+
+class TestFunctionOfPosesInThePlane(WorldContract):
+    world = FunctionWorld(SE2([0, 0], [1, 1]), lambda q: np.cos(q[:, 2]) + q[:, 0] > 0.2, 0.03)
+    free_between = False
+
+
+class TestFunctionOfPosesInSpace(WorldContract):
+    """Two resolutions, as the SE(3) puzzles have."""
+
+    world = FunctionWorld(
+        SE3([0, 0, 0], [1, 1, 1]), lambda q: np.abs(q[:, 3]) + q[:, 0] > 0.4, (0.02, 0.01 * math.pi / 2)
+    )
+    free_between = False
+
+
+class Asked:
+    """A function that calls everything free but what it is told, and remembers what it was asked."""
+
+    def __init__(self, is_free=lambda q: np.ones(len(q), dtype=bool)):
+        self.is_free = is_free
+        self.batches = []
+
+    def __call__(self, q):
+        self.batches.append(q.copy())
+        return self.is_free(q)
+
+    @property
+    def states(self):
+        return np.concatenate(self.batches)
+
+
+def levels(n):
+    return [state.tolist() for _, state in between_ends(np.array([n]), np.array([True]))]
+
+
+def test_states_come_in_halves_then_quarters_then_eighths():
+    assert levels(8) == [[4], [2, 6], [1, 3, 5, 7]]
+    assert levels(5) == [[2], [1, 3], [4]]
+    assert levels(2) == [[1]]
+    assert levels(1) == levels(0) == []
+
+
+@given(n=st.integers(1, 3000))
+def test_each_state_between_the_ends_comes_once_and_every_level_halves_the_gaps(n):
+    seen = [0, n]
+    for level, states in enumerate(levels(n), start=1):
+        seen += states
+        assert np.diff(np.sort(seen)).max() <= math.ceil(n / 2**level)
+    assert sorted(seen) == list(range(n + 1))
+
+
+def test_a_motion_too_long_for_one_batch_is_handed_out_in_parts():
+    batches = list(between_ends(np.array([300_000, 300_000]), np.array([True, True])))
+    for motion in (0, 1):
+        states = np.concatenate([state[owner == motion] for owner, state in batches])
+        np.testing.assert_array_equal(np.sort(states), np.arange(1, 300_000))
+    assert max(len(state) for _, state in batches) <= 65536
+
+
+@pytest.mark.parametrize("length", [0.0, 0.05, 0.1, 0.101, 0.75])
+def test_states_are_those_of_the_protocol(length):
+    asked = Asked()
+    world = FunctionWorld(Box([0.0], [1.0]), asked, 0.1)
+    assert world.motion_valid([[0.0]], [[length]])[0]
+    n = max(1, math.ceil(length / 0.1))
+    np.testing.assert_allclose(np.sort(asked.states[:, 0]), np.linspace(0.0, length, n + 1), atol=1e-15)
+
+
+def test_neighbouring_states_are_at_most_the_resolution_apart_in_the_metric_of_the_space():
+    space = JointSpace([-math.pi, 0.0], [math.pi, 5.0], wrapping=[True, False], weights=[1.0, 3.0])
+    asked = Asked()
+    a, b = np.array([[3.0, 1.0]]), np.array([[-2.0, 2.0]])
+    FunctionWorld(space, asked, 0.07).motion_valid(a, b)
+    along = asked.states[np.argsort(asked.states[:, 1])]
+    steps = space.distance(along[:-1], along[1:])
+    assert len(steps) == math.ceil(space.distance(a, b)[0] / 0.07)
+    np.testing.assert_allclose(steps, space.distance(a, b)[0] / len(steps))
+
+
+def test_with_a_resolution_a_part_the_finer_division_counts():
+    asked = Asked()
+    space = Product([Box([0.0], [10.0]), Circle()])
+    world = FunctionWorld(space, asked, [0.5, 0.1])
+    for b, n in (([4.0, 0.0], 8), ([4.0, 1.05], 11), ([0.0, 0.35], 4)):
+        asked.batches.clear()
+        world.motion_valid([[0.0, 0.0]], [b])
+        assert len(asked.states) == n + 1
+
+
+def test_a_blocked_middle_is_found_with_the_third_state():
+    asked = Asked(lambda q: np.abs(q[:, 0] - 0.5) > 0.01)
+    world = FunctionWorld(SQUARE, asked, 0.001)
+    assert not world.motion_valid([[0.0, 0.0]], [[1.0, 0.0]])[0]
+    assert len(asked.states) == 3
+
+
+def test_a_blocked_end_is_found_before_any_state_between():
+    asked = Asked(lambda q: q[:, 0] > 0.5)
+    world = FunctionWorld(SQUARE, asked, 0.001)
+    assert not world.motion_valid([[0.0, 0.0]], [[1.0, 0.0]])[0]
+    assert len(asked.states) == 1
+    assert not world.motion_valid([[1.0, 0.0]], [[0.0, 0.0]])[0]
+    assert len(asked.states) == 3
+
+
+def test_one_configuration_at_a_time_nothing_is_asked_after_the_first_blocked_state():
+    asked = []
+
+    def free(q):
+        asked.append(q[0])
+        return not 0.2 < q[0] < 0.3
+
+    world = FunctionWorld(SQUARE, free, 1 / 64, vectorised=False)
+    assert not world.motion_valid([[0.0, 0.0]], [[1.0, 0.0]])[0]
+    assert asked == [0.0, 1.0, 0.5, 0.25]
+
+
+def test_motions_of_a_batch_share_the_calls():
+    rng = np.random.default_rng(0)
+    asked = Asked(outside_a_disk)
+    a, b = rng.random((500, 2)), rng.random((500, 2))
+    FunctionWorld(SQUARE, asked, 0.01).motion_valid(a, b)
+    assert len(asked.batches) <= 2 + math.ceil(math.log2(math.sqrt(2) / 0.01))
+
+
+def test_a_corridor_as_a_function_gives_what_the_corridor_gives():
+    world = Corridor(3, 0.3)
+    q = np.random.default_rng(1).random((20_000, 3))
+    q = q[world.valid(q)][:600]
+    function = FunctionWorld(world.space, world.valid, world.resolution)
+    motions = q, np.roll(q, 1, axis=0)
+    np.testing.assert_array_equal(function.motion_valid(*motions), world.motion_valid(*motions))
+
+
+def test_outside_the_space_nothing_is_free_and_the_function_is_not_asked():
+    asked = Asked()
+    world = FunctionWorld(SQUARE, asked, 0.1)
+    assert world.valid([[0.5, 0.5], [1.5, 0.5], [0.5, -1e9]]).tolist() == [True, False, False]
+    assert asked.states.tolist() == [[0.5, 0.5]]
+    assert not world.motion_valid([[0.5, 0.5]], [[0.5, 2.0]])[0]
+
+
+def test_a_function_cannot_write_into_the_callers_configurations():
+    def careless(q):
+        q += 1.0
+        return np.ones(len(q), dtype=bool)
+
+    with pytest.raises(ValueError, match="read-only"):
+        FunctionWorld(SQUARE, careless, 0.1).valid(np.zeros((2, 2)))
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [
+        lambda q: True,
+        lambda q: np.ones(len(q)),
+        lambda q: np.ones(len(q), dtype=int),
+        lambda q: np.ones((len(q), 1), dtype=bool),
+        lambda q: np.ones(len(q) + 1, dtype=bool),
+        lambda q: None,
+    ],
+)
+def test_a_vectorised_answer_that_is_none_is_refused_and_the_function_named(answer):
+    def my_checker(q):
+        return answer(q)
+
+    with pytest.raises(InvalidValue, match=r"my_checker must return a bool array of shape \(2,\)"):
+        FunctionWorld(SQUARE, my_checker, 0.1).valid([[0.1, 0.2], [0.3, 0.4]])
+
+
+@pytest.mark.parametrize("answer", [1, None, np.array([True]), "free"])
+def test_an_answer_for_one_configuration_that_is_none_is_refused(answer):
+    def my_checker(q):
+        return answer
+
+    with pytest.raises(InvalidValue, match="my_checker must return a bool for one"):
+        FunctionWorld(SQUARE, my_checker, 0.1, vectorised=False).valid([[0.1, 0.2]])
+
+
+def test_errors_of_the_function_itself_come_through():
+    def broken(q):
+        raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        FunctionWorld(SQUARE, broken, 0.1).valid([[0.1, 0.2]])
+
+
+def test_why_a_configuration_is_not_free_is_said():
+    world = FunctionWorld(SQUARE, outside_a_disk, 0.1)
+    assert isinstance(world, Explains)
+    assert "bounds" in world.explain(np.array([2.0, 0.0]))
+    assert "outside_a_disk" in world.explain(np.array([0.5, 0.5]))
+
+
+@pytest.mark.parametrize("resolution", [0.0, -1.0, math.nan, math.inf, "fine", None, [0.1], (0.1, 0.1)])
+def test_a_resolution_that_is_none_is_refused(resolution):
+    with pytest.raises(InvalidValue, match="resolution"):
+        FunctionWorld(SQUARE, outside_a_disk, resolution)
+
+
+@pytest.mark.parametrize("resolution", [[0.1], [0.1, 0.0], [0.1, 0.1, 0.1], ["a", "b"]])
+def test_resolutions_must_be_one_a_part(resolution):
+    with pytest.raises(InvalidValue, match="resolution"):
+        FunctionWorld(SE2([0, 0], [1, 1]), outside_a_disk, resolution)
+
+
+def test_a_resolution_far_too_small_is_an_error_and_no_endless_wait():
+    world = FunctionWorld(SQUARE, outside_a_disk, 1e-12)
+    with pytest.raises(InvalidValue, match="resolution must be larger"):
+        world.motion_valid([[0.0, 0.0]], [[0.0, 1.0]])
+
+
+def test_what_is_no_function_is_refused():
+    with pytest.raises(InvalidValue, match="is_valid"):
+        FunctionWorld(SQUARE, np.ones(3), 0.1)
