@@ -37,8 +37,10 @@ DRAWS = {
     "halton scrambled": lambda n, run: draw("halton", n, 2, rng=run),
     "sobol paper-blocks": lambda n, run: paper_block(Sobol(), run + 1, n).draw(n, 2),
     "sobol scrambled": lambda n, run: draw("sobol", n, 2, rng=run),
-    "hickernell": lambda n, run: draw("hickernell", n, 2, rng=run),
     "lattice": lambda n, run: draw("lattice", n, 2, rng=run),
+    "korobov": lambda n, run: draw("korobov", n, 2, rng=run),
+    "hickernell": lambda n, run: draw("hickernell", n, 2, rng=run),
+    "even": lambda n, run: draw("even", n, 2, rng=run),
 }
 
 
@@ -107,7 +109,8 @@ def picture(rows: list[Row], path: Path) -> None:
         "halton": ("#1b9e5a", "-", "s"),
         "sobol": ("#2f5fd0", "-", "^"),
     }
-    styles |= {"hickernell": ("#d1343b", "-", "D"), "lattice": ("#e6a23c", "-", "v")}
+    styles |= {"hickernell": ("#b07ad1", "-", "D"), "lattice": ("#e6a23c", "-", "v")}
+    styles |= {"korobov": ("#8a5a2b", "-", "P"), "even": ("#d1343b", "-", "*")}
     for axes, level in zip(panels, LEVELS, strict=True):
         for sampler in DRAWS:
             colour, line, marker = styles[sampler.split()[0]]
@@ -132,7 +135,7 @@ def picture(rows: list[Row], path: Path) -> None:
         axes.set_title(f"maze level {level}, k = 10 symmetrised")
         axes.grid(alpha=0.3)
     panels[0].set_ylabel("success [%]")
-    panels[0].legend(fontsize=8, loc="upper left")
+    panels[-1].legend(fontsize=8, loc="upper left")
     figure.savefig(path)
 
 

@@ -23,6 +23,9 @@ from evenroad.points.measures import MEASURES, separation
 from evenroad.points.optimise import anneal_many
 from evenroad.points.pointset import BELOW_ONE, PointSet
 
+NETWORK_WIDTH = 64
+"""Half the usual width takes a third of the time a step; in equal time on a CPU its sets are better."""
+
 MEASURED: dict[str, Callable[[npt.NDArray[np.float64]], float]] = {
     "hickernell_rooted": MEASURES["hickernell"].rooted,
     "star_rooted": MEASURES["star"].rooted,
@@ -61,7 +64,13 @@ def _train(recipe: Recipe, work: Path, jobs: int, progress: LineProgress) -> tup
     from evenroad.points.network import NetworkConfig, train
 
     config = NetworkConfig(
-        n=recipe.n, d=recipe.d, objective=recipe.objective, sets=recipe.sets, steps=recipe.steps, seed=SEED
+        n=recipe.n,
+        d=recipe.d,
+        objective=recipe.objective,
+        sets=recipe.sets,
+        width=NETWORK_WIDTH,
+        steps=recipe.steps,
+        seed=SEED,
     )
     return train(config, folder=work, callback=progress, threads=jobs)
 

@@ -91,5 +91,5 @@ def _steps(family: str, d: int, n: int) -> int:
 
 
 def _mpmc(d: int, n: int) -> Recipe:
-    # On a CPU a step of 16 sets of 1024 points takes over a second: smaller pools there.
-    return Recipe("mpmc", d, n, 16 if n <= 256 else 4, "hickernell", steps=5_000, method="network")
+    # On a CPU a step of 16 sets of 1024 points takes half a second: smaller pools there.
+    return Recipe("mpmc", d, n, 16 if n <= 256 else 4, "hickernell", steps=3_000, method="network")

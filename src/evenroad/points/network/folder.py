@@ -2,45 +2,21 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
-from evenroad._files import atomic_write
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.points.measures.terms import Array
 from evenroad.points.network.config import NetworkConfig
 from evenroad.points.npz import load_points, save_points
-from evenroad.points.optimise.set_task import REQUEST_FILE
+from evenroad.points.optimise.request import set_name
 from evenroad.points.pointset import Origin, PointSet
 
 
-def claim_folder(folder: Path, config: NetworkConfig) -> None:
-    """Write the request into `folder`, or check that the one already there is the same.
-
-    Raises
-    ------
-    InvalidValue
-        If the folder belongs to another request; the text names the first difference.
-    BrokenFile
-        If the folder is missing or cannot be written, or its request is not readable.
-    """
-    request = {"method": "network", **config.as_record()}
-    path = folder / REQUEST_FILE
-    if not path.exists():
-        with atomic_write(path) as file:
-            file.write(json.dumps(request, indent=1).encode())
-        return
-    try:
-        found = json.loads(path.read_bytes())
-    except (OSError, ValueError) as error:
-        raise BrokenFile(f"{path} is not readable as JSON: {error}") from None
-    for name, wanted in request.items():
-        there = found.get(name) if isinstance(found, dict) else None
-        if there != wanted:
-            raise InvalidValue(
-                f"{folder} holds sets with {name}={there!r}, asked for {name}={wanted!r}; use another folder"
-            )
+def request_of(config: NetworkConfig) -> dict[str, Any]:
+    """Return what the folder of a training says it was asked for."""
+    return {"method": "network", **config.as_record()}
 
 
 def point_sets(config: NetworkConfig, best_points: Array) -> tuple[PointSet, ...]:
@@ -79,8 +55,3 @@ def finished_sets(folder: Path, config: NetworkConfig) -> tuple[PointSet, ...] |
                 f"{folder / set_name(index)} holds another set ({points!r}); use another folder"
             )
     return sets
-
-
-def set_name(index: int) -> str:
-    """Return the name of the file of a set, the same as for annealed ones."""
-    return f"set-{index:04d}.npz"

@@ -10,10 +10,11 @@ from evenroad._checks import require_count, require_positive
 from evenroad.points.network.checkpoint import load_checkpoint, save_checkpoint
 from evenroad.points.network.config import NetworkConfig
 from evenroad.points.network.device import choose_device, same_bits
-from evenroad.points.network.folder import claim_folder, finished_sets, point_sets, save_sets
+from evenroad.points.network.folder import finished_sets, point_sets, request_of, save_sets
 from evenroad.points.network.state import MicroBatch, TrainingState, advance, first_state, is_finished
 from evenroad.points.optimise.anneal import Callback
 from evenroad.points.optimise.parse import parse_objective
+from evenroad.points.optimise.request import claim_folder
 from evenroad.points.pointset import PointSet
 
 
@@ -71,7 +72,7 @@ def train(
     require_positive("checkpoint_seconds", checkpoint_seconds, or_zero=True)
     home = None if folder is None else Path(folder)
     if home is not None:
-        claim_folder(home, config)
+        claim_folder(home, request_of(config))
         if resume and (sets := finished_sets(home, config)) is not None:
             return sets
     with same_bits(place, threads):

@@ -18,7 +18,8 @@ from evenroad.errors import InvalidValue
 from evenroad.points.optimise.anneal import Callback
 from evenroad.points.optimise.objective import Objective, require_points_for
 from evenroad.points.optimise.parse import parse_objective
-from evenroad.points.optimise.set_task import SetTask, claim_folder, finished_set, make_set
+from evenroad.points.optimise.request import claim_folder, set_name
+from evenroad.points.optimise.set_task import SetTask, finished_set, make_set, request_of
 from evenroad.points.pointset import PointSet
 
 _POLL_SECONDS = 0.2
@@ -97,12 +98,12 @@ def anneal_many(
             family=str(target) if family is None else family,
             seed=seed_of(rng),
             replica=i,
-            path=None if folder is None else str(Path(folder) / f"set-{i:04d}.npz"),
+            path=None if folder is None else str(Path(folder) / set_name(i)),
         )
         for i in range(sets)
     ]
     if folder is not None:
-        claim_folder(Path(folder), tasks[0])
+        claim_folder(Path(folder), request_of(tasks[0]))
     done = {task.replica: points for task in tasks if (points := finished_set(task)) is not None}
     missing = [task for task in tasks if task.replica not in done]
     already = steps * len(done)

@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-import json
 import os
 from dataclasses import asdict, dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from evenroad._files import atomic_write
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.points.npz import load_points, save_points
 from evenroad.points.optimise.anneal import Callback, anneal
 from evenroad.points.pointset import Origin, PointSet
-
-REQUEST_FILE = "request.json"
-"""What the sets of a folder have in common, beside them: sets of two requests never mix unnoticed."""
 
 
 @dataclass(frozen=True)
@@ -83,23 +77,7 @@ def finished_set(task: SetTask) -> PointSet | None:
     return points
 
 
-def claim_folder(folder: Path, task: SetTask) -> None:
-    """Write the request into `folder`, or check that the one already there is the same."""
+def request_of(task: SetTask) -> dict[str, Any]:
+    """Return what the sets of a folder have in common, whatever their number."""
     request = {name: asdict(task)[name] for name in ("n", "d", "objective", "steps", "family")}
-    request["entropy"] = str(task.entropy)
-    request["spawn_key"] = list(task.spawn_key[:-1])
-    path = folder / REQUEST_FILE
-    if not path.exists():
-        with atomic_write(path) as file:
-            file.write(json.dumps(request, indent=1).encode())
-        return
-    try:
-        found = json.loads(path.read_bytes())
-    except (OSError, ValueError) as error:
-        raise BrokenFile(f"{path} is not readable as JSON: {error}") from None
-    for name, wanted in request.items():
-        there = found.get(name) if isinstance(found, dict) else None
-        if there != wanted:
-            raise InvalidValue(
-                f"{folder} holds sets with {name}={there!r}, asked for {name}={wanted!r}; use another folder"
-            )
+    return {**request, "entropy": str(task.entropy), "spawn_key": list(task.spawn_key[:-1])}
