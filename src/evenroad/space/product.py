@@ -85,9 +85,10 @@ class Product:
     def distance(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """Return the combined, weighted distances of the rows of two (n, dim) arrays, (n,)."""
         assert self.weights is not None  # __post_init__ put numbers there
-        total = np.zeros(len(a))
-        for weight, own in zip(self.weights, self.part_distances(a, b), strict=True):
-            total = total + weight * own if self.combine == "sum" else np.hypot(total, weight * own)
+        lengths = [w * own for w, own in zip(self.weights, self.part_distances(a, b), strict=True)]
+        total = lengths[0]
+        for length in lengths[1:]:
+            total = total + length if self.combine == "sum" else np.hypot(total, length)
         return total
 
     def part_distances(

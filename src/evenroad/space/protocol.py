@@ -7,6 +7,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
+from evenroad.space.batch import as_batch
 from evenroad.space.flat import FlatMetric
 
 
@@ -39,7 +40,7 @@ class Space(Protocol):
 
     def contains(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
         """Return for each row of `q`, (n, dim), whether it lies in the space, bounds included: (n,)."""
-        return np.ones(len(q), dtype=np.bool_)
+        return np.ones(len(as_batch("q", q, self.dim)), dtype=np.bool_)
 
     def distance(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """Return the distance of each row of `a` from the same row of `b`: two (n, dim) arrays -> (n,)."""

@@ -184,12 +184,14 @@ class SpaceContract:
 
     def test_a_wrong_shape_is_refused(self) -> None:
         q, dim, cube_dim = self.configurations(4), self.space.dim, self.space.cube_dim
-        for wrong in (q[0], np.zeros((4, dim + 1)), q[np.newaxis]):
+        for wrong in (np.array(0.5), q[0], np.zeros((4, dim + 1)), q[np.newaxis]):
             with pytest.raises(InvalidValue):
                 self.space.distance(wrong, wrong)
             with pytest.raises(InvalidValue):
                 self.space.interpolate(wrong, wrong, 0.5)
-        for wrong in (np.zeros(cube_dim), np.zeros((4, cube_dim + 1))):
+            with pytest.raises(InvalidValue):
+                self.space.contains(wrong)
+        for wrong in (np.array(0.5), np.zeros(cube_dim), np.zeros((4, cube_dim + 1))):
             with pytest.raises(InvalidValue):
                 self.space.from_cube(wrong)
         with pytest.raises(InvalidValue):

@@ -43,7 +43,7 @@ class WorldContract:
         for answer in (self.world.valid(q), self.world.motion_valid(*self.motions())):
             assert answer.shape == (len(q),)
             assert answer.dtype == np.bool_
-            assert 0 < answer.sum() < len(q), "the contract needs both verdicts to mean anything"
+            assert 0 < int(answer.sum()) < len(q), "the contract needs both verdicts to mean anything"
 
     def test_a_batch_gives_what_its_rows_give(self) -> None:
         q, (a, b) = self.places(), self.motions()
