@@ -231,7 +231,7 @@ def test_a_resolution_that_is_none_is_refused(resolution):
         FunctionWorld(SQUARE, outside_a_disk, resolution)
 
 
-@pytest.mark.parametrize("resolution", [[0.1], [0.1, 0.0], [0.1, 0.1, 0.1], ["a", "b"]])
+@pytest.mark.parametrize("resolution", [np.array(0.1), [0.1], [0.1, 0.0], [0.1, 0.1, 0.1], ["a", "b"]])
 def test_resolutions_must_be_one_a_part(resolution):
     with pytest.raises(InvalidValue, match="resolution"):
         FunctionWorld(SE2([0, 0], [1, 1]), outside_a_disk, resolution)

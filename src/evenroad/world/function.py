@@ -159,7 +159,7 @@ def _as_resolution(resolution: object, space: Space) -> float | tuple[float, ...
         raise InvalidValue(
             f"resolution must be one number, unless the space is a Product, got {resolution!r}"
         )
-    row = as_row("resolution", list(resolution), len(space.parts))
+    row = as_row("resolution", list(np.atleast_1d(resolution)), len(space.parts))
     for value in row:
         require_positive("resolution", value)
     return row
