@@ -7,14 +7,17 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.errors import InvalidValue
+from evenroad.errors import UnknownName
 from evenroad.points.pointset import PointSet
-from evenroad.roadmap.result import PlanResult, Roadmap, Status
+from evenroad.roadmap.answer import count, not_connected, searched_graph, solved
+from evenroad.roadmap.cost import EdgeCost, edge_costs
+from evenroad.roadmap.ends import end_in_collision, read_ends, require_fitting
+from evenroad.roadmap.result import PlanResult
 from evenroad.roadmap.rules import KNearest, Rule
-from evenroad.roadmap.search import pieces, shortest_path
-from evenroad.roadmap.shortcut import path_length, shortcut
+from evenroad.roadmap.search import FREE, Graph, Ledger, Question, Ruler
+from evenroad.roadmap.search.find import FINDERS, find_any
 from evenroad.roadmap.stopwatch import Stopwatch
-from evenroad.world import Explains, World
+from evenroad.world import World
 
 
 def plan(
@@ -24,6 +27,10 @@ def plan(
     points: PointSet,
     *,
     rule: Rule | None = None,
+    search: str = "full",
+    lazy_milestones: bool = False,
+    success_only: bool = False,
+    edge_cost: EdgeCost | None = None,
     shorten: bool = True,
 ) -> PlanResult:
     """Find a short free path from start to goal over the given points.
@@ -38,6 +45,16 @@ def plan(
         Points of the unit cube; the space maps them to configurations.
     rule : Rule, optional
         Which pairs to try; default ``KNearest(10)``.
+    search : {"full", "lazy"}
+        Check every edge before the search, or only those that could lie on the shortest path.  Both find the
+        same path, bit for bit.
+    lazy_milestones : bool
+        Check milestones, too, only where they could lie on the path.  The rule then joins all points, valid or not,
+        so it is another roadmap than that of the valid ones alone.
+    success_only : bool
+        Only find out whether there is a path, with few checks; the one returned is not the shortest.
+    edge_cost : callable, optional
+        Cost of the motions between the rows of two (m, dim) arrays, at least their lengths; default: the length.
     shorten : bool
         Also shortcut the path (the raw one is kept).
 
@@ -49,80 +66,53 @@ def plan(
     Raises
     ------
     InvalidValue
-        If start, goal or points do not have the dimension of the space, or are not finite.
+        If start, goal or points do not have the dimension of the space, or are not finite, or an edge costs
+        less than its length.
+    UnknownName
+        If there is no such search.
     """
+    if search not in FINDERS:
+        raise UnknownName.among("search", search, FINDERS)
     rule = KNearest() if rule is None else rule
-    ends = _ends(start, goal, points, world.space.dim)
-    answer: dict[str, Any] = dict(start=ends[0], goal=ends[1], origin=points.origin, rule=str(rule))
+    find = find_any if success_only else FINDERS[search]
+    require_fitting(points, world.space)
+    ends = read_ends(start, goal, world.space.dim)
+    planner = f"prm {'any' if success_only else search}{' + lazy milestones' if lazy_milestones else ''}"
+    answer: dict[str, Any] = dict(
+        start=ends[0], goal=ends[1], origin=points.origin, rule=str(rule), planner=planner
+    )
     watch = Stopwatch()
 
     with watch("validity"):
         free_ends = world.valid(ends)
         if not free_ends.all():
-            return PlanResult(**_end_in_collision(free_ends, ends, world), **answer, seconds=watch.seconds)
-        samples = world.space.from_cube(points.points)
-        milestones = samples[world.valid(samples)]
+            return PlanResult(**end_in_collision(free_ends, ends, world), **answer, seconds=watch.seconds)
+        milestones = world.space.from_cube(points.points)
+        if not lazy_milestones:
+            milestones = milestones[world.valid(milestones)]
     configurations = np.concatenate([milestones, ends])
-    start_node, goal_node = len(milestones), len(milestones) + 1
     with watch("neighbours"):
         edges = rule.edges(configurations, world.space, ends=2)
-    with watch("motions"):
-        free = edges[world.motion_valid(configurations[edges[:, 0]], configurations[edges[:, 1]])]
+    ledger = Ledger(world, configurations, edges, watch)
+    ledger.node_states[len(milestones) if lazy_milestones else 0 :] = FREE
     with watch("search"):
-        lengths = world.space.distance(configurations[free[:, 0]], configurations[free[:, 1]])
-        to_goal = world.space.distance(configurations, np.broadcast_to(ends[1], configurations.shape))
-        way, cost = shortest_path(len(configurations), free, lengths, to_goal, start_node, goal_node)
+        costs = edge_costs(world.space, configurations, edges, edge_cost)
+        found = find(_question(ledger, costs), ledger)
 
-    counts = dict(points=points.n, valid=len(milestones), edges_checked=len(edges), edges_free=len(free))
-    answer |= dict(counts=counts, seconds=watch.seconds, roadmap=Roadmap(configurations, free))
-    if not way.size:
-        return PlanResult(**_not_connected(configurations, free, counts, rule), **answer)
-    path = milestone_path = configurations[way]
-    if shorten:
-        with watch("shortcut"):
-            path, counts["shortcut_motions"] = shortcut(milestone_path, world)
-    length = path_length(path, world.space)
-    message = f"path of length {length:.6g} with {len(path)} waypoints"
-    answer |= dict(path=path, milestone_path=milestone_path, cost=length, milestone_cost=cost)
-    return PlanResult(status=Status.SOLVED, message=message, **answer)
+    counts = count(points.n, ledger, 2 + (0 if lazy_milestones else points.n))
+    answer |= dict(counts=counts, roadmap=searched_graph(ledger))
+    if not found[0].size:
+        return not_connected(ledger, watch, **answer)
+    return solved(found, costs, ledger, watch, shorten=shorten, cost=edge_cost, **answer)
 
 
-def _ends(start: npt.ArrayLike, goal: npt.ArrayLike, points: PointSet, dim: int) -> npt.NDArray[np.float64]:
-    """Return start and goal as two rows, checked together with the dimension of the points."""
-    if points.d != dim:
-        raise InvalidValue(f"the points have d={points.d}, the space has {dim} dimensions")
-    rows = []
-    for name, value in (("start", start), ("goal", goal)):
-        try:
-            row = np.asarray(value, dtype=np.float64)
-        except (TypeError, ValueError):
-            row = np.empty(0)
-        if row.shape != (dim,) or not np.isfinite(row).all():
-            raise InvalidValue(f"{name} must be {dim} finite numbers, got {value!r}")
-        rows.append(row)
-    return np.stack(rows)
-
-
-def _end_in_collision(
-    free: npt.NDArray[np.bool_], ends: npt.NDArray[np.float64], world: World
-) -> dict[str, Any]:
-    end, name, status = (1, "goal", Status.GOAL_INVALID) if free[0] else (0, "start", Status.START_INVALID)
-    reason = f": {world.explain(ends[end])}" if isinstance(world, Explains) else ""
-    return {"status": status, "message": f"the {name} is in collision{reason}"}
-
-
-def _not_connected(
-    configurations: npt.NDArray[np.float64],
-    edges: npt.NDArray[np.int32],
-    counts: dict[str, int],
-    rule: Rule,
-) -> dict[str, Any]:
-    label = pieces(len(configurations), edges)
-    for end, name in ((-2, "start_piece"), (-1, "goal_piece")):
-        counts[name] = int(np.count_nonzero(label[:-2] == label[end]))
-    message = (
-        f"start reaches {counts['start_piece']} and goal {counts['goal_piece']} of {counts['valid']} valid"
-        f" milestones, and the two pieces do not meet (n={counts['points']}, {rule}): try n={2 * counts['points']}"
-        " or a larger k"
+def _question(ledger: Ledger, costs: npt.NDArray[np.float64]) -> Question:
+    """Return the search from the last but one node to the last."""
+    configurations = ledger.configurations
+    nodes = len(configurations)
+    ruler = Ruler.of(float(costs.max(initial=0.0)), nodes)
+    to_goal = ledger.world.space.distance(
+        configurations, np.broadcast_to(configurations[-1], configurations.shape)
     )
-    return dict(status=Status.NOT_CONNECTED, message=message)
+    graph = Graph.of(nodes, ledger.edges)
+    return Question(graph, ruler.weights(costs), ruler.bounds(to_goal), nodes - 2, nodes - 1)

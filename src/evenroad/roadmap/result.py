@@ -18,16 +18,17 @@ class Status(StrEnum):
     START_INVALID = "start_invalid"
     GOAL_INVALID = "goal_invalid"
     NOT_CONNECTED = "not_connected"
+    BUDGET_SPENT = "budget_spent"
 
 
 @dataclass(frozen=True, eq=False)
-class Roadmap:
-    """The milestones and free motions of one query, as they were searched.
+class SearchedGraph:
+    """The milestones and motions known to be free in one query: what pictures show.
 
     Attributes
     ----------
     configurations : ndarray, shape (v, dim)
-        Valid milestones, then start, then goal.
+        Milestones not known to be invalid, then start, then goal.
     edges : ndarray of int32, shape (m, 2)
         Motions found free, as pairs of rows, smaller first.
     """
@@ -43,7 +44,7 @@ class PlanResult:
     Attributes
     ----------
     status : Status
-        ``solved``, ``start_invalid``, ``goal_invalid`` or ``not_connected``.
+        ``solved``, ``start_invalid``, ``goal_invalid``, ``not_connected`` or ``budget_spent``.
     message : str
         One sentence for people: what happened and, without a path, what to try.
     start, goal : ndarray, shape (dim,)
@@ -53,18 +54,23 @@ class PlanResult:
     milestone_path : ndarray, shape (q, dim), or None
         The shortest path along the roadmap, before shortcutting.
     cost, milestone_cost : float or None
-        Lengths of the two in the metric of the space.
+        Of the two: lengths in the metric of the space, or the user's edge costs.
     counts : dict of str to int
-        ``points``, ``valid``, ``edges_checked``, ``edges_free``, ``shortcut_motions`` and, when not connected,
-        ``start_piece`` and ``goal_piece`` (milestones that each end can reach).
+        ``points`` (N), ``valid`` (milestones known to be valid), ``configurations_checked`` (without those inside
+        of motions), ``edges_considered``, ``edges_checked``, ``edges_free`` (known to be),
+        ``shortcut_motions`` and, when not connected, ``start_piece`` and ``goal_piece`` (milestones that each
+        end can reach over what is not known to be blocked).
     seconds : dict of str to float
         Wall time of each phase: ``validity``, ``neighbours``, ``motions``, ``search``, ``shortcut``.
     origin : Origin
         Where the points came from.
     rule : str
         The connection rule, by name.
-    roadmap : Roadmap or None
-        What was searched; None when start or goal is invalid.
+    planner : str
+        Who searched: ``prm full``, ``prm lazy``, ``prm any`` (some path, not the shortest), each with
+        `` + lazy milestones`` where the rule joined all points, valid or not; ``fmt*``.
+    roadmap : SearchedGraph or None
+        What was searched; None when start or goal is invalid, and where a reused roadmap was asked.
     """
 
     status: Status
@@ -73,13 +79,14 @@ class PlanResult:
     goal: npt.NDArray[np.float64]
     origin: Origin
     rule: str
+    planner: str = "prm full"
     path: npt.NDArray[np.float64] | None = None
     milestone_path: npt.NDArray[np.float64] | None = None
     cost: float | None = None
     milestone_cost: float | None = None
     counts: dict[str, int] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)
-    roadmap: Roadmap | None = None
+    roadmap: SearchedGraph | None = None
 
     @property
     def solved(self) -> bool:

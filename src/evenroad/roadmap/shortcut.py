@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from evenroad.roadmap.cost import EdgeCost
 from evenroad.roadmap.search import shortest_path
 from evenroad.space import Space
 from evenroad.world import World
@@ -16,8 +17,10 @@ WORTH_WHILE = 1e-3
 """A round that shortens the path by less than this share ends the work."""
 
 
-def shortcut(path: npt.NDArray[np.float64], world: World) -> tuple[npt.NDArray[np.float64], int]:
-    """Return a path that is not longer, and whose every motion was reported free by `world`.
+def shortcut(
+    path: npt.NDArray[np.float64], world: World, cost: EdgeCost | None = None
+) -> tuple[npt.NDArray[np.float64], int]:
+    """Return a path that does not cost more, and whose every motion was reported free by `world`.
 
     Each round puts waypoints evenly along the path, joins every pair that `world` says can be joined, and takes
     the shortest way through them; its own waypoints are always among those offered, so a round never makes the
@@ -29,36 +32,48 @@ def shortcut(path: npt.NDArray[np.float64], world: World) -> tuple[npt.NDArray[n
         A path whose motions are free.
     world : World
         Whose ``motion_valid`` decides.
+    cost : callable, optional
+        What a motion costs; default: its length in the metric of the space.
 
     Returns
     -------
     path : ndarray, shape (q, dim)
-        From the same start to the same goal, not longer than the given one.
+        From the same start to the same goal.
     motions : int
         How many motions were checked.
     """
-    length = path_length(path, world.space)
+    cost = world.space.distance if cost is None else cost
+    length = _total(path, cost)
     checked = 0
     for _ in range(MAX_ROUNDS):
-        candidate, motions = _round(path, world)
+        candidate, motions = _round(path, world, cost)
         checked += motions
-        shorter = path_length(candidate, world.space)
+        shorter = _total(candidate, cost)
         if not shorter < length:
             break
         gain = length - shorter
         path, length = candidate, shorter
         if gain < WORTH_WHILE * length:
             break
-    path, motions = _drop_needless(path, world)
+    straighter, motions = _drop_needless(path, world)
+    # In a metric this never is longer; other costs may well prefer the waypoint.
+    if _total(straighter, cost) <= length * (1.0 + 1e-12):
+        path = straighter
     return path, checked + motions
 
 
 def path_length(path: npt.NDArray[np.float64], space: Space) -> float:
     """Return the length of a path of waypoints, shape (p, dim), in the metric of the space."""
-    return float(np.sum(space.distance(path[:-1], path[1:])))
+    return _total(path, space.distance)
 
 
-def _round(path: npt.NDArray[np.float64], world: World) -> tuple[npt.NDArray[np.float64], int]:
+def _total(path: npt.NDArray[np.float64], cost: EdgeCost) -> float:
+    return float(np.sum(cost(path[:-1], path[1:])))
+
+
+def _round(
+    path: npt.NDArray[np.float64], world: World, cost: EdgeCost
+) -> tuple[npt.NDArray[np.float64], int]:
     waypoints, own = _spread(path, world.space)
     first, second = np.triu_indices(len(waypoints), k=1)
     free = world.motion_valid(waypoints[first], waypoints[second])
@@ -66,7 +81,7 @@ def _round(path: npt.NDArray[np.float64], world: World) -> tuple[npt.NDArray[np.
     steps = np.stack([own[:-1], own[1:]], axis=1).astype(np.int32)
     # The path's own motions are known to be free; with them there always is a way.
     edges = np.concatenate([edges, steps])
-    lengths = world.space.distance(waypoints[edges[:, 0]], waypoints[edges[:, 1]])
+    lengths = cost(waypoints[edges[:, 0]], waypoints[edges[:, 1]])
     goal = len(waypoints) - 1
     to_goal = world.space.distance(waypoints, np.broadcast_to(waypoints[-1], waypoints.shape))
     way, _ = shortest_path(len(waypoints), edges, lengths, to_goal, 0, goal)

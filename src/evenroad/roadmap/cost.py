@@ -1,0 +1,49 @@
+"""What an edge costs: its length, or more."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.errors import InvalidValue
+from evenroad.space import Space
+
+EdgeCost: TypeAlias = Callable[[npt.NDArray[np.float64], npt.NDArray[np.float64]], npt.NDArray[np.float64]]
+"""Costs of the motions between the rows of two (m, dim) arrays, (m,); the same both ways, >= their lengths."""
+
+_ROUNDING = 1e-9
+"""A cost may be below the length by this share."""
+
+
+def edge_costs(
+    space: Space,
+    q: npt.NDArray[np.float64],
+    edges: npt.NDArray[np.int32],
+    cost: EdgeCost | None = None,
+) -> npt.NDArray[np.float64]:
+    """Return what the edges between rows of `q` cost, (m,): by default their lengths.
+
+    Raises
+    ------
+    InvalidValue
+        If `cost` returns another shape, or a cost that is not finite or below the length: the metric could then
+        not serve as a bound, and the path found would not be the cheapest.
+    """
+    a, b = q[edges[:, 0]], q[edges[:, 1]]
+    lengths = space.distance(a, b)
+    if cost is None:
+        return lengths
+    costs = np.asarray(cost(a, b), dtype=np.float64)
+    if costs.shape != lengths.shape:
+        raise InvalidValue(f"the edge cost must return shape {lengths.shape}, got {costs.shape}")
+    bad = ~(np.isfinite(costs) & (costs >= lengths * (1.0 - _ROUNDING)))
+    if bad.any():
+        i = int(np.flatnonzero(bad)[0])
+        raise InvalidValue(
+            f"the edge cost must be finite and at least the length: the motion from {a[i].tolist()} to"
+            f" {b[i].tolist()} has length {lengths[i]:.6g} and cost {costs[i]:.6g}"
+        )
+    return costs
