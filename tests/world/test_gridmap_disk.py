@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
+from evenroad.testing import WorldContract
 from evenroad.world import GridMap, MapFrame
 from evenroad.world.gridmap.disk import DiskWorld
 from tests.world.gridmap_oracle import distance_to_obstacles
-from tests.world.world_contract import WorldContract
 
 
 def empty(rows=40, cols=60):
@@ -28,17 +28,30 @@ def scattered():
     return np.random.default_rng(0).random((48, 64)) < 0.01
 
 
+TURNED = MapFrame(rows=48, cols=64, resolution=0.05, origin=(-3.0, 7.0), yaw=0.7, y_up=True)
+
+
 class TestDiskOnImage(WorldContract):
-    @pytest.fixture
-    def world(self):
-        return GridMap(scattered()).world(2.5)
+    world = GridMap(scattered()).world(2.5)
 
 
 class TestDiskOnTurnedRosMap(WorldContract):
-    @pytest.fixture
-    def world(self):
-        frame = MapFrame(rows=48, cols=64, resolution=0.05, origin=(-3.0, 7.0), yaw=0.7, y_up=True)
-        return GridMap(scattered(), frame).world(0.1, clearance=0.02)
+    world = GridMap(scattered(), TURNED).world(0.1, clearance=0.02)
+
+
+def test_the_text_of_an_error_names_the_place():
+    world = GridMap(scattered()).world(2.5)
+    q = world.space.from_cube(np.random.default_rng(0).random((10, 2)))
+    with pytest.raises(InvalidValue, match="shape"):
+        world.valid(q[0])
+    with pytest.raises(InvalidValue, match="length"):
+        world.motion_valid(q[:3], q[:4])
+    wrong = q.copy()
+    wrong[5, 0] = np.nan
+    with pytest.raises(InvalidValue, match=r"\[5, 0\]"):
+        world.valid(wrong)
+    with pytest.raises(InvalidValue, match="b must be finite"):
+        world.motion_valid(q, wrong)
 
 
 # ---- walls and gaps
