@@ -1,5 +1,11 @@
 """Roadmaps: points x space -> neighbour graph; x world -> plan."""
 
+from evenroad.roadmap.build import Roadmap as Roadmap
+from evenroad.roadmap.cost import EdgeCost as EdgeCost
+from evenroad.roadmap.npz import load_roadmap as load_roadmap
+from evenroad.roadmap.npz import load_world_roadmap as load_world_roadmap
+from evenroad.roadmap.npz import save_roadmap as save_roadmap
+from evenroad.roadmap.npz import save_world_roadmap as save_world_roadmap
 from evenroad.roadmap.plan import plan as plan
 from evenroad.roadmap.result import PlanResult as PlanResult
 from evenroad.roadmap.result import Status as Status
@@ -15,3 +21,4 @@ from evenroad.roadmap.rules import Rule as Rule
 from evenroad.roadmap.rules import TheoryRadius as TheoryRadius
 from evenroad.roadmap.rules import prm_star_gamma as prm_star_gamma
 from evenroad.roadmap.rules import rule_named as rule_named
+from evenroad.roadmap.world_roadmap import WorldRoadmap as WorldRoadmap

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -96,6 +97,12 @@ class DiskWorld:
         away = distance > 0.0
         nearest[away] = self.grid.frame.to_map(pixels[away])
         return nearest
+
+    def fingerprint(self) -> str:
+        """Return the SHA-256 (hex) of map, frame and radius: equal for two worlds that give the same verdicts."""
+        digest = hashlib.sha256(f"disk {self.radius!r} {self.grid.frame!r}".encode())
+        digest.update(self.grid.occupied.tobytes())
+        return digest.hexdigest()
 
     def explain(self, q: npt.NDArray[np.float64]) -> str:
         """Return in words how near an obstacle is to a disk at the map point `q`, (2,)."""

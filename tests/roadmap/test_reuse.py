@@ -1,0 +1,196 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from evenroad.errors import InvalidValue, UnknownName
+from evenroad.mazes import load_maze
+from evenroad.points import PointSet, draw
+from evenroad.roadmap import Complete, KNearest, Radius, Roadmap, Status
+from evenroad.roadmap.neighbours.newcomer import Surroundings, nearest_of
+from evenroad.space import Rectangle
+from evenroad.world import GridMap
+from tests.roadmap.spaces import Great, Torus
+from tests.roadmap.worlds import ChanceWorld
+
+SQUARE = ChanceWorld.space
+CORNERS = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)]
+
+
+@st.composite
+def reuses(draw_value):
+    """A roadmap, a chance world, and some queries between corners of the square."""
+    seed = draw_value(st.integers(0, 10**6))
+    random = np.random.default_rng(seed)
+    points = random.random((draw_value(st.integers(0, 40)), 2))
+    if draw_value(st.booleans()):
+        points = np.floor(points * 5) / 5
+    rule = draw_value(st.sampled_from([KNearest(4), KNearest(8), Radius(0.3), Complete()]))
+    world = ChanceWorld(seed, draw_value(st.sampled_from([1.0, 0.8])), draw_value(st.floats(0.3, 0.9)))
+    queries = [tuple(CORNERS[i] for i in random.integers(4, size=2)) for _ in range(6)]
+    return Roadmap.build(SQUARE, PointSet(points), rule), world, queries
+
+
+def _cheapest(roadmap, world, start, goal, lazy_milestones):
+    """The definition: both ends joined as the rule's reach says, and the least cost by Bellman and Ford."""
+    q = np.concatenate([roadmap.configurations, [start], [goal]])
+    n = len(roadmap.configurations)
+    valid = world.valid(q)
+    usable = np.ones(n, dtype=bool) if lazy_milestones else valid[:n]
+    reach = roadmap.rule.reach(n, roadmap.space)
+    edges = [tuple(edge) for edge in roadmap.edges.tolist()] + [(n, n + 1)]
+    for end in (n, n + 1):
+        away = np.hypot(*(q[:n] - q[end]).T)
+        near = [i for i in np.argsort(away, kind="stable") if usable[i]]
+        near = [i for i in near if reach.radius is None or away[i] <= reach.radius]
+        edges += [(int(i), end) for i in near[: reach.k]]
+    first, second = np.array(edges).T
+    free = world.motion_valid(q[first], q[second]) & valid[first] & valid[second]
+    cost = np.full(n + 2, np.inf)
+    cost[n] = 0.0
+    length = np.hypot(*(q[first] - q[second]).T)
+    for _ in q:
+        for i, j, step in zip(first[free], second[free], length[free], strict=True):
+            # Milestones on the way only: nothing goes on from the goal, or back to the start.
+            cost[i], cost[j] = min(cost[i], cost[j] + step), min(cost[j], cost[i] + step)
+    return cost[n + 1]
+
+
+@settings(max_examples=60, deadline=None)
+@given(reuses(), st.booleans())
+def test_a_query_finds_the_shortest_path_of_the_roadmap_and_its_two_ends(reuse, lazy_milestones):
+    roadmap, world, queries = reuse
+    known = roadmap.in_world(world, lazy_milestones=lazy_milestones)
+    for start, goal in queries:
+        result = known.query(start, goal)
+        expected = _cheapest(roadmap, world, start, goal, lazy_milestones)
+        assert result.solved == np.isfinite(expected)
+        if result.solved:
+            assert result.cost == pytest.approx(expected, abs=1e-12)
+            np.testing.assert_array_equal(result.path[[0, -1]], [start, goal])
+            assert world.motion_valid(result.path[:-1], result.path[1:]).all()
+
+
+@settings(max_examples=60, deadline=None)
+@given(reuses(), st.booleans(), st.sampled_from(["full", "lazy"]))
+def test_an_answer_does_not_depend_on_what_was_asked_before(reuse, lazy_milestones, search):
+    roadmap, world, queries = reuse
+    known = roadmap.in_world(world, lazy_milestones=lazy_milestones)
+    for start, goal in queries:
+        late = known.query(start, goal)
+        fresh = roadmap.in_world(world, lazy_milestones=lazy_milestones).query(start, goal, search=search)
+        assert late.status is fresh.status
+        assert late.counts["edges_checked"] <= fresh.counts["edges_checked"]
+        if late.solved:
+            assert late.path.tobytes() == fresh.path.tobytes()
+            assert late.cost == fresh.cost
+
+
+def test_no_edge_of_the_roadmap_is_asked_about_twice():
+    roadmap = Roadmap.build(SQUARE, draw("sobol", 64, 2), KNearest(6))
+    world = ChanceWorld(5, 0.9, 0.8)
+    known = roadmap.in_world(world)
+    assert world.asked_configurations == 64
+    for _ in range(2):
+        known.query(CORNERS[0], CORNERS[3], search="full")
+    asked = world.asked_motions
+    again = known.query(CORNERS[0], CORNERS[3])
+    assert world.asked_motions - asked == again.counts["edges_checked"] <= 13
+    assert again.counts["configurations_checked"] == 2
+    states = known.known
+    assert states["milestones_free"] + states["milestones_blocked"] == 64
+    assert states["edges_free"] + states["edges_blocked"] <= len(roadmap.edges)
+
+
+def test_a_roadmap_is_made_once_and_cannot_be_changed():
+    roadmap = Roadmap.build(SQUARE, draw("sobol", 64, 2))
+    assert str(roadmap.rule) == "k=20 symmetrised"
+    for array in (roadmap.configurations, roadmap.edges):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 0
+
+
+def test_one_roadmap_serves_several_worlds():
+    roadmap = Roadmap.build(SQUARE, draw("sobol", 64, 2))
+    assert not roadmap.in_world(ChanceWorld(1, 1.0, 0.0)).query(*CORNERS[::3]).solved
+    assert roadmap.in_world(ChanceWorld(1, 1.0, 1.0)).query(*CORNERS[::3]).solved
+
+
+def test_statuses_counts_and_names_of_a_query():
+    world = GridMap(np.eye(20, dtype=bool)).world(0.5)
+    known = Roadmap.build(world.space, draw("sobol", 64, 2), KNearest(8)).in_world(world)
+    assert known.query((0.2, 5), (5, 15)).status is Status.START_INVALID
+    assert known.query((5, 15), (0.2, 5)).status is Status.GOAL_INVALID
+    apart = known.query((5, 15), (15, 5))
+    assert apart.status is Status.NOT_CONNECTED
+    assert 0 < apart.counts["start_piece"] < apart.counts["valid"]
+    joined = known.query((5, 15), (5, 18), keep_graph=True, shorten=True)
+    assert joined.solved
+    assert joined.rule == "k=8 symmetrised of all points"
+    assert joined.planner == "prm lazy"
+    assert joined.counts["points"] == 64
+    assert joined.roadmap.configurations.shape[1] == 2
+    np.testing.assert_array_equal(joined.roadmap.configurations[-2:], [(5, 15), (5, 18)])
+    with pytest.raises(UnknownName, match="full, lazy"):
+        known.query((5, 15), (5, 18), search="best")
+    with pytest.raises(InvalidValue, match="start must be 2"):
+        known.query((5, 15, 1), (5, 18))
+
+
+def test_ends_far_outside_of_the_milestones_are_measured_as_well():
+    roadmap = Roadmap.build(SQUARE, PointSet(np.array([[0.5, 0.5], [0.5, 0.5 + 1e-12]])), KNearest(1))
+    known = roadmap.in_world(ChanceWorld(0, 1.0, 1.0))
+    assert known.query((-1e6, 0.0), (1e6, 0.0)).cost == pytest.approx(2e6)
+    assert known.query((0.0, 0.0), (1.0, 1.0)).cost == pytest.approx(np.sqrt(2))
+
+
+def test_a_world_of_another_space_is_refused():
+    roadmap = Roadmap.build(SQUARE, draw("sobol", 16, 2), KNearest(4))
+    wide = GridMap(np.zeros((4, 9), dtype=bool)).world(0.1)
+    with pytest.raises(InvalidValue, match="was built for"):
+        roadmap.in_world(wide)
+    same = ChanceWorld(0)
+    same.space = Rectangle((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))
+    roadmap.in_world(same)
+
+
+def test_an_edge_cost_is_kept_over_all_queries():
+    def twice(a, b):
+        return 2.0 * np.linalg.norm(a - b, axis=1)
+
+    roadmap = Roadmap.build(SQUARE, draw("sobol", 64, 2), KNearest(6))
+    known = roadmap.in_world(ChanceWorld(5, 1.0, 0.8), edge_cost=twice)
+    plain = roadmap.in_world(ChanceWorld(5, 1.0, 0.8))
+    for goal in CORNERS[1:]:
+        assert known.query(CORNERS[0], goal).cost == pytest.approx(2.0 * plain.query(CORNERS[0], goal).cost)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    seed=st.integers(0, 10**6),
+    n=st.integers(0, 30),
+    k=st.one_of(st.none(), st.integers(1, 40)),
+    radius=st.one_of(st.none(), st.floats(0.1, 1.0)),
+    space=st.sampled_from([SQUARE, Torus(2), Torus(2, [1.0, 2.0], [0.7, np.inf]), Great()]),
+)
+def test_newcomers_find_the_usable_milestones_that_are_nearest(seed, n, k, radius, space):
+    random = np.random.default_rng(seed)
+    q = np.floor(random.random((n, 2)) * 8) / 8
+    usable = random.random(n) < 0.7
+    newcomer = np.floor(random.random(2) * 8) / 8
+    distances = Surroundings(q, space).distances(newcomer)
+    np.testing.assert_allclose(distances, space.distance(np.tile(newcomer, (n, 1)), q), atol=1e-12)
+    order = [i for i in np.argsort(distances, kind="stable") if usable[i]]
+    order = [i for i in order if radius is None or distances[i] <= radius][:k]
+    found = nearest_of(distances, usable, k, radius).tolist()
+    assert found == (order if k is not None else sorted(order))
+
+
+def test_queries_between_many_places_of_a_maze_soon_need_few_checks():
+    maze = load_maze(2)
+    world = maze.world()
+    known = Roadmap.build(world.space, draw("sobol", 1024, 2), KNearest(10)).in_world(world)
+    places = world.space.from_cube(draw("uniform", 400, 2, rng=1).points)
+    places = places[world.valid(places)][:200].reshape(-1, 2, 2)
+    checks = [known.query(*pair).counts["edges_checked"] for pair in places]
+    assert np.median(checks[-50:]) < np.median(checks[:10])
