@@ -4,10 +4,11 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check install -q -c constraints.txt
 
-.PHONY: help demo test lint bench bank mazes clean
+.PHONY: help demo test test-peers lint bench bank mazes clean
 help:
 	@echo "make demo   environment + plan through the shipped level-3 maze -> out/demo.png, out/demo.json"
 	@echo "make test   environment + lint + all tests"
+	@echo "make test-peers  tests against OMPL (installs its wheel)"
 	@echo "make lint   ruff and mypy"
 	@echo "make bench  the slow tables and timings -> out/bench/"
 	@echo "make bank   rebuild (or finish) the shipped point sets"
@@ -25,6 +26,10 @@ $(VENV)/.dev: $(VENV)/.core
 	$(PIP) -e '.[dev]'
 	@touch $@
 
+$(VENV)/.peers: $(VENV)/.dev
+	$(PIP) -e '.[dev,peers]'
+	@touch $@
+
 demo: $(VENV)/.core
 	@mkdir -p out
 	$(BIN)/evenroad demo --out out/demo
@@ -37,11 +42,14 @@ lint: $(VENV)/.dev
 test: lint
 	$(BIN)/pytest -n 2
 
-bench: $(VENV)/.dev
+test-peers: $(VENV)/.peers
+	$(BIN)/pytest tests_peers
+
+bench: $(VENV)/.peers
 	@mkdir -p out/bench
 	$(BIN)/python -m benchmarks --out out/bench
 
-bank: $(VENV)/.core
+bank: $(VENV)/.dev
 	$(BIN)/python -m evenroad.points.bank.build
 
 mazes: $(VENV)/.core

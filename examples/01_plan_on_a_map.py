@@ -6,7 +6,7 @@ from evenroad.mazes import load_maze
 
 maze = load_maze(3)
 world = maze.world()
-result = er.plan(world, maze.start, maze.goal, er.draw("hickernell", n=1024, d=2))
+result = er.plan(world, maze.start, maze.goal, er.draw("even", n=1024, d=2))
 print(result.status, result.message)
 save_json("maze.json", plan_record(result, {"map": maze.path.name}))
 er.save_plan_picture("maze-plan.png", result, world)

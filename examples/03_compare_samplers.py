@@ -5,7 +5,7 @@ from evenroad.mazes import load_maze
 
 maze = load_maze(1)
 world = maze.world()
-for sampler in ("uniform", "halton", "sobol", "lattice", "hickernell"):
+for sampler in ("uniform", "halton", "sobol", "lattice", "hickernell", "even"):
     runs = 50
     solved = sum(
         er.plan(world, maze.start, maze.goal, er.draw(sampler, 128, 2, rng=run), shorten=False).solved

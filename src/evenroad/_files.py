@@ -41,6 +41,23 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
         raise
 
 
+@contextmanager
+def one_at_a_time(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Hold the lock file `path` for the block: other processes that want it wait.
+
+    The lock goes with the process, so a killed one leaves none.  Where the platform has no ``flock`` (Windows)
+    nothing is locked.
+    """
+    try:
+        import fcntl
+    except ImportError:
+        yield
+        return
+    with open(path, "w", encoding="utf-8") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield
+
+
 def require_writable_folder(path: str | os.PathLike[str]) -> None:
     """Raise BrokenFile unless a file at `path` could be created now: early, before any long work."""
     target = Path(path)

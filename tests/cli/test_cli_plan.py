@@ -58,7 +58,7 @@ def test_a_solved_plan_writes_picture_and_json_and_exits_with_0(run, tmp_path):
 
 def test_the_default_set_comes_from_the_bank_and_the_output_says_so(run, tmp_path):
     _, out, _ = run(*plan_arguments(out="a"))
-    assert "hickernell annealed set" in out
+    assert "even annealed set" in out
     assert json.loads((tmp_path / "a.json").read_text())["counts"]["points"] == 512
 
 

@@ -1,10 +1,12 @@
 import json
 import os
+import threading
+import time
 
 import numpy as np
 import pytest
 
-from evenroad._files import atomic_write, require_writable_folder
+from evenroad._files import atomic_write, one_at_a_time, require_writable_folder
 from evenroad.errors import BrokenFile
 from evenroad.io import plan_record, save_json, save_path_csv
 from evenroad.points import draw
@@ -84,3 +86,21 @@ def test_csv_floats_come_back_bit_for_bit(tmp_path):
     assert rows[0] == "a,b,c"
     back = np.array([[float(x) for x in row.split(",")] for row in rows[1:]])
     assert back.tobytes() == waypoints.tobytes()
+
+
+def test_a_lock_makes_others_wait_until_it_is_let_go(tmp_path):
+    inside, turns = threading.Event(), []
+
+    def second():
+        inside.wait()
+        with one_at_a_time(tmp_path / "lock"):
+            turns.append("second")
+
+    other = threading.Thread(target=second)
+    other.start()
+    with one_at_a_time(tmp_path / "lock"):
+        inside.set()
+        time.sleep(0.2)
+        turns.append("first")
+    other.join()
+    assert turns == ["first", "second"]

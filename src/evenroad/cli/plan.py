@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from evenroad.roadmap import Rule
     from evenroad.world import GridMap
 
-DEFAULT_FAMILY = "hickernell"
+DEFAULT_FAMILY = "even"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,8 +41,8 @@ class Plan:
     connect_radius: float | None = None
     """Connect milestones up to this distance instead, in map units."""
     sampler: str = "auto"
-    """uniform, halton, sobol, sukharev, lattice, hickernell; auto takes a trained set of this n where the bank has
-    one, else scrambled Halton, and says which."""
+    """even, hickernell, mpmc, korobov, lattice, halton, sobol, sukharev or uniform; auto takes even where it ships for
+    this n, else scrambled Halton, and says which."""
     plain: bool = False
     """halton and sobol: the plain sequence instead of the scrambled one."""
     skip: int = 0

@@ -15,13 +15,16 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._files import atomic_write
+from evenroad._files import atomic_write, one_at_a_time
 from evenroad._progress import LineProgress
 from evenroad.points.bank.bank import DATA, INDEX, Bank, cell_name
 from evenroad.points.bank.recipe import SEED, Recipe, recipes
 from evenroad.points.measures import MEASURES, separation
 from evenroad.points.optimise import anneal_many
 from evenroad.points.pointset import BELOW_ONE, PointSet
+
+LOCK = ".lock"
+"""Held while the index changes: several builds may work on one bank, on different cells."""
 
 NETWORK_WIDTH = 64
 """Half the usual width takes a third of the time a step; in equal time on a CPU its sets are better."""
@@ -94,11 +97,12 @@ def store(recipe: Recipe, sets: Sequence[PointSet], folder: Path) -> None:
             name: [_six_digits(value(each.points)) for each in stored] for name, value in MEASURED.items()
         },
     }
-    index_path = folder / INDEX
-    index = json.loads(index_path.read_text(encoding="utf-8")) if index_path.exists() else {}
-    index.setdefault(recipe.family, {}).setdefault(str(recipe.d), {})[str(recipe.n)] = record
-    with atomic_write(index_path) as file:
-        file.write((json.dumps(index, indent=1, sort_keys=True) + "\n").encode())
+    with one_at_a_time(folder / LOCK):
+        index_path = folder / INDEX
+        index = json.loads(index_path.read_text(encoding="utf-8")) if index_path.exists() else {}
+        index.setdefault(recipe.family, {}).setdefault(str(recipe.d), {})[str(recipe.n)] = record
+        with atomic_write(index_path) as file:
+            file.write((json.dumps(index, indent=1, sort_keys=True) + "\n").encode())
 
 
 def _six_digits(value: float) -> float:
@@ -114,11 +118,16 @@ def main() -> None:
     )
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--family", help="only the cells of this family")
+    parser.add_argument("-d", type=int, nargs="*", help="only these dimensions")
     parser.add_argument("--list", action="store_true", help="only name the cells that are not built yet")
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)
     bank = Bank(options.folder)
-    wanted = [each for each in recipes() if options.family in (None, each.family)]
+    wanted = [
+        each
+        for each in recipes()
+        if options.family in (None, each.family) and (options.d is None or each.d in options.d)
+    ]
     missing = [each for each in wanted if not bank.has(each.family, each.n, each.d)]
     print(f"{len(wanted) - len(missing)} of {len(wanted)} cells are in the bank", flush=True)
     for recipe in missing:
