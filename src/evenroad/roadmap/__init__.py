@@ -2,6 +2,7 @@
 
 from evenroad.roadmap.build import Roadmap as Roadmap
 from evenroad.roadmap.cost import EdgeCost as EdgeCost
+from evenroad.roadmap.fmt import fmt as fmt
 from evenroad.roadmap.npz import load_roadmap as load_roadmap
 from evenroad.roadmap.npz import load_world_roadmap as load_world_roadmap
 from evenroad.roadmap.npz import save_roadmap as save_roadmap
