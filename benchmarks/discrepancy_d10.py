@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
 from evenroad.points import PointSet, draw
 from evenroad.points.bank import open_bank
@@ -92,6 +93,7 @@ def main() -> None:
     axes.set_xscale("log", base=2)
     axes.set_yscale("log")
     axes.set_xticks(COUNTS, [str(n) for n in COUNTS])
+    axes.yaxis.set_minor_formatter(NullFormatter())
     axes.set_yticks((0.05, 0.1, 0.2, 0.5), ("0.05", "0.1", "0.2", "0.5"))
     axes.set_xlabel("N")
     axes.set_ylabel("Hickernell L2 discrepancy (rooted)")

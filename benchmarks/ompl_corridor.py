@@ -1,7 +1,7 @@
 """Corridors in d = 2, 3, 6 with N = 1024: OMPL's PRM with a Python checker, and ours, side by side in one process.
 
-    pip install -c constraints.txt -e '.[peers]'      # ompl 2.0.1
-    python -m benchmarks.ompl_corridor
+pip install -c constraints.txt -e '.[peers]'      # ompl 2.0.1
+python -m benchmarks.ompl_corridor
 """
 
 from __future__ import annotations
@@ -22,10 +22,7 @@ def corridor_checker(d: int, lam: float):  # type: ignore[no-untyped-def]
     """Return the corridor's definition as a plain Python function of one state."""
 
     def valid(x):  # type: ignore[no-untyped-def]
-        for k in range(d):
-            if all(v <= lam for v in x[:k]) and all(v >= 1 - lam for v in x[k + 1 :]):
-                return True
-        return False
+        return any(all(v <= lam for v in x[:k]) and all(v >= 1 - lam for v in x[k + 1 :]) for k in range(d))
 
     return valid
 
@@ -52,7 +49,10 @@ def main() -> None:
         world = Corridor(d, lam)
         points = draw("uniform", N, d, rng=0)
         rule = KEarlier(10)
-        peer = [ompl_prm(corridor_checker(d, lam), points.points, world.start, world.goal, 0.001) for _ in range(3)]
+        peer = [
+            ompl_prm(corridor_checker(d, lam), points.points, world.start, world.goal, 0.001)
+            for _ in range(3)
+        ]
         theirs = statistics.median(seconds for _, _, seconds in peer)
 
         def ask(world=world, points=points, rule=rule, **how):  # type: ignore[no-untyped-def]

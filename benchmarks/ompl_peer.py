@@ -23,7 +23,9 @@ Checker = Callable[[Sequence[float]], bool]
 class _Presampled(ob.ValidStateSampler):
     """Hands out given points in order, and says of each whether it is valid."""
 
-    def __init__(self, si: ob.SpaceInformation, points: list[list[float]], valid: Callable[[object], bool]) -> None:
+    def __init__(
+        self, si: ob.SpaceInformation, points: list[list[float]], valid: Callable[[object], bool]
+    ) -> None:
         super().__init__(si)
         self.points, self.next, self.valid = points, 0, valid
 
@@ -34,7 +36,7 @@ class _Presampled(ob.ValidStateSampler):
         self.next += 1
         return self.valid(state)
 
-    def sampleNear(self, state, near, distance) -> bool:  # type: ignore[no-untyped-def]  # noqa: N802
+    def sampleNear(self, state, near, distance) -> bool:  # type: ignore[no-untyped-def]
         return False
 
 
