@@ -57,7 +57,7 @@ def recipes() -> list[Recipe]:
         (3, "even"),
     ]
     cells = [(d, "hickernell") for d in HICKERNELL_DIMENSIONS] + [(d, "even") for d in EVEN]
-    order = first + sorted((cell for cell in cells if cell not in first), key=lambda cell: abs(cell[0] - 6))
+    order = first + [cell for cell in cells if cell not in first]
     return [_recipe(family, d, n) for d, family in order for n in COUNTS] + [
         _mpmc(d, n) for d, n in MPMC_CELLS
     ]
@@ -69,13 +69,13 @@ def _recipe(family: str, d: int, n: int) -> Recipe:
 
 
 def _sets(family: str, d: int, n: int) -> int:
-    """Success depends on which set is drawn, most in low dimensions: larger pools there."""
-    if n == 2048:
-        return 4 if d <= 3 else 2
+    """Success depends on which set is drawn, most in low dimensions: larger pools there, smaller where it takes long."""
     if family == "even" and d == 1:
         return 4  # all but the same: an even grid
+    if n == 2048:
+        return 2 if family == "even" and d > 2 else 4 if d <= 3 else 2
     if family == "even" and n > 256:
-        return 32 if (d, n) == (2, 512) else 16 if d <= 3 else 8
+        return 32 if (d, n) == (2, 512) else 16 if d == 2 else 8
     return {1: 32, 2: 64, 3: 32}.get(d, 8)
 
 
