@@ -1,5 +1,7 @@
 """Roadmaps: points x space -> neighbour graph; x world -> plan."""
 
+from evenroad.roadmap.anytime import plan_anytime as plan_anytime
+from evenroad.roadmap.budget import Budget as Budget
 from evenroad.roadmap.build import Roadmap as Roadmap
 from evenroad.roadmap.cost import EdgeCost as EdgeCost
 from evenroad.roadmap.fmt import fmt as fmt
@@ -9,6 +11,8 @@ from evenroad.roadmap.npz import save_roadmap as save_roadmap
 from evenroad.roadmap.npz import save_world_roadmap as save_world_roadmap
 from evenroad.roadmap.plan import plan as plan
 from evenroad.roadmap.result import PlanResult as PlanResult
+from evenroad.roadmap.result import SearchedGraph as SearchedGraph
+from evenroad.roadmap.result import Stage as Stage
 from evenroad.roadmap.result import Status as Status
 from evenroad.roadmap.rules import Complete as Complete
 from evenroad.roadmap.rules import KEarlier as KEarlier

@@ -97,7 +97,7 @@ def plan(
     ledger.node_states[len(milestones) if lazy_milestones else 0 :] = FREE
     with watch("search"):
         costs = edge_costs(world.space, configurations, edges, edge_cost)
-        found = find(_question(ledger, costs), ledger)
+        found = find(question_between_last_two(ledger, costs), ledger)
 
     counts = count(points.n, ledger, 2 + (0 if lazy_milestones else points.n))
     answer |= dict(counts=counts, roadmap=searched_graph(ledger))
@@ -106,8 +106,8 @@ def plan(
     return solved(found, costs, ledger, watch, shorten=shorten, cost=edge_cost, **answer)
 
 
-def _question(ledger: Ledger, costs: npt.NDArray[np.float64]) -> Question:
-    """Return the search from the last but one node to the last."""
+def question_between_last_two(ledger: Ledger, costs: npt.NDArray[np.float64]) -> Question:
+    """Return the search from the last but one node, the start, to the last, the goal."""
     configurations = ledger.configurations
     nodes = len(configurations)
     ruler = Ruler.of(float(costs.max(initial=0.0)), nodes)

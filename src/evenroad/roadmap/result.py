@@ -37,6 +37,26 @@ class SearchedGraph:
     edges: npt.NDArray[np.int32]
 
 
+@dataclass(frozen=True)
+class Stage:
+    """One stage of a plan that grows.
+
+    Attributes
+    ----------
+    points, valid : int
+        N so far, and how many of them are valid.
+    edges_checked : int
+        Motions checked up to the end of this stage.
+    cost : float or None
+        Of this stage's path along the roadmap; None when there was none.
+    """
+
+    points: int
+    valid: int
+    edges_checked: int
+    cost: float | None
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PlanResult:
     """The answer to one query.
@@ -68,7 +88,9 @@ class PlanResult:
         The connection rule, by name.
     planner : str
         Who searched: ``prm full``, ``prm lazy``, ``prm any`` (some path, not the shortest), each with
-        `` + lazy milestones`` where the rule joined all points, valid or not; ``fmt*``.
+        ``+ lazy milestones`` where those were checked late; ``prm anytime``, ``fmt*``.
+    stages : tuple of Stage
+        How a plan that grows came about; empty for all others.
     roadmap : SearchedGraph or None
         What was searched; None when start or goal is invalid, and where a reused roadmap was asked.
     """
@@ -86,6 +108,7 @@ class PlanResult:
     milestone_cost: float | None = None
     counts: dict[str, int] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)
+    stages: tuple[Stage, ...] = ()
     roadmap: SearchedGraph | None = None
 
     @property

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+import time
+
 import numpy as np
 import numpy.typing as npt
 
@@ -29,6 +32,8 @@ class Ledger:
         Gets the seconds of the world's answers, as the phases ``validity`` and ``motions``.
     most_motions : int, optional
         How many motions may be checked.
+    deadline : float
+        When no motion may be checked any more, on the clock of ``time.perf_counter``.
 
     Attributes
     ----------
@@ -45,13 +50,14 @@ class Ledger:
         edges: npt.NDArray[np.int32],
         watch: Stopwatch | None = None,
         most_motions: int | None = None,
+        deadline: float = math.inf,
     ) -> None:
         self.world, self.configurations, self.edges = world, configurations, edges
         self.node_states = np.full(len(configurations), UNKNOWN)
         self.edge_states = np.full(len(edges), UNKNOWN)
         self.configurations_checked = self.motions_checked = 0
         self.watch = Stopwatch() if watch is None else watch
-        self.most_motions = most_motions
+        self.most_motions, self.deadline = most_motions, deadline
 
     def ask_nodes(self, nodes: npt.NDArray[np.integer]) -> None:
         """Ask the world about those of the nodes that are not known yet."""
@@ -72,6 +78,8 @@ class Ledger:
         """
         unknown = edges[self.edge_states[edges] == UNKNOWN]
         wanted = len(unknown)
+        if wanted and time.perf_counter() >= self.deadline:
+            raise BudgetSpent
         if self.most_motions is not None:
             unknown = unknown[: self.most_motions - self.motions_checked]
         if unknown.size:

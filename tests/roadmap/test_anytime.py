@@ -1,0 +1,155 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from evenroad.errors import InvalidValue, UnknownName
+from evenroad.mazes import load_maze
+from evenroad.points.samplers.lattice import Lattice
+from evenroad.points.samplers.sequences import Halton, Sobol
+from evenroad.roadmap import Budget, KEarlier, KNearest, Radius, Status, plan, plan_anytime
+from evenroad.roadmap.search.memory import Memory
+from tests.roadmap.worlds import ChanceWorld
+
+START, GOAL = (0.0, 0.0), (1.0, 1.0)
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    seed=st.integers(0, 10**6),
+    free=st.floats(0.1, 0.9),
+    rule=st.sampled_from([KNearest(6), KEarlier(6), Radius(0.3)]),
+    sampler=st.sampled_from([Sobol(), Halton()]),
+)
+def test_each_stage_finds_what_a_fresh_plan_with_its_points_finds(seed, free, rule, sampler):
+    world = ChanceWorld(seed, 0.8, free)
+    grown = plan_anytime(
+        world, START, GOAL, sampler, first=8, until="budget", budget=Budget(samples=50), rng=seed, rule=rule,
+        shorten=False,
+    )  # fmt: skip
+    assert [stage.points for stage in grown.stages] == [8, 16, 32, 50]
+    fresh = [
+        plan(
+            ChanceWorld(seed, 0.8, free), START, GOAL, sampler.draw(n, 2, rng=seed), rule=rule, shorten=False
+        )
+        for n in (8, 16, 32, 50)
+    ]
+    for stage, result in zip(grown.stages, fresh, strict=True):
+        assert stage.valid == result.counts["valid"]
+        assert stage.cost == pytest.approx(result.cost)
+    best = min((result.cost for result in fresh if result.solved), default=None)
+    assert grown.cost == pytest.approx(best)
+    assert grown.status is (Status.BUDGET_SPENT if best is None else Status.SOLVED)
+    assert grown.counts["edges_checked"] == world.asked_motions
+    assert grown.counts["configurations_checked"] == world.asked_configurations == 52
+
+
+def test_no_motion_is_checked_twice_over_all_stages():
+    asked = set()
+
+    class Once(ChanceWorld):
+        def motion_valid(self, a, b):
+            for x, y in zip(a.tolist(), b.tolist(), strict=True):
+                key = frozenset((tuple(x), tuple(y)))
+                assert key not in asked
+                asked.add(key)
+            return super().motion_valid(a, b)
+
+    result = plan_anytime(
+        Once(3, 0.8, 0.5), START, GOAL, until="budget", budget=Budget(samples=256), shorten=False
+    )
+    assert len(asked) == result.counts["edges_checked"]
+
+
+def test_it_stops_with_the_first_path():
+    result = plan_anytime(ChanceWorld(5, 0.8, 0.2), START, GOAL, first=4)
+    assert result.solved
+    assert [stage.cost is None for stage in result.stages] == [True] * (len(result.stages) - 1) + [False]
+    assert len(result.stages) > 1
+    assert result.planner == "prm anytime"
+    assert result.counts["points"] == result.stages[-1].points == 4 * 2 ** (len(result.stages) - 1)
+
+
+def test_it_stops_when_the_path_has_settled():
+    maze = load_maze(2)
+    result = plan_anytime(maze.world(), maze.start, maze.goal, until="settled", shorten=False)
+    costs = [stage.cost for stage in result.stages if stage.cost is not None]
+    assert result.cost == pytest.approx(min(costs))
+    assert min(costs) >= 0.99 * min(costs[:-1])
+    assert len(costs) > 2
+    for i in range(2, len(costs)):
+        assert min(costs[:i]) < 0.99 * min(costs[: i - 1])
+
+
+@pytest.mark.parametrize("checks", [0, 1, 25])
+def test_a_budget_of_checks_is_kept_to_and_named(checks):
+    world = ChanceWorld(4, 1.0, 0.0)
+    result = plan_anytime(world, START, GOAL, budget=Budget(checks=checks))
+    assert result.status is Status.BUDGET_SPENT
+    assert not result.solved
+    assert world.asked_motions == result.counts["edges_checked"] == checks
+    assert f"no path within 65536 samples, {checks} checks; start reaches" in result.message
+
+
+def test_a_budget_of_samples_is_kept_to():
+    result = plan_anytime(ChanceWorld(4, 1.0, 0.0), START, GOAL, first=16, budget=Budget(samples=40))
+    assert result.status is Status.BUDGET_SPENT
+    assert result.counts["points"] == 40
+    assert result.counts["start_piece"] == 0
+
+
+def test_no_seconds_are_no_checks():
+    world = ChanceWorld(4, 1.0, 1.0)
+    result = plan_anytime(world, START, GOAL, budget=Budget(seconds=0.0))
+    assert result.status is Status.BUDGET_SPENT
+    assert world.asked_motions == 0
+    assert "0 s" in result.message
+
+
+def test_a_path_that_was_found_before_the_budget_was_spent_is_the_answer():
+    world = ChanceWorld(2, 0.8, 0.6)
+    early = plan_anytime(world, START, GOAL, first=16, shorten=False)
+    checks = early.counts["edges_checked"] + 1
+    late = plan_anytime(
+        world, START, GOAL, first=16, until="budget", budget=Budget(checks=checks), shorten=False
+    )
+    assert late.solved
+    assert late.cost <= early.cost
+    assert late.counts["edges_checked"] <= checks
+
+
+def test_the_same_seed_gives_the_same_bits():
+    one, other = (
+        plan_anytime(ChanceWorld(2, 0.8, 0.5), START, GOAL, rng=7, until="settled") for _ in range(2)
+    )
+    assert one.path.tobytes() == other.path.tobytes()
+    assert one.counts == other.counts
+    assert one.stages == other.stages
+
+
+def test_sets_that_do_not_extend_one_another_are_refused():
+    blocked = ChanceWorld(4, 1.0, 0.0)
+    with pytest.raises(InvalidValue, match="do not begin with"):
+        plan_anytime(blocked, START, GOAL, Lattice())
+    with pytest.raises(InvalidValue, match="not a Generator"):
+        plan_anytime(blocked, START, GOAL, rng=np.random.default_rng(0))
+
+
+def test_ends_in_collision_and_bad_arguments():
+    world = ChanceWorld(0, 0.0, 1.0)
+    assert plan_anytime(world, (0.3, 0.3), GOAL).status is Status.START_INVALID
+    with pytest.raises(UnknownName, match="budget, settled, solved"):
+        plan_anytime(world, START, GOAL, until="bored")
+    with pytest.raises(InvalidValue, match="first"):
+        plan_anytime(world, START, GOAL, first=0)
+    for bad in (dict(samples=0), dict(checks=-1), dict(seconds=np.nan)):
+        with pytest.raises(InvalidValue, match=next(iter(bad))):
+            Budget(**bad)
+
+
+def test_memory_knows_pairs_in_either_order_and_nothing_else():
+    memory = Memory()
+    assert memory.recall(np.array([[1, 2]])).tolist() == [0]
+    memory.learn(np.array([[1, 2], [7, 3], [4, 5]]), np.array([1, 2, 0], dtype=np.int8))
+    memory.learn(np.array([[5, 4], [2, 1]]), np.array([2, 1], dtype=np.int8))
+    assert memory.recall(np.array([[2, 1], [3, 7], [4, 5], [1, 3], [9, 9]])).tolist() == [1, 2, 2, 0, 0]
