@@ -1,0 +1,60 @@
+"""Planning in spaces that wrap, turn, or have redundant coordinates."""
+
+import numpy as np
+import pytest
+
+from evenroad.points import draw
+from evenroad.roadmap import KEarlier, KNearest, Radius, Roadmap, fmt, plan, plan_anytime
+from evenroad.space import SE2, SE3, JointSpace
+from evenroad.world import Corridor, Counting, FunctionWorld
+
+
+def _slit(q):
+    """The middle may be passed only with a small turn."""
+    return (np.abs(q[:, 0] - 0.5) > 0.1) | (np.abs(q[:, -1]) < 0.5)
+
+
+JOINTS = JointSpace([-np.pi, -1.0, -np.pi], [np.pi, 1.0, np.pi], wrapping=[True, False, True])
+CASES = {
+    "joints": (FunctionWorld(JOINTS, _slit, 0.05), (-3.0, 0.0, 2.0), (3.0, 0.5, -2.0), 3),
+    "SE2": (FunctionWorld(SE2((0.0, 0.0), (1.0, 1.0)), _slit, 0.05), (0.1, 0.5, 3.0), (0.9, 0.5, -3.0), 3),
+    "SE3": (
+        FunctionWorld(SE3((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)), _slit, 0.05),
+        (0.1, 0.5, 0.5, 1.0, 0.0, 0.0, 0.0),
+        (0.9, 0.5, 0.5, -1.0, 0.0, 0.0, 0.0),
+        6,
+    ),
+    "corridor": (Corridor(3, 0.35), (0.0, 0.0, 0.0), (1.0, 1.0, 1.0), 3),
+}
+
+
+@pytest.mark.parametrize("rule", [KNearest(8), KEarlier(8), Radius(0.8)], ids=str)
+@pytest.mark.parametrize("case", CASES)
+def test_every_planner_works_in_every_space_and_lazy_equals_full(case, rule):
+    world, start, goal, d = CASES[case]
+    points = draw("sobol", 150, d, rng=1)
+    full = plan(world, start, goal, points, rule=rule, shorten=False)
+    counting = Counting(world)
+    lazy = plan(counting, start, goal, points, rule=rule, search="lazy", shorten=False)
+    assert lazy.status is full.status
+    assert lazy.counts["edges_checked"] == counting.motions <= full.counts["edges_checked"]
+    assert lazy.counts["configurations_checked"] == counting.configurations
+    if full.solved:
+        assert lazy.path.tobytes() == full.path.tobytes()
+        assert full.cost >= world.space.distance(full.start[None], full.goal[None])[0] * (1 - 1e-12)
+    tree = fmt(world, start, goal, points, rule=rule, shorten=False)
+    assert full.solved or not tree.solved
+    known = Roadmap.build(world.space, points, rule).in_world(world)
+    once, twice = (known.query(start, goal) for _ in range(2))
+    assert once.status is twice.status
+    if once.solved:
+        assert once.path.tobytes() == twice.path.tobytes()
+        assert world.motion_valid(once.path[:-1], once.path[1:]).all()
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_growing_solves_them_all(case):
+    world, start, goal, _ = CASES[case]
+    result = plan_anytime(world, start, goal)
+    assert result.solved
+    assert world.motion_valid(result.path[:-1], result.path[1:]).all()
