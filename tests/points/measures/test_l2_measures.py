@@ -131,6 +131,24 @@ def test_gradients_are_those_of_central_differences(name):
     np.testing.assert_allclose(root_gradient, slow, atol=1e-8 * np.abs(slow).max())
 
 
+@pytest.mark.parametrize("name", WEIGHTED)
+@pytest.mark.parametrize("seed", range(4))
+def test_gradients_hold_where_large_weights_make_pair_factors_negative(name, seed):
+    # 1 + g (1 - 2 |x - y|) of the symmetric measure is negative for g = 4 and |x - y| > .625.
+    measure, points, weights = MEASURES[name], random_points(7, 3, seed=seed), [4.0, 2.0, 6.0]
+    gradient = measure.squared_with_gradient(points, weights)[1]
+    slow = slow_gradient(lambda x: measure.squared(x, weights), points)
+    np.testing.assert_allclose(gradient, slow, atol=1e-8 * np.abs(slow).max())
+
+
+def test_the_gradient_at_two_points_in_opposite_corners_is_right():
+    points = np.array([[0.05, 0.03], [0.95, 0.93]])
+    gradient = MEASURES["symmetric"].squared_with_gradient(points, [2.0, 2.0])[1]
+    # By hand: -(2/n) d/dx prod (1 + 4x - 4x^2) and (2/n^2) d/dx prod (3 - 4 |x - y|), whose factors are -.6.
+    product_slope = (4 - 8 * 0.05) * (1 + 4 * 0.03 * 0.97)
+    assert gradient[0, 0] == pytest.approx(-product_slope + 0.5 * 4 * (3 - 4 * 0.9))
+
+
 @pytest.mark.parametrize("name", MEASURES)
 def test_gradients_hold_across_tiles(name):
     measure, points = MEASURES[name], random_points(530, 2, seed=4)

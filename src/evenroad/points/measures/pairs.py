@@ -125,8 +125,9 @@ def _distance_pair_sums(columns, level, slope, curvature, own, own_slope, want_g
                         step = at - others[j]
                         rest = product[j] * after[j]
                         rest_sum += rest
-                        # copysign instead of a branch: a branch stops the loop from running as vectors.
-                        slope_sum += math.copysign(rest, step) * (fall - twice_bend * abs(step))
+                        # copysign instead of a branch: a branch stops the loop from running as vectors.  Of
+                        # 1, not of rest: that is negative where a weight makes factors negative.
+                        slope_sum += rest * math.copysign(1.0, step) * (fall - twice_bend * abs(step))
                         after[j] *= factor[j]
                     gradient[k, i] += 2.0 * (own_slope[k, i] * rest_sum - slope_sum)
     if want_gradient:
