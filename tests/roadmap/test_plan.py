@@ -33,7 +33,9 @@ def test_no_way_around_a_wall_is_an_answer_with_its_reason():
     assert result.path is None
     assert result.counts["start_piece"] + result.counts["goal_piece"] <= result.counts["valid"]
     assert f"start reaches {result.counts['start_piece']}" in result.message
-    assert "try n=128" in result.message
+    assert "try n=128 or a larger k" in result.message
+    by_radius = plan(WALL.world(0.5), (2, 2), (18, 18), draw("halton", 64, 2), rule=Radius(4.0))
+    assert "or a larger radius" in by_radius.message
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 
-from evenroad.roadmap.search import pieces, shortest_path
+from evenroad.roadmap.search import Ruler, pieces, shortest_path
 
 
 @st.composite
@@ -77,3 +77,31 @@ def test_pieces_are_labelled_by_their_lowest_node(roadmap):
     for component in set(expected.tolist()):
         members = np.flatnonzero(expected == component)
         assert (label[members] == members.min()).all()
+
+
+@settings(max_examples=200, deadline=None)
+@given(
+    lengths=st.lists(st.floats(0, 1e9), min_size=1, max_size=50),
+    nodes=st.integers(1, 10**7),
+    scale=st.sampled_from([1e-310, 1e-200, 1e-9, 1.0, 1e200]),
+)
+def test_whole_lengths_are_never_shorter_than_lengths_and_bounds_never_longer(lengths, nodes, scale):
+    lengths = np.array(lengths) * scale
+    ruler = Ruler.of(float(lengths.max()), nodes)
+    weights, bounds = ruler.weights(lengths), ruler.bounds(lengths)
+    assert (weights >= 1).all()
+    assert (bounds < weights).all()
+    if lengths.max() > 1e-280:
+        np.testing.assert_allclose(weights * ruler.quantum, lengths, rtol=1e-12, atol=2 * ruler.quantum)
+    # A path over all nodes, together with any bound, is still a 64-bit integer.
+    assert int(weights.max()) * nodes + int(ruler.bounds(np.array([np.finfo(float).max]))[0]) < 2**63
+
+
+def test_grid_paths_that_take_the_same_steps_in_another_order_are_ties():
+    # 0.1 + 0.2 + 0.3 and 0.3 + 0.2 + 0.1 differ as floats; the tie goes to the lower node all the same.
+    edges = np.array([[0, 1], [1, 2], [2, 5], [0, 3], [3, 4], [4, 5]], dtype=np.int32)
+    forth = np.array([0.1, 0.2, 0.3, 0.3, 0.2, 0.1])
+    for lengths in (forth, np.roll(forth, 3)):
+        path, length = shortest_path(6, edges, lengths, np.zeros(6), 0, 5)
+        assert path.tolist() == [0, 1, 2, 5]
+        assert length == pytest.approx(0.6)

@@ -83,7 +83,7 @@ def not_connected(
         message=(
             f"start reaches {counts['start_piece']} and goal {counts['goal_piece']} of {among},"
             f" and the two pieces do not meet (n={counts['points']}, {rule}): try n={2 * counts['points']}"
-            " or a larger k"
+            f"{_hint(rule)}"
         ),
         counts=counts,
         seconds=watch.seconds,
@@ -98,3 +98,10 @@ def searched_graph(ledger: Ledger) -> SearchedGraph:
     number = np.cumsum(kept, dtype=np.int32) - 1
     edges = ledger.edges[ledger.edge_states == FREE]
     return SearchedGraph(ledger.configurations[kept], number[edges].astype(np.int32))
+
+
+def _hint(rule: str) -> str:
+    """Return what else may help under this rule; under ``complete`` nothing does."""
+    if "radius" in rule:
+        return " or a larger radius"
+    return " or a larger k" if rule.startswith("k") else ""

@@ -15,6 +15,9 @@ import numpy.typing as npt
 MOST = 1 << 61
 """What bounds are cut to: the sum of one and any path is still a 64-bit integer."""
 
+_NEXT_TO_ZERO = 1e-280
+"""A quantum of a shorter length would lose its digits, or be 0."""
+
 
 @dataclass(frozen=True)
 class Ruler:
@@ -30,8 +33,8 @@ class Ruler:
     def of(cls, longest: float, nodes: int) -> Ruler:
         """Return the ruler for paths of up to `nodes` edges, none above `longest`."""
         bits = min(52, 61 - max(nodes, 1).bit_length())
-        # Nothing but zero lengths: any quantum does.
-        return cls(longest / 2.0**bits if longest > 0.0 else 1.0)
+        # Nothing but zero lengths, or what is next to it: any quantum does.
+        return cls(longest / 2.0**bits if longest > _NEXT_TO_ZERO else 1.0)
 
     def weights(self, lengths: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
         """Return lengths rounded up, at least 1, so that no cycle is free."""
@@ -39,5 +42,6 @@ class Ruler:
 
     def bounds(self, distances: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
         """Return lower bounds, rounded down by a little more than the rounding of a distance."""
-        least = np.floor(distances / self.quantum * (1.0 - 2.0**-45)) - 2.0
+        within = np.minimum(distances, self.quantum * MOST)
+        least = np.floor(within / self.quantum * (1.0 - 2.0**-45)) - 2.0
         return np.clip(least, 0.0, float(MOST)).astype(np.int64)
