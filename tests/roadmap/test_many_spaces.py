@@ -58,3 +58,11 @@ def test_growing_solves_them_all(case):
     result = plan_anytime(world, start, goal)
     assert result.solved
     assert world.motion_valid(result.path[:-1], result.path[1:]).all()
+
+
+@pytest.mark.parametrize(("d", "k"), [(2, 10), (5, 10), (6, 20), (10, 20)])
+@pytest.mark.parametrize("planner", [plan, fmt])
+def test_the_default_k_grows_with_the_dimension(planner, d, k):
+    world = Corridor(d, 0.4)
+    result = planner(world, world.start, world.goal, draw("sobol", 16, d))
+    assert result.rule == f"k={k} symmetrised"

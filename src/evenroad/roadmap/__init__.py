@@ -24,6 +24,7 @@ from evenroad.roadmap.rules import RadiusStar as RadiusStar
 from evenroad.roadmap.rules import Reach as Reach
 from evenroad.roadmap.rules import Rule as Rule
 from evenroad.roadmap.rules import TheoryRadius as TheoryRadius
+from evenroad.roadmap.rules import default_rule as default_rule
 from evenroad.roadmap.rules import prm_star_gamma as prm_star_gamma
 from evenroad.roadmap.rules import rule_named as rule_named
 from evenroad.roadmap.world_roadmap import WorldRoadmap as WorldRoadmap

@@ -20,7 +20,7 @@ from evenroad.roadmap.cost import EdgeCost
 from evenroad.roadmap.ends import end_in_collision, read_ends, require_fitting
 from evenroad.roadmap.growth import Growth
 from evenroad.roadmap.result import PlanResult, Status
-from evenroad.roadmap.rules import KNearest, Rule
+from evenroad.roadmap.rules import Rule, default_rule
 from evenroad.world import World
 
 UNTIL = ("solved", "settled", "budget")
@@ -77,7 +77,7 @@ def plan_anytime(
     if until not in UNTIL:
         raise UnknownName.among("until", until, UNTIL)
     first = require_count("first", first)
-    rule = KNearest() if rule is None else rule
+    rule = default_rule(world.space) if rule is None else rule
     budget = Budget() if budget is None else budget
     growth = Growth(world, read_ends(start, goal, world.space.dim), rule, edge_cost, budget)
     points = _draw(sampler, min(first, budget.samples), world, rng, None)

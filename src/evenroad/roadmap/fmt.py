@@ -12,7 +12,7 @@ from evenroad.roadmap.answer import count, searched_graph, solved
 from evenroad.roadmap.cost import EdgeCost, edge_costs
 from evenroad.roadmap.ends import end_in_collision, read_ends, require_fitting
 from evenroad.roadmap.result import PlanResult, Status
-from evenroad.roadmap.rules import KNearest, Rule
+from evenroad.roadmap.rules import Rule, default_rule
 from evenroad.roadmap.search import FREE, Graph, Ledger, Ruler
 from evenroad.roadmap.search.marching import march
 from evenroad.roadmap.stopwatch import Stopwatch
@@ -50,7 +50,7 @@ def fmt(
     InvalidValue
         As in :func:`plan`.
     """
-    rule = KNearest() if rule is None else rule
+    rule = default_rule(world.space) if rule is None else rule
     require_fitting(points, world.space)
     ends = read_ends(start, goal, world.space.dim)
     answer: dict[str, Any] = dict(

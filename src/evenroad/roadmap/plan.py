@@ -13,7 +13,7 @@ from evenroad.roadmap.answer import count, not_connected, searched_graph, solved
 from evenroad.roadmap.cost import EdgeCost, edge_costs
 from evenroad.roadmap.ends import end_in_collision, read_ends, require_fitting
 from evenroad.roadmap.result import PlanResult
-from evenroad.roadmap.rules import KNearest, Rule
+from evenroad.roadmap.rules import Rule, default_rule
 from evenroad.roadmap.search import FREE, Graph, Ledger, Question, Ruler
 from evenroad.roadmap.search.find import FINDERS, find_any
 from evenroad.roadmap.stopwatch import Stopwatch
@@ -44,7 +44,7 @@ def plan(
     points : PointSet
         Points of the unit cube; the space maps them to configurations.
     rule : Rule, optional
-        Which pairs to try; default ``KNearest(10)``.
+        Which pairs to try; default: that of :func:`default_rule`.
     search : {"full", "lazy"}
         Check every edge before the search, or only those that could lie on the shortest path.  Both find the
         same path, bit for bit.
@@ -73,7 +73,7 @@ def plan(
     """
     if search not in FINDERS:
         raise UnknownName.among("search", search, FINDERS)
-    rule = KNearest() if rule is None else rule
+    rule = default_rule(world.space) if rule is None else rule
     find = find_any if success_only else FINDERS[search]
     require_fitting(points, world.space)
     ends = read_ends(start, goal, world.space.dim)

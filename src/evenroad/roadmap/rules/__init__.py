@@ -1,6 +1,7 @@
 """Connection rules: which pairs of milestones a roadmap tries to join, each by its name."""
 
 from evenroad.roadmap.rules.complete import Complete as Complete
+from evenroad.roadmap.rules.default import default_rule as default_rule
 from evenroad.roadmap.rules.k_nearest import KEarlier as KEarlier
 from evenroad.roadmap.rules.k_nearest import KMutual as KMutual
 from evenroad.roadmap.rules.k_nearest import KNearest as KNearest
