@@ -5,7 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-HELPERS = {"__init__", "__main__", "intervals"}
+HELPERS = {"__init__", "__main__", "intervals", "ompl_peer"}
 
 
 def main() -> int:

@@ -72,10 +72,18 @@ def main() -> None:
         for n in COUNTS:
             values = [measure(points) for points in sets_of(n)]
             if values:
-                cells.append((n, np.mean(values), np.std(values), np.min(values), len(values)))
+                cells.append(
+                    (
+                        n,
+                        np.mean(values),
+                        np.std(values, ddof=1) if len(values) > 1 else 0.0,
+                        np.min(values),
+                        len(values),
+                    )
+                )
         rows += [(name, *cell) for cell in cells]
         text = {
-            n: f"{mean:.4f} ± {spread:.4f} (best {best:.4f}, {count})"
+            n: f"{mean:.4f} ± {spread:.4f} (best {best:.4f}, {count})" if count > 1 else f"{mean:.4f}"
             for n, mean, spread, best, count in cells
         }
         print(f"| {name} | " + " | ".join(text.get(n, "no set") for n in COUNTS) + " |", flush=True)

@@ -91,7 +91,8 @@ def main() -> None:
     for d, n in CELLS:
         for name, make in METHODS.items():
             budget = options.seconds * (2 if n == 512 else 1)
-            if any((row["d"], row["n"], row["method"]) == (str(d), str(n), name) for row in rows):
+            wanted = (str(d), str(n), name, str(budget))
+            if any((row["d"], row["n"], row["method"], str(row["budget [s]"])) == wanted for row in rows):
                 continue
             began = time.process_time()
             sets, steps = make(n, d, budget)

@@ -8,11 +8,18 @@ import numpy as np
 
 from evenroad.errors import InvalidValue
 
+LARGEST_COUNT = 2**31 - 1
+"""Nodes of a roadmap are numbered by int32: nothing that is counted here can sensibly be larger."""
+
 
 def require_count(name: str, value: object, at_least: int = 1) -> int:
     """Return `value` as an int >= `at_least`, or raise InvalidValue naming it (`n`, `d`, `k`, ...)."""
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < at_least:
         raise InvalidValue(f"{name} must be an integer >= {at_least}, got {value!r}")
+    if value > LARGEST_COUNT:
+        raise InvalidValue(
+            f"{name} must be at most {LARGEST_COUNT}, got an integer of {len(str(value))} digits"
+        )
     return int(value)
 
 

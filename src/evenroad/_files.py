@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -23,7 +24,11 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     """
     target = Path(path)
     require_writable_folder(target)
-    handle, name = tempfile.mkstemp(prefix=f".{target.name}.", suffix=".part", dir=target.parent)
+    try:
+        # A short name of its own: the target's may already be as long as the file system takes.
+        handle, name = tempfile.mkstemp(prefix=".evenroad-", suffix=".part", dir=target.parent)
+    except OSError as error:
+        raise _cannot_write(target, error) from error
     try:
         with os.fdopen(handle, "wb") as file:
             yield file
@@ -35,7 +40,7 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
         _remove(name)
         if isinstance(error, BrokenFile):
             raise
-        raise BrokenFile(f"cannot write {target}: {error.strerror or error}") from error
+        raise _cannot_write(target, error) from error
     except BaseException:
         _remove(name)
         raise
@@ -64,13 +69,23 @@ def require_writable_folder(path: str | os.PathLike[str]) -> None:
     folder = target.parent
     if not folder.is_dir():
         raise BrokenFile(f"cannot write {target}: the folder {folder} does not exist")
-    if target.is_dir():
+    try:
+        is_folder = stat.S_ISDIR(target.stat().st_mode)
+    except FileNotFoundError:
+        is_folder = False
+    except OSError as error:
+        raise _cannot_write(target, error) from error
+    if is_folder:
         raise BrokenFile(f"cannot write {target}: it is a folder")
     try:
         with tempfile.TemporaryFile(dir=folder):
             pass
     except OSError as error:
         raise BrokenFile(f"cannot write into the folder {folder}: {error.strerror or error}") from error
+
+
+def _cannot_write(target: Path, error: OSError) -> BrokenFile:
+    return BrokenFile(f"cannot write {target}: {error.strerror or error}")
 
 
 def _umask() -> int:

@@ -166,6 +166,9 @@ BAD = {
     "a grid without this n": ({"sampler": "sukharev", "n": 100_000}, "the nearest are 99856 and 100489"),
     "an option of another sampler": ({"sampler": "uniform", "skip": 5}, "--skip does not go with"),
     "a folder that does not exist": ({"out": "no/where/result"}, "does not exist"),
+    "an output without a name": ({"out": "."}, "file name"),
+    "a name that is too long": ({"out": "x" * 300}, "cannot write"),
+    "more points than can be numbered": ({"n": 10**12}, "at most 2147483647"),
     "a folder that is a file": ({"out": "map.txt/result"}, "map.txt"),
 }
 
@@ -186,6 +189,40 @@ def test_bad_input_gets_one_line_and_exit_code_2_and_nothing_is_written(case, ru
     assert err.startswith("evenroad: error: ")
     assert re.search(says, err)
     assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_a_long_name_that_the_file_system_takes_is_taken(run, tmp_path):
+    name = "x" * 245
+    assert run(*plan_arguments(out=name))[0] == 0
+    assert (tmp_path / f"{name}.json").exists()
+
+
+def test_brackets_in_a_name_are_not_read_as_markup(run, tmp_path):
+    code, out, err = run(*plan_arguments(out="res[bold]x[y]"))
+    assert (code, err) == (0, "")
+    assert "res[bold]x[y].json" in out
+    assert (tmp_path / "res[bold]x[y].png").exists()
+
+
+def test_the_path_of_an_earlier_run_does_not_pass_for_this_ones(run, tmp_path):
+    run(*plan_arguments(out="a"), "--csv")
+    assert (tmp_path / "a.csv").exists()
+    code, out, _ = run(*plan_arguments(out="a", sampler="uniform"), "--csv", "-n", 16)
+    assert code == 1
+    assert not (tmp_path / "a.csv").exists()
+    assert "a.csv" not in out
+
+
+def test_the_record_holds_all_that_is_needed_to_ask_again(run, tmp_path):
+    run(*plan_arguments(out="a", sampler="halton"), "--plain", "--skip", 7, "--raw", "-n", 300)
+    query = json.loads((tmp_path / "a.json").read_text())["query"]
+    assert (query["sampler"], query["plain"], query["skip"], query["raw"], query["n"]) == (
+        "halton",
+        True,
+        7,
+        True,
+        300,
+    )
 
 
 def test_out_may_not_overwrite_the_map(run, room):
@@ -234,6 +271,35 @@ def test_the_demo_solves_the_level_3_maze(run, tmp_path):
     record = json.loads((tmp_path / "demo.json").read_text())
     assert record["status"] == "solved"
     assert record["query"]["map"].endswith("level3.png")
+
+
+COMMAND = [sys.executable, "-c", "from evenroad.cli import main; raise SystemExit(main())"]
+
+
+def test_a_reader_that_goes_away_is_no_error(tmp_path):
+    process = subprocess.Popen(
+        [*COMMAND, *map(str, plan_arguments(out="a"))],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    process.stdout.close()
+    assert process.stderr.read() == ""
+    process.stderr.close()
+    assert process.wait() == 0
+    assert (tmp_path / "a.png").exists()
+
+
+def test_too_little_memory_is_one_line(run, monkeypatch):
+    import evenroad.roadmap
+
+    def too_large(*_args, **_kwargs):
+        raise MemoryError("Unable to allocate 3 EiB")
+
+    monkeypatch.setattr(evenroad.roadmap, "plan", too_large)
+    code, _, err = run(*plan_arguments(out="a"))
+    assert code == 2
+    assert err == "evenroad: error: not enough memory: Unable to allocate 3 EiB\n"
 
 
 def test_the_installed_command_works_in_a_process_of_its_own(tmp_path):

@@ -203,3 +203,18 @@ def test_given_points_are_the_family_of_plain_arrays():
 
     np.save("set.npy", [[0.5, 0.25]])
     assert read_points("set.npy") == PointSet([[0.5, 0.25]])
+
+
+def test_an_empty_set_has_nothing_to_measure(run):
+    np.save("empty.npy", np.empty((0, 2)))
+    code, out, err = run("measure", "empty.npy")
+    assert (code, out) == (2, "")
+    assert "no points" in err
+
+
+def test_a_value_beyond_the_range_of_a_float_is_left_out_and_said_so():
+    from evenroad.cli.measure import _finite
+
+    assert _finite("a", 0.5, "note") == ("a", 0.5, "note")
+    for value in (np.inf, np.nan):
+        assert _finite("a", value, "note") == ("a", None, "note: beyond the range of a float")

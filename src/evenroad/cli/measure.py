@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -26,13 +27,16 @@ class Measure:
 
     def run(self) -> int:
         """Measure and print."""
+        from evenroad.errors import InvalidValue
         from evenroad.points.npz import read_points
 
         points = read_points(self.file)
+        if points.n == 0:
+            raise InvalidValue(f"{self.file} holds no points, there is nothing to measure")
         rows = measure_all(points)
         if self.json:
             record = {"file": str(self.file), "n": points.n, "d": points.d, "hash": points.hash}
-            print(json.dumps(record | {name: value for name, value, _ in rows}, indent=2))
+            print(json.dumps(record | {name: value for name, value, _ in rows}, indent=2, allow_nan=False))
         else:
             _print_table(f"{self.file}: n={points.n}, d={points.d}, {points.origin}", rows)
         return 0
@@ -40,6 +44,8 @@ class Measure:
 
 def measure_all(points: PointSet) -> list[tuple[str, float | None, str]]:
     """Return (name, value, note) of every measure; a value is None where it cannot be had, and the note says why."""
+    import numpy as np
+
     from evenroad.errors import EvenroadError
     from evenroad.points import measures
     from evenroad.points.measures.dispersion import EXACT_UP_TO
@@ -48,7 +54,8 @@ def measure_all(points: PointSet) -> list[tuple[str, float | None, str]]:
 
     def add(name: str, note: str, compute: Callable[[], float]) -> None:
         try:
-            rows.append((name, compute(), note))
+            with np.errstate(all="ignore"):
+                rows.append((name, compute(), note))
         except EvenroadError as error:
             rows.append((name, None, str(error)))
 
@@ -67,16 +74,24 @@ def measure_all(points: PointSet) -> list[tuple[str, float | None, str]]:
     add("separation_periodic", "on the torus", lambda: measures.separation(points, periodic=True))
     add("riesz_rooted", "periodic, s = 2d", lambda: measures.riesz_rooted(points))
     add("riesz_open_rooted", "not periodic, s = 2d", lambda: measures.riesz_rooted(points, periodic=False))
-    return [(name, None if value is None else float(value), note) for name, value, note in rows]
+    return [_finite(*row) for row in rows]
+
+
+def _finite(name: str, value: float | None, note: str) -> tuple[str, float | None, str]:
+    """Leave out a value that a float cannot hold: infinity is neither JSON nor a measure."""
+    if value is None or math.isfinite(value):
+        return name, None if value is None else float(value), note
+    return name, None, f"{note}: beyond the range of a float"
 
 
 def _print_table(title: str, rows: list[tuple[str, float | None, str]]) -> None:
     from rich.console import Console
     from rich.table import Table
+    from rich.text import Text
 
-    table = Table(title=title, title_justify="left", box=None, pad_edge=False)
+    table = Table(title=Text(title), title_justify="left", box=None, pad_edge=False)
     table.add_column("measure", no_wrap=True)
-    table.add_column("value", justify="right")
+    table.add_column("value", justify="right", no_wrap=True)
     table.add_column("")
     for name, value, note in rows:
         table.add_row(name, "-" if value is None else f"{value:.6g}", note)

@@ -77,10 +77,15 @@ class Plan:
         points, note = self._points()
         result = plan(world, self.start, self.goal, points, rule=rule, shorten=not self.raw)
         save_json(files["json"], plan_record(result, self._query()))
-        if "csv" in files and result.path is not None:
-            save_path_csv(files["csv"], result.path, ("x", "y"))
+        if "csv" in files:
+            # An earlier run's path must not pass for this one's.
+            files["csv"].unlink(missing_ok=True)
+            if result.path is None:
+                del files["csv"]
+            else:
+                save_path_csv(files["csv"], result.path, ("x", "y"))
         save_plan_picture(files["png"], result, world)
-        print_plan(result, note, [path for path in files.values() if path.exists()])
+        print_plan(result, note, list(files.values()))
         return 0 if result.solved else 1
 
     def _rule(self) -> Rule:
@@ -130,6 +135,8 @@ class Plan:
         from evenroad.errors import InvalidValue
         from evenroad.world.gridmap.load import map_files
 
+        if self.out is not None and not self.out.name:
+            raise InvalidValue(f"--out must end with a file name, got {str(self.out)!r}")
         inputs = {source.resolve() for source in map_files(self.map)}
         stem = self.out if self.out is not None else Path(self.map.stem)
         if self.out is None and any(path.resolve() in inputs for path in self._named(stem).values()):
@@ -165,5 +172,10 @@ class Plan:
             "clearance": self.clearance,
             "n": self.n,
             "sampler": self.sampler,
+            "plain": self.plain,
+            "skip": self.skip,
+            "allow_fewer": self.allow_fewer,
             "seed": self.seed,
+            "raw": self.raw,
+            "unknown_is_free": self.unknown_is_free,
         }

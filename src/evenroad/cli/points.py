@@ -49,9 +49,12 @@ class Points:
 
     def _find(self) -> tuple[PointSet, str]:
         from evenroad.cli.progress import progress_bar
+        from evenroad.errors import InvalidValue
         from evenroad.points import make_sampler
         from evenroad.points.families import TRAINED_FAMILIES, Trained
 
+        if self.family not in TRAINED_FAMILIES and self.no_train:
+            raise InvalidValue(f"--no-train does not go with {self.family!r}, whose sets are constructed")
         if self.family not in TRAINED_FAMILIES:
             return make_sampler(self.family).draw(self.n, self.d, rng=self.seed), "exact"
         with progress_bar(f"annealing {self.family} n={self.n} d={self.d}") as callback:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 from evenroad.roadmap import PlanResult
 
@@ -19,8 +20,8 @@ def print_plan(result: PlanResult, note: str, files: Sequence[Path]) -> None:
     table.add_column(style="bold", no_wrap=True)
     table.add_column(overflow="fold")
     colour = "green" if result.solved else "red"
-    table.add_row("status", f"[{colour}]{result.status}[/]: {result.message}")
-    table.add_row("points", f"{result.origin}" + (f" ({note})" if note else ""))
+    table.add_row("status", Text.assemble((str(result.status), colour), f": {result.message}"))
+    table.add_row("points", Text(f"{result.origin}" + (f" ({note})" if note else "")))
     if result.roadmap is not None:
         counts = result.counts
         table.add_row("milestones", f"{counts['valid']} valid of {counts['points']}")
@@ -31,6 +32,7 @@ def print_plan(result: PlanResult, note: str, files: Sequence[Path]) -> None:
         table.add_row("cost", f"{result.cost:.6g} (along the roadmap {result.milestone_cost:.6g})")
     phases = ", ".join(f"{phase} {1e3 * value:.1f}" for phase, value in result.seconds.items())
     table.add_row("time [ms]", phases)
-    table.add_row("files", ", ".join(map(str, files)))
+    # As Text: a file's name may hold brackets, which would be read as markup.
+    table.add_row("files", Text(", ".join(map(str, files))))
     console = Console(highlight=False)
     console.print(table, width=min(WIDTH, console.width))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 from typing import Annotated
@@ -16,6 +17,7 @@ from evenroad.cli.points import Points
 from evenroad.cli.train import Train
 from evenroad.errors import EvenroadError
 
+DONE = 0
 BAD_INPUT = 2
 INTERRUPTED = 130
 
@@ -46,9 +48,21 @@ def run(arguments: Sequence[str]) -> int:
         config=(tyro.conf.OmitArgPrefixes, tyro.conf.FlagCreatePairsOff),
     )
     try:
-        return verb.run()
+        code = verb.run()
+        sys.stdout.flush()
+        return code
     except EvenroadError as error:
         print(f"evenroad: error: {' '.join(str(error).split())}", file=sys.stderr)
+        return BAD_INPUT
+    except MemoryError as error:
+        print(f"evenroad: error: not enough memory: {error}", file=sys.stderr)
+        return BAD_INPUT
+    except BrokenPipeError:
+        # The reader of our output has gone, as `head` does; what is left of the output goes nowhere.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return DONE
+    except OSError as error:
+        print(f"evenroad: error: {error}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt:
         print("evenroad: interrupted; what was finished is kept", file=sys.stderr)

@@ -70,8 +70,11 @@ def test_a_damaged_file_of_the_cache_is_made_again():
 def test_a_cache_that_cannot_be_written_is_our_error(monkeypatch, tmp_path):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("EVENROAD_CACHE", str(tmp_path / "file" / "below"))
+    steps = []
+    family = Trained("hickernell", train=True, callback=lambda step, total, best: steps.append(step))
     with pytest.raises(BrokenFile, match="cache folder"):
-        Trained("hickernell", train=True).draw(6, 2)
+        family.draw(6, 2)
+    assert steps == [], "nothing is annealed that could not be kept"
 
 
 def _draw_in_a_process(folder, results):
@@ -107,6 +110,11 @@ def test_progress_is_reported_while_a_set_is_made_and_not_when_it_is_there():
 def test_the_networks_sets_are_never_made_on_demand():
     with pytest.raises((NotAvailable, UnknownName), match="mpmc"):
         Trained("mpmc", train=True).draw(11, 2)
+
+
+def test_the_advice_makes_exactly_the_set_that_was_missing():
+    with pytest.raises(NotAvailable, match="--seed 5 -o"):
+        Trained("hickernell").draw(11, 2, rng=5)
 
 
 def test_an_unknown_family_is_refused_with_the_list():

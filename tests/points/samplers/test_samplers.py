@@ -89,6 +89,9 @@ class TestSukharev(SamplerContract):
     def test_fewer_points_come_only_when_allowed(self):
         assert Sukharev(allow_fewer=True).draw(100, 3).n == 64
 
+    def test_one_point_is_the_middle_of_any_cube(self):
+        assert (self.sampler.draw(1, 100).points == 0.5).all()
+
     @given(k=st.integers(1, 40), d=st.integers(1, 4), less=st.booleans())
     def test_the_largest_grid_is_found_exactly_whatever_floats_say(self, k, d, less):
         n = k**d - (1 if less and k > 1 else 0)

@@ -80,7 +80,7 @@ class Bank:
         """Return the n that a family has in d dimensions, ascending; empty when it has none."""
         index = _index(self.folder)
         if family not in index:
-            raise UnknownName.among("family", family, index)
+            raise UnknownName.among("family in the bank:", family, index)
         return sorted(int(n) for n in index[family].get(str(d), {}))
 
     def cell(self, family: str, n: int, d: int) -> Cell:

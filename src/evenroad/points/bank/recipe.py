@@ -69,7 +69,7 @@ def _recipe(family: str, d: int, n: int) -> Recipe:
 
 
 def _sets(family: str, d: int, n: int) -> int:
-    """Success depends on which set is drawn, most in low dimensions: larger pools there, smaller where it takes long."""
+    """Success depends on which set is drawn, most in low dimensions: larger pools there, smaller for slow cells."""
     if family == "even" and d == 1:
         return 4  # all but the same: an even grid
     if n == 2048:

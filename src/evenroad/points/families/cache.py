@@ -7,7 +7,10 @@ import os
 import sys
 from pathlib import Path
 
+from evenroad import __version__
+from evenroad._files import require_writable_folder
 from evenroad.errors import BrokenFile
+from evenroad.points.bank.recipe import SEED
 from evenroad.points.npz import load_points, save_points
 from evenroad.points.pointset import PointSet
 
@@ -21,6 +24,18 @@ def cache_folder() -> Path:
     if sys.platform == "win32":
         return Path(os.environ.get("LOCALAPPDATA", Path.home())) / "evenroad" / "cache"
     return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "evenroad"
+
+
+def require_cache() -> None:
+    """Raise BrokenFile unless a set could be kept now: before the minutes that annealing it may take."""
+    folder = _sets_folder()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise BrokenFile(
+            f"cannot make the cache folder {folder}: {error.strerror or error} (EVENROAD_CACHE names another)"
+        ) from error
+    require_writable_folder(folder / "set.npz")
 
 
 def cached(family: str, objective: str, steps: int, n: int, d: int, replica: int) -> PointSet | None:
@@ -38,15 +53,15 @@ def keep(family: str, objective: str, steps: int, n: int, d: int, replica: int, 
     The same set is made bit for bit by whoever makes it, and a file appears in one step: two processes that
     anneal it at once write the same content, whichever comes last.
     """
-    path = _file(family, objective, steps, n, d, replica)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise BrokenFile(f"cannot make the cache folder {path.parent}: {error.strerror or error}") from error
-    save_points(path, points)
+    require_cache()
+    save_points(_file(family, objective, steps, n, d, replica), points)
 
 
 def _file(family: str, objective: str, steps: int, n: int, d: int, replica: int) -> Path:
-    # The objective and steps are part of the name: sets of an earlier recipe are not mistaken for today's.
-    recipe = hashlib.sha256(f"{objective}|{steps}".encode()).hexdigest()[:8]
-    return cache_folder() / "sets" / f"{family}-{recipe}-d{d:02d}-n{n:05d}-{replica:03d}.npz"
+    # All that decides the bits is part of the name: sets of an earlier recipe are not mistaken for today's.
+    recipe = hashlib.sha256(f"{objective}|{steps}|{SEED}|{__version__}".encode()).hexdigest()[:8]
+    return _sets_folder() / f"{family}-{recipe}-d{d:02d}-n{n:05d}-{replica:03d}.npz"
+
+
+def _sets_folder() -> Path:
+    return cache_folder() / "sets"

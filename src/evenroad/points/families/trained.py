@@ -13,7 +13,7 @@ from evenroad.errors import NotAvailable, UnknownName
 from evenroad.points.bank import Bank, open_bank
 from evenroad.points.bank.recipe import SEED
 from evenroad.points.even import KOROBOV, even_choice
-from evenroad.points.families.cache import cached, keep
+from evenroad.points.families.cache import cached, keep, require_cache
 from evenroad.points.pointset import BELOW_ONE, Origin, PointSet
 
 ON_DEMAND_SETS = 8
@@ -91,7 +91,8 @@ class Trained:
         points, source = cached(*key), "cached"
         if points is None:
             if not self.train:
-                raise NotAvailable(self._what_there_is(bank, n, d))
+                raise NotAvailable(self._what_there_is(bank, n, d, rng))
+            require_cache()
             points, source = self._anneal(n, d, objective, replica), "fresh"
             keep(*key, points)
         return points.with_origin(seed=seed_of(rng)), source
@@ -125,11 +126,12 @@ class Trained:
             stored, Origin(family=self.family, method="annealed", objective=objective, replica=replica)
         )
 
-    def _what_there_is(self, bank: Bank, n: int, d: int) -> str:
+    def _what_there_is(self, bank: Bank, n: int, d: int, rng: RngLike) -> str:
         try:
             bank.cell(self.family, n, d)
         except (NotAvailable, UnknownName) as error:
             known = str(error)
-        return (
-            f"{known}; any other is made by: evenroad points -n {n} -d {d} --family {self.family} -o set.npy"
+        command = (
+            f"evenroad points -n {n} -d {d} --family {self.family} --seed {seed_of(rng) or 0} -o set.npy"
         )
+        return f"{known}; this one is made by: {command}"

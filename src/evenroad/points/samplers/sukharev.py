@@ -40,16 +40,16 @@ class Sukharev:
                 f"a Sukharev grid in d={d} has k^{d} points: n={n} is none, the nearest are"
                 f" {k**d} and {(k + 1) ** d} (or allow fewer)"
             )
-        axis = (np.arange(k) + 0.5) / k
-        grid = np.stack(np.meshgrid(*[axis] * d, indexing="ij"), axis=-1).reshape(-1, d)
-        return PointSet(grid, Origin(family=self.name, method="grid"))
+        # The digits of the row number in base k are the row's cell; for k = 1 all are 0, whatever d.
+        place = k ** np.arange(d - 1, -1, -1, dtype=np.int64) if k > 1 else np.ones(d, dtype=np.int64)
+        digits = np.arange(k**d)[:, np.newaxis] // place % k
+        return PointSet((digits + 0.5) / k, Origin(family=self.name, method="grid"))
 
 
 def _floor_root(n: int, d: int) -> int:
     """Return the largest integer k with k**d <= n, without trusting the float root."""
-    k = max(1, round(n ** (1.0 / d)))
-    while k**d > n:
-        k -= 1
-    while (k + 1) ** d <= n:
-        k += 1
-    return k
+    low, high = 1, 1 << (n.bit_length() // d + 1)
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if middle**d <= n else (low, middle)
+    return low
