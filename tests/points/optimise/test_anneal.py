@@ -73,6 +73,15 @@ def test_a_start_is_taken_and_never_made_worse():
         anneal(31, 4, steps=5, start=start)
 
 
+def test_a_start_at_the_faces_is_moved_off_them():
+    # One step, from a start that is better than anything a step away: the start itself is returned.
+    start = np.array([[0.0, 0.5], [0.5, np.nextafter(1.0, 0.0)]])
+    points = anneal(2, 2, "riesz", steps=1, start=start).points
+    assert points.min() > 0
+    assert points.astype(np.float32).max() < 1
+    np.testing.assert_allclose(points, start, atol=1e-7)
+
+
 def test_points_that_coincide_come_apart():
     annealed = anneal(6, 2, "riesz", steps=1500, start=np.full((6, 2), 0.5))
     assert separation(annealed.points, periodic=True) > 0.2

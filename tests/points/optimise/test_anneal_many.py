@@ -1,5 +1,6 @@
 """Many sets: the same whatever the processes, and safe on disk at any moment."""
 
+import json
 import os
 import signal
 from concurrent.futures.process import BrokenProcessPool
@@ -9,7 +10,7 @@ import pytest
 
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.points import load_points
-from evenroad.points.optimise import anneal, anneal_many
+from evenroad.points.optimise import SCHEDULE, anneal, anneal_many
 
 SMALL = {"n": 8, "d": 2, "objective": "star", "steps": 20}
 
@@ -114,6 +115,18 @@ def test_a_folder_of_another_request_is_refused(tmp_path, changes, text):
     anneal_many(**SMALL, folder=tmp_path, workers=1)
     with pytest.raises(InvalidValue, match=text):
         anneal_many(**{**SMALL, **changes}, folder=tmp_path, workers=1)
+
+
+def test_a_folder_of_another_schedule_is_refused(tmp_path):
+    anneal_many(**SMALL, folder=tmp_path, workers=1)
+    request = json.loads((tmp_path / "request.json").read_text())
+    older = {**request, "schedule": SCHEDULE - 1}
+    # Before the schedule had a number it was not written down.
+    oldest = {name: value for name, value in request.items() if name != "schedule"}
+    for other, text in ((older, f"schedule={SCHEDULE - 1}, asked"), (oldest, "schedule=None, asked")):
+        (tmp_path / "request.json").write_text(json.dumps(other))
+        with pytest.raises(InvalidValue, match=text):
+            anneal_many(**SMALL, folder=tmp_path, workers=1)
 
 
 def test_a_strange_set_in_the_folder_is_refused(tmp_path):

@@ -1,5 +1,6 @@
 """Making point sets even: objectives written as expressions, and annealing of the coordinates."""
 
+from evenroad.points.optimise.anneal import SCHEDULE as SCHEDULE
 from evenroad.points.optimise.anneal import Annealed as Annealed
 from evenroad.points.optimise.anneal import anneal as anneal
 from evenroad.points.optimise.many import anneal_many as anneal_many

@@ -19,8 +19,14 @@ from evenroad.points.optimise.objective import Objective, objective_of_columns, 
 from evenroad.points.optimise.parse import parse_objective
 from evenroad.points.pointset import BELOW_ONE, as_unit_points
 
+LOWEST = 1.0 - BELOW_ONE
+"""Smallest coordinate that an annealing returns; the largest is BELOW_ONE."""
+
 Callback = Callable[[int, int, float], object]
 """``callback(step, steps, best)`` after every step; what it raises stops the annealing."""
+
+SCHEDULE = 2
+"""Version of the schedule of rates and noise, and of the start: another one makes other sets of the same seed."""
 
 LARGEST_RATE = 0.02
 LAST_OVER_FIRST = 1 / 2000
@@ -78,7 +84,8 @@ def anneal(
     rng : int, SeedSequence or Generator
         Draws the start and the noise.
     start : array_like, shape (n, d), optional
-        Points to start from instead of random ones.
+        Points to start from instead of random ones; a coordinate at a face of the cube is moved off it by 6e-8,
+        as the steps do.
     callback : callable, optional
         Called as ``callback(step, steps, best)`` after every step.
 
@@ -110,7 +117,7 @@ def anneal(
         draws.standard_normal(out=noise)
         adam_step(
             columns, first, second, gradient, noise, step, rate, spread * rate,
-            1.0 - BELOW_ONE, BELOW_ONE, target.periodic,
+            LOWEST, BELOW_ONE, target.periodic,
         )  # fmt: skip
         if callback is not None:
             callback(step, steps, best_value)
@@ -159,4 +166,4 @@ def _first_columns(n: int, d: int, start: npt.ArrayLike | None, draws: np.random
     given = as_unit_points(start)
     if given.shape != (n, d):
         raise InvalidValue(f"start must have shape ({n}, {d}), got {given.shape}")
-    return np.array(given.T, order="C")
+    return np.ascontiguousarray(np.clip(given.T, LOWEST, BELOW_ONE))

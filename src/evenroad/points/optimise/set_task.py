@@ -10,7 +10,7 @@ import numpy as np
 
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.points.npz import load_points, save_points
-from evenroad.points.optimise.anneal import Callback, anneal
+from evenroad.points.optimise.anneal import SCHEDULE, Callback, anneal
 from evenroad.points.pointset import Origin, PointSet
 
 
@@ -80,4 +80,9 @@ def finished_set(task: SetTask) -> PointSet | None:
 def request_of(task: SetTask) -> dict[str, Any]:
     """Return what the sets of a folder have in common, whatever their number."""
     request = {name: asdict(task)[name] for name in ("n", "d", "objective", "steps", "family")}
-    return {**request, "entropy": str(task.entropy), "spawn_key": list(task.spawn_key[:-1])}
+    return {
+        **request,
+        "entropy": str(task.entropy),
+        "spawn_key": list(task.spawn_key[:-1]),
+        "schedule": SCHEDULE,
+    }
