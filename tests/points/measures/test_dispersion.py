@@ -110,6 +110,20 @@ def test_exact_dispersion_in_high_dimensions_points_to_the_search():
             exact(np.full((2, 4), 0.5))
 
 
+def test_exact_linf_work_beyond_the_budget_is_refused_before_it_starts():
+    points = np.random.default_rng(0).random((100_000, 3))
+    with pytest.raises(
+        NotAvailable,
+        match=r"n=100000 points in d=3 takes about 1e\+10 steps, the budget is 4e\+08.*lower_bound",
+    ):
+        dispersion_linf(points)
+    with pytest.raises(NotAvailable, match="the budget is 1e"):
+        dispersion_linf(points[:20], budget=10)
+    with pytest.raises(InvalidValue, match="budget must be"):
+        dispersion_linf(points[:20], budget=0)
+    assert dispersion_linf(points[:20], budget=400) == dispersion_linf(points[:20])
+
+
 def test_no_points_have_no_dispersion():
     for function in (dispersion_l2, dispersion_linf, dispersion_lower_bound):
         with pytest.raises(InvalidValue, match="at least one point"):
