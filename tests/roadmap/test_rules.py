@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue, NotAvailable, UnknownName
 from evenroad.points import draw
+from evenroad.points.measures import dispersion_linf, star_discrepancy
 from evenroad.roadmap import (
     Complete,
     KEarlier,
@@ -96,7 +97,7 @@ def test_complete_is_every_pair():
 
 
 def test_the_theory_radius_scales_with_the_diagonal_of_the_space():
-    in_square = 2 * 1.5 * math.sqrt(2) * math.sqrt(0.001)
+    in_square = 2 * 1.5 * math.sqrt(2) * (2 * math.sqrt(0.001))
     assert THEORY.radius(SQUARE) == pytest.approx(in_square)
     assert THEORY.radius(WIDE) == pytest.approx(in_square / math.sqrt(2) * 800)
     assert TheoryRadius(alpha=2, dispersion=0.1).radius(SQUARE) == pytest.approx(0.4 * math.sqrt(2))
@@ -182,3 +183,13 @@ def test_rules_say_their_name():
     assert str(RadiusStar(2.0)) == "radius* gamma=2"
     assert str(Complete()) == "complete"
     assert str(THEORY) == "theory radius alpha=1.5 star_discrepancy=0.001"
+
+
+def test_the_hole_of_a_set_is_within_the_bound_that_the_theory_radius_takes():
+    # Without the factor 2 the first of these sets is a counterexample.
+    for points in ([[0.0, 0.375], [0.55, 0.975]], draw("uniform", 12, 2).points, draw("sobol", 32, 2).points):
+        discrepancy = star_discrepancy(points)
+        assert dispersion_linf(points) <= 2 * discrepancy ** (1 / 2)
+    assert dispersion_linf([[0.0, 0.375], [0.55, 0.975]]) > star_discrepancy(
+        [[0.0, 0.375], [0.55, 0.975]]
+    ) ** (1 / 2)

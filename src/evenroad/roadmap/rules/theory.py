@@ -20,8 +20,11 @@ class TheoryRadius:
     """``theory radius``: all pairs at most ``r = 2 alpha sqrt(d) D`` apart, D a bound of the l-infinity dispersion.
 
     With a path of enough clearance, the shortest one of the roadmap is then within a factor
-    ``1 + 1 / (alpha - 1)`` of it.  The bound D is either the `dispersion` itself or ``star_discrepancy^(1/d)``
-    (Niederreiter 1992).  In a space whose sides are not 1, ``sqrt(d)`` becomes the length of the diagonal.
+    ``1 + 1 / (alpha - 1)`` of it.  The bound D is either the `dispersion` itself or ``2 star_discrepancy^(1/d)``: the
+    dispersion is at most the d-th root of the discrepancy over *all* boxes (Niederreiter 1992), which is at most
+    ``2^d`` times that over boxes at the origin.  Without the 2, as the paper could be read, it is false: the points
+    (0, .375) and (.55, .975) leave a hole of .975 with a star discrepancy of .5.  In a space whose sides are not 1,
+    ``sqrt(d)`` becomes the length of the diagonal.
 
     Parameters
     ----------
@@ -63,7 +66,7 @@ class TheoryRadius:
             )
         d = space.cube_dim
         name, value = self._bound()
-        bound = value if name == "dispersion" else value ** (1 / d)
+        bound = value if name == "dispersion" else 2 * value ** (1 / d)
         # The map from the cube is affine here; twice the way to the middle is a side, also where it wraps.
         middle = 0.5 * np.eye(d)
         sides = 2 * space.distance(space.from_cube(np.zeros((d, d))), space.from_cube(middle))

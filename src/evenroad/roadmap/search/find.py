@@ -48,8 +48,14 @@ def find_lazily(question: Question, ledger: Ledger) -> Found:
 
 
 def find_any(question: Question, ledger: Ledger) -> Found:
-    """Return some path of free edges if there is one: of those left, the one with the least length to be asked."""
+    """Return some path of free edges if there is one: of those left, the one with the least length to be asked.
+
+    Each time such a path turns out to be blocked, the shortest unknown edges are asked about as well, twice as many as
+    the time before: a hard query then ends after a few searches instead of one for every blocked edge.
+    """
     no_bounds = np.zeros_like(question.bounds)
+    shortest_first = np.argsort(question.weights, kind="stable")
+    extra = 1
     while True:
         weights = np.where(ledger.edge_states == FREE, 1, question.weights)
         nodes, along = _path(
@@ -57,6 +63,15 @@ def find_any(question: Question, ledger: Ledger) -> Found:
         )
         if _all_free(nodes, along, ledger):
             return nodes, along
+        _ask_shortest(shortest_first, extra, ledger)
+        extra *= 2
+
+
+def _ask_shortest(shortest_first: npt.NDArray[np.intp], count: int, ledger: Ledger) -> None:
+    """Ask about so many of the shortest edges that could still matter; edges of unknown nodes wait for these."""
+    ends_free = (ledger.node_states[ledger.edges[shortest_first]] == FREE).all(axis=1)
+    open_edges = shortest_first[ends_free & (ledger.edge_states[shortest_first] == UNKNOWN)]
+    ledger.ask_edges(open_edges[:count])
 
 
 FINDERS: dict[str, Callable[[Question, Ledger], Found]] = {"full": find_after_all, "lazy": find_lazily}
