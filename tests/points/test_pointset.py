@@ -1,3 +1,9 @@
+import io
+import struct
+import zipfile
+from decimal import Decimal
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -6,6 +12,7 @@ from hypothesis.extra import numpy as hnp
 
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.points import Origin, PointSet, load_points, save_points
+from evenroad.points.npz import read_points
 
 unit = st.floats(0, 1, exclude_max=True, allow_subnormal=True)
 arrays = hnp.arrays(np.float64, st.tuples(st.integers(0, 20), st.integers(1, 6)), elements=unit)
@@ -36,9 +43,33 @@ def test_only_matrices_are_point_sets(shape):
         PointSet(np.zeros(shape))
 
 
-def test_text_is_refused():
+@pytest.mark.parametrize(
+    "bad",
+    [
+        [["a", "b"]],
+        [[b"0.5", b"0.5"]],
+        [[0.5 + 0j, 0.5]],
+        np.array([["0.5"]], dtype=object),
+        np.array([[np.complex128(0.5)]], dtype=object),
+        np.array([[np.timedelta64(0, "s")]], dtype=object),
+        np.array([[np.datetime64(0, "s")]], dtype=object),
+        np.zeros((2, 2), dtype="m8[s]"),
+        np.zeros((2, 2), dtype="M8[s]"),
+        np.zeros((2, 2), dtype="V8"),
+        [[None]],
+        [[10**400]],
+        [[0.5, 0.5], [0.5]],
+    ],
+)
+def test_what_is_not_a_real_number_is_refused(bad):
     with pytest.raises(InvalidValue, match="array of numbers"):
-        PointSet([["a", "b"]])
+        PointSet(bad)
+
+
+def test_every_kind_of_real_number_is_taken():
+    for half in (0.5, np.float16(0.5), np.longdouble(0.5), Fraction(1, 2), Decimal("0.5")):
+        assert PointSet([[half, 0]]) == PointSet([[0.5, 0.0]])
+    assert PointSet([[False, 0]]) == PointSet([[0.0, 0.0]])
 
 
 @given(arrays)
@@ -111,6 +142,52 @@ def test_a_truncated_file_is_refused(saved):
     saved.write_bytes(saved.read_bytes()[:-40])
     with pytest.raises(BrokenFile):
         load_points(saved)
+
+
+def _array_file(shape):
+    """Bytes of a .npy file without data whose header claims a shape, given as text."""
+    header = f"{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}, }}".ljust(117).encode() + b"\n"
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header
+
+
+@pytest.mark.parametrize(
+    "shape",
+    ["(3, 2", "(" * 90, "(100000000000, 2)", f"({10**20}, 2)", "(-3, 2)", "(True, 2)", "{[]: 1}", "(3, 2)"],
+)
+def test_a_header_that_lies_or_does_not_parse_is_a_broken_file(tmp_path, shape):
+    (tmp_path / "bad.npy").write_bytes(_array_file(shape))
+    with zipfile.ZipFile(tmp_path / "bad.npz", "w") as archive:
+        archive.writestr("points.npy", _array_file(shape))
+        for name in ("origin", "hash"):
+            text = io.BytesIO()
+            np.save(text, np.array("{}"))
+            archive.writestr(f"{name}.npy", text.getvalue())
+    for name in ("bad.npy", "bad.npz"):
+        with pytest.raises(BrokenFile, match=rf"{name} is not a readable") as caught:
+            read_points(tmp_path / name)
+        assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("offset", [(6, 8), (8, 10)], ids=["flags", "compression"])
+@pytest.mark.parametrize("value", [1, 9, 32, 255])
+def test_an_archive_that_zipfile_cannot_read_is_a_broken_file(saved, offset, value):
+    content = bytearray(saved.read_bytes())
+    for signature, place in zip((b"PK\x03\x04", b"PK\x01\x02"), offset, strict=True):
+        for start in range(len(content)):
+            if content.startswith(signature, start):
+                content[start + place] = value
+    saved.write_bytes(content)
+    with pytest.raises(BrokenFile, match="not a readable") as caught:
+        load_points(saved)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_member_that_is_no_array_is_a_broken_file(tmp_path):
+    with zipfile.ZipFile(tmp_path / "bad.npz", "w") as archive:
+        for name in ("points", "origin", "hash"):
+            archive.writestr(f"{name}.npy", b"")
+    with pytest.raises(BrokenFile, match="points is no array"):
+        load_points(tmp_path / "bad.npz")
 
 
 def test_a_pickle_is_never_opened(tmp_path):

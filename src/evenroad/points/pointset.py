@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass, field, replace
+from decimal import Decimal
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -125,11 +127,16 @@ def as_unit_points(points: object) -> npt.NDArray[np.float64]:
     Raises
     ------
     InvalidValue
-        Naming the shape, or the first bad coordinate and its place.
+        Naming the dtype where it is not one of real numbers, the shape, or the first bad coordinate and its
+        place.
     """
     try:
-        array = np.ascontiguousarray(points, dtype=np.float64)
-    except (TypeError, ValueError) as error:
+        given = np.asarray(points)
+        _require_real(given)
+        array = np.ascontiguousarray(given, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        if isinstance(error, InvalidValue):
+            raise
         raise InvalidValue(f"points must be an (n, d) array of numbers: {error}") from None
     if array.ndim != 2 or array.shape[1] < 1:
         raise InvalidValue(f"points must have shape (n, d) with d >= 1, got {array.shape}")
@@ -138,3 +145,14 @@ def as_unit_points(points: object) -> npt.NDArray[np.float64]:
         i, k = np.argwhere(bad)[0]
         raise InvalidValue(f"points must lie in [0, 1): coordinate [{i}, {k}] is {float(array[i, k])!r}")
     return array
+
+
+def _require_real(array: npt.NDArray[Any]) -> None:
+    """Raise InvalidValue unless all are real numbers: NumPy drops imaginary parts, parses text, counts seconds."""
+    if array.dtype.kind == "O":
+        for element in array.flat:
+            # A duration is an integer to NumPy's scalars.
+            if not isinstance(element, Real | Decimal) or isinstance(element, np.timedelta64):
+                raise InvalidValue(f"points must be an (n, d) array of numbers, one is {element!r}")
+    elif array.dtype.kind not in "biuf":
+        raise InvalidValue(f"points must be an (n, d) array of numbers, got dtype {array.dtype}")
