@@ -33,3 +33,7 @@ class BrokenFile(EvenroadError, OSError):
 
 class Exhausted(EvenroadError, RuntimeError):
     """A finite point set was asked for more points than it has."""
+
+
+class WorkerLost(EvenroadError, RuntimeError):
+    """A worker process ended before its work was done: killed, or out of memory."""

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import signal
+import threading
 from collections.abc import Iterator
 from concurrent.futures import Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +17,7 @@ import numpy as np
 
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, seed_of
-from evenroad.errors import InvalidValue
+from evenroad.errors import InvalidValue, WorkerLost
 from evenroad.points.optimise.anneal import Callback
 from evenroad.points.optimise.objective import Objective, require_points_for
 from evenroad.points.optimise.parse import parse_objective
@@ -74,7 +77,7 @@ def anneal_many(
         For an argument out of range, or a folder that holds sets of another request.
     BrokenFile
         If the folder is missing or cannot be written.
-    concurrent.futures.process.BrokenProcessPool
+    WorkerLost
         If a process was killed.  Finished sets are in the folder; the same call goes on.
 
     Notes
@@ -140,9 +143,10 @@ def _in_processes(
         min(processes, len(tasks)), context, initializer=_share, initargs=(steps_done, best_values, stop)
     )
     try:
-        waiting: set[Future[PointSet]] = {
-            pool.submit(_make_set_shared, slot, task) for slot, task in enumerate(tasks)
-        }
+        with _born_deaf_to_interrupts():
+            waiting: set[Future[PointSet]] = {
+                pool.submit(_make_set_shared, slot, task) for slot, task in enumerate(tasks)
+            }
         while waiting:
             finished, waiting = wait(waiting, timeout=_POLL_SECONDS, return_when="FIRST_COMPLETED")
             if callback is not None:
@@ -150,14 +154,32 @@ def _in_processes(
             for future in finished:
                 yield future.result()
     except BrokenProcessPool as error:
-        error.add_note(
-            "A process of anneal_many ended early: killed, out of memory, or a script without"
-            ' `if __name__ == "__main__"`. Finished sets are in the folder, if one was given; call again to go on.'
-        )
-        raise
+        raise WorkerLost(
+            "a process of anneal_many ended early: killed, out of memory, or a script without"
+            ' `if __name__ == "__main__"`. Finished sets are in the folder, if one was given; call again to go on'
+        ) from error
     finally:
         stop.value = 1
         pool.shutdown(wait=True, cancel_futures=True)
+
+
+@contextmanager
+def _born_deaf_to_interrupts() -> Iterator[None]:
+    """Let processes that start in the block ignore Ctrl-C from their first moment: the parent alone decides.
+
+    An initializer alone comes too late: importing takes a second, and a terminal sends the signal to all.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        # Only the main thread may set handlers; the initializer has to do.
+        yield
+        return
+    before = signal.getsignal(signal.SIGINT)
+    # Ignoring is inherited, a handler is not: a signal to the parent in these milliseconds is lost.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 _shared: tuple[Any, Any, Any] | None = None
@@ -170,6 +192,7 @@ class _Stopped(Exception):
 
 def _share(steps_done: Any, best_values: Any, stop: Any) -> None:
     global _shared
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     _shared = (steps_done, best_values, stop)
 
 
