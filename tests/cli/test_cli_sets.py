@@ -1,12 +1,16 @@
 """The verbs that make and measure point sets: points, measure, train."""
 
 import json
+import os
 import re
+import signal
+import subprocess
 import sys
 
 import numpy as np
 import pytest
 
+from evenroad.cli.interrupt import interrupt_between_steps
 from evenroad.points import PointSet, draw, load_points, save_points
 
 
@@ -187,6 +191,110 @@ def test_bad_requests_to_train_get_one_line(run, tmp_path, arguments, says):
     assert (code, out) == (2, "")
     assert err.strip().count("\n") == 0
     assert re.search(says, err)
+
+
+MPMC = ("train", "-n", 12, "-d", 2, "--method", "mpmc", "--sets", 2, "-o", "sets")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (("-n", 0), "n must be"),
+        (("--sets", 0), "sets must be"),
+        (("-n", 1, "--objective", "riesz"), "at least 2 points"),
+        (("--seed", -1), "seed must be"),
+        (("--jobs", 0), "jobs must be"),
+        (("--refine", 5), "--refine does not go with the method 'anneal'"),
+        (("--device", "cpu"), "--device does not go with the method 'anneal'"),
+        (("--method", "mpmc", "--refine", -1), "refine must be"),
+        (("--method", "mpmc", "--device", "bogus"), "device must be"),
+        (("--method", "mpmc", "--jobs", 2), "--jobs does not go with the method 'mpmc'"),
+        (("--method", "mpmc", "-n", 1), "n must be"),
+    ],
+)
+def test_bad_requests_to_train_leave_no_folder(run, tmp_path, arguments, says):
+    size = () if "-n" in arguments else ("-n", 8)
+    code, out, err = run("train", "-d", 2, "-o", "sets", *size, *arguments)
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert re.search(says, err)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_of_another_seed_is_refused_by_the_name_of_the_option(run):
+    line = ("train", "-n", 8, "-d", 2, "--jobs", 1, "--sets", 1, "--steps", 5, "-o", "sets", "--seed")
+    assert run(*line, 0)[0] == 0
+    code, _, err = run(*line, 1)
+    assert code == 2
+    assert "seed=0, asked for seed=1" in err
+
+
+def test_refined_sets_are_kept_one_by_one_and_read_back(run, tmp_path, monkeypatch):
+    from evenroad.points import network
+
+    line = (*MPMC, "--steps", 3, "--refine", 20)
+    refine = network.refine
+
+    def stop_at_the_second(sets, **options):
+        if sets[0].origin.replica == 1:
+            raise KeyboardInterrupt
+        return refine(sets, **options)
+
+    monkeypatch.setattr(network, "refine", stop_at_the_second)
+    assert run(*line)[0] == 130
+    first = tmp_path / "sets" / "refined-0000.npz"
+    written = first.stat().st_mtime_ns
+    monkeypatch.setattr(network, "refine", refine)
+    assert run(*line)[0] == 0
+    assert first.stat().st_mtime_ns == written
+    assert load_points(tmp_path / "sets" / "refined-0001.npz").origin.replica == 1
+    code, _, err = run(*MPMC, "--steps", 3, "--refine", 21)
+    assert code == 2
+    assert "refined otherwise" in err
+
+
+INTERRUPTED_INSIDE_STEP_5 = """
+import os, signal, sys
+import evenroad.points.network
+from evenroad.cli import main
+
+training = sys.modules["evenroad.points.network.train"]  # the name in the package is the function
+step = training.advance
+
+def advance(state, *rest):
+    if state.step == 4:
+        os.kill(os.getpid(), signal.SIGINT)
+    step(state, *rest)
+
+training.advance = advance
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+def test_ctrl_c_inside_a_step_of_the_network_keeps_the_steps_before(run, tmp_path):
+    line = [str(each) for each in (*MPMC, "--steps", 8)]
+    stopped = subprocess.run(
+        [sys.executable, "-c", INTERRUPTED_INSIDE_STEP_5, *line], capture_output=True, text=True, timeout=120
+    )
+    assert stopped.returncode == 130, stopped.stderr
+    assert "Traceback" not in stopped.stderr
+    kept = {path.name for path in (tmp_path / "sets").iterdir()}
+    assert any("checkpoint" in name for name in kept), kept
+    assert run(*line)[0] == 0
+    resumed = [load_points(tmp_path / "sets" / f"set-000{i}.npz") for i in range(2)]
+    assert run(*line[:-3], "whole", *line[-2:])[0] == 0
+    assert resumed == [load_points(tmp_path / "whole" / f"set-000{i}.npz") for i in range(2)]
+
+
+def test_the_first_ctrl_c_waits_for_the_step_and_the_second_does_not():
+    before = signal.getsignal(signal.SIGINT)
+    with interrupt_between_steps() as check:
+        check()
+        os.kill(os.getpid(), signal.SIGINT)
+        with pytest.raises(KeyboardInterrupt):
+            check()
+        with pytest.raises(KeyboardInterrupt):
+            os.kill(os.getpid(), signal.SIGINT)
+    assert signal.getsignal(signal.SIGINT) == before
 
 
 def test_without_torch_the_network_says_what_to_install(run, monkeypatch):

@@ -10,6 +10,7 @@ import tyro
 
 if TYPE_CHECKING:
     from evenroad.points import PointSet
+    from evenroad.points.network import NetworkConfig
     from evenroad.points.optimise.anneal import Callback
 
 
@@ -28,11 +29,11 @@ class Train:
     sets: int = 8
     """How many sets."""
     steps: int = 5000
-    """Steps of the optimiser (mpmc: at most; it stops after 1000 steps without a better mean)."""
+    """Steps of the optimiser."""
     refine: int = 0
     """mpmc: anneal the network's sets for so many more steps, and write them as OUT/refined-0000.npz, ..."""
-    device: str = "auto"
-    """mpmc: auto, cpu or cuda."""
+    device: str | None = None
+    """mpmc: auto, cpu or cuda (default: auto)."""
     seed: int = 0
     """Set i depends on this seed and i alone, whatever the number of processes."""
     jobs: int | None = None
@@ -44,16 +45,47 @@ class Train:
         """Train, write, report."""
         import numpy as np
 
+        from evenroad.cli.interrupt import interrupt_between_steps
         from evenroad.cli.progress import progress_bar
         from evenroad.points.optimise import parse_objective
 
-        objective = parse_objective(self.objective)
+        self._check()
         self._make_folder()
-        with progress_bar(f"{self.method} n={self.n} d={self.d} x {self.sets}") as callback:
+        title = f"{self.method} n={self.n} d={self.d} x {self.sets}"
+        with interrupt_between_steps() as check, progress_bar(title) as report:
+
+            def callback(step: int, steps: int, best: float) -> None:
+                check()
+                report(step, steps, best)
+
             sets = self._anneal(callback) if self.method == "anneal" else self._network(callback)
+        objective = parse_objective(self.objective)
         values = np.array([objective.value(each) for each in sets])
         print(f"{self.out}: {len(sets)} sets, {objective}: mean {values.mean():.6g}, best {values.min():.6g}")
         return 0
+
+    def _check(self) -> None:
+        """Refuse bad options before anything is written, and those that the method would silently ignore."""
+        from evenroad._checks import require_count
+        from evenroad.errors import InvalidValue
+        from evenroad.points.optimise import parse_objective
+        from evenroad.points.optimise.objective import require_points_for
+
+        least = {"n": 1, "d": 1, "sets": 1, "steps": 1, "refine": 0, "seed": 0}
+        for name, at_least in least.items():
+            require_count(name, getattr(self, name), at_least)
+        require_points_for(parse_objective(self.objective), self.n)
+        foreign = ("refine", "device") if self.method == "anneal" else ("jobs",)
+        for name in foreign:
+            if getattr(self, name):
+                raise InvalidValue(f"--{name} does not go with the method {self.method!r}")
+        if self.jobs is not None:
+            require_count("jobs", self.jobs)
+        if self.method == "mpmc":
+            from evenroad.points.network.device import choose_device
+
+            self._config()
+            choose_device(self.device or "auto")
 
     def _make_folder(self) -> None:
         from evenroad._files import require_writable_folder
@@ -81,17 +113,56 @@ class Train:
             callback=callback,
         )
 
-    def _network(self, callback: Callback) -> tuple[PointSet, ...]:
-        from evenroad.points import save_points
-        from evenroad.points.network import NetworkConfig, refine, train
+    def _config(self) -> NetworkConfig:
+        from evenroad.points.network import NetworkConfig
 
-        config = NetworkConfig(
+        return NetworkConfig(
             n=self.n, d=self.d, objective=self.objective, sets=self.sets, steps=self.steps, seed=self.seed
         )
-        sets = train(config, folder=self.out, callback=callback, device=self.device)
+
+    def _network(self, callback: Callback) -> tuple[PointSet, ...]:
+        from evenroad.points.network import train
+
+        sets = train(self._config(), folder=self.out, callback=callback, device=self.device or "auto")
         if not self.refine:
             return sets
-        refined = refine(sets, steps=self.refine, callback=callback)
-        for i, points in enumerate(refined):
-            save_points(self.out / f"refined-{i:04d}.npz", points)
+        self._claim_refined()
+        return tuple(self._refined(i, points, callback) for i, points in enumerate(sets))
+
+    def _claim_refined(self) -> None:
+        """Write down how sets are refined, or refuse a folder whose refined sets were made otherwise."""
+        import json
+
+        from evenroad._files import atomic_write
+        from evenroad.errors import InvalidValue
+        from evenroad.points.optimise import SCHEDULE
+
+        path, request = self.out / "refined.json", {"steps": self.refine, "schedule": SCHEDULE}
+        text = json.dumps(request).encode()
+        if not path.exists():
+            with atomic_write(path) as file:
+                file.write(text)
+        elif path.read_bytes() != text:
+            raise InvalidValue(
+                f"{self.out} holds sets refined otherwise (see {path}), asked for {request};"
+                " move refined* away or use another folder"
+            )
+
+    def _refined(self, i: int, points: PointSet, callback: Callback) -> PointSet:
+        """Refine set i and save it at once, or read it where an earlier run did."""
+        from evenroad.errors import BrokenFile
+        from evenroad.points import load_points, save_points
+        from evenroad.points.network import refine
+
+        path = self.out / f"refined-{i:04d}.npz"
+        try:
+            return load_points(path)
+        except BrokenFile:
+            pass  # missing or damaged: made (again)
+
+        def counted(step: int, steps: int, best: float) -> None:
+            callback(i * steps + step, self.sets * steps, best)
+
+        (refined,) = refine((points,), steps=self.refine, callback=counted)
+        save_points(path, refined)
         return refined

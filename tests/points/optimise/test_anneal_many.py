@@ -125,7 +125,7 @@ def kill_a_child(step, steps, best):
     ({"d": 3}, "d=2, asked for d=3"),
     ({"objective": "centred"}, "objective='star', asked for objective='centred'"),
     ({"steps": 21}, "steps=20, asked for steps=21"),
-    ({"rng": 1}, "entropy='0', asked for entropy='1'"),
+    ({"rng": 1}, "seed=0, asked for seed=1"),
 ])  # fmt: skip
 def test_a_folder_of_another_request_is_refused(tmp_path, changes, text):
     anneal_many(**SMALL, folder=tmp_path, workers=1)

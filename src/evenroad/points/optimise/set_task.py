@@ -82,7 +82,8 @@ def request_of(task: SetTask) -> dict[str, Any]:
     request = {name: asdict(task)[name] for name in ("n", "d", "objective", "steps", "family")}
     return {
         **request,
+        "schedule": SCHEDULE,
+        "seed": task.seed,
         "entropy": str(task.entropy),
         "spawn_key": list(task.spawn_key[:-1]),
-        "schedule": SCHEDULE,
     }
