@@ -77,3 +77,9 @@ def test_every_public_name_can_be_loaded():
 def test_an_unknown_public_name_is_an_attribute_error():
     with pytest.raises(AttributeError, match="nonsense"):
         _ = evenroad.nonsense
+
+
+def test_planning_on_a_shipped_set_does_not_wait_for_scipy_stats():
+    code = "import sys, evenroad.roadmap, evenroad.viz, evenroad.cli.plan; print('scipy.stats' in sys.modules)"
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert loaded.stdout.strip() == "False"

@@ -12,8 +12,7 @@ from evenroad._checks import require_count
 from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points.pointset import PointSet
-from evenroad.points.samplers.sampler import Sampler
-from evenroad.points.samplers.sequences import Sobol
+from evenroad.points.samplers import Sampler, make_sampler
 from evenroad.roadmap.answer import count, not_connected, searched_graph, solved
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.cost import EdgeCost
@@ -109,7 +108,8 @@ def plan_anytime(
 
 def _draw(sampler: Sampler | None, n: int, world: World, rng: RngLike, before: PointSet | None) -> PointSet:
     """Draw n points, and make sure that they go on where those `before` ended."""
-    sampler = Sobol() if sampler is None else sampler
+    # By name: the module of the sequences imports scipy.stats, half a second that only this default needs.
+    sampler = make_sampler("sobol") if sampler is None else sampler
     points = sampler.draw(n, world.space.cube_dim, rng=rng)
     require_fitting(points, world.space)
     if before is not None and not np.array_equal(points.points[: before.n], before.points):
