@@ -194,3 +194,16 @@ def test_queries_between_many_places_of_a_maze_soon_need_few_checks():
     places = places[world.valid(places)][:200].reshape(-1, 2, 2)
     checks = [known.query(*pair).counts["edges_checked"] for pair in places]
     assert np.median(checks[-50:]) < np.median(checks[:10])
+
+
+def test_the_graph_of_a_set_from_a_pool_is_joined_once_and_others_each_time():
+    space = GridMap(np.zeros((20, 20), dtype=bool)).space
+    banked, other = draw("hickernell", 64, 2), draw("uniform", 64, 2)
+    assert Roadmap.build(space, banked).edges is Roadmap.build(space, banked).edges
+    assert Roadmap.build(space, other).edges is not Roadmap.build(space, other).edges
+    for different in (
+        Roadmap.build(space, banked, KNearest(5)),
+        Roadmap.build(space, draw("hickernell", 64, 2, rng=1)),
+        Roadmap.build(GridMap(np.zeros((20, 30), dtype=bool)).space, banked),
+    ):
+        assert different.edges is not Roadmap.build(space, banked).edges

@@ -85,9 +85,10 @@ def _finite(name: str, value: float | None, note: str) -> tuple[str, float | Non
 
 
 def _print_table(title: str, rows: list[tuple[str, float | None, str]]) -> None:
-    from rich.console import Console
     from rich.table import Table
     from rich.text import Text
+
+    from evenroad.cli.console import print_table
 
     table = Table(title=Text(title), title_justify="left", box=None, pad_edge=False)
     table.add_column("measure", no_wrap=True)
@@ -95,5 +96,4 @@ def _print_table(title: str, rows: list[tuple[str, float | None, str]]) -> None:
     table.add_column("")
     for name, value, note in rows:
         table.add_row(name, "-" if value is None else f"{value:.6g}", note)
-    console = Console(highlight=False)
-    console.print(table, width=min(100, console.width))
+    print_table(table)

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from evenroad.cli.console import print_table
 from evenroad.roadmap import PlanResult
-
-WIDTH = 100
 
 
 def print_plan(result: PlanResult, note: str, files: Sequence[Path]) -> None:
@@ -34,5 +32,4 @@ def print_plan(result: PlanResult, note: str, files: Sequence[Path]) -> None:
     table.add_row("time [ms]", phases)
     # As Text: a file's name may hold brackets, which would be read as markup.
     table.add_row("files", Text(", ".join(map(str, files))))
-    console = Console(highlight=False)
-    console.print(table, width=min(WIDTH, console.width))
+    print_table(table)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -48,6 +51,8 @@ class Roadmap:
     def build(cls, space: Space, points: PointSet, rule: Rule | None = None) -> Roadmap:
         """Join the points by the rule, by default ``KNearest(20)``; memory O(m).
 
+        The graphs of the last 64 sets that came from a pool (the bank, or the user's cache) are kept for the process.
+
         Raises
         ------
         InvalidValue
@@ -55,11 +60,10 @@ class Roadmap:
         """
         require_fitting(points, space)
         rule = KNearest(20) if rule is None else rule
-        configurations = np.array(space.from_cube(points.points), dtype=np.float64)
-        edges = rule.edges(configurations, space)
-        for array in (configurations, edges):
-            array.setflags(write=False)
-        return cls(space, points, rule, configurations, edges)
+        # The sets of a pool come again and again, others hardly ever; a user's own space may not be hashable.
+        from_pool = points.origin.replica is not None and isinstance(space, Hashable)
+        joined: Callable[..., Any] = _joined_once if from_pool and isinstance(rule, Hashable) else _joined
+        return cls(space, points, rule, *joined(space, points, rule))
 
     def in_world(
         self, world: World, *, lazy_milestones: bool = False, edge_cost: EdgeCost | None = None
@@ -93,3 +97,17 @@ class Roadmap:
             if same_points and np.array_equal(space.distance(a, b), self.space.distance(a, b)):
                 return
         raise InvalidValue(f"the roadmap was built for {self.space!r}, the world has {space!r}")
+
+
+def _joined(
+    space: Space, points: PointSet, rule: Rule
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]:
+    """Return the milestones and the candidate edges, both read-only."""
+    configurations = np.array(space.from_cube(points.points), dtype=np.float64)
+    edges = rule.edges(configurations, space)
+    for array in (configurations, edges):
+        array.setflags(write=False)
+    return configurations, edges
+
+
+_joined_once = lru_cache(maxsize=64)(_joined)

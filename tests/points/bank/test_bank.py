@@ -92,7 +92,7 @@ def test_an_n_that_is_not_there_is_refused_and_those_that_are_are_named(small_ba
         small_bank.cell("hickernell", 9, 2)
     with pytest.raises(NotAvailable, match="hickernell has no sets in d=3; it has d = 2"):
         small_bank.cell("hickernell", 8, 3)
-    with pytest.raises(UnknownName, match="unknown family 'huge'; known: hickernell"):
+    with pytest.raises(UnknownName, match="unknown family in the bank: 'huge'; known: hickernell"):
         small_bank.cell("huge", 8, 2)
 
 

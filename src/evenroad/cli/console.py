@@ -1,0 +1,21 @@
+"""The terminal that tables are printed on."""
+
+from __future__ import annotations
+
+from rich.console import Console
+from rich.table import Table
+
+WIDTH = 100
+"""Columns that a table may take."""
+
+
+class _Output(Console):
+    def on_broken_pipe(self) -> None:
+        """Leave it to the caller, where Rich would end the process with an error."""
+        raise BrokenPipeError
+
+
+def print_table(table: Table) -> None:
+    """Print a table on standard output, within the terminal and 100 columns."""
+    console = _Output(highlight=False)
+    console.print(table, width=min(WIDTH, console.width))
