@@ -19,10 +19,13 @@ MAY_IMPORT = {
     "roadmap": BASE | {"points", "space", "world"},
     "mazes": BASE | {"world"},
     "qmc": BASE | {"points"},
-    "io": BASE | {"points", "space", "world", "roadmap"},
+    "io": BASE | {"points", "space", "world", "robot", "roadmap"},
     "testing": BASE | {"space", "world"},
-    "viz": BASE | {"points", "space", "world", "roadmap"},
-    "cli": BASE | {"points", "space", "world", "roadmap", "mazes", "io", "viz"},
+    "viz": BASE | {"points", "space", "world", "robot", "roadmap"},
+    "robot": BASE | {"space", "world"},
+    "bench": BASE | {"points", "space", "world", "robot", "roadmap", "mazes"},
+    "report": BASE | {"points", "space", "world", "robot", "roadmap", "mazes", "bench", "io", "viz"},
+    "cli": BASE | {"points", "space", "world", "robot", "roadmap", "mazes", "bench", "report", "io", "viz"},
     **dict.fromkeys(BASE, BASE),
 }
 """Part -> the parts it may import: the arrows of docs/design.md."""

@@ -1,0 +1,31 @@
+"""Problems by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from evenroad.bench.problem import ProblemSource
+from evenroad.bench.problems.corridors import CORRIDORS
+from evenroad.bench.problems.mazes import MAZES
+from evenroad.errors import UnknownName
+
+
+def _by_name(*families: Iterable[ProblemSource]) -> dict[str, ProblemSource]:
+    return {source.name: source for family in families for source in family}
+
+
+PROBLEMS: dict[str, ProblemSource] = _by_name(MAZES, CORRIDORS)
+"""Name -> where the problem comes from."""
+
+
+def source_named(name: str) -> ProblemSource:
+    """Return the problem source of this name.
+
+    Raises
+    ------
+    UnknownName
+        If there is none; the text lists them.
+    """
+    if name not in PROBLEMS:
+        raise UnknownName.among("problem", name, PROBLEMS)
+    return PROBLEMS[name]

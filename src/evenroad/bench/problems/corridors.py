@@ -1,0 +1,41 @@
+"""Corridors along edges of the hypercube, and the legacy problem that published tables are of."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from evenroad.bench.problem import Problem, ProblemSource
+from evenroad.world.corridor import Corridor, hypercube_legacy6
+
+WIDTHS: dict[int, tuple[float, ...]] = {2: (0.1, 0.03), 3: (0.2, 0.1), 10: (0.37, 0.5)}
+"""Dimension -> widths lambda: the paper's, then one where samplers differ."""
+
+
+def _corridor(d: int, lam: float, instance: int) -> Problem:
+    world = Corridor(d, lam)
+    return Problem(world, world.start, world.goal, set_dim=d)
+
+
+def _legacy6(instance: int) -> Problem:
+    world = hypercube_legacy6()
+    return Problem(world, world.start, world.goal, set_dim=world.d)
+
+
+CORRIDORS = (
+    *(
+        ProblemSource(
+            f"corridor-{d}d-{lam:g}",
+            d,
+            partial(_corridor, d, lam),
+            about=f"corridor along {d} edges of the cube, width {lam:g}, all coordinates tested",
+        )
+        for d, widths in WIDTHS.items()
+        for lam in widths
+    ),
+    ProblemSource(
+        "hypercube-legacy6",
+        10,
+        _legacy6,
+        about="10-D corridor, width 0.37, only 6 coordinates tested (OMPL's demo)",
+    ),
+)

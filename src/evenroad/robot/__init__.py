@@ -1,0 +1,1 @@
+"""Robots: kinematic trees with capsules for bodies, scenes, and a world that checks them by the batch."""
