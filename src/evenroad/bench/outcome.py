@@ -13,8 +13,8 @@ class Outcome:
     Attributes
     ----------
     status : str
-        ``solved``, ``not_connected``, ``start_invalid``, ``goal_invalid``; or ``failed`` (an exception), ``timeout``, ``lost``
-        (the worker died).  The last three are failures of the run, not answers.
+        ``solved``, ``not_connected``, ``start_invalid``, ``goal_invalid``; or ``failed`` (an exception),
+        ``timeout``, ``lost`` (the worker died).  The last three are failures of the run, not answers.
     valid : int
         Valid milestones among all n points, start and goal not counted.
     valid_at_solution : int or None

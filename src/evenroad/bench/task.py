@@ -27,8 +27,8 @@ class Task:
     rule : str
         Connection rule, as :func:`evenroad.roadmap.rule_named` reads it.
     search : str
-        ``connect`` (is there a path; no shortest one), ``stock`` (the same, adding milestones in order and noting after how
-        many valid ones there is a path: OMPL's early stop), ``full`` or ``lazy`` (shortest path).
+        ``connect`` (is there a path; no shortest one), ``stock`` (the same, adding milestones in order and noting
+        after how many valid ones there is a path: OMPL's early stop), ``full`` or ``lazy`` (shortest path).
     run : int
         Which draw of the sampler, from 0: run i of a block protocol takes the points i N + 1 .. (i + 1) N.
     seed : int

@@ -28,7 +28,8 @@ class Robot:
     group : tuple of str
         Joints that are planned for, in the order of the configuration; revolute, continuous or prismatic, none a mimic.
     held : mapping of str to float
-        Values of the movable joints that are not in the group [rad or m]; 0, or the nearest within limits, where not given.
+        Values of the movable joints that are not in the group [rad or m]; where not given: 0, or the nearest
+        to it within limits.
     states : mapping of str to mapping of str to float
         Named configurations: joint -> value.
     """
