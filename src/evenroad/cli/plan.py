@@ -63,7 +63,7 @@ class Plan:
 
     def run(self) -> int:
         """Plan, write, report; return 0 when solved, else 1."""
-        from evenroad.cli.report import print_plan
+        from evenroad.cli.plan_table import print_plan
         from evenroad.io import plan_record, save_json, save_path_csv
         from evenroad.roadmap import plan
         from evenroad.viz import save_plan_picture
