@@ -1,0 +1,172 @@
+"""Samplers of a benchmark: by name, which set run number i of a cell gets."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache, partial
+
+import numpy as np
+
+from evenroad.errors import NotAvailable, UnknownName
+from evenroad.points import PointSet, draw
+from evenroad.points.bank import open_bank
+from evenroad.points.even import KOROBOV, even_choice
+from evenroad.points.randomise import permute_coordinates
+from evenroad.points.samplers.lattice import MAX_D
+
+PERMUTED_FROM = 5
+"""From this dimension on a set with permuted coordinates plans like a fresh one; below, there are too few orders."""
+
+STRETCH = 32
+"""Runs of a block protocol whose points are generated together."""
+
+Drawn = tuple[PointSet, str]
+"""A set, and which one of its pool it is."""
+
+
+@dataclass(frozen=True)
+class RunSampler:
+    """How the set of a run is drawn.
+
+    Attributes
+    ----------
+    draw : callable
+        From (n, d, run, rng) to the set and its `set_id`.
+    why_not : callable
+        From (n, d) to why there is no such set, one sentence; "" if there is one.
+    about : str
+        One line for lists and tables.
+    """
+
+    draw: Callable[[int, int, int, np.random.Generator], Drawn]
+    why_not: Callable[[int, int], str]
+    about: str
+
+
+def draw_set(name: str, n: int, d: int, run: int, rng: np.random.Generator) -> Drawn:
+    """Draw the set of one run.
+
+    Parameters
+    ----------
+    name : str
+        One of :data:`SAMPLERS`.
+    n, d : int
+        Number of points and dimension.
+    run : int
+        From 0; what block protocols go by.
+    rng : Generator
+        What all other draws come from.  It is spawned.
+
+    Returns
+    -------
+    points : PointSet
+        Shape (n, d).
+    set_id : str
+        The number of the set in its pool, by which statistics cluster; ``grid`` for the only set that there is;
+        empty for sets drawn afresh.
+
+    Raises
+    ------
+    UnknownName
+        If there is no such sampler; the text lists them.
+    NotAvailable
+        If the sampler has no such set.  Nothing is ever trained for a benchmark.
+    """
+    reason = why_not(name, n, d)
+    if reason:
+        raise NotAvailable(reason)
+    return SAMPLERS[name].draw(n, d, run, rng)
+
+
+def why_not(name: str, n: int, d: int) -> str:
+    """Return why a sampler has no set of n points in d dimensions, or "" if it has; UnknownName as `draw_set`."""
+    if name not in SAMPLERS:
+        raise UnknownName.among("sampler", name, SAMPLERS)
+    return SAMPLERS[name].why_not(n, d)
+
+
+def _fresh(family: str, n: int, d: int, run: int, rng: np.random.Generator) -> Drawn:
+    return draw(family, n, d, rng=rng), ""
+
+
+def _block(family: str, n: int, d: int, run: int, rng: np.random.Generator) -> Drawn:
+    stretch = _stretch(family, n, d, run // STRETCH)
+    first = run % STRETCH * n
+    block = PointSet(stretch.points[first : first + n], stretch.origin)
+    return block.with_origin(start=stretch.origin.start + first), ""
+
+
+@lru_cache(maxsize=4)
+def _stretch(family: str, n: int, d: int, number: int) -> PointSet:
+    """Return the blocks of many runs at once: SciPy's Halton engine generates all the points that it skips."""
+    # Here, because it imports scipy.stats.
+    from evenroad.points.samplers.sequences import Halton, Sobol
+
+    sequence = Halton if family == "halton" else Sobol
+    return sequence(scramble=False, start=number * STRETCH * n + 1).draw(STRETCH * n, d)
+
+
+def _grid(n: int, d: int, run: int, rng: np.random.Generator) -> Drawn:
+    return draw("sukharev", n, d), "grid"
+
+
+def _from_pool(family: str, n: int, d: int, run: int, rng: np.random.Generator) -> Drawn:
+    choice, order = rng.spawn(2)
+    points = draw(family, n, d, rng=choice)
+    if points.origin.replica is None:
+        # Constructed (`even` from six dimensions on): its random shift makes it a set of its own.
+        return points, ""
+    if d >= PERMUTED_FROM:
+        points = permute_coordinates(points, rng=order)
+    return points, str(points.origin.replica)
+
+
+def _always(n: int, d: int) -> str:
+    return ""
+
+
+def _lattice_exists(n: int, d: int) -> str:
+    return f"the lattice sampler goes up to d = {MAX_D}" if d > MAX_D else ""
+
+
+def _grid_exists(n: int, d: int) -> str:
+    try:
+        draw("sukharev", n, d)
+    except NotAvailable as error:
+        return str(error)
+    return ""
+
+
+def _pool_exists(family: str, n: int, d: int) -> str:
+    if family == "even" and even_choice(d) == KOROBOV:
+        return ""
+    try:
+        open_bank().cell(family, n, d)
+    except (NotAvailable, UnknownName) as error:
+        return str(error)
+    return ""
+
+
+def _pool(family: str, about: str) -> RunSampler:
+    return RunSampler(partial(_from_pool, family), partial(_pool_exists, family), about)
+
+
+SAMPLERS: dict[str, RunSampler] = {
+    "uniform": RunSampler(partial(_fresh, "uniform"), _always, "independent points"),
+    "halton paper-blocks": RunSampler(
+        partial(_block, "halton"), _always, "plain Halton; run i takes the points i N + 1 .. (i + 1) N"
+    ),
+    "halton scrambled": RunSampler(partial(_fresh, "halton"), _always, "Halton, randomly permuted digits"),
+    "sobol paper-blocks": RunSampler(
+        partial(_block, "sobol"), _always, "plain Sobol; run i takes the points i N + 1 .. (i + 1) N"
+    ),
+    "sobol scrambled": RunSampler(partial(_fresh, "sobol"), _always, "Sobol, scrambled, from index 0"),
+    "lattice": RunSampler(partial(_fresh, "lattice"), _lattice_exists, "A_d*, randomly turned and shifted"),
+    "sukharev": RunSampler(_grid, _grid_exists, "the grid of k^d cell centres; always the same set"),
+    "mpmc": _pool("mpmc", "a set of the pool trained by the message-passing network"),
+    "hickernell": _pool("hickernell", "a set of the pool annealed for the network's discrepancy"),
+    "even": _pool("even", "our family: a set of the annealed pool, a shifted Korobov lattice from d = 6 on"),
+    "korobov": RunSampler(partial(_fresh, "korobov"), _always, "best Korobov lattice, randomly shifted"),
+}
+"""Name -> how the set of a run is drawn, in the order of tables."""
