@@ -1,0 +1,122 @@
+"""Runs that are not independent: those of one trained set, or of one random world.
+
+A pool of 64 sets that is drawn from 400 times does not give 400 independent runs: on a fixed problem the same set
+gives much the same answer every time.  What is independent are the sets; in a suite of random worlds, the worlds.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from scipy.special import gammaln
+
+from evenroad.bench.statistics._counts import as_successes
+from evenroad.bench.statistics.bootstrap import DRAWS, percentile_interval, resampled_ratios
+from evenroad.bench.statistics.interval import LEVEL, Interval, wilson
+from evenroad.errors import InvalidValue
+
+FEW_UNITS = 10
+"""With fewer units than this a bootstrap is too narrow, and we count units instead of runs."""
+
+
+def clustered_rate(
+    solved: npt.ArrayLike,
+    runs: npt.ArrayLike,
+    unit: str,
+    *,
+    level: float = LEVEL,
+    draws: int = DRAWS,
+    seed: int = 0,
+) -> Interval:
+    """Return the interval of a success rate whose runs come in units that are independent of each other.
+
+    A percentile bootstrap over units.  With fewer than 10 units, or where all units say the same (a bootstrap
+    would have no width), Wilson's interval for as many runs as there are units: wide, and honest.
+
+    Parameters
+    ----------
+    solved, runs : array_like of int, shape (units,)
+        Successes and runs per unit; every unit has a run.
+    unit : str
+        What a unit is, in the plural, for `Interval.kind`: ``sets`` or ``instances``.
+
+    Raises
+    ------
+    InvalidValue
+        If there is no unit, or the counts are impossible.
+    """
+    successes, trials = as_successes(solved, runs)
+    if successes.ndim != 1 or len(successes) == 0:
+        raise InvalidValue(f"counts per unit must be a list, got shape {successes.shape}")
+    rates = successes / trials
+    if len(rates) < FEW_UNITS or np.all(rates == rates[0]):
+        return _as_if_one_run_a_unit(float(successes.sum() / trials.sum()), len(rates), unit, level)
+    values = resampled_ratios(successes, trials, draws=draws, seed=seed)
+    return Interval(*percentile_interval(values, level=level), f"bootstrap over {unit}")
+
+
+def clustered_difference(
+    sums: npt.ArrayLike,
+    pairs: npt.ArrayLike,
+    unit: str,
+    *,
+    level: float = LEVEL,
+    draws: int = DRAWS,
+    seed: int = 0,
+) -> Interval:
+    """Return the interval of a paired difference of success rates, by a bootstrap over units.
+
+    Parameters
+    ----------
+    sums : array_like of int, shape (units,)
+        Runs of a unit that only the first solved, minus those that only the second solved.
+    pairs : array_like of int, shape (units,)
+        Pairs of runs in the unit, >= 1.
+    unit : str
+        As for :func:`clustered_rate`.
+    """
+    values = resampled_ratios(sums, pairs, draws=draws, seed=seed)
+    return Interval(*percentile_interval(values, level=level), f"paired bootstrap over {unit}")
+
+
+def sign_flip_test(sums: npt.ArrayLike) -> float:
+    """Return the two-sided p-value that units' differences are as likely to have either sign.
+
+    The exact distribution of ``|sum of +-s_u|`` over all choices of signs.  With one pair a unit (all s_u are
+    -1, 0 or 1) this is McNemar's exact test; with more it keeps the pairs of a unit together.  Exact where the two
+    samplers are exchangeable inside a unit, which holds for draws in one random world; for runs of a pool's
+    sets it is the usual large-sample test of a mean.
+
+    Parameters
+    ----------
+    sums : array_like of int, shape (units,)
+        As for :func:`clustered_difference`.
+
+    References
+    ----------
+    R. A. Fisher (1935), The Design of Experiments, section 21.
+    """
+    values = np.asarray(sums)
+    if values.ndim != 1 or np.any(values != np.trunc(values)):
+        raise InvalidValue(f"sums per unit must be a list of whole numbers, got {sums!r}")
+    observed = abs(int(values.sum()))
+    sizes, units_of_size = np.unique(np.abs(values[values != 0]).astype(np.int64), return_counts=True)
+    # chance[i] is the probability that the signed sum is i - (len(chance) - 1) / 2.
+    chance = np.ones(1)
+    for size, count in zip(sizes.tolist(), units_of_size.tolist(), strict=True):
+        heads = np.arange(count + 1)
+        log_ways = gammaln(count + 1) - gammaln(heads + 1) - gammaln(count - heads + 1)
+        spaced = np.zeros(2 * size * count + 1)
+        spaced[:: 2 * size] = np.exp(log_ways - count * np.log(2.0))
+        chance = np.convolve(chance, spaced)
+    reach = (len(chance) - 1) // 2
+    total = np.abs(np.arange(-reach, reach + 1)) >= observed
+    return float(min(1.0, chance[total].sum()))
+
+
+def _as_if_one_run_a_unit(rate: float, units: int, unit: str, level: float) -> Interval:
+    """Return Wilson's interval for `units` runs; between two counts the wider ends of both are taken."""
+    below, above = int(np.floor(rate * units)), int(np.ceil(rate * units))
+    low, _ = wilson(below, units, level=level)
+    _, high = wilson(above, units, level=level)
+    return Interval(float(low), float(high), f"wilson over {unit}")

@@ -1,0 +1,185 @@
+import itertools
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from evenroad.bench.statistics import (
+    SamplesNeeded,
+    clustered_difference,
+    clustered_rate,
+    mcnemar_exact,
+    percentile_interval,
+    resampled_ratios,
+    samples_needed,
+    sign_flip_test,
+    wilson,
+)
+from evenroad.bench.statistics.samples_needed import _isotonic
+from evenroad.errors import InvalidValue
+
+
+def test_a_bootstrap_resamples_whole_units():
+    """With two units the ratio can only be one of three values, in shares 1/4, 1/2, 1/4."""
+    values = resampled_ratios([3, 0], [3, 1], draws=4000)
+    seen, times = np.unique(values, return_counts=True)
+    assert seen == pytest.approx([0.0, 0.75, 1.0])
+    assert times / 4000 == pytest.approx([0.25, 0.5, 0.25], abs=0.03)
+
+
+def test_a_bootstrap_of_single_runs_has_the_binomial_spread():
+    solved = np.repeat([1, 0], [60, 140])
+    values = resampled_ratios(solved, np.ones(200), draws=4000)
+    assert values.mean() == pytest.approx(0.3, abs=0.005)
+    assert values.std() == pytest.approx(math.sqrt(0.3 * 0.7 / 200), rel=0.05)
+
+
+def test_the_same_seed_gives_the_same_bits_and_another_does_not():
+    first = resampled_ratios([1, 0, 1], [1, 1, 1])
+    assert np.array_equal(first, resampled_ratios([1, 0, 1], [1, 1, 1]))
+    assert not np.array_equal(first, resampled_ratios([1, 0, 1], [1, 1, 1], seed=1))
+
+
+@pytest.mark.parametrize(
+    "numbers", [([], []), ([1], [0]), ([1, 2], [1]), ([math.nan], [1]), ([1], [math.inf])]
+)
+def test_a_bootstrap_of_nothing_is_refused(numbers):
+    with pytest.raises(InvalidValue, match="bootstrap"):
+        resampled_ratios(*numbers)
+
+
+def test_percentiles_may_be_infinite():
+    assert percentile_interval([-math.inf, 1.0, 2.0, math.inf]) == (-math.inf, math.inf)
+    assert percentile_interval([3.0]) == (3.0, 3.0)
+
+
+def test_an_interval_over_sets_is_wider_than_one_that_takes_runs_for_independent():
+    """20 sets that either always or never solve, 20 runs each: the sets are what was drawn."""
+    solved, runs = np.repeat([20, 0], [14, 6]), np.full(20, 20)
+    over_sets, over_runs = clustered_rate(solved, runs, "sets"), wilson(solved.sum(), runs.sum())
+    assert over_sets.kind == "bootstrap over sets"
+    assert over_sets.high - over_sets.low > 3 * (over_runs[1] - over_runs[0])
+
+
+def test_an_interval_over_sets_covers_the_familys_rate():
+    rng = np.random.default_rng(5)
+    chances = rng.beta(2, 2, size=(400, 30))
+    solved = rng.binomial(12, chances)
+    intervals = [clustered_rate(each, np.full(30, 12), "sets", draws=400) for each in solved]
+    covered = np.mean([each.low <= 0.5 <= each.high for each in intervals])
+    assert 0.90 <= covered <= 0.98
+
+
+@pytest.mark.parametrize(("solved", "sets"), [([5] * 16, 16), ([0] * 12, 12), ([5, 0, 3], 3)])
+def test_where_a_bootstrap_says_too_much_sets_are_counted_as_runs(solved, sets):
+    interval = clustered_rate(solved, [5] * len(solved), "sets")
+    rate = sum(solved) / (5 * sets)
+    low, high = wilson(math.floor(rate * sets), sets)[0], wilson(math.ceil(rate * sets), sets)[1]
+    assert (interval.low, interval.high) == (low, high)
+    assert interval.kind == "wilson over sets"
+    assert interval.low <= rate <= interval.high
+
+
+def _flip_by_counting(sums):
+    flips = [
+        abs(sum(s * x for s, x in zip(signs, sums, strict=True)))
+        for signs in itertools.product((-1, 1), repeat=len(sums))
+    ]
+    return np.mean(np.array(flips) >= abs(sum(sums)))
+
+
+@given(st.lists(st.integers(-5, 5), max_size=9))
+def test_sign_flips_are_counted_exactly(sums):
+    assert sign_flip_test(sums) == pytest.approx(_flip_by_counting(sums))
+
+
+@given(st.integers(0, 300), st.integers(0, 300), st.integers(0, 50))
+def test_sign_flips_of_single_pairs_are_mcnemars_test(first, second, ties):
+    sums = [1] * first + [-1] * second + [0] * ties
+    assert sign_flip_test(sums) == pytest.approx(float(mcnemar_exact(first, second)), rel=1e-9)
+
+
+def test_pairs_of_one_set_count_as_one_difference():
+    """Four sets better by 100 runs each are four differences, not 400."""
+    assert sign_flip_test([100] * 4) == pytest.approx(2 / 2**4)
+    assert sign_flip_test([]) == 1.0
+
+
+def test_sign_flips_take_whole_numbers_only():
+    with pytest.raises(InvalidValue, match="whole"):
+        sign_flip_test([0.5])
+
+
+def test_a_paired_difference_keeps_the_pairs_of_a_unit_together():
+    interval = clustered_difference([4, -4] * 10, [4] * 20, "instances")
+    assert interval.kind == "paired bootstrap over instances"
+    assert interval.low < 0 < interval.high
+    assert interval.high == pytest.approx(1.96 / math.sqrt(20), rel=0.15)
+
+
+COUNTS = (32, 64, 128, 256)
+
+
+def _needed(rates, draws=300, runs=400):
+    rng = np.random.default_rng(0)
+    resampled = rng.binomial(runs, rates, size=(draws, len(rates))) / runs
+    return samples_needed(COUNTS[: len(rates)], rates, resampled, [runs] * len(rates))
+
+
+def test_ninety_per_cent_lies_on_the_line_between_two_counts():
+    """Half way from .85 at 64 to .95 at 128, over log N: 64 sqrt(2)."""
+    needed = _needed([0.3, 0.85, 0.95, 1.0])
+    assert needed.estimate == pytest.approx(64 * math.sqrt(2))
+    assert 64 < needed.low < needed.estimate < needed.high < 128
+
+
+@pytest.mark.parametrize(
+    ("rates", "text"), [((0.1, 0.2, 0.2, 0.3), "> 256"), ((0.99, 1.0, 1.0, 1.0), "≤ 32"), ((0.1,), "> 32")]
+)
+def test_beyond_what_was_tried_is_an_answer(rates, text):
+    assert str(_needed(rates)) == text
+
+
+def test_an_interval_may_reach_beyond_what_was_tried():
+    needed = _needed([0.2, 0.4, 0.8, 0.9], runs=100)
+    assert needed.high == math.inf
+    assert str(needed).endswith("> 256]")
+
+
+def test_a_rate_that_falls_is_evened_out_first():
+    """.92 then .88 with equal runs is .90 twice."""
+    needed = samples_needed((32, 64, 128), [0.1, 0.92, 0.88], [[0.1, 0.92, 0.88]], [50, 50, 50])
+    assert needed.estimate == pytest.approx(64.0)
+
+
+@given(st.lists(st.tuples(st.floats(0, 1), st.integers(1, 9)), min_size=1, max_size=7))
+def test_isotonic_rates_are_those_of_pooling_adjacent_violators(pairs):
+    rates, weights = (np.array(each, dtype=float) for each in zip(*pairs, strict=True))
+    blocks = []
+    for rate, weight in zip(rates, weights, strict=True):
+        blocks.append([rate * weight, weight, 1])
+        while len(blocks) > 1 and blocks[-2][0] * blocks[-1][1] > blocks[-1][0] * blocks[-2][1]:
+            last = blocks.pop()
+            blocks[-1] = [a + b for a, b in zip(blocks[-1], last, strict=True)]
+    pooled = np.concatenate([[total / weight] * length for total, weight, length in blocks])
+    assert _isotonic(rates[None], weights)[0] == pytest.approx(pooled, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("counts", "rates", "resampled"),
+    [
+        ((64, 32), [0.1, 0.2], [[0.1, 0.2]]),
+        ((32,), [0.1, 0.2], [[0.1]]),
+        ((32,), [0.1], [0.1]),
+        ((), [], [[]]),
+    ],
+)
+def test_shapes_that_do_not_fit_are_refused(counts, rates, resampled):
+    with pytest.raises(InvalidValue):
+        samples_needed(counts, rates, resampled, [10] * len(rates))
+
+
+def test_samples_needed_print_with_their_interval():
+    assert str(SamplesNeeded(411.6, 380.2, math.inf, 32, 1024)) == "412 [380, > 1024]"
