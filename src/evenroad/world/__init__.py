@@ -9,3 +9,5 @@ from evenroad.world.gridmap import MapFrame as MapFrame
 from evenroad.world.gridmap import load_map as load_map
 from evenroad.world.protocol import Explains as Explains
 from evenroad.world.protocol import World as World
+from evenroad.world.solids import OrientedBox as OrientedBox
+from evenroad.world.solids import SolidWorld as SolidWorld

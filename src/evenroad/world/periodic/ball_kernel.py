@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from evenroad.world.periodic.cube import comes_first, is_in_cube
+from evenroad.world.periodic.cube import ROUNDING, comes_first, is_in_cube
 
 
 @njit(cache=True, nogil=True)
@@ -80,7 +82,16 @@ def _misses_all(
         squared_length += step[k] * step[k]
     if squared_length == 0.0:
         return True
+    in_reach = math.sqrt(squared_radius) + 0.5 * math.sqrt(squared_length) + ROUNDING
     for i in range(len(centres)):
+        # Most balls are out of reach of a short motion, wherever on it: its middle says so.
+        squared = 0.0
+        for k in range(len(a)):
+            offset = a[k] + 0.5 * step[k] - centres[i, k]
+            offset -= np.rint(offset)
+            squared += offset * offset
+        if squared > in_reach * in_reach:
+            continue
         # The parabola squared + 2 t along + t^2 squared_length, and the changes in the order of their times.
         squared, along, changes = 0.0, 0.0, 0
         for k in range(len(a)):

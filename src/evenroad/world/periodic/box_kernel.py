@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from evenroad.world.periodic.cube import comes_first, is_in_cube
+from evenroad.world.periodic.cube import ROUNDING, comes_first, is_in_cube
 
 
 @njit(cache=True, nogil=True)
@@ -82,6 +82,12 @@ def _misses(
     on_axis: npt.NDArray[np.float64],
 ) -> bool:
     """Return whether ``a + t (b - a)``, 0 <= t <= 1, is never within one box; the last three are room to work in."""
+    for j in range(len(axes)):
+        # Most boxes are out of reach along some axis: the middle of the motion says so.
+        step = b[axes[j]] - a[axes[j]]
+        middle = a[axes[j]] + 0.5 * step - centre[j]
+        if abs(middle - np.rint(middle)) > half_extent[j] + 0.5 * abs(step) + ROUNDING:
+            return True
     spans[0, 0], spans[0, 1] = 0.0, 1.0
     count = 1
     for j in range(len(axes)):
@@ -102,7 +108,7 @@ def _misses(
 
 @njit(cache=True, nogil=True)
 def _times_within(begin: float, step: float, half_extent: float, spans: npt.NDArray[np.float64]) -> int:
-    """Write the spans of [0, 1] in which ``begin + t step`` is closer than `half_extent` to an integer; return how many.
+    """Write the spans of time in which ``begin + t step`` is closer than `half_extent` to an integer; return how many.
 
     `begin` and ``begin + step`` lie in [-1, 1], so that only -1, 0 and 1 can be near.
     """

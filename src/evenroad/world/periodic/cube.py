@@ -6,6 +6,9 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+ROUNDING = 1e-9
+"""What bounds leave for rounding, so that they never decide what the exact test would decide otherwise."""
+
 
 @njit(cache=True, nogil=True, inline="always")
 def is_in_cube(q: npt.NDArray[np.float64]) -> bool:

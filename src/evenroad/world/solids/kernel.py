@@ -1,0 +1,123 @@
+"""Compiled checks of a body of boxes among boxes, for poses and for the states of motions."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from evenroad.world.solids.overlap import first_contact
+from evenroad.world.solids.tables import BoxTable
+
+_SMALL_ANGLE = 1e-8
+"""Below it a chord and its arc agree to the last bit, and sin(angle) is too small to divide by safely."""
+
+
+@njit(cache=True, nogil=True)
+def contacts(
+    poses: npt.NDArray[np.float64],
+    body: BoxTable,
+    reach: float,
+    obstacles: BoxTable,
+    planar: bool,
+) -> npt.NDArray[np.int64]:
+    """Return for each pose, (n, 7), the first obstacle that the body meets, or -1; its points reach so far."""
+    found = np.empty(len(poses), dtype=np.int64)
+    near = np.empty(len(obstacles.centre), dtype=np.int64)
+    work = np.empty((4, 3, 3))
+    for row in range(len(poses)):
+        count = _obstacles_near(poses[row], poses[row], reach, obstacles, near)
+        found[row] = first_contact(poses[row], body, obstacles, near[:count], planar, work)
+    return found
+
+
+@njit(cache=True, nogil=True)
+def motions_are_free(
+    a: npt.NDArray[np.float64],
+    b: npt.NDArray[np.float64],
+    step: float,
+    turn_step: float,
+    body: BoxTable,
+    reach: float,
+    obstacles: BoxTable,
+    planar: bool,
+) -> npt.NDArray[np.bool_]:
+    """Return which motions between poses, (m, 7), are free at both ends and at states between, in bisection order.
+
+    Neighbouring states are at most `step` and, as quaternions, `turn_step` radians apart.
+    """
+    free = np.empty(len(a), dtype=np.bool_)
+    near = np.empty(len(obstacles.centre), dtype=np.int64)
+    state, work = np.empty(7), np.empty((4, 3, 3))
+    for row in range(len(a)):
+        # What is far from the whole motion is far from all of its states.
+        count = _obstacles_near(a[row], b[row], reach, obstacles, near)
+        free[row] = count == 0 or (
+            first_contact(a[row], body, obstacles, near[:count], planar, work) < 0
+            and first_contact(b[row], body, obstacles, near[:count], planar, work) < 0
+            and _way_is_free(
+                a[row], b[row], step, turn_step, body, obstacles, near[:count], planar, state, work
+            )
+        )
+    return free
+
+
+@njit(cache=True, nogil=True)
+def _way_is_free(a, b, step, turn_step, body, obstacles, near, planar, state, work):  # type: ignore[no-untyped-def]
+    length = math.sqrt((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2 + (b[2] - a[2]) ** 2)
+    angle = _angle(a, b)
+    segments = max(math.ceil(length / step), math.ceil(angle / turn_step))
+    # The order of evenroad.world.bisection, for one motion.
+    level = 1
+    while (1 << (level - 1)) < segments:
+        before = 0
+        for multiple in range(1, 1 << level, 2):
+            number = (multiple * segments) >> level
+            after = ((multiple + 1) * segments) >> level
+            if before < number < after:
+                # Two weights, not one fraction: a motion and its reverse then have the same states.
+                _put_between(a, b, (segments - number) / segments, number / segments, angle, state)
+                if first_contact(state, body, obstacles, near, planar, work) >= 0:
+                    return False
+            before = after
+        level += 1
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _put_between(a, b, from_a, from_b, angle, state):  # type: ignore[no-untyped-def]
+    """Write the pose with the weights `from_a` and `from_b`: straight, and by slerp (Shoemake 1985)."""
+    for k in range(3):
+        state[k] = from_a * a[k] + from_b * b[k]
+    if angle >= _SMALL_ANGLE:
+        sine = math.sin(angle)
+        from_a, from_b = math.sin(from_a * angle) / sine, math.sin(from_b * angle) / sine
+    for k in range(3, 7):
+        state[k] = from_a * a[k] + from_b * b[k]
+
+
+@njit(cache=True, nogil=True)
+def _angle(a, b):  # type: ignore[no-untyped-def]
+    """Return the angle between the quaternions; unlike arccos it keeps all digits of small angles (Kahan)."""
+    apart, together = 0.0, 0.0
+    for k in range(3, 7):
+        apart += (a[k] - b[k]) ** 2
+        together += (a[k] + b[k]) ** 2
+    return 2.0 * math.atan2(math.sqrt(apart), math.sqrt(together))
+
+
+@njit(cache=True, nogil=True)
+def _obstacles_near(a, b, reach, obstacles, near):  # type: ignore[no-untyped-def]
+    """Write the obstacles that balls of radius `reach` on the way from a to b might meet; return their number."""
+    count = 0
+    for i in range(len(obstacles.centre)):
+        is_near = True
+        for k in range(3):
+            is_near &= obstacles.low[i, k] - reach <= max(a[k], b[k])
+            is_near &= min(a[k], b[k]) <= obstacles.high[i, k] + reach
+        if is_near:
+            near[count] = i
+            count += 1
+    return count

@@ -1,0 +1,78 @@
+"""Poses: configurations of the spaces that a rigid body can move in, as translation and unit quaternion."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.errors import InvalidValue
+from evenroad.space import SO3, Box, Circle, Product, Space
+
+RigidSpace: TypeAlias = Product | Box
+"""``SE2(..)``, ``SE3(..)``, or a `Box` of 2 or 3 axes for a body that does not turn."""
+
+
+def body_dimension(space: Space) -> int:
+    """Return 2 or 3: the dimension of the bodies that move in `space`.
+
+    Raises
+    ------
+    InvalidValue
+        If `space` is none of ``SE2(..)``, ``SE3(..)`` and a `Box` of 2 or 3 axes.
+    """
+    if isinstance(space, Box) and space.dim in (2, 3):
+        return space.dim
+    if isinstance(space, Product) and len(space.parts) == 2 and isinstance(space.parts[0], Box):
+        position, turn = space.parts
+        for dim, kind in ((2, Circle), (3, SO3)):
+            if position.dim == dim and isinstance(turn, kind):
+                return dim
+    raise InvalidValue(f"space must be SE2(..), SE3(..) or a Box of 2 or 3 axes, got {space!r}")
+
+
+def turns(space: Space) -> bool:
+    """Return whether bodies turn in this one of the spaces above."""
+    return isinstance(space, Product)
+
+
+def as_poses(q: npt.NDArray[np.float64], space: Space) -> npt.NDArray[np.float64]:
+    """Return configurations (n, dim) of such a space as (n, 7): x, y, z, then the quaternion's w, x, y, z.
+
+    The quaternions of a space that contains `q` are of norm 1; others are not, and are not looked at.
+    """
+    dim = body_dimension(space)
+    poses = np.zeros((len(q), 7))
+    poses[:, :dim] = q[:, :dim]
+    poses[:, 3] = 1.0
+    if turns(space) and dim == 3:
+        poses[:, 3:] = q[:, 3:]
+    elif turns(space):
+        half = _heading(q) / 2.0
+        poses[:, 3], poses[:, 6] = np.cos(half), np.sin(half)
+    return poses
+
+
+def as_pose_pair(
+    a: npt.NDArray[np.float64], b: npt.NDArray[np.float64], space: Space
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Return the ends of motions as poses such that the shorter arc between their quaternions is the space's way."""
+    first, second = as_poses(a, space), as_poses(b, space)
+    if turns(space) and body_dimension(space) == 3:
+        p, q = first[:, 3:].T, second[:, 3:].T
+        other_sign = p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3] < 0.0
+    elif turns(space):
+        # Exactly opposite headings: their quaternions' product is zero up to rounding and decides nothing.
+        other_sign = np.abs(_heading(b) - _heading(a)) > np.pi
+    else:
+        return first, second
+    second[other_sign, 3:] *= -1.0
+    return first, second
+
+
+def _heading(q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Return the headings of planar poses in [-pi, pi), as `Circle` gives them."""
+    heading = q[:, 2]
+    wrapped = np.mod(heading + np.pi, 2.0 * np.pi) - np.pi
+    return np.where((heading >= -np.pi) & (heading < np.pi), heading, wrapped)

@@ -1,0 +1,159 @@
+"""SolidWorld: a rigid body of boxes among boxes and rectangles."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._checks import require_positive
+from evenroad.errors import InvalidValue
+from evenroad.space import Box, Product
+from evenroad.space.axes import as_row
+from evenroad.space.batch import as_batch, as_batch_pair
+from evenroad.world.solids.kernel import contacts, motions_are_free
+from evenroad.world.solids.oriented_box import OrientedBox
+from evenroad.world.solids.poses import RigidSpace, as_pose_pair, as_poses, body_dimension
+from evenroad.world.solids.tables import BoxTable, box_table, reach_of
+
+_MOST_SEGMENTS = 2**30
+"""More of them in one motion would take hours: then the resolution is a slip."""
+
+
+@dataclass(frozen=True, eq=False)
+class SolidWorld:
+    """A rigid body of boxes that moves among boxes and rectangles, in the plane or in space.
+
+    A pose is free if it lies in the space and no box of the body meets an obstacle; touching is meeting.  The
+    tests are exact up to rounding, about 1e-7 of the boxes' sizes.  Boxes are solid.  For obstacles that are
+    surfaces, with room inside, use rectangles: boxes with a half extent of zero, or :func:`shell`.
+
+    A motion is divided into ``n = max(ceil(way / step), ceil(turn / turn_step))`` segments and free if all n + 1
+    ends of segments are; they are tested in bisection order, the ends first.
+
+    Parameters
+    ----------
+    space : ``SE2(..)``, ``SE3(..)``, or a Box of 2 or 3 axes
+        Poses of the body's frame; in a Box the body does not turn.
+    body : sequence of OrientedBox
+        In the body's frame; at least one.
+    obstacles : sequence of OrientedBox
+        In the frame of the space.  All boxes are of the plane for SE2 and a Box of 2 axes, else of space.
+    resolution : float, or a pair of floats for SE2 and SE3
+        `step` and `turn_step`: the largest way and turn between neighbouring states, > 0.  Turns are measured as the
+        space does: headings in radians, quaternions by ``arccos |q . q'|``.
+
+    Raises
+    ------
+    InvalidValue
+        If the space is of another kind, boxes are missing or of another dimension, or `resolution` does not fit.
+    """
+
+    space: RigidSpace
+    body: Sequence[OrientedBox]
+    obstacles: Sequence[OrientedBox]
+    resolution: float | Sequence[float]
+    _body: BoxTable = field(init=False, repr=False)
+    _obstacles: BoxTable = field(init=False, repr=False)
+    _reach: float = field(init=False, repr=False)
+    _steps: tuple[float, float] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        dim = body_dimension(self.space)
+        body, obstacles = _as_boxes("body", self.body, dim), _as_boxes("obstacles", self.obstacles, dim)
+        if not body:
+            raise InvalidValue("body must be one box or more, got none")
+        resolution, steps = _as_steps(self.resolution, self.space)
+        for name, value in (
+            ("body", body),
+            ("obstacles", obstacles),
+            ("resolution", resolution),
+            ("_body", box_table(body)),
+            ("_obstacles", box_table(obstacles)),
+            ("_reach", reach_of(body)),
+            ("_steps", steps),
+        ):
+            object.__setattr__(self, name, value)
+
+    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Return which poses, (n, dim), lie in the space and are free: (n,).
+
+        Raises
+        ------
+        InvalidValue
+            If `q` has another shape or an entry that is not finite.
+        """
+        batch = as_batch("q", q, self.space.dim)
+        free = self.space.contains(batch)
+        inside = np.flatnonzero(free)
+        free[inside] = self._contacts(batch[inside]) < 0
+        return free
+
+    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Return which motions from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
+
+        Raises
+        ------
+        InvalidValue
+            As `valid`, or if the two differ in length.
+        """
+        first, second = as_batch_pair(a, b, self.space.dim)
+        free = self.space.contains(first) & self.space.contains(second)
+        inside = np.flatnonzero(free)
+        start, end = as_pose_pair(first[inside], second[inside], self.space)
+        free[inside] = motions_are_free(
+            start, end, *self._steps, self._body, self._reach, self._obstacles, self._planar
+        )
+        return free
+
+    def explain(self, q: npt.NDArray[np.float64]) -> str:
+        """Return in words why the pose `q`, (dim,), is not free."""
+        pose = as_batch("q", np.asarray(q, dtype=np.float64)[np.newaxis], self.space.dim)
+        if not self.space.contains(pose)[0]:
+            return "it lies outside the bounds of the space"
+        obstacle = int(self._contacts(pose)[0])
+        name = self.obstacles[obstacle].name
+        return f"the body meets obstacle {obstacle}{f' ({name})' if name else ''}"
+
+    @property
+    def _planar(self) -> bool:
+        return body_dimension(self.space) == 2
+
+    def _contacts(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
+        return contacts(as_poses(q, self.space), self._body, self._reach, self._obstacles, self._planar)
+
+
+def _as_boxes(name: str, boxes: Sequence[OrientedBox], dim: int) -> tuple[OrientedBox, ...]:
+    row = tuple(boxes)
+    for i, box in enumerate(row):
+        if not isinstance(box, OrientedBox) or box.dim != dim:
+            raise InvalidValue(f"{name} must be OrientedBox values of {dim} dimensions, got {box!r} at {i}")
+    return row
+
+
+def _as_steps(
+    resolution: float | Sequence[float], space: RigidSpace
+) -> tuple[float | tuple[float, ...], tuple[float, float]]:
+    """Return the resolution as a value, and the steps of way and quaternion that it asks for."""
+    position = space.parts[0] if isinstance(space, Product) else space
+    assert isinstance(position, Box)  # as body_dimension has seen to
+    value: float | tuple[float, ...]
+    if isinstance(space, Product):
+        if not isinstance(resolution, Sequence | np.ndarray) or isinstance(resolution, str):
+            raise InvalidValue(f"resolution must be a way and a turn for SE2 and SE3, got {resolution!r}")
+        value = as_row("resolution", resolution, 2)
+        way, turn = (require_positive("resolution", number) for number in value)
+        # A heading turns twice as far as its quaternion.
+        steps = (way, turn if position.dim == 3 else turn / 2.0)
+    else:
+        value = require_positive("resolution", resolution)
+        steps = (value, 1.0)
+    longest = math.dist(position.low, position.high)
+    if max(longest / steps[0], math.pi / steps[1]) > _MOST_SEGMENTS:
+        raise InvalidValue(
+            f"resolution must be larger: {resolution!r} divides motions into over 2^30 segments"
+        )
+    return value, steps
