@@ -1,0 +1,36 @@
+"""A limit on the wall time of a block."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+
+class OverTime(BaseException):
+    """The time is over.  No Exception, so that code in the block that catches those does not swallow it."""
+
+
+@contextmanager
+def time_limit(seconds: float | None) -> Iterator[None]:
+    """Raise OverTime in the block after so many seconds; None means no limit.
+
+    It takes a SIGALRM, so nothing is limited on platforms without it, nor outside of the main thread.  Compiled code
+    is not interrupted: the error comes when it returns.
+    """
+    here = threading.current_thread() is threading.main_thread()
+    if seconds is None or not here or not hasattr(signal, "SIGALRM"):
+        yield
+        return
+
+    def ring(number: int, frame: object) -> None:
+        raise OverTime
+
+    before = signal.signal(signal.SIGALRM, ring)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
