@@ -1,0 +1,1 @@
+"""Reports: from a store of benchmark rows to tables, figures and one page."""
