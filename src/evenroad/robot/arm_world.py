@@ -1,0 +1,186 @@
+"""ArmWorld: a robot among the obstacles of a scene."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._checks import require_positive
+from evenroad.errors import InvalidValue, UnknownName
+from evenroad.robot.kernel import scalar, scalar_batch
+from evenroad.robot.kernel.model import ArmModel, arm_model
+from evenroad.robot.kernel.tables import ArmTables, pack
+from evenroad.robot.robot import Robot
+from evenroad.robot.scene import Scene
+from evenroad.space import JointSpace
+from evenroad.space.batch import as_batch, as_batch_pair
+
+_MOST_SEGMENTS = 2**30
+"""More of them in one motion would take hours: then the resolution is a slip."""
+
+
+@dataclass(frozen=True, eq=False)
+class ArmWorld:
+    """The configurations in which a robot touches neither a scene's obstacles nor itself.
+
+    Configurations hold the values of the robot's group, in its order [rad or m].  Links are tested against
+    each other as the capsules that they are, in the robot's pairs; against obstacles a capsule is replaced
+    by spheres that cover it, of at most 1.10 times its radius, so that a verdict is never free where the
+    capsule touches (`excess` says how much larger they are).
+
+    A motion is divided into ``n = ceil(distance / resolution)`` segments and free if all n + 1 ends of
+    segments are.  What lies between two states is not seen: for a proof without gaps see
+    :class:`evenroad.robot.certified.CertifiedWorld`.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot.
+    scene : Scene
+        What stands around it.
+    resolution : float
+        Largest distance between neighbouring states of a motion, > 0, in the Euclidean metric of
+        configurations [rad].
+
+    Raises
+    ------
+    InvalidValue
+        If `resolution` is not such a number, a joint of the group has no finite range, or robot and scene
+        are not sound.
+    UnknownName
+        If the robot or the scene names something that is not there.
+    """
+
+    robot: Robot
+    scene: Scene
+    resolution: float = 0.05
+    _space: JointSpace = field(init=False, repr=False)
+    _bounds: npt.NDArray[np.float64] = field(init=False, repr=False)
+    _model: ArmModel = field(init=False, repr=False)
+    _tables: ArmTables = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "resolution", require_positive("resolution", self.resolution))
+        space = joint_space(self.robot)
+        low, high = np.array(space.low), np.array(space.high)
+        segments = float(np.linalg.norm(high - low)) / self.resolution
+        if segments > _MOST_SEGMENTS:
+            raise InvalidValue(
+                f"resolution must be larger: {self.resolution!r} divides a motion into {segments:.3g} segments,"
+                " more than 2^30"
+            )
+        bounds = np.stack([low, high, space.flat.period])
+        bounds.setflags(write=False)
+        model = arm_model(self.robot, self.scene)
+        object.__setattr__(self, "_space", space)
+        object.__setattr__(self, "_bounds", bounds)
+        object.__setattr__(self, "_model", model)
+        object.__setattr__(self, "_tables", pack(model))
+
+    @property
+    def space(self) -> JointSpace:
+        """The ranges of the group's joints; continuous ones wrap."""
+        return self._space
+
+    @property
+    def excess(self) -> float:
+        """By how much the spheres that obstacles are tested with exceed their capsules at most [m]."""
+        return max(capsule.cover.radius - capsule.radius for capsule in self._model.capsules)
+
+    @property
+    def spheres(self) -> int:
+        """How many spheres stand for the capsules where obstacles are concerned."""
+        return sum(len(capsule.cover.places) for capsule in self._model.capsules)
+
+    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Return which configurations, (n, dim), are within the limits and touch nothing: (n,).
+
+        Raises
+        ------
+        InvalidValue
+            If `q` has another shape or an entry that is not finite.
+        """
+        batch = as_batch("q", q, self._space.dim)
+        if self._model.standing_contact:
+            return np.zeros(len(batch), dtype=np.bool_)
+        tables = self._tables
+        return scalar_batch.configurations_free(batch, self._bounds, tables.ints, tables.floats)
+
+    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
+
+        Raises
+        ------
+        InvalidValue
+            As `valid`, or if the two differ in length.
+        """
+        first, second = as_batch_pair(a, b, self._space.dim)
+        if self._model.standing_contact:
+            return np.zeros(len(first), dtype=np.bool_)
+        tables = self._tables
+        return scalar_batch.motions_free(
+            first, second, self.resolution, self._bounds, tables.ints, tables.floats
+        )
+
+    def explain(self, q: npt.NDArray[np.float64]) -> str:
+        """Return in words why one configuration, (dim,), is not free: the joint outside its limits and by
+        how much, or the two bodies that touch.
+        """
+        row = as_batch("q", np.asarray(q, dtype=np.float64)[np.newaxis], self._space.dim)[0]
+        for name, value, low, high, period in zip(self.robot.group, row, *self._bounds, strict=True):
+            if math.isinf(period) and not low <= value <= high:
+                beyond = max(low - value, value - high)
+                return f"joint {name!r} is at {value:g}, {beyond:.3g} outside its limits [{low:g}, {high:g}]"
+        bodies = self._model.standing_contact or self._touching(row)
+        return "it is free" if bodies is None else f"{bodies[0]!r} touches {bodies[1]!r}"
+
+    def _touching(self, q: npt.NDArray[np.float64]) -> tuple[str, str] | None:
+        """Return two bodies that touch, or come as near as what single precision may call touching."""
+        model, tables = self._model, self._tables
+        margins = np.full(len(model.capsules), tables.padding)
+        pair_margins = np.full(len(tables.capsule_pairs), 2.0 * tables.padding)
+        frames, capsules = np.empty((len(model.tree.frames) + 1, 12)), np.empty((len(model.capsules), 6))
+        kind, capsule, other = scalar.first_contact(
+            q, tables.ints, tables.floats, margins, pair_margins, frames, capsules
+        )
+        if kind == scalar.MEETS_OBSTACLE:
+            return model.capsules[capsule].link, model.obstacles[other].name
+        if kind == scalar.MEETS_ITSELF:
+            first, second = tables.capsule_pairs[other]
+            return model.capsules[first].link, model.capsules[second].link
+        return None
+
+
+def joint_space(robot: Robot) -> JointSpace:
+    """Return the space of a robot's group: ranges in radians and metres, continuous joints on [-pi, pi) wrap.
+
+    Raises
+    ------
+    InvalidValue
+        If the group is empty, names a joint twice, or holds a joint that is fixed, a mimic, or without range.
+    UnknownName
+        If it names a joint that is not there.
+    """
+    if not robot.group or len(set(robot.group)) < len(robot.group):
+        raise InvalidValue(f"the group must name one joint or more, each once, got {robot.group!r}")
+    joints = {joint.name: joint for joint in robot.joints}
+    low, high, wrapping = [], [], []
+    for name in robot.group:
+        if name not in joints:
+            raise UnknownName.among("joint", name, joints)
+        joint = joints[name]
+        if joint.kind == "fixed" or joint.mimic is not None:
+            raise InvalidValue(f"joint {name!r} is fixed or follows another: it cannot be planned for")
+        turns_on = joint.kind == "continuous"
+        bounds = (-math.pi, math.pi) if turns_on else (joint.lower, joint.upper)
+        if not (math.isfinite(bounds[0]) and math.isfinite(bounds[1]) and bounds[0] < bounds[1]):
+            raise InvalidValue(
+                f"joint {name!r} must have limits, lower below upper, got {joint.lower!r}, {joint.upper!r}"
+            )
+        low.append(bounds[0])
+        high.append(bounds[1])
+        wrapping.append(turns_on)
+    return JointSpace(low, high, wrapping)

@@ -1,0 +1,79 @@
+"""Forward kinematics in double precision: where every link is, for a batch of configurations."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.errors import InvalidValue
+from evenroad.robot.joint import Joint
+from evenroad.robot.robot import Robot
+
+
+def joint_values(robot: Robot, q: npt.ArrayLike) -> dict[str, npt.NDArray[np.float64]]:
+    """Return the value of every movable joint, joint -> (n,), for configurations of the group, (n, dim).
+
+    Joints outside of the group are held (see :class:`Robot`); mimics follow.
+
+    Raises
+    ------
+    InvalidValue
+        If `q` is not of that shape.
+    """
+    batch = np.asarray(q, dtype=np.float64)
+    if batch.ndim != 2 or batch.shape[1] != len(robot.group):
+        raise InvalidValue(f"q must have the shape (n, {len(robot.group)}), got {batch.shape}")
+    values = dict(zip(robot.group, batch.T, strict=True))
+    for joint in robot.joints:
+        if joint.kind != "fixed" and joint.mimic is None and joint.name not in values:
+            value = robot.held.get(joint.name, min(max(0.0, joint.lower), joint.upper))
+            values[joint.name] = np.full(len(batch), value)
+    for joint in robot.joints:
+        if joint.kind != "fixed" and joint.mimic is not None:
+            values[joint.name] = joint.mimic.multiplier * values[joint.mimic.joint] + joint.mimic.offset
+    return values
+
+
+def link_poses(robot: Robot, q: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """Return the frames of all links in that of the root: (n, links, 4, 4) for configurations (n, dim) [m].
+
+    The links are in the order of ``robot.links``.  Raises as :func:`joint_values`.
+    """
+    values = joint_values(robot, q)
+    count = len(np.asarray(q))
+    poses = np.zeros((count, len(robot.links), 4, 4))
+    poses[:, 0] = np.eye(4)
+    number = {link: i for i, link in enumerate(robot.links)}
+    for i, joint in enumerate(robot.joints):
+        origin = np.eye(4)
+        origin[:3, :3] = np.reshape(joint.rotation, (3, 3))
+        origin[:3, 3] = joint.xyz
+        motion = joint_motion(joint, values.get(joint.name, np.zeros(count)))
+        poses[:, i + 1] = poses[:, number[joint.parent]] @ origin @ motion
+    return poses
+
+
+def joint_motion(joint: Joint, value: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Return how a joint moves its child's frame, (n, 4, 4), for its values, (n,) [rad or m].
+
+    Rotations by Rodrigues' formula: ``R = I + sin(q) K + (1 - cos(q)) K^2``, K v = axis x v.
+    """
+    motion = np.tile(np.eye(4), (len(value), 1, 1))
+    if joint.kind == "prismatic":
+        motion[:, :3, 3] = value[:, np.newaxis] * np.array(joint.axis)
+    elif joint.kind != "fixed":
+        x, y, z = joint.axis
+        cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+        sine, versine = np.sin(value), 2.0 * np.sin(0.5 * value) ** 2
+        motion[:, :3, :3] += sine[:, np.newaxis, np.newaxis] * cross
+        motion[:, :3, :3] += versine[:, np.newaxis, np.newaxis] * (cross @ cross)
+    return motion
+
+
+def capsule_ends(robot: Robot, q: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """Return the end points of all capsules in the frame of the root: (n, capsules, 2, 3) [m]."""
+    poses = link_poses(robot, q)
+    link = [robot.links.index(capsule.link) for capsule in robot.capsules]
+    ends = np.array([[capsule.a, capsule.b] for capsule in robot.capsules]).reshape(-1, 2, 3)
+    turned = np.einsum("nkij,kej->nkei", poses[:, link][..., :3, :3], ends)
+    return turned + poses[:, link][:, :, np.newaxis, :3, 3]

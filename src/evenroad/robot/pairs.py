@@ -1,0 +1,122 @@
+"""Which links are tested against each other."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from evenroad._rng import generator
+from evenroad.robot.joint import Joint
+from evenroad.robot.kinematics import capsule_ends
+from evenroad.robot.robot import Robot
+from evenroad.robot.segments import segment_distance
+
+SAMPLES = 1000
+"""Random configurations that tell pairs that are always in contact."""
+
+
+@dataclass(frozen=True)
+class SelfPairs:
+    """Pairs of links, those that are tested and those that are not.
+
+    Attributes
+    ----------
+    tested : tuple of pairs of str
+        In the order of the links.
+    dropped : tuple of (str, str, str)
+        The other pairs of links with bodies, each with the reason.
+    """
+
+    tested: tuple[tuple[str, str], ...]
+    dropped: tuple[tuple[str, str, str], ...]
+
+
+def pairs_without(robot: Robot, disabled: Collection[frozenset[str]]) -> SelfPairs:
+    """Return all pairs of links that have bodies and can move on each other, but those disabled by an SRDF."""
+    return _sorted_out(
+        robot, {pair: "disabled in the SRDF" for pair in _bodied(robot) if frozenset(pair) in disabled}
+    )
+
+
+def computed_pairs(robot: Robot) -> SelfPairs:
+    """Return the pairs of links with bodies without those that touch by construction.
+
+    Dropped are neighbours in the tree (links without bodies between them are looked through), pairs that no joint
+    moves on each other, and pairs that touch in every one of 1000 configurations drawn uniformly within the limits of
+    all joints.  Pairs that never touch are kept: a sample cannot prove that.
+    """
+    reasons = {pair: "neighbours" for pair in _bodied(robot) if _are_neighbours(robot, *pair)}
+    reasons |= {pair: "touch in every sample" for pair in _always_in_contact(robot) if pair not in reasons}
+    return _sorted_out(robot, reasons)
+
+
+def _sorted_out(robot: Robot, reasons: dict[tuple[str, str], str]) -> SelfPairs:
+    rigid = {pair: "fixed to each other" for pair in _bodied(robot) if not _can_move(robot, *pair)}
+    reasons = reasons | rigid
+    return SelfPairs(
+        tested=tuple(pair for pair in _bodied(robot) if pair not in reasons),
+        dropped=tuple((*pair, reasons[pair]) for pair in _bodied(robot) if pair in reasons),
+    )
+
+
+def _bodied(robot: Robot) -> list[tuple[str, str]]:
+    bodied = {capsule.link for capsule in robot.capsules}
+    return list(combinations((link for link in robot.links if link in bodied), 2))
+
+
+def _path_to_root(robot: Robot, link: str) -> list[Joint]:
+    by_child = {joint.child: joint for joint in robot.joints}
+    path = []
+    while link in by_child:
+        path.append(by_child[link])
+        link = by_child[link].parent
+    return path
+
+
+def _between(robot: Robot, first: str, second: str) -> list[Joint]:
+    """Return the joints on the way from one link to the other."""
+    up, down = _path_to_root(robot, first), _path_to_root(robot, second)
+    return [joint for joint in up if joint not in down] + [joint for joint in down if joint not in up]
+
+
+def _can_move(robot: Robot, first: str, second: str) -> bool:
+    return any(joint.kind != "fixed" for joint in _between(robot, first, second))
+
+
+def _are_neighbours(robot: Robot, first: str, second: str) -> bool:
+    if first not in {joint.parent for joint in _path_to_root(robot, second)}:
+        return False
+    way = _between(robot, first, second)
+    on_the_way = {link for joint in way for link in (joint.parent, joint.child)} - {first, second}
+    return not on_the_way & {capsule.link for capsule in robot.capsules}
+
+
+def _always_in_contact(robot: Robot) -> list[tuple[str, str]]:
+    movable = [joint for joint in robot.joints if joint.kind != "fixed" and joint.mimic is None]
+    free = Robot(
+        robot.name, robot.links, robot.joints, robot.capsules, (), tuple(joint.name for joint in movable)
+    )
+    low = np.array(
+        [max(joint.lower, -np.pi) if joint.kind == "continuous" else joint.lower for joint in movable]
+    )
+    high = np.array(
+        [min(joint.upper, np.pi) if joint.kind == "continuous" else joint.upper for joint in movable]
+    )
+    q = low + generator(0).random((SAMPLES, len(movable))) * (high - low)
+    ends = capsule_ends(free, q)
+    number: dict[str, list[int]] = {}
+    for i, capsule in enumerate(robot.capsules):
+        number.setdefault(capsule.link, []).append(i)
+    always = []
+    for first, second in _bodied(robot):
+        touching = np.zeros(SAMPLES, dtype=np.bool_)
+        for i in number[first]:
+            for j in number[second]:
+                reach = robot.capsules[i].radius + robot.capsules[j].radius
+                touching |= segment_distance(ends[:, i], ends[:, j]) <= reach
+        if touching.all():
+            always.append((first, second))
+    return always

@@ -1,0 +1,137 @@
+"""Reading an SRDF: planning groups, named states, and pairs of links that need no test."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+from evenroad.errors import BrokenFile, InvalidValue, UnknownName
+from evenroad.robot.joint import Joint
+from evenroad.robot.urdf import Urdf
+
+
+@dataclass(frozen=True)
+class Srdf:
+    """What an SRDF adds to a URDF.
+
+    Attributes
+    ----------
+    groups : mapping of str to tuple of str
+        Group -> its joints that move and are no mimics, in the order of the URDF.
+    states : mapping of (group, name) to mapping of str to float
+        Named states: joint -> value [rad or m].
+    disabled : frozenset of frozenset of two str
+        Pairs of links that are not tested against each other.
+    """
+
+    groups: Mapping[str, tuple[str, ...]]
+    states: Mapping[tuple[str, str], Mapping[str, float]]
+    disabled: frozenset[frozenset[str]]
+
+
+def read_srdf(path: Path, urdf: Urdf) -> Srdf:
+    """Read the SRDF that belongs to a URDF; what has to do with neither groups, states nor pairs is skipped.
+
+    Raises
+    ------
+    BrokenFile
+        If the file is missing, not XML or not an SRDF, an element lacks an attribute, or groups contain each other.
+    UnknownName
+        If it names a joint, link or group that there is not.
+    InvalidValue
+        If a joint of a state has a value that is not a finite number.
+    """
+    try:
+        root = ElementTree.fromstring(path.read_bytes())
+    except OSError as error:
+        raise BrokenFile(f"cannot read the SRDF {path}: {error.strerror or error}") from error
+    except (ElementTree.ParseError, ValueError, LookupError) as error:
+        raise BrokenFile(f"{path} is not XML: {error}") from error
+    if root.tag != "robot":
+        raise BrokenFile(f"{path} is not an SRDF: its outermost element is <{root.tag}>, not <robot>")
+    elements = {_attribute(group, "name", path): group for group in root.findall("group")}
+    reader = _Groups(elements, urdf, path)
+    groups = {name: _in_order(reader.joints(name, ()), urdf) for name in elements}
+    states = {}
+    for state in root.findall("group_state"):
+        group = _known("group", _attribute(state, "group", path), groups, path)
+        states[group, _attribute(state, "name", path)] = _values(state, urdf, path)
+    disabled = frozenset(
+        frozenset(_known("link", _attribute(pair, end, path), urdf.links, path) for end in ("link1", "link2"))
+        for pair in root.findall("disable_collisions")
+    )
+    return Srdf(groups, states, disabled)
+
+
+@dataclass(frozen=True)
+class _Groups:
+    elements: Mapping[str, ElementTree.Element]
+    urdf: Urdf
+    path: Path
+
+    def joints(self, name: str, inside: tuple[str, ...]) -> set[str]:
+        """Return the joints of a group; `inside` are the groups that led to it."""
+        if name in inside:
+            raise BrokenFile(f"groups of {self.path} contain each other: {' -> '.join([*inside, name])}")
+        by_child = {joint.child: joint for joint in self.urdf.joints}
+        found: set[str] = set()
+        for part in self.elements[_known("group", name, self.elements, self.path)]:
+            if part.tag == "joint":
+                found.add(self._part(part, "joint", "name", self.urdf.order))
+            elif part.tag == "link":
+                link = self._part(part, "link", "name", self.urdf.links)
+                found.update([by_child[link].name] if link in by_child else [])
+            elif part.tag == "chain":
+                base = self._part(part, "link", "base_link", self.urdf.links)
+                tip = self._part(part, "link", "tip_link", self.urdf.links)
+                found.update(self._chain(base, tip, by_child))
+            elif part.tag == "group":
+                found |= self.joints(_attribute(part, "name", self.path), (*inside, name))
+        return found
+
+    def _chain(self, base: str, tip: str, by_child: Mapping[str, Joint]) -> list[str]:
+        names, link = [], tip
+        while link != base:
+            if link not in by_child:
+                raise BrokenFile(f"the chain in {self.path}: {tip!r} does not hang on {base!r}")
+            names.append(by_child[link].name)
+            link = by_child[link].parent
+        return names
+
+    def _part(self, part: ElementTree.Element, what: str, attribute: str, known: Iterable[str]) -> str:
+        return _known(what, _attribute(part, attribute, self.path), known, self.path)
+
+
+def _values(state: ElementTree.Element, urdf: Urdf, path: Path) -> dict[str, float]:
+    values = {}
+    for joint in state.findall("joint"):
+        name = _known("joint", _attribute(joint, "name", path), urdf.order, path)
+        text = _attribute(joint, "value", path)
+        try:
+            values[name] = float(text)
+        except ValueError:
+            values[name] = math.nan
+        if not math.isfinite(values[name]):
+            raise InvalidValue(f"joint {name!r} of a state in {path} must be a finite number, got {text!r}")
+    return values
+
+
+def _in_order(names: set[str], urdf: Urdf) -> tuple[str, ...]:
+    movable = {joint.name for joint in urdf.joints if joint.kind != "fixed" and joint.mimic is None}
+    return tuple(name for name in urdf.order if name in names & movable)
+
+
+def _attribute(element: ElementTree.Element, name: str, path: Path) -> str:
+    value = element.get(name)
+    if not value:
+        raise BrokenFile(f"<{element.tag}> in {path} lacks {name!r}")
+    return value
+
+
+def _known(what: str, name: str, known: Iterable[str], path: Path) -> str:
+    if name not in known:
+        raise UnknownName.among(f"{what} in {path}:", name, known)
+    return name

@@ -1,0 +1,130 @@
+"""The XML of a URDF, checked element by element before anything is made of it.
+
+Readers of URDF take a missing number for a default and repair broken XML in silence; a planner that then finds a
+robot free of collisions has not been given its bodies.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from xml.etree import ElementTree
+
+from evenroad.errors import BrokenFile, InvalidValue
+
+_NUMBERS = {
+    ("origin", "xyz"): 3,
+    ("origin", "rpy"): 3,
+    ("axis", "xyz"): 3,
+    ("limit", "lower"): 1,
+    ("limit", "upper"): 1,
+    ("limit", "velocity"): 1,
+    ("mimic", "multiplier"): 1,
+    ("mimic", "offset"): 1,
+    ("box", "size"): 3,
+    ("sphere", "radius"): 1,
+    ("cylinder", "radius"): 1,
+    ("cylinder", "length"): 1,
+    ("capsule", "radius"): 1,
+    ("capsule", "length"): 1,
+    ("mesh", "scale"): 3,
+}
+"""Element and attribute -> how many finite numbers it must hold, if it is there."""
+
+_REQUIRED = {
+    "link": ("name",),
+    "joint": ("name", "type"),
+    "parent": ("link",),
+    "child": ("link",),
+    "mimic": ("joint",),
+    "box": ("size",),
+    "sphere": ("radius",),
+    "cylinder": ("radius", "length"),
+    "capsule": ("radius", "length"),
+    "mesh": ("filename",),
+}
+_SHAPES = ("box", "sphere", "cylinder", "capsule", "mesh")
+_LENGTHS = ("size", "radius", "length")
+_IGNORED = ("visual", "inertial", "material", "transmission", "gazebo", "sensor", "ros2_control")
+"""What collision checking does not need; much of it in dialects of its own."""
+
+
+def read_urdf_xml(path: Path) -> ElementTree.Element:
+    """Return the ``<robot>`` element of a URDF file, without what collision checking does not need.
+
+    Raises
+    ------
+    BrokenFile
+        If the file is missing, not XML, not a URDF (a xacro, for instance), or an element lacks a piece.
+    InvalidValue
+        If an attribute does not hold the numbers that it must.
+    """
+    try:
+        root = ElementTree.fromstring(path.read_bytes())
+    except OSError as error:
+        raise BrokenFile(f"cannot read the robot {path}: {error.strerror or error}") from error
+    except (ElementTree.ParseError, ValueError, LookupError) as error:
+        raise BrokenFile(f"{path} is not XML: {error}") from error
+    if root.tag != "robot":
+        raise BrokenFile(f"{path} is not a URDF: its outermost element is <{root.tag}>, not <robot>")
+    if any("xacro" in str(element.tag) for element in root.iter()):
+        raise BrokenFile(f"{path} is a xacro file; make a URDF of it first: xacro {path.name} > robot.urdf")
+    for name in _IGNORED:
+        for parent in list(root.iter()):
+            for element in parent.findall(name):
+                parent.remove(element)
+    for owner in root:
+        if owner.tag in ("link", "joint"):
+            _check(owner, path)
+    if root.find("link") is None:
+        raise BrokenFile(f"{path} has no links")
+    return root
+
+
+def mesh_names(root: ElementTree.Element) -> Iterator[tuple[str, str]]:
+    """Yield link and file name, as written, of every mesh of a checked ``<robot>``."""
+    for link in root.findall("link"):
+        for mesh in link.iterfind("collision/geometry/mesh"):
+            yield link.attrib["name"], mesh.attrib["filename"]
+
+
+def _check(owner: ElementTree.Element, path: Path) -> None:
+    where = f"{owner.tag} {owner.get('name', '(without a name)')!r} in {path}"
+    for element in owner.iter():
+        for attribute in _REQUIRED.get(str(element.tag), ()):
+            if not element.get(attribute):
+                raise BrokenFile(f"{where}: <{element.tag}> lacks {attribute!r}")
+        for attribute, text in element.attrib.items():
+            count = _NUMBERS.get((str(element.tag), attribute))
+            if count is not None:
+                _check_numbers(f"{where}: {attribute} of <{element.tag}>", attribute, text, count)
+    if owner.tag == "joint":
+        for tag in ("parent", "child"):
+            if owner.find(tag) is None:
+                raise BrokenFile(f"{where} lacks <{tag}>")
+    for collision in owner.findall("collision"):
+        _check_geometry(collision.find("geometry"), where)
+
+
+def _check_geometry(geometry: ElementTree.Element | None, where: str) -> None:
+    tags = [str(shape.tag) for shape in geometry] if geometry is not None else []
+    if len(tags) != 1 or tags[0] not in _SHAPES:
+        found = f"has {', '.join(f'<{tag}>' for tag in tags)}" if tags else "is empty"
+        raise BrokenFile(
+            f"{where}: the geometry of a <collision> {found}; it must be one of {', '.join(_SHAPES)}"
+        )
+
+
+def _check_numbers(what: str, attribute: str, text: str, count: int) -> None:
+    allowed = "a finite number" if count == 1 else f"{count} finite numbers"
+    try:
+        # Commas between numbers are not in the standard, but in the wild.
+        numbers = [float(word) for word in text.replace(",", " ").split()]
+    except ValueError:
+        numbers = []
+    uniform_scale = attribute == "scale" and len(numbers) == 1
+    if (len(numbers) != count and not uniform_scale) or not all(map(math.isfinite, numbers)):
+        raise InvalidValue(f"{what} must be {allowed}, got {text!r}")
+    if attribute in _LENGTHS and min(numbers) <= 0.0:
+        raise InvalidValue(f"{what} must be > 0, got {text!r}: a body without volume would never collide")
