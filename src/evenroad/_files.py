@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import stat
+import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -61,6 +62,17 @@ def one_at_a_time(path: str | os.PathLike[str]) -> Iterator[None]:
     with open(path, "w", encoding="utf-8") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
         yield
+
+
+def cache_folder() -> Path:
+    """Return where what is made on demand is kept: ``$EVENROAD_CACHE``, or the platform's cache folder."""
+    if named := os.environ.get("EVENROAD_CACHE"):
+        return Path(named)
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Caches" / "evenroad"
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA", Path.home())) / "evenroad" / "cache"
+    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "evenroad"
 
 
 def require_writable_folder(path: str | os.PathLike[str]) -> None:

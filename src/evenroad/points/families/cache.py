@@ -3,27 +3,14 @@
 from __future__ import annotations
 
 import hashlib
-import os
-import sys
 from pathlib import Path
 
 from evenroad import __version__
-from evenroad._files import require_writable_folder
+from evenroad._files import cache_folder, require_writable_folder
 from evenroad.errors import BrokenFile
 from evenroad.points.bank.recipe import SEED
 from evenroad.points.npz import load_points, save_points
 from evenroad.points.pointset import PointSet
-
-
-def cache_folder() -> Path:
-    """Return where sets made on demand are kept: ``$EVENROAD_CACHE``, or the platform's cache folder."""
-    if named := os.environ.get("EVENROAD_CACHE"):
-        return Path(named)
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches" / "evenroad"
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA", Path.home())) / "evenroad" / "cache"
-    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "evenroad"
 
 
 def require_cache() -> None:
