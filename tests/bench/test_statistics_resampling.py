@@ -119,6 +119,38 @@ def test_a_paired_difference_keeps_the_pairs_of_a_unit_together():
     assert interval.high == pytest.approx(1.96 / math.sqrt(20), rel=0.15)
 
 
+def test_a_paired_difference_of_few_or_equal_sets_keeps_a_width():
+    for sums in ([0] * 12, [5] * 12, [5, -1, 3]):
+        interval = clustered_difference(sums, [5] * len(sums), "sets")
+        assert interval.kind == "bonett-price over sets"
+        assert interval.low <= sum(sums) / (5 * len(sums)) <= interval.high
+        assert interval.high - interval.low > 0.1
+
+
+def test_with_many_units_the_large_sample_interval_says_what_a_bootstrap_says():
+    rng = np.random.default_rng(2)
+    pairs = rng.integers(1, 6, size=1500)
+    sums = rng.binomial(pairs, 0.4) - rng.binomial(pairs, 0.2)
+    sums = np.clip(sums, -pairs, pairs)
+    interval = clustered_difference(sums, pairs, "instances")
+    bootstrap = percentile_interval(resampled_ratios(sums, pairs))
+    assert interval.kind == "large sample over instances"
+    assert (interval.low, interval.high) == pytest.approx(bootstrap, abs=0.003)
+
+
+@pytest.mark.parametrize(("sums", "pairs"), [([], []), ([3], [2]), ([0], [0]), ([1, 1], [1])])
+def test_impossible_paired_sums_are_refused(sums, pairs):
+    with pytest.raises(InvalidValue):
+        clustered_difference(sums, pairs, "sets")
+
+
+def test_many_units_are_resampled_in_blocks_with_the_same_spread():
+    solved = np.repeat([1, 0], [600, 900])
+    values = resampled_ratios(solved, np.ones(1500), draws=1020)
+    assert len(values) == 1020
+    assert values.std() == pytest.approx(math.sqrt(0.4 * 0.6 / 1500), rel=0.1)
+
+
 COUNTS = (32, 64, 128, 256)
 
 

@@ -15,6 +15,10 @@ from evenroad.errors import InvalidValue
 
 DRAWS = 2000
 """Resamples of every bootstrap unless asked otherwise."""
+CACHED_UNITS = 1000
+"""Up to so many units the resamples are kept, as they serve many cells; more would take too much memory."""
+BLOCK = 50
+"""Resamples at a time of more units than that."""
 
 
 def resampled_ratios(
@@ -56,9 +60,14 @@ def resampled_ratios(
         )
     if not (np.all(below > 0) and np.all(np.isfinite(above)) and np.all(np.isfinite(below))):
         raise InvalidValue("a bootstrap needs finite numbers, and denominators > 0")
-    weights = _resampling_weights(len(above), require_count("draws", draws), require_count("seed", seed, 0))
-    result: npt.NDArray[np.float64] = (weights @ above) / (weights @ below)
-    return result
+    draws, seed = require_count("draws", draws), require_count("seed", seed, 0)
+    if len(above) <= CACHED_UNITS:
+        return _ratios(_cached_weights(len(above), draws, seed), above, below)
+    rng = generator(seed)
+    blocks = range(0, draws, BLOCK)
+    return np.concatenate(
+        [_ratios(_weights(len(above), min(BLOCK, draws - begin), rng), above, below) for begin in blocks]
+    )
 
 
 def percentile_interval(values: npt.ArrayLike, *, level: float = LEVEL) -> tuple[float, float]:
@@ -73,11 +82,23 @@ def percentile_interval(values: npt.ArrayLike, *, level: float = LEVEL) -> tuple
     return float(low), float(high)
 
 
-@lru_cache(maxsize=16)
-def _resampling_weights(units: int, draws: int, seed: int) -> npt.NDArray[np.float64]:
-    """Return how often each unit occurs in each resample, (draws, units): one matrix serves a whole table."""
-    chosen = generator(seed).integers(0, units, size=(draws, units))
-    chosen += units * np.arange(draws)[:, np.newaxis]
-    weights = np.bincount(chosen.ravel(), minlength=draws * units).reshape(draws, units).astype(np.float64)
+def _ratios(
+    weights: npt.NDArray[np.float64], above: npt.NDArray[np.float64], below: npt.NDArray[np.float64]
+) -> npt.NDArray[np.float64]:
+    ratios: npt.NDArray[np.float64] = (weights @ above) / (weights @ below)
+    return ratios
+
+
+@lru_cache(maxsize=8)
+def _cached_weights(units: int, draws: int, seed: int) -> npt.NDArray[np.float64]:
+    """Return the weights of all resamples: one matrix serves a whole table, whose cells have the same units."""
+    weights = _weights(units, draws, generator(seed))
     weights.setflags(write=False)
     return weights
+
+
+def _weights(units: int, draws: int, rng: np.random.Generator) -> npt.NDArray[np.float64]:
+    """Return how often each unit occurs in each resample, (draws, units)."""
+    chosen = rng.integers(0, units, size=(draws, units))
+    chosen += units * np.arange(draws)[:, np.newaxis]
+    return np.bincount(chosen.ravel(), minlength=draws * units).reshape(draws, units).astype(np.float64)
