@@ -1,0 +1,72 @@
+"""Configurations and motions as the kernels take them: within bounds, wrapped, with ends in a fixed order."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+Floats = npt.NDArray[np.float64]
+
+
+@njit(cache=True, nogil=True)
+def enter(q: Floats, bounds: Floats, into: Floats) -> bool:
+    """Write `q` with its wrapping coordinates in their ranges and return whether the others are within theirs.
+
+    Parameters
+    ----------
+    q : float64 array, shape (dim,)
+        A configuration, finite.
+    bounds : float64 array, shape (3, dim)
+        Low, high and period of each coordinate; a period of inf where it does not wrap.
+    into : float64 array, shape (dim,)
+        Written to.
+    """
+    inside = True
+    for k in range(len(q)):
+        value, low, high, period = q[k], bounds[0, k], bounds[1, k], bounds[2, k]
+        if period == np.inf:
+            inside &= low <= value <= high
+        elif not low <= value < high:
+            value = low + (value - low) % period
+            if value >= high:
+                value = low
+        into[k] = value
+    return inside
+
+
+@njit(cache=True, nogil=True)
+def span(start: Floats, end: Floats, bounds: Floats, resolution: float, way: Floats) -> int:
+    """Put the ends in dictionary order, write the short way between them and return its number of segments.
+
+    States are rounded: without a fixed order a motion and its reverse could be judged differently.
+
+    Parameters
+    ----------
+    start, end : float64 arrays, shape (dim,)
+        As `enter` writes them; exchanged where `end` comes first.
+    bounds : float64 array, shape (3, dim)
+        As above.
+    resolution : float
+        The longest segment, in the Euclidean metric.
+    way : float64 array, shape (dim,)
+        Written to: end - start, the short way round where it wraps.
+    """
+    exchange = False
+    for k in range(len(start)):
+        if start[k] != end[k]:
+            exchange = start[k] > end[k]
+            break
+    squared = 0.0
+    for k in range(len(start)):
+        if exchange:
+            start[k], end[k] = end[k], start[k]
+        way[k] = end[k] - start[k]
+        period = bounds[2, k]
+        if period != np.inf:
+            # As FlatMetric: one half is rounded to zero, so that opposite places keep the sign.
+            way[k] -= period * np.rint(way[k] / period)
+        squared += way[k] * way[k]
+    return math.ceil(math.sqrt(squared) / resolution)

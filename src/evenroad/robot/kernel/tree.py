@@ -1,0 +1,165 @@
+"""MovingTree: a robot reduced to the frames that move when the planned joints do.
+
+Fixed joints and held ones are folded into constants, mimics follow their joint, and every frame that is left
+turns about, or slides along, its own z axis: one rule for all of them in the compiled code.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.errors import InvalidValue, UnknownName
+from evenroad.robot.joint import Joint
+from evenroad.robot.robot import Robot
+
+Matrix = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class MovingFrame:
+    """A frame that a planned joint moves on its parent frame, about or along the frame's own z axis.
+
+    Attributes
+    ----------
+    parent : int
+        Number of the parent frame; 0 is the root link's, which does not move.
+    rotation : ndarray, shape (3, 3)
+        From this frame at value 0 to the parent frame.
+    translation : ndarray, shape (3,)
+        Origin of this frame at value 0 in the parent frame [m].
+    slides : bool
+        Whether it slides along z; else it turns about z.
+    coordinate : int
+        The coordinate of the configuration that moves it.
+    multiplier, offset : float
+        Its value is ``multiplier * coordinate + offset``.
+    """
+
+    parent: int
+    rotation: Matrix
+    translation: Matrix
+    slides: bool
+    coordinate: int
+    multiplier: float
+    offset: float
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """Where a link is fixed: a frame's number, and rotation (3, 3) and translation (3,) [m] into that frame."""
+
+    frame: int
+    rotation: Matrix
+    translation: Matrix
+
+
+@dataclass(frozen=True, eq=False)
+class MovingTree:
+    """Moving frames, parents first, and where the links are fixed to them.
+
+    Attributes
+    ----------
+    frames : tuple of MovingFrame
+        ``frames[i]`` has the number i + 1; number 0 is the root link's frame.
+    links : mapping of str to Placement
+        Of every link.
+    """
+
+    frames: tuple[MovingFrame, ...]
+    links: dict[str, Placement]
+
+
+def moving_tree(robot: Robot) -> MovingTree:
+    """Return the frames of `robot` that the joints of its group move, and its links' places on them.
+
+    Raises
+    ------
+    InvalidValue
+        If a mimic follows itself, or a number of a joint is not finite.
+    UnknownName
+        If a mimic, the group or the held values name a joint that is not there.
+    """
+    joints = {joint.name: joint for joint in robot.joints}
+    for name in (*robot.group, *robot.held):
+        if name not in joints:
+            raise UnknownName.among("joint", name, joints)
+    frames: list[MovingFrame] = []
+    links = {robot.links[0]: Placement(0, np.eye(3), np.zeros(3))}
+    for joint in robot.joints:
+        base = links[joint.parent]
+        rotation = base.rotation @ np.array(joint.rotation).reshape(3, 3)
+        translation = base.translation + base.rotation @ np.array(joint.xyz)
+        coordinate, multiplier, offset = _value(joint, joints, robot)
+        if not np.isfinite([*rotation.ravel(), *translation, multiplier, offset]).all():
+            raise InvalidValue(f"joint {joint.name!r} must have finite numbers, got {joint!r}")
+        if multiplier == 0.0 or joint.kind == "fixed":
+            links[joint.child] = _moved(Placement(base.frame, rotation, translation), joint, offset)
+            continue
+        to_z = rotation_from_z(joint.axis)
+        slides = joint.kind == "prismatic"
+        frames.append(
+            MovingFrame(base.frame, rotation @ to_z, translation, slides, coordinate, multiplier, offset)
+        )
+        links[joint.child] = Placement(len(frames), to_z.T, np.zeros(3))
+    return MovingTree(tuple(frames), links)
+
+
+def rotation_from_z(axis: tuple[float, float, float]) -> Matrix:
+    """Return a rotation (3, 3) that takes the z axis to the direction `axis`.
+
+    Raises
+    ------
+    InvalidValue
+        If `axis` has no direction.
+    """
+    z = np.array(axis, dtype=np.float64)
+    length = float(np.linalg.norm(z))
+    if not (math.isfinite(length) and length > 0.0):
+        raise InvalidValue(f"the axis of a joint must be a direction, got {axis!r}")
+    z /= length
+    if z[2] == 1.0:
+        return np.eye(3)
+    # The coordinate axis farthest from z: never near parallel to it.
+    x = np.cross(np.eye(3)[np.abs(z).argmin()], z)
+    x /= np.linalg.norm(x)
+    return np.column_stack([x, np.cross(z, x), z])
+
+
+def held_value(joint: Joint, robot: Robot) -> float:
+    """Return the value of a movable joint that is not planned for: the held one, or that nearest to 0."""
+    return float(robot.held.get(joint.name, min(max(0.0, joint.lower), joint.upper)))
+
+
+def _value(joint: Joint, joints: dict[str, Joint], robot: Robot) -> tuple[int, float, float]:
+    """Return coordinate, multiplier and offset of a joint's value; the multiplier is 0 where it is constant."""
+    multiplier, offset = 1.0, 0.0
+    for _ in range(len(joints) + 1):
+        if joint.kind == "fixed":
+            return 0, 0.0, offset
+        if joint.mimic is None:
+            if joint.name in robot.group:
+                return robot.group.index(joint.name), multiplier, offset
+            return 0, 0.0, multiplier * held_value(joint, robot) + offset
+        offset += multiplier * joint.mimic.offset
+        multiplier *= joint.mimic.multiplier
+        if joint.mimic.joint not in joints:
+            raise UnknownName.among("joint", joint.mimic.joint, joints)
+        joint = joints[joint.mimic.joint]
+    raise InvalidValue(f"joint {joint.name!r} mimics itself")
+
+
+def _moved(place: Placement, joint: Joint, value: float) -> Placement:
+    """Return the place of the child of a joint that keeps one value."""
+    if joint.kind == "fixed":
+        return place
+    to_z = rotation_from_z(joint.axis)
+    if joint.kind == "prismatic":
+        translation = place.translation + place.rotation @ to_z[:, 2] * value
+        return Placement(place.frame, place.rotation, translation)
+    cosine, sine = math.cos(value), math.sin(value)
+    about_z = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+    return Placement(place.frame, place.rotation @ to_z @ about_z @ to_z.T, place.translation)
