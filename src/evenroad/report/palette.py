@@ -15,6 +15,7 @@ class Look:
     marker: str
     line: str = "-"
     width: float = 1.4
+    size: float = 5.0
 
 
 # Families share a colour, their two protocols are told apart by the line; what we recommend is red and thick.
@@ -28,8 +29,8 @@ LOOKS: dict[str, Look] = {
     "sukharev": Look("#12a5b5", "X", ":"),
     "mpmc": Look("#e05fa8", "D"),
     "hickernell": Look("#8e5bd0", "p"),
-    "even": Look("#d1343b", "*", width=2.4),
-    "korobov": Look("#7a4a21", "P"),
+    "even": Look("#d1343b", "*", width=2.4, size=9.0),
+    "korobov": Look("#7a4a21", "P", size=6.0),
 }
 OTHER = Look("#000000", ".", ":")
 """For a sampler that this version does not know."""

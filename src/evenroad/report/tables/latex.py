@@ -60,7 +60,7 @@ def _line(cells: list[str]) -> str:
 
 def _text(entry: Entry) -> str:
     text = _escape(entry.text)
-    return _MARKS[entry.mark].format(text) if "{}" != _MARKS[entry.mark] else text
+    return _MARKS[entry.mark].format(text)
 
 
 def _escape(text: str) -> str:

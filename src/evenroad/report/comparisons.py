@@ -1,0 +1,128 @@
+"""Comparisons: each sampler with uniform and with scrambled Halton, on the same runs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.bench.statistics import (
+    Interval,
+    bonett_price,
+    clustered_difference,
+    holm,
+    mcnemar_exact,
+    sign_flip_test,
+)
+from evenroad.report.cells import Cell, cell_codes, unit_of
+from evenroad.report.groups import Ints, UnitSums, combined, sums_by_unit
+from evenroad.report.runs import Runs
+
+REFERENCES = ("uniform", "halton scrambled")
+SIGNIFICANT = 0.05
+"""Corrected p-value below which a difference is marked."""
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A cell against a reference sampler, over the runs (instance, run, seed) that both have.
+
+    Attributes
+    ----------
+    cell : Cell
+    reference : str
+    pairs : int
+    only_cell, only_reference : int
+        Pairs that only one of the two solved.
+    interval : Interval
+        Of the difference of success rates, cell minus reference.
+    test : str
+        ``McNemar``; ``sign flips over sets`` (or instances) where pairs are not independent.
+    p : float
+    p_corrected : float
+        By Holm's method over all comparisons of the question.
+    """
+
+    cell: Cell
+    reference: str
+    pairs: int
+    only_cell: int
+    only_reference: int
+    interval: Interval
+    test: str
+    p: float
+    p_corrected: float
+
+    @property
+    def difference(self) -> float:
+        """Success rate of the cell minus that of the reference, over the pairs."""
+        return (self.only_cell - self.only_reference) / self.pairs
+
+    @property
+    def significant(self) -> bool:
+        """Whether the corrected test tells the two apart."""
+        return self.p_corrected < SIGNIFICANT
+
+
+def comparisons_of(runs: Runs, cells: Sequence[Cell]) -> tuple[Comparison, ...]:
+    """Compare every cell with every reference that has runs in common; Holm's correction question by question."""
+    if not len(runs):
+        return ()
+    cell = cell_codes(runs)
+    unit, _ = unit_of(runs, cell)
+    pair = pair_codes(runs)
+    found = []
+    for place, reference in enumerate(REFERENCES):
+        # A reference against an earlier one has been said already, the other way round.
+        left_out = REFERENCES[: place + 1]
+        paired, difference = differences_from(runs, pair, reference)
+        rows = np.flatnonzero(paired)
+        sums = sums_by_unit(cell[rows], len(cells), unit[rows], difference[rows])
+        wins = np.bincount(cell[rows], weights=difference[rows] > 0, minlength=len(cells)).astype(int)
+        losses = np.bincount(cell[rows], weights=difference[rows] < 0, minlength=len(cells)).astype(int)
+        for c, each in enumerate(cells):
+            if each.sampler not in left_out and sums.of(c).stop > sums.of(c).start:
+                found.append(_compare(each, reference, sums, c, int(wins[c]), int(losses[c])))
+    return _corrected(found)
+
+
+def pair_codes(runs: Runs) -> Ints:
+    """Return one code a run that the same run of another sampler has, too."""
+    return combined(runs.question, runs.n, runs.instance, runs.run, runs.seed)
+
+
+def differences_from(runs: Runs, pair: Ints, reference: str) -> tuple[npt.NDArray[np.bool_], Ints]:
+    """Return which runs of others have a counterpart of the reference sampler, and solved minus solved there."""
+    solved = runs.solved.astype(np.int64)
+    if reference not in runs.samplers:
+        return np.zeros(len(runs), dtype=bool), np.zeros(len(runs), dtype=np.int64)
+    of_reference = runs.sampler == runs.samplers.index(reference)
+    counterpart = np.full(int(pair.max()) + 1, -1)
+    counterpart[pair[of_reference]] = solved[of_reference]
+    theirs = counterpart[pair]
+    return (theirs >= 0) & ~of_reference, solved - theirs
+
+
+def _compare(cell: Cell, reference: str, sums: UnitSums, c: int, wins: int, losses: int) -> Comparison:
+    entries = sums.of(c)
+    pairs = int(sums.runs[entries].sum())
+    kind = cell.units.kind
+    if kind == "runs":
+        interval, test = bonett_price(wins, losses, pairs), "McNemar"
+        p = float(mcnemar_exact(wins, losses))
+    else:
+        interval = clustered_difference(sums.sums[entries], sums.runs[entries], kind)
+        test, p = f"sign flips over {kind}", sign_flip_test(sums.sums[entries])
+    return Comparison(cell, reference, pairs, wins, losses, interval, test, p, p)
+
+
+def _corrected(found: list[Comparison]) -> tuple[Comparison, ...]:
+    questions = {each.cell.question for each in found}
+    corrected: dict[int, float] = {}
+    for question in questions:
+        family = [place for place, each in enumerate(found) if each.cell.question == question]
+        values = holm([found[place].p for place in family])
+        corrected.update(zip(family, values.tolist(), strict=True))
+    return tuple(replace(each, p_corrected=corrected[place]) for place, each in enumerate(found))
