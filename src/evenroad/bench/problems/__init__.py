@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from evenroad.bench.problem import ProblemSource
+from evenroad.bench.problems.chain import CHAINS
 from evenroad.bench.problems.corridors import CORRIDORS
 from evenroad.bench.problems.mazes import MAZES
+from evenroad.bench.problems.puzzles import PUZZLES
 from evenroad.errors import UnknownName
 
 
@@ -14,7 +16,7 @@ def _by_name(*families: Iterable[ProblemSource]) -> dict[str, ProblemSource]:
     return {source.name: source for family in families for source in family}
 
 
-PROBLEMS: dict[str, ProblemSource] = _by_name(MAZES, CORRIDORS)
+PROBLEMS: dict[str, ProblemSource] = _by_name(MAZES, CORRIDORS, CHAINS, PUZZLES)
 """Name -> where the problem comes from."""
 
 
