@@ -3,128 +3,95 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+
+from evenroad.robot.fit_points import Fitted, capsule_around, rough_capsule_around, volume
 
 MOST_CAPSULES = 4
 """Most capsules of a mesh."""
 WORTHWHILE = 0.85
 """A split must bring the sum of volumes below this share."""
-_CUTS = (0.2, 0.35, 0.5, 0.65, 0.8)
+_CUTS = (0.3, 0.5, 0.7)
+_LONGEST_EDGE = 1.0 / 6.0
+"""Longer edges, in parts of the mesh's extent, are divided, so that large triangles can be shared out, too."""
+_LOOKED_AT = 1000
+"""Triangles by which splits are compared."""
 
-Fitted = tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], float]
+
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """Some triangles, (t, 3, 3), the capsule around them, and the two parts that they would better be; or none."""
+
+    corners: npt.NDArray[np.float64]
+    capsule: Fitted
+    halves: tuple[_Part, ...] = ()
+
+    @property
+    def gain(self) -> float:
+        split = sum(volume(half.capsule) for half in self.halves)
+        return volume(self.capsule) - split if 0.0 < split < WORTHWHILE * volume(self.capsule) else 0.0
 
 
 def capsules_around_mesh(vertices: npt.NDArray[np.float64], triangles: npt.NDArray[np.int64]) -> list[Fitted]:
     """Return up to 4 capsules (a, b, radius) such that every triangle lies within one of them.
 
     One capsule is fitted around everything; then the one whose split saves most is split, as long as that saves a
-    sixth of its volume.  A split shares its triangles out by where along the capsule's axis, or along one of the two
-    principal axes across it, their centres lie.  A capsule is convex, so it contains the triangles whose corners it
-    contains: what touches the surface of the mesh touches a capsule.
+    sixth of its volume.  A split shares triangles out by where along a coordinate axis, or along the direction in which
+    they reach furthest, their centres lie.  A capsule is convex, so it contains triangles whose corners it contains:
+    what touches the surface of the mesh touches a capsule.
     """
-    corners = vertices[triangles]
-    parts = [(np.arange(len(triangles)), capsule_around(vertices[np.unique(triangles)]))]
+    corners = _divided(vertices[triangles])
+    parts = [_splittable(_Part(corners, _fit(corners)))]
     while len(parts) < MOST_CAPSULES:
-        splits = [_best_split(corners, triangles_of) for triangles_of, _ in parts]
-        gains = [
-            volume(whole) - sum(volume(capsule) for _, capsule in split)
-            if split and sum(volume(capsule) for _, capsule in split) < WORTHWHILE * volume(whole)
-            else 0.0
-            for (_, whole), split in zip(parts, splits, strict=True)
-        ]
-        best = int(np.argmax(gains))
-        if gains[best] <= 0.0:
+        best = max(range(len(parts)), key=lambda i: parts[i].gain)
+        if parts[best].gain <= 0.0:
             break
-        parts[best : best + 1] = splits[best]
-    return [capsule for _, capsule in parts]
+        parts[best : best + 1] = map(_splittable, parts[best].halves)
+    return [part.capsule for part in parts]
 
 
-def capsule_around(points: npt.NDArray[np.float64], *, refine: bool = True) -> Fitted:
-    """Return a small capsule (a, b, radius) that contains all points, (n, 3), to rounding.
-
-    The axis starts as each of the principal axes; the best is refined by Nelder and Mead's simplex over
-    its direction and place.  The radius is the least that the axis allows, or more where shorter caps save volume.
-    """
-    centre = points.mean(axis=0)
-    _, _, axes = np.linalg.svd(points - centre, full_matrices=len(points) < 3)
-    starts = [_frame(axis) for axis in axes]
-    best = min((_capsule_on(points, centre, frame) for frame in starts), key=volume)
-    if not refine:
-        return best
-    from scipy.optimize import minimize
-
-    size = float(np.ptp(points, axis=0).max()) or 1.0
-    frame = min(starts, key=lambda start: volume(_capsule_on(points, centre, start)))
-
-    def moved(x: npt.NDArray[np.float64]) -> Fitted:
-        tilted = _frame(frame[0] + x[0] * frame[1] + x[1] * frame[2])
-        return _capsule_on(points, centre + size * (x[2] * frame[1] + x[3] * frame[2]), tilted)
-
-    steps = np.vstack([np.zeros(4), 0.1 * np.eye(4)])
-    options: Any = {"maxiter": 200, "xatol": 1e-4, "fatol": 1e-4 * volume(best), "initial_simplex": steps}
-    found = minimize(lambda x: volume(moved(x)), np.zeros(4), method="Nelder-Mead", options=options)
-    return min((best, moved(found.x)), key=volume)
-
-
-def volume(capsule: Fitted) -> float:
-    """Return the volume of a capsule (a, b, radius)."""
-    a, b, radius = capsule
-    return math.pi * radius**2 * (math.dist(a, b) + 4.0 / 3.0 * radius)
-
-
-def _capsule_on(
-    points: npt.NDArray[np.float64], place: npt.NDArray[np.float64], frame: npt.NDArray[np.float64]
-) -> Fitted:
-    """Return the smallest of six capsules around the points on the line through `place` along ``frame[0]``."""
-    relative = points - place
-    along = relative @ frame[0]
-    squared = np.maximum((relative**2).sum(axis=1) - along**2, 0.0)
-    least = math.sqrt(float(squared.max()))
-    span = 0.5 * float(np.ptp(along))
-    candidates = []
-    for share in (0.0, 0.1, 0.2, 0.35, 0.6, 1.0):
-        radius = math.hypot(least, share * span) * (1.0 + 1e-12) + 1e-12 * span
-        reach = np.sqrt(np.maximum(radius**2 - squared, 0.0))
-        # A point is within the cap of an end that is no further than `reach` from it along the axis.
-        low, high = float((along + reach).min()), float((along - reach).max())
-        if low > high:
-            low = high = 0.5 * (low + high)
-        candidates.append((place + low * frame[0], place + high * frame[0], max(radius, 1e-6)))
-    return min(candidates, key=volume)
-
-
-def _frame(axis: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """Return three unit vectors as rows, the first along `axis`."""
-    first = axis / np.linalg.norm(axis)
-    helper = np.eye(3)[np.abs(first).argmin()]
-    second = np.cross(first, helper)
-    second /= np.linalg.norm(second)
-    return np.stack([first, second, np.cross(first, second)])
-
-
-def _best_split(
-    corners: npt.NDArray[np.float64], chosen: npt.NDArray[np.int64]
-) -> list[tuple[npt.NDArray[np.int64], Fitted]]:
-    """Return the two parts of the best split of the chosen triangles; empty if there is none."""
-    centres = corners[chosen].mean(axis=1)
+def _splittable(part: _Part) -> _Part:
+    """Return the part with its best split of those that are tried."""
+    corners = part.corners
+    centres = corners.mean(axis=1)
     _, _, axes = np.linalg.svd(centres - centres.mean(axis=0), full_matrices=len(centres) < 3)
-    best: tuple[float, list[npt.NDArray[np.int64]]] = (math.inf, [])
-    for axis in axes:
+    shown = slice(None, None, max(1, len(corners) // _LOOKED_AT))
+    least, best = math.inf, None
+    for axis in (*np.eye(3), axes[0]):
         along = centres @ axis
-        low, width = float(along.min()), float(np.ptp(along))
         for cut in _CUTS:
-            below = along < low + cut * width
-            if below.all() or not below.any():
+            below = along < along.min() + cut * np.ptp(along)
+            sides = [corners[shown][side[shown]] for side in (below, ~below)]
+            if min(map(len, sides)) == 0:
                 continue
-            parts = [chosen[below], chosen[~below]]
-            total = sum(volume(capsule_around(_distinct(corners[part]), refine=False)) for part in parts)
-            if total < best[0]:
-                best = (total, parts)
-    return [(part, capsule_around(_distinct(corners[part]))) for part in best[1]]
+            total = sum(volume(rough_capsule_around(side.reshape(-1, 3))) for side in sides)
+            if total < least:
+                least, best = total, below
+    if best is None:
+        return part
+    halves = tuple(_Part(corners[side], _fit(corners[side])) for side in (best, ~best))
+    return _Part(corners, part.capsule, halves)
 
 
-def _distinct(corners: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    return np.unique(corners.reshape(-1, 3), axis=0)
+def _fit(corners: npt.NDArray[np.float64]) -> Fitted:
+    return capsule_around(corners.reshape(-1, 3))
+
+
+def _divided(corners: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Return triangles, (t, 3, 3), of the same surface without long edges: halved at the longest, again and again."""
+    longest = _LONGEST_EDGE * float(np.ptp(corners.reshape(-1, 3), axis=0).max())
+    done = []
+    while len(corners):
+        lengths = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
+        long = lengths.max(axis=1) > longest
+        done.append(corners[~long])
+        # Turned so that the longest edge runs from the first to the second corner.
+        first = lengths[long].argmax(axis=1)[:, np.newaxis]
+        turned = np.take_along_axis(corners[long], ((first + np.arange(3)) % 3)[:, :, np.newaxis], axis=1)
+        a, b, c = turned[:, 0], turned[:, 1], turned[:, 2]
+        middle = 0.5 * (a + b)
+        corners = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+    return np.concatenate(done)

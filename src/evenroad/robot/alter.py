@@ -1,0 +1,60 @@
+"""The same robot with other joints to plan for, or other limits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from evenroad.errors import InvalidValue, UnknownName
+from evenroad.robot.robot import Robot
+
+
+def with_group(robot: Robot, group: Sequence[str], held: Mapping[str, float] | None = None) -> Robot:
+    """Return the robot with another group; the other movable joints are held at `held`, else at 0.
+
+    Where 0 is outside of a joint's limits, it is held at the limit that is nearest.
+
+    Raises
+    ------
+    UnknownName
+        If a joint is not one that moves freely.
+    """
+    free = [joint.name for joint in robot.joints if joint.kind != "fixed" and joint.mimic is None]
+    for name in (*group, *(held or {})):
+        if name not in free:
+            raise UnknownName.among("joint", name, free)
+    return replace(robot, group=tuple(group), held=dict(held or {}))
+
+
+def with_limits(robot: Robot, limits: Mapping[str, tuple[float, float]]) -> Robot:
+    """Return the robot with other limits, joint -> (lower, upper) [rad or m].
+
+    A continuous joint that gets limits becomes a revolute one.
+
+    Raises
+    ------
+    UnknownName
+        If a joint is not there.
+    InvalidValue
+        If lower is not below upper.
+    """
+    names = [joint.name for joint in robot.joints]
+    for name, (lower, upper) in limits.items():
+        if name not in names:
+            raise UnknownName.among("joint", name, names)
+        if not lower < upper:
+            raise InvalidValue(
+                f"limits of joint {name!r} must satisfy lower < upper, got {lower!r}, {upper!r}"
+            )
+    joints = tuple(
+        replace(
+            joint,
+            kind="revolute" if joint.kind == "continuous" else joint.kind,
+            lower=float(limits[joint.name][0]),
+            upper=float(limits[joint.name][1]),
+        )
+        if joint.name in limits
+        else joint
+        for joint in robot.joints
+    )
+    return replace(robot, joints=joints)

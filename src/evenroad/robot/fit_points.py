@@ -1,0 +1,104 @@
+"""A small capsule around points."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+Fitted = tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], float]
+"""End points a and b, each (3,), and radius of a capsule."""
+
+_LEAST_RADIUS = 1e-6
+"""Radius around points in a line [m]."""
+
+
+def capsule_around(points: npt.NDArray[np.float64]) -> Fitted:
+    """Return a small capsule that contains all points, (n, 3), to rounding.
+
+    :func:`rough_capsule_around`, then refined by Nelder and Mead's simplex (1965) over direction and place of the axis.
+    """
+    from scipy.optimize import minimize
+
+    points = _extreme(points)
+    centre, frames = _starts(points)
+    frame = min(frames, key=lambda start: volume(_capsule_on(points, centre, start)))
+    best = _capsule_on(points, centre, frame)
+    size = float(np.ptp(points, axis=0).max()) or 1.0
+
+    def moved(x: npt.NDArray[np.float64]) -> Fitted:
+        tilted = _frame(frame[0] + x[0] * frame[1] + x[1] * frame[2])
+        return _capsule_on(points, centre + size * (x[2] * frame[1] + x[3] * frame[2]), tilted)
+
+    steps = np.vstack([np.zeros(4), 0.1 * np.eye(4)])
+    options: Any = dict(maxiter=200, xatol=1e-4, fatol=1e-4 * volume(best), initial_simplex=steps)
+    found = minimize(lambda x: volume(moved(x)), np.zeros(4), method="Nelder-Mead", options=options)
+    return min((best, moved(found.x)), key=volume)
+
+
+def rough_capsule_around(points: npt.NDArray[np.float64]) -> Fitted:
+    """Return the smallest capsule around points, (n, 3), through the middle along a principal or coordinate axis."""
+    centre, frames = _starts(points)
+    return min((_capsule_on(points, centre, frame) for frame in frames), key=volume)
+
+
+def volume(capsule: Fitted) -> float:
+    """Return the volume of a capsule."""
+    a, b, radius = capsule
+    return math.pi * radius**2 * (math.dist(a, b) + 4.0 / 3.0 * radius)
+
+
+def _starts(
+    points: npt.NDArray[np.float64],
+) -> tuple[npt.NDArray[np.float64], list[npt.NDArray[np.float64]]]:
+    """Return the middle of the points' bounding box, and frames along principal and coordinate axes."""
+    centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    _, _, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=len(points) < 3)
+    return centre, [_frame(axis) for axis in (*np.eye(3), *axes)]
+
+
+def _capsule_on(
+    points: npt.NDArray[np.float64], place: npt.NDArray[np.float64], frame: npt.NDArray[np.float64]
+) -> Fitted:
+    """Return the smallest of six capsules around the points on the line through `place` along ``frame[0]``.
+
+    The radius is the least that the line allows, or more where the shorter caps save volume.
+    """
+    relative = points - place
+    along = relative @ frame[0]
+    squared = np.maximum(np.einsum("ni,ni->n", relative, relative) - along**2, 0.0)
+    least = math.sqrt(float(squared.max()))
+    span = 0.5 * float(np.ptp(along))
+    candidates = []
+    for share in (0.0, 0.1, 0.2, 0.35, 0.6, 1.0):
+        radius = math.hypot(least, share * span) * (1.0 + 1e-12) + 1e-12 * span
+        reach = np.sqrt(np.maximum(radius**2 - squared, 0.0))
+        # A point is within the cap of an end that is no further than `reach` from it along the axis.
+        low, high = float((along + reach).min()), float((along - reach).max())
+        if low > high:
+            low = high = 0.5 * (low + high)
+        ends = (place + low * frame[0], place + high * frame[0])
+        candidates.append((*ends, max(radius, _LEAST_RADIUS)))
+    return min(candidates, key=volume)
+
+
+def _frame(axis: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Return three unit vectors as rows, the first along `axis`."""
+    first = axis / np.linalg.norm(axis)
+    helper = np.eye(3)[np.abs(first).argmin()]
+    second = np.cross(first, helper)
+    second /= np.linalg.norm(second)
+    return np.stack([first, second, np.cross(first, second)])
+
+
+def _extreme(points: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Return the corners of the convex hull: a capsule that contains those contains all points."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        return points[np.sort(ConvexHull(points).vertices)]
+    except QhullError:
+        # All in one plane, or fewer than four.
+        return np.unique(points, axis=0)

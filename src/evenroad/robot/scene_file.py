@@ -1,0 +1,122 @@
+"""Reading a scene: a YAML file of what stands around a robot."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+from evenroad._checks import require_positive
+from evenroad.errors import BrokenFile, InvalidValue, UnknownName
+from evenroad.robot.load import DATA
+from evenroad.robot.rotation import rotation_from_rpy
+from evenroad.robot.scene import Obstacle, Scene, Shape
+from evenroad.robot.yaml_file import numbers, read_mapping, require_keys
+
+SCENES = ("box-reach", "box-reach-narrow")
+"""Names of the shipped scenes."""
+
+_SECTIONS = ("name", "obstacles", "allowed", "states")
+_SIZES: dict[str, tuple[tuple[str, int], ...]] = {
+    "box": (("size", 3),),
+    "sphere": (("radius", 1),),
+    "cylinder": (("radius", 1), ("length", 1)),
+    "capsule": (("radius", 1), ("length", 1)),
+}
+_OPTIONAL = ("xyz", "rpy", "cell")
+
+
+def is_scene(path: str | os.PathLike[str]) -> bool:
+    """Return whether a YAML file that can be read has the key ``obstacles``: a scene, no map."""
+    try:
+        return "obstacles" in read_mapping(find_scene(path), "scene")
+    except BrokenFile:
+        return False
+
+
+def find_scene(source: str | os.PathLike[str]) -> Path:
+    """Return the file of a scene: `source` itself or, where there is no such file, the shipped one of that name."""
+    path = Path(source)
+    if not path.exists() and path.parent == Path() and path.stem in SCENES and path.suffix in ("", ".yaml"):
+        return DATA / f"{path.stem}.yaml"
+    return path
+
+
+def load_scene(source: str | os.PathLike[str]) -> Scene:
+    """Return a scene from its file, or a shipped one by name: ``box-reach.yaml``, ``box-reach-narrow.yaml``.
+
+    ::
+
+        obstacles:                                # frame: the robot's root link; metres, radians
+          table: {shape: box, size: [1, 1.2, 0.05], xyz: [0.25, 0, -0.025], rpy: [0, 0, 0.1], cell: true}
+          ball: {shape: sphere, radius: 0.1, xyz: [0.5, 0, 0.5]}
+          post: {shape: cylinder, radius: 0.05, length: 1.0, xyz: [0, 0.6, 0.5]}   # along z; so is a capsule
+        allowed:                                  # contacts that are not tested
+          table: [base_link]
+        states:                                   # named configurations, joint by joint
+          home: {joint_1: 0.0, joint_2: -1.57}
+
+    The length of a capsule is without its caps.  ``cell: true`` marks what belongs to the fixed cell.
+
+    Raises
+    ------
+    BrokenFile
+        If the file is missing, not YAML, or lacks something.
+    UnknownName
+        If there is a key that a scene does not have, a shape or an obstacle that there is not.
+    InvalidValue
+        If a value has the wrong type or range.
+    """
+    path = find_scene(source)
+    document = read_mapping(path, "scene")
+    require_keys(document, ("obstacles",), _SECTIONS, f"the scene {path}")
+    entries = _mapping(document["obstacles"], f"obstacles in {path}")
+    obstacles = tuple(
+        _obstacle(name, _mapping(entry, f"obstacle {name!r} in {path}"), path)
+        for name, entry in entries.items()
+    )
+    allowed = set()
+    for obstacle, links in _mapping(document.get("allowed"), f"allowed in {path}").items():
+        if obstacle not in entries:
+            raise UnknownName.among(f"obstacle in 'allowed' of {path}:", obstacle, entries)
+        if not isinstance(links, list) or not all(isinstance(link, str) for link in links):
+            raise InvalidValue(
+                f"allowed contacts of {obstacle!r} in {path} must be a list of links, got {links!r}"
+            )
+        allowed.update((link, obstacle) for link in links)
+    states = {
+        name: {
+            joint: numbers(value, 1, f"joint {joint!r} of state {name!r} in {path}")[0]
+            for joint, value in _mapping(values, f"state {name!r} in {path}").items()
+        }
+        for name, values in _mapping(document.get("states"), f"states in {path}").items()
+    }
+    return Scene(str(document.get("name", path.stem)), obstacles, frozenset(allowed), states)
+
+
+def _obstacle(name: str, entry: dict[str, Any], path: Path) -> Obstacle:
+    where = f"obstacle {name!r} in {path}"
+    shape = entry.get("shape")
+    if shape not in _SIZES:
+        raise UnknownName.among(f"shape of {where}:", shape, _SIZES)
+    require_keys(entry, ("shape", *(key for key, _ in _SIZES[shape])), _OPTIONAL, where)
+    size: tuple[float, ...] = ()
+    for key, count in _SIZES[shape]:
+        size += numbers(entry[key], count, f"{key} of {where}")
+    for value in size:
+        require_positive(f"the size of {where}", value)
+    x, y, z = numbers(entry.get("xyz", [0, 0, 0]), 3, f"xyz of {where}")
+    roll, pitch, yaw = numbers(entry.get("rpy", [0, 0, 0]), 3, f"rpy of {where}")
+    cell = entry.get("cell", False)
+    if not isinstance(cell, bool):
+        raise InvalidValue(f"cell of {where} must be true or false, got {cell!r}")
+    kind: Shape = shape
+    return Obstacle(name, kind, size, (x, y, z), rotation_from_rpy(roll, pitch, yaw), cell)
+
+
+def _mapping(value: object, where: str) -> dict[str, Any]:
+    if value is None:
+        return {}
+    if not isinstance(value, dict):
+        raise BrokenFile(f"{where} must consist of 'key: value' entries, got {value!r}")
+    return {str(key): entry for key, entry in value.items()}
