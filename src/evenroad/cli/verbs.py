@@ -14,6 +14,7 @@ from evenroad.cli.demo import Demo
 from evenroad.cli.measure import Measure
 from evenroad.cli.plan import Plan
 from evenroad.cli.points import Points
+from evenroad.cli.report import Report
 from evenroad.cli.train import Train
 from evenroad.errors import EvenroadError
 
@@ -26,6 +27,7 @@ Verb = (
     | Annotated[Points, tyro.conf.subcommand("points", prefix_name=False)]
     | Annotated[Measure, tyro.conf.subcommand("measure", prefix_name=False)]
     | Annotated[Train, tyro.conf.subcommand("train", prefix_name=False)]
+    | Annotated[Report, tyro.conf.subcommand("report", prefix_name=False)]
     | Annotated[Demo, tyro.conf.subcommand("demo", prefix_name=False)]
 )
 

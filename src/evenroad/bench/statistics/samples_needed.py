@@ -35,8 +35,12 @@ class SamplesNeeded:
     def __str__(self) -> str:
         """``412 [380, 455]``, ``> 1024`` or ``≤ 32 [≤ 32, 40]``."""
         ends = self._text(self.low), self._text(self.high)
-        estimate = self._text(self.estimate)
-        return estimate if ends == (estimate, estimate) else f"{estimate} [{ends[0]}, {ends[1]}]"
+        return self.short if ends == (self.short, self.short) else f"{self.short} [{ends[0]}, {ends[1]}]"
+
+    @property
+    def short(self) -> str:
+        """The number without its interval: ``412``, ``> 1024``, ``≤ 32``."""
+        return self._text(self.estimate)
 
     def _text(self, value: float) -> str:
         if math.isinf(value):

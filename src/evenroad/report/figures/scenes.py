@@ -49,6 +49,6 @@ def draw_scene(name: str) -> Figure:
 
 
 def _draw_maze(problem: Problem, world: DiskWorld) -> Figure:
-    figure = new_figure(7.4, 6.2)
+    figure = new_figure(8.4, 7.4)
     draw_plan(figure.add_subplot(), find_path(problem), world)
     return figure

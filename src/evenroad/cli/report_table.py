@@ -1,0 +1,76 @@
+"""What the terminal shows of a report: one line a problem, within 100 columns."""
+
+from __future__ import annotations
+
+from rich.table import Table
+from rich.text import Text
+
+from evenroad.cli.console import print_table
+from evenroad.report import Report
+from evenroad.report.analysis import Analysis
+from evenroad.report.comparisons import REFERENCES
+from evenroad.report.fair import is_fair
+from evenroad.report.runs import Question
+from evenroad.report.sections.expected import verdict_counts
+from evenroad.report.text import difference
+
+
+def print_report(report: Report) -> None:
+    """Print how many samples each problem takes, the verdicts, the fair suite in short, and where the page is."""
+    analysis = report.analysis
+    questions = [question for question in analysis.runs.questions if not is_fair(question)]
+    if questions:
+        print_table(_needed_table(analysis, questions))
+    if "all" in analysis.pooled:
+        print_table(_fair_table(analysis))
+    for table, verdicts in analysis.verdicts.values():
+        print(f"{table.title}: {verdict_counts(verdicts)}")
+    failed = sum(each.runs for each in analysis.failures)
+    if failed:
+        print(f"{failed} runs gave no answer; they are listed on the page")
+    print(f"{report.files[0]} and {len(report.files) - 1} more files")
+
+
+def _needed_table(analysis: Analysis, questions: list[Question]) -> Table:
+    table = Table(title="Samples for 90 % success", title_justify="left", box=None, pad_edge=False)
+    table.add_column("problem", overflow="fold")
+    table.add_column("rule", overflow="fold")
+    for name in ("runs", "failed", *REFERENCES):
+        table.add_column(name, justify="right", no_wrap=True)
+    table.add_column("fewest", overflow="fold")
+    for question in questions:
+        cells = analysis.cells_of(question)
+        needed = {sampler: analysis.needed.get((question, sampler)) for sampler in REFERENCES}
+        references = ["–" if each is None else each.short for each in needed.values()]
+        runs, failed = sum(cell.runs for cell in cells), sum(cell.failures for cell in cells)
+        row = (
+            question.problem,
+            question.rule,
+            str(runs),
+            str(failed),
+            *references,
+            _fewest(analysis, question),
+        )
+        table.add_row(*map(Text, row))
+    return table
+
+
+def _fewest(analysis: Analysis, question: Question) -> str:
+    mine = [(needed, sampler) for (asked, sampler), needed in analysis.needed.items() if asked == question]
+    best, _ = min(mine, key=lambda each: each[0].estimate)
+    if best.estimate == float("inf"):
+        return "none reached it"
+    names = [sampler for needed, sampler in mine if needed.estimate == best.estimate]
+    return f"{best.short}: {', '.join(names) if len(names) < 4 else f'{len(names)} samplers'}"
+
+
+def _fair_table(analysis: Analysis) -> Table:
+    title = "Fair suite: success against uniform in the same worlds [points]"
+    table = Table(title=title, title_justify="left", box=None, pad_edge=False)
+    table.add_column("sampler", no_wrap=True)
+    for name in ("worlds", "runs", "difference"):
+        table.add_column(name, justify="right", no_wrap=True)
+    for each in analysis.pooled["all"]:
+        change = difference(each.rate - each.reference_rate, each.interval)
+        table.add_row(*map(Text, (each.sampler, str(each.instances), str(each.pairs), change)))
+    return table
