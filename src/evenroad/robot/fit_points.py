@@ -33,8 +33,9 @@ def capsule_around(points: npt.NDArray[np.float64]) -> Fitted:
         return _capsule_on(points, centre + size * (x[2] * frame[1] + x[3] * frame[2]), tilted)
 
     steps = np.vstack([np.zeros(4), 0.1 * np.eye(4)])
-    options: Any = dict(maxiter=200, xatol=1e-4, fatol=1e-4 * volume(best), initial_simplex=steps)
-    found = minimize(lambda x: volume(moved(x)), np.zeros(4), method="Nelder-Mead", options=options)
+    options = dict(maxiter=200, xatol=1e-4, fatol=1e-4 * volume(best), initial_simplex=steps)
+    search: Any = minimize
+    found = search(lambda x: volume(moved(x)), np.zeros(4), method="Nelder-Mead", options=options)
     return min((best, moved(found.x)), key=volume)
 
 

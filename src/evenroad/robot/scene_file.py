@@ -75,7 +75,7 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
         _obstacle(name, _mapping(entry, f"obstacle {name!r} in {path}"), path)
         for name, entry in entries.items()
     )
-    allowed = set()
+    allowed: set[tuple[str, str]] = set()
     for obstacle, links in _mapping(document.get("allowed"), f"allowed in {path}").items():
         if obstacle not in entries:
             raise UnknownName.among(f"obstacle in 'allowed' of {path}:", obstacle, entries)

@@ -9,6 +9,7 @@ from evenroad.bench.problems.chain import CHAINS
 from evenroad.bench.problems.corridors import CORRIDORS
 from evenroad.bench.problems.mazes import MAZES
 from evenroad.bench.problems.puzzles import PUZZLES
+from evenroad.bench.problems.ur5 import UR5
 from evenroad.errors import UnknownName
 
 
@@ -16,7 +17,7 @@ def _by_name(*families: Iterable[ProblemSource]) -> dict[str, ProblemSource]:
     return {source.name: source for family in families for source in family}
 
 
-PROBLEMS: dict[str, ProblemSource] = _by_name(MAZES, CORRIDORS, CHAINS, PUZZLES)
+PROBLEMS: dict[str, ProblemSource] = _by_name(MAZES, CORRIDORS, CHAINS, PUZZLES, UR5)
 """Name -> where the problem comes from."""
 
 
