@@ -33,10 +33,10 @@ def print_report(report: Report) -> None:
 
 def _needed_table(analysis: Analysis, questions: list[Question]) -> Table:
     table = Table(title="Samples for 90 % success", title_justify="left", box=None, pad_edge=False)
-    table.add_column("problem", overflow="fold")
-    table.add_column("rule", overflow="fold")
-    for name in ("runs", "failed", *REFERENCES):
-        table.add_column(name, justify="right", no_wrap=True)
+    for name in ("problem", "rule"):
+        table.add_column(name, no_wrap=True)
+    for name in ("runs", *REFERENCES):
+        table.add_column(name.replace(" ", "\n"), justify="right", no_wrap=True)
     table.add_column("fewest", overflow="fold")
     for question in questions:
         cells = analysis.cells_of(question)
@@ -61,11 +61,11 @@ def _fewest(analysis: Analysis, question: Question) -> str:
     if best.estimate == float("inf"):
         return "none reached it"
     names = [sampler for needed, sampler in mine if needed.estimate == best.estimate]
-    return f"{best.short}: {', '.join(names) if len(names) < 4 else f'{len(names)} samplers'}"
+    return f"{best.short}: {', '.join(names) if len(names) < 3 else f'{len(names)} samplers'}"
 
 
 def _fair_table(analysis: Analysis) -> Table:
-    title = "Fair suite: success against uniform in the same worlds [points]"
+    title = "Fair suite: success minus uniform's [points]"
     table = Table(title=title, title_justify="left", box=None, pad_edge=False)
     table.add_column("sampler", no_wrap=True)
     for name in ("worlds", "runs", "difference"):
