@@ -9,9 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._checks import require_positive
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad.errors import InvalidValue, NotAvailable, UnknownName
 from evenroad.robot.kernel import scalar, scalar_batch
 from evenroad.robot.kernel.model import ArmModel, arm_model
+from evenroad.robot.kernel.selftest import lanes_work
 from evenroad.robot.kernel.tables import ArmTables, pack
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
@@ -20,6 +21,8 @@ from evenroad.space.batch import as_batch, as_batch_pair
 
 _MOST_SEGMENTS = 2**30
 """More of them in one motion would take hours: then the resolution is a slip."""
+
+_BACKENDS = ("auto", "lanes", "scalar")
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +47,10 @@ class ArmWorld:
     resolution : float
         Largest distance between neighbouring states of a motion, > 0, in the Euclidean metric of
         configurations [rad].
+    backend : {"auto", "lanes", "scalar"}
+        How verdicts are computed: sixteen at once in single precision, with radii enlarged by some micrometres to
+        stay on the safe side, or one after the other in double precision.  "auto" takes the lanes where a test,
+        made once a process, finds that they work; the attribute then says which it is.
 
     Raises
     ------
@@ -51,12 +58,15 @@ class ArmWorld:
         If `resolution` is not such a number, a joint of the group has no finite range, or robot and scene
         are not sound.
     UnknownName
-        If the robot or the scene names something that is not there.
+        If the robot or the scene names something that is not there, or there is no such backend.
+    NotAvailable
+        If the lanes are asked for where they do not work.
     """
 
     robot: Robot
     scene: Scene
     resolution: float = 0.05
+    backend: str = "auto"
     _space: JointSpace = field(init=False, repr=False)
     _bounds: npt.NDArray[np.float64] = field(init=False, repr=False)
     _model: ArmModel = field(init=False, repr=False)
@@ -79,6 +89,7 @@ class ArmWorld:
         object.__setattr__(self, "_bounds", bounds)
         object.__setattr__(self, "_model", model)
         object.__setattr__(self, "_tables", pack(model))
+        object.__setattr__(self, "backend", _chosen(self.backend))
 
     @property
     def space(self) -> JointSpace:
@@ -103,11 +114,16 @@ class ArmWorld:
         InvalidValue
             If `q` has another shape or an entry that is not finite.
         """
-        batch = as_batch("q", q, self._space.dim)
+        configurations = as_batch("q", q, self._space.dim)
         if self._model.standing_contact:
-            return np.zeros(len(batch), dtype=np.bool_)
+            return np.zeros(len(configurations), dtype=np.bool_)
         tables = self._tables
-        return scalar_batch.configurations_free(batch, self._bounds, tables.ints, tables.floats)
+        if self.backend == "scalar":
+            return scalar_batch.configurations_free(configurations, self._bounds, tables.ints, tables.floats)
+        # Imported late: where the vector type cannot even be defined, all else still works.
+        from evenroad.robot.kernel import batch as lanes_batch
+
+        return lanes_batch.configurations_free(configurations, self._bounds, tables.ints, tables.padded)
 
     def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
         """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
@@ -120,10 +136,12 @@ class ArmWorld:
         first, second = as_batch_pair(a, b, self._space.dim)
         if self._model.standing_contact:
             return np.zeros(len(first), dtype=np.bool_)
-        tables = self._tables
-        return scalar_batch.motions_free(
-            first, second, self.resolution, self._bounds, tables.ints, tables.floats
-        )
+        resolution, bounds, tables = self.resolution, self._bounds, self._tables
+        if self.backend == "scalar":
+            return scalar_batch.motions_free(first, second, resolution, bounds, tables.ints, tables.floats)
+        from evenroad.robot.kernel import batch as lanes_batch
+
+        return lanes_batch.motions_free(first, second, resolution, bounds, tables.ints, tables.padded)
 
     def explain(self, q: npt.NDArray[np.float64]) -> str:
         """Return in words why one configuration, (dim,), is not free: the joint outside its limits and by
@@ -152,6 +170,17 @@ class ArmWorld:
             first, second = tables.capsule_pairs[other]
             return model.capsules[first].link, model.capsules[second].link
         return None
+
+
+def _chosen(backend: str) -> str:
+    """Return which of the two backends `backend` stands for here."""
+    if backend not in _BACKENDS:
+        raise UnknownName.among("backend", backend, _BACKENDS)
+    if backend == "scalar" or (backend == "auto" and not lanes_work()):
+        return "scalar"
+    if not lanes_work():
+        raise NotAvailable("the lanes do not work on this machine; backend='scalar' does")
+    return "lanes"
 
 
 def joint_space(robot: Robot) -> JointSpace:

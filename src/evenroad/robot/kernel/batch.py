@@ -1,0 +1,116 @@
+"""Batches in lanes: sixteen configurations at once, or sixteen states of a motion."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel.contact import blocked_lanes
+from evenroad.robot.kernel.motion import enter, span
+from evenroad.robot.kernel.place import scratch_memory
+
+LANES = at.LANES
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+Singles = npt.NDArray[np.float32]
+
+
+@njit(cache=True, nogil=True)
+def configurations_free(q: Floats, bounds: Floats, ints: Ints, table: Singles) -> npt.NDArray[np.bool_]:
+    """Return which rows of `q`, (n, dim), are within `bounds`, (3, dim), and free: (n,)."""
+    n, dim = q.shape
+    scratch = scratch_memory(dim, ints, table)
+    state = np.empty(dim)
+    free = np.empty(n, dtype=np.bool_)
+    for first in range(0, n, LANES):
+        count = min(LANES, n - first)
+        for lane in range(LANES):
+            # Lanes to spare repeat the last row.
+            row = first + min(lane, count - 1)
+            free[row] = enter(q[row], bounds, state)
+            for k in range(dim):
+                # What is out of bounds may be too large for single precision.
+                scratch[k * LANES + lane] = state[k] if free[row] else bounds[0, k]
+        blocked = blocked_lanes(scratch, dim, ints, table, LANES)
+        for lane in range(count):
+            free[first + lane] &= (blocked >> lane) & 1 == 0
+    return free
+
+
+@njit(cache=True, nogil=True)
+def motions_free(
+    a: Floats, b: Floats, resolution: float, bounds: Floats, ints: Ints, table: Singles
+) -> npt.NDArray[np.bool_]:
+    """Return which motions, from rows of `a` to those of `b`, are free at both ends and at states between.
+
+    The states are ``k / n`` of the way, n the number of segments of at most `resolution`.  The first sixteen
+    are spread over the motion, ends included; the others follow in stretches of sixteen neighbours, halves
+    before quarters before eighths.
+    """
+    m, dim = a.shape
+    scratch = scratch_memory(dim, ints, table)
+    start, end, way, share = np.empty(dim), np.empty(dim), np.empty(dim), np.empty(LANES)
+    free = np.empty(m, dtype=np.bool_)
+    for row in range(m):
+        free[row] = False
+        if not (enter(a[row], bounds, start) and enter(b[row], bounds, end)):
+            continue
+        segments = span(start, end, bounds, resolution, way)
+        for lane in range(LANES):
+            state = min(lane, segments) if segments < LANES else lane * segments // (LANES - 1)
+            share[lane] = state / max(segments, 1)
+        _write_states(scratch, start, way, share)
+        for k in range(dim):
+            # Exactly the end, so that a motion is free only where its end is.
+            scratch[k * LANES + LANES - 1] = end[k]
+        if blocked_lanes(scratch, dim, ints, table, 1) == 0:
+            free[row] = segments < LANES or _rest_is_free(
+                scratch, start, way, share, segments, dim, ints, table
+            )
+    return free
+
+
+@njit(cache=True, nogil=True)
+def _rest_is_free(
+    scratch: Singles,
+    start: Floats,
+    way: Floats,
+    share: Floats,
+    segments: int,
+    dim: int,
+    ints: Ints,
+    table: Singles,
+) -> bool:
+    """Test the states between the sixteen that were spread over the motion."""
+    rest = segments + 1 - LANES
+    stretches = (rest + LANES - 1) // LANES
+    level = 0
+    while (1 << level) < stretches:
+        level += 1
+    for place in range(1 << level):
+        stretch = 0
+        for bit in range(level):
+            stretch |= ((place >> bit) & 1) << (level - 1 - bit)
+        if stretch >= stretches:
+            continue
+        # The r-th of these states has number r + 1 + gap, where gap counts the spread ones passed since the start.
+        gap = 0
+        for lane in range(LANES):
+            rank = min(stretch * LANES + lane, rest - 1)
+            while (gap + 1) * segments // (LANES - 1) - (gap + 1) <= rank:
+                gap += 1
+            share[lane] = (rank + 1 + gap) / segments
+        _write_states(scratch, start, way, share)
+        if blocked_lanes(scratch, dim, ints, table, 1) != 0:
+            return False
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _write_states(scratch: Singles, start: Floats, way: Floats, share: Floats) -> None:
+    """Write the configurations at sixteen shares of a motion."""
+    for k in range(len(start)):
+        for lane in range(LANES):
+            scratch[k * LANES + lane] = start[k] + share[lane] * way[k]

@@ -1,0 +1,205 @@
+"""Which of sixteen placed configurations touch an obstacle or themselves: bit w of a mask stands for lane w.
+
+Lanes that are known to be blocked are not looked at again; a test is left out only where no lane needs it,
+and every test that may be left out is a little wider than the one that it saves.  So the answer for a lane
+does not depend on its neighbours.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel.lanes import (
+    ONE,
+    ZERO,
+    absolute,
+    below_zero,
+    larger,
+    largest_lane,
+    load,
+    lowest_bit,
+    smaller,
+    smallest_lane,
+    square_root,
+)
+from evenroad.robot.kernel.place import (
+    BODY,
+    CAPSULE,
+    place_frames,
+    place_moving_bodies,
+    place_moving_capsules,
+    scratch_places,
+)
+
+LANES = at.LANES
+ALL = (1 << LANES) - 1
+_HALF = np.float32(0.5)
+
+Ints = npt.NDArray[np.int64]
+Singles = npt.NDArray[np.float32]
+
+
+@njit(cache=True, nogil=True)
+def blocked_lanes(scratch: Singles, dim: int, ints: Ints, table: Singles, enough: int) -> int:
+    """Return the mask of the configurations, at the beginning of `scratch`, that touch something.
+
+    Parameters
+    ----------
+    scratch : float32 array
+        As ``place.scratch_memory`` makes it, with `dim` coordinates of sixteen configurations written to it.
+    ints, table : arrays
+        The tables.
+    enough : int
+        1 to stop at the first lane that is blocked, 16 to find all.
+    """
+    frames, capsules, bodies, _ = scratch_places(dim, ints)
+    place_frames(scratch, frames, ints, table)
+    place_moving_capsules(scratch, frames, capsules, ints, table)
+    blocked = _meeting_obstacles(scratch, capsules, ints, table, enough)
+    if blocked == ALL or (blocked != 0 and enough == 1):
+        return blocked
+    place_moving_bodies(scratch, frames, bodies, ints, table)
+    return _meeting_themselves(scratch, capsules, bodies, ints, table, blocked, enough)
+
+
+@njit(cache=True, nogil=True)
+def _meeting_obstacles(scratch: Singles, capsules: int, ints: Ints, table: Singles, enough: int) -> int:
+    blocks = ints[at.BLOCKS]
+    blocked = 0
+    # From the outermost capsules inwards: those meet obstacles most often.
+    for i in range(ints[at.CAPSULES] - 1, ints[at.STANDING] - 1, -1):
+        here = capsules + CAPSULE * i
+        cx, cy, cz = load(scratch, here), load(scratch, here + LANES), load(scratch, here + 2 * LANES)
+        ux = load(scratch, here + 6 * LANES)
+        uy = load(scratch, here + 7 * LANES)
+        uz = load(scratch, here + 8 * LANES)
+        # The box around all sixteen, against sixteen obstacles at once.
+        low_x, high_x = smallest_lane(cx - ux), largest_lane(cx + ux)
+        low_y, high_y = smallest_lane(cy - uy), largest_lane(cy + uy)
+        low_z, high_z = smallest_lane(cz - uz), largest_lane(cz + uz)
+        hx, hy, hz = _HALF * (high_x - low_x), _HALF * (high_y - low_y), _HALF * (high_z - low_z)
+        mx, my, mz = _HALF * (high_x + low_x), _HALF * (high_y + low_y), _HALF * (high_z + low_z)
+        for block in range(blocks):
+            box = ints[at.BLOCK_FLOATS] + at.BLOCK_FLOAT_ROW * block
+            gap_x = absolute(load(table, box) - mx) - load(table, box + 3 * LANES) - hx
+            gap_y = absolute(load(table, box + LANES) - my) - load(table, box + 4 * LANES) - hy
+            gap_z = absolute(load(table, box + 2 * LANES) - mz) - load(table, box + 5 * LANES) - hz
+            near = below_zero(larger(larger(gap_x, gap_y), gap_z))
+            near &= ints[ints[at.TESTED] + i * blocks + block]
+            while near != 0:
+                lane = lowest_bit(near)
+                near &= near - 1
+                gap_x = absolute(cx - table[box + lane]) - ux - table[box + 3 * LANES + lane]
+                gap_y = absolute(cy - table[box + LANES + lane]) - uy - table[box + 4 * LANES + lane]
+                gap_z = absolute(cz - table[box + 2 * LANES + lane]) - uz - table[box + 5 * LANES + lane]
+                if below_zero(larger(larger(gap_x, gap_y), gap_z)) & ~blocked != 0:
+                    blocked |= _meeting_one(scratch, here, i, block * LANES + lane, ints, table)
+                    if blocked == ALL or (blocked != 0 and enough == 1):
+                        return blocked
+    return blocked
+
+
+@njit(cache=True, nogil=True)
+def _meeting_one(scratch: Singles, here: int, capsule: int, obstacle: int, ints: Ints, table: Singles) -> int:
+    """Return the mask of lanes in which a sphere along a capsule reaches into an obstacle."""
+    data = ints[at.OBSTACLE_FLOATS] + at.OBSTACLE_FLOAT_ROW * obstacle
+    kind = ints[ints[at.OBSTACLE_INTS] + obstacle]
+    # Centre and half segment as the obstacle sees them.
+    cx = load(scratch, here) - table[data]
+    cy = load(scratch, here + LANES) - table[data + 1]
+    cz = load(scratch, here + 2 * LANES) - table[data + 2]
+    ex, ey = load(scratch, here + 3 * LANES), load(scratch, here + 4 * LANES)
+    ez = load(scratch, here + 5 * LANES)
+    if kind != at.ALIGNED:
+        cx, cy, cz = _turned(cx, cy, cz, data + 6, table)
+        ex, ey, ez = _turned(ex, ey, ez, data + 6, table)
+    width_x, width_y, width_z = table[data + 3], table[data + 4], table[data + 5]
+    reach = table[ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * capsule + 6] + table[data + 15]
+    square_reach = reach * reach
+    row = ints[at.CAPSULE_INTS] + at.CAPSULE_INT_ROW * capsule
+    samples = ints[at.SAMPLES]
+    meeting = 0
+    for sample in range(ints[row + 1], ints[row + 2]):
+        along = table[samples + sample]
+        x, y, z = cx + ex * along, cy + ey * along, cz + ez * along
+        dz = larger(absolute(z) - width_z, ZERO)
+        if kind == at.CYLINDER:
+            aside = larger(square_root(x * x + y * y) - width_x, ZERO)
+            meeting |= below_zero(aside * aside + dz * dz - square_reach)
+        else:
+            dx = larger(absolute(x) - width_x, ZERO)
+            dy = larger(absolute(y) - width_y, ZERO)
+            meeting |= below_zero(dx * dx + dy * dy + dz * dz - square_reach)
+    return meeting
+
+
+@njit(cache=True, nogil=True, forceinline=True)
+def _turned(x: Any, y: Any, z: Any, data: int, table: Singles) -> Any:
+    """Return a vector in the frame whose rotation to the root's is at `data` of the table."""
+    return (
+        x * table[data] + y * table[data + 3] + z * table[data + 6],
+        x * table[data + 1] + y * table[data + 4] + z * table[data + 7],
+        x * table[data + 2] + y * table[data + 5] + z * table[data + 8],
+    )
+
+
+@njit(cache=True, nogil=True)
+def _meeting_themselves(
+    scratch: Singles, capsules: int, bodies: int, ints: Ints, table: Singles, blocked: int, enough: int
+) -> int:
+    """Return `blocked` and the mask of lanes in which two bodies of a pair touch."""
+    for p in range(ints[at.BODY_PAIRS]):
+        row = ints[at.BODY_PAIR_INTS] + at.BODY_PAIR_INT_ROW * p
+        a, b = bodies + BODY * ints[row], bodies + BODY * ints[row + 1]
+        near = table[ints[at.BODY_PAIR_FLOATS] + p]
+        x = load(scratch, a) - load(scratch, b)
+        y = load(scratch, a + LANES) - load(scratch, b + LANES)
+        z = load(scratch, a + 2 * LANES) - load(scratch, b + 2 * LANES)
+        if below_zero(x * x + y * y + z * z - near * near) & ~blocked == 0:
+            continue
+        for pair in range(ints[row + 2], ints[row + 3]):
+            blocked |= _touching(scratch, capsules, pair, ints, table, blocked)
+            if blocked == ALL or (blocked != 0 and enough == 1):
+                return blocked
+    return blocked
+
+
+@njit(cache=True, nogil=True)
+def _touching(scratch: Singles, capsules: int, pair: int, ints: Ints, table: Singles, blocked: int) -> int:
+    """Return the mask of lanes, not `blocked` ones, in which the capsules of a pair touch.
+
+    The steps are those of the double-precision ``scalar._squared_distance_of_pair``.
+    """
+    row, data = ints[at.PAIR_INTS] + at.PAIR_INT_ROW * pair, ints[at.PAIR_FLOATS] + at.PAIR_FLOAT_ROW * pair
+    a, b = capsules + CAPSULE * ints[row], capsules + CAPSULE * ints[row + 1]
+    near, reach = table[data], table[data + 1]
+    rx = load(scratch, a) - load(scratch, b)
+    ry = load(scratch, a + LANES) - load(scratch, b + LANES)
+    rz = load(scratch, a + 2 * LANES) - load(scratch, b + 2 * LANES)
+    if below_zero(rx * rx + ry * ry + rz * rz - near * near) & ~blocked == 0:
+        return 0
+    ex, fx = load(scratch, a + 3 * LANES), load(scratch, b + 3 * LANES)
+    ey, fy = load(scratch, a + 4 * LANES), load(scratch, b + 4 * LANES)
+    ez, fz = load(scratch, a + 5 * LANES), load(scratch, b + 5 * LANES)
+    ef = ex * fx + ey * fy + ez * fz
+    er = ex * rx + ey * ry + ez * rz
+    fr = fx * rx + fy * ry + fz * rz
+    ee, ff = table[data + 2], table[data + 3]
+    one_by_ee, one_by_ff, least = table[data + 4], table[data + 5], table[data + 6]
+    parallel = larger(ee * ff - ef * ef, least)
+    s = _cut((ef * fr - er * ff) / parallel)
+    t = _cut((ef * s + fr) * one_by_ff)
+    s = _cut((ef * t - er) * one_by_ee)
+    x, y, z = rx + ex * s - fx * t, ry + ey * s - fy * t, rz + ez * s - fz * t
+    return below_zero(x * x + y * y + z * z - reach * reach)
+
+
+@njit(cache=True, nogil=True, forceinline=True)
+def _cut(place: Any) -> Any:
+    """Return `place` cut to [-1, 1]."""
+    return larger(smaller(place, ONE), -ONE)

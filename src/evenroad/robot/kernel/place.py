@@ -1,0 +1,144 @@
+"""Where sixteen configurations put a robot's frames, capsules and bodies."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel.lanes import ONE, ZERO, absolute, load, spread, store
+from evenroad.robot.kernel.sine import sine_and_cosine
+
+LANES = at.LANES
+Ints = npt.NDArray[np.int64]
+Singles = npt.NDArray[np.float32]
+
+FRAME = 12 * LANES
+"""Numbers of a frame in the scratch memory: rotation row by row, origin."""
+
+CAPSULE = 9 * LANES
+"""Numbers of a capsule: centre, half segment, half extents of the box around its spheres."""
+
+BODY = 3 * LANES
+"""Numbers of a body: centre of its ball."""
+
+
+@njit(cache=True, nogil=True)
+def scratch_places(dim: int, ints: Ints) -> tuple[int, int, int, int]:
+    """Return where frames, capsules and bodies begin in the scratch memory, and its length.
+
+    The coordinates come first, sixteen numbers each.
+    """
+    frames = dim * LANES
+    capsules = frames + FRAME * (ints[at.FRAMES] + 1)
+    bodies = capsules + CAPSULE * ints[at.CAPSULES]
+    return frames, capsules, bodies, bodies + BODY * ints[at.BODIES]
+
+
+@njit(cache=True, nogil=True)
+def scratch_memory(dim: int, ints: Ints, table: Singles) -> Singles:
+    """Return scratch memory that begins on a cache line, with what does not move in its place."""
+    frames, capsules, bodies, length = scratch_places(dim, ints)
+    raw = np.zeros(length + LANES, dtype=np.float32)
+    skip = (64 - raw.ctypes.data % 64) % 64 // 4
+    scratch = raw[skip : skip + length]
+    for entry in range(12):
+        store(scratch, frames + entry * LANES, spread(ONE if entry in (0, 4, 8) else ZERO))
+    _place_capsules(scratch, frames, capsules, 0, ints[at.STANDING], ints, table)
+    _place_bodies(scratch, frames, bodies, 0, ints[at.STANDING_BODIES], ints, table)
+    return scratch
+
+
+@njit(cache=True, nogil=True)
+def place_frames(scratch: Singles, frames: int, ints: Ints, table: Singles) -> None:
+    """Write the frames of the coordinates at the beginning of `scratch`."""
+    for i in range(ints[at.FRAMES]):
+        row = ints[at.FRAME_INTS] + at.FRAME_INT_ROW * i
+        data = ints[at.FRAME_FLOATS] + at.FRAME_FLOAT_ROW * i
+        parent = ints[row]
+        here, below = frames + FRAME * (i + 1), frames + FRAME * parent
+        value = load(scratch, ints[row + 1] * LANES) * table[data + 12] + table[data + 13]
+        slides = ints[row + 2] != 0
+        sine, cosine = spread(ZERO), spread(ONE)
+        if not slides:
+            sine, cosine = sine_and_cosine(value)
+        for axis in range(3):
+            if parent == 0:
+                x = spread(table[data + 3 * axis])
+                y = spread(table[data + 3 * axis + 1])
+                z = spread(table[data + 3 * axis + 2])
+                origin = spread(table[data + 9 + axis])
+            else:
+                p0 = load(scratch, below + 3 * axis * LANES)
+                p1 = load(scratch, below + (3 * axis + 1) * LANES)
+                p2 = load(scratch, below + (3 * axis + 2) * LANES)
+                x = p0 * table[data] + p1 * table[data + 3] + p2 * table[data + 6]
+                y = p0 * table[data + 1] + p1 * table[data + 4] + p2 * table[data + 7]
+                z = p0 * table[data + 2] + p1 * table[data + 5] + p2 * table[data + 8]
+                origin = _moved(scratch, below, axis, p0, p1, p2, data + 9, table)
+            if slides:
+                origin = origin + z * value
+            store(scratch, here + 3 * axis * LANES, x * cosine + y * sine)
+            store(scratch, here + (3 * axis + 1) * LANES, y * cosine - x * sine)
+            store(scratch, here + (3 * axis + 2) * LANES, z)
+            store(scratch, here + (9 + axis) * LANES, origin)
+
+
+@njit(cache=True, nogil=True)
+def place_moving_capsules(scratch: Singles, frames: int, capsules: int, ints: Ints, table: Singles) -> None:
+    """Write the capsules that move."""
+    _place_capsules(scratch, frames, capsules, ints[at.STANDING], ints[at.CAPSULES], ints, table)
+
+
+@njit(cache=True, nogil=True)
+def place_moving_bodies(scratch: Singles, frames: int, bodies: int, ints: Ints, table: Singles) -> None:
+    """Write the bodies that move."""
+    _place_bodies(scratch, frames, bodies, ints[at.STANDING_BODIES], ints[at.BODIES], ints, table)
+
+
+@njit(cache=True, nogil=True)
+def _place_capsules(
+    scratch: Singles, frames: int, capsules: int, first: int, end: int, ints: Ints, table: Singles
+) -> None:
+    for i in range(first, end):
+        frame = frames + FRAME * ints[ints[at.CAPSULE_INTS] + at.CAPSULE_INT_ROW * i]
+        data = ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i
+        here = capsules + CAPSULE * i
+        for axis in range(3):
+            p0 = load(scratch, frame + 3 * axis * LANES)
+            p1 = load(scratch, frame + (3 * axis + 1) * LANES)
+            p2 = load(scratch, frame + (3 * axis + 2) * LANES)
+            half = p0 * table[data + 3] + p1 * table[data + 4] + p2 * table[data + 5]
+            store(scratch, here + axis * LANES, _moved(scratch, frame, axis, p0, p1, p2, data, table))
+            store(scratch, here + (3 + axis) * LANES, half)
+            store(scratch, here + (6 + axis) * LANES, absolute(half) + table[data + 6])
+
+
+@njit(cache=True, nogil=True)
+def _place_bodies(
+    scratch: Singles, frames: int, bodies: int, first: int, end: int, ints: Ints, table: Singles
+) -> None:
+    for i in range(first, end):
+        frame = frames + FRAME * ints[ints[at.BODY_INTS] + at.BODY_INT_ROW * i]
+        data = ints[at.BODY_FLOATS] + at.BODY_FLOAT_ROW * i
+        for axis in range(3):
+            p0 = load(scratch, frame + 3 * axis * LANES)
+            p1 = load(scratch, frame + (3 * axis + 1) * LANES)
+            p2 = load(scratch, frame + (3 * axis + 2) * LANES)
+            store(
+                scratch,
+                bodies + BODY * i + axis * LANES,
+                _moved(scratch, frame, axis, p0, p1, p2, data, table),
+            )
+
+
+@njit(cache=True, nogil=True, forceinline=True)
+def _moved(
+    scratch: Singles, frame: int, axis: int, p0: Any, p1: Any, p2: Any, data: int, table: Singles
+) -> Any:
+    """Return a coordinate, in the root's frame, of a point that the table has at `data` in a frame's own."""
+    turned = p0 * table[data] + p1 * table[data + 1] + p2 * table[data + 2]
+    return load(scratch, frame + (9 + axis) * LANES) + turned

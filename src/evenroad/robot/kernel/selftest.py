@@ -1,0 +1,79 @@
+"""Whether the lanes work on this machine: once a process, on a small robot whose verdicts are known."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.robot.capsule import Capsule
+from evenroad.robot.joint import Joint
+from evenroad.robot.kernel.model import ArmModel, arm_model
+from evenroad.robot.robot import Robot
+from evenroad.robot.scene import Obstacle, Scene
+
+_STRAIGHT = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+_TURNED = (0.8, -0.6, 0.0, 0.6, 0.8, 0.0, 0.0, 0.0, 1.0)
+
+_FREE = 0b1001101111100001001101101101101111001101001101101011101100110100
+"""Bit i: whether configuration i is free, in double precision; a test keeps it so."""
+
+
+@cache
+def lanes_work() -> bool:
+    """Return whether the vector type compiles here and gives the verdicts that it should."""
+    try:
+        from evenroad.robot.kernel.batch import configurations_free
+        from evenroad.robot.kernel.tables import pack
+
+        tables = pack(small_model())
+        free = configurations_free(small_batch(), small_bounds(), tables.ints, tables.padded)
+    except (
+        Exception
+    ):  # Whatever goes wrong in compiling for a machine we have not seen, there is the other way.
+        return False
+    return bool(np.array_equal(free, expected_verdicts()))
+
+
+def expected_verdicts() -> npt.NDArray[np.bool_]:
+    """Return which rows of `small_batch` are free."""
+    return np.array([_FREE >> i & 1 for i in range(len(small_batch()))], dtype=np.bool_)
+
+
+def small_batch() -> npt.NDArray[np.float64]:
+    """Return 64 configurations of the small robot, none within 0.1 mm of contact."""
+    # Fractions of multiples of powers of 1 / 1.2207: spread evenly over the cube.
+    shares = np.outer(np.arange(64), [0.8191725, 0.6710436, 0.5497005]) % 1.0
+    return np.array([-3.0, -2.75, 0.0]) + shares * np.array([6.0, 5.5, 0.3])
+
+
+def small_bounds() -> npt.NDArray[np.float64]:
+    """Return lows, highs and periods of its joints, (3, 3)."""
+    return np.array([[-4.0, -2.8, 0.0], [4.0, 2.8, 0.3], [np.inf, np.inf, np.inf]])
+
+
+def small_model() -> ArmModel:
+    """Return a model that has a case of everything: joints, shapes of obstacles, a pair of links."""
+    chain = (
+        Joint("turn", "revolute", "base", "upper", (0.0, 0.0, 0.1), _TURNED, (0.0, 0.0, 1.0), -4.0, 4.0),
+        Joint("bend", "revolute", "upper", "lower", (0.4, 0.0, 0.0), _STRAIGHT, (0.0, 1.0, 0.0), -2.8, 2.8),
+        Joint("slide", "prismatic", "lower", "tool", (0.3, 0.0, 0.0), _STRAIGHT, (1.0, 0.0, 0.0), 0.0, 0.3),
+    )
+    capsules = (
+        Capsule("base", (0.0, 0.0, -0.1), (0.0, 0.0, 0.2), 0.1),
+        Capsule("upper", (0.1, 0.0, 0.0), (0.4, 0.0, 0.0), 0.05),
+        Capsule("lower", (0.0, 0.0, 0.0), (0.3, 0.0, 0.0), 0.04),
+        Capsule("tool", (0.0, 0.0, 0.0), (0.1, 0.0, 0.0), 0.03),
+    )
+    pairs = (("base", "lower"), ("base", "tool"), ("upper", "tool"))
+    links = ("base", "upper", "lower", "tool")
+    robot = Robot("small", links, chain, capsules, pairs, ("turn", "bend", "slide"))
+    obstacles = (
+        Obstacle("table", "box", (3.0, 3.0, 0.1), (0.0, 0.0, -0.4)),
+        Obstacle("block", "box", (0.2, 0.2, 0.5), (0.5, 0.4, 0.0), _TURNED),
+        Obstacle("ball", "sphere", (0.15,), (-0.4, 0.4, 0.1)),
+        Obstacle("post", "cylinder", (0.08, 0.6), (-0.45, -0.2, 0.1), _TURNED),
+        Obstacle("pipe", "capsule", (0.05, 0.4), (0.4, -0.4, 0.2), _STRAIGHT),
+    )
+    return arm_model(robot, Scene("small", obstacles))
