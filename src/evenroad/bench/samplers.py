@@ -134,7 +134,7 @@ def _grid_exists(n: int, d: int) -> str:
     try:
         draw("sukharev", n, d)
     except NotAvailable as error:
-        return str(error)
+        return str(error).removesuffix(" (or allow fewer)")
     return ""
 
 

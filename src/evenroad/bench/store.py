@@ -51,7 +51,7 @@ class Store:
             return {key.hex() for key, status in cursor if failures or status not in failed}
 
     def add(self, suite: str, task: Task, outcome: Outcome, worker: str) -> None:
-        """Take the row of a finished task, in place of an earlier one; now and then commit."""
+        """Take the row of a finished task, in place of an earlier one; commit if it is time."""
         self._new_rows.append(
             (
                 bytes.fromhex(task.key),
@@ -77,6 +77,10 @@ class Store:
                 _now(),
             )
         )
+        self.commit_if_due()
+
+    def commit_if_due(self) -> None:
+        """Commit, if the last time was long enough ago."""
         if time.monotonic() - self._last_commit >= COMMIT_SECONDS:
             self.commit()
 

@@ -1,0 +1,120 @@
+"""Workers: where chunks of tasks run; in this process, in others, or wherever an executor sends them."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any, ParamSpec, TypeVar
+
+from evenroad._checks import require_count
+
+Arguments = ParamSpec("Arguments")
+Result = TypeVar("Result")
+
+THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+
+
+@dataclass(frozen=True)
+class Workers:
+    """How to get an executor, and again after its processes died.
+
+    Attributes
+    ----------
+    make : callable
+        Returns a fresh ``concurrent.futures.Executor``.
+    count : int
+        How many chunks it works on at a time.
+    """
+
+    make: Callable[[], Executor]
+    count: int
+
+
+def in_process() -> Workers:
+    """Return the worker that is this process: for tests, debuggers and profilers."""
+    return Workers(_SerialExecutor, 1)
+
+
+def processes(jobs: int | None = None) -> Workers:
+    """Return so many processes of this machine, each with one thread; by default one a processor.
+
+    They are spawned: a script must guard its main part with ``if __name__ == "__main__"``.
+    """
+    jobs = _usable_processors() if jobs is None else require_count("jobs", jobs)
+    return Workers(lambda: _Processes(jobs), jobs)
+
+
+class _SerialExecutor(Executor):
+    """Runs what is submitted at once, and returns when it is done."""
+
+    def submit(
+        self, fn: Callable[Arguments, Result], /, *args: Arguments.args, **kwargs: Arguments.kwargs
+    ) -> Future[Result]:
+        """Run the call; what it raises is in the future, but Ctrl-C stops everything."""
+        future: Future[Result] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+class _Processes(ProcessPoolExecutor):
+    """A pool whose processes leave Ctrl-C to the parent, and do not outlive it."""
+
+    def __init__(self, jobs: int) -> None:
+        # Spawned, not forked: a fork of a process with threads (numba, BLAS) can hang.
+        super().__init__(
+            jobs, multiprocessing.get_context("spawn"), initializer=_settle, initargs=(os.getpid(),)
+        )
+
+    def submit(
+        self, fn: Callable[Arguments, Result], /, *args: Arguments.args, **kwargs: Arguments.kwargs
+    ) -> Future[Result]:
+        """Submit a call; a process that starts for it is deaf to Ctrl-C from its first moment."""
+        with _interrupts_held_back():
+            return super().submit(fn, *args, **kwargs)
+
+
+@contextmanager
+def _interrupts_held_back() -> Iterator[None]:
+    """Block SIGINT in this thread for the block; processes and threads that start in it have it blocked.
+
+    An initializer alone comes too late: importing takes a second, and a terminal sends the signal to all.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _settle(parent: int) -> None:
+    """Prepare a worker process, before NumPy is imported there."""
+    for name in THREAD_VARIABLES:
+        os.environ.setdefault(name, "1")
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_leave_with, args=(parent,), daemon=True).start()
+
+
+def _leave_with(parent: int) -> Any:
+    """End this process when the parent is gone: it would wait for tasks for ever."""
+    while os.getppid() == parent:
+        time.sleep(1.0)
+    os._exit(1)
+
+
+def _usable_processors() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
