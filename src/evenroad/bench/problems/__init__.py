@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from evenroad.bench.problem import ProblemSource
 from evenroad.bench.problems.chain import CHAINS
 from evenroad.bench.problems.corridors import CORRIDORS
+from evenroad.bench.problems.fair import FAIR
 from evenroad.bench.problems.mazes import MAZES
 from evenroad.bench.problems.puzzles import PUZZLES
 from evenroad.bench.problems.ur5 import UR5
@@ -17,7 +18,7 @@ def _by_name(*families: Iterable[ProblemSource]) -> dict[str, ProblemSource]:
     return {source.name: source for family in families for source in family}
 
 
-PROBLEMS: dict[str, ProblemSource] = _by_name(MAZES, CORRIDORS, CHAINS, PUZZLES, UR5)
+PROBLEMS: dict[str, ProblemSource] = _by_name(MAZES, CORRIDORS, CHAINS, PUZZLES, UR5, FAIR)
 """Name -> where the problem comes from."""
 
 

@@ -1,0 +1,215 @@
+"""Which family of sets is `even` in each dimension: success in random worlds of the tuning stream.
+
+    python -m benchmarks.decide_even --sets out/even_sets --out docs/data/decide_even.csv
+
+The rule, fixed before the first result: a family's score in d dimensions is its success averaged over balls and
+boxes, over worlds in which uniform points solve 25, 50 and 75 % (at k = 10 and the N of the calibration), over
+N = 128, 256 and 512 and over k = 4, 6, 10 and 20 symmetrised.  The highest score wins, unless `korobov` is less than
+one standard error behind it: then `korobov` does, for it is constructed in milliseconds for any N and nothing has to be
+stored.  The standard error is that of the difference paired by world, or of its means by set of the pool, whichever is
+larger.
+
+Annealed families have pools of 32 sets in d = 2 and 3 (16 at N = 512, and 16 of hickernell + 10 Riesz) and of 8 above,
+annealed with 3000 steps, or 5000 and more where they are the sets that ship; set i of a pool of s goes to the worlds
+number i, i + s, ...  Constructed and random families are drawn anew: korobov and lattice from 64 draws, uniform and
+Sobol for every world.  Missing sets are annealed first and kept in the folder `--sets` (half an hour on one core);
+results are written after every block of worlds.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import itertools
+import math
+import time
+from collections.abc import Callable, Iterable
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.nested_k import smallest_k
+from evenroad.bench.problems.fair.cubes import cube_problem
+from evenroad.bench.problems.fair.sizes import DIFFICULTIES, SIZES
+from evenroad.bench.problems.fair.streams import Family, Stream
+from evenroad.points import draw
+from evenroad.points.bank import open_bank
+from evenroad.points.optimise import anneal_many
+
+DIMENSIONS = (5, 3, 2, 7, 4, 10, 6)
+COUNTS = (128, 256, 512)
+NEIGHBOURS = (4, 6, 10, 20)
+KINDS = (Family.BALLS, Family.BOXES)
+BLOCK = 50
+"""Worlds of a kind and difficulty between two looks at the result."""
+
+ANNEALED = {
+    "riesz": "riesz",
+    "asd10riesz": "log(average_squared) + 10*log(riesz)",
+    "hick10riesz": "log(hickernell) + 10*log(riesz)",
+}
+SHIPPED = {
+    ("asd10riesz", 2): "even",
+    ("asd10riesz", 3): "even",
+    ("riesz", 4): "even",
+    ("riesz", 5): "even",
+    **{("hickernell", d): "hickernell" for d in DIMENSIONS},
+}
+"""Pools that are in the bank."""
+
+FAMILIES = ("uniform", "sobol", "hickernell", *ANNEALED, "lattice", "korobov")
+STEPS = 3000
+SEED = 20_261_122
+DRAWS = 64
+
+
+def pool_size(family: str, n: int, d: int) -> int:
+    if d > 3:
+        return 8
+    return 16 if n == 512 or family == "hick10riesz" else 32
+
+
+def pool(family: str, n: int, d: int, folder: Path) -> np.ndarray:
+    """Return the sets of a family, (sets, n, d)."""
+    if (family, d) in SHIPPED:
+        sets = open_bank().cell(SHIPPED[family, d], n, d).load()
+        return np.asarray(sets[: pool_size(family, n, d)], dtype=np.float64)
+    if family in ANNEALED:
+        own = folder / f"{family}-d{d:02d}-n{n:04d}"
+        own.mkdir(parents=True, exist_ok=True)
+        count = pool_size(family, n, d)
+        made = anneal_many(
+            n, d, ANNEALED[family], count, steps=STEPS, rng=SEED, workers=1, folder=own, family=family
+        )
+        return np.stack([each.points for each in made])
+    return np.stack([draw(family, n, d, rng=SEED + i).points for i in range(DRAWS)])
+
+
+@cache
+def getter(family: str, n: int, d: int, folder: Path) -> Callable[[int], np.ndarray]:
+    """Return from the number of a world to the set that is used in it."""
+    if family in ("uniform", "sobol"):
+        return lambda world: draw(family, n, d, rng=np.random.default_rng([SEED, n, d, world])).points
+    sets = pool(family, n, d, folder)
+    return lambda world: sets[world % len(sets)]
+
+
+def run_block(d: int, worlds: Iterable[int], families: tuple[str, ...], folder: Path) -> np.ndarray:
+    """Return the smallest k, (families, counts, kinds, difficulties, worlds)."""
+    worlds = list(worlds)
+    shape = (len(families), len(COUNTS), len(KINDS), len(DIFFICULTIES), len(worlds))
+    least = np.zeros(shape, dtype=np.int32)
+    for kind, difficulty, world in itertools.product(range(2), range(3), range(len(worlds))):
+        size = SIZES[KINDS[kind], d][difficulty]
+        problem = cube_problem(Stream.TUNING, KINDS[kind], d, DIFFICULTIES[difficulty], size, worlds[world])
+        # Worlds of another kind or difficulty get other draws of random sets.
+        number = worlds[world] + 10**5 * (3 * kind + difficulty)
+        for f, c in itertools.product(range(len(families)), range(len(COUNTS))):
+            take = getter(families[f], COUNTS[c], d, folder)
+            cube = take(number if families[f] in ("uniform", "sobol") else worlds[world])
+            least[f, c, kind, difficulty, world] = smallest_k(problem, cube, NEIGHBOURS[-1])
+    return least
+
+
+def rows_of(d: int, families: tuple[str, ...], least: np.ndarray) -> list[dict[str, object]]:
+    """Return the table of one dimension: a row a family and N, and one for all N together."""
+    solved = np.stack([least <= k for k in NEIGHBOURS], axis=1).astype(float)
+    rows = []
+    for c, f in itertools.product([*range(len(COUNTS)), None], range(len(families))):
+        chosen = solved[:, :, slice(None) if c is None else slice(c, c + 1)]
+        # (families, kinds, difficulties, worlds) of the success averaged over k and N.
+        success = chosen.mean(axis=(1, 2))
+        difference = success[f] - success[families.index("korobov")]
+        by_k = chosen[f].mean(axis=(1, 2, 3, 4))
+        by_set = means_by_set(difference, families[f], d)
+        rows.append(
+            {
+                "d": d,
+                "n": "all" if c is None else COUNTS[c],
+                "family": families[f],
+                "worlds": difference.size,
+                **{f"k{k}": round(100 * float(rate), 2) for k, rate in zip(NEIGHBOURS, by_k, strict=True)},
+                "mean": round(100 * float(success[f].mean()), 2),
+                "balls": round(100 * float(success[f, 0].mean()), 2),
+                "boxes": round(100 * float(success[f, 1].mean()), 2),
+                "minus_korobov": round(100 * float(difference.mean()), 2),
+                "se_worlds": round(100 * standard_error(difference.ravel()), 2),
+                "se_sets": round(100 * standard_error(by_set), 2) if len(by_set) else "",
+            }
+        )
+    return rows
+
+
+def means_by_set(difference: np.ndarray, family: str, d: int) -> np.ndarray:
+    """Return the mean of (.., worlds) over the worlds of each set of a pool; empty for families drawn afresh."""
+    if family not in ANNEALED and (family, d) not in SHIPPED:
+        return np.empty(0)
+    sets = min(pool_size(family, n, d) for n in COUNTS)
+    return np.array([difference[..., i::sets].mean() for i in range(min(sets, difference.shape[-1]))])
+
+
+def standard_error(values: np.ndarray) -> float:
+    return float(values.std(ddof=1)) / math.sqrt(len(values))
+
+
+def winner(rows: list[dict[str, object]]) -> str:
+    """Apply the rule to the rows of one dimension."""
+    pooled = [row for row in rows if row["n"] == "all"]
+    best = max(pooled, key=lambda row: float(str(row["mean"])))
+    margin = max(float(str(best["se_worlds"])), float(str(best["se_sets"] or 0)))
+    return str(best["family"]) if float(str(best["minus_korobov"])) > margin else "korobov"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--out", type=Path, default=Path("out/bench/decide_even.csv"))
+    parser.add_argument("--sets", type=Path, default=Path("out/even_sets"))
+    parser.add_argument("--raw", type=Path, default=Path("out/bench/decide_even"), help="for going on")
+    parser.add_argument("--worlds", type=int, default=400, help="of each kind and difficulty")
+    parser.add_argument("-d", type=int, nargs="*", default=DIMENSIONS)
+    options = parser.parse_args()
+    for folder in (options.out.parent, options.sets, options.raw):
+        folder.mkdir(parents=True, exist_ok=True)
+    for first in range(0, options.worlds, BLOCK):
+        for d in options.d:
+            file = options.raw / f"d{d:02d}-{first:05d}.npy"
+            if not file.exists():
+                began = time.perf_counter()
+                block = run_block(d, range(first, first + BLOCK), FAMILIES, options.sets)
+                np.save(file, block)
+                print(
+                    f"d={d} worlds {first} .. {first + BLOCK - 1}: {time.perf_counter() - began:.0f} s",
+                    flush=True,
+                )
+            write(options.out, options.raw, options.d)
+
+
+def write(out: Path, raw: Path, dimensions: Iterable[int]) -> None:
+    """Write the table of all blocks that are there, and print the decisions."""
+    rows: list[dict[str, object]] = []
+    for d in sorted(dimensions):
+        blocks = [np.load(each) for each in sorted(raw.glob(f"d{d:02d}-*.npy"))]
+        if not blocks:
+            continue
+        own = rows_of(d, FAMILIES, np.concatenate(blocks, axis=-1))
+        rows += own
+        scores = {
+            str(r["family"]): f"{r['mean']} ({r['minus_korobov']:+} +- {r['se_worlds']}|{r['se_sets']})"
+            for r in own
+            if r["n"] == "all"
+        }
+        print(
+            f"d={d} -> {winner(own)}: " + ", ".join(f"{name} {score}" for name, score in scores.items()),
+            flush=True,
+        )
+    with open(out, "w", newline="") as file:
+        writer = csv.DictWriter(file, fieldnames=list(rows[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+if __name__ == "__main__":
+    main()
