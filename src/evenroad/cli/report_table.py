@@ -37,20 +37,13 @@ def _needed_table(analysis: Analysis, questions: list[Question]) -> Table:
         table.add_column(name, no_wrap=True)
     for name in ("runs", *REFERENCES):
         table.add_column(name.replace(" ", "\n"), justify="right", no_wrap=True)
-    table.add_column("fewest", overflow="fold")
+    table.add_column("fewest")
     for question in questions:
         cells = analysis.cells_of(question)
         needed = {sampler: analysis.needed.get((question, sampler)) for sampler in REFERENCES}
         references = ["–" if each is None else each.short for each in needed.values()]
-        runs, failed = sum(cell.runs for cell in cells), sum(cell.failures for cell in cells)
-        row = (
-            question.problem,
-            question.rule,
-            str(runs),
-            str(failed),
-            *references,
-            _fewest(analysis, question),
-        )
+        runs = str(sum(cell.runs for cell in cells))
+        row = (question.problem, question.rule, runs, *references, _fewest(analysis, question))
         table.add_row(*map(Text, row))
     return table
 
@@ -61,7 +54,7 @@ def _fewest(analysis: Analysis, question: Question) -> str:
     if best.estimate == float("inf"):
         return "none reached it"
     names = [sampler for needed, sampler in mine if needed.estimate == best.estimate]
-    return f"{best.short}: {', '.join(names) if len(names) < 3 else f'{len(names)} samplers'}"
+    return f"{best.short}: {names[0] if len(names) == 1 else f'{len(names)} samplers'}"
 
 
 def _fair_table(analysis: Analysis) -> Table:

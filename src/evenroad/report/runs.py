@@ -108,11 +108,12 @@ def _questions(rows: Rows) -> tuple[tuple[Question, ...], npt.NDArray[np.int64]]
     return tuple(found[number] for number in order), rank[place]
 
 
-def _natural(question: Question) -> list[list[tuple[int, str]]]:
+def _natural(question: Question) -> list[list[tuple[int, int, str]]]:
     """Sort ``k=4`` before ``k=10``."""
     return [natural_key(text) for text in (question.problem, question.rule, question.search)]
 
 
-def natural_key(text: str) -> list[tuple[int, str]]:
+def natural_key(text: str) -> list[tuple[int, int, str]]:
     """Return what to sort texts by so that numbers inside them count as numbers: ``5d`` before ``10d``."""
-    return [(int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", text) if part]
+    parts = filter(None, re.split(r"(\d+)", text))
+    return [(0, int(part), "") if part.isdigit() else (1, 0, part) for part in parts]

@@ -10,7 +10,7 @@ from evenroad.points import draw
 from evenroad.roadmap import KNearest, PlanResult, plan
 from evenroad.space import Space
 
-COUNTS = (1024, 2048, 4096, 8192)
+COUNTS = (1024, 2048, 4096)
 
 
 def find_path(problem: Problem) -> PlanResult:
@@ -38,4 +38,4 @@ def poses_along(space: Space, path: npt.NDArray[np.float64], count: int) -> npt.
     along = np.linspace(0.0, ends[-1], count)
     leg = np.clip(np.searchsorted(ends, along, side="right") - 1, 0, len(lengths) - 1)
     shares = (along - ends[leg]) / np.where(lengths[leg] > 0, lengths[leg], 1.0)
-    return space.interpolate(path[leg], path[leg + 1], shares)
+    return space.interpolate(path[leg], path[leg + 1], np.clip(shares, 0.0, 1.0))

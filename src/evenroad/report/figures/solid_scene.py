@@ -17,7 +17,7 @@ from evenroad.report.figures.found_path import find_path, poses_along
 from evenroad.viz import style
 from evenroad.world.solids import OrientedBox, SolidWorld, quaternion_turn
 
-POSES = 18
+POSES = 13
 _FACES = ((0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5))
 """Corners of a box's faces, in the order of `OrientedBox.corners`."""
 
@@ -74,6 +74,6 @@ def _faces(corners: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
 def _set_view(axes: Axes3D, points: npt.NDArray[np.float64], elevation: float, turn: float) -> None:
     low, high = points.min(axis=0), points.max(axis=0)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axes.set_box_aspect(high - low, zoom=1.15)
+    axes.set_box_aspect(high - low, zoom=0.95)
     axes.view_init(elev=elevation, azim=turn)
     axes.set_axis_off()

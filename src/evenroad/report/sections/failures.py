@@ -24,7 +24,7 @@ def failure_table(found: tuple[Failure, ...]) -> Table:
     rest = found[SHOWN:]
     left_out = (f"{len(rest)} more kinds, {sum(each.runs for each in rest)} runs.",) if rest else ()
     return Table(
-        name="failures",
+        name="failures-by-kind",
         title="Runs that gave no answer",
         header=("problem", "sampler", "rule", "status", "last line of the error", "runs"),
         rows=rows,

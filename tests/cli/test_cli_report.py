@@ -1,0 +1,71 @@
+import pytest
+
+from evenroad.report import contents
+from evenroad.report.figures.canvas import new_figure
+from tests.report.stores import made_up, solved, task, write_store
+
+
+@pytest.fixture(autouse=True)
+def _without_pictures(monkeypatch):
+    monkeypatch.setattr(contents, "draw_curves", lambda cells, title: new_figure(1, 1))
+    monkeypatch.setattr(contents, "draw_scene", lambda problem: new_figure(1, 1))
+    monkeypatch.setattr(contents, "draw_point_sets", lambda: new_figure(1, 1))
+
+
+def test_a_report_is_written_and_summed_up_within_100_columns(run, tmp_path):
+    rows = made_up("maze-1", runs=20) + made_up("chain-10d", runs=20, rule="k=10 earlier", search="stock")
+    write_store(tmp_path / "results.db", rows)
+    code, out, err = run("report", "results.db", "-o", "out/")
+    assert (code, err) == (0, "")
+    assert (tmp_path / "out" / "report.html").is_file()
+    assert "maze-1" in out
+    assert "Table 1 of the paper:" in out
+    assert "out/report.html" in out
+    assert max(map(len, out.splitlines())) <= 100
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "evenroad report results.db -o out" in page
+
+
+def test_the_fair_suite_is_summed_up_by_sampler(run, tmp_path):
+    rows = [
+        (task("fair-balls-3d-50", sampler, 256, each, instance=each // 3), solved(each % 2 == place))
+        for place, sampler in enumerate(("uniform", "korobov"))
+        for each in range(36)
+    ]
+    write_store(tmp_path / "results.db", rows)
+    code, out, _ = run("report", "results.db", "-o", "out")
+    assert code == 0
+    assert "korobov" in out
+    assert "+0.0" in out
+
+
+def test_only_some_problems_may_be_asked_for(run, tmp_path):
+    write_store(tmp_path / "results.db", made_up("maze-1", runs=5) + made_up("maze-2", runs=5))
+    code, out, _ = run("report", "results.db", "-o", "out", "--only", "maze-2,")
+    assert code == 0
+    assert "maze-1" not in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        (("none.db", "-o", "out"), "no such store: none.db"),
+        (("empty.db", "-o", "out"), "no rows"),
+        (("text.db", "-o", "out"), "text.db"),
+        (("results.db", "-o", "no/such/folder"), "no/such does not exist"),
+        (
+            ("results.db", "-o", "out", "--only", "maze-7"),
+            "unknown problem in results.db: 'maze-7'; known: maze-1",
+        ),
+    ],
+)
+def test_bad_input_is_one_line_and_exit_code_2(run, tmp_path, arguments, text):
+    write_store(tmp_path / "results.db", [(task(), solved())])
+    write_store(tmp_path / "empty.db", [])
+    (tmp_path / "text.db").write_text(
+        "not a store, but a text that is long enough to have a header of a hundred bytes" * 2
+    )
+    code, out, err = run("report", *arguments)
+    assert (code, out) == (2, "")
+    assert text in err
+    assert len(err.splitlines()) == 1
