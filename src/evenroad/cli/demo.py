@@ -28,9 +28,9 @@ class Demo:
 
         maze = load_maze(self.level)
         return Plan(
-            map=maze.path,
-            start=maze.start,
-            goal=maze.goal,
+            world=maze.path,
+            start=tuple(map(str, maze.start)),
+            goal=tuple(map(str, maze.goal)),
             robot_radius=maze.robot_radius,
             n=self.n,
             out=self.out,

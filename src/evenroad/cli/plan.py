@@ -1,45 +1,54 @@
-"""``evenroad plan``: a path on a map."""
+"""``evenroad plan``: a path for a disk on a map, or for an arm in a scene."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 import tyro
-
-if TYPE_CHECKING:
-    from evenroad.points import PointSet
-    from evenroad.roadmap import Rule
-    from evenroad.world import GridMap
-
-DEFAULT_FAMILY = "even"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Plan:
-    """Plan a short path for a disk robot on a map, write a picture and a JSON result.
+    """Plan a short path for a disk on a map or for an arm in a scene, write a picture and a JSON result.
 
-    A bare image (.png, .pgm): unit = pixel, x right, y DOWN, origin in the top-left corner, dark = obstacle.
-    A ROS map_server file (.yaml): unit = metre, map frame, y up.
+    A disk (--robot-radius) moves on a bare image (.png, .pgm): unit = pixel, x right, y DOWN, origin in the top-left
+    corner, dark = obstacle; or on a ROS map_server file (.yaml): unit = metre, map frame, y up.
+    An arm (--robot) moves in a scene file (.yaml): metres and radians, frame of the robot's root link.
     """
 
-    map: Annotated[Path, tyro.conf.Positional]
-    """The map: a .png or .pgm image, or a ROS map_server .yaml."""
-    start: tuple[float, float]
-    """Start of the robot's centre, x y in map units."""
-    goal: tuple[float, float]
-    """Goal of the robot's centre, x y in map units."""
-    robot_radius: float
-    """Radius of the robot, > 0, in map units."""
+    world: Annotated[Path, tyro.conf.Positional]
+    """A map (.png or .pgm image, ROS map_server .yaml) or a scene (.yaml; shipped: box-reach.yaml,
+    box-reach-narrow.yaml)."""
+    start: tuple[str, ...]
+    """Disk: x y in map units.  Arm: one number a joint with commas between them, name=value,..., or a named state."""
+    goal: tuple[str, ...]
+    """As start."""
+    robot_radius: float | None = None
+    """Plan for a disk of this radius, > 0, in map units."""
+    robot: str | None = None
+    """Plan for this arm: a URDF file, or the name of a shipped one (ur5, arm7)."""
     clearance: float = 0.0
-    """Margin to keep from every obstacle, added to the radius, >= 0."""
+    """Disk: margin to keep from every obstacle, added to the radius, >= 0."""
+    unknown_is_free: bool = False
+    """Disk: may pass through unknown cells of a ROS map."""
+    srdf: Path | None = None
+    """Arm: its SRDF, with groups, named states and pairs of links that need no test."""
+    group: str | None = None
+    """Arm: a group of the SRDF, or joints with commas between them; the others are held."""
+    bodies: Path | None = None
+    """Arm: a YAML file of capsules and spheres in place of the URDF's collision geometry."""
+    deg: bool = False
+    """Arm: angles of start and goal are in degrees."""
+    resolution: float | None = None
+    """Arm: largest step of a motion check, > 0, in radians (default 0.05)."""
     n: Annotated[int, tyro.conf.arg(aliases=["-n"])] = 512
     """How many points to draw."""
     k: Annotated[int | None, tyro.conf.arg(aliases=["-k"])] = None
-    """Connect each milestone with its k nearest, symmetrised (default 10)."""
+    """Connect each milestone with its k nearest, symmetrised (default 10; 20 from six joints on)."""
     connect_radius: float | None = None
-    """Connect milestones up to this distance instead, in map units."""
+    """Connect milestones up to this distance instead, in map units or radians."""
     sampler: str = "auto"
     """even, hickernell, mpmc, korobov, lattice, halton, sobol, sukharev or uniform; auto takes even where it ships for
     this n, else scrambled Halton, and says which."""
@@ -53,129 +62,25 @@ class Plan:
     """Seed of everything random; the same command gives the same path."""
     raw: bool = False
     """Leave the path as it runs along the roadmap, without shortcutting it."""
-    unknown_is_free: bool = False
-    """Let the robot pass through unknown cells of a ROS map."""
     out: Path | None = None
-    """Where results go: OUT.png and OUT.json. Default: the map's stem in the current folder, with -plan added
-    where that would overwrite the map."""
+    """Where results go: OUT.png, OUT.json and, for an arm, OUT.csv. Default: the world's stem in the current folder,
+    with -plan added where that would overwrite an input."""
     csv: bool = False
-    """Also write the path as OUT.csv."""
+    """Disk: also write the path as OUT.csv."""
 
     def run(self) -> int:
         """Plan, write, report; return 0 when solved, else 1."""
-        from evenroad.cli.plan_table import print_plan
-        from evenroad.io import plan_record, save_json, save_path_csv
-        from evenroad.roadmap import plan
-        from evenroad.viz import save_plan_picture
-        from evenroad.world import load_map
-
-        rule = self._rule()
-        gridmap = load_map(self.map, unknown_is_free=self.unknown_is_free)
-        files = self._files()
-        world = gridmap.world(self.robot_radius, clearance=self.clearance)
-        self._require_on_map(gridmap)
-        points, note = self._points()
-        result = plan(world, self.start, self.goal, points, rule=rule, shorten=not self.raw)
-        save_json(files["json"], plan_record(result, self._query()))
-        if "csv" in files:
-            # An earlier run's path must not pass for this one's.
-            files["csv"].unlink(missing_ok=True)
-            if result.path is None:
-                del files["csv"]
-            else:
-                save_path_csv(files["csv"], result.path, ("x", "y"))
-        save_plan_picture(files["png"], result, world)
-        print_plan(result, note, list(files.values()))
-        return 0 if result.solved else 1
-
-    def _rule(self) -> Rule:
-        from evenroad.errors import InvalidValue
-        from evenroad.roadmap import KNearest, Radius
-
-        if self.connect_radius is None:
-            return KNearest(10 if self.k is None else self.k)
-        if self.k is not None:
-            raise InvalidValue("give -k or --connect-radius, not both")
-        return Radius(self.connect_radius)
-
-    def _points(self) -> tuple[PointSet, str]:
-        """Draw the set, and say in words which one it is."""
-        from evenroad._checks import require_count
-        from evenroad._rng import generator
-        from evenroad.points import make_sampler
-        from evenroad.points.bank import open_bank
-
-        require_count("n", self.n)
-        generator(self.seed)
-        name, note = self.sampler, ""
-        if name == "auto":
-            name = DEFAULT_FAMILY
-            if not open_bank().has(DEFAULT_FAMILY, self.n, 2):
-                name, note = "halton", f"the bank has no set of n={self.n}"
-        points = make_sampler(name, **self._options(name)).draw(self.n, 2, rng=self.seed)
-        return points, note
-
-    def _options(self, name: str) -> dict[str, Any]:
-        """Return the sampler's options, refusing those that this sampler would silently ignore."""
         from evenroad.errors import InvalidValue
 
-        takes = {"halton": {"plain", "skip"}, "sobol": {"plain", "skip"}, "sukharev": {"allow_fewer"}}.get(
-            name, set()
-        )
-        for option in ("plain", "skip", "allow_fewer"):
-            if getattr(self, option) and option not in takes:
-                raise InvalidValue(f"--{option.replace('_', '-')} does not go with the sampler {name!r}")
-        if "plain" in takes:
-            return {"scramble": not self.plain, "start": self.skip}
-        return {"allow_fewer": self.allow_fewer} if "allow_fewer" in takes else {}
+        if (self.robot_radius is None) == (self.robot is None):
+            given = "neither" if self.robot is None else "both"
+            raise InvalidValue(
+                f"give --robot-radius (a disk) or --robot (an arm), exactly one of them, not {given}"
+            )
+        if self.robot is None:
+            from evenroad.cli.plan_disk import plan_disk
 
-    def _files(self) -> dict[str, Path]:
-        """Return where results go, refusing what cannot be written or would overwrite the map."""
-        from evenroad._files import require_writable_folder
-        from evenroad.errors import InvalidValue
-        from evenroad.world.gridmap.load import map_files
+            return plan_disk(self)
+        from evenroad.cli.plan_arm import plan_arm
 
-        if self.out is not None and not self.out.name:
-            raise InvalidValue(f"--out must end with a file name, got {str(self.out)!r}")
-        inputs = {source.resolve() for source in map_files(self.map)}
-        stem = self.out if self.out is not None else Path(self.map.stem)
-        if self.out is None and any(path.resolve() in inputs for path in self._named(stem).values()):
-            stem = Path(f"{self.map.stem}-plan")
-        files = self._named(stem)
-        for path in files.values():
-            if path.resolve() in inputs:
-                raise InvalidValue(f"--out {stem} would overwrite the map {path}")
-            require_writable_folder(path)
-        return files
-
-    def _named(self, stem: Path) -> dict[str, Path]:
-        suffixes = ("json", "png", "csv") if self.csv else ("json", "png")
-        return {suffix: stem.with_name(f"{stem.name}.{suffix}") for suffix in suffixes}
-
-    def _require_on_map(self, gridmap: GridMap) -> None:
-        import numpy as np
-
-        from evenroad.errors import InvalidValue
-
-        for name, value in (("start", self.start), ("goal", self.goal)):
-            if not gridmap.contains(np.array([value]))[0]:
-                corners = gridmap.space.from_cube(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]))
-                outline = ", ".join(f"({x:g}, {y:g})" for x, y in corners)
-                raise InvalidValue(
-                    f"{name} {value[0]:g} {value[1]:g} lies outside the map, whose corners are {outline}"
-                )
-
-    def _query(self) -> dict[str, Any]:
-        return {
-            "map": str(self.map),
-            "robot_radius": self.robot_radius,
-            "clearance": self.clearance,
-            "n": self.n,
-            "sampler": self.sampler,
-            "plain": self.plain,
-            "skip": self.skip,
-            "allow_fewer": self.allow_fewer,
-            "seed": self.seed,
-            "raw": self.raw,
-            "unknown_is_free": self.unknown_is_free,
-        }
+        return plan_arm(self)

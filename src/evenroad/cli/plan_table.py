@@ -12,8 +12,10 @@ from evenroad.cli.console import print_table
 from evenroad.roadmap import PlanResult
 
 
-def print_plan(result: PlanResult, note: str, files: Sequence[Path]) -> None:
-    """Print a plan as a table of two columns."""
+def print_plan(
+    result: PlanResult, note: str, files: Sequence[Path], more: Sequence[tuple[str, str]] = ()
+) -> None:
+    """Print a plan as a table of two columns; `more` are rows of its own."""
     table = Table(show_header=False, box=None, pad_edge=False)
     table.add_column(style="bold", no_wrap=True)
     table.add_column(overflow="fold")
@@ -30,6 +32,8 @@ def print_plan(result: PlanResult, note: str, files: Sequence[Path]) -> None:
         table.add_row("cost", f"{result.cost:.6g} (along the roadmap {result.milestone_cost:.6g})")
     phases = ", ".join(f"{phase} {1e3 * value:.1f}" for phase, value in result.seconds.items())
     table.add_row("time [ms]", phases)
+    for name, value in more:
+        table.add_row(name, Text(value))
     # As Text: a file's name may hold brackets, which would be read as markup.
     table.add_row("files", Text(", ".join(map(str, files))))
     print_table(table)

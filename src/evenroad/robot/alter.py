@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.robot.robot import Robot
+from evenroad.robot.scene import Scene
 
 
 def with_group(robot: Robot, group: Sequence[str], held: Mapping[str, float] | None = None) -> Robot:
@@ -24,6 +25,28 @@ def with_group(robot: Robot, group: Sequence[str], held: Mapping[str, float] | N
         if name not in free:
             raise UnknownName.among("joint", name, free)
     return replace(robot, group=tuple(group), held=dict(held or {}))
+
+
+def in_scene(robot: Robot, scene: Scene) -> Robot:
+    """Return the robot with the scene's ranges to plan in, where they are narrower than its own limits.
+
+    Half of what a joint of four pi can do is the other half once more: a narrower range makes every point of a
+    set count for more.
+
+    Raises
+    ------
+    UnknownName
+        If the scene names a joint that the robot does not have.
+    InvalidValue
+        If no value is within both ranges.
+    """
+    joints = {joint.name: joint for joint in robot.joints}
+    limits = {}
+    for name, (lower, upper) in scene.limits.items():
+        if name not in joints:
+            raise UnknownName.among(f"joint in the limits of scene {scene.name!r}:", name, joints)
+        limits[name] = (max(lower, joints[name].lower), min(upper, joints[name].upper))
+    return with_limits(robot, limits)
 
 
 def with_limits(robot: Robot, limits: Mapping[str, tuple[float, float]]) -> Robot:

@@ -51,9 +51,13 @@ class Scene:
         Contacts that are not tested, e.g. of the base with the table that it stands on.
     states : mapping of str to mapping of str to float
         Named configurations: joint -> value.
+    limits : mapping of str to (float, float)
+        Ranges to plan in, joint -> (lower, upper), within the robot's own [rad or m]; a planner takes them
+        over with :func:`evenroad.robot.alter.in_scene`.
     """
 
     name: str
     obstacles: tuple[Obstacle, ...]
     allowed: frozenset[tuple[str, str]] = frozenset()
     states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)

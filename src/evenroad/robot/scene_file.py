@@ -16,7 +16,7 @@ from evenroad.robot.yaml_file import numbers, read_mapping, require_keys
 SCENES = ("box-reach", "box-reach-narrow")
 """Names of the shipped scenes."""
 
-_SECTIONS = ("name", "obstacles", "allowed", "states")
+_SECTIONS = ("name", "obstacles", "allowed", "states", "limits")
 _SIZES: dict[str, tuple[tuple[str, int], ...]] = {
     "box": (("size", 3),),
     "sphere": (("radius", 1),),
@@ -55,6 +55,8 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
           table: [base_link]
         states:                                   # named configurations, joint by joint
           home: {joint_1: 0.0, joint_2: -1.57}
+        limits:                                   # ranges to plan in, within the robot's own
+          joint_1: [-3.14, 3.14]
 
     The length of a capsule is without its caps.  ``cell: true`` marks what belongs to the fixed cell.
 
@@ -68,6 +70,10 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
         If a value has the wrong type or range.
     """
     path = find_scene(source)
+    if not path.exists():
+        raise BrokenFile(
+            f"there is no scene file {path}; shipped: {', '.join(f'{name}.yaml' for name in SCENES)}"
+        )
     document = read_mapping(path, "scene")
     require_keys(document, ("obstacles",), _SECTIONS, f"the scene {path}")
     entries = _mapping(document["obstacles"], f"obstacles in {path}")
@@ -91,7 +97,11 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
         }
         for name, values in _mapping(document.get("states"), f"states in {path}").items()
     }
-    return Scene(str(document.get("name", path.stem)), obstacles, frozenset(allowed), states)
+    limits = {
+        joint: _range(value, f"limits of joint {joint!r} in {path}")
+        for joint, value in _mapping(document.get("limits"), f"limits in {path}").items()
+    }
+    return Scene(str(document.get("name", path.stem)), obstacles, frozenset(allowed), states, limits)
 
 
 def _obstacle(name: str, entry: dict[str, Any], path: Path) -> Obstacle:
@@ -112,6 +122,13 @@ def _obstacle(name: str, entry: dict[str, Any], path: Path) -> Obstacle:
         raise InvalidValue(f"cell of {where} must be true or false, got {cell!r}")
     kind: Shape = shape
     return Obstacle(name, kind, size, (x, y, z), rotation_from_rpy(roll, pitch, yaw), cell)
+
+
+def _range(value: object, what: str) -> tuple[float, float]:
+    lower, upper = numbers(value, 2, what)
+    if not lower < upper:
+        raise InvalidValue(f"{what} must satisfy lower < upper, got {value!r}")
+    return lower, upper
 
 
 def _mapping(value: object, where: str) -> dict[str, Any]:

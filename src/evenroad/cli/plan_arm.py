@@ -1,0 +1,62 @@
+"""``evenroad plan SCENE --robot ARM``: a joint path for an arm in a scene."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from evenroad import roadmap
+from evenroad.cli.plan_parts import chosen_rule, common_query, draw_points, output_files, refuse_options
+from evenroad.cli.plan_table import print_plan
+from evenroad.io import plan_record, save_json, save_path_csv
+from evenroad.roadmap import default_rule
+from evenroad.robot import ArmWorld, configuration, find_robot, find_scene, in_scene, load_robot, load_scene
+
+if TYPE_CHECKING:
+    from evenroad.cli.plan import Plan
+
+RESOLUTION = 0.05
+"""Largest step of a motion check when none is given [rad]."""
+
+
+def plan_arm(plan: Plan) -> int:
+    """Plan, write, report; return 0 when solved, else 1."""
+    assert plan.robot is not None
+    refuse_options(plan, ("clearance", "unknown_is_free"), "--robot-radius")
+    scene = load_scene(plan.world)
+    robot = in_scene(load_robot(plan.robot, srdf=plan.srdf, group=plan.group, bodies=plan.bodies), scene)
+    files = output_files(plan, _inputs(plan), ("json", "csv", "png"), "file")
+    start, goal = (
+        configuration(robot, " ".join(words), scene, degrees=plan.deg) for words in (plan.start, plan.goal)
+    )
+    world = ArmWorld(robot, scene, resolution=RESOLUTION if plan.resolution is None else plan.resolution)
+    rule = chosen_rule(plan, default_rule(world.space).k)
+    points, note = draw_points(plan, world.space.cube_dim)
+    result = roadmap.plan(world, start, goal, points, rule=rule, shorten=not plan.raw)
+    query = {
+        "scene": str(plan.world),
+        "robot": plan.robot,
+        "srdf": None if plan.srdf is None else str(plan.srdf),
+        "bodies": None if plan.bodies is None else str(plan.bodies),
+        "joints": list(robot.group),
+        "resolution": world.resolution,
+        **common_query(plan),
+    }
+    save_json(files["json"], plan_record(result, query))
+    # An earlier run's path must not pass for this one's.
+    files["csv"].unlink(missing_ok=True)
+    if result.path is None:
+        del files["csv"]
+    else:
+        save_path_csv(files["csv"], result.path, robot.group)
+    from evenroad.viz.arm import save_arm_picture
+
+    save_arm_picture(files["png"], result, world)
+    print_plan(result, note, list(files.values()), [("joints", ", ".join(robot.group))])
+    return 0 if result.solved else 1
+
+
+def _inputs(plan: Plan) -> list[Path]:
+    assert plan.robot is not None
+    given = (find_scene(plan.world), *find_robot(plan.robot), plan.srdf, plan.bodies)
+    return [path for path in given if path is not None]
