@@ -15,6 +15,7 @@ from evenroad.cli.measure import Measure
 from evenroad.cli.plan import Plan
 from evenroad.cli.points import Points
 from evenroad.cli.report import Report
+from evenroad.cli.robot import Robot
 from evenroad.cli.train import Train
 from evenroad.errors import EvenroadError
 
@@ -28,6 +29,7 @@ Verb = (
     | Annotated[Measure, tyro.conf.subcommand("measure", prefix_name=False)]
     | Annotated[Train, tyro.conf.subcommand("train", prefix_name=False)]
     | Annotated[Report, tyro.conf.subcommand("report", prefix_name=False)]
+    | Annotated[Robot, tyro.conf.subcommand("robot", prefix_name=False)]
     | Annotated[Demo, tyro.conf.subcommand("demo", prefix_name=False)]
 )
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 VIEWS = (("from above", (0, 1)), ("from the side", (0, 2)), ("from the front", (1, 2)))
 """Title of a view, and the two axes of the robot's root link that it shows."""
-DPI = 130
+DPI = 120
 _AXES = "xyz"
 _BETWEEN = 7
 """Places between start and goal at which the arm is shown."""
@@ -39,10 +39,12 @@ def save_arm_picture(path: str | os.PathLike[str], result: PlanResult, world: Ar
     The start is green, the goal blue, with the arm along the path between them and the way of its tip in red.  Without
     a path start and goal are shown; a body in collision is red.
     """
-    figure = Figure(figsize=(16.0, 6.2), dpi=DPI, layout="constrained")
+    figure = Figure(figsize=(16.0, 6.2), dpi=DPI)
     FigureCanvasAgg(figure)
     shown = _shown(result, world)
     low, high = _limits(world, shown)
+    # Fixed margins: a layout that fits itself takes as long as the drawing.
+    figure.subplots_adjust(left=0.045, right=0.99, bottom=0.17, top=0.87, wspace=0.16)
     for axes, (title, pair) in zip(figure.subplots(1, len(VIEWS)), VIEWS, strict=True):
         draw_arm_view(axes, result, world, pair)
         first, second = pair
@@ -55,7 +57,7 @@ def save_arm_picture(path: str | os.PathLike[str], result: PlanResult, world: Ar
         )
         axes.set_aspect("equal")
         axes.grid(visible=True, color=style.EDGE, linewidth=0.4, alpha=0.5)
-    figure.legend(handles=_legend(result, world), loc="outside lower center", ncols=6, frameon=False)
+    figure.legend(handles=_legend(result, world), loc="lower center", ncols=6, frameon=False)
     figure.suptitle(
         f"{world.robot.name} in {world.scene.name}: {result.status}; {result.message}", fontsize=11
     )
@@ -83,7 +85,7 @@ def draw_arm_view(axes: Axes, result: PlanResult, world: ArmWorld, pair: tuple[i
         axes.add_collection(
             PolyCollection(
                 _bodies(world.robot, ends, pair),
-                facecolors=_tint(share, 0.55 if at_end else 0.18),
+                facecolors=_tint(share, 0.55 if at_end else 0.25),
                 edgecolors=_tint(share, 1.0 if at_end else 0.45),
                 linewidths=0.8 if at_end else 0.4,
                 zorder=3 if at_end else 2,
@@ -201,7 +203,7 @@ def _legend(result: PlanResult, world: ArmWorld) -> list[Patch | Line2D]:
     ]
     if result.path is not None:
         tip = world.robot.links[_tip(world.robot)]
-        handles.append(Patch(facecolor=_tint(0.5, 0.18), edgecolor=_tint(0.5, 0.45), label="along the path"))
+        handles.append(Patch(facecolor=_tint(0.5, 0.25), edgecolor=_tint(0.5, 0.45), label="along the path"))
         handles.append(Line2D([], [], color=style.PATH, linewidth=1.8, label=f"way of {tip}"))
     elif result.status is not Status.NOT_CONNECTED:
         handles.append(Patch(facecolor=style.COLLISION, alpha=0.35, label="in collision"))

@@ -1,0 +1,140 @@
+"""The tables of ``evenroad robot``."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterable, Sequence
+
+import numpy as np
+from rich.table import Table
+from rich.text import Text
+
+from evenroad._rng import generator
+from evenroad.cli.console import print_table
+from evenroad.robot import ArmWorld, Joint, Robot, RobotModel
+
+_CONFIGURATIONS = 4096
+_MOTIONS = 256
+_SECONDS = 0.2
+
+
+def print_robot(model: RobotModel, world: ArmWorld) -> None:
+    """Print joints, bodies, pairs, and how fast random configurations and motions are checked."""
+    for table in (_joints(model.robot), _bodies(model), _summary(model, world)):
+        print_table(table)
+        print()
+
+
+def _joints(robot: Robot) -> Table:
+    table = Table("joint", "kind", "limits", "velocity", "use", box=None, pad_edge=False, header_style="bold")
+    table.columns[0].no_wrap = True
+    for joint in robot.joints:
+        if joint.kind == "fixed":
+            continue
+        unit = "m" if joint.kind == "prismatic" else "rad"
+        velocity = f"{joint.velocity:.4g} {unit}/s" if math.isfinite(joint.velocity) else "not given"
+        table.add_row(
+            Text(joint.name), joint.kind, f"{_limits(joint)} {unit}", velocity, Text(_use(robot, joint))
+        )
+    return table
+
+
+def _limits(joint: Joint) -> str:
+    if joint.kind == "continuous":
+        return "any"
+    if joint.lower == -joint.upper:
+        return f"±{joint.upper:.5g}"
+    return f"{joint.lower:.5g} .. {joint.upper:.5g}"
+
+
+def _use(robot: Robot, joint: Joint) -> str:
+    if joint.mimic is not None:
+        offset = f" + {joint.mimic.offset:g}" if joint.mimic.offset else ""
+        return f"= {joint.mimic.multiplier:g} {joint.mimic.joint}{offset}"
+    if joint.name in robot.group:
+        return f"planned, #{robot.group.index(joint.name) + 1}"
+    return f"held at {robot.held.get(joint.name, min(max(0.0, joint.lower), joint.upper)):g}"
+
+
+def _bodies(model: RobotModel) -> Table:
+    table = Table(
+        "link", "given as", "capsules", "volume added", box=None, pad_edge=False, header_style="bold"
+    )
+    for body in model.bodies:
+        exact = set(body.shapes) <= {"capsule", "sphere"} and not body.given
+        added = "none: kept as they are" if exact else f"{100.0 * body.added:.0f} %"
+        if body.given and not body.shapes:
+            added = "nothing to compare with"
+        shapes = [f"{body.shapes.count(shape)} x {shape}" for shape in dict.fromkeys(body.shapes)]
+        given = "the user's" if body.given else ", ".join(shapes)
+        table.add_row(Text(body.link), Text(given), str(body.capsules), added)
+    return table
+
+
+def _summary(model: RobotModel, world: ArmWorld) -> Table:
+    robot = model.robot
+    table = Table(show_header=False, box=None, pad_edge=False)
+    table.add_column(style="bold", no_wrap=True)
+    table.add_column(overflow="fold")
+    bodied = {capsule.link for capsule in robot.capsules}
+    bodiless = [link for link in robot.links if link not in bodied]
+    if bodiless:
+        table.add_row("no body", Text(", ".join(bodiless)))
+    table.add_row(
+        "self pairs", Text(f"{len(robot.pairs)} tested ({model.pairs_from}): {_by_first(robot.pairs)}")
+    )
+    for reason in dict.fromkeys(reason for _, _, reason in model.dropped):
+        pairs = [(first, second) for first, second, why in model.dropped if why == reason]
+        table.add_row("not tested", Text(f"{reason}: {_by_first(pairs)}"))
+    if robot.states:
+        table.add_row("states", Text(", ".join(robot.states)))
+    table.add_row("obstacles", _conservatism(model, world))
+    table.add_row("checks", _speed(world))
+    return table
+
+
+def _conservatism(model: RobotModel, world: ArmWorld) -> str:
+    shapes = sum(body.shape_volume for body in model.bodies)
+    capsules = sum(body.capsule_volume for body in model.bodies)
+    added = (
+        f"{100.0 * max(capsules / shapes - 1.0, 0.0):.0f} % more volume than the URDF's shapes; "
+        if shapes
+        else ""
+    )
+    return f"{added}capsules tested as {world.spheres} spheres, up to {1e3 * world.excess:.1f} mm larger"
+
+
+def _speed(world: ArmWorld) -> str:
+    cube = generator(0).random((_CONFIGURATIONS, world.space.cube_dim))
+    q = world.space.from_cube(cube)
+    free = q[world.valid(q)]
+    configurations = _per_second(lambda: world.valid(q), len(q))
+    share = len(free) / len(q)
+    text = f"{configurations:,.0f} random configurations/s ({100.0 * share:.0f} % free)"
+    if len(free) > 1:
+        a, b = free[: len(free) // 2][:_MOTIONS], free[len(free) // 2 :][:_MOTIONS]
+        a, b = a[: min(len(a), len(b))], b[: min(len(a), len(b))]
+        passed = float(np.mean(world.motion_valid(a, b)))
+        motions = _per_second(lambda: world.motion_valid(a, b), len(a))
+        text += f", {motions:,.0f} motions/s between free ones ({100.0 * passed:.0f} % free)"
+    return f"{text}, one core, in {world.scene.name}"
+
+
+def _per_second(call: Callable[[], object], count: int) -> float:
+    """Return how many are done a second; the median of repeats, after one that loads compiled code."""
+    call()
+    times: list[float] = []
+    start = time.perf_counter()
+    while len(times) < 3 or (time.perf_counter() - start < _SECONDS and len(times) < 1000):
+        before = time.perf_counter()
+        call()
+        times.append(time.perf_counter() - before)
+    return count / float(np.median(times))
+
+
+def _by_first(pairs: Iterable[Sequence[str]]) -> str:
+    partners: dict[str, list[str]] = {}
+    for first, second in pairs:
+        partners.setdefault(first, []).append(second)
+    return "; ".join(f"{first} with {', '.join(seconds)}" for first, seconds in partners.items()) or "none"
