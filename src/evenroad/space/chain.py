@@ -56,6 +56,14 @@ class ChainSpace(FlatSpace):
         first, second = as_batch_pair(a, b, self.joints)
         return _distances(first, second)
 
+    def all_distances(
+        self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]
+    ) -> npt.NDArray[np.float64]:
+        """Return the distances of all pairs of rows, (n, joints) and (m, joints), as (n, m)."""
+        return _all_distances(
+            _far_ends(as_batch("a", a, self.joints)), _far_ends(as_batch("b", b, self.joints))
+        )
+
     def wrapped(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """Return `q`, (n, joints), with angles brought into [-pi, pi)."""
         return self._canonical(as_batch("q", q, self.joints))
@@ -80,3 +88,31 @@ def chain_distance(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> fl
         apart_y += math.sin(heading_a) - math.sin(heading_b)
         total += math.sqrt(apart_x * apart_x + apart_y * apart_y)
     return total / len(a)
+
+
+@njit(cache=True, nogil=True)
+def _far_ends(q):  # type: ignore[no-untyped-def]
+    """Return ``joints p_m`` for each configuration: (n, 2 joints), the x of all links and then their y."""
+    joints = q.shape[1]
+    ends = np.empty((len(q), 2 * joints))
+    for row in range(len(q)):
+        heading, x, y = 0.0, 0.0, 0.0
+        for k in range(joints):
+            heading += q[row, k]
+            x, y = x + math.cos(heading), y + math.sin(heading)
+            ends[row, k], ends[row, joints + k] = x, y
+    return ends
+
+
+@njit(cache=True, nogil=True)
+def _all_distances(a, b):  # type: ignore[no-untyped-def]
+    distances = np.empty((len(a), len(b)))
+    joints = a.shape[1] // 2
+    for i in range(len(a)):
+        for j in range(len(b)):
+            total = 0.0
+            for k in range(joints):
+                apart_x, apart_y = a[i, k] - b[j, k], a[i, joints + k] - b[j, joints + k]
+                total += math.sqrt(apart_x * apart_x + apart_y * apart_y)
+            distances[i, j] = total / joints
+    return distances

@@ -79,3 +79,16 @@ class FlatMetric:
         for k in range(1, self.dim):
             total = np.hypot(total, scaled[:, k])
         return total
+
+    def all_distances(
+        self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]
+    ) -> npt.NDArray[np.float64]:
+        """Return the distances of all pairs of rows of two float64 arrays, (n, dim) and (m, dim), as (n, m)."""
+        total = np.zeros((len(a), len(b)))
+        for k in range(self.dim):
+            apart = b[np.newaxis, :, k] - a[:, np.newaxis, k]
+            if self.wrapping[k]:
+                apart -= self.period[k] * np.rint(apart / self.period[k])
+            apart *= self.scale[k]
+            np.hypot(total, apart, out=total)
+        return total

@@ -68,6 +68,13 @@ class FlatSpace:
         first, second = as_batch_pair(a, b, self.dim)
         return self._flat.distance(self._canonical(first), self._canonical(second))
 
+    def all_distances(
+        self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]
+    ) -> npt.NDArray[np.float64]:
+        """Return the distances of all pairs of rows, (n, dim) and (m, dim), as (n, m)."""
+        first, second = as_batch("a", a, self.dim), as_batch("b", b, self.dim)
+        return self._flat.all_distances(self._canonical(first), self._canonical(second))
+
     def interpolate(
         self,
         a: npt.NDArray[np.float64],

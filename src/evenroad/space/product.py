@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.errors import InvalidValue, UnknownName
+from evenroad.space.all_pairs import all_distances
 from evenroad.space.axes import as_weights
 from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions
 from evenroad.space.flat import FlatMetric
@@ -88,6 +89,18 @@ class Product:
         lengths = [w * own for w, own in zip(self.weights, self.part_distances(a, b), strict=True)]
         total = lengths[0]
         for length in lengths[1:]:
+            total = total + length if self.combine == "sum" else np.hypot(total, length)
+        return total
+
+    def all_distances(
+        self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]
+    ) -> npt.NDArray[np.float64]:
+        """Return the distances of all pairs of rows, (n, dim) and (m, dim), as (n, m)."""
+        assert self.weights is not None  # __post_init__ put numbers there
+        first, second = self.split(as_batch("a", a, self.dim)), self.split(as_batch("b", b, self.dim))
+        total = np.zeros((len(a), len(b)))
+        for part, weight, own_first, own_second in zip(self.parts, self.weights, first, second, strict=True):
+            length = weight * all_distances(part, own_first, own_second)
             total = total + length if self.combine == "sum" else np.hypot(total, length)
         return total
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from numba import njit
 
 from evenroad.errors import InvalidValue
 from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions
@@ -67,6 +69,13 @@ class SO3:
         first, second = self._unit_pair(a, b)
         return _angle(first, _nearer_sign(first, second)[:, np.newaxis] * second)
 
+    def all_distances(
+        self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]
+    ) -> npt.NDArray[np.float64]:
+        """Return the distances of all pairs of rows, (n, 4) and (m, 4), as (n, m).  Errors as `distance`."""
+        first, second = _unit_batch("a", a), _unit_batch("b", b)
+        return _all_angles(first, second)
+
     def interpolate(
         self,
         a: npt.NDArray[np.float64],
@@ -91,14 +100,18 @@ class SO3:
 
     def _unit_pair(self, a: object, b: object) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
         first, second = as_batch_pair(a, b, 4)
-        for name, batch in (("a", first), ("b", second)):
-            norm = _norm(batch)
-            wrong = np.flatnonzero(np.abs(norm - 1.0) > _UNIT_TOLERANCE)
-            if len(wrong):
-                raise InvalidValue(
-                    f"{name} must hold unit quaternions: row {wrong[0]} has norm {float(norm[wrong[0]])!r}"
-                )
-        return first, second
+        return _unit_batch("a", first), _unit_batch("b", second)
+
+
+def _unit_batch(name: str, q: object) -> npt.NDArray[np.float64]:
+    batch = as_batch(name, q, 4)
+    norm = _norm(batch)
+    wrong = np.flatnonzero(np.abs(norm - 1.0) > _UNIT_TOLERANCE)
+    if len(wrong):
+        raise InvalidValue(
+            f"{name} must hold unit quaternions: row {wrong[0]} has norm {float(norm[wrong[0]])!r}"
+        )
+    return batch
 
 
 def _norm(q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
@@ -114,3 +127,17 @@ def _nearer_sign(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.
 def _angle(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """Return the angle between unit vectors; unlike arccos it keeps all digits of small angles (Kahan)."""
     return 2.0 * np.arctan2(_norm(a - b), _norm(a + b))
+
+
+@njit(cache=True, nogil=True)
+def _all_angles(a, b):  # type: ignore[no-untyped-def]
+    angles = np.empty((len(a), len(b)))
+    for i in range(len(a)):
+        for j in range(len(b)):
+            apart, together = 0.0, 0.0
+            for k in range(4):
+                apart += (a[i, k] - b[j, k]) ** 2
+                together += (a[i, k] + b[j, k]) ** 2
+            # The nearer of b and -b is the one with the shorter chord.
+            angles[i, j] = 2.0 * math.atan2(math.sqrt(min(apart, together)), math.sqrt(max(apart, together)))
+    return angles

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.space import Space
+from evenroad.space.all_pairs import all_distances
 
 BLOCK = 1 << 18
 """Distances held at once."""
@@ -53,6 +54,4 @@ def _blocks(space: Space, q: npt.NDArray[np.float64]) -> Iterator[tuple[slice, n
     step = max(1, BLOCK // max(n, 1))
     for begin in range(0, n, step):
         rows = slice(begin, min(begin + step, n))
-        count = rows.stop - begin
-        distance = space.distance(np.repeat(q[rows], n, axis=0), np.tile(q, (count, 1)))
-        yield rows, distance.reshape(count, n)
+        yield rows, all_distances(space, q[rows], q)
