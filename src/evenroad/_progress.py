@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 
 class LineProgress:
-    """A ``callback(step, steps, best)`` that reports a line now and then, at the pace since it was made.
+    """A ``callback(step, steps[, best])`` that reports a line now and then, at the pace since it was made.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ class LineProgress:
         self.began = self.last = time.monotonic()
         self.first_step: int | None = None
 
-    def __call__(self, step: int, steps: int, best: float) -> None:
+    def __call__(self, step: int, steps: int, best: float | None = None) -> None:
         """Take note of `step` of `steps`, counted over all sets."""
         now = time.monotonic()
         if self.first_step is None:
@@ -34,4 +34,5 @@ class LineProgress:
             return
         self.last = now
         left = (now - self.began) / (step - self.first_step) * (steps - step)
-        self.report(f"{self.title}: {100 * step / steps:.0f} %, {left:.0f} s left, best {best:.5g}")
+        value = "" if best is None else f", best {best:.5g}"
+        self.report(f"{self.title}: {100 * step / steps:.0f} %, {left:.0f} s left{value}")

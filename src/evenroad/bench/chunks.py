@@ -30,26 +30,29 @@ class Done:
     ----------
     outcomes : tuple of Outcome
         One a task, in order.
-    seconds : float
-        Wall time of all, with the making of problems and sets.
+    seconds : tuple of float
+        Wall time of each, with the making of problems and sets.
     worker : str
         Host and process that ran it.
     """
 
     outcomes: tuple[Outcome, ...]
-    seconds: float
+    seconds: tuple[float, ...]
     worker: str
 
 
 def run_chunk(tasks: Sequence[Task], limit: float | None) -> Done:
     """Run tasks one after the other; `limit` as for :func:`~evenroad.bench.execute.run_task`."""
-    began = time.perf_counter()
-    outcomes = tuple(run_task(task, limit) for task in tasks)
-    return Done(outcomes, time.perf_counter() - began, f"{platform.node()}:{os.getpid()}")
+    outcomes, seconds = [], []
+    for task in tasks:
+        began = time.perf_counter()
+        outcomes.append(run_task(task, limit))
+        seconds.append(time.perf_counter() - began)
+    return Done(tuple(outcomes), tuple(seconds), f"{platform.node()}:{os.getpid()}")
 
 
 class Chunker:
-    """Cuts a sequence of tasks into chunks, longer ones as it learns how fast tasks of a kind are.
+    """Cuts a sequence of tasks into chunks of one problem, longer ones as it learns how long tasks of a kind take.
 
     Outcomes do not depend on how tasks are cut.
     """
@@ -62,18 +65,23 @@ class Chunker:
         return bool(self._waiting)
 
     def next(self) -> tuple[Task, ...]:
-        """Return the next chunk: tasks of one kind."""
-        kind = _kind(self._waiting[0])
-        pace = self._pace.get(kind)
-        size = FIRST_CHUNK if pace is None else int(min(max(CHUNK_SECONDS / pace, 1), LARGEST_CHUNK))
-        chunk = []
-        while self._waiting and len(chunk) < size and _kind(self._waiting[0]) == kind:
+        """Return the next chunk, at least one task."""
+        problem = self._waiting[0].problem
+        chunk: list[Task] = []
+        expected = 0.0
+        while self._waiting and self._waiting[0].problem == problem and len(chunk) < LARGEST_CHUNK:
+            expected += self._pace.get(_kind(self._waiting[0]), CHUNK_SECONDS / FIRST_CHUNK)
+            if chunk and expected > CHUNK_SECONDS:
+                break
             chunk.append(self._waiting.popleft())
         return tuple(chunk)
 
-    def learn(self, tasks: Sequence[Task], seconds: float) -> None:
-        """Take note of how long a chunk took."""
-        self._pace[_kind(tasks[0])] = max(seconds / len(tasks), 1e-6)
+    def learn(self, tasks: Sequence[Task], seconds: Sequence[float]) -> None:
+        """Take note of how long each task of a chunk took."""
+        for task, took in zip(tasks, seconds, strict=True):
+            kind = _kind(task)
+            # The newest counts for a quarter: one slow task, as the first in a process is, says little.
+            self._pace[kind] = took if kind not in self._pace else 0.75 * self._pace[kind] + 0.25 * took
 
 
 def _kind(task: Task) -> tuple[str, str, int]:

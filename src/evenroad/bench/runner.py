@@ -165,7 +165,7 @@ class _Run:
         self._on_trial = False
         if not _has_result(future):
             # Exceptions of tasks are outcomes, so this one is the worker's.
-            error = None if future.cancelled() else future.exception()
+            error = BrokenExecutor("cancelled") if future.cancelled() else future.exception()
             others = self._broken() if isinstance(error, BrokenExecutor) else []
             self._dies([chunk, *others], error)
             return

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Protocol
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
@@ -15,8 +16,16 @@ from evenroad._progress import LineProgress
 REDRAW_SECONDS = 0.2
 
 
+class Advance(Protocol):
+    """Takes note of how far the work is, and of the best value so far where there is such a thing."""
+
+    def __call__(self, step: int, steps: int, best: float | None = None) -> None:
+        """Show `step` of `steps`."""
+        ...
+
+
 @contextmanager
-def progress_bar(title: str) -> Iterator[Callable[[int, int, float], None]]:
+def progress_bar(title: str) -> Iterator[Advance]:
     """Yield a ``callback(step, steps, best)`` that draws a bar until the block ends; in a log, lines."""
     console = Console(file=sys.stderr)
     if not console.is_terminal:
@@ -25,20 +34,21 @@ def progress_bar(title: str) -> Iterator[Callable[[int, int, float], None]]:
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
-        TextColumn("{task.percentage:3.0f} %  best {task.fields[best]:.5g}"),
+        TextColumn("{task.percentage:3.0f} %{task.fields[value]}"),
         TimeElapsedColumn(),
         TextColumn("left"),
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task(title, total=None, best=float("inf"))
+        task = bar.add_task(title, total=None, value="")
         last = 0.0
 
-        def callback(step: int, steps: int, best: float) -> None:
+        def callback(step: int, steps: int, best: float | None = None) -> None:
             nonlocal last
             now = time.monotonic()
             if now - last >= REDRAW_SECONDS or step == steps:
                 last = now
-                bar.update(task, total=steps, completed=step, best=best)
+                value = "" if best is None else f"  best {best:.5g}"
+                bar.update(task, total=steps, completed=step, value=value)
 
         yield callback
