@@ -124,7 +124,7 @@ def random_tree(seed):
             "fixed": (0.0, 0.0),
         }[kind]
         mimic = None
-        movable = [j.name for j in joints if j.kind != "fixed" and j.mimic is None]
+        movable = [j.name for j in joints if j.kind in ("revolute", "prismatic") and j.mimic is None]
         if kind in ("revolute", "prismatic") and movable and rng.random() < 0.2:
             mimic = Mimic(str(rng.choice(movable)), rng.uniform(-1.5, 1.5), rng.uniform(-0.2, 0.2))
         links.append(f"link{i}")
@@ -140,23 +140,28 @@ def random_tree(seed):
             a = rng.uniform(-0.05, 0.05, 3)
             b = a if rng.random() < 0.25 else a + rng.uniform(-0.15, 0.15, 3)
             capsules.append(Capsule(link, tuple(a), tuple(b), rng.uniform(0.015, 0.04)))
+    # Far enough apart along the tree that a movable joint is in between: others would always or never touch.
+    apart = [(a, b) for a in range(count + 1) for b in range(a + 1, count + 1) if b - a >= 3]
+    carried = {joint.child: joint for joint in joints}
     pairs = tuple(
-        (links[a], links[b]) for a in range(count + 1) for b in range(a + 1, count + 1) if rng.random() < 0.3
+        (links[a], links[b])
+        for a, b in apart
+        if rng.random() < 0.3 and carried[links[b]].kind in ("revolute", "continuous")
     )
     free = [j.name for j in joints if j.kind != "fixed" and j.mimic is None]
     group = tuple(free[:1] + [name for name in free[1:] if rng.random() < 0.85])
     return Robot(f"tree{seed}", tuple(links), tuple(joints), tuple(capsules), pairs, group, {})
 
 
-def random_scene(seed, count=12, spread=0.8, sizes=(0.05, 0.2)):
-    """Obstacles of every shape, turned or not, at random places."""
+def random_scene(seed, count=12, spread=0.8, sizes=(0.05, 0.2), clear=0.3):
+    """Obstacles of every shape, turned or not, at random places `clear` from the origin."""
     rng = np.random.default_rng(seed)
     obstacles = []
-    for i in range(count):
+    while len(obstacles) < count:
         shape = str(rng.choice(["box", "sphere", "cylinder", "capsule"]))
         size = tuple(rng.uniform(*sizes, {"box": 3, "sphere": 1}.get(shape, 2)))
         rotation = STRAIGHT if rng.random() < 0.4 else random_rotation(rng)
-        obstacles.append(
-            Obstacle(f"obstacle{i}", shape, size, tuple(rng.uniform(-spread, spread, 3)), rotation)
-        )
+        place = rng.uniform(-spread, spread, 3)
+        if np.linalg.norm(place) > clear:
+            obstacles.append(Obstacle(f"obstacle{len(obstacles)}", shape, size, tuple(place), rotation))
     return Scene(f"random{seed}", tuple(obstacles))

@@ -52,6 +52,15 @@ class ArmWorld:
         stay on the safe side, or one after the other in double precision.  "auto" takes the lanes where a test,
         made once a process, finds that they work; the attribute then says which it is.
 
+    Attributes
+    ----------
+    bounds : float64 ndarray, shape (3, dim)
+        Low, high and period of each joint; a period of inf where it does not wrap.
+    model : ArmModel
+        What is tested against what.
+    tables : ArmTables
+        The model as compiled code takes it.
+
     Raises
     ------
     InvalidValue
@@ -68,9 +77,9 @@ class ArmWorld:
     resolution: float = 0.05
     backend: str = "auto"
     _space: JointSpace = field(init=False, repr=False)
-    _bounds: npt.NDArray[np.float64] = field(init=False, repr=False)
-    _model: ArmModel = field(init=False, repr=False)
-    _tables: ArmTables = field(init=False, repr=False)
+    bounds: npt.NDArray[np.float64] = field(init=False, repr=False)
+    model: ArmModel = field(init=False, repr=False)
+    tables: ArmTables = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "resolution", require_positive("resolution", self.resolution))
@@ -86,9 +95,9 @@ class ArmWorld:
         bounds.setflags(write=False)
         model = arm_model(self.robot, self.scene)
         object.__setattr__(self, "_space", space)
-        object.__setattr__(self, "_bounds", bounds)
-        object.__setattr__(self, "_model", model)
-        object.__setattr__(self, "_tables", pack(model))
+        object.__setattr__(self, "bounds", bounds)
+        object.__setattr__(self, "model", model)
+        object.__setattr__(self, "tables", pack(model))
         object.__setattr__(self, "backend", _chosen(self.backend))
 
     @property
@@ -99,12 +108,12 @@ class ArmWorld:
     @property
     def excess(self) -> float:
         """By how much the spheres that obstacles are tested with exceed their capsules at most [m]."""
-        return max(capsule.cover.radius - capsule.radius for capsule in self._model.capsules)
+        return max(capsule.cover.radius - capsule.radius for capsule in self.model.capsules)
 
     @property
     def spheres(self) -> int:
         """How many spheres stand for the capsules where obstacles are concerned."""
-        return sum(len(capsule.cover.places) for capsule in self._model.capsules)
+        return sum(len(capsule.cover.places) for capsule in self.model.capsules)
 
     def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
         """Return which configurations, (n, dim), are within the limits and touch nothing: (n,).
@@ -115,15 +124,15 @@ class ArmWorld:
             If `q` has another shape or an entry that is not finite.
         """
         configurations = as_batch("q", q, self._space.dim)
-        if self._model.standing_contact:
+        if self.model.standing_contact:
             return np.zeros(len(configurations), dtype=np.bool_)
-        tables = self._tables
+        tables = self.tables
         if self.backend == "scalar":
-            return scalar_batch.configurations_free(configurations, self._bounds, tables.ints, tables.floats)
+            return scalar_batch.configurations_free(configurations, self.bounds, tables.ints, tables.floats)
         # Imported late: where the vector type cannot even be defined, all else still works.
         from evenroad.robot.kernel import batch as lanes_batch
 
-        return lanes_batch.configurations_free(configurations, self._bounds, tables.ints, tables.padded)
+        return lanes_batch.configurations_free(configurations, self.bounds, tables.ints, tables.padded)
 
     def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
         """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
@@ -134,9 +143,9 @@ class ArmWorld:
             As `valid`, or if the two differ in length.
         """
         first, second = as_batch_pair(a, b, self._space.dim)
-        if self._model.standing_contact:
+        if self.model.standing_contact:
             return np.zeros(len(first), dtype=np.bool_)
-        resolution, bounds, tables = self.resolution, self._bounds, self._tables
+        resolution, bounds, tables = self.resolution, self.bounds, self.tables
         if self.backend == "scalar":
             return scalar_batch.motions_free(first, second, resolution, bounds, tables.ints, tables.floats)
         from evenroad.robot.kernel import batch as lanes_batch
@@ -147,17 +156,19 @@ class ArmWorld:
         """Return in words why one configuration, (dim,), is not free: the joint outside its limits and by
         how much, or the two bodies that touch.
         """
-        row = as_batch("q", np.asarray(q, dtype=np.float64)[np.newaxis], self._space.dim)[0]
-        for name, value, low, high, period in zip(self.robot.group, row, *self._bounds, strict=True):
+        batch = as_batch("q", np.asarray(q, dtype=np.float64)[np.newaxis], self._space.dim)
+        # To itself: brings wrapping joints into their ranges.
+        row = self._space.interpolate(batch, batch, 0.0)[0]
+        for name, value, low, high, period in zip(self.robot.group, row, *self.bounds, strict=True):
             if math.isinf(period) and not low <= value <= high:
                 beyond = max(low - value, value - high)
                 return f"joint {name!r} is at {value:g}, {beyond:.3g} outside its limits [{low:g}, {high:g}]"
-        bodies = self._model.standing_contact or self._touching(row)
+        bodies = self.model.standing_contact or self._touching(row)
         return "it is free" if bodies is None else f"{bodies[0]!r} touches {bodies[1]!r}"
 
     def _touching(self, q: npt.NDArray[np.float64]) -> tuple[str, str] | None:
         """Return two bodies that touch, or come as near as what single precision may call touching."""
-        model, tables = self._model, self._tables
+        model, tables = self.model, self.tables
         margins = np.full(len(model.capsules), tables.padding)
         pair_margins = np.full(len(tables.capsule_pairs), 2.0 * tables.padding)
         frames, capsules = np.empty((len(model.tree.frames) + 1, 12)), np.empty((len(model.capsules), 6))

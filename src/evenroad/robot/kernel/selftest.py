@@ -45,12 +45,12 @@ def small_batch() -> npt.NDArray[np.float64]:
     """Return 64 configurations of the small robot, none within 0.1 mm of contact."""
     # Fractions of multiples of powers of 1 / 1.2207: spread evenly over the cube.
     shares = np.outer(np.arange(64), [0.8191725, 0.6710436, 0.5497005]) % 1.0
-    return np.array([-3.0, -2.75, 0.0]) + shares * np.array([6.0, 5.5, 0.3])
+    return _read_only(np.array([-3.0, -2.75, 0.0]) + shares * np.array([6.0, 5.5, 0.3]))
 
 
 def small_bounds() -> npt.NDArray[np.float64]:
     """Return lows, highs and periods of its joints, (3, 3)."""
-    return np.array([[-4.0, -2.8, 0.0], [4.0, 2.8, 0.3], [np.inf, np.inf, np.inf]])
+    return _read_only(np.array([[-4.0, -2.8, 0.0], [4.0, 2.8, 0.3], [np.inf, np.inf, np.inf]]))
 
 
 def small_model() -> ArmModel:
@@ -77,3 +77,9 @@ def small_model() -> ArmModel:
         Obstacle("pipe", "capsule", (0.05, 0.4), (0.4, -0.4, 0.2), _STRAIGHT),
     )
     return arm_model(robot, Scene("small", obstacles))
+
+
+def _read_only(array: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Return `array` as worlds pass theirs: code is compiled anew for each mix of read-only and other arrays."""
+    array.setflags(write=False)
+    return array

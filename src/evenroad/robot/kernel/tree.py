@@ -79,7 +79,7 @@ def moving_tree(robot: Robot) -> MovingTree:
     Raises
     ------
     InvalidValue
-        If a mimic follows itself, or a number of a joint is not finite.
+        If a mimic follows itself, or a continuous joint at no whole multiple, or a number is not finite.
     UnknownName
         If a mimic, the group or the held values name a joint that is not there.
     """
@@ -136,12 +136,13 @@ def held_value(joint: Joint, robot: Robot) -> float:
 
 def _value(joint: Joint, joints: dict[str, Joint], robot: Robot) -> tuple[int, float, float]:
     """Return coordinate, multiplier and offset of a joint's value; the multiplier is 0 where it is constant."""
-    multiplier, offset = 1.0, 0.0
+    multiplier, offset, follower = 1.0, 0.0, joint
     for _ in range(len(joints) + 1):
         if joint.kind == "fixed":
             return 0, 0.0, offset
         if joint.mimic is None:
             if joint.name in robot.group:
+                _require_whole_turns(follower, joint, multiplier)
                 return robot.group.index(joint.name), multiplier, offset
             return 0, 0.0, multiplier * held_value(joint, robot) + offset
         offset += multiplier * joint.mimic.offset
@@ -150,6 +151,15 @@ def _value(joint: Joint, joints: dict[str, Joint], robot: Robot) -> tuple[int, f
             raise UnknownName.among("joint", joint.mimic.joint, joints)
         joint = joints[joint.mimic.joint]
     raise InvalidValue(f"joint {joint.name!r} mimics itself")
+
+
+def _require_whole_turns(follower: Joint, joint: Joint, multiplier: float) -> None:
+    """Refuse a mimic that is elsewhere after a full turn of the continuous joint that it follows."""
+    if joint.kind == "continuous" and (follower.kind == "prismatic" or multiplier != round(multiplier)):
+        raise InvalidValue(
+            f"joint {follower.name!r} follows the continuous joint {joint.name!r}: it must turn, by a whole"
+            f" multiple, got a {follower.kind} joint and {multiplier!r}"
+        )
 
 
 def _moved(place: Placement, joint: Joint, value: float) -> Placement:
