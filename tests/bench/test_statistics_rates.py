@@ -106,6 +106,17 @@ def test_fisher_counts_the_tables_that_are_no_likelier(first, second):
     assert fisher_exact(first, second) == pytest.approx(_fisher_by_counting(first, second), rel=1e-6)
 
 
+@given(counts, counts)
+def test_fisher_agrees_with_scipy(first, second):
+    table = [[first[0], second[0]], [first[1] - first[0], second[1] - second[0]]]
+    assert fisher_exact(first, second) == pytest.approx(stats.fisher_exact(table).pvalue, rel=1e-6, abs=1e-12)
+
+
+def test_fisher_takes_the_numbers_of_runs_of_a_large_benchmark():
+    assert fisher_exact((9330, 10_000), (933, 1000)) == pytest.approx(1.0)
+    assert 0 < fisher_exact((5280, 10_000), (400, 1000)) < 1e-12
+
+
 def test_fisher_reproduces_published_comparisons():
     """Table 1 of Chahine et al.: MPMC 40 of 50 against Halton's 28, and 50 of 50 against uniform's 44."""
     assert fisher_exact((40, 50), (28, 50)) == pytest.approx(0.018, abs=5e-4)

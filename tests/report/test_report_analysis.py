@@ -8,12 +8,13 @@ import pytest
 from evenroad.bench.outcome import Outcome
 from evenroad.bench.statistics import bonett_price, fisher_exact, holm, mcnemar_exact, wilson
 from evenroad.bench.store import read_rows
+from evenroad.report import groups
 from evenroad.report.analysis import analyse
 from evenroad.report.cells import cells_of
 from evenroad.report.comparisons import comparisons_of
 from evenroad.report.expected import load_expected
-from evenroad.report.fair import difficulty_of, dimension_of, generator_of, pooled_by
-from evenroad.report.groups import combined, sums_by_unit
+from evenroad.report.fair import difficulty_of, dimension_of, generator_of, pooled
+from evenroad.report.groups import combined, first_rows, sums_by_unit
 from evenroad.report.needed import needed_of
 from evenroad.report.runs import natural_key
 from evenroad.report.verdicts import verdicts_of
@@ -286,7 +287,7 @@ def test_the_fair_suite_is_pooled_over_the_same_worlds(tmp_path):
     rows = _fair_rows()
     runs = runs_from(tmp_path / "a.db", rows)
     of = {(each.problem, each.sampler, each.rule, each.run): outcome.solved for each, outcome in rows}
-    found = {(each.group, each.sampler): each for each in pooled_by("rule", runs)}
+    found = {(each.group, each.sampler): each for each in pooled(runs)["rule"]}
     assert set(found) == {
         (f"k={k} symmetrised, connect", sampler) for k in (4, 10) for sampler in ("lattice", "mpmc")
     }
@@ -304,7 +305,7 @@ def test_the_fair_suite_is_pooled_over_the_same_worlds(tmp_path):
 def test_pools_are_by_generator_dimension_and_difficulty_of_the_name(tmp_path):
     runs = runs_from(tmp_path / "a.db", _fair_rows())
     groups = {
-        by: list(dict.fromkeys(each.group for each in pooled_by(by, runs)))
+        by: list(dict.fromkeys(each.group for each in pooled(runs)[by]))
         for by in ("generator", "dimension", "difficulty")
     }
     assert groups == {
@@ -327,7 +328,7 @@ def test_names_of_fair_problems_are_taken_apart(problem, parts):
 
 
 def test_a_store_without_a_fair_suite_has_none(runs):
-    assert pooled_by("all", runs) == ()
+    assert pooled(runs) == {}
 
 
 def test_numbers_in_names_sort_as_numbers():
@@ -337,6 +338,19 @@ def test_numbers_in_names_sort_as_numbers():
 def test_codes_are_equal_where_all_columns_are():
     a, b = np.array([2, 2, 1, 2, 1]), np.array([9, 7, 9, 9, 7])
     assert combined(a, b).tolist() == [3, 2, 1, 3, 0]
+
+
+def test_codes_of_very_large_numbers_do_not_overflow():
+    a, b = np.array([5, 7, 5]), np.array([2**62, 3, 3])
+    assert combined(a, b, b).tolist() == [1, 2, 0]
+
+
+def test_codes_are_the_same_by_table_and_by_sorting(monkeypatch):
+    columns = np.random.default_rng(0).integers(-5, 40, size=(3, 500))
+    by_table = combined(*columns)
+    monkeypatch.setattr(groups, "TABLE_LIMIT", 0)
+    assert np.array_equal(combined(*columns), by_table)
+    assert np.array_equal(first_rows(by_table), np.unique(by_table, return_index=True)[1])
 
 
 def test_sums_by_unit_are_those_of_a_loop():

@@ -10,7 +10,7 @@ from evenroad.report.cells import Cell, cells_of
 from evenroad.report.comparisons import Comparison, comparisons_of
 from evenroad.report.expected import SOURCES, ExpectedTable, load_expected
 from evenroad.report.failures import Failure, failures_of
-from evenroad.report.fair import GROUPINGS, Pooled, pooled_by
+from evenroad.report.fair import Pooled, pooled
 from evenroad.report.needed import needed_of
 from evenroad.report.runs import Question, Runs, runs_of
 from evenroad.report.verdicts import Verdict, verdicts_of
@@ -51,14 +51,13 @@ def analyse(rows: Rows) -> Analysis:
     """Count, compare and test everything in a store's rows."""
     runs = runs_of(rows)
     cells = cells_of(runs)
-    pooled = {grouping: pooled_by(grouping, runs) for grouping in GROUPINGS}
     return Analysis(
         runs=runs,
         cells=cells,
         comparisons=comparisons_of(runs, cells),
         needed=needed_of(cells),
         verdicts=_verdicts(cells),
-        pooled={grouping: found for grouping, found in pooled.items() if found},
+        pooled=pooled(runs),
         failures=failures_of(rows),
     )
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from evenroad._rng import generator
 from evenroad.bench.statistics import Interval, clustered_rate, resampled_ratios, wilson
 from evenroad.bench.statistics.bootstrap import DRAWS
-from evenroad.report.groups import Ints, combined, sums_by_unit
+from evenroad.report.groups import Ints, combined, first_rows, sums_by_unit
 from evenroad.report.runs import Question, Runs
 
 
@@ -84,7 +84,7 @@ def cells_of(runs: Runs) -> tuple[Cell, ...]:
         return ()
     cell = cell_codes(runs)
     cells = int(cell.max()) + 1
-    first = np.unique(cell, return_index=True)[1]
+    first = first_rows(cell)
     totals = np.bincount(cell, minlength=cells)
     solved = np.bincount(cell, weights=runs.solved, minlength=cells).astype(np.int64)
     failures = np.bincount(cell, weights=runs.failed, minlength=cells).astype(np.int64)

@@ -10,7 +10,7 @@ import numpy as np
 
 from evenroad.bench.statistics import Interval, clustered_difference, holm, sign_flip_test
 from evenroad.report.comparisons import SIGNIFICANT, differences_from, pair_codes
-from evenroad.report.groups import Ints, combined, sums_by_unit
+from evenroad.report.groups import Ints, combined, first_rows, sums_by_unit
 from evenroad.report.runs import Question, Runs, natural_key
 
 PREFIX = "fair-"
@@ -86,26 +86,33 @@ GROUPINGS: dict[str, Callable[[Question, int], str]] = {
 """What the fair suite is pooled by."""
 
 
-def pooled_by(grouping: str, runs: Runs) -> tuple[Pooled, ...]:
-    """Pool the fair suite; groups in natural order, samplers in ours.
+def pooled(runs: Runs) -> dict[str, tuple[Pooled, ...]]:
+    """Pool the fair suite by everything in :data:`GROUPINGS`; groups in natural order, samplers in ours.
 
     Only runs with a counterpart of uniform on the same world are counted: a sampler that has no set for the hard
-    worlds does not profit from it.
+    worlds does not profit from it.  Empty where there are none.
     """
     fair_questions = np.array([is_fair(question) for question in runs.questions], dtype=bool)
-    fair = fair_questions[runs.question] if len(runs) else np.zeros(0, dtype=bool)
-    if not fair.any():
-        return ()
+    fair = (
+        np.flatnonzero(fair_questions[runs.question]) if fair_questions.any() else np.zeros(0, dtype=np.int64)
+    )
+    if not len(fair):
+        return {}
+    runs = runs.where(fair)
     paired, difference = differences_from(runs, pair_codes(runs), REFERENCE)
-    rows = np.flatnonzero(fair & paired)
-    if not len(rows):
-        return ()
-    names, group = _groups(grouping, runs, rows)
-    world = combined(_problem_codes(runs)[rows], runs.instance[rows])
-    place = combined(group, runs.sampler[rows])
-    first = np.unique(place, return_index=True)[1]
-    sums = sums_by_unit(place, len(first), world, difference[rows])
-    solved = np.bincount(place, weights=runs.solved[rows])
+    if not paired.any():
+        return {}
+    runs, difference = runs.where(paired), difference[paired]
+    world = combined(_problem_codes(runs), runs.instance)
+    return {grouping: _pooled_by(grouping, runs, world, difference) for grouping in GROUPINGS}
+
+
+def _pooled_by(grouping: str, runs: Runs, world: Ints, difference: Ints) -> tuple[Pooled, ...]:
+    names, group = _groups(grouping, runs)
+    place = combined(group, runs.sampler)
+    first = first_rows(place)
+    sums = sums_by_unit(place, len(first), world, difference)
+    solved = np.bincount(place, weights=runs.solved)
     found = []
     for g, row in enumerate(first):
         entries = sums.of(g)
@@ -114,19 +121,18 @@ def pooled_by(grouping: str, runs: Runs) -> tuple[Pooled, ...]:
         interval = clustered_difference(sums.sums[entries], sums.runs[entries], "instances")
         p = sign_flip_test(sums.sums[entries])
         reference_rate = rate - float(sums.sums[entries].sum()) / pairs
-        sampler = runs.samplers[runs.sampler[rows[row]]]
+        sampler = runs.samplers[runs.sampler[row]]
         worlds = entries.stop - entries.start
         found.append(Pooled(names[group[row]], sampler, worlds, pairs, rate, reference_rate, interval, p, p))
     corrected = holm([each.p for each in found]).tolist()
     return tuple(replace(each, p_corrected=p) for each, p in zip(found, corrected, strict=True))
 
 
-def _groups(grouping: str, runs: Runs, rows: Ints) -> tuple[list[str], Ints]:
+def _groups(grouping: str, runs: Runs) -> tuple[list[str], Ints]:
     """Return the names of the groups and every row's number among them."""
     name_of = GROUPINGS[grouping]
-    code = combined(runs.question[rows], runs.n[rows])
-    first = rows[np.unique(code, return_index=True)[1]]
-    labels = [name_of(runs.questions[runs.question[row]], int(runs.n[row])) for row in first]
+    code = combined(runs.question, runs.n)
+    labels = [name_of(runs.questions[runs.question[row]], int(runs.n[row])) for row in first_rows(code)]
     names = sorted(set(labels), key=natural_key)
     number = {name: place for place, name in enumerate(names)}
     return names, np.array([number[label] for label in labels])[code]

@@ -9,6 +9,11 @@ import numpy.typing as npt
 
 Ints = npt.NDArray[np.int64]
 
+TABLE_LIMIT = 2**25
+"""Largest code that a table is made for, of 128 MiB."""
+WIDE = 2**31
+"""Span of a column from which on its values are numbered first."""
+
 
 @dataclass(frozen=True)
 class UnitSums:
@@ -36,13 +41,36 @@ class UnitSums:
 
 
 def combined(*columns: Ints) -> Ints:
-    """Return one code a row that is equal where all columns are, and ascends as they do from the first on."""
+    """Return one code a row, equal where all columns are; codes have no gaps and ascend as the columns do."""
     code = np.zeros(len(columns[0]), dtype=np.int64)
     for column in columns:
-        values, places = np.unique(column, return_inverse=True)
-        # Numbered anew after each column: so the product never grows beyond rows squared.
-        code = np.unique(code * len(values) + places, return_inverse=True)[1]
+        if len(column):
+            offset = column - int(column.min())
+            if int(offset.max()) >= WIDE:
+                # Seeds may be any number: products of those would overflow.
+                offset = np.unique(offset, return_inverse=True)[1]
+            # Without gaps after each column, so the product stays below rows times span.
+            code = _without_gaps(code * (int(offset.max()) + 1) + offset)
     return code
+
+
+def first_rows(code: Ints) -> Ints:
+    """Return the first row of every code, codes being without gaps."""
+    first = np.zeros(int(code.max()) + 1 if len(code) else 0, dtype=np.int64)
+    # Written from the end on: what is left is the earliest.
+    first[code[::-1]] = np.arange(len(code) - 1, -1, -1)
+    return first
+
+
+def _without_gaps(code: Ints) -> Ints:
+    """Return codes >= 0 numbered anew from 0, in the same order."""
+    span = int(code.max()) + 1
+    if span > TABLE_LIMIT:
+        return np.unique(code, return_inverse=True)[1]
+    # A table of what occurs: a fraction of the time that sorting a million rows takes.
+    occurs = np.zeros(span, dtype=np.int32)
+    occurs[code] = 1
+    return (np.cumsum(occurs, dtype=np.int32)[code] - 1).astype(np.int64)
 
 
 def sums_by_unit(group: Ints, groups: int, unit: Ints, column: Ints) -> UnitSums:
@@ -58,7 +86,7 @@ def sums_by_unit(group: Ints, groups: int, unit: Ints, column: Ints) -> UnitSums
         Units may have any numbers.
     """
     place = combined(group, unit)
-    _, first = np.unique(place, return_index=True)
+    first = first_rows(place)
     begins = np.searchsorted(group[first], np.arange(groups + 1))
     runs = np.bincount(place, minlength=len(first))
     # Whole numbers below 2^53, so a float sum is exact.

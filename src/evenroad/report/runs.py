@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -60,6 +60,15 @@ class Runs:
     def __len__(self) -> int:
         """Return the number of runs."""
         return len(self.n)
+
+    def where(self, chosen: npt.NDArray[np.bool_] | npt.NDArray[np.int64]) -> Runs:
+        """Return the runs that a mask or row numbers choose, in that order."""
+        columns = {
+            field.name: getattr(self, field.name)[chosen]
+            for field in fields(self)
+            if isinstance(getattr(self, field.name), np.ndarray)
+        }
+        return replace(self, **columns)
 
 
 def runs_of(rows: Rows) -> Runs:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 
 import numpy as np
@@ -76,10 +77,9 @@ def percentile_interval(values: npt.ArrayLike, *, level: float = LEVEL) -> tuple
     Nothing is interpolated, so infinities (a target that a resample never reached) are legal values.
     """
     tail = 0.5 * (1.0 - require_share("level", level))
-    numbers = np.asarray(values, dtype=np.float64)
-    low = np.quantile(numbers, tail, method="lower")
-    high = np.quantile(numbers, 1.0 - tail, method="higher")
-    return float(low), float(high)
+    ordered = np.sort(np.asarray(values, dtype=np.float64))
+    last = len(ordered) - 1
+    return float(ordered[math.floor(tail * last)]), float(ordered[math.ceil((1.0 - tail) * last)])
 
 
 def _ratios(
