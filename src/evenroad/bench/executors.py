@@ -29,17 +29,17 @@ class Workers:
     ----------
     make : callable
         Returns a fresh ``concurrent.futures.Executor``.
-    count : int
-        How many chunks it works on at a time.
+    count : callable
+        From the executor to how many chunks it works on at a time; asked again and again, as clusters may grow.
     """
 
     make: Callable[[], Executor]
-    count: int
+    count: Callable[[Any], int]
 
 
 def in_process() -> Workers:
     """Return the worker that is this process: for tests, debuggers and profilers."""
-    return Workers(_SerialExecutor, 1)
+    return Workers(_SerialExecutor, lambda executor: 1)
 
 
 def processes(jobs: int | None = None) -> Workers:
@@ -48,7 +48,7 @@ def processes(jobs: int | None = None) -> Workers:
     They are spawned: a script must guard its main part with ``if __name__ == "__main__"``.
     """
     jobs = _usable_processors() if jobs is None else require_count("jobs", jobs)
-    return Workers(lambda: _Processes(jobs), jobs)
+    return Workers(lambda: _Processes(jobs), lambda executor: jobs)
 
 
 class _SerialExecutor(Executor):

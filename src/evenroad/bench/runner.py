@@ -147,14 +147,18 @@ class _Run:
         self._let_go()
 
     def _send(self) -> None:
-        # A suspect runs alone: if a worker dies, it is known whose doing that was.
-        room = 1 if self._suspects or self._on_trial else IN_FLIGHT * self.workers.count
-        while len(self._in_flight) < room and (self._suspects or self._chunker):
+        room = 0
+        while self._suspects or self._chunker:
+            if self._executor is None:
+                self._executor = self.workers.make()
+            # A suspect runs alone: if a worker dies, it is known whose doing that was.
+            alone = bool(self._suspects) or self._on_trial
+            room = 1 if alone else room or IN_FLIGHT * self.workers.count(self._executor)
+            if len(self._in_flight) >= room:
+                return
             self._on_trial = bool(self._suspects)
             chunk = (self._suspects.popleft(),) if self._suspects else self._chunker.next()
             try:
-                if self._executor is None:
-                    self._executor = self.workers.make()
                 self._in_flight[self._executor.submit(run_chunk, chunk, self.limit)] = chunk
             except BrokenExecutor as error:
                 self._dies([chunk, *self._broken()], error)

@@ -37,10 +37,10 @@ def dask_workers(address: str) -> Workers:
     """
     executor = _connect(address)
     try:
-        count = executor.count_threads()
+        executor.require_workers()
     finally:
         executor.shutdown()
-    return Workers(lambda: _connect(address), count)
+    return Workers(lambda: _connect(address), _DaskExecutor.count_threads)
 
 
 def _connect(address: str) -> _DaskExecutor:
@@ -67,8 +67,8 @@ class _DaskExecutor(Executor):
         self._client, self._address = client, address
         self._executor = client.get_executor(pure=False)
 
-    def count_threads(self) -> int:
-        """Return how many tasks the cluster runs at a time; refuse one that has no workers, or others than ours."""
+    def require_workers(self) -> None:
+        """Refuse a cluster that has no workers, or others than ours."""
         try:
             self._client.wait_for_workers(1, timeout=WORKER_SECONDS)
         except TimeoutError:
@@ -78,7 +78,14 @@ class _DaskExecutor(Executor):
             raise NotAvailable(
                 f"the workers at {self._address} have evenroad {', '.join(sorted(versions))}, here it is {__version__}"
             )
-        return sum(self._client.nthreads().values())
+
+    def count_threads(self) -> int:
+        """Return how many tasks the cluster runs at a time now, at least 1."""
+        try:
+            return max(1, sum(self._client.nthreads().values()))
+        except OSError:
+            # The connection is lost, as the next call that is submitted will say.
+            return 1
 
     def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Submit a call; BrokenExecutor if the scheduler is gone."""

@@ -10,6 +10,7 @@ from typing import Annotated
 import tyro
 
 from evenroad import __version__
+from evenroad.cli.bench import Bench
 from evenroad.cli.demo import Demo
 from evenroad.cli.measure import Measure
 from evenroad.cli.plan import Plan
@@ -28,6 +29,7 @@ Verb = (
     | Annotated[Points, tyro.conf.subcommand("points", prefix_name=False)]
     | Annotated[Measure, tyro.conf.subcommand("measure", prefix_name=False)]
     | Annotated[Train, tyro.conf.subcommand("train", prefix_name=False)]
+    | Annotated[Bench, tyro.conf.subcommand("bench", prefix_name=False)]
     | Annotated[Report, tyro.conf.subcommand("report", prefix_name=False)]
     | Annotated[Robot, tyro.conf.subcommand("robot", prefix_name=False)]
     | Annotated[Demo, tyro.conf.subcommand("demo", prefix_name=False)]

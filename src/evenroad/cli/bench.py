@@ -1,0 +1,107 @@
+"""``evenroad bench``: run a suite of benchmarks into a store; the same command goes on where it stopped."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import tyro
+
+if TYPE_CHECKING:
+    from evenroad.bench.executors import Workers
+    from evenroad.bench.runner import Report
+    from evenroad.bench.suites import Suite
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bench:
+    """Run benchmarks; what the store has is not run again."""
+
+    suite: Annotated[str, tyro.conf.Positional] = "paper"
+    """paper: the published experiments. fair: a new random world in every run."""
+    list: bool = False
+    """Show suites, problems and samplers, and run nothing."""
+    runs: int = 400
+    """Runs of every cell."""
+    quick: bool = False
+    """A taste in minutes; its rows are part of the whole suite's."""
+    only: str = ""
+    """Names of problems, with commas between them; default: all of the suite."""
+    store: Path = Path("results.db")
+    """The SQLite file for the rows; made where there is none."""
+    jobs: int | None = None
+    """Processes (default: one a processor)."""
+    scheduler: str | None = None
+    """Address of a Dask scheduler whose workers run the tasks, tcp://host:port (needs the extra [dask])."""
+    seed: int = 1
+    """Root of the random numbers that draw the sets."""
+    limit: float = 600.0
+    """Seconds for one task, after which its row says timeout."""
+    retry: bool = False
+    """Run tasks again that failed, took too long or lost their worker."""
+
+    def run(self) -> int:
+        """Run what is missing, print a table of success; exit code 1 if a run gave no answer."""
+        from evenroad.bench.suites import SUITES
+        from evenroad.errors import InvalidValue, UnknownName
+
+        if self.list:
+            from evenroad.cli.bench_table import print_catalogue
+
+            print_catalogue()
+            return 0
+        if self.suite not in SUITES:
+            raise UnknownName.among("suite", self.suite, SUITES)
+        if self.jobs is not None and self.scheduler is not None:
+            raise InvalidValue("--jobs does not go with --scheduler, whose workers are counted there")
+        only = [name.strip() for name in self.only.split(",") if name.strip()]
+        suite = SUITES[self.suite](runs=self.runs, seed=self.seed, only=only, quick=self.quick)
+        report = self._run(suite)
+        self._print(suite, report)
+        return 1 if report.failures else 0
+
+    def _run(self, suite: Suite) -> Report:
+        from evenroad.bench.runner import run_tasks
+        from evenroad.bench.store import open_store
+        from evenroad.cli.interrupt import interrupt_between_steps
+        from evenroad.cli.progress import progress_bar
+
+        workers = self._workers()
+        with (
+            open_store(self.store) as store,
+            interrupt_between_steps() as check,
+            progress_bar(f"bench {suite.name}, {len(suite.tasks)} tasks") as show,
+        ):
+
+            def callback(finished: int, tasks: int) -> None:
+                show(finished, tasks)
+                check()
+
+            return run_tasks(
+                suite.name,
+                suite.tasks,
+                store,
+                workers,
+                callback=callback,
+                limit=self.limit,
+                retry=self.retry,
+            )
+
+    def _workers(self) -> Workers:
+        from evenroad.bench.executors import in_process, processes
+
+        if self.scheduler is not None:
+            from evenroad.bench.schedulers import dask_workers
+
+            return dask_workers(self.scheduler)
+        return in_process() if self.jobs == 1 else processes(self.jobs)
+
+    def _print(self, suite: Suite, report: Report) -> None:
+        from evenroad.bench.store import read_rows
+        from evenroad.cli.bench_table import print_success
+
+        print_success(suite, read_rows(self.store, problems=sorted({task.problem for task in suite.tasks})))
+        failures = f", {report.failures} of them failures" if report.failures else ""
+        print(f"{self.store}: {report.finished} tasks run now{failures}, {report.found} found done")
+        print(f"report: evenroad report {self.store} -o out/")
