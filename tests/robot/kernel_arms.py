@@ -1,0 +1,167 @@
+"""Robots and scenes to test with: a UR5 written down by hand, a 7-joint arm, random trees."""
+
+import math
+
+import numpy as np
+
+from evenroad.robot.capsule import Capsule
+from evenroad.robot.joint import Joint, Mimic
+from evenroad.robot.robot import Robot
+from evenroad.robot.scene import Obstacle, Scene
+
+STRAIGHT = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+PITCHED = (0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0)
+X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+
+LINKS = ("base", "shoulder", "upperarm", "forearm", "wrist1", "wrist2", "wrist3")
+CAPSULES = (
+    (0, (-0.0183, -0.0145), (-0.0183, 0.0285), 0.0919),
+    (1, (-0.0004, -0.0201), (-0.0004, 0.0185), 0.0741),
+    (1, (-0.0003, -0.0001), (0.0319, -0.0001), 0.0722),
+    (2, (-0.0207, -0.0005), (0.0218, -0.0005), 0.0739),
+    (2, (-0.0008, -0.0003), (-0.0008, 0.4265), 0.0595),
+    (2, (-0.0216, 0.4231), (0.0179, 0.4231), 0.0745),
+    (3, (-0.0153, 0.0007), (0.0226, 0.0007), 0.0672),
+    (3, (0.0007, -0.0005), (0.0007, 0.3666), 0.0403),
+    (3, (-0.0292, 0.3924), (0.0225, 0.3924), 0.0456),
+    (4, (0.0798, -0.0001), (0.0799, -0.0001), 0.0506),
+    (4, (0.0925, -0.0210), (0.0925, 0.0116), 0.0524),
+    (5, (0.0023, 0.0603), (0.0023, 0.1113), 0.0408),
+    (5, (-0.0189, 0.0946), (0.0143, 0.0946), 0.0510),
+    (6, (0.0630, 0.0013), (0.0630, 0.0013), 0.0420),
+)
+PAIRS = ("03", "04", "05", "06", "13", "14", "15", "16", "24", "25", "26", "35", "36")
+
+
+def ur5(limits=math.tau, joints=6):
+    """The UR5 with `joints` planned joints, the others held at 0; all of them from -limits to limits."""
+    pi = math.pi
+    rows = (
+        ("shoulder_pan_joint", (0.0, 0.0, 0.089159), STRAIGHT, Z, (-limits, limits), 3.15),
+        ("shoulder_lift_joint", (0.0, 0.13585, 0.0), PITCHED, Y, (-limits, limits), 3.15),
+        ("elbow_joint", (0.0, -0.1197, 0.425), STRAIGHT, Y, (-pi, pi), 3.15),
+        ("wrist_1_joint", (0.0, 0.0, 0.39225), PITCHED, Y, (-limits, limits), 3.2),
+        ("wrist_2_joint", (0.0, 0.093, 0.0), STRAIGHT, Z, (-limits, limits), 3.2),
+        ("wrist_3_joint", (0.0, 0.0, 0.09465), STRAIGHT, Y, (-limits, limits), 3.2),
+    )
+    chain = tuple(
+        Joint(name, "revolute", LINKS[i], LINKS[i + 1], xyz, rotation, axis, *ends, speed)
+        for i, (name, xyz, rotation, axis, ends, speed) in enumerate(rows)
+    )
+    capsules = tuple(Capsule(LINKS[i], (0.0, *a), (0.0, *b), radius) for i, a, b, radius in CAPSULES)
+    pairs = tuple((LINKS[int(a)], LINKS[int(b)]) for a, b in PAIRS)
+    return Robot("ur5", LINKS, chain, capsules, pairs, tuple(row[0] for row in rows[:joints]))
+
+
+def box_scene(inner=0.36):
+    """A table, and on it a box with its open face towards the robot: the scenes "c" (0.36) and "a" (0.30)."""
+    wall, depth, x, z = 0.01, 0.40, 0.70, 0.191
+    half = inner / 2 + wall / 2
+    obstacles = (
+        Obstacle("table", "box", (1.0, 1.2, 0.05), (0.25, 0.0, -0.025), cell=True),
+        Obstacle("left", "box", (depth, wall, inner + 2 * wall), (x, half, z)),
+        Obstacle("right", "box", (depth, wall, inner + 2 * wall), (x, -half, z)),
+        Obstacle("floor", "box", (depth, inner, wall), (x, 0.0, z - half)),
+        Obstacle("roof", "box", (depth, inner, wall), (x, 0.0, z + half)),
+        Obstacle(
+            "back", "box", (wall, inner + 2 * wall, inner + 2 * wall), (x + depth / 2 + wall / 2, 0.0, z)
+        ),
+    )
+    allowed = frozenset({("base", "table"), ("shoulder", "table")})
+    return Scene("box", obstacles, allowed)
+
+
+def random_rotation(rng):
+    """A rotation (9 floats), uniform."""
+    q = rng.normal(size=4)
+    w, x, y, z = q / np.linalg.norm(q)
+    return (
+        1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
+        2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+        2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y),
+    )  # fmt: skip
+
+
+def seven_joint_arm():
+    """An arm of seven joints in the proportions of common ones: 1.2 m of reach, joints turn about z and y."""
+    lengths = (0.34, 0.0, 0.40, 0.0, 0.40, 0.0, 0.126)
+    links = ("base", *(f"link{i}" for i in range(1, 8)))
+    joints = tuple(
+        Joint(
+            f"joint{i + 1}", "revolute", links[i], links[i + 1],
+            (0.0, 0.0, lengths[i]), STRAIGHT, Y if i % 2 else Z, -2.9, 2.9, 1.7,
+        )
+        for i in range(7)
+    )  # fmt: skip
+    above = (*lengths[1:], 0.08)
+    capsules = [Capsule("base", (0.0, 0.0, 0.06), (0.0, 0.0, 0.16), 0.09)]
+    for i, link in enumerate(links[1:]):
+        radius = 0.085 - 0.006 * i
+        capsules.append(Capsule(link, (0.0, 0.0, 0.0), (0.0, 0.0, 0.55 * above[i]), radius))
+        if above[i] > 0.1:
+            capsules.append(
+                Capsule(link, (0.0, 0.0, 0.55 * above[i]), (0.0, 0.0, 0.8 * above[i]), 0.9 * radius)
+            )
+    pairs = tuple((links[a], links[b]) for a in range(8) for b in range(a + 3, 8))
+    return Robot("seven", links, joints, tuple(capsules), pairs, tuple(joint.name for joint in joints))
+
+
+def random_tree(seed):
+    """A robot as files may bring: a branching tree of every kind of joint, some of them held or mimics."""
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(6, 12))
+    links, joints = ["root"], []
+    kinds = ["revolute", "revolute", "continuous", "prismatic", "fixed"]
+    for i in range(count):
+        axis = rng.normal(size=3)
+        axis /= np.linalg.norm(axis)
+        kind = "revolute" if i == 0 else str(rng.choice(kinds))
+        parent = links[max(0, len(links) - 1 - int(rng.integers(0, 3)))]
+        lower, upper = {
+            "revolute": (-rng.uniform(0.5, 3.0), rng.uniform(0.5, 3.0)),
+            "continuous": (-math.inf, math.inf),
+            "prismatic": (-rng.uniform(0.0, 0.1), rng.uniform(0.1, 0.3)),
+            "fixed": (0.0, 0.0),
+        }[kind]
+        mimic = None
+        movable = [j.name for j in joints if j.kind in ("revolute", "prismatic") and j.mimic is None]
+        if kind in ("revolute", "prismatic") and movable and rng.random() < 0.2:
+            mimic = Mimic(str(rng.choice(movable)), rng.uniform(-1.5, 1.5), rng.uniform(-0.2, 0.2))
+        links.append(f"link{i}")
+        joints.append(
+            Joint(
+                f"joint{i}", kind, parent, links[-1], tuple(rng.uniform(-0.15, 0.15, 3)),
+                random_rotation(rng), tuple(axis), lower, upper, 1.0, mimic,
+            )
+        )  # fmt: skip
+    capsules = []
+    for link in links:
+        for _ in range(int(rng.integers(0, 3)) or int(link == links[-1])):
+            a = rng.uniform(-0.05, 0.05, 3)
+            b = a if rng.random() < 0.25 else a + rng.uniform(-0.15, 0.15, 3)
+            capsules.append(Capsule(link, tuple(a), tuple(b), rng.uniform(0.015, 0.04)))
+    # Far enough apart along the tree that a movable joint is in between: others would always or never touch.
+    apart = [(a, b) for a in range(count + 1) for b in range(a + 1, count + 1) if b - a >= 3]
+    carried = {joint.child: joint for joint in joints}
+    pairs = tuple(
+        (links[a], links[b])
+        for a, b in apart
+        if rng.random() < 0.3 and carried[links[b]].kind in ("revolute", "continuous")
+    )
+    free = [j.name for j in joints if j.kind != "fixed" and j.mimic is None]
+    group = tuple(free[:1] + [name for name in free[1:] if rng.random() < 0.85])
+    return Robot(f"tree{seed}", tuple(links), tuple(joints), tuple(capsules), pairs, group, {})
+
+
+def random_scene(seed, count=12, spread=0.8, sizes=(0.05, 0.2), clear=0.3):
+    """Obstacles of every shape, turned or not, at random places `clear` from the origin."""
+    rng = np.random.default_rng(seed)
+    obstacles = []
+    while len(obstacles) < count:
+        shape = str(rng.choice(["box", "sphere", "cylinder", "capsule"]))
+        size = tuple(rng.uniform(*sizes, {"box": 3, "sphere": 1}.get(shape, 2)))
+        rotation = STRAIGHT if rng.random() < 0.4 else random_rotation(rng)
+        place = rng.uniform(-spread, spread, 3)
+        if np.linalg.norm(place) > clear:
+            obstacles.append(Obstacle(f"obstacle{len(obstacles)}", shape, size, tuple(place), rotation))
+    return Scene(f"random{seed}", tuple(obstacles))

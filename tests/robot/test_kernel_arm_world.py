@@ -1,0 +1,300 @@
+"""ArmWorld: the contract of worlds, motions, words, and values that it refuses."""
+
+import math
+import pickle
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from evenroad.errors import InvalidValue, NotAvailable, UnknownName
+from evenroad.robot import arm_world
+from evenroad.robot.arm_world import ArmWorld
+from evenroad.robot.capsule import Capsule
+from evenroad.robot.joint import Joint, Mimic
+from evenroad.robot.kernel import scalar_batch, selftest
+from evenroad.robot.kernel.tables import pack
+from evenroad.robot.robot import Robot
+from evenroad.robot.scene import Obstacle, Scene
+from evenroad.testing import WorldContract
+from evenroad.world import FunctionWorld
+from tests.robot.kernel_arms import STRAIGHT, Z, box_scene, random_scene, random_tree, ur5
+
+HOME = np.array([0.0, -math.pi / 2, 0.0, -math.pi / 2, 0.0])
+INSIDE = np.array([-0.1216, -0.6993, 1.2160, -2.1070, 2.3023])
+
+
+class TestLanes(WorldContract):
+    world = ArmWorld(ur5(), box_scene(), backend="lanes")
+    free_between = False
+
+
+class TestScalar(WorldContract):
+    world = ArmWorld(ur5(), box_scene(), backend="scalar")
+    free_between = False
+
+
+class TestATreeWithJointsThatWrap(WorldContract):
+    world = ArmWorld(random_tree(8), random_scene(108, spread=0.7, clear=0.45))
+    free_between = False
+
+    def test_some_joint_wraps(self):
+        assert np.isfinite(self.world.bounds[2]).any()
+
+    def test_full_turns_change_nothing(self):
+        q = self.places()
+        turned = q + np.where(np.isfinite(self.world.bounds[2]), 4.0 * math.pi, 0.0)
+        assert np.mean(self.world.valid(turned) == self.world.valid(q)) > 0.99
+
+
+def five_joints(**changes):
+    return ArmWorld(ur5(math.pi, joints=5), box_scene(), **changes)
+
+
+def test_home_and_a_place_inside_the_box_are_free():
+    assert five_joints().valid(np.stack([HOME, INSIDE])).all()
+
+
+@pytest.mark.parametrize("backend", ["lanes", "scalar"])
+@pytest.mark.parametrize("resolution", [0.05, 0.31, 2.0])
+def test_a_motion_is_free_where_all_its_states_are(backend, resolution):
+    """The states of FunctionWorld, k / n of the way, whatever the order and the number of lanes."""
+    world = five_joints(backend=backend, resolution=resolution)
+    q = world.space.from_cube(np.random.default_rng(5).random((4_000, 5)))
+    q = q[world.valid(q)]
+    a, b = q[:500], q[500:1000]
+    b = world.space.interpolate(a, b, np.random.default_rng(6).random(len(a)) ** 2)
+    slow = FunctionWorld(world.space, world.valid, resolution)
+    free = world.motion_valid(a, b)
+    assert 0.1 < free.mean() < 0.99
+    np.testing.assert_array_equal(free, slow.motion_valid(a, b))
+
+
+@pytest.mark.parametrize("segments", [1, 2, 14, 15, 16, 17, 29, 30, 31, 32, 47, 48, 100])
+def test_every_state_of_a_motion_is_looked_at(segments):
+    """A ball that turns on a wheel meets a post at one state only, which must be found wherever it is."""
+    turn = Joint("turn", "revolute", "base", "wheel", (0.0, 0.0, 0.0), STRAIGHT, Z, 0.0, 2.0)
+    robot = Robot(
+        "wheel",
+        ("base", "wheel"),
+        (turn,),
+        (Capsule("wheel", (1.0, 0.0, 0.0), (1.0, 0.0, 0.0), 1e-3),),
+        (),
+        ("turn",),
+    )
+    length = 1.9
+    for state in range(segments + 1):
+        angle = length * state / segments
+        post = Obstacle("post", "sphere", (1e-3,), (math.cos(angle), math.sin(angle), 0.0))
+        world = ArmWorld(robot, Scene("one post", (post,)), resolution=length / segments * (1.0 + 1e-9))
+        assert not world.motion_valid([[0.0]], [[length]])[0], state
+        between = angle + 0.5 * length / segments
+        if state < segments:
+            beside = replace(post, xyz=(math.cos(between), math.sin(between), 0.0))
+            world = ArmWorld(robot, Scene("beside", (beside,)), resolution=length / segments * (1.0 + 1e-9))
+            assert world.motion_valid([[0.0]], [[length]])[0], state
+
+
+def test_the_two_backends_give_the_same_motions():
+    q = five_joints().space.from_cube(np.random.default_rng(7).random((4_000, 5)))
+    a, b = q[:2_000], q[2_000:]
+    np.testing.assert_array_equal(
+        five_joints(backend="lanes").motion_valid(a, b), five_joints(backend="scalar").motion_valid(a, b)
+    )
+
+
+# ---- words
+
+
+def test_explain_names_the_two_links_that_touch():
+    world = five_joints()
+    assert world.explain([0.0, -math.pi / 2, 3.0, 0.0, 0.0]) == "'base' touches 'forearm'"
+
+
+def test_explain_names_the_link_and_the_obstacle_that_touch():
+    world = five_joints()
+    assert world.explain([0.0, 0.5, 0.0, 0.0, 0.0]).endswith("touches 'table'")
+
+
+def test_explain_names_the_joint_outside_its_limits_and_by_how_much():
+    text = five_joints().explain([0.0, 0.0, math.pi + 0.25, 0.0, 0.0])
+    assert "'elbow_joint'" in text
+    assert "0.25 outside its limits" in text
+
+
+def test_explain_has_a_reason_for_whatever_is_not_free():
+    world = five_joints()
+    q = world.space.from_cube(np.random.default_rng(8).random((500, 5)))
+    texts = [world.explain(row) for row in q[~world.valid(q)]]
+    assert texts
+    assert all("touches" in text for text in texts)
+    assert world.explain(HOME) == "it is free"
+
+
+def test_bodies_that_stand_in_contact_block_everything_and_are_named():
+    scene = box_scene()
+    sunk = replace(scene, obstacles=(*scene.obstacles, Obstacle("post", "sphere", (0.1,), (0.0, 0.0, 0.0))))
+    world = ArmWorld(ur5(), sunk)
+    assert not world.valid(np.zeros((3, 6))).any()
+    assert not world.motion_valid(np.zeros((3, 6)), np.ones((3, 6))).any()
+    assert world.explain(np.zeros(6)) == "'base' touches 'post'"
+
+
+# ---- limits
+
+
+def test_outside_the_limits_nothing_is_free_however_far():
+    world = five_joints()
+    far = np.tile(HOME, (4, 1))
+    far[:, 2] = [math.pi + 1e-9, -4.0, 1e30, 1e300]
+    assert not world.valid(far).any()
+    assert not world.motion_valid(far, np.tile(HOME, (4, 1))).any()
+
+
+def test_an_obstacle_out_of_reach_changes_nothing():
+    scene = box_scene()
+    far = Obstacle("far", "box", (1.0, 1.0, 1.0), (50.0, 0.0, 0.0))
+    world, more = ArmWorld(ur5(), scene), ArmWorld(ur5(), replace(scene, obstacles=(*scene.obstacles, far)))
+    assert len(more.model.obstacles) == len(world.model.obstacles)
+    q = world.space.from_cube(np.random.default_rng(9).random((1_000, 6)))
+    np.testing.assert_array_equal(world.valid(q), more.valid(q))
+
+
+def test_a_floor_of_a_hundred_kilometres_costs_no_digits():
+    def floor(width):
+        slab = Obstacle("floor", "box", (width, width, 0.2), (0.3 * width, 0.0, -0.1))
+        return ArmWorld(ur5(), Scene("floor", (slab,), frozenset({("base", "floor"), ("shoulder", "floor")})))
+
+    q = floor(10.0).space.from_cube(np.random.default_rng(10).random((20_000, 6)))
+    free = floor(10.0).valid(q)
+    assert 0.1 < free.mean() < 0.9
+    np.testing.assert_array_equal(floor(1e5).valid(q), free)
+
+
+def test_a_robot_that_no_joint_moves_about_obstacles_only_has_limits():
+    turn = Joint("turn", "revolute", "base", "wheel", (0.0, 0.0, 0.0), STRAIGHT, Z, 0.0, 2.0)
+    robot = Robot(
+        "wheel", ("base", "wheel"), (turn,), (Capsule("base", (0, 0, 0), (0, 0, 1), 0.1),), (), ("turn",)
+    )
+    for backend in ("lanes", "scalar"):
+        world = ArmWorld(robot, Scene("empty", ()), backend=backend)
+        np.testing.assert_array_equal(world.valid([[-0.1], [0.0], [2.0], [2.1]]), [False, True, True, False])
+
+
+# ---- backends
+
+
+def test_the_small_robot_of_the_self_test_has_its_verdicts_in_double_precision():
+    tables = pack(selftest.small_model())
+    free = scalar_batch.configurations_free(
+        selftest.small_batch(), selftest.small_bounds(), tables.ints, tables.floats
+    )
+    np.testing.assert_array_equal(free, selftest.expected_verdicts())
+    assert selftest.lanes_work()
+
+
+def test_where_the_lanes_do_not_work_the_fallback_is_taken_and_said(monkeypatch):
+    monkeypatch.setattr(arm_world, "lanes_work", lambda: False)
+    assert five_joints().backend == "scalar"
+    assert five_joints().valid(HOME[np.newaxis])[0]
+    with pytest.raises(NotAvailable, match="backend='scalar'"):
+        five_joints(backend="lanes")
+
+
+def test_wrong_verdicts_of_the_lanes_are_found_out(monkeypatch):
+    selftest.lanes_work.cache_clear()
+    monkeypatch.setattr(selftest, "expected_verdicts", lambda: np.zeros(64, dtype=bool))
+    assert not selftest.lanes_work()
+    selftest.lanes_work.cache_clear()
+
+
+def test_a_world_can_be_sent_to_another_process():
+    world = five_joints()
+    q = world.space.from_cube(np.random.default_rng(3).random((200, 5)))
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(world)).valid(q), world.valid(q))
+
+
+# ---- values that are refused
+
+
+@pytest.mark.parametrize(
+    ("changes", "error", "words"),
+    [
+        ({"resolution": 0.0}, InvalidValue, "resolution"),
+        ({"resolution": 1e-12}, InvalidValue, "resolution must be larger"),
+        ({"backend": "gpu"}, UnknownName, "auto, lanes, scalar"),
+    ],
+)
+def test_an_argument_out_of_range_is_named(changes, error, words):
+    with pytest.raises(error, match=words):
+        five_joints(**changes)
+
+
+@pytest.mark.parametrize(
+    ("change", "error", "words"),
+    [
+        ({"group": ("elbow_joint", "elbow_joint")}, InvalidValue, "each once"),
+        ({"group": ()}, InvalidValue, "one joint or more"),
+        ({"group": ("knee",)}, UnknownName, "unknown joint 'knee'"),
+        ({"capsules": ()}, InvalidValue, "no capsules"),
+        ({"capsules": (Capsule("hand", (0, 0, 0), (0, 0, 1), 0.1),)}, UnknownName, "unknown link 'hand'"),
+        ({"capsules": (Capsule("base", (0, 0, 0), (0, 0, 1), 0.0),)}, InvalidValue, "radius > 0"),
+        ({"capsules": (Capsule("base", (0, 0, math.nan), (0, 0, 1), 0.1),)}, InvalidValue, "finite"),
+        ({"pairs": (("base", "hand"),)}, UnknownName, "unknown link 'hand'"),
+        ({"held": {"knee": 1.0}}, UnknownName, "unknown joint 'knee'"),
+    ],
+)
+def test_a_robot_that_is_not_sound_is_refused(change, error, words):
+    with pytest.raises(error, match=words):
+        ArmWorld(replace(ur5(), **change), box_scene())
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"lower": 1.0, "upper": -1.0}, "lower below upper"),
+        ({"upper": math.inf}, "must have limits"),
+        ({"kind": "fixed"}, "cannot be planned for"),
+        ({"mimic": Mimic("elbow_joint")}, "cannot be planned for"),
+        ({"axis": (0.0, 0.0, 0.0)}, "must be a direction"),
+        ({"xyz": (0.0, math.nan, 0.0)}, "finite numbers"),
+    ],
+)
+def test_a_joint_that_is_not_sound_is_refused(change, words):
+    robot = ur5()
+    joints = (replace(robot.joints[0], **change), *robot.joints[1:])
+    with pytest.raises(InvalidValue, match=words):
+        ArmWorld(replace(robot, joints=joints), box_scene())
+
+
+def test_a_mimic_that_a_full_turn_brings_elsewhere_is_refused():
+    turn = Joint("turn", "continuous", "a", "b", (0.0, 0.0, 0.0), STRAIGHT, Z, -math.inf, math.inf)
+    half = Joint(
+        "half", "revolute", "b", "c", (0.0, 0.0, 0.0), STRAIGHT, Z, -1.0, 1.0, mimic=Mimic("turn", 0.5)
+    )
+    robot = Robot(
+        "gear", ("a", "b", "c"), (turn, half), (Capsule("c", (0, 0, 0), (1, 0, 0), 0.1),), (), ("turn",)
+    )
+    with pytest.raises(InvalidValue, match="whole multiple"):
+        ArmWorld(robot, Scene("empty", ()))
+
+
+@pytest.mark.parametrize(
+    ("obstacle", "error", "words"),
+    [
+        (Obstacle("x", "cone", (1.0,), (0, 0, 0)), UnknownName, "box, capsule, cylinder, sphere"),
+        (Obstacle("x", "box", (1.0, 1.0), (0, 0, 0)), InvalidValue, "'x', a box, must have 3"),
+        (Obstacle("x", "sphere", (-1.0,), (0, 0, 0)), InvalidValue, "> 0"),
+        (Obstacle("x", "sphere", (1.0,), (0, math.inf, 0)), InvalidValue, "finite place"),
+        (Obstacle("x", "sphere", (1.0,), (0, 0, 0), (2.0, *STRAIGHT[1:])), InvalidValue, "rotation"),
+    ],
+)
+def test_an_obstacle_that_is_not_sound_is_refused(obstacle, error, words):
+    with pytest.raises(error, match=words):
+        ArmWorld(ur5(), Scene("x", (obstacle,)))
+
+
+@pytest.mark.parametrize("pair", [("hand", "table"), ("base", "chair")])
+def test_an_allowed_contact_of_something_unknown_is_refused(pair):
+    with pytest.raises(UnknownName, match="hand|chair"):
+        ArmWorld(ur5(), replace(box_scene(), allowed=frozenset({pair})))
