@@ -121,7 +121,7 @@ def rotation_from_z(axis: tuple[float, float, float]) -> Matrix:
     if not (math.isfinite(length) and length > 0.0):
         raise InvalidValue(f"the axis of a joint must be a direction, got {axis!r}")
     z /= length
-    if z[2] == 1.0:
+    if z[0] == 0.0 and z[1] == 0.0 and z[2] > 0.0:
         return np.eye(3)
     # The coordinate axis farthest from z: never near parallel to it.
     x = np.cross(np.eye(3)[np.abs(z).argmin()], z)
