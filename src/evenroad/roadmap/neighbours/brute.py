@@ -17,7 +17,7 @@ BLOCK = 1 << 18
 def k_nearest_in(
     space: Space, q: npt.NDArray[np.float64], k: int, *, earlier: bool = False
 ) -> npt.NDArray[np.int32]:
-    """Return what `kdtree.k_nearest` returns, by ``space.distance`` of all pairs: O(n^2) time, O(n k) memory."""
+    """Return what `kdtree.k_nearest` returns, by the distances of all pairs: O(n^2) time, O(n k) memory."""
     n = len(q)
     k = min(k, n - 1)
     if k < 1:
