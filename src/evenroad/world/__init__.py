@@ -1,5 +1,6 @@
 """Worlds: which configurations and motions are free, in batches."""
 
+from evenroad.world.chain import ChainWorld as ChainWorld
 from evenroad.world.corridor import Corridor as Corridor
 from evenroad.world.corridor import hypercube_legacy6 as hypercube_legacy6
 from evenroad.world.counting import Counting as Counting
@@ -7,6 +8,9 @@ from evenroad.world.function import FunctionWorld as FunctionWorld
 from evenroad.world.gridmap import GridMap as GridMap
 from evenroad.world.gridmap import MapFrame as MapFrame
 from evenroad.world.gridmap import load_map as load_map
+from evenroad.world.mesh import MeshWorld as MeshWorld
+from evenroad.world.mesh import TriangleMesh as TriangleMesh
+from evenroad.world.mesh import load_mesh as load_mesh
 from evenroad.world.protocol import Explains as Explains
 from evenroad.world.protocol import World as World
 from evenroad.world.solids import OrientedBox as OrientedBox
