@@ -162,9 +162,8 @@ def _with_direct_mimics(joints: list[Joint], path: Path) -> list[Joint]:
         multiplier, offset, followed, seen = 1.0, 0.0, joint, [joint.name]
         while followed.mimic is not None:
             name = followed.mimic.joint
-            if name not in by_name or by_name[name].kind == "fixed":
-                what = "is fixed" if name in by_name else "is no joint"
-                raise BrokenFile(f"joint {followed.name!r} in {path} mimics {name!r}, which {what}")
+            if by_name[name].kind == "fixed":
+                raise BrokenFile(f"joint {followed.name!r} in {path} mimics {name!r}, which is fixed")
             if name in seen:
                 raise BrokenFile(
                     f"joints of {path} mimic each other in a circle: {' -> '.join([*seen, name])}"

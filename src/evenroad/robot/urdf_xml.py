@@ -79,6 +79,13 @@ def read_urdf_xml(path: Path) -> ElementTree.Element:
             _check(owner, path)
     if root.find("link") is None:
         raise BrokenFile(f"{path} has no links")
+    names = {joint.attrib["name"] for joint in root.findall("joint")}
+    for joint in root.findall("joint"):
+        mimic = joint.find("mimic")
+        if mimic is not None and mimic.attrib["joint"] not in names:
+            raise BrokenFile(
+                f"joint {joint.attrib['name']!r} in {path} mimics {mimic.attrib['joint']!r}, which is no joint"
+            )
     return root
 
 

@@ -1,0 +1,138 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from evenroad.errors import InvalidValue
+from evenroad.robot import capsule_ends, joint_values, link_poses, load_robot, with_group
+from evenroad.robot.rotation import rotation_from_rpy
+from evenroad.robot.urdf import read_urdf
+from tests.robot.urdf_texts import LIMIT, joint, link, urdf, write
+
+TABLE = (
+    ((0, 0, 0.089159), 0, "z"),
+    ((0, 0.13585, 0), np.pi / 2, "y"),
+    ((0, -0.1197, 0.425), 0, "y"),
+    ((0, 0, 0.39225), np.pi / 2, "y"),
+    ((0, 0.093, 0), 0, "z"),
+    ((0, 0, 0.09465), 0, "y"),
+)
+"""Of a UR5: origin, pitch and axis of each joint."""
+
+
+def _about(axis, angle):
+    c, s = np.cos(angle), np.sin(angle)
+    matrix = np.eye(4)
+    if axis == "x":
+        matrix[1:3, 1:3] = [[c, -s], [s, c]]
+    elif axis == "y":
+        matrix[0, 0], matrix[0, 2], matrix[2, 0], matrix[2, 2] = c, s, -s, c
+    else:
+        matrix[:2, :2] = [[c, -s], [s, c]]
+    return matrix
+
+
+def _shift(xyz):
+    matrix = np.eye(4)
+    matrix[:3, 3] = xyz
+    return matrix
+
+
+def _ur5_flange(q):
+    pose = np.eye(4)
+    for (xyz, pitch, axis), angle in zip(TABLE, q, strict=True):
+        pose = pose @ _shift(xyz) @ _about("y", pitch) @ _about(axis, angle)
+    return pose @ _shift((0, 0.0823, 0)) @ _about("x", -np.pi / 2)
+
+
+def test_the_ur5_stands_where_its_table_of_joints_says():
+    robot = load_robot("ur5")
+    q = np.random.default_rng(0).uniform(-np.pi, np.pi, (50, 6))
+    expected = [_ur5_flange(row) for row in q]
+    np.testing.assert_allclose(link_poses(robot, q)[:, robot.links.index("tool0")], expected, atol=1e-12)
+
+
+def test_the_ur5_at_zero_stretches_along_x():
+    robot = load_robot("ur5")
+    tool = link_poses(robot, np.zeros((1, 6)))[0, -1]
+    np.testing.assert_allclose(tool[:3, 3], [0.81725, 0.19145, -0.005491], atol=1e-9)
+
+
+@settings(max_examples=30, deadline=None)
+@given(q=st.lists(st.floats(-6, 6), min_size=7, max_size=7))
+def test_frames_stay_rigid(q):
+    poses = link_poses(load_robot("arm7"), [q])[0]
+    turned = poses[:, :3, :3]
+    np.testing.assert_allclose(
+        turned @ turned.transpose(0, 2, 1), np.tile(np.eye(3), (len(turned), 1, 1)), atol=1e-12
+    )
+    assert (np.linalg.det(turned) > 0).all()
+
+
+def test_a_slide_moves_along_its_axis_and_a_mimic_follows(tmp_path):
+    from evenroad.robot.load import load_robot as load
+
+    text = urdf(
+        *(link(name) for name in ("base", "cart", "wheel")),
+        joint("slide", "base", "cart", "prismatic", xyz="0 0 1", axis="0 3 4"),
+        joint(
+            "turn",
+            "cart",
+            "wheel",
+            "revolute",
+            LIMIT + "<mimic joint='slide' multiplier='2' offset='0.1'/>",
+            "0 0 0",
+            "0 0 1",
+        ),
+    )
+    robot = load(write(tmp_path, text))
+    assert robot.group == ("slide",)
+    assert {name: value.tolist() for name, value in joint_values(robot, [[0.5]]).items()} == {
+        "slide": [0.5],
+        "turn": [1.1],
+    }
+    cart, wheel = link_poses(robot, [[0.5]])[0, 1:]
+    np.testing.assert_allclose(cart[:3, 3], [0, 0.3, 1.4])
+    np.testing.assert_allclose(wheel[:3, :3], _about("z", 1.1)[:3, :3], atol=1e-15)
+
+
+def test_what_is_not_in_the_group_is_held_within_its_limits(tmp_path):
+    inside = "<limit lower='0.2' upper='1' velocity='1' effort='1'/>"
+    text = urdf(*(link(name) for name in "xyz"), joint("a", "x", "y"), joint("b", "y", "z", inside=inside))
+    robot = load_robot(write(tmp_path, text), group=["a"])
+    assert joint_values(robot, [[0.0]])["b"] == 0.2
+    assert joint_values(with_group(robot, ["a"], {"b": 0.7}), [[0.0]])["b"] == 0.7
+
+
+def test_capsules_move_with_their_links():
+    robot = load_robot("ur5")
+    q = np.random.default_rng(1).uniform(-3, 3, (3, 6))
+    ends, poses = capsule_ends(robot, q), link_poses(robot, q)
+    for i, capsule in enumerate(robot.capsules):
+        for j in range(3):
+            frame = poses[j, robot.links.index(capsule.link)]
+            np.testing.assert_allclose(ends[j, i, 0], (frame @ [*capsule.a, 1])[:3], atol=1e-15)
+            np.testing.assert_allclose(ends[j, i, 1], (frame @ [*capsule.b, 1])[:3], atol=1e-15)
+
+
+@pytest.mark.parametrize("q", [np.zeros(6), np.zeros((2, 5))])
+def test_configurations_of_another_shape_are_refused(q):
+    with pytest.raises(InvalidValue, match=r"q must have the shape \(n, 6\)"):
+        link_poses(load_robot("ur5"), q)
+
+
+@settings(max_examples=50, deadline=None)
+@given(angles=st.tuples(*[st.floats(-7, 7)] * 3))
+def test_roll_pitch_yaw_are_turns_about_fixed_x_y_z(angles):
+    roll, pitch, yaw = angles
+    expected = _about("z", yaw) @ _about("y", pitch) @ _about("x", roll)
+    np.testing.assert_allclose(rotation_from_rpy(*angles), expected[:3, :3].ravel(), atol=1e-14)
+
+
+def test_the_rotation_of_an_origin_is_roll_pitch_yaw(tmp_path):
+    text = urdf(
+        link("x"), link("y"),
+        "<joint name='a' type='fixed'><parent link='x'/><child link='y'/><origin rpy='0.3 -0.7 2.1'/></joint>",
+    )  # fmt: skip
+    rotation = read_urdf(write(tmp_path, text)).joints[0].rotation
+    np.testing.assert_allclose(rotation, rotation_from_rpy(0.3, -0.7, 2.1), atol=1e-14)

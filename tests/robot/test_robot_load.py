@@ -1,0 +1,240 @@
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import trimesh
+
+from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
+from evenroad.robot import load_model, load_robot, with_group, with_limits
+from evenroad.robot.alter import in_scene
+from evenroad.robot.scene import Scene
+from tests.robot.urdf_texts import joint, link, two_joints, urdf, write
+
+CAPSULES = """base      -.0183 -.0145  -.0183  .0285   .0919
+shoulder  -.0004 -.0201  -.0004  .0185   .0741
+shoulder  -.0003 -.0001   .0319 -.0001   .0722
+upper_arm -.0207 -.0005   .0218 -.0005   .0739
+upper_arm -.0008 -.0003  -.0008  .4265   .0595
+upper_arm -.0216  .4231   .0179  .4231   .0745
+forearm   -.0153  .0007   .0226  .0007   .0672
+forearm    .0007 -.0005   .0007  .3666   .0403
+forearm   -.0292  .3924   .0225  .3924   .0456
+wrist_1    .0798 -.0001   .0799 -.0001   .0506
+wrist_1    .0925 -.0210   .0925  .0116   .0524
+wrist_2    .0023  .0603   .0023  .1113   .0408
+wrist_2   -.0189  .0946   .0143  .0946   .0510
+wrist_3    .0630  .0013   .0630  .0013   .0420"""
+"""Of the UR5: link, then y and z of both ends, then the radius."""
+
+
+def test_the_ur5_has_its_capsules_its_limits_and_its_names():
+    robot = load_robot("ur5")
+    for capsule, row in zip(robot.capsules, CAPSULES.splitlines(), strict=True):
+        name, *numbers = row.split()
+        ay, az, by, bz, radius = map(float, numbers)
+        assert capsule.link == f"{name}_link"
+        np.testing.assert_allclose([*capsule.a, *capsule.b], [0, ay, az, 0, by, bz], atol=1e-15)
+        assert capsule.radius == radius
+    names = ("shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3")
+    assert robot.group == tuple(f"{name}_joint" for name in names)
+    moving = [joint for joint in robot.joints if joint.kind != "fixed"]
+    assert [joint.upper for joint in moving] == [2 * np.pi, 2 * np.pi, np.pi, 2 * np.pi, 2 * np.pi, 2 * np.pi]
+    assert [joint.lower for joint in moving] == [-joint.upper for joint in moving]
+    assert [joint.velocity for joint in moving] == [3.15, 3.15, 3.15, 3.2, 3.2, 3.2]
+
+
+def test_the_arm_of_seven_joints_has_seven():
+    robot = load_robot("arm7")
+    assert len(robot.group) == 7
+    assert robot.pairs
+
+
+def test_a_file_goes_before_a_shipped_name(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write(tmp_path, two_joints(), "ur5")
+    assert load_robot("ur5").group == ("a", "b")
+
+
+@pytest.mark.parametrize("name", ["ur6", "UR5"])
+def test_an_unknown_robot_gets_the_list_of_shipped_ones(name):
+    with pytest.raises(UnknownName, match=f"no robot file '{name}', and none .* shipped: arm7, ur5"):
+        load_robot(name)
+
+
+def test_a_robot_without_any_body_is_an_error_and_never_a_free_pass(tmp_path):
+    text = urdf(link("x", ""), link("y", ""), joint("a", "x", "y"))
+    with pytest.raises(BrokenFile, match="no collision geometry at all"):
+        load_robot(write(tmp_path, text))
+
+
+BODIES = "lower: [{a: [0, 0, 0], b: [0, 0, 0.2], radius: 0.03}, {centre: [0, 0, 0.3], radius: 0.05}]\n"
+
+
+def test_bodies_of_the_user_take_the_place_of_a_links_own(tmp_path):
+    path = write(tmp_path, two_joints())
+    model = load_model(path, bodies=write(tmp_path, BODIES, "bodies.yaml"))
+    lower = [capsule for capsule in model.robot.capsules if capsule.link == "lower"]
+    assert [(capsule.a, capsule.b, capsule.radius) for capsule in lower] == [
+        ((0, 0, 0), (0, 0, 0.2), 0.03),
+        ((0, 0, 0.3), (0, 0, 0.3), 0.05),
+    ]
+    assert len(model.robot.capsules) == 4
+    assert [body.given for body in model.bodies] == [False, False, True]
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "says"),
+    [
+        ("ghost: [{centre: [0, 0, 0], radius: 1}]", UnknownName, "link in .*'ghost'; known: base"),
+        (
+            "lower: [{centre: [0, 0, 0], radius: 1, colour: red}]",
+            UnknownName,
+            "'colour'; known: centre, radius",
+        ),
+        ("lower: [{a: [0, 0, 0], radius: 1}]", BrokenFile, "a body of link 'lower' in .* lacks b"),
+        (
+            "lower: [{centre: [0, 0], radius: 1}]",
+            InvalidValue,
+            r"must be a list of 3 finite numbers, got \[0, 0\]",
+        ),
+        ("lower: [{centre: [0, 0, 0], radius: 0}]", InvalidValue, "radius of .* > 0, got 0.0"),
+        ("lower: [{centre: [0, 0, 0], radius: 1e-2}]", InvalidValue, "got '1e-2' .*decimal point"),
+        ("lower: []", InvalidValue, "has no body"),
+        ("lower: 3", BrokenFile, "must have a list"),
+        ("hello", BrokenFile, "is not a file of bodies"),
+        ("a: [", BrokenFile, "is not YAML"),
+    ],
+)
+def test_bodies_that_are_wrong_are_named(tmp_path, text, kind, says):
+    with pytest.raises(EvenroadError, match=says) as caught:
+        load_robot(write(tmp_path, two_joints()), bodies=write(tmp_path, text, "bodies.yaml"))
+    assert isinstance(caught.value, kind)
+    assert "\n" not in str(caught.value)
+
+
+def _with_mesh(folder):
+    trimesh.creation.cone(0.05, 0.3).export(folder / "part.stl")
+    body = "<collision><geometry><mesh filename='part.stl' scale='1 1 2'/></geometry></collision>"
+    return write(folder, two_joints(body))
+
+
+def test_a_robot_of_meshes_says_how_much_its_capsules_add(tmp_path):
+    model = load_model(_with_mesh(tmp_path))
+    (body,) = [body for body in model.bodies if body.link == "lower"]
+    assert body.shapes == ("mesh part.stl",)
+    assert body.shape_volume == pytest.approx(np.pi * 0.05**2 * 0.6 / 3, rel=0.02)
+    assert 0.1 < body.added < 4.0
+
+
+def test_a_robot_from_the_cache_is_the_one_that_was_put_there(tmp_path):
+    path = _with_mesh(tmp_path)
+    first = load_model(path)
+    (kept,) = (tmp_path_of_cache() / "robots").iterdir()
+    assert load_model(path) == first
+    assert load_model("ur5") == load_model("ur5")
+    kept.write_text("{")
+    assert load_model(path) == first
+
+
+def tmp_path_of_cache():
+    from evenroad._files import cache_folder
+
+    return cache_folder()
+
+
+@pytest.mark.parametrize("changed", ["urdf", "mesh", "srdf", "bodies", "group"])
+def test_the_cache_takes_notice_of_every_change(tmp_path, changed):
+    path = _with_mesh(tmp_path)
+    srdf = write(
+        tmp_path,
+        "<robot name='a'><group name='g'><joint name='a'/><joint name='b'/></group></robot>",
+        "a.srdf",
+    )
+    bodies = write(tmp_path, BODIES.replace("lower", "upper"), "bodies.yaml")
+    options = {"srdf": srdf, "bodies": bodies, "group": "g"}
+    before = load_robot(path, **options)
+    if changed == "urdf":
+        path.write_text(path.read_text().replace("upper='1'", "upper='0.5'"))
+    elif changed == "mesh":
+        trimesh.creation.cone(0.06, 0.3).export(tmp_path / "part.stl")
+    elif changed == "srdf":
+        srdf.write_text(srdf.read_text().replace("<joint name='b'/>", ""))
+    elif changed == "bodies":
+        bodies.write_text(bodies.read_text().replace("0.05", "0.06"))
+    else:
+        options["group"] = "a"
+    assert load_robot(path, **options) != before
+
+
+def test_a_mesh_that_went_away_is_missed_though_the_robot_is_in_the_cache(tmp_path):
+    path = _with_mesh(tmp_path)
+    load_robot(path)
+    (tmp_path / "part.stl").unlink()
+    with pytest.raises(BrokenFile, match=r"'part.stl' of link 'lower' .* is missing"):
+        load_robot(path)
+
+
+def test_a_cache_that_cannot_be_written_only_costs_time(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("EVENROAD_CACHE", str(tmp_path / "file"))
+    assert load_robot(write(tmp_path, two_joints())).group == ("a", "b")
+
+
+def test_a_cached_robot_waits_for_no_urdf_library(tmp_path):
+    code = (
+        "import sys; from evenroad.robot.load import load_robot; load_robot('ur5');"
+        "print([name for name in ('yourdfpy', 'trimesh', 'scipy.optimize') if name in sys.modules])"
+    )
+    load_robot("ur5")
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=os.environ
+    )
+    assert done.stdout.strip() == "[]"
+
+
+def test_the_record_in_the_cache_is_plain_json():
+    load_robot("arm7")
+    (kept,) = (tmp_path_of_cache() / "robots").iterdir()
+    assert json.loads(kept.read_text())["robot"]["name"] == "arm7"
+
+
+def test_altering_a_robot_leaves_the_robot_as_it_was():
+    robot = load_robot("ur5")
+    narrow = with_limits(
+        with_group(robot, robot.group[:2], {"elbow_joint": 1.0}), {"shoulder_pan_joint": (-1, 1)}
+    )
+    assert (narrow.joints[0].lower, narrow.joints[0].upper) == (-1, 1)
+    assert narrow.held == {"elbow_joint": 1.0}
+    assert robot == load_robot("ur5")
+
+
+def test_a_continuous_joint_that_gets_limits_is_a_revolute_one(tmp_path):
+    robot = load_robot(write(tmp_path, urdf(link("x"), link("y"), joint("a", "x", "y", "continuous", ""))))
+    assert with_limits(robot, {"a": (0, 1)}).joints[0].kind == "revolute"
+
+
+def test_a_scene_can_only_narrow_a_joints_range():
+    robot = load_robot("ur5")
+    scene = Scene("s", (), limits={"elbow_joint": (-1.0, 9.0)})
+    elbow = in_scene(robot, scene).joints[2]
+    assert (elbow.lower, elbow.upper) == (-1.0, np.pi)
+    with pytest.raises(InvalidValue, match="limits of joint 'elbow_joint' must satisfy lower < upper"):
+        in_scene(robot, Scene("s", (), limits={"elbow_joint": (4.0, 9.0)}))
+    with pytest.raises(UnknownName, match="limits of scene 's': 'knee'"):
+        in_scene(robot, Scene("s", (), limits={"knee": (4.0, 9.0)}))
+
+
+@pytest.mark.parametrize(
+    "alter", [lambda robot: with_group(robot, ["knee"]), lambda robot: with_limits(robot, {"knee": (0, 1)})]
+)
+def test_altering_a_joint_that_is_not_there_is_refused(alter):
+    with pytest.raises(UnknownName, match="'knee'"):
+        alter(load_robot("ur5"))
+
+
+def test_a_url_like_name_is_no_shipped_robot(tmp_path):
+    with pytest.raises(BrokenFile, match=r"cannot read the robot no/where\.urdf"):
+        load_robot("no/where.urdf")

@@ -1,0 +1,138 @@
+import pytest
+
+from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
+from evenroad.robot.group import choose_group
+from evenroad.robot.srdf import read_srdf
+from evenroad.robot.urdf import read_urdf
+from tests.robot.urdf_texts import LIMIT, joint, link, urdf, write
+
+ARM = urdf(
+    *(link(name) for name in ("base", "upper", "lower", "hand", "left", "right")),
+    joint("shoulder", "base", "upper"),
+    joint("elbow", "upper", "lower"),
+    joint("flange", "lower", "hand", "fixed", ""),
+    joint("grip", "hand", "left", "prismatic"),
+    joint("follower", "hand", "right", "prismatic", LIMIT + "<mimic joint='grip'/>"),
+)
+
+
+@pytest.fixture
+def read(tmp_path):
+    arm = read_urdf(write(tmp_path, ARM))
+
+    def read(inside):
+        return arm, read_srdf(write(tmp_path, f"<robot name='arm'>{inside}</robot>", "arm.srdf"), arm)
+
+    return read
+
+
+@pytest.mark.parametrize(
+    ("inside", "joints"),
+    [
+        ("<chain base_link='base' tip_link='hand'/>", ("shoulder", "elbow")),
+        ("<chain base_link='upper' tip_link='hand'/>", ("elbow",)),
+        ("<joint name='elbow'/><joint name='shoulder'/>", ("shoulder", "elbow")),
+        ("<joint name='flange'/><joint name='grip'/>", ("grip",)),
+        ("<joint name='grip'/><joint name='follower'/>", ("grip",)),
+        ("<link name='lower'/><link name='base'/>", ("elbow",)),
+        ("<group name='fingers'/><joint name='elbow'/>", ("elbow", "grip")),
+    ],
+)
+def test_a_group_is_what_moves_of_its_parts_in_the_order_of_the_urdf(read, inside, joints):
+    _, srdf = read(f"<group name='g'>{inside}</group><group name='fingers'><joint name='grip'/></group>")
+    assert srdf.groups["g"] == joints
+
+
+def test_states_and_disabled_pairs_are_read(read):
+    _, srdf = read(
+        "<group name='g'><joint name='elbow'/></group>"
+        "<group_state name='bent' group='g'><joint name='elbow' value='0.5'/></group_state>"
+        "<disable_collisions link1='base' link2='upper' reason='Adjacent'/><virtual_joint name='v'/>"
+    )
+    assert srdf.states == {("g", "bent"): {"elbow": 0.5}}
+    assert srdf.disabled == {frozenset(("base", "upper"))}
+
+
+BROKEN = {
+    "a joint that is not there": (
+        "<group name='g'><joint name='knee'/></group>",
+        UnknownName,
+        "unknown joint in .*: 'knee'; known: elbow, flange",
+    ),
+    "a link that is not there": (
+        "<group name='g'><link name='leg'/></group>",
+        UnknownName,
+        "'leg'; known: base",
+    ),
+    "a group that is not there": ("<group name='g'><group name='h'/></group>", UnknownName, "'h'; known: g"),
+    "groups in a circle": (
+        "<group name='g'><group name='h'/></group><group name='h'><group name='g'/></group>",
+        BrokenFile,
+        "contain each other: g -> h -> g",
+    ),
+    "a chain that is none": (
+        "<group name='g'><chain base_link='left' tip_link='right'/></group>",
+        BrokenFile,
+        "'right' does not hang on 'left'",
+    ),
+    "a state of no group": ("<group_state name='s' group='g'/>", UnknownName, "unknown group in .*: 'g'"),
+    "a value that is no number": (
+        "<group name='g'/><group_state name='s' group='g'><joint name='elbow' value='much'/></group_state>",
+        InvalidValue,
+        "joint 'elbow' of a state in .* must be a finite number, got 'much'",
+    ),
+    "a pair of nobody": ("<disable_collisions link1='base' link2='moon'/>", UnknownName, "'moon'"),
+    "a pair of one": (
+        "<disable_collisions link1='base'/>",
+        BrokenFile,
+        "<disable_collisions> in .* lacks 'link2'",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", BROKEN)
+def test_what_is_wrong_in_an_srdf_is_named(case, read):
+    inside, kind, says = BROKEN[case]
+    with pytest.raises(EvenroadError, match=says) as caught:
+        read(inside)
+    assert isinstance(caught.value, kind)
+
+
+def test_an_srdf_that_is_no_xml_or_missing_is_named(tmp_path):
+    arm = read_urdf(write(tmp_path, ARM))
+    with pytest.raises(BrokenFile, match=r"arm\.urdf\.txt is not XML"):
+        read_srdf(write(tmp_path, "hello", "arm.urdf.txt"), arm)
+    with pytest.raises(BrokenFile, match="cannot read the SRDF"):
+        read_srdf(tmp_path / "none.srdf", arm)
+
+
+def test_without_a_wish_the_group_is_the_srdfs_only_one_or_all_that_moves_by_itself(read):
+    arm, srdf = read("<group name='g'><joint name='elbow'/></group>")
+    assert choose_group(arm, srdf, None) == ("elbow",)
+    assert choose_group(arm, None, None) == ("shoulder", "elbow", "grip")
+
+
+def test_a_list_of_joints_is_a_group_in_the_order_of_the_urdf(read):
+    arm, srdf = read("<group name='g'><joint name='elbow'/></group>")
+    assert choose_group(arm, srdf, "grip, shoulder") == ("shoulder", "grip")
+    assert choose_group(arm, srdf, ["grip"]) == ("grip",)
+    assert choose_group(arm, srdf, "g") == ("elbow",)
+
+
+@pytest.mark.parametrize(
+    ("wanted", "kind", "says"),
+    [
+        ("knee", UnknownName, "unknown group 'knee'; known: g, h"),
+        ("elbow,knee", UnknownName, "unknown joint of the group 'knee'; known: elbow, grip, shoulder"),
+        ("elbow,follower", InvalidValue, "'follower' cannot be planned for: it follows 'grip'"),
+        ("elbow,flange", InvalidValue, "'flange' cannot be planned for: it is fixed"),
+        ("elbow,elbow", InvalidValue, "named twice"),
+        ("h", InvalidValue, "group 'h' has no joint"),
+        (None, InvalidValue, "several groups, say which one is planned for: g, h"),
+        ([], InvalidValue, "no joint"),
+    ],
+)
+def test_a_group_that_cannot_be_planned_for_is_refused(read, wanted, kind, says):
+    arm, srdf = read("<group name='g'><joint name='elbow'/></group><group name='h'/>")
+    with pytest.raises(kind, match=says):
+        choose_group(arm, srdf, wanted)

@@ -1,0 +1,281 @@
+import math
+import warnings
+
+import numpy as np
+import pytest
+
+from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
+from evenroad.robot.urdf import read_urdf
+from tests.robot.urdf_texts import LIMIT, SPHERE, joint, link, two_joints, urdf, write
+
+
+def test_links_come_root_first_and_joints_lead_to_them_whatever_the_files_order(tmp_path):
+    text = urdf(
+        joint("b", "upper", "lower"),
+        link("lower"),
+        joint("side", "base", "camera", "fixed", ""),
+        link("camera"),
+        link("upper"),
+        joint("a", "base", "upper"),
+        link("base"),
+    )
+    arm = read_urdf(write(tmp_path, text))
+    assert arm.links[0] == "base"
+    assert [each.child for each in arm.joints] == list(arm.links[1:])
+    for i, each in enumerate(arm.joints):
+        assert each.parent in arm.links[: i + 1]
+    assert arm.order == ("b", "side", "a")
+
+
+def test_numbers_are_read_as_they_stand(tmp_path):
+    text = urdf(
+        link("base"),
+        link("tool"),
+        "<joint name='j' type='prismatic'><parent link='base'/><child link='tool'/>"
+        "<origin xyz='1 2 3' rpy='0 0 1.5707963267948966'/><axis xyz='0 0 2'/>"
+        "<limit lower='-0.1' upper='0.4' velocity='0.5' effort='1'/></joint>",
+    )
+    (each,) = read_urdf(write(tmp_path, text)).joints
+    assert (each.kind, each.xyz, each.axis) == ("prismatic", (1.0, 2.0, 3.0), (0.0, 0.0, 1.0))
+    assert (each.lower, each.upper, each.velocity) == (-0.1, 0.4, 0.5)
+    np.testing.assert_allclose(each.rotation, [0, -1, 0, 1, 0, 0, 0, 0, 1], atol=1e-15)
+
+
+def test_an_axis_that_is_not_given_is_x(tmp_path):
+    text = urdf(
+        link("base"),
+        link("tool"),
+        f"<joint name='j' type='revolute'><parent link='base'/><child link='tool'/>{LIMIT}</joint>",
+    )
+    assert read_urdf(write(tmp_path, text)).joints[0].axis == (1.0, 0.0, 0.0)
+
+
+def test_a_continuous_joint_has_no_limits_and_a_velocity_of_0_means_not_given(tmp_path):
+    inside = "<limit lower='-1' upper='1' velocity='0' effort='0'/>"
+    text = urdf(link("base"), link("tool"), joint("j", "base", "tool", "continuous", inside))
+    (each,) = read_urdf(write(tmp_path, text)).joints
+    assert (each.lower, each.upper, each.velocity) == (-math.inf, math.inf, math.inf)
+
+
+def test_a_mimic_of_a_mimic_follows_the_first_directly(tmp_path):
+    text = urdf(
+        *(link(name) for name in "wxyz"),
+        joint("a", "w", "x"),
+        joint("b", "x", "y", inside=LIMIT + "<mimic joint='a' multiplier='2' offset='0.1'/>"),
+        joint("c", "y", "z", inside=LIMIT + "<mimic joint='b' multiplier='-3' offset='1'/>"),
+    )
+    mimic = read_urdf(write(tmp_path, text)).joints[2].mimic
+    assert mimic.joint == "a"
+    assert (mimic.multiplier, mimic.offset) == pytest.approx((-6.0, 0.7))
+
+
+def test_every_shape_is_read_and_the_capsule_is_not_taken_for_a_cylinder(tmp_path):
+    shapes = (
+        "<box size='1 2 3'/>",
+        "<sphere radius='0.5'/>",
+        "<cylinder radius='0.1' length='2'/>",
+        "<capsule radius='0.2' length='4'/>",
+    )
+    body = "".join(f"<collision><geometry>{shape}</geometry></collision>" for shape in shapes)
+    geometries = read_urdf(write(tmp_path, urdf(link("base", body)))).geometries
+    assert [(each.shape, each.size) for each in geometries] == [
+        ("box", (1.0, 2.0, 3.0)),
+        ("sphere", (0.5,)),
+        ("cylinder", (0.1, 2.0)),
+        ("capsule", (0.2, 4.0)),
+    ]
+
+
+def test_what_is_not_for_collision_is_not_looked_at(tmp_path):
+    body = SPHERE + "<visual><geometry><teapot/></geometry></visual><inertial><mass value='much'/></inertial>"
+    text = urdf(link("base", body), "<transmission name='t'/>", "<gazebo><mesh/></gazebo>")
+    assert len(read_urdf(write(tmp_path, text)).geometries) == 1
+
+
+def test_reading_gives_no_warnings(tmp_path):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        read_urdf(write(tmp_path, two_joints()))
+
+
+BROKEN = {
+    "no XML": ("<robot name='a'><link", BrokenFile, "is not XML"),
+    "an empty file": ("", BrokenFile, "is not XML"),
+    "another kind of XML": ("<sdf/>", BrokenFile, "not a URDF: its outermost element is <sdf>"),
+    "a xacro": (
+        "<robot xmlns:xacro='http://wiki.ros.org/xacro'><xacro:macro name='x'/></robot>",
+        BrokenFile,
+        "is a xacro file; make a URDF of it first",
+    ),
+    "no links": (urdf(), BrokenFile, "has no links"),
+    "a cycle": (
+        urdf(link("x"), link("y"), joint("a", "x", "y"), joint("b", "y", "x")),
+        BrokenFile,
+        "form a cycle: (a -> b -> a|b -> a -> b)",
+    ),
+    "a cycle beside the tree": (
+        urdf(
+            link("w"),
+            link("x"),
+            link("y"),
+            link("z"),
+            joint("t", "w", "z"),
+            joint("a", "x", "y"),
+            joint("b", "y", "x"),
+        ),
+        BrokenFile,
+        "form a cycle: (a -> b -> a|b -> a -> b)",
+    ),
+    "a link that hangs on itself": (
+        urdf(link("x"), joint("a", "x", "x")),
+        BrokenFile,
+        "form a cycle: a -> a",
+    ),
+    "a loop": (
+        urdf(
+            link("x"), link("y"), link("z"), joint("a", "x", "y"), joint("b", "x", "z"), joint("c", "y", "z")
+        ),
+        BrokenFile,
+        "link 'z' in .* hangs on two joints, 'b' and 'c'",
+    ),
+    "two roots": (urdf(link("x"), link("y")), BrokenFile, "more than one root: no joint leads to 'x', 'y'"),
+    "two links of one name": (urdf(link("x"), link("x")), BrokenFile, "more than one link named 'x'"),
+    "two joints of one name": (
+        urdf(link("x"), link("y"), link("z"), joint("a", "x", "y"), joint("a", "y", "z")),
+        BrokenFile,
+        "more than one joint named 'a'",
+    ),
+    "a child that is not there": (
+        urdf(link("x"), joint("a", "x", "ghost")),
+        BrokenFile,
+        "joint 'a' in .* has the child 'ghost', which is no link; links: x",
+    ),
+    "no parent": (
+        urdf(link("x"), "<joint name='a' type='fixed'><child link='x'/></joint>"),
+        BrokenFile,
+        "joint 'a' in .* lacks <parent>",
+    ),
+    "no name": (urdf("<link/>"), BrokenFile, "<link> lacks 'name'"),
+    "no type": (
+        urdf(link("x"), link("y"), "<joint name='a'><parent link='x'/><child link='y'/></joint>"),
+        BrokenFile,
+        "joint 'a' in .*: <joint> lacks 'type'",
+    ),
+    "a type that is not supported": (
+        urdf(link("x"), link("y"), joint("a", "x", "y", "floating")),
+        UnknownName,
+        "type of joint 'a' in .*: 'floating'; known: continuous, fixed, prismatic, revolute",
+    ),
+    "no limits": (
+        urdf(link("x"), link("y"), joint("a", "x", "y", inside="")),
+        BrokenFile,
+        "joint 'a' in .* has no limits: a revolute joint needs <limit lower=... upper=...> .missing: lower, upper",
+    ),
+    "half a limit": (
+        urdf(link("x"), link("y"), joint("a", "x", "y", inside="<limit lower='1' velocity='1' effort='1'/>")),
+        BrokenFile,
+        "missing: upper",
+    ),
+    "limits the wrong way round": (
+        urdf(link("x"), link("y"), joint("a", "x", "y", inside="<limit lower='1' upper='-1'/>")),
+        InvalidValue,
+        "limits of joint 'a' in .* must satisfy lower <= upper, got 1, -1",
+    ),
+    "a limit that is no number": (
+        urdf(link("x"), link("y"), joint("a", "x", "y", inside="<limit lower='low' upper='1'/>")),
+        InvalidValue,
+        "joint 'a' in .*: lower of <limit> must be a finite number, got 'low'",
+    ),
+    "a limit that is not finite": (
+        urdf(link("x"), link("y"), joint("a", "x", "y", inside="<limit lower='nan' upper='1'/>")),
+        InvalidValue,
+        "got 'nan'",
+    ),
+    "a negative velocity": (
+        urdf(link("x"), link("y"), joint("a", "x", "y", inside="<limit lower='0' upper='1' velocity='-1'/>")),
+        InvalidValue,
+        "velocity limit of joint 'a' in .* must be >= 0, got -1",
+    ),
+    "an axis of zero": (
+        urdf(link("x"), link("y"), joint("a", "x", "y", axis="0 0 0")),
+        InvalidValue,
+        "axis of joint 'a' in .* must not be zero",
+    ),
+    "an origin of two numbers": (
+        urdf(link("x"), link("y"), joint("a", "x", "y", xyz="0 1")),
+        InvalidValue,
+        "joint 'a' in .*: xyz of <origin> must be 3 finite numbers, got '0 1'",
+    ),
+    "a mimic of nobody": (
+        urdf(link("x"), link("y"), joint("a", "x", "y", inside=LIMIT + "<mimic joint='b'/>")),
+        BrokenFile,
+        "joint 'a' in .* mimics 'b', which is no joint",
+    ),
+    "a mimic of a joint that does not move": (
+        urdf(
+            *(link(name) for name in "xyz"),
+            joint("a", "x", "y", "fixed", ""),
+            joint("b", "y", "z", inside=LIMIT + "<mimic joint='a'/>"),
+        ),
+        BrokenFile,
+        "joint 'b' in .* mimics 'a', which is fixed",
+    ),
+    "mimics in a circle": (
+        urdf(
+            *(link(name) for name in "xyz"),
+            joint("a", "x", "y", inside=LIMIT + "<mimic joint='b'/>"),
+            joint("b", "y", "z", inside=LIMIT + "<mimic joint='a'/>"),
+        ),
+        BrokenFile,
+        "mimic each other in a circle: a -> b -> a",
+    ),
+    "geometry that is missing": (
+        urdf(link("x", "<collision/>")),
+        BrokenFile,
+        "link 'x' in .*: the geometry of a <collision> is empty",
+    ),
+    "geometry that is empty": (
+        urdf(link("x", "<collision><geometry/></collision>")),
+        BrokenFile,
+        "the geometry of a <collision> is empty; it must be one of box, sphere",
+    ),
+    "an unknown shape": (
+        urdf(link("x", "<collision><geometry><cone/></geometry></collision>")),
+        BrokenFile,
+        "has <cone>; it must be one of",
+    ),
+    "a sphere without radius": (
+        urdf(link("x", "<collision><geometry><sphere/></geometry></collision>")),
+        BrokenFile,
+        "link 'x' in .*: <sphere> lacks 'radius'",
+    ),
+    "a box without volume": (
+        urdf(link("x", "<collision><geometry><box size='1 0 1'/></geometry></collision>")),
+        InvalidValue,
+        "size of <box> must be > 0, got '1 0 1': a body without volume would never collide",
+    ),
+    "a mesh that is missing": (
+        urdf(link("x", "<collision><geometry><mesh filename='no.stl'/></geometry></collision>")),
+        BrokenFile,
+        "the mesh 'no.stl' of link 'x' in .* is missing; looked for .*no.stl",
+    ),
+    "a mesh without a file name": (
+        urdf(link("x", "<collision><geometry><mesh/></geometry></collision>")),
+        BrokenFile,
+        "<mesh> lacks 'filename'",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", BROKEN)
+def test_what_is_broken_is_named_in_one_line(case, tmp_path):
+    text, kind, says = BROKEN[case]
+    with pytest.raises(EvenroadError, match=says) as caught:
+        read_urdf(write(tmp_path, text))
+    assert isinstance(caught.value, kind)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_file_that_is_missing_is_named(tmp_path):
+    with pytest.raises(BrokenFile, match="cannot read the robot .*nowhere.urdf: No such file"):
+        read_urdf(tmp_path / "nowhere.urdf")
