@@ -18,7 +18,7 @@ from evenroad.bench.statistics import (
 )
 from evenroad.report.cells import Cell, cell_codes, unit_of
 from evenroad.report.groups import Ints, UnitSums, combined, sums_by_unit
-from evenroad.report.runs import Runs
+from evenroad.report.runs import Question, Runs
 
 REFERENCES = ("uniform", "halton scrambled")
 SIGNIFICANT = 0.05
@@ -119,10 +119,11 @@ def _compare(cell: Cell, reference: str, sums: UnitSums, c: int, wins: int, loss
 
 
 def _corrected(found: list[Comparison]) -> tuple[Comparison, ...]:
-    questions = {each.cell.question for each in found}
+    families: dict[Question, list[int]] = {}
+    for place, each in enumerate(found):
+        families.setdefault(each.cell.question, []).append(place)
     corrected: dict[int, float] = {}
-    for question in questions:
-        family = [place for place, each in enumerate(found) if each.cell.question == question]
+    for family in families.values():
         values = holm([found[place].p for place in family])
         corrected.update(zip(family, values.tolist(), strict=True))
     return tuple(replace(each, p_corrected=corrected[place]) for place, each in enumerate(found))
