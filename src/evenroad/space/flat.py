@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from numba import njit
 
 from evenroad.errors import InvalidValue
 
@@ -84,11 +85,19 @@ class FlatMetric:
         self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]
     ) -> npt.NDArray[np.float64]:
         """Return the distances of all pairs of rows of two float64 arrays, (n, dim) and (m, dim), as (n, m)."""
-        total = np.zeros((len(a), len(b)))
-        for k in range(self.dim):
-            apart = b[np.newaxis, :, k] - a[:, np.newaxis, k]
-            if self.wrapping[k]:
-                apart -= self.period[k] * np.rint(apart / self.period[k])
-            apart *= self.scale[k]
-            np.hypot(total, apart, out=total)
-        return total
+        return _all_distances(np.ascontiguousarray(a), np.ascontiguousarray(b), self.scale, self.period)
+
+
+@njit(cache=True, nogil=True)
+def _all_distances(a, b, scale, period):  # type: ignore[no-untyped-def]
+    distances = np.empty((len(a), len(b)))
+    for i in range(len(a)):
+        for j in range(len(b)):
+            squares = 0.0
+            for k in range(len(scale)):
+                apart = b[j, k] - a[i, k]
+                if period[k] != np.inf:
+                    apart -= period[k] * np.rint(apart / period[k])
+                squares += (scale[k] * apart) ** 2
+            distances[i, j] = np.sqrt(squares)
+    return distances

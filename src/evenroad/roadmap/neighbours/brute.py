@@ -10,7 +10,7 @@ import numpy.typing as npt
 from evenroad.space import Space
 from evenroad.space.all_pairs import all_distances
 
-BLOCK = 1 << 18
+BLOCK = 1 << 16
 """Distances held at once."""
 
 
@@ -23,11 +23,12 @@ def k_nearest_in(
     if k < 1:
         return np.empty((n, 0), dtype=np.int32)
     nearest = np.full((n, k), -1, dtype=np.int32)
-    for rows, distance in _blocks(space, q):
+    for rows, distance in _blocks(space, q, earlier=earlier):
         own = np.arange(rows.start, rows.stop)[:, np.newaxis]
-        others = np.arange(n)[np.newaxis]
+        others = np.arange(distance.shape[1])[np.newaxis]
         distance[others >= own if earlier else others == own] = np.inf
-        furthest = np.partition(distance, k - 1, axis=1)[:, k - 1 : k]
+        last = min(k, distance.shape[1]) - 1
+        furthest = np.partition(distance, last, axis=1)[:, last : last + 1]
         row, column = np.nonzero((distance <= furthest) & np.isfinite(distance))
         # All that tie with the k-th are still here; sorting puts the lower index first.
         order = np.lexsort((column, distance[row, column], row))
@@ -48,10 +49,12 @@ def pairs_within_in(space: Space, q: npt.NDArray[np.float64], radius: float) -> 
     return np.concatenate(found)
 
 
-def _blocks(space: Space, q: npt.NDArray[np.float64]) -> Iterator[tuple[slice, npt.NDArray[np.float64]]]:
-    """Yield row ranges with their distances to all configurations, (rows, n)."""
+def _blocks(
+    space: Space, q: npt.NDArray[np.float64], *, earlier: bool = False
+) -> Iterator[tuple[slice, npt.NDArray[np.float64]]]:
+    """Yield row ranges with their distances to all configurations, (rows, n), or to those up to the range's end."""
     n = len(q)
     step = max(1, BLOCK // max(n, 1))
     for begin in range(0, n, step):
         rows = slice(begin, min(begin + step, n))
-        yield rows, all_distances(space, q[rows], q)
+        yield rows, all_distances(space, q[rows], q[: rows.stop] if earlier else q)
