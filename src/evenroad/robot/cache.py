@@ -56,12 +56,13 @@ def keep(key: str, model: RobotModel) -> None:
 
 def _parts(urdf: Path, srdf: Path | None, bodies: Path | None) -> Iterator[bytes]:
     root = read_urdf_xml(urdf)
-    meshes = [find_mesh(name, urdf, link) for link, name in mesh_names(root)]
-    for path in (urdf, srdf, bodies, *meshes):
+    files = [("robot", urdf), ("SRDF", srdf), ("file of bodies", bodies)]
+    files += [("mesh", find_mesh(name, urdf, link)) for link, name in mesh_names(root)]
+    for what, path in files:
         try:
             yield b"" if path is None else path.read_bytes()
         except OSError as error:
-            raise BrokenFile(f"cannot read {path}: {error.strerror or error}") from error
+            raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
 
 
 def _file(key: str) -> Path:

@@ -16,7 +16,7 @@ from evenroad.robot.yaml_file import numbers, read_mapping, require_keys
 SCENES = ("box-reach", "box-reach-narrow")
 """Names of the shipped scenes."""
 
-_SECTIONS = ("name", "obstacles", "allowed", "states", "limits")
+_SECTIONS = ("name", "allowed", "states", "limits")
 _SIZES: dict[str, tuple[tuple[str, int], ...]] = {
     "box": (("size", 3),),
     "sphere": (("radius", 1),),

@@ -1,0 +1,278 @@
+import json
+import re
+
+import numpy as np
+import pytest
+import trimesh
+from PIL import Image
+
+from evenroad.robot import ArmWorld, in_scene, load_robot, load_scene
+from tests.robot.urdf_texts import joint, link, two_joints, urdf
+
+JOINTS = load_robot("ur5").group
+
+
+def arm_arguments(scene="box-reach.yaml", robot="ur5", start="home", goal="inside", **options):
+    extra = [each for key, value in options.items() for each in (f"--{key.replace('_', '-')}", value)]
+    return ["plan", scene, "--robot", robot, "--start", start, "--goal", goal, *extra]
+
+
+@pytest.fixture
+def desk(tmp_path):
+    """Two joints that turn about y, and a ball that the arm must pass under or over."""
+    (tmp_path / "arm.urdf").write_text(two_joints())
+    (tmp_path / "desk.yaml").write_text(
+        "obstacles:\n  ball: {shape: sphere, radius: 0.05, xyz: [0.0, 0, 0.75]}\n"
+        "states:\n  left: {a: -0.9, b: 0}\n  right: {a: 0.9, b: 0}\n"
+    )
+    return tmp_path
+
+
+def on_desk(**changes):
+    return arm_arguments(
+        **({"scene": "desk.yaml", "robot": "arm.urdf", "start": "left", "goal": "right"} | changes)
+    )
+
+
+def test_a_solved_plan_writes_json_csv_and_picture_and_the_path_is_free(run, tmp_path):
+    code, out, err = run(*arm_arguments(sampler="korobov"), "-n", 512)
+    assert (code, err) == (0, "")
+    record = json.loads((tmp_path / "box-reach.json").read_text())
+    assert record["status"] == "solved"
+    assert record["query"]["joints"] == list(JOINTS)
+    assert record["rule"] == "k=20 symmetrised"
+    header, *rows = (tmp_path / "box-reach.csv").read_text().splitlines()
+    assert header == ",".join(JOINTS)
+    path = np.array([[float(x) for x in row.split(",")] for row in rows])
+    assert path.tolist() == record["path"]
+    scene = load_scene("box-reach")
+    for row, name in ((path[0], "home"), (path[-1], "inside")):
+        assert row.tolist() == [scene.states[name][joint] for joint in JOINTS]
+    world = ArmWorld(in_scene(load_robot("ur5"), scene), scene)
+    assert world.motion_valid(path[:-1], path[1:]).all()
+    with Image.open(tmp_path / "box-reach.png") as picture:
+        assert picture.size[0] > 1500
+    assert "solved" in out
+    assert "shoulder_pan_joint, shoulder_lift_joint" in out
+    assert max(map(len, out.splitlines())) <= 100
+
+
+def test_a_urdf_of_ones_own_is_planned_for(run, desk):
+    code, _, err = run(*on_desk(out="a"), "-n", 256)
+    assert (code, err) == (0, "")
+    path = np.array(json.loads((desk / "a.json").read_text())["path"])
+    # Straight up, the arm's last ball of radius 0.05 at 0.6 m would be 0.05 m from the obstacle: it needs no bend.
+    assert path.shape[1] == 2
+
+
+@pytest.mark.parametrize(
+    ("start", "extra"),
+    [("-0.9,0", ()), ("a=-0.9", ()), ("a=-51.5662015617741,b=0", ("--deg",)), (("-0.9", "0"), ())],
+)
+def test_a_configuration_can_be_written_in_several_ways(run, desk, start, extra):
+    words = start if isinstance(start, tuple) else (start,)
+    code, _, err = run(
+        "plan", "desk.yaml", "--robot", "arm.urdf", "--start", *words, "--goal", "right", "--out", "a", *extra
+    )
+    assert (code, err) == (0, "")
+    found = json.loads((desk / "a.json").read_text())["query"]["start"]
+    assert found == pytest.approx([-0.9, 0.0])
+
+
+def test_a_group_is_planned_for_and_the_others_are_held(run, desk):
+    code, _, _ = run(*on_desk(group="b", start="0.5", goal="-0.5", out="a"))
+    assert code == 0
+    assert (desk / "a.csv").read_text().splitlines()[0] == "b"
+
+
+def test_an_end_in_collision_is_a_status_that_names_the_two_bodies(run, desk):
+    (desk / "desk.yaml").write_text("obstacles:\n  ball: {shape: sphere, radius: 0.1, xyz: [0.0, 0, 0.6]}\n")
+    code, out, err = run(*on_desk(start="0,0", goal="0.5,0", out="a"))
+    assert (code, err) == (1, "")
+    record = json.loads((desk / "a.json").read_text())
+    assert record["status"] == "start_invalid"
+    assert "'lower' touches 'ball'" in record["message"]
+    assert "'lower' touches 'ball'" in " ".join(out.split())
+    assert (desk / "a.png").exists()
+
+
+def test_a_self_collision_names_two_links(run, tmp_path):
+    code, _, _ = run(*arm_arguments(start="0,-1.5,3.0,0,0,0", out="a"))
+    assert code == 1
+    record = json.loads((tmp_path / "a.json").read_text())
+    assert re.search(
+        "'upper_arm_link' touches 'wrist|'base_link' touches|'shoulder_link' touches", record["message"]
+    )
+
+
+def test_no_path_exits_with_1_and_leaves_no_csv_of_an_earlier_run(run, tmp_path):
+    (tmp_path / "a.csv").write_text("old")
+    code, out, _ = run(*arm_arguments(sampler="uniform", out="a"), "-n", 16)
+    assert code == 1
+    assert "not_connected" in out
+    assert not (tmp_path / "a.csv").exists()
+    assert "a.csv" not in out
+
+
+def test_the_same_command_gives_the_same_files(run, tmp_path):
+    for name in "ab":
+        assert run(*arm_arguments(sampler="korobov", out=name))[0] == 0
+    assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
+
+
+def test_the_default_name_never_overwrites_the_scene(run, desk):
+    (desk / "desk.yaml").rename(desk / "desk.json")
+    before = (desk / "desk.json").read_bytes()
+    assert run(*on_desk(scene="desk.json"))[0] == 0
+    assert (desk / "desk.json").read_bytes() == before
+    assert (desk / "desk-plan.json").exists()
+
+
+LIMITLESS = urdf(link("x"), link("y"), joint("a", "x", "y", inside=""))
+CYCLE = urdf(link("x"), link("y"), joint("a", "x", "y"), joint("b", "y", "x"))
+NO_MESH = two_joints("<collision><geometry><mesh filename='gone.stl'/></geometry></collision>")
+EMPTY_MESH = NO_MESH.replace("gone", "empty")
+ROOM = (
+    "image: room.png\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.6\nfree_thresh: 0.2\n"
+)
+
+BAD = {
+    "a cyclic URDF": ({"robot": "cycle.urdf"}, "the joints of cycle.urdf form a cycle: "),
+    "a broken URDF": ({"robot": "broken.urdf"}, "broken.urdf is not XML"),
+    "a URDF that is missing": ({"robot": "nowhere.urdf"}, "cannot read the robot nowhere.urdf"),
+    "an unknown robot": ({"robot": "ur6"}, "no robot file 'ur6', .*shipped: arm7, ur5"),
+    "a joint without limits": ({"robot": "limitless.urdf"}, "joint 'a' in limitless.urdf has no limits"),
+    "a mesh that is missing": (
+        {"robot": "no-mesh.urdf"},
+        "the mesh 'gone.stl' of link 'lower' in no-mesh.urdf is missing",
+    ),
+    "a mesh that is empty": ({"robot": "empty-mesh.urdf"}, "mesh .*empty.stl"),
+    "a group with unknown joints": ({"group": "a,knee"}, "unknown joint of the group 'knee'; known: a, b"),
+    "an SRDF group with unknown joints": ({"srdf": "bad.srdf"}, "unknown joint in bad.srdf: 'knee'"),
+    "an SRDF that is missing": ({"srdf": "none.srdf"}, "cannot read the SRDF none.srdf"),
+    "a start outside limits": (
+        {"start": "1.5,0"},
+        "joint 'a' at 1.5 rad, 0.5 rad outside its limits .-1, 1.",
+    ),
+    "a goal outside limits": ({"goal": "b=-3"}, "joint 'b' at -3 rad, 2 rad outside its limits"),
+    "a start of too few joints": ({"start": "0"}, "has 2 numbers, a,b; got 1"),
+    "a start that is unknown": ({"start": "up"}, "unknown state 'up'; known: left, right"),
+    "a scene with an unknown key": (
+        {"scene": "colour.yaml"},
+        "unknown key of the scene colour.yaml: 'colour'; known: ",
+    ),
+    "a scene that is missing": (
+        {"scene": "nowhere.yaml"},
+        "no scene file nowhere.yaml; shipped: box-reach.yaml",
+    ),
+    "a map instead of a scene": ({"scene": "map.yaml"}, "unknown key of the scene map.yaml: 'image'"),
+    "a contact with a link that there is not": ({"scene": "ghost.yaml"}, "'ghost'"),
+    "bodies that are missing": ({"bodies": "none.yaml"}, "cannot read the file of bodies none.yaml"),
+    "a clearance": ({"clearance": 1}, "--clearance goes with --robot-radius only"),
+    "a resolution of zero": ({"resolution": 0}, "resolution must be a finite number > 0"),
+    "both robots": ({"robot_radius": 1}, "exactly one of them, not both"),
+    "no points": ({"n": 0}, "n must be an integer >= 1, got 0"),
+    "a name that would overwrite the robot": (
+        {"robot": "arm.json", "out": "arm"},
+        "--out arm would overwrite the file arm.json",
+    ),
+    "a folder that does not exist": ({"out": "no/where"}, "does not exist"),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_bad_input_gets_one_line_and_exit_code_2_and_nothing_is_written(case, run, desk):
+    for name, text in (
+        ("cycle.urdf", CYCLE),
+        ("broken.urdf", "<robot"),
+        ("limitless.urdf", LIMITLESS),
+        ("no-mesh.urdf", NO_MESH),
+        ("empty-mesh.urdf", EMPTY_MESH),
+        ("empty.stl", ""),
+        ("arm.json", two_joints()),
+        ("bad.srdf", "<robot name='arm'><group name='g'><joint name='knee'/></group></robot>"),
+        ("colour.yaml", "obstacles: {}\ncolour: red\n"),
+        (
+            "ghost.yaml",
+            "obstacles: {a: {shape: sphere, radius: 1}}\nallowed: {a: [ghost]}\n"
+            "states: {left: {a: 0, b: 0}, right: {a: 0, b: 0}}\n",
+        ),
+        ("map.yaml", ROOM),
+    ):
+        (desk / name).write_text(text)
+    before = sorted(path for path in desk.rglob("*") if ".cache" not in path.parts)
+    changes, says = BAD[case]
+    code, out, err = run(*on_desk(**changes))
+    assert code == 2
+    assert out == ""
+    assert err.count("\n") == 1
+    assert err.startswith("evenroad: error: ")
+    assert re.search(says, err)
+    assert sorted(path for path in desk.rglob("*") if ".cache" not in path.parts) == before
+
+
+def test_neither_disk_nor_arm_is_bad_input(run):
+    code, _, err = run("plan", "box-reach.yaml", "--start", "home", "--goal", "inside")
+    assert code == 2
+    assert "give --robot-radius (a disk) or --robot (an arm), exactly one of them, not neither" in err
+
+
+def test_a_scene_given_to_a_disk_says_what_is_missing(run, desk):
+    code, _, err = run("plan", "desk.yaml", "--robot-radius", 1, "--start", 1, 1, "--goal", 2, 2)
+    assert code == 2
+    assert "desk.yaml is a scene, no map: give the arm that moves in it with --robot" in err
+
+
+@pytest.mark.parametrize(
+    "option", [("--deg",), ("--srdf", "a.srdf"), ("--group", "g"), ("--resolution", 0.1)]
+)
+def test_an_option_for_arms_is_refused_for_a_disk(run, option):
+    code, _, err = run("plan", "a.png", "--robot-radius", 1, "--start", 1, 1, "--goal", 2, 2, *option)
+    assert code == 2
+    assert f"{option[0]} goes with --robot only" in err
+
+
+def test_robot_shows_joints_limits_bodies_pairs_and_speed(run):
+    code, out, err = run("robot", "ur5")
+    assert (code, err) == (0, "")
+    text = " ".join(out.split())
+    assert re.search(r"elbow_joint revolute ±3.1416 rad 3.15 rad/s planned, #3", text)
+    assert "13 tested (SRDF): base_link with forearm_link" in text
+    assert "configurations/s" in text
+    assert "motions/s" in text
+    assert "tool0" in text
+    assert max(map(len, out.splitlines())) <= 100
+
+
+def test_robot_says_how_conservative_fitted_capsules_are(run, desk):
+    trimesh.creation.cone(0.05, 0.3).export(desk / "part.stl")
+    body = "<collision><geometry><mesh filename='part.stl'/></geometry></collision>"
+    inside = "<limit lower='-1' upper='1'/><mimic joint='a' multiplier='2'/>"
+    text = urdf(
+        link("x", body),
+        link("y"),
+        link("z"),
+        joint("a", "x", "y", "continuous", ""),
+        joint("b", "y", "z", inside=inside),
+    )
+    (desk / "own.urdf").write_text(text)
+    code, out, _ = run("robot", "own.urdf")
+    shown = " ".join(out.split())
+    assert code == 0
+    assert re.search(r"x 1 x mesh part.stl \d \d+ %", shown)
+    assert re.search(r"a continuous any rad not given planned, #1", shown)
+    assert "= 2 a" in shown
+    assert "neighbours: x with y" in shown
+
+
+def test_robot_refuses_what_plan_refuses(run, desk):
+    (desk / "cycle.urdf").write_text(CYCLE)
+    code, out, err = run("robot", "cycle.urdf")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert "form a cycle" in err
+
+
+def test_robot_measures_in_a_scene(run):
+    code, out, _ = run("robot", "ur5", "--scene", "box-reach.yaml")
+    assert code == 0
+    assert "in box-reach" in " ".join(out.split())

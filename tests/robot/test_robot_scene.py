@@ -1,0 +1,190 @@
+import numpy as np
+import pytest
+
+from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
+from evenroad.robot import ArmWorld, load_robot, load_scene
+from evenroad.robot.rotation import rotation_from_rpy
+from evenroad.robot.scene_file import SCENES, is_scene
+from tests.robot.urdf_texts import write
+
+GOOD = """
+name: cell
+obstacles:
+  table: {shape: box, size: [1, 2, 0.1], xyz: [0, 0, -0.05], rpy: [0, 0, 0.3], cell: true}
+  ball: {shape: sphere, radius: 0.1, xyz: [0.5, 0, 0.5]}
+  post: {shape: cylinder, radius: 0.05, length: 1.0}
+  pipe: {shape: capsule, radius: 0.02, length: 0.4, rpy: [1.0, 0, 0]}
+allowed:
+  table: [base_link]
+states:
+  home: {elbow_joint: 0.5, shoulder_pan_joint: -1}
+limits:
+  elbow_joint: [-1, 2.5]
+"""
+
+
+def test_everything_in_a_scene_is_read(tmp_path):
+    scene = load_scene(write(tmp_path, GOOD, "a.yaml"))
+    table, ball, post, pipe = scene.obstacles
+    assert (table.name, table.shape, table.size, table.xyz, table.cell) == (
+        "table",
+        "box",
+        (1, 2, 0.1),
+        (0, 0, -0.05),
+        True,
+    )
+    assert table.rotation == rotation_from_rpy(0, 0, 0.3)
+    assert (ball.shape, ball.size, ball.xyz, ball.cell) == ("sphere", (0.1,), (0.5, 0, 0.5), False)
+    assert (post.shape, post.size, post.xyz) == ("cylinder", (0.05, 1.0), (0, 0, 0))
+    assert pipe.rotation == rotation_from_rpy(1.0, 0, 0)
+    assert scene.name == "cell"
+    assert scene.allowed == {("base_link", "table")}
+    assert scene.states == {"home": {"elbow_joint": 0.5, "shoulder_pan_joint": -1.0}}
+    assert scene.limits == {"elbow_joint": (-1.0, 2.5)}
+
+
+def test_a_scene_without_a_name_has_that_of_its_file_and_may_be_empty(tmp_path):
+    scene = load_scene(write(tmp_path, "obstacles: {}\n", "empty.yaml"))
+    assert (scene.name, scene.obstacles, scene.states, scene.limits) == ("empty", (), {}, {})
+
+
+def test_a_scene_is_told_from_a_map(tmp_path):
+    assert is_scene(write(tmp_path, GOOD, "a.yaml"))
+    assert is_scene("box-reach.yaml")
+    assert not is_scene(write(tmp_path, "image: a.png\n", "map.yaml"))
+    assert not is_scene(tmp_path / "none.yaml")
+
+
+BROKEN = {
+    "an unknown key": (
+        GOOD + "colour: red\n",
+        UnknownName,
+        "key of the scene .*'colour'; known: allowed, limits, name, obstacles, states",
+    ),
+    "an unknown key of an obstacle": (
+        "obstacles: {a: {shape: sphere, radius: 1, size: 2}}",
+        UnknownName,
+        "key of obstacle 'a' in .*'size'; known: cell, radius, rpy, shape, xyz",
+    ),
+    "an unknown shape": (
+        "obstacles: {a: {shape: cone}}",
+        UnknownName,
+        "shape of obstacle 'a' in .*'cone'; known: box, capsule, cylinder, sphere",
+    ),
+    "no shape": ("obstacles: {a: {radius: 1}}", UnknownName, "shape of obstacle 'a' in .*: None"),
+    "no obstacles": ("states: {}", BrokenFile, "the scene .* lacks obstacles"),
+    "a length that is missing": (
+        "obstacles: {a: {shape: cylinder, radius: 1}}",
+        BrokenFile,
+        "obstacle 'a' in .* lacks length",
+    ),
+    "a size of two numbers": (
+        "obstacles: {a: {shape: box, size: [1, 2]}}",
+        InvalidValue,
+        r"size of obstacle 'a' in .* 3 finite numbers, got \[1, 2\]",
+    ),
+    "a size of zero": (
+        "obstacles: {a: {shape: box, size: [1, 0, 1]}}",
+        InvalidValue,
+        "size of obstacle 'a' .* > 0, got 0.0",
+    ),
+    "a place that is not finite": (
+        "obstacles: {a: {shape: sphere, radius: 1, xyz: [.nan, 0, 0]}}",
+        InvalidValue,
+        "xyz of obstacle 'a'",
+    ),
+    "a number as text": (
+        "obstacles: {a: {shape: sphere, radius: 1e-1}}",
+        InvalidValue,
+        "got '1e-1' .*decimal point",
+    ),
+    "a cell that is no bool": (
+        "obstacles: {a: {shape: sphere, radius: 1, cell: 2}}",
+        InvalidValue,
+        "cell of obstacle 'a' .* true or false, got 2",
+    ),
+    "an obstacle that is no mapping": (
+        "obstacles: {a: 3}",
+        BrokenFile,
+        "obstacle 'a' in .* 'key: value' entries, got 3",
+    ),
+    "a contact with nothing": (
+        "obstacles: {}\nallowed: {a: [b]}",
+        UnknownName,
+        "obstacle in 'allowed' of .*'a'",
+    ),
+    "a contact that is no list": (
+        "obstacles: {a: {shape: sphere, radius: 1}}\nallowed: {a: b}",
+        InvalidValue,
+        "must be a list of links, got 'b'",
+    ),
+    "a state that is no number": (
+        "obstacles: {}\nstates: {home: {a: b}}",
+        InvalidValue,
+        "joint 'a' of state 'home' in .* a finite number, got 'b'",
+    ),
+    "limits the wrong way round": (
+        "obstacles: {}\nlimits: {a: [2, 1]}",
+        InvalidValue,
+        "limits of joint 'a' in .* lower < upper",
+    ),
+    "no YAML": ("a: [", BrokenFile, "is not YAML"),
+    "a list": ("- a", BrokenFile, "is not a scene"),
+}
+
+
+@pytest.mark.parametrize("case", BROKEN)
+def test_what_is_wrong_in_a_scene_is_named_in_one_line(case, tmp_path):
+    text, kind, says = BROKEN[case]
+    with pytest.raises(EvenroadError, match=says) as caught:
+        load_scene(write(tmp_path, text, "a.yaml"))
+    assert isinstance(caught.value, kind)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_scene_that_is_missing_gets_the_list_of_shipped_ones():
+    with pytest.raises(
+        BrokenFile, match=r"no scene file nowhere.yaml; shipped: box-reach.yaml, box-reach-narrow.yaml"
+    ):
+        load_scene("nowhere.yaml")
+
+
+def test_a_file_goes_before_a_shipped_scene(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert load_scene("box-reach.yaml") == load_scene("box-reach")
+    write(tmp_path, "obstacles: {}\n", "box-reach.yaml")
+    assert load_scene("box-reach.yaml").obstacles == ()
+
+
+@pytest.mark.parametrize(
+    ("name", "width", "centre"), [("box-reach", 0.36, 0.191), ("box-reach-narrow", 0.30, 0.161)]
+)
+def test_the_shipped_box_leaves_the_cavity_that_its_numbers_say(name, width, centre):
+    """Just inside of the cavity's faces is no obstacle, just outside is; the front is open."""
+    obstacles = [each for each in load_scene(name).obstacles if each.name != "table"]
+
+    def taken(point):
+        return any(
+            (np.abs(np.array(point) - each.xyz) <= np.array(each.size) / 2).all() for each in obstacles
+        )
+
+    middle = np.array([0.70, 0.0, centre])
+    half = np.array([0.20, width / 2, width / 2])
+    for axis in range(3):
+        for side in (-1, 1):
+            face = middle.copy()
+            face[axis] += side * half[axis]
+            step = np.eye(3)[axis] * side * 1e-4
+            assert not taken(face - step)
+            assert taken(face + step) == (axis != 0 or side == 1)
+            assert not taken(face + step * 101) or (axis == 0 and side == -1)
+    assert min(each.xyz[2] - each.size[2] / 2 for each in obstacles) == pytest.approx(0.001)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_start_and_goal_of_the_shipped_scenes_are_free_and_the_way_between_is_not(name):
+    robot, scene = load_robot("ur5"), load_scene(name)
+    world = ArmWorld(robot, scene)
+    home, inside = ([[scene.states[state][joint] for joint in robot.group]] for state in ("home", "inside"))
+    assert world.valid(np.array(home + inside)).all()
+    assert not world.motion_valid(np.array(home), np.array(inside))[0]

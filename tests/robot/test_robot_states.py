@@ -1,0 +1,94 @@
+import math
+
+import numpy as np
+import pytest
+
+from evenroad.errors import EvenroadError, InvalidValue, UnknownName
+from evenroad.robot import Scene, configuration, load_robot, load_scene, named_states
+from tests.robot.urdf_texts import joint, link, urdf, write
+
+
+@pytest.fixture
+def ur5():
+    return load_robot("ur5")
+
+
+@pytest.mark.parametrize(
+    "text", ["0,-1.57,0,-1.57,0,0.5", "0 -1.57 0 -1.57 0 0.5", " 0, -1.57, 0,-1.57 ,0,5e-1 "]
+)
+def test_a_list_is_read_in_the_order_of_the_joints(ur5, text):
+    np.testing.assert_array_equal(configuration(ur5, text), [0, -1.57, 0, -1.57, 0, 0.5])
+
+
+def test_named_joints_move_and_the_others_stay(ur5):
+    q = configuration(ur5, "elbow_joint=1.2,wrist_3_joint=-0.5")
+    np.testing.assert_array_equal(q, [0, 0, 1.2, 0, 0, -0.5])
+
+
+def test_a_state_of_the_scene_goes_before_one_of_the_robot(ur5):
+    scene = Scene("s", (), states={"home": dict.fromkeys(ur5.group, 0.25)})
+    assert configuration(ur5, "home")[1] == -math.pi / 2
+    assert configuration(ur5, "home", scene)[1] == 0.25
+    assert set(named_states(ur5, load_scene("box-reach"))) == {"home", "inside", "zero"}
+
+
+def test_degrees_turn_angles_but_neither_lengths_nor_named_states(tmp_path, ur5):
+    text = urdf(
+        link("x"), link("y"), link("z"), joint("slide", "x", "y", "prismatic"), joint("turn", "y", "z")
+    )
+    robot = load_robot(write(tmp_path, text))
+    np.testing.assert_allclose(configuration(robot, "0.5,45", degrees=True), [0.5, math.pi / 4])
+    np.testing.assert_allclose(configuration(robot, "turn=45", degrees=True), [0, math.pi / 4])
+    assert configuration(ur5, "home", degrees=True)[1] == -math.pi / 2
+
+
+def test_a_joint_that_is_not_named_stays_within_its_limits(tmp_path):
+    inside = "<limit lower='0.2' upper='1' velocity='1' effort='1'/>"
+    text = urdf(link("x"), link("y"), link("z"), joint("a", "x", "y"), joint("b", "y", "z", inside=inside))
+    np.testing.assert_array_equal(configuration(load_robot(write(tmp_path, text)), "a=0.5"), [0.5, 0.2])
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "says"),
+    [
+        (
+            "0,0,3.5,0,0,0",
+            InvalidValue,
+            "puts joint 'elbow_joint' at 3.5 rad, 0.358 rad outside its limits .-3.14159, 3.14159.",
+        ),
+        ("elbow_joint=-4", InvalidValue, "joint 'elbow_joint' at -4 rad, 0.858 rad outside"),
+        ("0,0,0", InvalidValue, "has 6 numbers, shoulder_pan_joint,.*; got 3 in '0,0,0'"),
+        ("0,0,0,0,0,nan", InvalidValue, "joint 'wrist_3_joint' must be a finite number, got 'nan'"),
+        ("0,0,x,0,0,0", InvalidValue, "joint 'elbow_joint' must be a finite number, got 'x'"),
+        ("elbow_joint=x", InvalidValue, "got 'x'"),
+        ("elbow_joint=1,elbow_joint=2", InvalidValue, "given twice"),
+        ("elbow_joint=1,2", InvalidValue, "'2' is not of the form name=value"),
+        ("knee=1", UnknownName, "joint of 'ur5' 'knee'; known: elbow_joint"),
+        (
+            "hom",
+            UnknownName,
+            "unknown state 'hom'; known: home, zero; or give 6 numbers: shoulder_pan_joint,",
+        ),
+        ("", InvalidValue, "must not be empty"),
+    ],
+)
+def test_what_is_no_configuration_is_refused_in_one_line(ur5, text, kind, says):
+    with pytest.raises(EvenroadError, match=says) as caught:
+        configuration(ur5, text)
+    assert isinstance(caught.value, kind)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_state_that_lacks_a_joint_or_breaks_a_limit_is_refused(ur5):
+    scene = Scene("s", (), states={"half": {"elbow_joint": 1.0}, "far": dict.fromkeys(ur5.group, 4.0)})
+    with pytest.raises(
+        InvalidValue, match="the state 'half' has no value for shoulder_pan_joint, shoulder_lift_joint"
+    ):
+        configuration(ur5, "half", scene)
+    with pytest.raises(InvalidValue, match="'far' puts joint 'elbow_joint' at 4 rad"):
+        configuration(ur5, "far", scene)
+
+
+def test_a_continuous_joint_takes_any_angle(tmp_path):
+    robot = load_robot(write(tmp_path, urdf(link("x"), link("y"), joint("a", "x", "y", "continuous", ""))))
+    assert configuration(robot, "700", degrees=True) == math.radians(700)
