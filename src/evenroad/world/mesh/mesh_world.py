@@ -22,8 +22,8 @@ class MeshWorld:
 
     A pose is free if it lies in the space and no triangle of the body meets one of an obstacle.  Meshes are
     surfaces: a body inside of a closed obstacle, or around one, is free.  Motions are tested at states, as
-    :class:`FunctionWorld` does; about a hundred thousand states a second.  Where body and obstacles are boxes,
-    :class:`SolidWorld` is many times faster.
+    :class:`FunctionWorld` does; some ten thousand states a second.  Where body and obstacles are boxes,
+    :class:`SolidWorld` is tens of times faster.
 
     Parameters
     ----------
