@@ -42,7 +42,7 @@ def scratch_places(dim: int, ints: Ints) -> tuple[int, int, int, int]:
 def scratch_memory(dim: int, ints: Ints, table: Singles) -> Singles:
     """Return scratch memory that begins on a cache line, with what does not move in its place."""
     frames, capsules, bodies, length = scratch_places(dim, ints)
-    raw = np.zeros(length + LANES, dtype=np.float32)
+    raw = np.empty(length + LANES, dtype=np.float32)
     skip = (64 - raw.ctypes.data % 64) % 64 // 4
     scratch = raw[skip : skip + length]
     for entry in range(12):

@@ -1,0 +1,91 @@
+"""Surfaces made of shapes: closed, turned outwards, and where the shape is."""
+
+import numpy as np
+import pytest
+
+from evenroad.errors import InvalidValue
+from evenroad.robot.capsule import Capsule
+from evenroad.robot.reference.surface import (
+    Surface,
+    capsule_surface,
+    joined,
+    obstacle_surface,
+    robot_surfaces,
+)
+from evenroad.robot.scene import Obstacle
+from tests.robot.kernel_arms import random_rotation, ur5
+from tests.robot.oracle import obstacle_distance, point_segment_distance
+
+TURN = random_rotation(np.random.default_rng(4))
+SHAPES = {
+    "box": (Obstacle("b", "box", (0.2, 0.3, 0.5), (1.0, 2.0, 3.0), TURN), 0.03),
+    "sphere": (Obstacle("s", "sphere", (0.2,), (1.0, 2.0, 3.0), TURN), 4 / 3 * np.pi * 0.2**3),
+    "cylinder": (Obstacle("c", "cylinder", (0.2, 0.5), (1.0, 2.0, 3.0), TURN), np.pi * 0.2**2 * 0.5),
+    "capsule": (
+        Obstacle("c", "capsule", (0.2, 0.5), (1.0, 2.0, 3.0), TURN),
+        np.pi * 0.2**2 * 0.5 + 4 / 3 * np.pi * 0.2**3,
+    ),
+}
+
+
+def volume(surface):
+    """Of a closed surface whose triangles are turned outwards (sum of signed tetrahedra)."""
+    a, b, c = (surface.vertices[surface.triangles[:, i]] for i in range(3))
+    return float((a * np.cross(b, c)).sum() / 6.0)
+
+
+def edges(surface):
+    """Every directed edge, as often as it comes."""
+    ends = np.concatenate([surface.triangles[:, [i, (i + 1) % 3]] for i in range(3)])
+    return np.unique(ends, axis=0, return_counts=True)
+
+
+@pytest.mark.parametrize(("obstacle", "exact"), SHAPES.values(), ids=SHAPES)
+def test_the_surface_of_a_shape_is_closed_and_holds_nearly_its_volume(obstacle, exact):
+    surface = obstacle_surface(obstacle)
+    pairs, counts = edges(surface)
+    assert (counts == 1).all(), "each edge once in each direction"
+    assert {(b, a) for a, b in pairs.tolist()} == set(map(tuple, pairs.tolist()))
+    assert 0.96 * exact < volume(surface) < 1.0001 * exact
+
+
+@pytest.mark.parametrize(("obstacle", "exact"), SHAPES.values(), ids=SHAPES)
+def test_corners_lie_on_the_shape(obstacle, exact):
+    corners = obstacle_surface(obstacle).vertices
+    outwards = corners + 1e-6 * (corners - np.array(obstacle.xyz)) / np.linalg.norm(
+        corners - np.array(obstacle.xyz), axis=1, keepdims=True
+    )
+    assert obstacle_distance(corners, obstacle).max() < 1e-12
+    assert obstacle_distance(outwards, obstacle).min() > 0.0
+
+
+@pytest.mark.parametrize("b", [(0.4, -0.1, 0.2), (0.1, 0.2, 0.3)])
+def test_corners_of_a_capsules_surface_are_at_its_radius(b):
+    capsule = Capsule("link", (0.1, 0.2, 0.3), b, 0.05)
+    corners = capsule_surface(capsule).vertices
+    a, b = (np.broadcast_to(np.array(end), corners.shape) for end in (capsule.a, capsule.b))
+    np.testing.assert_allclose(point_segment_distance(corners, a, b), 0.05, atol=1e-12)
+
+
+def test_surfaces_of_a_robot_are_those_of_its_capsules_joined():
+    robot = ur5()
+    surfaces = robot_surfaces(robot)
+    assert set(surfaces) == set(robot.links)
+    parts = [capsule_surface(capsule) for capsule in robot.capsules if capsule.link == "forearm"]
+    assert volume(surfaces["forearm"]) == pytest.approx(sum(map(volume, parts)))
+    assert len(joined(parts).triangles) == sum(len(part.triangles) for part in parts)
+
+
+@pytest.mark.parametrize(
+    ("vertices", "triangles"),
+    [
+        (np.empty((0, 3)), np.empty((0, 3))),
+        (np.zeros((3, 3)), np.empty((0, 3))),
+        (np.full((3, 3), np.nan), [[0, 1, 2]]),
+        (np.zeros((3, 3)), [[0, 1, 3]]),
+        (np.zeros((3, 3)), [[0, 1, -1]]),
+    ],
+)
+def test_a_surface_that_could_never_touch_is_refused(vertices, triangles):
+    with pytest.raises(InvalidValue):
+        Surface(vertices, triangles)
