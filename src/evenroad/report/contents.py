@@ -8,6 +8,7 @@ from evenroad.report.analysis import Analysis
 from evenroad.report.fair import is_fair
 from evenroad.report.figures.canvas import as_png
 from evenroad.report.figures.curves import draw_curves
+from evenroad.report.figures.maze_success import draw_maze_success, maze_questions
 from evenroad.report.figures.point_sets import draw_point_sets
 from evenroad.report.figures.scenes import draw_scene, scenes_among
 from evenroad.report.page import Picture, Section
@@ -24,7 +25,7 @@ def sections_of(analysis: Analysis) -> tuple[Section, ...]:
     """Return all sections that the analysis has something for."""
     questions = [question for question in analysis.runs.questions if not is_fair(question)]
     sections = [_expected(analysis), _fair(analysis), *(_question(analysis, each) for each in questions)]
-    sections += [_scenes(questions), _point_sets()]
+    sections += [_mazes(analysis, questions), _scenes(questions), _point_sets()]
     if analysis.failures:
         sections.append(Section("failures", "Failures", tables=(failure_table(analysis.failures),)))
     return tuple(section for section in sections if section is not None)
@@ -57,6 +58,16 @@ def _question(analysis: Analysis, question: Question) -> Section:
     )
 
 
+def _mazes(analysis: Analysis, questions: list[Question]) -> Section | None:
+    mazes = maze_questions(questions)
+    if not mazes:
+        return None
+    cells = [cell for cell in analysis.cells if cell.question in mazes]
+    picture = Picture("maze-success", "Success on the mazes", as_png(draw_maze_success(cells)))
+    text = "The paper's figure, on our mazes: its own are not published."
+    return Section("maze-success", "Success on the mazes", text, (picture,))
+
+
 def _scenes(questions: list[Question]) -> Section | None:
     problems = scenes_among([question.problem for question in questions])
     if not problems:
@@ -70,7 +81,10 @@ def _scenes(questions: list[Question]) -> Section | None:
 
 def _point_sets() -> Section:
     picture = Picture("point-sets", "Point sets in the unit square", as_png(draw_point_sets()))
-    text = "The first set of each sampler in two dimensions."
+    text = (
+        "The first set of each sampler in two dimensions. Discrepancies in ten dimensions are drawn by"
+        " `python -m benchmarks.discrepancy_d10`."
+    )
     return Section("point-sets", "Point sets", text, (picture,))
 
 

@@ -125,14 +125,21 @@ def sign_flip_test(sums: npt.ArrayLike) -> float:
         raise InvalidValue(f"sums per unit must be a list of whole numbers, got {sums!r}")
     observed = abs(int(values.sum()))
     sizes, units_of_size = np.unique(np.abs(values[values != 0]).astype(np.int64), return_counts=True)
-    # chance[i] is the probability that the signed sum is i - (len(chance) - 1) / 2.
+    # chance[i] is the probability that the signed sum is i - (len(chance) - 1) / 2; the largest groups come first, as
+    # each one's shares are added up one by one.
     chance = np.ones(1)
-    for size, count in zip(sizes.tolist(), units_of_size.tolist(), strict=True):
+    for place in np.argsort(-units_of_size, kind="stable"):
+        count, stride = int(units_of_size[place]), 2 * int(sizes[place])
         heads = np.arange(count + 1)
         log_ways = gammaln(count + 1) - gammaln(heads + 1) - gammaln(count - heads + 1)
-        spaced = np.zeros(2 * size * count + 1)
-        spaced[:: 2 * size] = np.exp(log_ways - count * np.log(2.0))
-        chance = np.convolve(chance, spaced)
+        shares = np.exp(log_ways - count * np.log(2.0))
+        together = np.zeros(len(chance) + stride * count)
+        if len(chance) == 1:
+            together[::stride] = shares
+        else:
+            for head, share in enumerate(shares):
+                together[head * stride : head * stride + len(chance)] += share * chance
+        chance = together
     reach = (len(chance) - 1) // 2
     total = np.abs(np.arange(-reach, reach + 1)) >= observed
     return float(min(1.0, chance[total].sum()))

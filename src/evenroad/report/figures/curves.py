@@ -35,7 +35,7 @@ def draw_curves(cells: Sequence[Cell], title: str) -> Figure:
     for place, sampler in enumerate(samplers):
         curve = [cell for cell in cells if cell.sampler == sampler]
         shift = 2.0 ** (DODGE * (place - (len(samplers) - 1) / 2))
-        _draw_with_intervals(by_samples, curve, shift)
+        draw_with_intervals(by_samples, curve, shift)
         _draw_against(by_edges, curve, [cell.mean_edges for cell in curve])
         _draw_against(by_seconds, curve, [1e3 * cell.mean_seconds for cell in curve])
     counts = sorted({cell.n for cell in cells})
@@ -61,7 +61,8 @@ def draw_curves(cells: Sequence[Cell], title: str) -> Figure:
     return figure
 
 
-def _draw_with_intervals(axes: Axes, curve: Sequence[Cell], shift: float) -> None:
+def draw_with_intervals(axes: Axes, curve: Sequence[Cell], shift: float = 1.0) -> None:
+    """Draw one sampler's success against samples, with error bars; all samples times `shift`."""
     rates = np.array([100 * cell.rate for cell in curve])
     ends = np.array([[100 * cell.interval.low, 100 * cell.interval.high] for cell in curve]).T
     look = look_of(curve[0].sampler)
