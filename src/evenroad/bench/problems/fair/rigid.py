@@ -17,7 +17,7 @@ from evenroad.bench.problems.fair.streams import Family, Stream, instance_rng
 from evenroad.space import SE2, SE3
 from evenroad.world.solids import OrientedBox, SolidWorld, heading_turn, quaternion_turn
 
-DENSITY = {2: 25.0, 3: 15.0}
+DENSITY = {2: 25.0, 3: 60.0}
 """Dimension of the place -> boxes in a unit of area or volume."""
 
 BODY = {
