@@ -12,6 +12,7 @@ import tyro
 from evenroad import __version__
 from evenroad.cli.bench import Bench
 from evenroad.cli.demo import Demo
+from evenroad.cli.export import Export
 from evenroad.cli.measure import Measure
 from evenroad.cli.plan import Plan
 from evenroad.cli.points import Points
@@ -32,6 +33,7 @@ Verb = (
     | Annotated[Bench, tyro.conf.subcommand("bench", prefix_name=False)]
     | Annotated[Report, tyro.conf.subcommand("report", prefix_name=False)]
     | Annotated[Robot, tyro.conf.subcommand("robot", prefix_name=False)]
+    | Annotated[Export, tyro.conf.subcommand("export", prefix_name=False)]
     | Annotated[Demo, tyro.conf.subcommand("demo", prefix_name=False)]
 )
 
