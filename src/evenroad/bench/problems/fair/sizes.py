@@ -1,6 +1,6 @@
 """How large the obstacles of the fair suite are: measured with uniform points alone, by the calibration.
 
-    python -m benchmarks.fair_calibrate --out docs/data/fair_calibration.csv
+    python -m benchmarks.fair_calibrate                  # docs/data/fair_calibration.csv
 
 At these sizes uniform points solve 25, 50 and 75 % of the instances with k = 10 symmetrised; where that was tried
 again, they did up to 6 points.
@@ -42,5 +42,6 @@ SIZES: Mapping[tuple[Family, int], tuple[float, float, float]] = {
     (Family.BOXES, 10): (0.1488, 0.1321, 0.1172),
     (Family.MAZE, 2): (29.5, 35.93, 43.76),
     (Family.SE2, 3): (0.04396, 0.01752, 0.006979),
+    (Family.SE3, 6): (0.05804, 0.04362, 0.03279),
 }
 """Family and dimension -> size for each difficulty: radius, middle half extent, for mazes width of doors [pixels]."""
