@@ -1,0 +1,146 @@
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from matplotlib.path import Path as Outline
+from PIL import Image
+
+from evenroad.errors import BrokenFile
+from evenroad.points import draw
+from evenroad.roadmap import plan
+from evenroad.robot import (
+    ArmWorld,
+    Obstacle,
+    Scene,
+    capsule_ends,
+    configuration,
+    in_scene,
+    load_robot,
+    load_scene,
+)
+from evenroad.robot.rotation import rotation_from_rpy
+from evenroad.viz import style
+from evenroad.viz.arm import VIEWS, draw_arm_view, save_arm_picture
+from evenroad.viz.outline import obstacle_bounds, obstacle_outline, stadium
+
+TURNED = rotation_from_rpy(0.5, -0.8, 1.9)
+OBSTACLES = (
+    Obstacle("box", "box", (0.2, 0.3, 0.6), (0.1, 0.2, 0.3), TURNED),
+    Obstacle("ball", "sphere", (0.2,), (0.1, 0.2, 0.3)),
+    Obstacle("post", "cylinder", (0.1, 0.7), (0.1, 0.2, 0.3), TURNED),
+    Obstacle("pipe", "capsule", (0.1, 0.7), (0.1, 0.2, 0.3), TURNED),
+)
+
+
+@pytest.fixture(scope="module")
+def reach(tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("EVENROAD_CACHE", str(tmp_path_factory.mktemp("cache")))
+        scene = load_scene("box-reach")
+        return ArmWorld(in_scene(load_robot("ur5"), scene), scene)
+
+
+def _planned(world, start="home", goal="inside", n=512):
+    ends = [configuration(world.robot, text, world.scene) for text in (start, goal)]
+    return plan(world, *ends, draw("korobov", n, 6))
+
+
+def _points_inside(obstacle, rng):
+    """Random points of a body, in the scene's frame."""
+    p = rng.uniform(-1, 1, (4000, 3))
+    if obstacle.shape == "box":
+        p = 0.5 * p * obstacle.size
+    else:
+        half = 0.5 * obstacle.size[1] if len(obstacle.size) > 1 else 0.0
+        p = p * [obstacle.size[0], obstacle.size[0], obstacle.size[0] + half]
+        beyond = np.maximum(np.abs(p[:, 2]) - half, 0)
+        if obstacle.shape == "cylinder":
+            p = p[(beyond == 0) & (np.hypot(p[:, 0], p[:, 1]) <= obstacle.size[0])]
+        else:
+            p = p[np.sqrt(p[:, 0] ** 2 + p[:, 1] ** 2 + beyond**2) <= obstacle.size[0]]
+    return p @ np.reshape(obstacle.rotation, (3, 3)).T + obstacle.xyz
+
+
+@pytest.mark.parametrize("obstacle", OBSTACLES, ids=lambda each: each.name)
+@pytest.mark.parametrize("pair", [pair for _, pair in VIEWS])
+def test_an_outline_holds_all_of_an_obstacle_and_little_more(obstacle, pair):
+    points = _points_inside(obstacle, np.random.default_rng(0))
+    assert len(points) > 100
+    outline = obstacle_outline(obstacle, pair)
+    assert Outline(np.vstack([outline, outline[:1]])).contains_points(points[:, pair], radius=5e-3).all() or (
+        Outline(np.vstack([outline, outline[:1]])[::-1]).contains_points(points[:, pair], radius=5e-3).all()
+    )
+    np.testing.assert_allclose(outline.min(axis=0), points[:, pair].min(axis=0), atol=0.08)
+    np.testing.assert_allclose(outline.max(axis=0), points[:, pair].max(axis=0), atol=0.08)
+    low, high = obstacle_bounds(obstacle)
+    assert (low <= points.min(axis=0)).all()
+    assert (high >= points.max(axis=0)).all()
+
+
+def test_a_stadium_is_at_its_radius_from_its_segment():
+    a, b = np.array([0.1, 0.2]), np.array([0.5, -0.3])
+    outline = stadium(a, b, 0.25)
+    t = np.clip((outline - a) @ (b - a) / ((b - a) @ (b - a)), 0, 1)[:, np.newaxis]
+    np.testing.assert_allclose(np.linalg.norm(outline - a - t * (b - a), axis=1), 0.25)
+
+
+def test_the_arm_is_drawn_where_its_capsules_are(reach):
+    result = _planned(reach)
+    axes = Figure().add_subplot()
+    draw_arm_view(axes, result, reach, (0, 2))
+    ends = capsule_ends(reach.robot, result.goal[np.newaxis])[0]
+    outlines = [path.vertices for collection in axes.collections for path in collection.get_paths()]
+    for (a, b), capsule in zip(ends, reach.robot.capsules, strict=True):
+        expected = stadium(a[[0, 2]], b[[0, 2]], capsule.radius)
+        assert any(
+            len(each) >= len(expected) and np.allclose(each[: len(expected)], expected) for each in outlines
+        )
+
+
+def test_a_solved_plan_shows_the_way_of_the_tip_from_start_to_goal(reach):
+    from evenroad.robot import link_poses
+
+    result = _planned(reach)
+    axes = Figure().add_subplot()
+    draw_arm_view(axes, result, reach, (0, 1))
+    way = max((line.get_xydata() for line in axes.lines), key=len)
+    tips = link_poses(reach.robot, np.stack([result.start, result.goal]))[:, -1, :2, 3]
+    np.testing.assert_allclose(way[[0, -1]], tips, atol=1e-12)
+    assert np.linalg.norm(np.diff(way, axis=0), axis=1).max() < 0.1
+
+
+def _pixels_of(picture, colour):
+    rgb = np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)])
+    return (np.abs(np.asarray(picture.convert("RGB")).astype(int) - rgb).sum(axis=2) < 30).sum()
+
+
+def test_the_saved_picture_shows_start_goal_and_path(reach, tmp_path):
+    save_arm_picture(tmp_path / "a.png", _planned(reach), reach)
+    with Image.open(tmp_path / "a.png") as picture:
+        for colour in (style.START, style.GOAL, style.PATH):
+            assert _pixels_of(picture, colour) > 50
+        assert picture.size[0] < 2500
+
+
+def test_without_a_path_there_is_no_red_and_in_collision_the_two_bodies_are_red(reach, tmp_path):
+    save_arm_picture(tmp_path / "none.png", _planned(reach, n=8), reach)
+    hit = _planned(reach, goal="shoulder_lift_joint=0.3")
+    assert hit.status == "goal_invalid"
+    save_arm_picture(tmp_path / "hit.png", hit, reach)
+    with Image.open(tmp_path / "none.png") as none, Image.open(tmp_path / "hit.png") as picture:
+        assert _pixels_of(none, style.COLLISION) < 50
+        assert _pixels_of(picture, style.COLLISION) > 500
+
+
+def test_an_empty_scene_and_a_huge_floor_are_drawn_too(tmp_path):
+    robot = load_robot("arm7")
+    floor = Obstacle("floor", "box", (100.0, 100.0, 0.1), (0, 0, -0.05), cell=True)
+    for scene in (Scene("empty", ()), Scene("floor", (floor,), frozenset({("base_link", "floor")}))):
+        world = ArmWorld(robot, scene)
+        goal = np.full(7, 0.5)
+        save_arm_picture(tmp_path / "a.png", plan(world, np.zeros(7), goal, draw("halton", 8, 7)), world)
+        assert (tmp_path / "a.png").exists()
+
+
+def test_a_picture_that_cannot_be_written_is_our_error(reach, tmp_path):
+    with pytest.raises(BrokenFile, match="does not exist"):
+        save_arm_picture(tmp_path / "no" / "a.png", _planned(reach, n=8), reach)
