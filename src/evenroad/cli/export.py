@@ -28,5 +28,5 @@ class Export:
         if not self.arena:
             raise InvalidValue("say in which format: --arena (for CSV and tables: evenroad report)")
         runs = write_arena(self.store, self.out)
-        print(f"{self.out}: {runs} runs; open it with: plannerarena {self.out}")
+        print(f"{self.out}: {runs} runs; open it with: DATABASE={self.out} plannerarena")
         return 0
