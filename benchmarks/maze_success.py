@@ -4,9 +4,8 @@
 
 Connection: k = 10 symmetrised, and beside it the radius rule r = gamma sqrt(log V / V) of PRM* (Karaman and Frazzoli
 2011).  Run i of a random sampler draws with seed i; run i of `paper-blocks` takes the points (i-1) N + 1 .. i N of the
-plain sequence.  On a fixed maze a trained set either solves the query or it does not, so of the trained families every
-set of the pool is taken once: 64 runs, not 400, and for `even` 32 at N = 512 and 16 at N = 1024.  Intervals are
-Wilson's, 95 %.
+plain sequence.  On a fixed maze a trained set either solves the query or it does not, so of `hickernell` every set of
+the pool is taken once: 64 runs, not 400.  `even` is the same as `korobov` in the plane.  Intervals are Wilson's, 95 %.
 """
 
 from __future__ import annotations
@@ -42,7 +41,7 @@ DRAWS = {
     "lattice": lambda n, run: draw("lattice", n, 2, rng=run),
     "korobov": lambda n, run: draw("korobov", n, 2, rng=run),
     "hickernell": lambda n, run: PointSet(open_bank().cell("hickernell", n, 2).load()[run]),
-    "even": lambda n, run: PointSet(open_bank().cell("even", n, 2).load()[run]),
+    "even": lambda n, run: draw("even", n, 2, rng=run),
 }
 
 
@@ -66,7 +65,7 @@ def measure(level: int, rule: str, sampler: str, n: int, runs: int) -> Row:
     maze = load_maze(level)
     world = maze.world()
     free_area = float(world.valid(world.space.from_cube(draw("sobol", 2**16, 2).points)).mean()) * 640 * 480
-    if sampler in ("hickernell", "even"):
+    if sampler == "hickernell":
         runs = open_bank().cell(sampler, n, 2).sets
     solved, valid, edges = 0, [], []
     for run in range(runs):

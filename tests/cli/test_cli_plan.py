@@ -2,11 +2,13 @@ import json
 import re
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from PIL import Image
 
+from evenroad.cli.plan_parts import draw_points
 from evenroad.mazes import load_maze
 
 MAZE = load_maze(1)
@@ -56,16 +58,21 @@ def test_a_solved_plan_writes_picture_and_json_and_exits_with_0(run, tmp_path):
     assert max(map(len, out.splitlines())) <= 100
 
 
-def test_the_default_set_comes_from_the_bank_and_the_output_says_so(run, tmp_path):
-    _, out, _ = run(*plan_arguments(out="a"))
-    assert "even annealed set" in out
-    assert json.loads((tmp_path / "a.json").read_text())["counts"]["points"] == 512
+@pytest.mark.parametrize("n", [512, 500])
+def test_the_default_set_of_the_plane_is_even_for_any_n_and_the_output_says_so(run, tmp_path, n):
+    _, out, _ = run(*plan_arguments(out="a"), "-n", n)
+    assert "even rank-1 lattice" in out
+    assert json.loads((tmp_path / "a.json").read_text())["counts"]["points"] == n
 
 
-def test_for_another_n_scrambled_halton_steps_in_and_the_output_says_so(run):
-    _, out, _ = run(*plan_arguments(out="a"), "-n", 500)
-    assert "halton scrambled" in out
-    assert "no set of n=500" in out
+def test_where_even_is_annealed_and_not_in_the_bank_scrambled_halton_steps_in_and_says_so():
+    asked = SimpleNamespace(n=500, seed=0, sampler="auto", plain=False, skip=0, allow_fewer=False)
+    points, note = draw_points(asked, 3)
+    assert points.origin.family == "halton"
+    assert "no set of n=500, d=3" in note
+    asked.n = 512
+    points, note = draw_points(asked, 3)
+    assert (points.origin.family, note) == ("even", "")
 
 
 def test_the_same_command_gives_the_same_path_and_another_seed_another(run, tmp_path):

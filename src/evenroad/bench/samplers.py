@@ -115,7 +115,7 @@ def _from_pool(family: str, n: int, d: int, run: int, rng: np.random.Generator) 
     choice, order = rng.spawn(2)
     points = draw(family, n, d, rng=choice)
     if points.origin.replica is None:
-        # Constructed (`even` from six dimensions on): its random shift makes it a set of its own.
+        # Constructed, as `even` is in most dimensions: its random shift makes it a set of its own.
         return points, ""
     if d >= PERMUTED_FROM:
         points = permute_coordinates(points, rng=order)
@@ -166,7 +166,9 @@ SAMPLERS: dict[str, RunSampler] = {
     "sukharev": RunSampler(_grid, _grid_exists, "the grid of k^d cell centres; always the same set"),
     "mpmc": _pool("mpmc", "a set of the pool trained by the message-passing network"),
     "hickernell": _pool("hickernell", "a set of the pool annealed for the network's discrepancy"),
-    "even": _pool("even", "our family: a set of the annealed pool, a shifted Korobov lattice from d = 6 on"),
+    "even": _pool(
+        "even", "our family: in d = 3 and 4 a set of the annealed pool, else a shifted Korobov lattice"
+    ),
     "korobov": RunSampler(partial(_fresh, "korobov"), _always, "best Korobov lattice, randomly shifted"),
 }
 """Name -> how the set of a run is drawn, in the order of tables."""

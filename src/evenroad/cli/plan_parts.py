@@ -12,6 +12,7 @@ from evenroad._rng import generator
 from evenroad.errors import InvalidValue
 from evenroad.points import PointSet, make_sampler
 from evenroad.points.bank import open_bank
+from evenroad.points.even import KOROBOV, even_choice
 from evenroad.roadmap import KNearest, Radius, Rule
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ def draw_points(plan: Plan, d: int) -> tuple[PointSet, str]:
     name, note = plan.sampler, ""
     if name == "auto":
         name = DEFAULT_FAMILY
-        if not open_bank().has(DEFAULT_FAMILY, plan.n, d):
+        if even_choice(d) != KOROBOV and not open_bank().has(DEFAULT_FAMILY, plan.n, d):
             name, note = "halton", f"the bank has no set of n={plan.n}" + ("" if d == 2 else f", d={d}")
     return make_sampler(name, **_sampler_options(plan, name)).draw(plan.n, d, rng=plan.seed), note
 

@@ -6,7 +6,7 @@ import pytest
 
 from evenroad.errors import BrokenFile, NotAvailable, UnknownName
 from evenroad.points import draw, load_points
-from evenroad.points.even import EVEN, FIRST_KOROBOV_DIMENSION, even_choice
+from evenroad.points.even import EVEN, even_choice
 from evenroad.points.families import Trained, cache_folder
 from evenroad.points.measures import MEASURES, separation
 from evenroad.points.optimise import parse_objective
@@ -23,14 +23,14 @@ class TestHickernell(SamplerContract):
     shapes = ((16, 2), (64, 2), (1024, 2))
 
 
-class TestEvenInHighDimensions(SamplerContract):
+class TestEvenWhereItIsConstructed(SamplerContract):
     sampler = Trained("even")
-    shapes = ((1, 6), (20, 7), (100, 10))
+    shapes = ((5, 1), (3, 2), (1, 6), (20, 7), (100, 10))
 
 
 class TestEvenMadeOnDemand(SamplerContract):
     sampler = Trained("even", train=True)
-    shapes = ((3, 1), (5, 2), (7, 3))
+    shapes = ((5, 3), (7, 3), (6, 4))
 
 
 def test_a_set_that_is_neither_shipped_nor_cached_is_refused_with_what_there_is_and_how_to_make_it():
@@ -125,7 +125,7 @@ def test_an_unknown_family_is_refused_with_the_list():
 def test_the_even_family_has_a_choice_for_every_dimension():
     for d in range(1, 40):
         choice = even_choice(d)
-        assert (choice == "korobov") == (d >= FIRST_KOROBOV_DIMENSION)
+        assert (choice == "korobov") == (d not in EVEN)
         if d in EVEN:
             assert str(parse_objective(choice)) == choice
 
