@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -100,7 +101,7 @@ class Rows:
 
     def where(self, chosen: npt.NDArray[np.bool_] | npt.NDArray[np.integer]) -> Rows:
         """Return the rows that a mask or row numbers choose, in that order."""
-        selected = {}
+        selected: dict[str, Any] = {}
         for field in fields(self):
             column = getattr(self, field.name)
             if isinstance(column, Labels):
@@ -122,13 +123,13 @@ def rows_from(columns: dict[str, npt.NDArray[np.generic]], texts: dict[int, str]
     texts : dict of int to str
         What the numbers stand for.
     """
-    in_order = {}
+    in_order: dict[str, Any] = {}
     for field in fields(Rows):
         column = columns[field.name]
         in_order[field.name] = _labels(column, texts) if field.type == "Labels" else column
     of_task = ("problem", "instance", "sampler", "n", "rule", "search", "run", "seed")
     keys = [getattr(in_order[name], "codes", in_order[name]) for name in of_task]
-    return Rows(**in_order).where(np.lexsort(keys[::-1]))  # type: ignore[arg-type]
+    return Rows(**in_order).where(np.lexsort(keys[::-1]))
 
 
 def _labels(numbers: npt.NDArray[np.generic], texts: dict[int, str]) -> Labels:
