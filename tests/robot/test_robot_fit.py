@@ -1,4 +1,5 @@
 import math
+import sys
 
 import numpy as np
 import pytest
@@ -7,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from evenroad.errors import BrokenFile
+from evenroad.errors import BrokenFile, NotAvailable
 from evenroad.robot.capsule import Capsule
 from evenroad.robot.fit import fit_capsules, smallest_around_prism
 from evenroad.robot.fit_mesh import MOST_CAPSULES, capsules_around_mesh
@@ -150,6 +151,14 @@ def test_a_mesh_that_is_broken_or_empty_is_an_error_and_never_a_free_pass(tmp_pa
     (tmp_path / name).write_bytes(content)
     with pytest.raises(BrokenFile, match=says):
         load_triangles(tmp_path / name)
+
+
+def test_without_what_reads_a_mesh_the_extra_is_named(tmp_path, monkeypatch):
+    trimesh.creation.box((1, 2, 3)).export(tmp_path / "part.stl")
+    geometry = Geometry("x", "mesh", (1.0, 1.0, 1.0), XYZ, TURNED, tmp_path / "part.stl")
+    monkeypatch.setitem(sys.modules, "trimesh", None)
+    with pytest.raises(NotAvailable, match=r"part\.stl needs the extra: pip install 'evenroad\[mesh\]'"):
+        fit_capsules(geometry)
 
 
 @pytest.mark.parametrize(

@@ -114,6 +114,15 @@ def test_files_that_hold_no_mesh_are_refused(tmp_path):
         load_mesh(tmp_path / "text.obj", scale=0.0)
 
 
+@pytest.mark.parametrize(("module", "file"), [("trimesh", "one.stl"), ("collada", "one.dae")])
+def test_without_what_reads_a_file_the_extra_is_named(tmp_path, monkeypatch, module, file):
+    pytest.importorskip(module)
+    (tmp_path / file).write_text(ASCII_STL)
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(NotAvailable, match=rf"{file} needs the extra: pip install 'evenroad\[mesh\]'"):
+        load_mesh(tmp_path / file)
+
+
 def test_without_coal_the_extra_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "coal", None)
     with pytest.raises(NotAvailable, match=r"evenroad\[mesh\]"):

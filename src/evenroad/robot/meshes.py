@@ -10,7 +10,7 @@ from urllib.parse import unquote
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.errors import BrokenFile, NotAvailable
+from evenroad.errors import BrokenFile
 
 
 def find_mesh(name: str, urdf: Path, link: str) -> Path:
@@ -34,36 +34,12 @@ def find_mesh(name: str, urdf: Path, link: str) -> Path:
 
 
 def load_triangles(file: Path) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
-    """Return vertices, (v, 3), and triangles, (t, 3), of a mesh file (.stl, .obj, .dae, .ply, ...).
+    """Return vertices, (v, 3), and triangles, (t, 3), of a mesh file, as :func:`evenroad.world.load_mesh` reads it."""
+    # Here: a robot out of the cache opens no mesh, and does not wait for all other worlds to be imported.
+    from evenroad.world.mesh import load_mesh
 
-    Raises
-    ------
-    NotAvailable
-        If what reads such a file is not installed.
-    BrokenFile
-        If the file cannot be read or holds no triangles.
-    """
-    try:
-        import trimesh
-    except ImportError as error:
-        raise NotAvailable(f"meshes need the extra: pip install 'evenroad[mesh]' ({error})") from error
-    try:
-        mesh = trimesh.load_mesh(file, process=False)
-        if isinstance(mesh, trimesh.Scene):
-            mesh = mesh.to_mesh()
-        vertices, faces = np.array(mesh.vertices, dtype=float), np.array(mesh.faces, dtype=np.int64)
-    except ImportError as error:
-        raise NotAvailable(
-            f"reading {file} needs the extra: pip install 'evenroad[mesh]' ({error})"
-        ) from error
-    # trimesh's readers raise whatever their parsers do, down to struct.error and KeyError.
-    except Exception as error:
-        raise BrokenFile(f"cannot read the mesh {file}: {error}") from error
-    if len(faces) == 0 or len(vertices) == 0:
-        raise BrokenFile(f"the mesh {file} is empty: a body without triangles would never collide")
-    if not np.isfinite(vertices).all():
-        raise BrokenFile(f"the mesh {file} has vertices that are not finite")
-    return vertices, faces
+    mesh = load_mesh(file)
+    return mesh.vertices, mesh.triangles
 
 
 def _candidates(name: str, folder: Path) -> Iterator[Path]:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.errors import NotAvailable
+from evenroad.world.mesh.trees import require_coal, tree_of
 from evenroad.world.mesh.triangle_mesh import TriangleMesh
 
 
@@ -26,12 +24,8 @@ class Collider:
     """
 
     def __init__(self, body: TriangleMesh, obstacles: TriangleMesh) -> None:
-        try:
-            import coal
-        except ImportError as error:
-            raise NotAvailable(f"meshes need the extra: pip install 'evenroad[mesh]' ({error})") from error
-        self._coal = coal
-        self._body, self._obstacles = _tree(coal, body), _tree(coal, obstacles)
+        coal = self._coal = require_coal()
+        self._body, self._obstacles = tree_of(coal, body), tree_of(coal, obstacles)
 
     def first_triangles(self, poses: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
         """Return for each pose of the body, (n, 7), a triangle of the obstacles that it meets, or -1."""
@@ -57,12 +51,3 @@ def turn_matrices(poses: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
     ]
     return np.moveaxis(np.array(rows), 2, 0).copy()
-
-
-def _tree(coal: Any, mesh: TriangleMesh) -> Any:
-    tree = coal.BVHModelOBBRSS()
-    tree.beginModel(len(mesh.triangles), len(mesh.vertices))
-    tree.addVertices(mesh.vertices)
-    tree.addTriangles(mesh.triangles)
-    tree.endModel()
-    return tree

@@ -55,7 +55,7 @@ def load_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> TriangleMe
     except Exception as error:
         raise BrokenFile(f"cannot read the mesh {file}: {error}") from error
     if len(triangles) == 0:
-        raise BrokenFile(f"the mesh {file} has no triangles")
+        raise BrokenFile(f"the mesh {file} is empty: a body without triangles would never collide")
     try:
         return TriangleMesh(factor * vertices, triangles, file.name)
     except InvalidValue as error:
