@@ -6,7 +6,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from evenroad import roadmap
-from evenroad.cli.plan_parts import chosen_rule, common_query, draw_points, output_files, refuse_options
+from evenroad.cli.plan_parts import (
+    chosen_rule,
+    common_query,
+    draw_points,
+    load_compiled_code,
+    output_files,
+    refuse_options,
+)
 from evenroad.cli.plan_table import print_plan
 from evenroad.io import plan_record, save_json, save_path_csv
 from evenroad.roadmap import default_rule
@@ -17,6 +24,9 @@ if TYPE_CHECKING:
 
 RESOLUTION = 0.05
 """Largest step of a motion check when none is given [rad]."""
+
+SEARCH = "lazy"
+"""The same path as by the full search; of an arm, checks of motions are the dear part."""
 
 
 def plan_arm(plan: Plan) -> int:
@@ -32,7 +42,8 @@ def plan_arm(plan: Plan) -> int:
     world = ArmWorld(robot, scene, resolution=RESOLUTION if plan.resolution is None else plan.resolution)
     rule = chosen_rule(plan, default_rule(world.space).k)
     points, note = draw_points(plan, world.space.cube_dim)
-    result = roadmap.plan(world, start, goal, points, rule=rule, shorten=not plan.raw)
+    load_compiled_code(world, start, goal, points, rule, SEARCH)
+    result = roadmap.plan(world, start, goal, points, rule=rule, search=SEARCH, shorten=not plan.raw)
     query = {
         "scene": str(plan.world),
         "robot": plan.robot,

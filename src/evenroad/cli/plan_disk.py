@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from evenroad import roadmap
-from evenroad.cli.plan_parts import chosen_rule, common_query, draw_points, output_files, refuse_options
+from evenroad.cli.plan_parts import (
+    chosen_rule,
+    common_query,
+    draw_points,
+    load_compiled_code,
+    output_files,
+    refuse_options,
+)
 from evenroad.cli.plan_table import print_plan
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record, save_json, save_path_csv
@@ -38,6 +45,7 @@ def plan_disk(plan: Plan) -> int:
     for name, value in (("start", start), ("goal", goal)):
         _require_on_map(gridmap, name, value)
     points, note = draw_points(plan, 2)
+    load_compiled_code(world, start, goal, points, rule)
     result = roadmap.plan(world, start, goal, points, rule=rule, shorten=not plan.raw)
     query = {
         "map": str(plan.world),

@@ -6,6 +6,9 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy.typing as npt
+
+from evenroad import roadmap
 from evenroad._checks import require_count
 from evenroad._files import require_writable_folder
 from evenroad._rng import generator
@@ -17,8 +20,12 @@ from evenroad.roadmap import KNearest, Radius, Rule
 
 if TYPE_CHECKING:
     from evenroad.cli.plan import Plan
+    from evenroad.world import World
 
 DEFAULT_FAMILY = "even"
+
+_FEW = 16
+"""Points of a plan that only loads compiled code."""
 
 
 def refuse_options(plan: Plan, names: Iterable[str], belongs_to: str) -> None:
@@ -47,6 +54,18 @@ def draw_points(plan: Plan, d: int) -> tuple[PointSet, str]:
         if even_choice(d) != KOROBOV and not open_bank().has(DEFAULT_FAMILY, plan.n, d):
             name, note = "halton", f"the bank has no set of n={plan.n}" + ("" if d == 2 else f", d={d}")
     return make_sampler(name, **_sampler_options(plan, name)).draw(plan.n, d, rng=plan.seed), note
+
+
+def load_compiled_code(
+    world: World,
+    start: npt.ArrayLike,
+    goal: npt.ArrayLike,
+    points: PointSet,
+    rule: Rule,
+    search: str = "full",
+) -> None:
+    """Plan once with a few of the points: else the times of the plan would be those of loading compiled code."""
+    roadmap.plan(world, start, goal, PointSet(points.points[:_FEW]), rule=rule, search=search)
 
 
 def output_files(plan: Plan, inputs: Iterable[Path], suffixes: Sequence[str], what: str) -> dict[str, Path]:

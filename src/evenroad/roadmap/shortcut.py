@@ -10,11 +10,14 @@ from evenroad.roadmap.search import shortest_path
 from evenroad.space import Space
 from evenroad.world import World
 
-MAX_WAYPOINTS = 96
-"""Waypoints offered to one round; all pairs of them are checked, some 4500 motions."""
+SPREADS = (32, 96)
+"""Waypoints offered to a round, first of the coarse rounds, then of the fine ones; all pairs of them are checked.
+
+A coarse round asks for a tenth of the motions and finds most of what there is to gain.
+"""
 MAX_ROUNDS = 8
-WORTH_WHILE = 1e-3
-"""A round that shortens the path by less than this share ends the work."""
+WORTH_WHILE = 1e-2
+"""A round that shortens the path by less than this share is the last one with so many waypoints."""
 
 
 def shortcut(
@@ -22,9 +25,9 @@ def shortcut(
 ) -> tuple[npt.NDArray[np.float64], int]:
     """Return a path that does not cost more, and whose every motion was reported free by `world`.
 
-    Each round puts waypoints evenly along the path, joins every pair that `world` says can be joined, and takes
-    the shortest way through them; its own waypoints are always among those offered, so a round never makes the
-    path longer.  At the end, waypoints that can be passed by are dropped.  It draws no random numbers.
+    Each round puts waypoints evenly along the path, few at first, joins every pair that `world` says can be joined,
+    and takes the shortest way through them; its own waypoints are always among those offered, so a round never makes
+    the path longer.  At the end, waypoints that can be passed by are dropped.  It draws no random numbers.
 
     Parameters
     ----------
@@ -45,16 +48,17 @@ def shortcut(
     cost = world.space.distance if cost is None else cost
     length = _total(path, cost)
     checked = 0
-    for _ in range(MAX_ROUNDS):
-        candidate, motions = _round(path, world, cost)
-        checked += motions
-        shorter = _total(candidate, cost)
-        if not shorter < length:
-            break
-        gain = length - shorter
-        path, length = candidate, shorter
-        if gain < WORTH_WHILE * length:
-            break
+    for most in SPREADS:
+        for _ in range(MAX_ROUNDS):
+            candidate, motions = _round(path, world, cost, most)
+            checked += motions
+            shorter = _total(candidate, cost)
+            if not shorter < length:
+                break
+            gain = length - shorter
+            path, length = candidate, shorter
+            if gain < WORTH_WHILE * length:
+                break
     straighter, motions = _drop_needless(path, world)
     # In a metric this never is longer; other costs may well prefer the waypoint.
     if _total(straighter, cost) <= length * (1.0 + 1e-12):
@@ -72,9 +76,9 @@ def _total(path: npt.NDArray[np.float64], cost: EdgeCost) -> float:
 
 
 def _round(
-    path: npt.NDArray[np.float64], world: World, cost: EdgeCost
+    path: npt.NDArray[np.float64], world: World, cost: EdgeCost, most: int
 ) -> tuple[npt.NDArray[np.float64], int]:
-    waypoints, own = _spread(path, world.space)
+    waypoints, own = _spread(path, world.space, most)
     first, second = np.triu_indices(len(waypoints), k=1)
     free = world.motion_valid(waypoints[first], waypoints[second])
     edges = np.stack([first[free], second[free]], axis=1).astype(np.int32)
@@ -101,11 +105,11 @@ def _drop_needless(path: npt.NDArray[np.float64], world: World) -> tuple[npt.NDA
 
 
 def _spread(
-    path: npt.NDArray[np.float64], space: Space
+    path: npt.NDArray[np.float64], space: Space, most: int
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.intp]]:
-    """Return the path's waypoints with evenly spread ones between them, and the rows of its own."""
+    """Return the path's waypoints with evenly spread ones between them, `most` in all, and the rows of its own."""
     lengths = space.distance(path[:-1], path[1:])
-    spare = max(0, MAX_WAYPOINTS - len(path))
+    spare = max(0, most - len(path))
     total = lengths.sum()
     extra = np.floor(spare * lengths / total).astype(int) if total > 0 else np.zeros(len(lengths), dtype=int)
     pieces = []

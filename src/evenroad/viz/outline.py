@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import ConvexHull
 
 from evenroad.robot.scene import Obstacle
 
@@ -33,9 +32,8 @@ def obstacle_outline(obstacle: Obstacle, axes: tuple[int, int]) -> npt.NDArray[n
     if obstacle.shape == "capsule":
         end = rotation @ np.array([0.0, 0.0, 0.5 * obstacle.size[1]])
         return stadium((centre - end)[list(axes)], (centre + end)[list(axes)], obstacle.size[0])
-    corners = (rotation @ _corners(obstacle).T).T + centre
-    flat = corners[:, axes]
-    return flat[ConvexHull(flat).vertices]
+    sides = (rotation @ _sides(obstacle))[list(axes)].T
+    return _sum_of_segments(centre[list(axes)], sides)
 
 
 def obstacle_bounds(obstacle: Obstacle) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
@@ -47,13 +45,25 @@ def obstacle_bounds(obstacle: Obstacle) -> tuple[npt.NDArray[np.float64], npt.ND
     )
 
 
-def _corners(obstacle: Obstacle) -> npt.NDArray[np.float64]:
-    """Return points, (c, 3), in the body's frame whose convex hull a box or cylinder is."""
+def _sides(obstacle: Obstacle) -> npt.NDArray[np.float64]:
+    """Return segments, as columns (3, s), whose Minkowski sum a box or (nearly) a cylinder is, in the body's frame."""
     if obstacle.shape == "box":
-        signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
-        return 0.5 * signs * np.array(obstacle.size)
+        return np.diag(obstacle.size)
     radius, length = obstacle.size
-    angle = np.linspace(0.0, 2.0 * math.pi, _ROUND, endpoint=False)
-    rim = radius * np.column_stack([np.cos(angle), np.sin(angle)])
-    ends = [np.column_stack([rim, np.full(_ROUND, z)]) for z in (-0.5 * length, 0.5 * length)]
-    return np.concatenate(ends)
+    # The sides of half a polygon: the other half has the same ones.
+    angle = np.arange(_ROUND // 2 + 1) * (2.0 * math.pi / _ROUND)
+    rim = np.diff(radius * np.stack([np.cos(angle), np.sin(angle), np.zeros(len(angle))]), axis=1)
+    return np.column_stack([rim, [0.0, 0.0, length]])
+
+
+def _sum_of_segments(
+    centre: npt.NDArray[np.float64], sides: npt.NDArray[np.float64]
+) -> npt.NDArray[np.float64]:
+    """Return the outline, (2 s, 2), of the Minkowski sum of segments, (s, 2), around `centre`.
+
+    Its sides are the segments in the order of their angles, there and back.
+    """
+    upward = np.where((sides[:, 1:] < 0) | ((sides[:, 1:] == 0) & (sides[:, :1] < 0)), -sides, sides)
+    upward = upward[np.argsort(np.arctan2(upward[:, 1], upward[:, 0]))]
+    half_way = np.cumsum(upward, axis=0) - 0.5 * upward.sum(axis=0)
+    return np.concatenate([centre + half_way, centre - half_way])
