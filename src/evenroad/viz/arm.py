@@ -34,7 +34,15 @@ _BETWEEN = 7
 
 
 def save_arm_picture(path: str | os.PathLike[str], result: PlanResult, world: ArmWorld) -> None:
-    """Draw a plan of an arm as PNG, atomically: from above, from the side and from the front.
+    """Save the figure of :func:`draw_arm_plan` as PNG, atomically."""
+    figure = draw_arm_plan(result, world)
+    with atomic_write(path) as file:
+        # Compressing more takes longer than drawing a view, for a tenth of the bytes.
+        figure.savefig(file, format="png", pil_kwargs={"compress_level": 1})
+
+
+def draw_arm_plan(result: PlanResult, world: ArmWorld) -> Figure:
+    """Return a figure of a plan of an arm: from above, from the side and from the front.
 
     The start is green, the goal blue, with the arm along the path between them and the way of its tip in red.  Without
     a path start and goal are shown; a body in collision is red.
@@ -61,9 +69,7 @@ def save_arm_picture(path: str | os.PathLike[str], result: PlanResult, world: Ar
     figure.suptitle(
         f"{world.robot.name} in {world.scene.name}: {result.status}; {result.message}", fontsize=11
     )
-    with atomic_write(path) as file:
-        # Compressing more takes longer than drawing a view, for a tenth of the bytes.
-        figure.savefig(file, format="png", pil_kwargs={"compress_level": 1})
+    return figure
 
 
 def draw_arm_view(axes: Axes, result: PlanResult, world: ArmWorld, pair: tuple[int, int]) -> None:
