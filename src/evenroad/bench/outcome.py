@@ -26,7 +26,8 @@ class Outcome:
     seconds : float
         Wall time of the run, without the making of the problem and of the set.
     set_id : str
-        Which set it was: replica of a pool, with the permutation if there is one; empty for sets drawn afresh.
+        Which set of a pool it was, by which statistics cluster; ``grid`` for the only set that there is; empty for sets
+        drawn afresh.
     error : str
         Traceback of a failure, else empty.
     """

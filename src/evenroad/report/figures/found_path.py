@@ -1,4 +1,4 @@
-"""A path to draw: the problem planned on more and more points until there is one."""
+"""A path to draw: the problem planned with more and more edges until there is one."""
 
 from __future__ import annotations
 
@@ -10,14 +10,15 @@ from evenroad.points import draw
 from evenroad.roadmap import KNearest, PlanResult, plan
 from evenroad.space import Space
 
-COUNTS = (1024, 2048, 4096)
+TRIES = ((1024, 10), (2048, 10), (4096, 10), (2048, 40), (8192, 40))
+"""Points and neighbours: more points, where they do not help (a goal deep in a box) more neighbours."""
 
 
 def find_path(problem: Problem) -> PlanResult:
     """Return the first plan with a path, on scrambled Halton points; the last one if none has."""
-    for n in COUNTS:
+    for n, k in TRIES:
         points = draw("halton", n, problem.world.space.cube_dim)
-        result = plan(problem.world, problem.start, problem.goal, points, rule=KNearest(10), search="lazy")
+        result = plan(problem.world, problem.start, problem.goal, points, rule=KNearest(k), search="lazy")
         if result.solved:
             break
     return result

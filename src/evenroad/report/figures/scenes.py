@@ -13,12 +13,14 @@ from evenroad.report.figures.canvas import new_figure
 from evenroad.report.figures.chain_scene import draw_chain
 from evenroad.report.figures.found_path import find_path
 from evenroad.report.figures.solid_scene import draw_solids
+from evenroad.robot import ArmWorld
 from evenroad.viz import draw_plan
+from evenroad.viz.arm import draw_arm_plan
 from evenroad.world.chain import ChainWorld
 from evenroad.world.gridmap.disk import DiskWorld
 from evenroad.world.solids import SolidWorld
 
-SCENES = ("maze-1", "maze-2", "maze-3", "chain-10d", "cubicles", "twistycool")
+SCENES = ("maze-1", "maze-2", "maze-3", "chain-10d", "cubicles", "twistycool", "ur5-c", "ur5-a")
 """Problems that have a picture; another protocol in the same scene has that of the first."""
 _SAME_SCENE = {"cubicles-6d": "cubicles", "twistycool-6d": "twistycool"}
 
@@ -45,6 +47,8 @@ def draw_scene(name: str) -> Figure:
             return draw_chain(problem, problem.world, name)
         case SolidWorld():
             return draw_solids(problem, problem.world, name)
+        case ArmWorld():
+            return draw_arm_plan(find_path(problem), problem.world)
     raise NotAvailable(f"there is no picture of the scene of {name}")
 
 
