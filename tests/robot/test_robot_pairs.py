@@ -93,10 +93,33 @@ def test_neighbours_and_pairs_that_always_touch_are_dropped_and_said(tmp_path):
 
 def test_links_without_bodies_are_looked_through_for_neighbours(tmp_path):
     text = urdf(
-        link("a", _ball(0.05)), link("between", ""), link("b", _ball(0.05)), link("c", _ball(0.05)),
-        joint("j1", "a", "between"), joint("j2", "between", "b"), joint("j3", "b", "c"),
+        link("a", _ball(0.05)), link("flange", ""), link("b", _ball(0.05)), link("c", _ball(0.05)),
+        joint("j1", "a", "flange", "fixed", "", "0 0 0.2"), joint("j2", "flange", "b"), joint("j3", "b", "c"),
     )  # fmt: skip
-    assert load_model(write(tmp_path, text)).robot.pairs == (("a", "c"),)
+    model = load_model(write(tmp_path, text))
+    assert model.robot.pairs == (("a", "c"),)
+    assert ("a", "b", "neighbours") in model.dropped
+
+
+def test_bodies_that_several_joints_move_on_each_other_are_tested_though_no_body_is_between(tmp_path):
+    # Two links of 0.3 m without bodies: folded, the tool comes back to the base.
+    text = urdf(
+        link("base", _ball(0.05)), link("upper", ""), link("lower", ""), link("tool", _ball(0.05)),
+        joint("j1", "base", "upper", xyz="0 0 0.1"), joint("j2", "upper", "lower", xyz="0 0 0.3"),
+        joint("j3", "lower", "tool", xyz="0 0 0.3"),
+    )  # fmt: skip
+    assert load_model(write(tmp_path, text)).robot.pairs == (("base", "tool"),)
+
+
+def test_bodies_about_one_point_touch_in_every_sample_however_many_joints_are_there(tmp_path):
+    text = urdf(
+        link("arm", _ball(0.05)), link("cross", ""), link("hand", _ball(0.05)), link("finger", _ball(0.05)),
+        joint("roll", "arm", "cross", xyz="0 0 0"), joint("bend", "cross", "hand", xyz="0 0 0"),
+        joint("grip", "hand", "finger", xyz="0 0 0.5"),
+    )  # fmt: skip
+    model = load_model(write(tmp_path, text))
+    assert model.robot.pairs == (("arm", "finger"),)
+    assert ("arm", "hand", "touch in every sample") in model.dropped
 
 
 def test_two_branches_of_one_trunk_are_tested_against_each_other(tmp_path):
