@@ -40,6 +40,7 @@ lint: $(VENV)/.dev
 	$(BIN)/mypy
 
 test: lint
+	$(BIN)/python tools/forget_stale_kernels.py
 	$(BIN)/pytest -n 2
 
 test-peers: $(VENV)/.peers
@@ -47,6 +48,7 @@ test-peers: $(VENV)/.peers
 
 bench: $(VENV)/.peers
 	@mkdir -p out/bench
+	$(BIN)/python tools/forget_stale_kernels.py
 	$(BIN)/python -m benchmarks --out out/bench
 
 bank: $(VENV)/.dev
