@@ -103,6 +103,16 @@ def test_bodies_of_the_user_take_the_place_of_a_links_own(tmp_path):
         ("lower: [{centre: [0, 0, 0], radius: 0}]", InvalidValue, "radius of .* > 0, got 0.0"),
         ("lower: [{centre: [0, 0, 0], radius: 1e-2}]", InvalidValue, "got '1e-2' .*decimal point"),
         ("lower: []", InvalidValue, "has no body"),
+        (
+            "lower: [{centre: [0, 0, 0], radius: 1}]\nlower: [{centre: [0, 0, 0], radius: 2}]\n",
+            BrokenFile,
+            "bodies.yaml has the key 'lower' twice, in lines 1 and 2",
+        ),
+        (
+            "lower: [{centre: [0, 0, 0], radius: 1, radius: 2}]",
+            BrokenFile,
+            "has the key 'radius' twice, in lines 1 and 1",
+        ),
         ("lower: 3", BrokenFile, "must have a list"),
         ("hello", BrokenFile, "is not a file of bodies"),
         ("a: [", BrokenFile, "is not YAML"),

@@ -71,6 +71,32 @@ BROKEN = {
         UnknownName,
         "shape of obstacle 'a' in .*'cone'; known: box, capsule, cylinder, sphere",
     ),
+    "a shape that is no name": (
+        "obstacles: {a: {shape: [box]}}",
+        UnknownName,
+        r"shape of obstacle 'a' in .*\['box'\]; known: box",
+    ),
+    "two obstacles of one name": (
+        "obstacles:\n  wall: {shape: sphere, radius: 1}\n  wall: {shape: sphere, radius: 2}\n",
+        BrokenFile,
+        "a.yaml has the key 'wall' twice, in lines 2 and 3",
+    ),
+    "two obstacles of one name, as a number and as text": (
+        "obstacles:\n  1: {shape: sphere, radius: 1}\n\n  '1': {shape: sphere, radius: 2}\n",
+        BrokenFile,
+        "has the key '1' twice, in lines 2 and 4",
+    ),
+    "a section given twice": (GOOD + "states: {}\n", BrokenFile, "has the key 'states' twice"),
+    "a size given twice": (
+        "obstacles: {a: {shape: sphere, radius: 1, radius: 0.1}}",
+        BrokenFile,
+        "has the key 'radius' twice, in lines 1 and 1",
+    ),
+    "a number of 400 digits": (
+        f"obstacles: {{a: {{shape: sphere, radius: 1{'0' * 400}}}}}",
+        InvalidValue,
+        "radius of obstacle 'a' in .* must be a finite number",
+    ),
     "no shape": ("obstacles: {a: {radius: 1}}", UnknownName, "shape of obstacle 'a' in .*: None"),
     "no obstacles": ("states: {}", BrokenFile, "the scene .* lacks obstacles"),
     "a length that is missing": (
@@ -140,6 +166,16 @@ def test_what_is_wrong_in_a_scene_is_named_in_one_line(case, tmp_path):
         load_scene(write(tmp_path, text, "a.yaml"))
     assert isinstance(caught.value, kind)
     assert "\n" not in str(caught.value)
+
+
+def test_what_is_merged_into_an_obstacle_may_be_said_again(tmp_path):
+    text = (
+        "obstacles:\n  a: &first {shape: sphere, radius: 1, cell: true}\n"
+        "  b: &second\n    <<: *first\n    radius: 2\n"
+        "  c: {<<: [*second, *first], xyz: [1, 0, 0]}\n"
+    )
+    a, b, c = load_scene(write(tmp_path, text, "a.yaml")).obstacles
+    assert [(each.size, each.cell) for each in (a, b, c)] == [((1,), True), ((2,), True), ((2,), True)]
 
 
 def test_a_scene_that_is_missing_gets_the_list_of_shipped_ones():

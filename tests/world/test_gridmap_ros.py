@@ -185,6 +185,12 @@ def test_an_unknown_key_is_named_with_the_known_ones(tmp_path):
     assert "free_thresh, image, mode, negate, occupied_thresh, origin, resolution" in text
 
 
+def test_a_key_that_is_there_twice_is_refused(tmp_path):
+    path = written(tmp_path, row(0))
+    path.write_text(path.read_text() + "occupied_thresh: 0.9\n")
+    assert "map.yaml has the key 'occupied_thresh' twice, in lines 5 and 7" in refusal(path, BrokenFile)
+
+
 def test_an_unknown_mode_is_named_with_the_known_ones(tmp_path):
     text = refusal(written(tmp_path, row(0), mode="Trinary"), UnknownName)
     assert "'Trinary'; known: raw, scale, trinary" in text
@@ -196,6 +202,7 @@ def test_an_unknown_mode_is_named_with_the_known_ones(tmp_path):
         ("resolution", "0", "resolution"),
         ("resolution", "-0.05", "-0.05"),
         ("resolution", ".nan", "nan"),
+        ("resolution", "1" + "0" * 400, "resolution"),
         ("resolution", "fine", "'fine'"),
         ("resolution", "5e-2", "1.0e-2, not 1e-2"),
         ("resolution", "true", "True"),

@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from evenroad._checks import require_positive
+from evenroad._yaml import read_mapping
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.robot.capsule import Capsule
-from evenroad.robot.yaml_file import numbers, read_mapping, require_keys
+from evenroad.robot.yaml_file import numbers, require_keys
 
 
 def read_bodies(path: Path, links: Sequence[str]) -> dict[str, tuple[Capsule, ...]]:
@@ -20,7 +21,7 @@ def read_bodies(path: Path, links: Sequence[str]) -> dict[str, tuple[Capsule, ..
     Raises
     ------
     BrokenFile
-        If the file is missing, not YAML, or not of that form.
+        If the file is missing, not YAML, not of that form, or has a link or a key twice.
     UnknownName
         If it names a link that there is not, or another key.
     InvalidValue

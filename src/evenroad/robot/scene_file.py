@@ -7,11 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from evenroad._checks import require_positive
+from evenroad._yaml import read_mapping
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.robot.load import DATA
 from evenroad.robot.rotation import rotation_from_rpy
 from evenroad.robot.scene import Obstacle, Scene, Shape
-from evenroad.robot.yaml_file import numbers, read_mapping, require_keys
+from evenroad.robot.yaml_file import numbers, require_keys
 
 SCENES = ("box-reach", "box-reach-narrow")
 """Names of the shipped scenes."""
@@ -63,7 +64,7 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
     Raises
     ------
     BrokenFile
-        If the file is missing, not YAML, or lacks something.
+        If the file is missing, not YAML, lacks something, or has a key twice.
     UnknownName
         If there is a key that a scene does not have, a shape or an obstacle that there is not.
     InvalidValue
@@ -107,7 +108,7 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
 def _obstacle(name: str, entry: dict[str, Any], path: Path) -> Obstacle:
     where = f"obstacle {name!r} in {path}"
     shape = entry.get("shape")
-    if shape not in _SIZES:
+    if not isinstance(shape, str) or shape not in _SIZES:
         raise UnknownName.among(f"shape of {where}:", shape, _SIZES)
     require_keys(entry, ("shape", *(key for key, _ in _SIZES[shape])), _OPTIONAL, where)
     size: tuple[float, ...] = ()

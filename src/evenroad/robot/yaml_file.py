@@ -1,37 +1,11 @@
-"""Reading YAML with errors that say what is wrong, and where."""
+"""Checking what was read from YAML, with errors that say what is wrong, and where."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from pathlib import Path
-from typing import Any
-
-import yaml
 
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
-
-# libyaml where PyYAML was built with it: ten times as fast.
-_Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-
-
-def read_mapping(path: Path, what: str) -> dict[str, Any]:
-    """Return the mapping that a YAML file consists of, its keys as text.
-
-    Raises
-    ------
-    BrokenFile
-        If the file is missing, not YAML, or not a mapping; `what` names its kind.
-    """
-    try:
-        document = yaml.load(path.read_text(encoding="utf-8"), Loader=_Loader)
-    except OSError as error:
-        raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
-        raise BrokenFile(f"{path} is not YAML: {' '.join(str(error).split())}") from error
-    if not isinstance(document, dict):
-        raise BrokenFile(f"{path} is not a {what}: it must consist of 'key: value' lines")
-    return {str(key): value for key, value in document.items()}
 
 
 def require_keys(
@@ -51,7 +25,7 @@ def numbers(value: object, count: int, what: str) -> tuple[float, ...]:
     """Return `value` as a tuple of `count` finite floats, or raise InvalidValue naming it."""
     entries = value if isinstance(value, list) else [value]
     plain = [entry for entry in entries if isinstance(entry, int | float) and not isinstance(entry, bool)]
-    row = tuple(map(float, plain))
+    row = tuple(map(_as_float, plain))
     if len(entries) == count == len(row) and all(map(math.isfinite, row)):
         return row
     allowed = "a finite number" if count == 1 else f"a list of {count} finite numbers"
@@ -60,3 +34,10 @@ def numbers(value: object, count: int, what: str) -> tuple[float, ...]:
     if any(isinstance(entry, str) for entry in entries):
         hint = " (text; YAML reads an exponent only after a decimal point: 1.0e-2, not 1e-2)"
     raise InvalidValue(f"{what} must be {allowed}, got {shown!r}{hint}")
+
+
+def _as_float(number: float) -> float:
+    try:
+        return float(number)
+    except OverflowError:
+        return math.inf

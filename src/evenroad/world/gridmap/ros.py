@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 import os
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import yaml
 from PIL import Image
 
 from evenroad._checks import require_positive
+from evenroad._yaml import read_mapping
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.world.gridmap.frame import MapFrame
 from evenroad.world.gridmap.gridmap import GridMap
@@ -78,7 +79,7 @@ def load_ros_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False)
     Raises
     ------
     BrokenFile
-        If the YAML file or the image is missing or broken, or a key is missing.
+        If the YAML file or the image is missing or broken, or a key is missing or there twice.
     UnknownName
         If there is a key or a mode that map_server does not know; the known ones are listed.
     InvalidValue
@@ -96,16 +97,7 @@ def load_ros_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False)
 def read_ros_meta(path: str | os.PathLike[str]) -> RosMapMeta:
     """Read and check a map_server YAML file; the image is not opened.  Errors as `load_ros_map`."""
     file = Path(path)
-    try:
-        document = yaml.safe_load(file.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise BrokenFile(f"cannot read the map {file}: {error.strerror or error}") from error
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
-        raise BrokenFile(f"{file} is not YAML: {' '.join(str(error).split())}") from error
-    if not isinstance(document, dict):
-        raise BrokenFile(
-            f"{file} is not a map: it must consist of 'key: value' lines with {', '.join(_REQUIRED)}"
-        )
+    document = read_mapping(file, "map")
     for key in document:
         if key not in _KNOWN:
             raise UnknownName.among(f"key in {file}:", key, _KNOWN)
@@ -183,9 +175,11 @@ def _checked_meta(document: dict[str, Any], file: Path) -> RosMapMeta:
 
 def _number(key: str, value: object, file: Path) -> float:
     if isinstance(value, int | float) and not isinstance(value, bool):
-        number = float(value)
-        if math.isfinite(number):
-            return number
+        # A whole number of hundreds of digits is no float.
+        with suppress(OverflowError):
+            number = float(value)
+            if math.isfinite(number):
+                return number
     hint = ""
     if isinstance(value, str):
         hint = " (text; YAML reads an exponent only after a decimal point: 1.0e-2, not 1e-2)"
