@@ -3,15 +3,10 @@
 import numpy as np
 import pytest
 
-from evenroad.errors import InvalidValue
 from evenroad.robot.capsule import Capsule
-from evenroad.robot.reference.surface import (
-    Surface,
-    capsule_surface,
-    joined,
-    obstacle_surface,
-    robot_surfaces,
-)
+from evenroad.robot.reference.bodies import capsule_geometries
+from evenroad.robot.reference.surface import link_surfaces, shape_surface
+from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle
 from tests.robot.kernel_arms import random_rotation, ur5
 from tests.robot.oracle import obstacle_distance, point_segment_distance
@@ -42,7 +37,7 @@ def edges(surface):
 
 @pytest.mark.parametrize(("obstacle", "exact"), SHAPES.values(), ids=SHAPES)
 def test_the_surface_of_a_shape_is_closed_and_holds_nearly_its_volume(obstacle, exact):
-    surface = obstacle_surface(obstacle)
+    surface = shape_surface(obstacle)
     pairs, counts = edges(surface)
     assert (counts == 1).all(), "each edge once in each direction"
     assert {(b, a) for a, b in pairs.tolist()} == set(map(tuple, pairs.tolist()))
@@ -51,7 +46,7 @@ def test_the_surface_of_a_shape_is_closed_and_holds_nearly_its_volume(obstacle, 
 
 @pytest.mark.parametrize(("obstacle", "exact"), SHAPES.values(), ids=SHAPES)
 def test_corners_lie_on_the_shape(obstacle, exact):
-    corners = obstacle_surface(obstacle).vertices
+    corners = shape_surface(obstacle).vertices
     outwards = corners + 1e-6 * (corners - np.array(obstacle.xyz)) / np.linalg.norm(
         corners - np.array(obstacle.xyz), axis=1, keepdims=True
     )
@@ -59,33 +54,21 @@ def test_corners_lie_on_the_shape(obstacle, exact):
     assert obstacle_distance(outwards, obstacle).min() > 0.0
 
 
-@pytest.mark.parametrize("b", [(0.4, -0.1, 0.2), (0.1, 0.2, 0.3)])
+@pytest.mark.parametrize("b", [(0.4, -0.1, 0.2), (0.1, 0.2, 0.3), (0.1, 0.2, -1.0)])
 def test_corners_of_a_capsules_surface_are_at_its_radius(b):
     capsule = Capsule("link", (0.1, 0.2, 0.3), b, 0.05)
-    corners = capsule_surface(capsule).vertices
+    robot = Robot("one", ("link",), (), (capsule,), (), ())
+    corners = link_surfaces(capsule_geometries(robot))["link"].vertices
     a, b = (np.broadcast_to(np.array(end), corners.shape) for end in (capsule.a, capsule.b))
     np.testing.assert_allclose(point_segment_distance(corners, a, b), 0.05, atol=1e-12)
 
 
-def test_surfaces_of_a_robot_are_those_of_its_capsules_joined():
+def test_the_shapes_of_a_link_are_one_surface():
     robot = ur5()
-    surfaces = robot_surfaces(robot)
+    shapes = capsule_geometries(robot)
+    surfaces = link_surfaces(shapes)
     assert set(surfaces) == set(robot.links)
-    parts = [capsule_surface(capsule) for capsule in robot.capsules if capsule.link == "forearm"]
+    parts = [shape_surface(shape) for shape in shapes if shape.link == "forearm"]
+    assert len(parts) == 3
     assert volume(surfaces["forearm"]) == pytest.approx(sum(map(volume, parts)))
-    assert len(joined(parts).triangles) == sum(len(part.triangles) for part in parts)
-
-
-@pytest.mark.parametrize(
-    ("vertices", "triangles"),
-    [
-        (np.empty((0, 3)), np.empty((0, 3))),
-        (np.zeros((3, 3)), np.empty((0, 3))),
-        (np.full((3, 3), np.nan), [[0, 1, 2]]),
-        (np.zeros((3, 3)), [[0, 1, 3]]),
-        (np.zeros((3, 3)), [[0, 1, -1]]),
-    ],
-)
-def test_a_surface_that_could_never_touch_is_refused(vertices, triangles):
-    with pytest.raises(InvalidValue):
-        Surface(vertices, triangles)
+    assert len(surfaces["forearm"].triangles) == sum(len(part.triangles) for part in parts)

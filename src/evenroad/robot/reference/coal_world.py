@@ -1,75 +1,80 @@
-"""CoalWorld: a robot of triangles among a scene's shapes, checked by coal."""
+"""CoalWorld: a robot's own shapes, meshes included, among a scene's, checked by coal."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import product
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.robot.arm_world import joint_space
+from evenroad.robot.geometry import Geometry
 from evenroad.robot.kinematics import link_poses
-from evenroad.robot.reference.surface import Surface, robot_surfaces
+from evenroad.robot.reference.bodies import sound_geometries
+from evenroad.robot.reference.coal_shapes import asking_for_contacts, coal_shape, placement
 from evenroad.robot.robot import Robot
-from evenroad.robot.scene import Obstacle, Scene
+from evenroad.robot.scene import Scene
 from evenroad.space import JointSpace
 from evenroad.world import FunctionWorld
+from evenroad.world.mesh.trees import require_coal
 
 
 @dataclass(frozen=True, eq=False)
 class CoalWorld:
-    """Configurations in which no triangle of a robot meets an obstacle or another link; thousands a second.
+    """Configurations in which no shape of a robot meets an obstacle or another link; some thousands a second.
 
-    Links are placed by our own forward kinematics in double precision; coal (a fork of FCL) tests trees of
-    boxes over their triangles.  Obstacles are solid.  Links are surfaces: one that is wholly inside of
-    another does not meet it.
+    Links are placed by our own forward kinematics in double precision; coal (a fork of FCL) tests spheres, boxes,
+    cylinders and capsules exactly, and meshes by trees of boxes over their triangles.  Meshes are surfaces: what is
+    wholly inside of one does not meet it.
 
     Parameters
     ----------
     robot : Robot
-        Tree of joints, group and pairs of links; its capsules count only where `surfaces` is not given.
+        Tree of joints, group and pairs of links; its capsules count only where `geometries` is not given.
     scene : Scene
         Obstacles and allowed contacts.
-    surfaces : mapping of str to Surface, optional
-        Surfaces of the links, in their frames.  By default those of the robot's capsules.
+    geometries : sequence of Geometry, optional
+        Shapes of the links, each in its link's frame, as of
+        :func:`evenroad.robot.reference.bodies.original_geometries`.  By default the robot's capsules.
     resolution : float
         As for :class:`evenroad.robot.arm_world.ArmWorld`.
 
     Raises
     ------
     NotAvailable
-        If coal is not installed.
+        If coal, or what reads a mesh, is not installed.
+    BrokenFile
+        If a mesh is missing, broken or empty.
     InvalidValue
-        If a surface is given for a link that is not there, or none at all.
+        If a link would have no shape, or a shape is of a link that is not there.
     """
 
     robot: Robot
     scene: Scene
-    surfaces: Mapping[str, Surface] | None = None
+    geometries: Sequence[Geometry] | None = None
     resolution: float = 0.05
     _states: FunctionWorld = field(init=False, repr=False)
     _coal: Any = field(init=False, repr=False)
-    _links: dict[str, Any] = field(init=False, repr=False)
-    _obstacles: dict[str, tuple[Any, Any]] = field(init=False, repr=False)
+    _shapes: list[Any] = field(init=False, repr=False)
+    _obstacles: list[tuple[Any, Any]] = field(init=False, repr=False)
+    _tests: list[tuple[int, int, bool]] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        try:
-            import coal
-        except ImportError as error:
-            raise NotAvailable(f"meshes need the extra: pip install 'evenroad[mesh]' ({error})") from error
-        surfaces = sound_surfaces(self.robot, self.surfaces)
-        states = FunctionWorld(joint_space(self.robot), self._free, self.resolution)
-        obstacles = {
-            obstacle.name: (_solid(coal, obstacle), _place(coal, obstacle))
-            for obstacle in self.scene.obstacles
-        }
-        object.__setattr__(self, "_states", states)
-        object.__setattr__(self, "_coal", coal)
-        object.__setattr__(self, "_links", {link: _tree(coal, s) for link, s in surfaces.items()})
-        object.__setattr__(self, "_obstacles", obstacles)
+        coal = require_coal()
+        geometries = sound_geometries(self.robot, self.geometries)
+        standing = self.scene.obstacles
+        for name, value in (
+            ("geometries", geometries),
+            ("_states", FunctionWorld(joint_space(self.robot), self._free, self.resolution)),
+            ("_coal", coal),
+            ("_shapes", [coal_shape(coal, shape) for shape in geometries]),
+            ("_obstacles", [(coal_shape(coal, o), _transform(coal, placement(o))) for o in standing]),
+            ("_tests", tests_of(self.robot, self.scene, geometries)),
+        ):
+            object.__setattr__(self, name, value)
 
     @property
     def space(self) -> JointSpace:
@@ -89,66 +94,48 @@ class CoalWorld:
         batch = np.asarray(q, dtype=np.float64)[np.newaxis]
         if not self.space.contains(batch)[0]:
             return self._states.explain(batch[0])
-        bodies = next(self._contacts(link_poses(self.robot, batch)[0]), None)
+        bodies = self._first_contact(self._poses(batch)[:, 0])
         return "it is free" if bodies is None else f"{bodies[0]!r} touches {bodies[1]!r}"
 
     def _free(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-        return np.array([next(self._contacts(pose), None) is None for pose in link_poses(self.robot, q)])
+        poses = self._poses(q)
+        return np.array([self._first_contact(poses[:, row]) is None for row in range(len(q))], dtype=np.bool_)
 
-    def _contacts(self, poses: npt.NDArray[np.float64]) -> Iterator[tuple[str, str]]:
-        """Yield the bodies that touch, for the poses of all links, (links, 4, 4)."""
-        coal, allowed = self._coal, self.scene.allowed
-        places = {}
-        for link, pose in zip(self.robot.links, poses, strict=True):
-            if link in self._links:
-                places[link] = coal.Transform3s(np.ascontiguousarray(pose[:3, :3]), pose[:3, 3].copy())
-        request, result = coal.CollisionRequest(), coal.CollisionResult()
-        for link, place in places.items():
-            for name, (solid, where) in self._obstacles.items():
-                result.clear()
-                if (link, name) not in allowed and coal.collide(
-                    self._links[link], place, solid, where, request, result
-                ):
-                    yield link, name
-        for a, b in self.robot.pairs:
+    def _poses(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Return the pose of every shape of the robot, (shapes, n, 4, 4)."""
+        links = link_poses(self.robot, q)
+        number = {link: i for i, link in enumerate(self.robot.links)}
+        assert self.geometries is not None
+        return np.stack([links[:, number[shape.link]] @ placement(shape) for shape in self.geometries])
+
+    def _first_contact(self, poses: npt.NDArray[np.float64]) -> tuple[str, str] | None:
+        """Return the first two bodies that touch, for the poses of all shapes, (shapes, 4, 4)."""
+        assert self.geometries is not None
+        coal, shapes = self._coal, self._shapes
+        places = [_transform(coal, pose) for pose in poses]
+        request, result = asking_for_contacts(coal.CollisionRequest()), coal.CollisionResult()
+        for shape, other, is_obstacle in self._tests:
+            second = self._obstacles[other] if is_obstacle else (shapes[other], places[other])
             result.clear()
-            if a in places and b in places and coal.collide(
-                self._links[a], places[a], self._links[b], places[b], request, result
-            ):  # fmt: skip
-                yield a, b
+            if coal.collide(shapes[shape], places[shape], *second, request, result):
+                name = self.scene.obstacles[other].name if is_obstacle else self.geometries[other].link
+                return self.geometries[shape].link, name
+        return None
 
 
-def sound_surfaces(robot: Robot, surfaces: Mapping[str, Surface] | None) -> dict[str, Surface]:
-    """Return the surfaces to test: those given, or those of the robot's capsules.
-
-    Raises
-    ------
-    InvalidValue
-        If there is none, or one of a link that is not there: every check would pass.
-    """
-    chosen = robot_surfaces(robot) if surfaces is None else dict(surfaces)
-    unknown = sorted(set(chosen) - set(robot.links))
-    if not chosen or unknown:
-        raise InvalidValue(
-            f"surfaces must be those of links of {robot.name!r}, one or more; got {sorted(chosen)}"
-            + (f", of which unknown: {', '.join(unknown)}" if unknown else "")
-        )
-    return chosen
+def tests_of(robot: Robot, scene: Scene, geometries: Sequence[Geometry]) -> list[tuple[int, int, bool]]:
+    """Return what is tested: a shape of the robot, and the number of an obstacle (True) or of another shape."""
+    of_link: dict[str, list[int]] = {}
+    tests = []
+    for i, geometry in enumerate(geometries):
+        of_link.setdefault(geometry.link, []).append(i)
+        for j, obstacle in enumerate(scene.obstacles):
+            if (geometry.link, obstacle.name) not in scene.allowed:
+                tests.append((i, j, True))
+    for a, b in robot.pairs:
+        tests += [(i, j, False) for i, j in product(of_link.get(a, ()), of_link.get(b, ()))]
+    return tests
 
 
-def _tree(coal: Any, surface: Surface) -> Any:
-    tree = coal.BVHModelOBBRSS()
-    tree.beginModel(len(surface.triangles), len(surface.vertices))
-    tree.addVertices(surface.vertices)
-    tree.addTriangles(surface.triangles)
-    tree.endModel()
-    return tree
-
-
-def _solid(coal: Any, obstacle: Obstacle) -> Any:
-    shapes = {"box": coal.Box, "sphere": coal.Sphere, "cylinder": coal.Cylinder, "capsule": coal.Capsule}
-    return shapes[obstacle.shape](*obstacle.size)
-
-
-def _place(coal: Any, obstacle: Obstacle) -> Any:
-    return coal.Transform3s(np.array(obstacle.rotation).reshape(3, 3), np.array(obstacle.xyz))
+def _transform(coal: Any, pose: npt.NDArray[np.float64]) -> Any:
+    return coal.Transform3s(np.ascontiguousarray(pose[:3, :3]), pose[:3, 3].copy())

@@ -2,27 +2,28 @@
 
 from __future__ import annotations
 
-import math
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad.errors import NotAvailable
 from evenroad.robot.arm_world import joint_space
-from evenroad.robot.joint import Joint
+from evenroad.robot.geometry import Geometry
 from evenroad.robot.kinematics import joint_values
-from evenroad.robot.reference.coal_world import sound_surfaces
-from evenroad.robot.reference.surface import Surface, joined, obstacle_surface
+from evenroad.robot.reference.bodies import sound_geometries
+from evenroad.robot.reference.surface import link_surfaces, shape_surface
+from evenroad.robot.reference.urdf_text import as_urdf
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
 from evenroad.space import JointSpace
 from evenroad.world import FunctionWorld
+from evenroad.world.mesh import TriangleMesh
+from evenroad.world.mesh.triangle_mesh import merged
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,26 +31,27 @@ class KlamptWorld:
     """Configurations in which Klamp't finds no contact of triangles; tens of thousands a second.
 
     Klamp't reads joints and links from files that we write for it, and each link's triangles are counted after
-    that: a body that it does not find (``package://``) it takes for empty, and every check passes.  Obstacles that
+    that: a body that it does not find (``package://``) it takes for empty, and every check passes.  Meshes and boxes
+    are exact; round shapes are triangles within them, which lose less than 0.9 % of the radius.  Obstacles that
     are tested against the same links are one mesh.  All are surfaces: a link wholly inside of a closed obstacle
     does not meet it.
 
     Parameters
     ----------
-    robot, scene, surfaces, resolution
+    robot, scene, geometries, resolution
         As for :class:`evenroad.robot.reference.coal_world.CoalWorld`.
 
     Raises
     ------
     NotAvailable
-        If Klamp't is not installed.
-    InvalidValue
-        If a surface is given for a link that is not there, or none at all.
+        If Klamp't, or what reads a mesh, is not installed.
+    BrokenFile, InvalidValue
+        As for CoalWorld.
     """
 
     robot: Robot
     scene: Scene
-    surfaces: Mapping[str, Surface] | None = None
+    geometries: Sequence[Geometry] | None = None
     resolution: float = 0.05
     _states: FunctionWorld = field(init=False, repr=False)
     _world: Any = field(init=False, repr=False)
@@ -63,7 +65,8 @@ class KlamptWorld:
             raise NotAvailable(
                 f"Klamp't needs the extra: pip install 'evenroad[klampt]' ({error})"
             ) from error
-        surfaces = sound_surfaces(self.robot, self.surfaces)
+        geometries = sound_geometries(self.robot, self.geometries)
+        surfaces = link_surfaces(geometries)
         world = _read(klampt, self.robot, surfaces)
         model = world.robot(0)
         meshes = {
@@ -82,6 +85,7 @@ class KlamptWorld:
                 wanted = frozenset((a, b)) in pairs and a in surfaces and b in surfaces
                 model.enableSelfCollision(model.link(a).getIndex(), model.link(b).getIndex(), wanted)
         states = FunctionWorld(joint_space(self.robot), self._free, self.resolution)
+        object.__setattr__(self, "geometries", geometries)
         object.__setattr__(self, "_states", states)
         # The robot is a part of Klamp't's world and is lost with it.
         object.__setattr__(self, "_world", world)
@@ -119,16 +123,18 @@ class KlamptWorld:
         return free
 
 
-def _merged_obstacles(scene: Scene, surfaces: Mapping[str, Surface]) -> dict[frozenset[str], Surface]:
+def _merged_obstacles(
+    scene: Scene, surfaces: Mapping[str, TriangleMesh]
+) -> dict[frozenset[str], TriangleMesh]:
     """Return the obstacles that are tested against the same links as one surface: links -> surface."""
-    groups: dict[frozenset[str], list[Surface]] = {}
+    groups: dict[frozenset[str], list[TriangleMesh]] = {}
     for obstacle in scene.obstacles:
         links = frozenset(link for link in surfaces if (link, obstacle.name) not in scene.allowed)
-        groups.setdefault(links, []).append(obstacle_surface(obstacle))
-    return {links: joined(group) for links, group in groups.items()}
+        groups.setdefault(links, []).append(shape_surface(obstacle))
+    return {links: merged(tuple(group)) for links, group in groups.items()}
 
 
-def _read(klampt: Any, robot: Robot, surfaces: Mapping[str, Surface]) -> Any:
+def _read(klampt: Any, robot: Robot, surfaces: Mapping[str, TriangleMesh]) -> Any:
     """Return a Klamp't world that holds the robot."""
     world = klampt.WorldModel()
     with tempfile.TemporaryDirectory() as folder:
@@ -136,61 +142,27 @@ def _read(klampt: Any, robot: Robot, surfaces: Mapping[str, Surface]) -> Any:
         for link, name in meshes.items():
             (Path(folder) / name).write_text(_as_off(surfaces[link]))
         file = Path(folder) / "robot.urdf"
-        file.write_text(_as_urdf(robot, meshes))
+        file.write_text(as_urdf(robot, meshes))
         if not world.readFile(str(file)):
             raise AssertionError(f"Klamp't does not read the joints of {robot.name!r}")
     return world
 
 
-def _as_urdf(robot: Robot, meshes: Mapping[str, str]) -> str:
-    """Return a URDF of a robot; mimics are joints of their own there, and nothing has limits."""
-    lines = [f"<robot name={quoteattr(robot.name)}>", '<klampt freebase="0" use_vis_geom="0"/>']
-    for link in robot.links:
-        body = ""
-        if link in meshes:
-            body = f'<collision><geometry><mesh filename="{meshes[link]}"/></geometry></collision>'
-        lines.append(f"<link name={quoteattr(link)}>{body}</link>")
-    for joint in robot.joints:
-        kind = joint.kind if joint.kind in ("prismatic", "fixed") else "continuous"
-        lines += [
-            f"<joint name={quoteattr(joint.name)} type={quoteattr(kind)}>",
-            f"<parent link={quoteattr(joint.parent)}/><child link={quoteattr(joint.child)}/>",
-            f'<origin xyz="{_numbers(joint.xyz)}" rpy="{_numbers(_rpy(joint))}"/>',
-            f'<axis xyz="{_numbers(joint.axis)}"/><limit lower="-1e3" upper="1e3" velocity="1" effort="1"/>',
-            "</joint>",
-        ]
-    return "\n".join([*lines, "</robot>"])
-
-
-def _as_off(surface: Surface) -> str:
+def _as_off(surface: TriangleMesh) -> str:
     """Return a surface in the object file format: counts, corners, triangles."""
     corners = [" ".join(map(repr, row)) for row in surface.vertices.tolist()]
     triangles = [f"3 {a} {b} {c}" for a, b, c in surface.triangles.tolist()]
     return "\n".join(["OFF", f"{len(corners)} {len(triangles)} 0", *corners, *triangles, ""])
 
 
-def _numbers(row: tuple[float, ...]) -> str:
-    return " ".join(repr(float(number)) for number in row)
-
-
-def _rpy(joint: Joint) -> tuple[float, float, float]:
-    """Return roll, pitch and yaw of a joint's rotation."""
-    r = np.array(joint.rotation).reshape(3, 3)
-    pitch = math.atan2(-r[2, 0], math.hypot(r[0, 0], r[1, 0]))
-    if math.hypot(r[0, 0], r[1, 0]) < 1e-9:
-        # Straight up or down roll and yaw are one: all of it is roll.
-        return math.atan2(-r[1, 2], r[1, 1]), pitch, 0.0
-    return math.atan2(r[2, 1], r[2, 2]), pitch, math.atan2(r[1, 0], r[0, 0])
-
-
-def _mesh(klampt: Any, surface: Surface) -> Any:
+def _mesh(klampt: Any, surface: TriangleMesh) -> Any:
     mesh = klampt.TriangleMesh()
     mesh.setVertices(surface.vertices)
     mesh.setIndices(surface.triangles.astype(np.int32))
     return mesh
 
 
-def _geometry(klampt: Any, surface: Surface) -> Any:
+def _geometry(klampt: Any, surface: TriangleMesh) -> Any:
     geometry = klampt.Geometry3D()
     geometry.setTriangleMesh(_mesh(klampt, surface))
     assert not geometry.empty()

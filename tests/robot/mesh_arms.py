@@ -1,0 +1,58 @@
+"""An arm with a mesh of our own making, as files: a fork that is far from convex, and links of every other shape."""
+
+import numpy as np
+import trimesh
+
+from tests.robot.urdf_texts import joint, link, urdf
+
+WIDE = "<limit lower='-2.8' upper='2.8' velocity='2' effort='1'/>"
+PRONG, GAP, LONG = 0.02, 0.16, 0.20
+"""The fork has two square prongs, this thick and long, along z, and a gap between them [m]."""
+
+
+FORK = (
+    ((PRONG, GAP + 2 * PRONG, PRONG), (0.0, 0.0, 0.0)),
+    ((PRONG, PRONG, LONG), (0.0, -0.5 * (GAP + PRONG), 0.5 * LONG)),
+    ((PRONG, PRONG, LONG), (0.0, 0.5 * (GAP + PRONG), 0.5 * LONG)),
+)
+"""Boxes that make the fork, a bar and the prongs that stand on it: full extents and centre."""
+
+
+def fork():
+    """The fork as one mesh of 36 triangles; the gap opens upwards."""
+    boxes = [trimesh.creation.box(size).apply_translation(centre) for size, centre in FORK]
+    return trimesh.util.concatenate(boxes)
+
+
+def write_fork_arm(
+    folder, *, scale="1 1 1", file="meshes/fork.stl", last="<capsule radius='0.03' length='0.1'/>"
+):
+    """Write arm.urdf and its mesh: a box, a cylinder, a ball on the way, at the end the fork; return the URDF.
+
+    Turns about z, then y, then slides along x; the fork is turned and shifted in its link.
+    """
+    (folder / "meshes").mkdir(exist_ok=True)
+    factors = np.array([float(word) for word in scale.split()])
+    fork().apply_scale(1.0 / factors).export(folder / "meshes" / "fork.stl")
+    mesh = (
+        f"<collision><origin xyz='0.05 0 0.02' rpy='0.3 -0.2 0.1'/><geometry><mesh filename='{file}'"
+        f" scale='{scale}'/></geometry></collision>"
+    )
+    text = urdf(
+        link("base", "<collision><geometry><box size='0.2 0.1 0.1'/></geometry></collision>"),
+        link("arm", "<collision><geometry><cylinder radius='0.04' length='0.3'/></geometry></collision>"),
+        link("slider"),
+        link("fork", mesh),
+        link("nose", f"<collision><geometry>{last}</geometry></collision>"),
+        joint("turn", "base", "arm", "continuous", "", "0 0 0.3", "0 0 1"),
+        joint("bend", "arm", "slider", inside=WIDE, xyz="0 0 0.25"),
+        joint(
+            "slide", "slider", "fork", "prismatic", "<limit lower='0' upper='0.3' velocity='1' effort='1'/>",
+            "0.1 0 0.05", "1 0 0",
+        ),
+        joint("screw", "slider", "nose", "fixed", "", "-0.1 0 0.05"),
+        name="fork arm",
+    )  # fmt: skip
+    path = folder / "arm.urdf"
+    path.write_text(text)
+    return path
