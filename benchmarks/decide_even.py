@@ -27,6 +27,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import hashlib
 import itertools
 import math
 import time
@@ -200,7 +201,7 @@ def main() -> None:
         folder.mkdir(parents=True, exist_ok=True)
     for first in range(0, options.worlds, BLOCK):
         for d in options.d:
-            file = options.raw / f"d{d:02d}-{first:05d}.npy"
+            file = options.raw / f"{_blocks_of(d)}-{first:05d}.npy"
             if not file.exists():
                 began = time.perf_counter()
                 block = run_block(d, range(first, first + BLOCK), families_in(d), options.sets)
@@ -212,11 +213,19 @@ def main() -> None:
             write(options.out, options.raw, DIMENSIONS)
 
 
+def _blocks_of(d: int) -> str:
+    """Return how names of blocks begin: blocks of other settings are not mixed in."""
+    pools = [(family, n, pool_size(family, n, d)) for family in families_in(d) for n in COUNTS]
+    sizes = [(str(kind), SIZES[kind, d]) for kind in KINDS]
+    settings = repr((pools, sizes, NEIGHBOURS, DIFFICULTIES, STEPS, SEED, DRAWS))
+    return f"d{d:02d}-{hashlib.sha256(settings.encode()).hexdigest()[:12]}"
+
+
 def write(out: Path, raw: Path, dimensions: Iterable[int]) -> None:
     """Write the table of all blocks that are there, and print the decisions."""
     rows: list[dict[str, object]] = []
     for d in sorted(dimensions):
-        blocks = [np.load(each) for each in sorted(raw.glob(f"d{d:02d}-*.npy"))]
+        blocks = [np.load(each) for each in sorted(raw.glob(f"{_blocks_of(d)}-*.npy"))]
         if not blocks:
             continue
         own = rows_of(d, families_in(d), np.concatenate(blocks, axis=-1))

@@ -19,8 +19,9 @@ d   uniform      Sobol        annealed     korobov      mean  - korobov
 "Annealed" is average-squared discrepancy + 10 x Riesz in d = 2, 3, 5 and 7, and Riesz in d = 4 and 10.  All families
 that keep their points apart plan alike: annealed ones, A_d* lattices and Korobov lattices are within 1.3 points of each
 other, far above uniform points in d = 2 to 5, and 2 to 4 points above scrambled Sobol points there, on average over k.
-From d = 7 on nothing is clearly above anything.  So a dimension is annealed only where that is ahead of the
-Korobov lattice by more than a standard error: the lattice takes milliseconds, exists for any N, and needs no storage.
+From d = 7 on all are 1 to 2 points above uniform ones, and none is clearly above Sobol's.  So a dimension is annealed
+only where that is ahead of the Korobov lattice by more than a standard error: the lattice takes milliseconds, exists
+for any N, and needs no storage.
 In d = 1 it is an even grid, which cannot be beaten; dimensions that were not measured are taken to be like the
 higher ones that were.
 
