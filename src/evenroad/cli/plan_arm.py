@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,8 +17,9 @@ from evenroad.cli.plan_parts import (
 )
 from evenroad.cli.plan_table import print_plan
 from evenroad.io import plan_record, save_json, save_path_csv
-from evenroad.roadmap import default_rule
-from evenroad.robot import ArmWorld, configuration, find_robot, find_scene, in_scene, load_robot, load_scene
+from evenroad.roadmap import PlanResult, Status, default_rule
+from evenroad.robot import ArmWorld, configuration, find_robot, find_scene, in_scene, load_model, load_scene
+from evenroad.robot.reference.recheck import MeshCheck, has_meshes, recheck
 
 if TYPE_CHECKING:
     from evenroad.cli.plan import Plan
@@ -34,7 +36,8 @@ def plan_arm(plan: Plan) -> int:
     assert plan.robot is not None
     refuse_options(plan, ("clearance", "unknown_is_free"), "--robot-radius")
     scene = load_scene(plan.world)
-    robot = in_scene(load_robot(plan.robot, srdf=plan.srdf, group=plan.group, bodies=plan.bodies), scene)
+    model = load_model(plan.robot, srdf=plan.srdf, group=plan.group, bodies=plan.bodies)
+    robot = in_scene(model.robot, scene)
     files = output_files(plan, _inputs(plan), ("json", "csv", "png"), "file")
     start, goal = (
         configuration(robot, " ".join(words), scene, degrees=plan.deg) for words in (plan.start, plan.goal)
@@ -44,6 +47,10 @@ def plan_arm(plan: Plan) -> int:
     points, note = draw_points(plan, world.space.cube_dim)
     load_compiled_code(world, start, goal, points, rule, SEARCH)
     result = roadmap.plan(world, start, goal, points, rule=rule, search=SEARCH, shorten=not plan.raw)
+    meshes = None
+    if result.path is not None and has_meshes(model):
+        meshes = recheck(plan.robot, robot, scene, result.path, world.resolution)
+        result = _judged(result, meshes)
     query = {
         "scene": str(plan.world),
         "robot": plan.robot,
@@ -53,18 +60,32 @@ def plan_arm(plan: Plan) -> int:
         "resolution": world.resolution,
         **common_query(plan),
     }
-    save_json(files["json"], plan_record(result, query))
-    # An earlier run's path must not pass for this one's.
+    record = plan_record(result, query) | {"meshes": None if meshes is None else asdict(meshes)}
+    save_json(files["json"], record)
+    # An earlier run's path must not pass for this one's, nor one in collision for a free one.
     files["csv"].unlink(missing_ok=True)
-    if result.path is None:
+    if result.path is None or not result.solved:
         del files["csv"]
     else:
         save_path_csv(files["csv"], result.path, robot.group)
     from evenroad.viz.arm import save_arm_picture
 
     save_arm_picture(files["png"], result, world)
-    print_plan(result, note, list(files.values()), [("joints", ", ".join(robot.group))])
+    rows = [("joints", ", ".join(robot.group))]
+    if meshes is not None:
+        rows.append(("meshes", str(meshes)))
+    print_plan(result, note, list(files.values()), rows)
     return 0 if result.solved else 1
+
+
+def _judged(result: PlanResult, meshes: MeshCheck) -> PlanResult:
+    """Return a plan with the status that its path has when the meshes are asked, too."""
+    if meshes.verdict != "in collision":
+        return result
+    message = (
+        f"the path is free for the robot's capsules, but not for its meshes: in collision {meshes.message}"
+    )
+    return replace(result, status=Status.MESH_COLLISION, message=message)
 
 
 def _inputs(plan: Plan) -> list[Path]:

@@ -19,6 +19,7 @@ class Status(StrEnum):
     GOAL_INVALID = "goal_invalid"
     NOT_CONNECTED = "not_connected"
     BUDGET_SPENT = "budget_spent"
+    MESH_COLLISION = "mesh_collision"
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +65,8 @@ class PlanResult:
     Attributes
     ----------
     status : Status
-        ``solved``, ``start_invalid``, ``goal_invalid``, ``not_connected`` or ``budget_spent``.
+        ``solved``, ``start_invalid``, ``goal_invalid``, ``not_connected``, ``budget_spent``; or ``mesh_collision``,
+        of a path that is free in its world and not for the meshes which that stands for.
     message : str
         One sentence for people: what happened and, without a path, what to try.
     start, goal : ndarray, shape (dim,)
