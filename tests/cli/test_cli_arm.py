@@ -7,7 +7,7 @@ import trimesh
 from PIL import Image
 
 from evenroad.robot import ArmWorld, in_scene, load_robot, load_scene
-from tests.robot.urdf_texts import joint, link, two_joints, urdf
+from tests.robot.urdf_texts import SPHERE, joint, link, two_joints, urdf
 
 JOINTS = load_robot("ur5").group
 
@@ -83,6 +83,27 @@ def test_a_group_is_planned_for_and_the_others_are_held(run, desk):
     code, _, _ = run(*on_desk(group="b", start="0.5", goal="-0.5", out="a"))
     assert code == 0
     assert (desk / "a.csv").read_text().splitlines()[0] == "b"
+
+
+def test_what_a_named_state_says_of_joints_outside_the_group_is_where_they_are_held(run, desk):
+    (desk / "desk.yaml").write_text(
+        "obstacles:\n  ball: {shape: sphere, radius: 0.05, xyz: [0.252, 0, 0.762]}\n"
+        "states:\n  up: {a: 0, b: 1}\n  right: {a: 0.5, b: 1}\n  bent: {a: 0.5, b: -1}\n"
+    )
+    # The last body is 0.3 m along its link: with b at 1 it is where the ball is, with b at 0 far from it.
+    (desk / "arm.urdf").write_text(
+        two_joints(SPHERE.replace("<geometry>", "<origin xyz='0 0 0.3'/><geometry>"))
+    )
+    code, out, _ = run(*on_desk(group="a", start="up", goal="right", out="a"))
+    assert code == 1
+    record = json.loads((desk / "a.json").read_text())
+    assert record["status"] == "start_invalid"
+    assert "'lower' touches 'ball'" in record["message"]
+    assert record["query"]["held"] == {"b": 1.0}
+    assert "held b at 1" in " ".join(out.split())
+    code, _, err = run(*on_desk(group="a", start="up", goal="bent", out="b"))
+    assert code == 2
+    assert "joint 'b' is not planned for, so it cannot go from 1 in the state 'up' to -1 in 'bent'" in err
 
 
 def test_an_end_in_collision_is_a_status_that_names_the_two_bodies(run, desk):
@@ -260,7 +281,8 @@ def test_robot_says_how_conservative_fitted_capsules_are(run, desk):
     shown = " ".join(out.split())
     assert code == 0
     assert re.search(r"x 1 x mesh part.stl \d \d+ %", shown)
-    assert re.search(r"a continuous any rad not given planned, #1", shown)
+    # It would turn on, but b follows twice as far and must stay within 1.
+    assert re.search(r"a revolute ±0.5 rad not given planned, #1", shown)
     assert "= 2 a" in shown
     assert "neighbours: x with y" in shown
 

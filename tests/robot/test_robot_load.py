@@ -58,6 +58,30 @@ def test_a_file_goes_before_a_shipped_name(tmp_path, monkeypatch):
     assert load_robot("ur5").group == ("a", "b")
 
 
+def test_a_folder_of_the_name_of_a_shipped_robot_does_not_hide_it(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "ur5").mkdir()
+    assert load_robot("ur5").name == "ur5"
+
+
+STATES = """
+<group name="all"><joint name="a"/><joint name="b"/></group><group name="arm"><joint name="a"/></group>
+<group_state name="home" group="{0}"><joint name="a" value="{1}"/></group_state>
+<group_state name="home" group="{2}"><joint name="a" value="{3}"/><joint name="b" value="0.5"/></group_state>
+<group_state name="rest" group="all"><joint name="a" value="0.75"/><joint name="b" value="0.25"/></group_state>
+"""
+
+
+@pytest.mark.parametrize("row", [("arm", 0.1, "all", 0.2), ("all", 0.2, "arm", 0.1)])
+@pytest.mark.parametrize("group", ["arm", "a"])
+def test_of_two_states_of_a_name_the_one_of_the_group_is_taken(tmp_path, row, group):
+    srdf = write(tmp_path, f"<robot name='arm'>{STATES.format(*row)}</robot>", "arm.srdf")
+    robot = load_robot(write(tmp_path, two_joints()), srdf=srdf, group=group)
+    assert robot.states["home"]["a"] == 0.1
+    # One of another group under a name of its own, with what it says of the others.
+    assert robot.states["rest"] == {"a": 0.75, "b": 0.25}
+
+
 @pytest.mark.parametrize("name", ["ur6", "UR5"])
 def test_an_unknown_robot_gets_the_list_of_shipped_ones(name):
     with pytest.raises(UnknownName, match=f"no robot file '{name}', and none .* shipped: arm7, ur5"):
@@ -235,6 +259,20 @@ def test_a_scene_can_only_narrow_a_joints_range():
         in_scene(robot, Scene("s", (), limits={"elbow_joint": (4.0, 9.0)}))
     with pytest.raises(UnknownName, match="limits of scene 's': 'knee'"):
         in_scene(robot, Scene("s", (), limits={"knee": (4.0, 9.0)}))
+
+
+@pytest.mark.parametrize(
+    ("held", "says"),
+    [
+        ({"elbow_joint": 99.0}, "puts joint 'elbow_joint' at 99 rad, 95.9 rad outside its limits"),
+        ({"elbow_joint": np.nan}, "at nan; it must be a finite number"),
+        ({"shoulder_pan_joint": 0.5}, "'shoulder_pan_joint' is in the group: .* cannot be held"),
+    ],
+)
+def test_a_joint_that_cannot_be_held_is_refused(held, says):
+    robot = load_robot("ur5")
+    with pytest.raises(InvalidValue, match=says):
+        with_group(robot, robot.group[:2], held)
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
-from evenroad.robot import ArmWorld, load_robot, load_scene
+from evenroad.robot import ArmWorld, Obstacle, Scene, load_robot, load_scene
 from evenroad.robot.rotation import rotation_from_rpy
 from evenroad.robot.scene_file import SCENES, is_scene
 from tests.robot.urdf_texts import write
@@ -176,6 +176,12 @@ def test_what_is_merged_into_an_obstacle_may_be_said_again(tmp_path):
     )
     a, b, c = load_scene(write(tmp_path, text, "a.yaml")).obstacles
     assert [(each.size, each.cell) for each in (a, b, c)] == [((1,), True), ((2,), True), ((2,), True)]
+
+
+def test_two_obstacles_of_one_name_are_no_scene():
+    balls = [Obstacle(name, "sphere", (0.1,), (0, 0, 0)) for name in ("a", "b", "a")]
+    with pytest.raises(InvalidValue, match=r"scene 's' must have names of their own, twice: \['a'\]"):
+        Scene("s", tuple(balls))
 
 
 def test_a_scene_that_is_missing_gets_the_list_of_shipped_ones():

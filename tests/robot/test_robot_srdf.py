@@ -1,6 +1,7 @@
 import pytest
 
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
+from evenroad.robot import ArmWorld, Scene, held_values, load_robot
 from evenroad.robot.group import choose_group
 from evenroad.robot.srdf import read_srdf
 from evenroad.robot.urdf import read_urdf
@@ -53,7 +54,45 @@ def test_states_and_disabled_pairs_are_read(read):
     assert srdf.disabled == {frozenset(("base", "upper"))}
 
 
+def test_virtual_joints_are_skipped_wherever_they_are(read):
+    arm, srdf = read(
+        "<virtual_joint name='world_joint' type='planar' parent_frame='odom' child_link='base'/>"
+        "<group name='base'><joint name='world_joint'/></group>"
+        "<group name='all'><group name='base'/><joint name='elbow'/></group>"
+        "<group_state name='s' group='all'><joint name='world_joint' value='0 0 0'/>"
+        "<joint name='elbow' value='0.5'/></group_state>"
+    )
+    assert srdf.groups == {"base": (), "all": ("elbow",)}
+    assert srdf.states == {("all", "s"): {"elbow": 0.5}}
+    assert choose_group(arm, srdf, "all") == ("elbow",)
+
+
+def test_passive_joints_are_in_no_group(read):
+    arm, srdf = read(
+        "<group name='g'><chain base_link='base' tip_link='hand'/></group><passive_joint name='shoulder'/>"
+    )
+    assert srdf.groups == {"g": ("elbow",)}
+    assert choose_group(arm, read("<passive_joint name='shoulder'/>")[1], None) == ("elbow", "grip")
+
+
+def test_a_joint_locked_by_its_limits_is_in_no_group(tmp_path):
+    locked = "<limit lower='0.25' upper='0.25' velocity='1' effort='1'/>"
+    text = urdf(*map(link, "xyz"), joint("a", "x", "y", inside=locked), joint("b", "y", "z"))
+    srdf = "<group name='g'><chain base_link='x' tip_link='z'/></group>"
+    robot = load_robot(
+        write(tmp_path, text), srdf=write(tmp_path, f"<robot name='arm'>{srdf}</robot>", "arm.srdf")
+    )
+    assert robot.group == ("b",)
+    assert held_values(robot) == {"a": 0.25}
+    assert ArmWorld(robot, Scene("empty", ())).space.dim == 1
+
+
 BROKEN = {
+    "a passive joint that is not there": (
+        "<passive_joint name='knee'/>",
+        UnknownName,
+        "unknown joint in .*: 'knee'; known: elbow, flange",
+    ),
     "a joint that is not there": (
         "<group name='g'><joint name='knee'/></group>",
         UnknownName,

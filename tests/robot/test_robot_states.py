@@ -4,8 +4,17 @@ import numpy as np
 import pytest
 
 from evenroad.errors import EvenroadError, InvalidValue, UnknownName
-from evenroad.robot import Scene, configuration, load_robot, load_scene, named_states
-from tests.robot.urdf_texts import joint, link, urdf, write
+from evenroad.robot import (
+    Scene,
+    at_states,
+    configuration,
+    held_values,
+    load_robot,
+    load_scene,
+    named_states,
+    with_group,
+)
+from tests.robot.urdf_texts import LIMIT, joint, link, two_joints, urdf, write
 
 
 @pytest.fixture
@@ -92,3 +101,65 @@ def test_a_state_that_lacks_a_joint_or_breaks_a_limit_is_refused(ur5):
 def test_a_continuous_joint_takes_any_angle(tmp_path):
     robot = load_robot(write(tmp_path, urdf(link("x"), link("y"), joint("a", "x", "y", "continuous", ""))))
     assert configuration(robot, "700", degrees=True) == math.radians(700)
+
+
+@pytest.fixture
+def only_a(tmp_path):
+    """Two joints a and b, a finger that follows b; planned for is a alone."""
+    text = two_joints().replace("</robot>", "") + link("finger")
+    text += joint("f", "lower", "finger", inside=LIMIT + "<mimic joint='b'/>") + "</robot>"
+    return load_robot(write(tmp_path, text), group="a")
+
+
+UP = Scene(
+    "s", (), states={"up": {"a": 0.25, "b": 0.5, "f": 0.5}, "down": {"a": -0.5}, "bent": {"a": 0.5, "b": 1}}
+)
+
+
+@pytest.mark.parametrize(
+    "ends", [("up", "down"), ("down", "up"), ("up", "up"), (" up ", "0.3"), ("a=0.3", "up")]
+)
+def test_joints_that_are_not_planned_for_are_held_where_the_named_states_have_them(only_a, ends):
+    robot = at_states(only_a, ends, UP)
+    assert held_values(robot) == {"b": 0.5}
+    for end in ends:
+        assert configuration(robot, end, UP).shape == (1,)
+
+
+def test_numbers_and_states_of_the_group_alone_hold_nothing(only_a):
+    assert held_values(at_states(only_a, ("down", "0.5"), UP)) == {"b": 0.0}
+    held = with_group(only_a, ["a"], {"b": 0.75})
+    assert held_values(at_states(held, ("down", "0.5"), UP)) == {"b": 0.75}
+
+
+def test_two_states_that_differ_in_what_is_not_planned_for_are_refused(only_a):
+    with pytest.raises(
+        InvalidValue,
+        match="'b' is not planned for, .* from 0.5 in the state 'up' to 1 in 'bent'; the group is a",
+    ):
+        at_states(only_a, ("up", "bent"), UP)
+
+
+def test_a_state_is_never_taken_for_the_posture_that_it_is_not(only_a):
+    with pytest.raises(InvalidValue, match="'up' has joint 'b' at 0.5, where 'arm' holds it at 0"):
+        configuration(only_a, "up", UP)
+
+
+def test_a_state_cannot_hold_a_joint_outside_its_limits_nor_one_that_is_not_there(only_a):
+    scene = Scene("s", (), states={"far": {"a": 0, "b": 99}, "odd": {"a": 0, "knee": 1}})
+    with pytest.raises(InvalidValue, match="puts joint 'b' at 99 rad, 98 rad outside its limits"):
+        at_states(only_a, ("far", "0"), scene)
+    with pytest.raises(UnknownName, match="joint of the state 'odd': 'knee'; known: a, b"):
+        at_states(only_a, ("odd", "0"), scene)
+
+
+def test_a_joint_with_blanks_in_its_name_can_be_given_by_name(tmp_path):
+    text = urdf(
+        link("x"), link("y"), link("z"), joint("my joint", "x", "y"), joint("the other one", "y", "z")
+    )
+    robot = load_robot(write(tmp_path, text))
+    for written in ("my joint=0.5,the other one=-0.25", "my joint = 0.5 the other one=-0.25"):
+        np.testing.assert_array_equal(configuration(robot, written), [0.5, -0.25])
+    np.testing.assert_array_equal(configuration(robot, "the other one=-0.25"), [0, -0.25])
+    with pytest.raises(UnknownName, match="'joint'"):
+        configuration(robot, "joint=0.5")

@@ -18,7 +18,17 @@ from evenroad.cli.plan_parts import (
 from evenroad.cli.plan_table import print_plan
 from evenroad.io import plan_record, save_json, save_path_csv
 from evenroad.roadmap import PlanResult, Status, default_rule
-from evenroad.robot import ArmWorld, configuration, find_robot, find_scene, in_scene, load_model, load_scene
+from evenroad.robot import (
+    ArmWorld,
+    at_states,
+    configuration,
+    find_robot,
+    find_scene,
+    held_values,
+    in_scene,
+    load_model,
+    load_scene,
+)
 from evenroad.robot.reference.recheck import MeshCheck, has_meshes, recheck
 
 if TYPE_CHECKING:
@@ -37,11 +47,10 @@ def plan_arm(plan: Plan) -> int:
     refuse_options(plan, ("clearance", "unknown_is_free"), "--robot-radius")
     scene = load_scene(plan.world)
     model = load_model(plan.robot, srdf=plan.srdf, group=plan.group, bodies=plan.bodies)
-    robot = in_scene(model.robot, scene)
     files = output_files(plan, _inputs(plan), ("json", "csv", "png"), "file")
-    start, goal = (
-        configuration(robot, " ".join(words), scene, degrees=plan.deg) for words in (plan.start, plan.goal)
-    )
+    ends = [" ".join(words) for words in (plan.start, plan.goal)]
+    robot = at_states(in_scene(model.robot, scene), ends, scene)
+    start, goal = (configuration(robot, end, scene, degrees=plan.deg) for end in ends)
     world = ArmWorld(robot, scene, resolution=RESOLUTION if plan.resolution is None else plan.resolution)
     rule = chosen_rule(plan, default_rule(world.space).k)
     points, note = draw_points(plan, world.space.cube_dim)
@@ -57,6 +66,7 @@ def plan_arm(plan: Plan) -> int:
         "srdf": None if plan.srdf is None else str(plan.srdf),
         "bodies": None if plan.bodies is None else str(plan.bodies),
         "joints": list(robot.group),
+        "held": held_values(robot),
         "resolution": world.resolution,
         **common_query(plan),
     }
@@ -72,6 +82,9 @@ def plan_arm(plan: Plan) -> int:
 
     save_arm_picture(files["png"], result, world)
     rows = [("joints", ", ".join(robot.group))]
+    held = ", ".join(f"{name} at {value:.6g}" for name, value in held_values(robot).items())
+    if held:
+        rows.append(("held", held))
     if meshes is not None:
         rows.append(("meshes", str(meshes)))
     print_plan(result, note, list(files.values()), rows)

@@ -12,7 +12,7 @@ from rich.text import Text
 
 from evenroad._rng import generator
 from evenroad.cli.console import print_table
-from evenroad.robot import ArmWorld, Joint, Robot, RobotModel
+from evenroad.robot import ArmWorld, Joint, Robot, RobotModel, held_values
 
 _CONFIGURATIONS = 4096
 _MOTIONS = 256
@@ -54,7 +54,7 @@ def _use(robot: Robot, joint: Joint) -> str:
         return f"= {joint.mimic.multiplier:g} {joint.mimic.joint}{offset}"
     if joint.name in robot.group:
         return f"planned, #{robot.group.index(joint.name) + 1}"
-    return f"held at {robot.held.get(joint.name, min(max(0.0, joint.lower), joint.upper)):g}"
+    return f"held at {held_values(robot)[joint.name]:g}"
 
 
 def _bodies(model: RobotModel) -> Table:

@@ -5,9 +5,11 @@ from evenroad.robot.alter import with_group as with_group
 from evenroad.robot.alter import with_limits as with_limits
 from evenroad.robot.arm_world import ArmWorld as ArmWorld
 from evenroad.robot.capsule import Capsule as Capsule
+from evenroad.robot.configuration_text import configuration as configuration
 from evenroad.robot.joint import Joint as Joint
 from evenroad.robot.joint import Mimic as Mimic
 from evenroad.robot.kinematics import capsule_ends as capsule_ends
+from evenroad.robot.kinematics import held_values as held_values
 from evenroad.robot.kinematics import joint_values as joint_values
 from evenroad.robot.kinematics import link_poses as link_poses
 from evenroad.robot.load import find_robot as find_robot
@@ -20,5 +22,5 @@ from evenroad.robot.scene import Obstacle as Obstacle
 from evenroad.robot.scene import Scene as Scene
 from evenroad.robot.scene_file import find_scene as find_scene
 from evenroad.robot.scene_file import load_scene as load_scene
-from evenroad.robot.states import configuration as configuration
+from evenroad.robot.states import at_states as at_states
 from evenroad.robot.states import named_states as named_states

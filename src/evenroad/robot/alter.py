@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from evenroad.errors import InvalidValue, UnknownName
+from evenroad.robot.limits import require_within
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
 
@@ -19,12 +20,19 @@ def with_group(robot: Robot, group: Sequence[str], held: Mapping[str, float] | N
     ------
     UnknownName
         If a joint is not one that moves freely.
+    InvalidValue
+        If a joint is held that is in the group, or at a value that is outside its limits.
     """
-    free = [joint.name for joint in robot.joints if joint.kind != "fixed" and joint.mimic is None]
-    for name in (*group, *(held or {})):
+    free = {joint.name: joint for joint in robot.joints if joint.kind != "fixed" and joint.mimic is None}
+    held = dict(held or {})
+    for name in (*group, *held):
         if name not in free:
             raise UnknownName.among("joint", name, free)
-    return replace(robot, group=tuple(group), held=dict(held or {}))
+    for name, value in held.items():
+        if name in group:
+            raise InvalidValue(f"joint {name!r} is in the group: it is planned for and cannot be held")
+        require_within(free[name], value, f"holding {robot.name!r}")
+    return replace(robot, group=tuple(group), held=held)
 
 
 def in_scene(robot: Robot, scene: Scene) -> Robot:

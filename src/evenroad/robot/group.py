@@ -18,7 +18,7 @@ def choose_group(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | No
         The robot.
     wanted : str, sequence of str, or None
         A group of the SRDF, or names of joints (as a text: with commas between them).  None: the SRDF's group where
-        it has one, else every joint that moves and is no mimic.
+        it has one, else every joint that moves, is no mimic and, by the SRDF, not passive.
 
     Raises
     ------
@@ -42,7 +42,7 @@ def choose_group(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | No
     if groups:
         ((name, joints),) = groups.items()
         return _not_empty(joints, f"group {name!r}")
-    free = {j.name for j in urdf.joints if j.kind != "fixed" and j.mimic is None and j.lower < j.upper}
+    free = urdf.free - (frozenset() if srdf is None else srdf.passive)
     return _not_empty(tuple(name for name in urdf.order if name in free), f"robot {urdf.name!r}")
 
 

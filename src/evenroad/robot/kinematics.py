@@ -24,14 +24,20 @@ def joint_values(robot: Robot, q: npt.ArrayLike) -> dict[str, npt.NDArray[np.flo
     if batch.ndim != 2 or batch.shape[1] != len(robot.group):
         raise InvalidValue(f"q must have the shape (n, {len(robot.group)}), got {batch.shape}")
     values = dict(zip(robot.group, batch.T, strict=True))
-    for joint in robot.joints:
-        if joint.kind != "fixed" and joint.mimic is None and joint.name not in values:
-            value = robot.held.get(joint.name, min(max(0.0, joint.lower), joint.upper))
-            values[joint.name] = np.full(len(batch), value)
+    values |= {name: np.full(len(batch), value) for name, value in held_values(robot).items()}
     for joint in robot.joints:
         if joint.kind != "fixed" and joint.mimic is not None:
             values[joint.name] = joint.mimic.multiplier * values[joint.mimic.joint] + joint.mimic.offset
     return values
+
+
+def held_values(robot: Robot) -> dict[str, float]:
+    """Return where the joints are that move by themselves and are not planned for, joint -> value [rad or m]."""
+    return {
+        joint.name: float(robot.held.get(joint.name, min(max(0.0, joint.lower), joint.upper)))
+        for joint in robot.joints
+        if joint.kind != "fixed" and joint.mimic is None and joint.name not in robot.group
+    }
 
 
 def link_poses(robot: Robot, q: npt.ArrayLike) -> npt.NDArray[np.float64]:

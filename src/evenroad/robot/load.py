@@ -94,7 +94,7 @@ def find_robot(source: PathLike) -> tuple[Path, Path | None]:
         If there is neither such a file nor such a robot.
     """
     path = Path(source)
-    if path.exists() or path.suffix or len(path.parts) > 1:
+    if path.is_file() or path.suffix or len(path.parts) > 1:
         return path, None
     if str(source) not in ROBOTS:
         raise UnknownName(
@@ -121,7 +121,7 @@ def _build(
         tuple(capsule for link in urdf.links for capsule in capsules.get(link, ())),
         pairs=(),
         group=chosen,
-        states={} if srdf is None else _states(srdf, chosen),
+        states={} if srdf is None else _states(srdf, chosen, group),
     )
     if srdf is not None and srdf.disabled:
         pairs, pairs_from = pairs_without(robot, srdf.disabled), "SRDF"
@@ -152,10 +152,18 @@ def _link_body(urdf: Urdf, link: str, capsules: tuple[Capsule, ...], given: bool
     )
 
 
-def _states(srdf: Srdf, chosen: tuple[str, ...]) -> dict[str, dict[str, float]]:
-    """Return the named states that give a value to every joint of the group."""
-    return {
-        name: {joint: values[joint] for joint in chosen}
-        for (_, name), values in srdf.states.items()
-        if set(chosen) <= set(values)
-    }
+def _states(
+    srdf: Srdf, chosen: tuple[str, ...], wanted: str | Sequence[str] | None
+) -> dict[str, dict[str, float]]:
+    """Return the named states that give a value to every joint chosen: of two of a name, that of the group wanted."""
+
+    def strangeness(group_and_name: tuple[str, str]) -> tuple[bool, bool]:
+        group, _ = group_and_name
+        return group != wanted, srdf.groups[group] != chosen
+
+    found: dict[str, dict[str, float]] = {}
+    for group, name in sorted(srdf.states, key=strangeness):
+        values = srdf.states[group, name]
+        if set(chosen) <= set(values):
+            found.setdefault(name, dict(values))
+    return found

@@ -31,7 +31,7 @@ class Robot:
         Values of the movable joints that are not in the group [rad or m]; where not given: 0, or the nearest
         to it within limits.
     states : mapping of str to mapping of str to float
-        Named configurations: joint -> value.
+        Named configurations: joint -> value, of joints outside of the group, too, where they are known.
     """
 
     name: str

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+from evenroad.errors import InvalidValue
+
 Shape = Literal["box", "sphere", "cylinder", "capsule"]
 
 
@@ -50,10 +52,15 @@ class Scene:
     allowed : frozenset of (link, obstacle) pairs of str
         Contacts that are not tested, e.g. of the base with the table that it stands on.
     states : mapping of str to mapping of str to float
-        Named configurations: joint -> value.
+        Named configurations: joint -> value; joints that are not planned for are held there.
     limits : mapping of str to (float, float)
         Ranges to plan in, joint -> (lower, upper), within the robot's own [rad or m]; a planner takes them
         over with :func:`evenroad.robot.alter.in_scene`.
+
+    Raises
+    ------
+    InvalidValue
+        If two obstacles share a name: what is allowed to touch the one would be allowed to touch the other.
     """
 
     name: str
@@ -61,3 +68,11 @@ class Scene:
     allowed: frozenset[tuple[str, str]] = frozenset()
     states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        names = [obstacle.name for obstacle in self.obstacles]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise InvalidValue(
+                f"obstacles of scene {self.name!r} must have names of their own, twice: {twice}"
+            )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from evenroad._checks import require_positive
 from evenroad._yaml import read_mapping
@@ -38,7 +38,7 @@ def is_scene(path: str | os.PathLike[str]) -> bool:
 def find_scene(source: str | os.PathLike[str]) -> Path:
     """Return the file of a scene: `source` itself or, where there is no such file, the shipped one of that name."""
     path = Path(source)
-    if not path.exists() and path.parent == Path() and path.stem in SCENES and path.suffix in ("", ".yaml"):
+    if not path.is_file() and path.parent == Path() and path.stem in SCENES and path.suffix in ("", ".yaml"):
         return DATA / f"{path.stem}.yaml"
     return path
 
@@ -71,7 +71,7 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
         If a value has the wrong type or range.
     """
     path = find_scene(source)
-    if not path.exists():
+    if not path.is_file():
         raise BrokenFile(
             f"there is no scene file {path}; shipped: {', '.join(f'{name}.yaml' for name in SCENES)}"
         )
@@ -121,8 +121,7 @@ def _obstacle(name: str, entry: dict[str, Any], path: Path) -> Obstacle:
     cell = entry.get("cell", False)
     if not isinstance(cell, bool):
         raise InvalidValue(f"cell of {where} must be true or false, got {cell!r}")
-    kind: Shape = shape
-    return Obstacle(name, kind, size, (x, y, z), rotation_from_rpy(roll, pitch, yaw), cell)
+    return Obstacle(name, cast(Shape, shape), size, (x, y, z), rotation_from_rpy(roll, pitch, yaw), cell)
 
 
 def _range(value: object, what: str) -> tuple[float, float]:

@@ -20,20 +20,26 @@ class Srdf:
     Attributes
     ----------
     groups : mapping of str to tuple of str
-        Group -> its joints that move and are no mimics, in the order of the URDF.
+        Group -> its joints that can be planned for, in the order of the URDF: those that move, by themselves, and are
+        not passive.
     states : mapping of (group, name) to mapping of str to float
         Named states: joint -> value [rad or m].
     disabled : frozenset of frozenset of two str
         Pairs of links that are not tested against each other.
+    passive : frozenset of str
+        Joints that no motor moves.
     """
 
     groups: Mapping[str, tuple[str, ...]]
     states: Mapping[tuple[str, str], Mapping[str, float]]
     disabled: frozenset[frozenset[str]]
+    passive: frozenset[str] = frozenset()
 
 
 def read_srdf(path: Path, urdf: Urdf) -> Srdf:
     """Read the SRDF that belongs to a URDF; what has to do with neither groups, states nor pairs is skipped.
+
+    Virtual joints, which tie the root to the world, are skipped in groups and states, too: no URDF has them.
 
     Raises
     ------
@@ -53,22 +59,28 @@ def read_srdf(path: Path, urdf: Urdf) -> Srdf:
     if root.tag != "robot":
         raise BrokenFile(f"{path} is not an SRDF: its outermost element is <{root.tag}>, not <robot>")
     elements = {_attribute(group, "name", path): group for group in root.findall("group")}
-    reader = _Groups(elements, urdf, path)
-    groups = {name: _in_order(reader.joints(name, ()), urdf) for name in elements}
+    virtual = frozenset(_attribute(joint, "name", path) for joint in root.findall("virtual_joint"))
+    passive = frozenset(
+        _known("joint", _attribute(joint, "name", path), urdf.order, path)
+        for joint in root.findall("passive_joint")
+    )
+    reader = _Groups(elements, virtual, urdf, path)
+    groups = {name: _in_order(reader.joints(name, ()) - passive, urdf) for name in elements}
     states = {}
     for state in root.findall("group_state"):
         group = _known("group", _attribute(state, "group", path), groups, path)
-        states[group, _attribute(state, "name", path)] = _values(state, urdf, path)
+        states[group, _attribute(state, "name", path)] = _values(state, virtual, urdf, path)
     disabled = frozenset(
         frozenset(_known("link", _attribute(pair, end, path), urdf.links, path) for end in ("link1", "link2"))
         for pair in root.findall("disable_collisions")
     )
-    return Srdf(groups, states, disabled)
+    return Srdf(groups, states, disabled, passive)
 
 
 @dataclass(frozen=True)
 class _Groups:
     elements: Mapping[str, ElementTree.Element]
+    virtual: frozenset[str]
     urdf: Urdf
     path: Path
 
@@ -79,7 +91,7 @@ class _Groups:
         by_child = {joint.child: joint for joint in self.urdf.joints}
         found: set[str] = set()
         for part in self.elements[_known("group", name, self.elements, self.path)]:
-            if part.tag == "joint":
+            if part.tag == "joint" and part.get("name") not in self.virtual:
                 found.add(self._part(part, "joint", "name", self.urdf.order))
             elif part.tag == "link":
                 link = self._part(part, "link", "name", self.urdf.links)
@@ -105,10 +117,13 @@ class _Groups:
         return _known(what, _attribute(part, attribute, self.path), known, self.path)
 
 
-def _values(state: ElementTree.Element, urdf: Urdf, path: Path) -> dict[str, float]:
+def _values(state: ElementTree.Element, virtual: frozenset[str], urdf: Urdf, path: Path) -> dict[str, float]:
     values = {}
     for joint in state.findall("joint"):
-        name = _known("joint", _attribute(joint, "name", path), urdf.order, path)
+        name = _attribute(joint, "name", path)
+        if name in virtual:
+            continue
+        _known("joint", name, urdf.order, path)
         text = _attribute(joint, "value", path)
         try:
             values[name] = float(text)
@@ -120,8 +135,8 @@ def _values(state: ElementTree.Element, urdf: Urdf, path: Path) -> dict[str, flo
 
 
 def _in_order(names: set[str], urdf: Urdf) -> tuple[str, ...]:
-    movable = {joint.name for joint in urdf.joints if joint.kind != "fixed" and joint.mimic is None}
-    return tuple(name for name in urdf.order if name in names & movable)
+    free = names & urdf.free
+    return tuple(name for name in urdf.order if name in free)
 
 
 def _attribute(element: ElementTree.Element, name: str, path: Path) -> str:

@@ -1,14 +1,15 @@
-"""Configurations as people write them: a list, joint by joint, or a name."""
+"""Named states: configurations with a name, and where the joints are that are not planned for."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad.errors import InvalidValue, UnknownName
+from evenroad.robot.alter import with_group
+from evenroad.robot.kinematics import held_values
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
 
@@ -19,110 +20,67 @@ def named_states(robot: Robot, scene: Scene | None = None) -> dict[str, dict[str
     return states | {name: dict(values) for name, values in (scene.states if scene else {}).items()}
 
 
-def configuration(
-    robot: Robot, text: str, scene: Scene | None = None, *, degrees: bool = False
-) -> npt.NDArray[np.float64]:
-    """Return the configuration that a text stands for, (dim,) [rad or m].
+def at_states(robot: Robot, texts: Iterable[str], scene: Scene | None = None) -> Robot:
+    """Return the robot with the joints outside of its group held where named states have them.
 
     Parameters
     ----------
     robot : Robot
-        Its group gives the order.
-    text : str
-        One number a joint of the group, with commas (or blanks) between them: ``0,-1.57,0,-1.57,0,0``; or
-        ``name=value`` for some joints, the others as they are held (0 or the nearest to it within limits); or the
-        name of a state.
+        A robot.
+    texts : iterable of str
+        Start and goal of a plan, as :func:`configuration` takes them; what is no name of a state holds nothing.
     scene : Scene, optional
         Whose named states are known, too.
-    degrees : bool
-        Angles in `text` are degrees; lengths stay metres, and named states what they are.
 
     Raises
     ------
     InvalidValue
-        If a number is not one, there are too many or too few, a joint is given twice, or a value is outside the
-        joint's limits: the text says which joint, and by how much.
+        If two states have such a joint in different places, or one has it outside its limits.
     UnknownName
-        If there is no such state, or no such joint in the group.
+        If a state has a joint that the robot does not have.
     """
-    words = text.replace(",", " ").split()
-    if not words:
-        raise InvalidValue(f"a configuration of {robot.name!r} must not be empty")
     states = named_states(robot, scene)
-    if text.strip() in states:
-        q = _from_state(robot, text.strip(), states[text.strip()])
-    elif any("=" in word for word in words):
-        q = _from_pairs(robot, words, degrees)
-    else:
-        q = _from_list(robot, words, text, states, degrees)
-    require_within_limits(robot, q, text)
-    return q
+    held: dict[str, float] = {}
+    said: dict[str, str] = {}
+    for name in (text.strip() for text in texts):
+        for joint, value in _outside_group(robot, name, states.get(name, {})).items():
+            if held.setdefault(joint, value) != value:
+                raise InvalidValue(
+                    f"joint {joint!r} is not planned for, so it cannot go from {held[joint]:.6g} in the state"
+                    f" {said[joint]!r} to {value:.6g} in {name!r}; the group is {','.join(robot.group)}"
+                )
+            said.setdefault(joint, name)
+    return with_group(robot, robot.group, {**robot.held, **held})
 
 
-def require_within_limits(robot: Robot, q: npt.NDArray[np.float64], text: str) -> None:
-    """Raise InvalidValue unless a configuration, (dim,), is within the limits of its joints."""
-    joints = {joint.name: joint for joint in robot.joints}
-    for name, value in zip(robot.group, q.tolist(), strict=True):
-        joint = joints[name]
-        if joint.lower <= value <= joint.upper:
-            continue
-        unit = "m" if joint.kind == "prismatic" else "rad"
-        beyond = max(joint.lower - value, value - joint.upper)
-        raise InvalidValue(
-            f"{text!r} puts joint {name!r} at {value:.6g} {unit}, {beyond:.3g} {unit} outside its limits"
-            f" [{joint.lower:.6g}, {joint.upper:.6g}]"
-        )
+def state_values(robot: Robot, name: str, scene: Scene | None = None) -> npt.NDArray[np.float64]:
+    """Return the configuration, (dim,), that a named state of robot or scene stands for [rad or m].
 
-
-def _from_state(robot: Robot, name: str, values: Mapping[str, float]) -> npt.NDArray[np.float64]:
+    Raises
+    ------
+    UnknownName
+        If the state has a joint that the robot does not have.
+    InvalidValue
+        If it lacks a joint of the group, or has another joint elsewhere than where the robot holds it.
+    """
+    values = named_states(robot, scene)[name]
     missing = [joint for joint in robot.group if joint not in values]
     if missing:
         raise InvalidValue(f"the state {name!r} has no value for {', '.join(missing)}")
+    held = held_values(robot)
+    for joint, value in _outside_group(robot, name, values).items():
+        if value != held[joint]:
+            raise InvalidValue(
+                f"the state {name!r} has joint {joint!r} at {value:.6g}, where {robot.name!r} holds it at"
+                f" {held[joint]:.6g}: to hold it as the state does, see evenroad.robot.at_states"
+            )
     return np.array([values[joint] for joint in robot.group], dtype=np.float64)
 
 
-def _from_pairs(robot: Robot, words: list[str], degrees: bool) -> npt.NDArray[np.float64]:
-    joints = {joint.name: joint for joint in robot.joints}
-    values: dict[str, float] = {}
-    for word in words:
-        name, separator, number = word.partition("=")
-        if not separator:
-            raise InvalidValue(f"{word!r} is not of the form name=value")
-        if name not in robot.group:
-            raise UnknownName.among(f"joint of {robot.name!r}", name, robot.group)
-        if name in values:
-            raise InvalidValue(f"joint {name!r} is given twice")
-        values[name] = _value(robot, name, number, degrees)
-    neutral = {name: min(max(0.0, joints[name].lower), joints[name].upper) for name in robot.group}
-    return np.array([values.get(name, neutral[name]) for name in robot.group])
-
-
-def _from_list(
-    robot: Robot, words: list[str], text: str, states: Mapping[str, object], degrees: bool
-) -> npt.NDArray[np.float64]:
-    if len(words) == 1 and not _is_number(words[0]):
-        raise UnknownName(
-            f"unknown state {text.strip()!r}; known: {', '.join(sorted(states)) or 'none'}; or give"
-            f" {len(robot.group)} numbers: {','.join(robot.group)}"
-        )
-    if len(words) != len(robot.group):
-        raise InvalidValue(
-            f"a configuration of {robot.name!r} has {len(robot.group)} numbers, {','.join(robot.group)};"
-            f" got {len(words)} in {text!r}"
-        )
-    pairs = zip(robot.group, words, strict=True)
-    return np.array([_value(robot, name, word, degrees) for name, word in pairs])
-
-
-def _value(robot: Robot, name: str, word: str, degrees: bool) -> float:
-    if not _is_number(word):
-        raise InvalidValue(f"joint {name!r} must be a finite number, got {word!r}")
-    turns = next(joint.kind for joint in robot.joints if joint.name == name) != "prismatic"
-    return math.radians(float(word)) if degrees and turns else float(word)
-
-
-def _is_number(word: str) -> bool:
-    try:
-        return math.isfinite(float(word))
-    except ValueError:
-        return False
+def _outside_group(robot: Robot, name: str, values: Mapping[str, float]) -> dict[str, float]:
+    """Return what a state says of joints that are not planned for; of what is fixed or follows, it says nothing."""
+    known = [joint.name for joint in robot.joints]
+    for joint in values:
+        if joint not in known:
+            raise UnknownName.among(f"joint of the state {name!r}:", joint, known)
+    return {joint: values[joint] for joint in held_values(robot) if joint in values}

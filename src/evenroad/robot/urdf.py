@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,7 @@ from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.robot.geometry import Geometry
 from evenroad.robot.joint import Joint, Mimic
 from evenroad.robot.meshes import find_mesh
+from evenroad.robot.mimic import with_direct_mimics, within_limits_of_mimics
 from evenroad.robot.tree import in_tree_order
 from evenroad.robot.urdf_xml import read_urdf_xml
 
@@ -34,7 +35,8 @@ class Urdf:
     links : tuple of str
         All links; the root first, every parent before its children.
     joints : tuple of Joint
-        ``joints[i]`` is the joint whose child is ``links[i + 1]``; a mimic follows a joint that is none.
+        ``joints[i]`` is the joint whose child is ``links[i + 1]``; a mimic follows a joint that is none, whose
+        limits are narrow enough for it.
     order : tuple of str
         Names of the joints as the file lists them: the order of configurations.
     geometries : tuple of Geometry
@@ -46,6 +48,15 @@ class Urdf:
     joints: tuple[Joint, ...]
     order: tuple[str, ...]
     geometries: tuple[Geometry, ...]
+
+    @property
+    def free(self) -> frozenset[str]:
+        """Joints that move by themselves: neither fixed nor mimics, nor locked by equal limits."""
+        return frozenset(
+            joint.name
+            for joint in self.joints
+            if joint.kind != "fixed" and joint.mimic is None and joint.lower < joint.upper
+        )
 
 
 def read_urdf(path: Path) -> Urdf:
@@ -72,7 +83,7 @@ def read_urdf(path: Path) -> Urdf:
     return Urdf(
         name=parsed.name,
         links=(first, *(joint.child for joint in ordered)),
-        joints=tuple(_with_direct_mimics(ordered, path)),
+        joints=tuple(within_limits_of_mimics(with_direct_mimics(ordered, path), path)),
         order=tuple(joint.name for joint in joints),
         geometries=tuple(
             _geometry(link.name, collision, path) for link in parsed.links for collision in link.collisions
@@ -152,29 +163,6 @@ def _limits(joint: Any, where: str) -> tuple[float, float, float]:
             f"the limits of {where} must satisfy lower <= upper, got {limit.lower:g}, {limit.upper:g}"
         )
     return float(limit.lower), float(limit.upper), velocity
-
-
-def _with_direct_mimics(joints: list[Joint], path: Path) -> list[Joint]:
-    """Return the joints with every mimic following, directly, a joint that follows none."""
-    by_name = {joint.name: joint for joint in joints}
-
-    def direct(joint: Joint) -> Joint:
-        multiplier, offset, followed, seen = 1.0, 0.0, joint, [joint.name]
-        while followed.mimic is not None:
-            name = followed.mimic.joint
-            if by_name[name].kind == "fixed":
-                raise BrokenFile(f"joint {followed.name!r} in {path} mimics {name!r}, which is fixed")
-            if name in seen:
-                raise BrokenFile(
-                    f"joints of {path} mimic each other in a circle: {' -> '.join([*seen, name])}"
-                )
-            offset += multiplier * followed.mimic.offset
-            multiplier *= followed.mimic.multiplier
-            followed = by_name[name]
-            seen.append(name)
-        return replace(joint, mimic=Mimic(followed.name, multiplier, offset)) if joint.mimic else joint
-
-    return [direct(joint) for joint in joints]
 
 
 def _geometry(link: str, collision: Any, path: Path) -> Geometry:
