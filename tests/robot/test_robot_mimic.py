@@ -1,0 +1,110 @@
+"""A joint that others follow goes no further than they can."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from evenroad.errors import InvalidValue
+from evenroad.robot.arm_world import ArmWorld
+from evenroad.robot.joint import Joint, Mimic
+from evenroad.robot.kinematics import joint_values
+from evenroad.robot.load import load_robot
+from evenroad.robot.mimic import within_limits_of_mimics
+from evenroad.robot.scene import Scene
+from tests.robot.urdf_texts import joint, link, urdf, write
+
+NONE = (0.0, 0.0, 0.0)
+STRAIGHT = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+
+
+def leader(lower, upper, kind="revolute"):
+    return Joint("a", kind, "base", "upper", NONE, STRAIGHT, lower=lower, upper=upper)
+
+
+def follower(lower, upper, multiplier, offset=0.0, name="b"):
+    kind = "continuous" if math.isinf(lower) else "revolute"
+    mimic = Mimic("a", multiplier, offset)
+    return Joint(name, kind, "upper", name, NONE, STRAIGHT, lower=lower, upper=upper, mimic=mimic)
+
+
+def limits(*joints):
+    first = within_limits_of_mimics(joints, "arm.urdf")[0]
+    return first.kind, first.lower, first.upper
+
+
+@pytest.mark.parametrize(
+    ("followers", "expected"),
+    [
+        ([follower(-1.0, 1.0, 2.0)], (-0.5, 0.5)),
+        ([follower(-1.0, 1.0, -2.0, 0.5)], (-0.25, 0.75)),
+        ([follower(-1.0, 0.2, 1.0), follower(-0.3, 1.0, 0.5, name="c")], (-0.6, 0.2)),
+        ([follower(-9.0, 9.0, 1.0)], (-1.0, 1.0)),
+        ([follower(-math.inf, math.inf, 5.0)], (-1.0, 1.0)),
+        ([follower(-1.0, 1.0, 0.0, 0.5)], (-1.0, 1.0)),
+        ([follower(0.0, 0.0, 1.0, -0.25)], (0.25, 0.25)),
+    ],
+    ids=["half as far", "the other way", "two of them", "wider", "turns on", "stays", "cannot move"],
+)
+def test_limits_of_a_leader_are_narrowed_to_those_of_its_mimics(followers, expected):
+    kind, *found = limits(leader(-1.0, 1.0), *followers)
+    assert kind == "revolute"
+    assert found == pytest.approx(list(expected))
+
+
+def test_a_joint_that_turns_on_stops_where_its_mimic_does():
+    assert limits(leader(-math.inf, math.inf, "continuous"), follower(-1.0, 2.0, 0.5)) == (
+        "revolute",
+        -2.0,
+        4.0,
+    )
+    free = follower(-math.inf, math.inf, 2.0)
+    assert limits(leader(-math.inf, math.inf, "continuous"), free) == ("continuous", -math.inf, math.inf)
+
+
+def test_limits_written_alike_up_to_rounding_stay_as_they_are_written():
+    """0.7 / 0.1 is not 7: a start at the limit must not be outside of it."""
+    assert limits(leader(-7.0, 7.0), follower(-0.7, 0.7, 0.1)) == ("revolute", -7.0, 7.0)
+
+
+@pytest.mark.parametrize(
+    "alone", [follower(2.0, 3.0, 1.0), follower(-1.0, 1.0, 0.0, 1.5), follower(2.5, 2.6, -1.0, 0.0)]
+)
+def test_a_mimic_that_is_always_outside_its_limits_is_an_error(alone):
+    with pytest.raises(InvalidValue, match=r"'b' in arm\.urdf follows 'a' out of its own limits"):
+        limits(leader(-1.0, 1.0), alone)
+
+
+@settings(max_examples=200, deadline=None)
+@given(
+    st.floats(-3, 3).filter(lambda m: abs(m) > 1e-3),
+    st.floats(-0.5, 0.5),
+    st.floats(-2, -0.6),
+    st.floats(0.6, 2),
+    st.floats(0, 1),
+)
+def test_a_leader_within_its_limits_keeps_its_mimic_within_its_own(multiplier, offset, lower, upper, share):
+    _, low, high = limits(leader(-2.0, 2.0), follower(lower, upper, multiplier, offset))
+    value = multiplier * (low + share * (high - low)) + offset
+    assert lower - 1e-8 <= value <= upper + 1e-8
+
+
+def test_no_configuration_of_a_loaded_robot_takes_a_mimic_out_of_its_limits(tmp_path):
+    """Followers of followers, one of them backwards; the leader is planned for within what is left."""
+    inside = "<limit lower='-0.4' upper='0.3'/>"
+    text = urdf(
+        *(link(name) for name in "wxyz"),
+        joint("a", "w", "x"),
+        joint("b", "x", "y", inside=inside + "<mimic joint='a' multiplier='2' offset='0.1'/>"),
+        joint("c", "y", "z", inside=inside + "<mimic joint='b' multiplier='-1' offset='0.1'/>"),
+    )
+    robot = load_robot(write(tmp_path, text))
+    world = ArmWorld(robot, Scene("nothing", ()))
+    q = world.space.from_cube(np.linspace(0.0, 1.0, 200)[:, np.newaxis])
+    values = joint_values(robot, q)
+    for name in "bc":
+        assert values[name].min() >= -0.4 - 1e-9
+        assert values[name].max() <= 0.3 + 1e-9
+    np.testing.assert_allclose([q.min(), q.max()], [-0.15, 0.1], atol=1e-12)
