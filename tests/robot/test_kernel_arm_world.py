@@ -131,6 +131,23 @@ def test_explain_has_a_reason_for_whatever_is_not_free():
     assert world.explain(HOME) == "it is free"
 
 
+def test_explain_has_a_reason_for_what_only_rounding_brings_into_contact():
+    """The corner of a turned floor of 2 km: single precision knows its surface to a fraction of a millimetre."""
+    tilt = (0.8, 0.0, 0.6, 0.0, 1.0, 0.0, -0.6, 0.0, 0.8)
+    floor = Obstacle("floor", "box", (2000.0, 2000.0, 1.0), (-0.7, 0.0, -0.9), tilt)
+    world = ArmWorld(ur5(math.pi, joints=5), Scene("hill", (floor,)), backend="lanes")
+    q = world.space.from_cube(np.random.default_rng(12).random((500, 5)))
+    valid = world.valid(q)
+    count = min(valid.sum(), (~valid).sum())
+    assert count > 50
+    free, blocked = q[valid][:count], q[~valid][:count]
+    for _ in range(50):
+        middle = 0.5 * (free + blocked)
+        valid = world.valid(middle)[:, np.newaxis]
+        free, blocked = np.where(valid, middle, free), np.where(valid, blocked, middle)
+    assert all("touches" in world.explain(row) for row in blocked)
+
+
 def test_bodies_that_stand_in_contact_block_everything_and_are_named():
     scene = box_scene()
     sunk = replace(scene, obstacles=(*scene.obstacles, Obstacle("post", "sphere", (0.1,), (0.0, 0.0, 0.0))))
@@ -240,6 +257,8 @@ def test_an_argument_out_of_range_is_named(changes, error, words):
         ({"capsules": (Capsule("hand", (0, 0, 0), (0, 0, 1), 0.1),)}, UnknownName, "unknown link 'hand'"),
         ({"capsules": (Capsule("base", (0, 0, 0), (0, 0, 1), 0.0),)}, InvalidValue, "radius > 0"),
         ({"capsules": (Capsule("base", (0, 0, math.nan), (0, 0, 1), 0.1),)}, InvalidValue, "finite"),
+        ({"capsules": (Capsule("base", (0, 0, 0), (0, 0, 1e39), 0.1),)}, InvalidValue, "no larger than 1e"),
+        ({"capsules": (Capsule("base", (0, 0, 0), (0, 0, 1), 1e39),)}, InvalidValue, "no larger than 1e"),
         ({"pairs": (("base", "hand"),)}, UnknownName, "unknown link 'hand'"),
         ({"held": {"knee": 1.0}}, UnknownName, "unknown joint 'knee'"),
     ],
@@ -258,6 +277,9 @@ def test_a_robot_that_is_not_sound_is_refused(change, error, words):
         ({"mimic": Mimic("elbow_joint")}, "cannot be planned for"),
         ({"axis": (0.0, 0.0, 0.0)}, "must be a direction"),
         ({"xyz": (0.0, math.nan, 0.0)}, "finite numbers"),
+        ({"xyz": (0.0, 1e39, 0.0)}, "reaches 1e[+]39 m"),
+        ({"kind": "prismatic", "upper": 2e6}, "reaches 2e[+]06 m"),
+        ({"lower": 1e12, "upper": 1e12 + 1.0}, "turns by up to 1e[+]12 rad"),
     ],
 )
 def test_a_joint_that_is_not_sound_is_refused(change, words):
@@ -286,6 +308,7 @@ def test_a_mimic_that_a_full_turn_brings_elsewhere_is_refused():
         (Obstacle("x", "box", (1.0, 1.0), (0, 0, 0)), InvalidValue, "'x', a box, must have 3"),
         (Obstacle("x", "sphere", (-1.0,), (0, 0, 0)), InvalidValue, "> 0"),
         (Obstacle("x", "sphere", (1.0,), (0, math.inf, 0)), InvalidValue, "finite place"),
+        (Obstacle("x", "sphere", (1e39,), (0, 1e39, 0)), InvalidValue, "'x' must be within 1e[+]06 m"),
         (Obstacle("x", "sphere", (1.0,), (0, 0, 0), (2.0, *STRAIGHT[1:])), InvalidValue, "rotation"),
     ],
 )

@@ -1,16 +1,27 @@
 """The kernel's verdicts against an oracle that knows nothing of tables, lanes, pruning or polynomials."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.capsule import Capsule
-from evenroad.robot.joint import Joint
+from evenroad.robot.joint import Joint, Mimic
 from evenroad.robot.robot import Robot
-from evenroad.robot.scene import Scene
-from tests.robot.kernel_arms import STRAIGHT, X, box_scene, random_scene, random_tree, seven_joint_arm, ur5
+from evenroad.robot.scene import Obstacle, Scene
+from tests.robot.kernel_arms import (
+    STRAIGHT,
+    X,
+    Y,
+    Z,
+    box_scene,
+    random_scene,
+    random_tree,
+    seven_joint_arm,
+    ur5,
+)
 from tests.robot.oracle import clearance
 
 BAND = 1e-5
@@ -45,9 +56,75 @@ def test_verdicts_are_the_oracles(arm, backend):
     np.testing.assert_array_equal(free[clear], apart[clear] > 0.0)
 
 
+def edge(robot, scene, q):
+    """Configurations that the lanes call free, each next to one that they call blocked: found by bisection."""
+    world = ArmWorld(robot, scene, backend="lanes")
+    valid = world.valid(q)
+    count = min(valid.sum(), (~valid).sum(), 2_000)
+    assert count > 50
+    free, blocked = q[valid][:count], q[~valid][:count]
+    for _ in range(60):
+        middle = 0.5 * (free + blocked)
+        valid = world.valid(middle)[:, np.newaxis]
+        free, blocked = np.where(valid, middle, free), np.where(valid, blocked, middle)
+    return free
+
+
 def test_single_precision_is_never_optimistic(arm):
-    robot, scene, q, apart = arm
-    assert (apart[ArmWorld(robot, scene, backend="lanes").valid(q)] > 0.0).all()
+    """Random configurations are never so near to contact that a rounding decides: these all are."""
+    robot, scene, q, _ = arm
+    apart = clearance(robot, scene, edge(robot, scene, q))
+    assert (apart > 0.0).all()
+    assert np.median(apart) < BAND
+
+
+def following(multiplier):
+    """A UR5 whose fourth joint follows the second, many times as fast."""
+    robot = ur5(3.0)
+    wrist = replace(robot.joints[3], mimic=Mimic("shoulder_lift_joint", multiplier, 0.1))
+    joints = (*robot.joints[:3], wrist, *robot.joints[4:])
+    return replace(robot, joints=joints, group=(*robot.group[:3], *robot.group[4:]))
+
+
+@pytest.mark.parametrize(
+    "robot",
+    [ur5(100.0), ur5(1e4), ur5(1e6), following(30.0), following(-1000.0)],
+    ids=["16 turns", "1600 turns", "no limit", "mimic x30", "mimic x-1000"],
+)
+def test_large_angles_cost_no_digits(robot):
+    scene = random_scene(5)
+    space = ArmWorld(robot, scene).space
+    q = space.from_cube(np.random.default_rng(4).random((5_000, space.dim)))
+    assert (clearance(robot, scene, edge(robot, scene, q)) > 0.0).all()
+
+
+def test_a_turned_floor_of_kilometres_is_never_called_farther_than_it_is():
+    tilt = (0.8, 0.0, 0.6, 0.0, 1.0, 0.0, -0.6, 0.0, 0.8)
+    # Its middle lies 900 m down the hill; its face passes 0.4 m below the robot.
+    scene = Scene("hill", (Obstacle("floor", "box", (2000.0, 2000.0, 1.0), (719.46, 0.0, -540.72), tilt),))
+    q = ArmWorld(ur5(), scene).space.from_cube(np.random.default_rng(6).random((4_000, 6)))
+    assert (clearance(ur5(), scene, edge(ur5(), scene, q)) > 0.0).all()
+
+
+@pytest.mark.parametrize("turn", [1e-4, 6e-4, 1e-3, 2e-3, 1e-2])
+@pytest.mark.parametrize("radius", [5e-4, 2e-3, 2e-2])
+def test_thin_and_nearly_parallel_rods_are_never_called_free_where_they_touch(turn, radius):
+    """Rods of 2 m: where they come nearest is lost in the rounding of the angle between them."""
+    slides = [
+        Joint(axis_name, "prismatic", parent, child, (0.0, 0.0, 0.0), STRAIGHT, axis, -most, most)
+        for axis_name, parent, child, axis, most in (
+            ("x", "base", "a", X, 1.5), ("y", "a", "b", Y, 1.2 * radius), ("z", "b", "c", Z, 3.0 * radius),
+        )
+    ]  # fmt: skip
+    joints = (*slides, Joint("turn", "revolute", "c", "rod", (0.0, 0.0, 0.0), STRAIGHT, Z, -turn, turn))
+    rods = tuple(Capsule(link, (-1.0, 0.0, 0.0), (1.0, 0.0, 0.0), radius) for link in ("base", "rod"))
+    robot = Robot(
+        "rods", ("base", "a", "b", "c", "rod"), joints, rods, (("base", "rod"),), ("x", "y", "z", "turn")
+    )
+    scene = Scene("empty", ())
+    space = ArmWorld(robot, scene).space
+    q = space.from_cube(np.random.default_rng(5).random((10_000, 4)))
+    assert (clearance(robot, scene, edge(robot, scene, q)) > 0.0).all()
 
 
 def test_what_is_free_touches_nothing_as_true_capsules(arm):

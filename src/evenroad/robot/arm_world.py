@@ -169,8 +169,8 @@ class ArmWorld:
     def _touching(self, q: npt.NDArray[np.float64]) -> tuple[str, str] | None:
         """Return two bodies that touch, or come as near as what single precision may call touching."""
         model, tables = self.model, self.tables
-        margins = np.full(len(model.capsules), tables.padding)
-        pair_margins = np.full(len(tables.capsule_pairs), 2.0 * tables.padding)
+        # A copy: code would be compiled anew for an array that cannot be written to.
+        margins, pair_margins = np.full(len(model.capsules), tables.margin), tables.pair_margins.copy()
         frames, capsules = np.empty((len(model.tree.frames) + 1, 12)), np.empty((len(model.capsules), 6))
         kind, capsule, other = scalar.first_contact(
             q, tables.ints, tables.floats, margins, pair_margins, frames, capsules

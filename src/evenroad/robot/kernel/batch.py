@@ -9,7 +9,7 @@ from numba import njit
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.contact import blocked_lanes
 from evenroad.robot.kernel.motion import enter, span
-from evenroad.robot.kernel.place import scratch_memory
+from evenroad.robot.kernel.place import scratch_memory, write_values
 
 LANES = at.LANES
 Floats = npt.NDArray[np.float64]
@@ -21,8 +21,8 @@ Singles = npt.NDArray[np.float32]
 def configurations_free(q: Floats, bounds: Floats, ints: Ints, table: Singles) -> npt.NDArray[np.bool_]:
     """Return which rows of `q`, (n, dim), are within `bounds`, (3, dim), and free: (n,)."""
     n, dim = q.shape
-    scratch = scratch_memory(dim, ints, table)
-    state = np.empty(dim)
+    scratch = scratch_memory(ints, table)
+    state, states = np.empty(dim), np.empty(dim * LANES)
     free = np.empty(n, dtype=np.bool_)
     for first in range(0, n, LANES):
         count = min(LANES, n - first)
@@ -32,8 +32,9 @@ def configurations_free(q: Floats, bounds: Floats, ints: Ints, table: Singles) -
             free[row] = enter(q[row], bounds, state)
             for k in range(dim):
                 # What is out of bounds may be too large for single precision.
-                scratch[k * LANES + lane] = state[k] if free[row] else bounds[0, k]
-        blocked = blocked_lanes(scratch, dim, ints, table, LANES)
+                states[k * LANES + lane] = state[k] if free[row] else bounds[0, k]
+        write_values(scratch, states, ints, table)
+        blocked = blocked_lanes(scratch, ints, table, LANES)
         for lane in range(count):
             free[first + lane] &= (blocked >> lane) & 1 == 0
     return free
@@ -50,8 +51,9 @@ def motions_free(
     before quarters before eighths.
     """
     m, dim = a.shape
-    scratch = scratch_memory(dim, ints, table)
+    scratch = scratch_memory(ints, table)
     start, end, way, share = np.empty(dim), np.empty(dim), np.empty(dim), np.empty(LANES)
+    states = np.empty(dim * LANES)
     free = np.empty(m, dtype=np.bool_)
     for row in range(m):
         free[row] = False
@@ -61,13 +63,14 @@ def motions_free(
         for lane in range(LANES):
             state = min(lane, segments) if segments < LANES else lane * segments // (LANES - 1)
             share[lane] = state / max(segments, 1)
-        _write_states(scratch, start, way, share)
+        _write_states(states, start, way, share)
         for k in range(dim):
             # Exactly the end, so that a motion is free only where its end is.
-            scratch[k * LANES + LANES - 1] = end[k]
-        if blocked_lanes(scratch, dim, ints, table, 1) == 0:
+            states[k * LANES + LANES - 1] = end[k]
+        write_values(scratch, states, ints, table)
+        if blocked_lanes(scratch, ints, table, 1) == 0:
             free[row] = segments < LANES or _rest_is_free(
-                scratch, start, way, share, segments, dim, ints, table
+                scratch, states, start, way, share, segments, ints, table
             )
     return free
 
@@ -75,11 +78,11 @@ def motions_free(
 @njit(cache=True, nogil=True)
 def _rest_is_free(
     scratch: Singles,
+    states: Floats,
     start: Floats,
     way: Floats,
     share: Floats,
     segments: int,
-    dim: int,
     ints: Ints,
     table: Singles,
 ) -> bool:
@@ -102,15 +105,16 @@ def _rest_is_free(
             while (gap + 1) * segments // (LANES - 1) - (gap + 1) <= rank:
                 gap += 1
             share[lane] = (rank + 1 + gap) / segments
-        _write_states(scratch, start, way, share)
-        if blocked_lanes(scratch, dim, ints, table, 1) != 0:
+        _write_states(states, start, way, share)
+        write_values(scratch, states, ints, table)
+        if blocked_lanes(scratch, ints, table, 1) != 0:
             return False
     return True
 
 
 @njit(cache=True, nogil=True)
-def _write_states(scratch: Singles, start: Floats, way: Floats, share: Floats) -> None:
+def _write_states(states: Floats, start: Floats, way: Floats, share: Floats) -> None:
     """Write the configurations at sixteen shares of a motion."""
     for k in range(len(start)):
         for lane in range(LANES):
-            scratch[k * LANES + lane] = start[k] + share[lane] * way[k]
+            states[k * LANES + lane] = start[k] + share[lane] * way[k]

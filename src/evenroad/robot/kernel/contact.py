@@ -45,19 +45,19 @@ Singles = npt.NDArray[np.float32]
 
 
 @njit(cache=True, nogil=True)
-def blocked_lanes(scratch: Singles, dim: int, ints: Ints, table: Singles, enough: int) -> int:
-    """Return the mask of the configurations, at the beginning of `scratch`, that touch something.
+def blocked_lanes(scratch: Singles, ints: Ints, table: Singles, enough: int) -> int:
+    """Return the mask of the configurations, whose values are in `scratch`, that touch something.
 
     Parameters
     ----------
     scratch : float32 array
-        As ``place.scratch_memory`` makes it, with `dim` coordinates of sixteen configurations written to it.
+        As ``place.scratch_memory`` makes it, with the values of the frames in sixteen configurations.
     ints, table : arrays
         The tables.
     enough : int
         1 to stop at the first lane that is blocked, 16 to find all.
     """
-    frames, capsules, bodies, _ = scratch_places(dim, ints)
+    frames, capsules, bodies, _ = scratch_places(ints)
     place_frames(scratch, frames, ints, table)
     place_moving_capsules(scratch, frames, capsules, ints, table)
     blocked = _meeting_obstacles(scratch, capsules, ints, table, enough)
@@ -189,12 +189,14 @@ def _touching(scratch: Singles, capsules: int, pair: int, ints: Ints, table: Sin
     ef = ex * fx + ey * fy + ez * fz
     er = ex * rx + ey * ry + ez * rz
     fr = fx * rx + fy * ry + fz * rz
-    ee, ff = table[data + 2], table[data + 3]
-    one_by_ee, one_by_ff, least = table[data + 4], table[data + 5], table[data + 6]
-    parallel = larger(ee * ff - ef * ef, least)
-    s = _cut((ef * fr - er * ff) / parallel)
+    one_by_ee, one_by_ff, least = table[data + 2], table[data + 3], table[data + 4]
+    along_f, along_r = ef * one_by_ee, er * one_by_ee
+    # What of f and r is across e.
+    gx, gy, gz = fx - ex * along_f, fy - ey * along_f, fz - ez * along_f
+    qx, qy, qz = rx - ex * along_r, ry - ey * along_r, rz - ez * along_r
+    t = _cut((gx * qx + gy * qy + gz * qz) / larger(gx * gx + gy * gy + gz * gz, least))
+    s = _cut(along_f * t - along_r)
     t = _cut((ef * s + fr) * one_by_ff)
-    s = _cut((ef * t - er) * one_by_ee)
     x, y, z = rx + ex * s - fx * t, ry + ey * s - fy * t, rz + ez * s - fz * t
     return below_zero(x * x + y * y + z * z - reach * reach)
 

@@ -137,7 +137,6 @@ def _over_lanes(name: str) -> Callable[..., Any]:
 
 
 absolute = _elementwise("fabs")
-nearest_integer = _elementwise("rint")
 square_root = _elementwise("sqrt")
 smaller = _choice("<")
 larger = _choice(">")

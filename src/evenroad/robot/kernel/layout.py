@@ -2,7 +2,8 @@
 
 A compiled function takes some 0.1 microseconds an array to be called with: two arrays instead of twenty keep
 a call for one configuration cheap.  The constants below are compiled in; ``tables.py`` writes what
-they say and the kernels read it.
+they say and the kernels read it.  Numba looks for changes in a function's own file only: who changes
+a number here removes what is kept in ``__pycache__`` of this folder.
 
 Header of the integers: how many of each thing, and where its rows begin in either array.
 """
@@ -48,8 +49,9 @@ OBSTACLE_INT_ROW = 1
 ALIGNED, TURNED, CYLINDER = range(3)
 """Kinds: a box along the axes with its edges rounded (also a sphere), the same turned, a cylinder."""
 
-FRAME_FLOAT_ROW = 14
-"""Rotation (9) and translation (3) in the parent frame, multiplier, offset."""
+FRAME_FLOAT_ROW = 16
+"""Rotation (9) and translation (3) in the parent frame, multiplier, offset, and what single precision cuts off
+these two."""
 
 CAPSULE_FLOAT_ROW = 7
 """Centre (3), half of the segment (3), radius of the covering spheres."""
@@ -57,9 +59,10 @@ CAPSULE_FLOAT_ROW = 7
 BODY_FLOAT_ROW = 4
 """Centre (3) and radius of a ball around the capsules."""
 
-PAIR_FLOAT_ROW = 7
-"""Distance of centres from which on they cannot touch; sum of radii; squared half lengths A and B; 1/A, 1/B (0
-for points); the least value that A B - (a.b)^2 is taken for, so that nothing is divided by zero."""
+PAIR_FLOAT_ROW = 5
+"""Distance of centres from which on they cannot touch; sum of radii; one over the squared half lengths (0 for
+points); the least value that the squared part of the second half segment across the first is taken for, so that
+nothing is divided by zero."""
 
 OBSTACLE_FLOAT_ROW = 16
 """Centre (3), half extents (3), rotation (9) to the root's frame, rounding of the edges.

@@ -11,13 +11,19 @@ import numpy.typing as npt
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.robot.capsule import Capsule
 from evenroad.robot.kernel.cover import Cover, cover_capsule
-from evenroad.robot.kernel.reach import farthest
+from evenroad.robot.kernel.reach import farthest, largest_value
 from evenroad.robot.kernel.separation import point_to_obstacle, segment_to_segment
 from evenroad.robot.kernel.tree import MovingTree, Placement, moving_tree
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle, Scene
 
 Vector = npt.NDArray[np.float64]
+
+_FARTHEST = 1e6
+"""No length may be larger [m]: single precision would leave decimetres, and fail altogether at 1e19."""
+
+_MOST_TURNED = 1e9
+"""No angle may be larger [rad]: it would leave double precision too few digits."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,11 +102,18 @@ def arm_model(robot: Robot, scene: Scene) -> ArmModel:
     Raises
     ------
     InvalidValue
-        If a capsule or an obstacle has a size that is not a finite number > 0, or the robot has no capsules.
+        If a capsule or an obstacle has a size that is not a finite number > 0, the robot has no capsules, a length is
+        larger than 1e6 m (but for boxes along the axes) or an angle larger than 1e9 rad.
     UnknownName
         If capsules, pairs or allowed contacts name a link or an obstacle that is not there.
     """
     tree = moving_tree(robot)
+    for frame in tree.frames:
+        if not frame.slides and largest_value(frame, robot) > _MOST_TURNED:
+            raise InvalidValue(
+                f"what joint {robot.group[frame.coordinate]!r} moves turns by up to"
+                f" {largest_value(frame, robot):.3g} rad: more than {_MOST_TURNED:g} leaves no digits"
+            )
     if not robot.capsules:
         raise InvalidValue(f"robot {robot.name!r} has no capsules: every configuration would be free")
     placed = [_placed(capsule, tree) for capsule in robot.capsules]
@@ -111,6 +124,10 @@ def arm_model(robot: Robot, scene: Scene) -> ArmModel:
     for obstacle in scene.obstacles:
         _require_sound(obstacle)
     reach = farthest(tree, capsules, robot)
+    if reach > _FARTHEST:
+        raise InvalidValue(
+            f"robot {robot.name!r} reaches {reach:.3g} m: more than {_FARTHEST:g} leaves no digits"
+        )
     obstacles = tuple(
         obstacle for obstacle in scene.obstacles if point_to_obstacle(np.zeros(3), obstacle) <= reach
     )
@@ -138,6 +155,8 @@ def _placed(capsule: Capsule, tree: MovingTree) -> PlacedCapsule:
     a, b = np.array(capsule.a, dtype=np.float64), np.array(capsule.b, dtype=np.float64)
     if not (np.isfinite([*a, *b, capsule.radius]).all() and capsule.radius > 0.0):
         raise InvalidValue(f"a capsule must have finite ends and a radius > 0, got {capsule!r}")
+    if max(map(abs, (*capsule.a, *capsule.b, capsule.radius))) > _FARTHEST:
+        raise InvalidValue(f"a capsule must be no larger than {_FARTHEST:g} m, got {capsule!r}")
     place: Placement = tree.links[capsule.link]
     half = place.rotation @ (0.5 * (b - a))
     return PlacedCapsule(
@@ -166,6 +185,12 @@ def _require_sound(obstacle: Obstacle) -> None:
     turn = rotation.reshape(3, 3)
     if np.abs(turn @ turn.T - np.eye(3)).max() > 1e-6:
         raise InvalidValue(f"obstacle {obstacle.name!r} must have a rotation, got {obstacle.rotation!r}")
+    # A box along the axes is cut off where the robot never comes.
+    cut = obstacle.shape == "box" and is_straight(turn)
+    if not cut and max(map(abs, (*obstacle.size, *obstacle.xyz))) > _FARTHEST:
+        raise InvalidValue(
+            f"obstacle {obstacle.name!r} must be within {_FARTHEST:g} m, got size {obstacle.size!r} at {obstacle.xyz!r}"
+        )
 
 
 def _tested(

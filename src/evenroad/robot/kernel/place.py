@@ -13,6 +13,7 @@ from evenroad.robot.kernel.lanes import ONE, ZERO, absolute, load, spread, store
 from evenroad.robot.kernel.sine import sine_and_cosine
 
 LANES = at.LANES
+Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 Singles = npt.NDArray[np.float32]
 
@@ -25,23 +26,26 @@ CAPSULE = 9 * LANES
 BODY = 3 * LANES
 """Numbers of a body: centre of its ball."""
 
+_FULL_TURN = 2.0 * np.pi
+_TURNS = 0.5 / np.pi
+
 
 @njit(cache=True, nogil=True)
-def scratch_places(dim: int, ints: Ints) -> tuple[int, int, int, int]:
+def scratch_places(ints: Ints) -> tuple[int, int, int, int]:
     """Return where frames, capsules and bodies begin in the scratch memory, and its length.
 
-    The coordinates come first, sixteen numbers each.
+    The values of the frames come first, sixteen numbers each.
     """
-    frames = dim * LANES
+    frames = LANES * ints[at.FRAMES]
     capsules = frames + FRAME * (ints[at.FRAMES] + 1)
     bodies = capsules + CAPSULE * ints[at.CAPSULES]
     return frames, capsules, bodies, bodies + BODY * ints[at.BODIES]
 
 
 @njit(cache=True, nogil=True)
-def scratch_memory(dim: int, ints: Ints, table: Singles) -> Singles:
+def scratch_memory(ints: Ints, table: Singles) -> Singles:
     """Return scratch memory that begins on a cache line, with what does not move in its place."""
-    frames, capsules, bodies, length = scratch_places(dim, ints)
+    frames, capsules, bodies, length = scratch_places(ints)
     raw = np.empty(length + LANES, dtype=np.float32)
     skip = (64 - raw.ctypes.data % 64) % 64 // 4
     scratch = raw[skip : skip + length]
@@ -53,14 +57,32 @@ def scratch_memory(dim: int, ints: Ints, table: Singles) -> Singles:
 
 
 @njit(cache=True, nogil=True)
+def write_values(scratch: Singles, states: Floats, ints: Ints, table: Singles) -> None:
+    """Write the values of the frames for sixteen configurations, `states`: sixteen numbers a coordinate.
+
+    Angles lose their whole turns here, in double precision: single precision has no digits for a large angle.
+    """
+    for i in range(ints[at.FRAMES]):
+        row = ints[at.FRAME_INTS] + at.FRAME_INT_ROW * i
+        data = ints[at.FRAME_FLOATS] + at.FRAME_FLOAT_ROW * i
+        multiplier = np.float64(table[data + 12]) + np.float64(table[data + 14])
+        offset = np.float64(table[data + 13]) + np.float64(table[data + 15])
+        turn = 0.0 if ints[row + 2] != 0 else _FULL_TURN
+        here, coordinate = i * LANES, ints[row + 1] * LANES
+        for lane in range(LANES):
+            value = multiplier * states[coordinate + lane] + offset
+            scratch[here + lane] = value - turn * np.rint(value * _TURNS)
+
+
+@njit(cache=True, nogil=True)
 def place_frames(scratch: Singles, frames: int, ints: Ints, table: Singles) -> None:
-    """Write the frames of the coordinates at the beginning of `scratch`."""
+    """Write the frames for the values at the beginning of `scratch`."""
     for i in range(ints[at.FRAMES]):
         row = ints[at.FRAME_INTS] + at.FRAME_INT_ROW * i
         data = ints[at.FRAME_FLOATS] + at.FRAME_FLOAT_ROW * i
         parent = ints[row]
         here, below = frames + FRAME * (i + 1), frames + FRAME * parent
-        value = load(scratch, ints[row + 1] * LANES) * table[data + 12] + table[data + 13]
+        value = load(scratch, i * LANES)
         slides = ints[row + 2] != 0
         sine, cosine = spread(ZERO), spread(ONE)
         if not slides:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Protocol
 
@@ -76,10 +77,13 @@ def farthest(tree: MovingTree, segments: Sequence[Segment], robot: Robot) -> flo
     return most
 
 
+def largest_value(frame: MovingFrame, robot: Robot) -> float:
+    """Return the largest size of a frame's value within the limits of the joint that moves it [rad or m]."""
+    joint = next(joint for joint in robot.joints if joint.name == robot.group[frame.coordinate])
+    ends = (-math.pi, math.pi) if joint.kind == "continuous" else (joint.lower, joint.upper)
+    return max(abs(frame.multiplier * value + frame.offset) for value in ends)
+
+
 def _longest_slide(frame: MovingFrame, robot: Robot) -> float:
     """Return how far a frame's origin can slide from where it is at value 0; nothing where it turns."""
-    if not frame.slides:
-        return 0.0
-    joint = next(joint for joint in robot.joints if joint.name == robot.group[frame.coordinate])
-    ends = [frame.multiplier * value + frame.offset for value in (joint.lower, joint.upper)]
-    return max(map(abs, ends))
+    return largest_value(frame, robot) if frame.slides else 0.0

@@ -7,15 +7,10 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from evenroad.robot.kernel.lanes import absolute, nearest_integer, smaller, with_sign_of
+from evenroad.robot.kernel.lanes import absolute, smaller, with_sign_of
 
 _PI = np.float32(np.pi)
 _HALF_PI = np.float32(0.5 * np.pi)
-_TURNS = np.float32(0.5 / np.pi)
-
-# 2 pi in two parts, the first with so few digits that its multiples are exact.
-_FULL_TURN = np.float32(6.28125)
-_FULL_TURN_REST = np.float32(2.0 * np.pi - 6.28125)
 
 # x + S3 x^3 + S5 x^5 + S7 x^7 + S9 x^9 nearest to sin x on [-pi/2, pi/2] in the largest error (by Lawson's
 # reweighted least squares, 1961): 4.6e-9, or 1.7e-8 with coefficients of single precision.  Taylor's series, or
@@ -28,9 +23,7 @@ _S9 = np.float32(2.6000547418e-06)
 
 @njit(cache=True, nogil=True, forceinline=True)
 def sine_and_cosine(angle: Any) -> Any:
-    """Return the sines and cosines of sixteen angles [rad], to 2e-7 below 100 rad."""
-    turns = nearest_integer(angle * _TURNS)
-    angle = angle - turns * _FULL_TURN - turns * _FULL_TURN_REST
+    """Return the sines and cosines of sixteen angles from -pi to pi [rad], to 2e-7."""
     size = absolute(angle)
     # sin x = sin(pi - x); cos x = sin(pi/2 - |x|).
     sine = with_sign_of(_sine_within_a_quarter(smaller(_PI - size, size)), angle)

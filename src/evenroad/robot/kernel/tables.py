@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +20,9 @@ PADDING = 2e-6
 OBSTACLE_PADDING = 2.5e-7
 """The same as a share of how far an obstacle's farthest point is from the origin."""
 
+PARALLEL = 1e-4
+"""Nearer to parallel than this [rad], single precision does not tell where two segments are nearest."""
+
 _NEVER_HIT = -1e30
 """Half extent that fills unused places of a block of obstacles."""
 
@@ -34,9 +38,11 @@ class ArmTables:
     floats : float64 ndarray
         The model as it is.
     padded : float32 ndarray
-        The model with radii enlarged by `padding`, so that rounding never makes it optimistic.
-    padding : float
-        Added to every radius, on top of the obstacles' own share [m].
+        The model with larger radii, so that rounding never makes it optimistic.
+    margin : float
+        A capsule and an obstacle nearer to each other than this may touch by `padded` [m].
+    pair_margins : float64 ndarray, shape (capsule pairs,)
+        The same of the capsules of each pair [m].
     capsule_pairs : tuple of pairs of int
         The capsules of each pair, in the order of the tables.
     """
@@ -44,7 +50,8 @@ class ArmTables:
     ints: npt.NDArray[np.int64]
     floats: npt.NDArray[np.float64]
     padded: npt.NDArray[np.float32]
-    padding: float
+    margin: float
+    pair_margins: npt.NDArray[np.float64]
     capsule_pairs: tuple[tuple[int, int], ...]
 
 
@@ -53,10 +60,26 @@ def pack(model: ArmModel) -> ArmTables:
     padding = PADDING * max(1.0, model.reach)
     ints, floats, capsule_pairs = _pack(model, 0.0, 0.0)
     _, padded, _ = _pack(model, padding, OBSTACLE_PADDING)
-    arrays = ints, floats, padded.astype(np.float32)
-    for array in arrays:
+    added = padded - floats
+    # Once for what is added, once more for what rounding may add to that.
+    of_obstacles = _column(
+        added, ints[layout.OBSTACLE_FLOATS], layout.OBSTACLE_FLOAT_ROW, 15, len(model.obstacles)
+    )
+    margin = 2.0 * (padding + float(of_obstacles.max(initial=0.0)))
+    pair_margins = 2.0 * _column(
+        added, ints[layout.PAIR_FLOATS], layout.PAIR_FLOAT_ROW, 1, len(capsule_pairs)
+    )
+    single = padded.astype(np.float32)
+    for array in (ints, floats, single, pair_margins):
         array.setflags(write=False)
-    return ArmTables(*arrays, padding, capsule_pairs)
+    return ArmTables(ints, floats, single, margin, pair_margins, capsule_pairs)
+
+
+def _column(
+    table: npt.NDArray[np.float64], first: int, row: int, entry: int, count: int
+) -> npt.NDArray[np.float64]:
+    """Return one entry of each of `count` rows that begin at `first`."""
+    return table[first : first + count * row].reshape(count, row)[:, entry]
 
 
 class _Rows:
@@ -100,6 +123,7 @@ def _pack_frames(rows: _Rows, model: ArmModel) -> None:
     for frame in model.tree.frames:
         rows.ints += [frame.parent, frame.coordinate, int(frame.slides)]
         rows.floats += [*frame.rotation.ravel(), *frame.translation, frame.multiplier, frame.offset]
+        rows.floats += [number - float(np.float32(number)) for number in (frame.multiplier, frame.offset)]
 
 
 def _pack_capsules(rows: _Rows, model: ArmModel, padding: float) -> None:
@@ -153,19 +177,16 @@ def _ball(capsules: list[PlacedCapsule]) -> tuple[npt.NDArray[np.float64], float
 
 
 def _pair_row(first: PlacedCapsule, second: PlacedCapsule, padding: float) -> list[float]:
-    radii = first.radius + second.radius + 2.0 * padding
+    parallel = PARALLEL if padding else 1e-8
+    # Whichever place is taken on segments so near to parallel, they are this much farther apart there, sideways.
+    radii = math.hypot(first.radius + second.radius, parallel * second.half_length) + 2.0 * padding
     a, b = first.half_length**2, second.half_length**2
-    # In single precision (where there is padding) A B - (a.b)^2 has no digits left below a millionth of A B.  The
-    # segments are then parallel to 1e-3 rad, and whichever place is taken the distance errs by less than padding.
-    least = max((1e-6 if padding else 1e-13) * a * b, 1e-30)
     return [
         radii + first.half_length + second.half_length,
         radii,
-        a,
-        b,
         1.0 / a if a > 0.0 else 0.0,
         1.0 / b if b > 0.0 else 0.0,
-        least,
+        max(parallel**2 * b, 1e-30),
     ]
 
 
