@@ -5,8 +5,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy import stats
 
 from evenroad.bench.statistics import (
+    Interval,
     SamplesNeeded,
     clustered_difference,
     clustered_rate,
@@ -15,6 +17,8 @@ from evenroad.bench.statistics import (
     resampled_ratios,
     samples_needed,
     sign_flip_test,
+    student_interval,
+    student_test,
     wilson,
 )
 from evenroad.bench.statistics.samples_needed import _isotonic
@@ -127,14 +131,14 @@ def test_a_paired_difference_of_few_or_equal_sets_keeps_a_width():
         assert interval.high - interval.low > 0.1
 
 
-def test_with_many_units_the_large_sample_interval_says_what_a_bootstrap_says():
+def test_with_many_units_students_interval_says_what_a_bootstrap_says():
     rng = np.random.default_rng(2)
     pairs = rng.integers(1, 6, size=1500)
     sums = rng.binomial(pairs, 0.4) - rng.binomial(pairs, 0.2)
     sums = np.clip(sums, -pairs, pairs)
     interval = clustered_difference(sums, pairs, "instances")
     bootstrap = percentile_interval(resampled_ratios(sums, pairs))
-    assert interval.kind == "large sample over instances"
+    assert interval.kind == "student over instances"
     assert (interval.low, interval.high) == pytest.approx(bootstrap, abs=0.003)
 
 
@@ -215,3 +219,56 @@ def test_shapes_that_do_not_fit_are_refused(counts, rates, resampled):
 
 def test_samples_needed_print_with_their_interval():
     assert str(SamplesNeeded(411.6, 380.2, math.inf, 32, 1024)) == "412 [380, > 1024]"
+
+
+def test_columns_are_resampled_together():
+    table = np.array([[1, 0], [0, 1], [1, 0], [0, 1]])
+    values = resampled_ratios(table, np.ones_like(table))
+    assert values.sum(axis=1) == pytest.approx(1.0)
+    assert np.array_equal(values[:, 0], resampled_ratios(table[:, 0], [1, 1, 1, 1]))
+
+
+def test_a_resample_without_any_run_of_a_column_has_the_ratio_of_all():
+    values = resampled_ratios([[1], [0]], [[2], [0]], draws=50)
+    assert np.all(values == 0.5)
+
+
+def test_without_resamples_there_is_no_interval():
+    needed = samples_needed((32, 64), [0.1, 0.95], None, [9, 9])
+    assert (needed.has_interval, str(needed)) == (False, f"{needed.short} [–]")
+    assert 32 < needed.estimate < 64
+
+
+@given(st.lists(st.integers(0, 12), min_size=2, max_size=8))
+def test_students_interval_of_units_of_one_size_is_that_of_a_mean(sums):
+    runs = [12] * len(sums)
+    interval = student_interval(sums, runs, "sets", lowest=0.0)
+    shares = np.array(sums) / 12
+    half = stats.t.ppf(0.975, len(sums) - 1) * stats.sem(shares)
+    assert interval.low == pytest.approx(max(0.0, shares.mean() - half), abs=1e-9)
+    assert interval.high == pytest.approx(min(1.0, shares.mean() + half), abs=1e-9)
+    if shares.std() > 0 and shares.mean() > 0:
+        assert student_test(sums, runs) == pytest.approx(stats.ttest_1samp(shares, 0.0).pvalue, abs=1e-12)
+
+
+def test_one_unit_says_nothing():
+    assert student_interval([3], [5], "sets") == Interval(-1.0, 1.0, "student over sets")
+    assert student_test([3], [5]) == 1.0
+
+
+def test_units_without_a_difference_at_all_are_no_evidence():
+    assert student_test([0, 0, 0], [5, 5, 5]) == 1.0
+    assert student_test([1, -1, 0], [5, 5, 5]) == 1.0
+    assert student_test([2, 2, 2], [5, 5, 5]) == 0.0
+
+
+@pytest.mark.parametrize(("sums", "runs"), [([], []), ([1], [1, 2]), ([1, 1], [0, 1])])
+def test_student_needs_units_with_runs(sums, runs):
+    with pytest.raises(InvalidValue, match="sums and runs"):
+        student_interval(sums, runs, "sets")
+
+
+def test_the_wider_of_two_intervals_is_taken():
+    narrow, wide = Interval(0.4, 0.5, "a"), Interval(0.1, 0.3, "b")
+    assert narrow.or_wider(wide) is wide is wide.or_wider(narrow)
+    assert narrow.or_wider(Interval(0.4, 0.5, "c")) is narrow

@@ -2,6 +2,7 @@
 
 from evenroad.bench.statistics.bootstrap import percentile_interval as percentile_interval
 from evenroad.bench.statistics.bootstrap import resampled_ratios as resampled_ratios
+from evenroad.bench.statistics.clusters import FEW_UNITS as FEW_UNITS
 from evenroad.bench.statistics.clusters import clustered_difference as clustered_difference
 from evenroad.bench.statistics.clusters import clustered_rate as clustered_rate
 from evenroad.bench.statistics.clusters import sign_flip_test as sign_flip_test
@@ -11,7 +12,10 @@ from evenroad.bench.statistics.interval import Interval as Interval
 from evenroad.bench.statistics.interval import wilson as wilson
 from evenroad.bench.statistics.paired import bonett_price as bonett_price
 from evenroad.bench.statistics.paired import mcnemar_exact as mcnemar_exact
+from evenroad.bench.statistics.samples_needed import UNKNOWN_INTERVAL as UNKNOWN_INTERVAL
 from evenroad.bench.statistics.samples_needed import SamplesNeeded as SamplesNeeded
 from evenroad.bench.statistics.samples_needed import samples_needed as samples_needed
 from evenroad.bench.statistics.spread import Spread as Spread
 from evenroad.bench.statistics.spread import spread_over_sets as spread_over_sets
+from evenroad.bench.statistics.student import student_interval as student_interval
+from evenroad.bench.statistics.student import student_test as student_test

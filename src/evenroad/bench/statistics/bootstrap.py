@@ -33,8 +33,9 @@ def resampled_ratios(
 
     Parameters
     ----------
-    numerators, denominators : array_like, shape (units,)
-        Per unit; denominators > 0.
+    numerators, denominators : array_like, shape (units,) or (units, m)
+        Per unit; denominators >= 0, with a positive sum.  The m columns are resampled together: a unit that a resample
+        has twice counts twice in each.
     draws : int
         Number of resamples.
     seed : int
@@ -42,12 +43,13 @@ def resampled_ratios(
 
     Returns
     -------
-    ndarray, shape (draws,)
+    ndarray, shape (draws,) or (draws, m)
+        The ratio of all units where a resample's denominators are 0.
 
     Raises
     ------
     InvalidValue
-        If there is no unit, the shapes differ, or a denominator is not positive.
+        If there is no unit, the shapes differ, or the denominators of a column have no positive sum.
 
     References
     ----------
@@ -55,12 +57,13 @@ def resampled_ratios(
     """
     above = np.asarray(numerators, dtype=np.float64)
     below = np.asarray(denominators, dtype=np.float64)
-    if above.ndim != 1 or above.shape != below.shape or len(above) == 0:
+    if above.ndim not in (1, 2) or above.shape != below.shape or len(above) == 0:
         raise InvalidValue(
             f"a bootstrap needs two lists of one length >= 1, got {above.shape}, {below.shape}"
         )
-    if not (np.all(below > 0) and np.all(np.isfinite(above)) and np.all(np.isfinite(below))):
-        raise InvalidValue("a bootstrap needs finite numbers, and denominators > 0")
+    finite = np.all(np.isfinite(above)) and np.all(np.isfinite(below))
+    if not finite or np.any(below < 0) or np.any(below.sum(axis=0) <= 0):
+        raise InvalidValue("a bootstrap needs finite numbers, and denominators >= 0 with a positive sum")
     draws, seed = require_count("draws", draws), require_count("seed", seed, 0)
     if len(above) <= CACHED_UNITS:
         return _ratios(_cached_weights(len(above), draws, seed), above, below)
@@ -85,7 +88,11 @@ def percentile_interval(values: npt.ArrayLike, *, level: float = LEVEL) -> tuple
 def _ratios(
     weights: npt.NDArray[np.float64], above: npt.NDArray[np.float64], below: npt.NDArray[np.float64]
 ) -> npt.NDArray[np.float64]:
-    ratios: npt.NDArray[np.float64] = (weights @ above) / (weights @ below)
+    totals = weights @ below
+    of_all = above.sum(axis=0) / below.sum(axis=0)
+    ratios: npt.NDArray[np.float64] = np.where(
+        totals > 0, (weights @ above) / np.where(totals > 0, totals, 1.0), of_all
+    )
     return ratios
 
 

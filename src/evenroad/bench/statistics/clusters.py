@@ -8,18 +8,19 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from scipy.special import gammaln, ndtri
+from scipy.special import gammaln
 
 from evenroad.bench.statistics._counts import as_counts, as_successes
 from evenroad.bench.statistics.bootstrap import DRAWS, percentile_interval, resampled_ratios
 from evenroad.bench.statistics.interval import LEVEL, Interval, wilson
 from evenroad.bench.statistics.paired import bonett_price
+from evenroad.bench.statistics.student import student_interval
 from evenroad.errors import InvalidValue
 
 FEW_UNITS = 10
 """With fewer units than this a bootstrap is too narrow, and we count units instead of runs."""
 MANY_UNITS = 1000
-"""With more units than this a bootstrap of a difference says what the normal distribution says."""
+"""With more units than this a bootstrap of a difference says what Student's interval says."""
 
 
 def clustered_rate(
@@ -41,7 +42,7 @@ def clustered_rate(
     solved, runs : array_like of int, shape (units,)
         Successes and runs per unit; every unit has a run.
     unit : str
-        What a unit is, in the plural, for `Interval.kind`: ``sets`` or ``instances``.
+        What a unit is, in the plural, for `Interval.kind`: ``sets``, ``blocks`` or ``instances``.
 
     Raises
     ------
@@ -69,9 +70,8 @@ def clustered_difference(
 ) -> Interval:
     """Return the interval of a paired difference of success rates, by a bootstrap over units.
 
-    With more than 1000 units, where a bootstrap takes long and says the same, the large-sample interval of a ratio of
-    sums (W. G. Cochran 1977, Sampling Techniques, section 6.4); with fewer than 10, or where all units say the same,
-    the interval of Bonett and Price for as many pairs as there are units.
+    With more than 1000 units, where a bootstrap takes long and says the same, :func:`student_interval`; with fewer
+    than 10, or where all units say the same, the interval of Bonett and Price for as many pairs as there are units.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def clustered_difference(
     if len(ratios) < FEW_UNITS or np.all(ratios == ratios[0]):
         return _as_if_one_pair_a_unit(differences / totals.sum(), unit, level)
     if len(ratios) > MANY_UNITS:
-        return _large_sample(differences, totals, unit, level)
+        return student_interval(differences, totals, unit, level=level)
     values = resampled_ratios(differences, totals, draws=draws, seed=seed)
     return Interval(*percentile_interval(values, level=level), f"paired bootstrap over {unit}")
 
@@ -161,14 +161,3 @@ def _as_if_one_pair_a_unit(shares: npt.NDArray[np.float64], unit: str, level: fl
     rounded = bonett_price(round(wins), min(round(losses), units - round(wins)), units, level=level)
     seen = (wins - losses) / units
     return Interval(min(rounded.low, seen), max(rounded.high, seen), f"bonett-price over {unit}")
-
-
-def _large_sample(
-    differences: npt.NDArray[np.int64], totals: npt.NDArray[np.int64], unit: str, level: float
-) -> Interval:
-    ratio = float(differences.sum() / totals.sum())
-    units = len(totals)
-    squares = float(((differences - ratio * totals) ** 2).sum())
-    error = np.sqrt(squares * units / (units - 1)) / float(totals.sum())
-    half = float(ndtri(0.5 + 0.5 * level) * error)
-    return Interval(max(-1.0, ratio - half), min(1.0, ratio + half), f"large sample over {unit}")

@@ -23,13 +23,18 @@ class Interval:
     low, high : float
         Ends, as shares in [0, 1] (of a difference: in [-1, 1]).
     kind : str
-        ``wilson``; ``bootstrap over sets`` or ``wilson over sets`` (also: instances) where the runs are not
-        independent; ``bonett-price`` for paired differences.
+        ``wilson``, of paired differences ``bonett-price``, where runs are independent.  Where they come in units
+        (sets, blocks or instances): ``bootstrap over sets``, of differences ``paired bootstrap over sets``; with few
+        units or equal ones ``wilson over sets``, ``bonett-price over sets``; ``student over sets``.
     """
 
     low: float
     high: float
     kind: str
+
+    def or_wider(self, other: Interval) -> Interval:
+        """Return the wider of the two, this one where they are alike."""
+        return other if other.high - other.low > self.high - self.low else self
 
 
 def wilson(

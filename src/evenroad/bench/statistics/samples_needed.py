@@ -13,6 +13,9 @@ from evenroad.bench.statistics._counts import require_share
 from evenroad.bench.statistics.bootstrap import percentile_interval
 from evenroad.errors import InvalidValue
 
+UNKNOWN_INTERVAL = "[–]"
+"""What stands for an interval that is not known."""
+
 
 @dataclass(frozen=True)
 class SamplesNeeded:
@@ -21,7 +24,8 @@ class SamplesNeeded:
     Attributes
     ----------
     estimate, low, high : float
-        The number and its interval; ``inf`` is beyond `largest`, ``-inf`` is at or below `smallest`.
+        The number and its interval; ``inf`` is beyond `largest`, ``-inf`` is at or below `smallest`.  NaN are the ends
+        of an interval that is not known.
     smallest, largest : int
         The numbers of samples that were tried.
     """
@@ -33,9 +37,16 @@ class SamplesNeeded:
     largest: int
 
     def __str__(self) -> str:
-        """``412 [380, 455]``, ``> 1024`` or ``≤ 32 [≤ 32, 40]``."""
+        """``412 [380, 455]``, ``> 1024``, ``≤ 32 [≤ 32, 40]``, or ``412 [–]`` where the interval is not known."""
+        if not self.has_interval:
+            return f"{self.short} {UNKNOWN_INTERVAL}"
         ends = self._text(self.low), self._text(self.high)
         return self.short if ends == (self.short, self.short) else f"{self.short} [{ends[0]}, {ends[1]}]"
+
+    @property
+    def has_interval(self) -> bool:
+        """Whether it is known how sure the number is."""
+        return not math.isnan(self.low)
 
     @property
     def short(self) -> str:
@@ -51,7 +62,7 @@ class SamplesNeeded:
 def samples_needed(
     counts: Sequence[int],
     rates: npt.ArrayLike,
-    resampled: npt.ArrayLike,
+    resampled: npt.ArrayLike | None,
     runs: npt.ArrayLike,
     *,
     target: float = 0.9,
@@ -68,8 +79,8 @@ def samples_needed(
         Numbers of samples, ascending.
     rates : array_like, shape (m,)
         Success rate at each, in [0, 1].
-    resampled : array_like, shape (draws, m)
-        Bootstrap resamples of the rates.
+    resampled : array_like, shape (draws, m), or None
+        Bootstrap resamples of the rates; without them there is no interval.
     runs : array_like, shape (m,)
         Runs behind each rate.
     target : float
@@ -86,20 +97,22 @@ def samples_needed(
     """
     tried = np.asarray(counts, dtype=np.float64)
     rate_rows = np.asarray(rates, dtype=np.float64)[np.newaxis]
-    resample_rows = np.asarray(resampled, dtype=np.float64)
     weights = np.asarray(runs, dtype=np.float64)
     if len(tried) == 0 or np.any(np.diff(tried) <= 0) or tried[0] < 1:
         raise InvalidValue(f"numbers of samples must ascend from 1 or more, got {counts!r}")
     if rate_rows.shape[1:] != tried.shape or weights.shape != tried.shape:
         raise InvalidValue(f"{len(tried)} numbers of samples need as many rates and runs")
-    if resample_rows.ndim != 2 or resample_rows.shape[1] != len(tried) or len(resample_rows) == 0:
-        raise InvalidValue(f"resamples must have shape (draws, {len(tried)}), got {resample_rows.shape}")
     share = require_share("target", target)
-    estimate = _crossing(tried, _isotonic(rate_rows, weights), share)[0]
-    low, high = percentile_interval(_crossing(tried, _isotonic(resample_rows, weights), share))
-    # A percentile bootstrap of a kinked function may leave its own estimate out; the interval never does.
-    low, high = min(low, float(estimate)), max(high, float(estimate))
-    return SamplesNeeded(float(estimate), low, high, int(tried[0]), int(tried[-1]))
+    estimate = float(_crossing(tried, _isotonic(rate_rows, weights), share)[0])
+    low = high = math.nan
+    if resampled is not None:
+        resample_rows = np.asarray(resampled, dtype=np.float64)
+        if resample_rows.ndim != 2 or resample_rows.shape[1] != len(tried) or len(resample_rows) == 0:
+            raise InvalidValue(f"resamples must have shape (draws, {len(tried)}), got {resample_rows.shape}")
+        low, high = percentile_interval(_crossing(tried, _isotonic(resample_rows, weights), share))
+        # A percentile bootstrap of a kinked function may leave its own estimate out; the interval never does.
+        low, high = min(low, estimate), max(high, estimate)
+    return SamplesNeeded(estimate, low, high, int(tried[0]), int(tried[-1]))
 
 
 def _isotonic(rates: npt.NDArray[np.float64], weights: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
