@@ -5,6 +5,7 @@ import numpy as np
 from evenroad.bench.outcome import Outcome
 from evenroad.bench.store import open_store, read_rows
 from evenroad.bench.task import Task
+from evenroad.report.analysis import analyse
 from evenroad.report.runs import runs_of
 
 RATES = {
@@ -50,6 +51,21 @@ def made_up(problem="maze-1", runs=40, rates=RATES, counts=COUNTS, seed=0, **oth
     return rows
 
 
+def from_pool(problem, sampler, n, chances, runs=80, ids=None, rng=0, **others):
+    """Return rows of a pool: as many sets as chances, drawn in turn, and whether a run is solved by its set's chance.
+
+    The sets are numbered, or called as `ids` say: ``("grid",)`` for the only set there is, ``("",)`` for fresh ones.
+    """
+    rng = np.random.default_rng(rng)
+    ids = ids or [str(each) for each in range(len(chances))]
+    rows = []
+    for run in range(runs):
+        which = run % len(chances)
+        outcome = solved(bool(rng.random() < chances[which]), set_id=ids[which])
+        rows.append((task(problem, sampler, n, run, **others), outcome))
+    return rows
+
+
 def write_store(path, rows, suite="paper"):
     with open_store(path) as store:
         for each, outcome in rows:
@@ -59,3 +75,7 @@ def write_store(path, rows, suite="paper"):
 
 def runs_from(path, rows):
     return runs_of(read_rows(write_store(path, rows)))
+
+
+def analysis_from(path, rows):
+    return analyse(read_rows(write_store(path, rows)))

@@ -3,6 +3,7 @@
 import csv
 import math
 import os
+import re
 import stat
 from html.parser import HTMLParser
 
@@ -85,7 +86,15 @@ def test_every_link_of_the_contents_has_its_section_once(page):
 
 
 def test_the_page_says_where_its_numbers_come_from(page):
-    for fact in ("evenroad report results.db", "553 rows", "1 (1 failed)", "numpy", "seeds", "paper"):
+    for fact in (
+        "evenroad report results.db",
+        "553 rows",
+        "1 (1 failed)",
+        "numpy",
+        "seeds",
+        "protocol",
+        "paper",
+    ):
         assert fact in page.text
 
 
@@ -108,6 +117,14 @@ def test_the_page_has_tables_of_every_kind(page):
         assert title in page.text
 
 
+def test_every_table_names_its_connection_rule(report):
+    titles = re.split(r"^### ", (report.files[0].parent / "tables.md").read_text("utf-8"), flags=re.M)[1:]
+    assert len(titles) > 10
+    for table in titles:
+        named = re.search(r"k=\d+(, \d+)* (symmetrised|earlier)", table.split("\n\n")[0])
+        assert named or "connection" in table or " rule " in table, table.splitlines()[0]
+
+
 def test_fair_problems_are_pooled_and_have_no_section_of_their_own(page):
     assert not [each for each in page.ids if each.startswith("fair-balls")]
 
@@ -120,8 +137,18 @@ def test_cells_as_csv_hold_every_cell_with_its_counts(report):
     (uniform,) = [r for r in rows if (r["problem"], r["sampler"], r["n"]) == ("maze-1", "uniform", "128")]
     assert (uniform["runs"], uniform["failures"], uniform["interval"]) == ("21", "1", "wilson")
     assert float(uniform["success"]) == int(uniform["solved"]) / 21
-    assert float(uniform["mean_paper_v"]) == float(uniform["mean_valid"]) + 3
+    assert (uniform["unit"], uniform["units"], uniform["sets"]) == ("runs", "21", "0")
     assert math.isfinite(float(uniform["mean_seconds"]))
+
+
+def test_milestones_are_counted_as_the_paper_does_only_where_the_search_stops_as_its_planner(report):
+    (path,) = [path for path in report.files if path.name == "cells.csv"]
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(file))
+    for row in rows:
+        expected = str(float(row["mean_valid"]) + 3) if row["search"] == "stock" else ""
+        assert row["mean_paper_v"] == expected
+    assert {row["search"] for row in rows} == {"stock", "connect"}
 
 
 def test_pictures_are_files_as_well(report):

@@ -9,7 +9,7 @@ from evenroad.cli.console import print_table
 from evenroad.report import Report
 from evenroad.report.analysis import Analysis
 from evenroad.report.comparisons import REFERENCES
-from evenroad.report.fair import is_fair
+from evenroad.report.fair_names import is_fair, pooled_rules
 from evenroad.report.runs import Question
 from evenroad.report.sections.expected import verdict_counts
 from evenroad.report.text import difference
@@ -41,7 +41,9 @@ def _needed_table(analysis: Analysis, questions: list[Question]) -> Table:
     for question in questions:
         cells = analysis.cells_of(question)
         needed = {sampler: analysis.needed.get((question, sampler)) for sampler in REFERENCES}
-        references = ["–" if each is None else each.short for each in needed.values()]
+        references = [
+            "–" if each is None or not each.has_interval else each.short for each in needed.values()
+        ]
         runs = str(sum(cell.runs for cell in cells))
         row = (question.problem, question.rule, runs, *references, _fewest(analysis, question))
         table.add_row(*map(Text, row))
@@ -49,8 +51,19 @@ def _needed_table(analysis: Analysis, questions: list[Question]) -> Table:
 
 
 def _fewest(analysis: Analysis, question: Question) -> str:
-    mine = [(needed, sampler) for (asked, sampler), needed in analysis.needed.items() if asked == question]
-    best, _ = min(mine, key=lambda each: each[0].estimate)
+    """Return who needs the fewest samples, among samplers with an interval and with cells for every N there is."""
+    tried: dict[str, set[int]] = {}
+    for cell in analysis.cells_of(question):
+        tried.setdefault(cell.sampler, set()).add(cell.n)
+    every = set().union(*tried.values())
+    mine = [
+        (needed, sampler)
+        for (asked, sampler), needed in analysis.needed.items()
+        if asked == question and needed.has_interval and tried[sampler] == every
+    ]
+    if not mine:
+        return "–"
+    best = min((needed for needed, _ in mine), key=lambda needed: needed.estimate)
     if best.estimate == float("inf"):
         return "none reached it"
     names = [sampler for needed, sampler in mine if needed.estimate == best.estimate]
@@ -58,7 +71,7 @@ def _fewest(analysis: Analysis, question: Question) -> str:
 
 
 def _fair_table(analysis: Analysis) -> Table:
-    title = "Fair suite: success minus uniform's [points]"
+    title = f"Fair suite, {pooled_rules(analysis.runs.questions)}: success minus uniform's [points]"
     table = Table(title=title, title_justify="left", box=None, pad_edge=False)
     table.add_column("sampler", no_wrap=True)
     for name in ("worlds", "runs", "difference"):

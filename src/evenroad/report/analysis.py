@@ -11,6 +11,7 @@ from evenroad.report.comparisons import Comparison, comparisons_of
 from evenroad.report.expected import SOURCES, ExpectedTable, load_expected
 from evenroad.report.failures import Failure, failures_of
 from evenroad.report.fair import Pooled, pooled
+from evenroad.report.lazy import LazyChecks, lazy_checks
 from evenroad.report.needed import needed_of
 from evenroad.report.runs import Question, Runs, runs_of
 from evenroad.report.verdicts import Verdict, verdicts_of
@@ -31,6 +32,7 @@ class Analysis:
         Of the sources that have at least one problem in common with the store.
     pooled : dict of grouping to tuple of Pooled
         Empty without a fair suite.
+    lazy : tuple of LazyChecks
     failures : tuple of Failure
     """
 
@@ -40,6 +42,7 @@ class Analysis:
     needed: dict[tuple[Question, str], SamplesNeeded]
     verdicts: dict[str, tuple[ExpectedTable, tuple[Verdict, ...]]]
     pooled: dict[str, tuple[Pooled, ...]]
+    lazy: tuple[LazyChecks, ...]
     failures: tuple[Failure, ...]
 
     def cells_of(self, question: Question) -> tuple[Cell, ...]:
@@ -58,6 +61,7 @@ def analyse(rows: Rows) -> Analysis:
         needed=needed_of(cells),
         verdicts=_verdicts(cells),
         pooled=pooled(runs),
+        lazy=lazy_checks(runs),
         failures=failures_of(rows),
     )
 

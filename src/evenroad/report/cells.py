@@ -7,29 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._rng import generator
-from evenroad.bench.statistics import Interval, clustered_rate, resampled_ratios, wilson
-from evenroad.bench.statistics.bootstrap import DRAWS
-from evenroad.report.groups import Ints, combined, first_rows, sums_by_unit
+from evenroad.bench.statistics import Interval, clustered_rate, student_interval, wilson
+from evenroad.report.groups import Ints, combined, first_rows
 from evenroad.report.runs import Question, Runs
-
-
-@dataclass(frozen=True)
-class Units:
-    """What is independent in a cell.
-
-    Attributes
-    ----------
-    kind : str
-        ``runs``; ``sets`` where sets of a pool were drawn more than once; ``instances`` where random worlds
-        were planned in more than once.
-    solved, runs : ndarray of int, shape (units,)
-        Counts per set or instance; of ``runs``, one entry with all.
-    """
-
-    kind: str
-    solved: Ints
-    runs: Ints
+from evenroad.report.units import Units, grouping_of, sets_of, units_of
 
 
 @dataclass(frozen=True)
@@ -48,6 +29,11 @@ class Cell:
     mean_edges, mean_seconds : float
         Motions checked; seconds of planning.
     units : Units
+        The runs by what is independent.
+    sets : Units
+        The runs by the set of the pool that they had; empty for sets drawn afresh.
+    pool_given : bool
+        Whether the runs are independent given the pool's sets only: coordinates are permuted anew in every run.
     """
 
     question: Question
@@ -64,18 +50,13 @@ class Cell:
     mean_edges: float
     mean_seconds: float
     units: Units
+    sets: Units
+    pool_given: bool
 
     @property
     def rate(self) -> float:
         """Success rate."""
         return self.solved / self.runs
-
-    def resampled_rates(self) -> npt.NDArray[np.float64]:
-        """Return bootstrap resamples of the success rate, over what is independent; shape (DRAWS,)."""
-        if self.units.kind == "runs":
-            # Seeded by the number of samples, so that two cells of one curve are not resampled in step.
-            return generator(self.n).binomial(self.runs, self.rate, size=DRAWS) / self.runs
-        return resampled_ratios(self.units.solved, self.units.runs)
 
 
 def cells_of(runs: Runs) -> tuple[Cell, ...]:
@@ -93,8 +74,19 @@ def cells_of(runs: Runs) -> tuple[Cell, ...]:
     mean_early, sd_early = _moments(cell, cells, runs.early, answered)
     mean_edges, _ = _moments(cell, cells, runs.edges_checked, answered)
     mean_seconds, _ = _moments(cell, cells, runs.seconds, answered)
-    units = _units_of(runs, cell, cells)
+    grouping = grouping_of(runs, cell)
+    units, sets = units_of(runs, grouping), sets_of(runs, grouping)
     low, high = wilson(solved, totals)
+    intervals = [
+        Interval(float(low[c]), float(high[c]), "wilson")
+        if units[c].kind == "runs"
+        else clustered_rate(units[c].solved, units[c].runs, units[c].kind)
+        for c in range(cells)
+    ]
+    for c in range(cells):
+        if grouping.also_by_set(c):
+            over_sets = student_interval(sets[c].solved, sets[c].runs, "sets", lowest=0.0)
+            intervals[c] = intervals[c].or_wider(over_sets)
     return tuple(
         Cell(
             runs.questions[runs.question[row]],
@@ -103,9 +95,7 @@ def cells_of(runs: Runs) -> tuple[Cell, ...]:
             int(totals[c]),
             int(solved[c]),
             int(failures[c]),
-            Interval(float(low[c]), float(high[c]), "wilson")
-            if units[c].kind == "runs"
-            else clustered_rate(units[c].solved, units[c].runs, units[c].kind),
+            intervals[c],
             float(mean_valid[c]),
             float(sd_valid[c]),
             float(mean_early[c]),
@@ -113,6 +103,8 @@ def cells_of(runs: Runs) -> tuple[Cell, ...]:
             float(mean_edges[c]),
             float(mean_seconds[c]),
             units[c],
+            sets[c],
+            bool(grouping.permuted[c]) and units[c].kind == "runs",
         )
         for c, row in enumerate(first)
     )
@@ -121,32 +113,6 @@ def cells_of(runs: Runs) -> tuple[Cell, ...]:
 def cell_codes(runs: Runs) -> Ints:
     """Return the place of every run's cell in :func:`cells_of`."""
     return combined(runs.question, runs.sampler, runs.n)
-
-
-def unit_of(runs: Runs, cell: Ints) -> tuple[Ints, npt.NDArray[np.bool_]]:
-    """Return every run's unit (its instance or its set), and for each cell whether the unit is the instance."""
-    cells = int(cell.max()) + 1
-    smallest = np.full(cells, np.iinfo(np.int64).max)
-    largest = np.full(cells, np.iinfo(np.int64).min)
-    np.minimum.at(smallest, cell, runs.instance)
-    np.maximum.at(largest, cell, runs.instance)
-    random_worlds = smallest != largest
-    return np.where(random_worlds[cell], runs.instance, runs.set), random_worlds
-
-
-def _units_of(runs: Runs, cell: Ints, cells: int) -> list[Units]:
-    unit, random_worlds = unit_of(runs, cell)
-    by_unit = sums_by_unit(cell, cells, unit, runs.solved.astype(np.int64))
-    result = []
-    for c in range(cells):
-        entries = by_unit.of(c)
-        solved, total = by_unit.sums[entries], by_unit.runs[entries]
-        drawn_afresh = not random_worlds[c] and not by_unit.unit[entries].any()
-        if drawn_afresh or total.max() == 1:
-            result.append(Units("runs", solved.sum(keepdims=True), total.sum(keepdims=True)))
-        else:
-            result.append(Units("instances" if random_worlds[c] else "sets", solved, total))
-    return result
 
 
 def _moments(

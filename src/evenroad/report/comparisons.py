@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -15,14 +16,19 @@ from evenroad.bench.statistics import (
     holm,
     mcnemar_exact,
     sign_flip_test,
+    student_interval,
+    student_test,
 )
-from evenroad.report.cells import Cell, cell_codes, unit_of
+from evenroad.report.cells import Cell, cell_codes
 from evenroad.report.groups import Ints, UnitSums, combined, sums_by_unit
 from evenroad.report.runs import Question, Runs
+from evenroad.report.units import grouping_of
 
 REFERENCES = ("uniform", "halton scrambled")
 SIGNIFICANT = 0.05
 """Corrected p-value below which a difference is marked."""
+FEW_TO_TEST = 6
+"""With fewer units than this no choice of signs has a p-value below .05."""
 
 
 @dataclass(frozen=True)
@@ -39,10 +45,12 @@ class Comparison:
     interval : Interval
         Of the difference of success rates, cell minus reference.
     test : str
-        ``McNemar``; ``sign flips over sets`` (or instances) where pairs are not independent.
+        ``McNemar``; where pairs are not independent ``sign flips over sets`` (or blocks, instances), and ``Student over
+        sets`` after it where both were done and the larger p counts; ``too few sets to test`` of fewer than six.
     p : float
+        NaN where nothing was tested.
     p_corrected : float
-        By Holm's method over all comparisons of the question.
+        By Holm's method over all comparisons of the question that were tested.
     """
 
     cell: Cell
@@ -65,13 +73,19 @@ class Comparison:
         """Whether the corrected test tells the two apart."""
         return self.p_corrected < SIGNIFICANT
 
+    @property
+    def is_tested(self) -> bool:
+        """Whether there were enough units for a test."""
+        return not math.isnan(self.p)
+
 
 def comparisons_of(runs: Runs, cells: Sequence[Cell]) -> tuple[Comparison, ...]:
     """Compare every cell with every reference that has runs in common; Holm's correction question by question."""
     if not len(runs):
         return ()
     cell = cell_codes(runs)
-    unit, _ = unit_of(runs, cell)
+    grouping = grouping_of(runs, cell)
+    also_by_set = np.array([grouping.also_by_set(c) for c in range(len(cells))])
     pair = pair_codes(runs)
     found = []
     for place, reference in enumerate(REFERENCES):
@@ -79,12 +93,15 @@ def comparisons_of(runs: Runs, cells: Sequence[Cell]) -> tuple[Comparison, ...]:
         left_out = REFERENCES[: place + 1]
         paired, difference = differences_from(runs, pair, reference)
         rows = np.flatnonzero(paired)
-        sums = sums_by_unit(cell[rows], len(cells), unit[rows], difference[rows])
+        sums = sums_by_unit(cell[rows], len(cells), grouping.unit[rows], difference[rows])
         wins = np.bincount(cell[rows], weights=difference[rows] > 0, minlength=len(cells)).astype(int)
         losses = np.bincount(cell[rows], weights=difference[rows] < 0, minlength=len(cells)).astype(int)
+        rows = rows[also_by_set[cell[rows]]]
+        by_set = sums_by_unit(cell[rows], len(cells), runs.set[rows], difference[rows])
         for c, each in enumerate(cells):
             if each.sampler not in left_out and sums.of(c).stop > sums.of(c).start:
-                found.append(_compare(each, reference, sums, c, int(wins[c]), int(losses[c])))
+                compared = _compare(each, reference, sums, c, int(wins[c]), int(losses[c]))
+                found.append(_also_over_sets(compared, by_set, c) if also_by_set[c] else compared)
     return _corrected(found)
 
 
@@ -114,16 +131,36 @@ def _compare(cell: Cell, reference: str, sums: UnitSums, c: int, wins: int, loss
         p = float(mcnemar_exact(wins, losses))
     else:
         interval = clustered_difference(sums.sums[entries], sums.runs[entries], kind)
-        test, p = f"sign flips over {kind}", sign_flip_test(sums.sums[entries])
+        if entries.stop - entries.start < FEW_TO_TEST:
+            test, p = f"too few {kind} to test", math.nan
+        else:
+            test, p = f"sign flips over {kind}", sign_flip_test(sums.sums[entries])
     return Comparison(cell, reference, pairs, wins, losses, interval, test, p, p)
+
+
+def _also_over_sets(compared: Comparison, by_set: UnitSums, c: int) -> Comparison:
+    """Return the comparison with the wider interval and the larger p of it and of Student's over sets."""
+    entries = by_set.of(c)
+    sums, pairs = by_set.sums[entries], by_set.runs[entries]
+    p = max(compared.p, student_test(sums, pairs)) if compared.is_tested else math.nan
+    return replace(
+        compared,
+        interval=compared.interval.or_wider(student_interval(sums, pairs, "sets")),
+        test=f"{compared.test}, Student over sets" if compared.is_tested else compared.test,
+        p=p,
+        p_corrected=p,
+    )
 
 
 def _corrected(found: list[Comparison]) -> tuple[Comparison, ...]:
     families: dict[Question, list[int]] = {}
     for place, each in enumerate(found):
-        families.setdefault(each.cell.question, []).append(place)
+        if each.is_tested:
+            families.setdefault(each.cell.question, []).append(place)
     corrected: dict[int, float] = {}
     for family in families.values():
         values = holm([found[place].p for place in family])
         corrected.update(zip(family, values.tolist(), strict=True))
-    return tuple(replace(each, p_corrected=corrected[place]) for place, each in enumerate(found))
+    return tuple(
+        replace(each, p_corrected=corrected.get(place, math.nan)) for place, each in enumerate(found)
+    )

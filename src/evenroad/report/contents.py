@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from evenroad.report.analysis import Analysis
-from evenroad.report.fair import is_fair
+from evenroad.report.fair_names import is_fair, pooled_rules
 from evenroad.report.figures.canvas import as_png
 from evenroad.report.figures.curves import draw_curves
 from evenroad.report.figures.maze_success import draw_maze_success, maze_questions
@@ -15,7 +15,7 @@ from evenroad.report.page import Picture, Section
 from evenroad.report.runs import Question
 from evenroad.report.sections.expected import expected_table, verdict_counts
 from evenroad.report.sections.failures import failure_table
-from evenroad.report.sections.fair import fair_table
+from evenroad.report.sections.fair import fair_table, lazy_table
 from evenroad.report.sections.paired import paired_tables
 from evenroad.report.sections.sets import spread_table
 from evenroad.report.sections.success import success_table
@@ -44,8 +44,11 @@ def _expected(analysis: Analysis) -> Section | None:
 def _fair(analysis: Analysis) -> Section | None:
     if not analysis.pooled:
         return None
-    tables = tuple(fair_table(grouping, found) for grouping, found in analysis.pooled.items())
-    return Section("fair", "Fair suite: random worlds, starts and goals", tables=tables)
+    rules = pooled_rules(analysis.runs.questions)
+    tables = [fair_table(grouping, found, rules) for grouping, found in analysis.pooled.items()]
+    if analysis.lazy:
+        tables.append(lazy_table(analysis.lazy))
+    return Section("fair", "Fair suite: random worlds, starts and goals", tables=tuple(tables))
 
 
 def _question(analysis: Analysis, question: Question) -> Section:

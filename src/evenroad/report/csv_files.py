@@ -10,17 +10,27 @@ from evenroad.report.analysis import Analysis
 
 PAPER_ADDS = 3
 """The paper's |V| is the valid milestones when the planner stopped, plus 3."""
+STOPS_EARLY = "stock"
+"""The search that stops when the paper's planner does."""
 
 
 def cells_csv(analysis: Analysis) -> bytes:
-    """Return every cell; `mean_paper_v` is the number of milestones as the paper counts them."""
+    """Return every cell.
+
+    `mean_paper_v` is the number of milestones as the paper counts them, of the search that stops early as its planner
+    does; `unit` is what is independent, `units` how many of them and `sets` how many sets of a pool there were.
+    """
     header = (
-        "problem sampler n rule search runs solved success low high interval mean_valid sd_valid mean_paper_v"
-        " sd_paper_v mean_edges_checked mean_seconds failures samples_for_90 samples_for_90_low samples_for_90_high"
+        "problem sampler n rule search runs solved success low high interval unit units sets mean_valid sd_valid"
+        " mean_paper_v sd_paper_v mean_edges_checked mean_seconds failures samples_for_90 samples_for_90_low"
+        " samples_for_90_high"
     )
     rows = []
     for cell in analysis.cells:
         question, needed = cell.question, analysis.needed[cell.question, cell.sampler]
+        paper_v = (
+            (cell.mean_early + PAPER_ADDS, cell.sd_early) if question.search == STOPS_EARLY else ("", "")
+        )
         rows.append(
             (
                 *(question.problem, cell.sampler, cell.n, question.rule, question.search),
@@ -32,7 +42,8 @@ def cells_csv(analysis: Analysis) -> bytes:
                     cell.interval.high,
                     cell.interval.kind,
                 ),
-                *(cell.mean_valid, cell.sd_valid, cell.mean_early + PAPER_ADDS, cell.sd_early),
+                *(cell.units.kind, len(cell.units), len(cell.sets)),
+                *(cell.mean_valid, cell.sd_valid, *paper_v),
                 *(cell.mean_edges, cell.mean_seconds, cell.failures),
                 *(needed.estimate, needed.low, needed.high),
             )
@@ -90,12 +101,21 @@ def expected_csv(analysis: Analysis) -> bytes:
 
 def fair_csv(analysis: Analysis) -> bytes:
     """Return the pooled fair suite."""
-    header = "pooled_by group sampler worlds pairs success uniform_success difference low high interval p p_corrected"
+    header = (
+        "pooled_by group sampler worlds pairs sets success uniform_success difference low high interval p"
+        " p_corrected"
+    )
     rows = [
         (
-            *(grouping, each.group, each.sampler, each.instances, each.pairs, each.rate, each.reference_rate),
-            *(each.rate - each.reference_rate, each.interval.low, each.interval.high, each.interval.kind),
-            *(each.p, each.p_corrected),
+            *(grouping, each.group, each.sampler, each.instances, each.pairs, each.sets),
+            *(
+                each.rate,
+                each.reference_rate,
+                each.rate - each.reference_rate,
+                each.interval.low,
+                each.interval.high,
+            ),
+            *(each.interval.kind, each.p, each.p_corrected),
         )
         for grouping, found in analysis.pooled.items()
         for each in found

@@ -10,6 +10,7 @@ import numpy as np
 from evenroad import __version__
 from evenroad.bench.rows import Rows
 from evenroad.bench.store import Session
+from evenroad.bench.task import PROTOCOL
 
 
 def facts_of(store: Path, rows: Rows, sessions: Sequence[Session], command: str) -> list[tuple[str, str]]:
@@ -26,6 +27,7 @@ def facts_of(store: Path, rows: Rows, sessions: Sequence[Session], command: str)
         ("store", f"{store.name}: {len(rows)} rows of {', '.join(rows.suite.present())}"),
         ("failures", f"{failed}" + (f" ({by_status})" if failed else "")),
         ("seeds", seeds),
+        ("protocol", f"{PROTOCOL}; rows of others are left out"),
         ("report by", f"evenroad {__version__}"),
     ]
     if sessions:

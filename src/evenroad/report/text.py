@@ -27,13 +27,6 @@ def number(value: float, digits: int = 1) -> str:
     return "–" if math.isnan(value) else f"{value:.{digits}f}"
 
 
-def p_value(value: float) -> str:
-    """Write a p-value: ``0.032``, ``< 0.001``."""
-    if math.isnan(value):
-        return "–"
-    return "< 0.001" if value < 0.001 else f"{value:.3f}"
-
-
 def count_range(counts: tuple[int, ...]) -> str:
     """Write the range of some counts: ``400`` or ``64–400``."""
     low, high = min(counts), max(counts)

@@ -18,7 +18,7 @@ def expected_table(table: ExpectedTable, verdicts: tuple[Verdict, ...]) -> Table
         expected = each.expected
         key = (expected.problem, expected.sampler, expected.rule)
         rows.setdefault(key, {})[expected.n] = each
-    header = ["problem", "sampler", "runs", "V is"]
+    header = ["problem", "sampler", "connection", "runs", "V is"]
     for n in counts:
         header += [f"SR N = {n}", "V"]
     return Table(
@@ -26,7 +26,7 @@ def expected_table(table: ExpectedTable, verdicts: tuple[Verdict, ...]) -> Table
         title=f"{table.title} beside ours: expected / ours",
         header=tuple(header),
         rows=tuple(_row(by_count, counts) for by_count in rows.values()),
-        labels=2,
+        labels=3,
         notes=(
             f"{table.source}. {table.about}",
             f"{verdict_counts(verdicts)}. Two-sample Fisher tests on the counts at {LEVEL:g}, Holm's correction over"
@@ -56,7 +56,8 @@ def _row(by_count: dict[int, Verdict], counts: list[int]) -> tuple[Entry, ...]:
     first = next(iter(by_count.values())).expected
     ours = {each.ours.runs for each in by_count.values() if each.ours is not None}
     runs = f"{first.runs or '?'} / {'–' if not ours else max(ours)}"
-    entries = [Entry(first.problem), Entry(first.sampler), Entry(runs), Entry(first.v_definition)]
+    names = (first.problem, first.sampler, first.rule, runs, first.v_definition)
+    entries = [Entry(name) for name in names]
     for n in counts:
         entries += _pair(by_count[n]) if n in by_count else [Entry("–", "faint"), Entry("–", "faint")]
     return tuple(entries)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from evenroad.report.analysis import Analysis
 from evenroad.report.comparisons import REFERENCES, SIGNIFICANT, Comparison
 from evenroad.report.runs import Question
+from evenroad.report.sections.notes import pool_notes
 from evenroad.report.tables import Entry, Table
 from evenroad.report.text import difference
 
@@ -17,7 +18,8 @@ def paired_tables(analysis: Analysis, question: Question, name: str) -> tuple[Ta
         against = [each for each in mine if each.reference == reference]
         if against:
             slug = f"{name}-from-{reference.replace(' ', '-')}"
-            tables.append(_table(against, reference, slug, str(question), len(mine)))
+            tested = sum(each.is_tested for each in mine)
+            tables.append(_table(against, reference, slug, str(question), tested))
     return tuple(tables)
 
 
@@ -29,7 +31,7 @@ def _table(found: list[Comparison], reference: str, name: str, question: str, fa
         (Entry(sampler), *(comparison_entry(by_place.get((sampler, n))) for n in counts))
         for sampler in samplers
     )
-    tests = sorted({each.test for each in found})
+    tests = sorted({each.test for each in found if each.is_tested})
     return Table(
         name=name,
         title=f"{question}: difference from {reference} [points]",
@@ -37,9 +39,19 @@ def _table(found: list[Comparison], reference: str, name: str, question: str, fa
         rows=rows,
         notes=(
             f"On the same runs. Marked: p < {SIGNIFICANT:g} after Holm's correction over the {family} comparisons of"
-            f" this question; {', '.join(tests)}. Intervals are 95 %, each for itself.",
+            f" this question that were tested; {', '.join(tests) or 'none here'}. Intervals are 95 %, each for itself.",
+            *_untested(found),
+            *pool_notes(each.cell for each in found),
         ),
     )
+
+
+def _untested(found: list[Comparison]) -> tuple[str, ...]:
+    counts: dict[tuple[str, str], list[str]] = {}
+    for each in found:
+        if not each.is_tested:
+            counts.setdefault((each.test, each.cell.sampler), []).append(str(each.cell.n))
+    return tuple(f"{sampler}, N = {', '.join(counts[test, sampler])}: {test}." for test, sampler in counts)
 
 
 def comparison_entry(each: Comparison | None) -> Entry:

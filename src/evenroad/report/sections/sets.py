@@ -13,9 +13,9 @@ def spread_table(analysis: Analysis, question: Question, name: str) -> Table | N
     """Return success per set of the families that draw from a pool; None where no set was drawn twice."""
     rows = []
     for cell in analysis.cells_of(question):
-        if cell.units.kind != "sets" or len(cell.units.runs) < 2:
+        if len(cell.sets) < 2 or cell.sets.runs.max() < 2:
             continue
-        spread = spread_over_sets(cell.units.solved, cell.units.runs)
+        spread = spread_over_sets(cell.sets.solved, cell.sets.runs)
         shares = (spread.mean, spread.lowest, spread.highest, spread.sd, spread.sd_by_chance)
         rows.append(
             (

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from evenroad.bench.problems import PROBLEMS
 from evenroad.bench.samplers import SAMPLERS, why_not
+from evenroad.bench.statistics import FEW_UNITS, UNKNOWN_INTERVAL
 from evenroad.report.analysis import Analysis
 from evenroad.report.cells import Cell
 from evenroad.report.runs import Question
+from evenroad.report.sections.notes import pool_notes
 from evenroad.report.tables import Entry, Table
 from evenroad.report.text import count_range, with_interval
 
@@ -37,7 +39,13 @@ def success_table(analysis: Analysis, question: Question, name: str) -> Table:
         title=f"{question}: success [%]",
         header=("sampler", "runs", *(f"N = {n}" for n in counts), "N for 90 %"),
         rows=tuple(rows),
-        notes=(_intervals(tuple(cells.values())), *_why(reasons), *_failures(tuple(cells.values()))),
+        notes=(
+            _intervals(tuple(cells.values())),
+            *pool_notes(cells.values()),
+            *_unsure([row[-1] for row in rows]),
+            *_why(reasons),
+            *_failures(tuple(cells.values())),
+        ),
     )
 
 
@@ -65,6 +73,14 @@ def _intervals(cells: tuple[Cell, ...]) -> str:
         f"{kind} ({', '.join(names)})" if len(samplers) > 1 else kind for kind, names in samplers.items()
     )
     return f"95 % intervals: {kinds}."
+
+
+def _unsure(needed: list[Entry]) -> tuple[str, ...]:
+    if not any(entry.text.endswith(UNKNOWN_INTERVAL) for entry in needed):
+        return ()
+    return (
+        f"{UNKNOWN_INTERVAL}: fewer than {FEW_UNITS} runs, or sets, at some N are too few for an interval.",
+    )
 
 
 def _why(reasons: dict[str, list[str]]) -> tuple[str, ...]:
