@@ -106,6 +106,23 @@ def test_what_a_named_state_says_of_joints_outside_the_group_is_where_they_are_h
     assert "joint 'b' is not planned for, so it cannot go from 1 in the state 'up' to -1 in 'bent'" in err
 
 
+def test_links_that_nothing_is_found_to_touch_are_named_by_plan_and_robot(run, desk):
+    drawn = "<visual><geometry><sphere radius='1'/></geometry></visual>"
+    text = two_joints().replace(
+        "</robot>", link("camera", drawn) + joint("c", "lower", "camera", "fixed", "") + "</robot>"
+    )
+    (desk / "arm.urdf").write_text(text)
+    warning = "WARNING drawn, but without collision geometry, so that nothing is found to touch: camera"
+    code, out, _ = run(*on_desk(out="a"))
+    shown = " ".join(out.split())
+    assert code == 0
+    assert "no body camera" in shown
+    assert warning in shown
+    record = json.loads((desk / "a.json").read_text())
+    assert (record["no_body"], record["drawn_only"]) == (["camera"], ["camera"])
+    assert warning in " ".join(run("robot", "arm.urdf")[1].split())
+
+
 def test_an_end_in_collision_is_a_status_that_names_the_two_bodies(run, desk):
     (desk / "desk.yaml").write_text("obstacles:\n  ball: {shape: sphere, radius: 0.1, xyz: [0.0, 0, 0.6]}\n")
     code, out, err = run(*on_desk(start="0,0", goal="0.5,0", out="a"))

@@ -94,6 +94,27 @@ def test_a_robot_without_any_body_is_an_error_and_never_a_free_pass(tmp_path):
         load_robot(write(tmp_path, text))
 
 
+DRAWN = "<visual><geometry><box size='1 1 1'/></geometry></visual>"
+
+
+def test_links_without_a_body_are_named_those_that_are_drawn_apart(tmp_path):
+    text = urdf(
+        link("base"),
+        link("camera", DRAWN),
+        link("tool", ""),
+        link("hand", DRAWN),
+        joint("a", "base", "camera"),
+        joint("b", "camera", "tool", "fixed", ""),
+        joint("c", "tool", "hand", "fixed", ""),
+    )
+    path = write(tmp_path, text)
+    for model in (load_model(path), load_model(path)):
+        assert model.bodiless == ("camera", "tool", "hand")
+        assert model.drawn_only == ("camera", "hand")
+    bodies = write(tmp_path, "hand: [{centre: [0, 0, 0], radius: 0.1}]", "bodies.yaml")
+    assert load_model(path, bodies=bodies).drawn_only == ("camera",)
+
+
 BODIES = "lower: [{a: [0, 0, 0], b: [0, 0, 0.2], radius: 0.03}, {centre: [0, 0, 0.3], radius: 0.05}]\n"
 
 
@@ -201,6 +222,32 @@ def test_the_cache_takes_notice_of_every_change(tmp_path, changed):
     else:
         options["group"] = "a"
     assert load_robot(path, **options) != before
+
+
+def test_an_srdf_without_a_pair_is_told_from_no_srdf_and_from_one_that_is_empty(tmp_path):
+    path, empty = write(tmp_path, two_joints()), write(tmp_path, "", "empty")
+    assert load_model(path).pairs_from == "computed"
+    with pytest.raises(BrokenFile, match="empty is not XML"):
+        load_model(path, srdf=empty)
+    with pytest.raises(BrokenFile, match="empty is not a file of bodies"):
+        load_model(path, bodies=empty)
+
+
+def test_a_file_saved_while_it_is_read_is_not_kept_for_what_it_was(tmp_path):
+    from evenroad.robot import load
+
+    path = write(tmp_path, two_joints())
+    read = load.read_urdf
+
+    def saved_meanwhile(source):
+        path.write_text(two_joints().replace("upper='1'", "upper='0.5'"))
+        return read(source)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(load, "read_urdf", saved_meanwhile)
+        assert load_robot(path).joints[0].upper == 0.5
+    path.write_text(two_joints())
+    assert load_robot(path).joints[0].upper == 1.0
 
 
 def test_a_mesh_that_went_away_is_missed_though_the_robot_is_in_the_cache(tmp_path):

@@ -98,7 +98,67 @@ def test_reading_gives_no_warnings(tmp_path):
         read_urdf(write(tmp_path, two_joints()))
 
 
+def test_commas_between_numbers_are_blanks(tmp_path):
+    body = "<collision><origin xyz='1,2, 3'/><geometry><box size='1, 2,3'/></geometry></collision>"
+    text = urdf(link("x", body), link("y"), joint("a", "x", "y", xyz="0.1,0.2,0.3", axis="0,1,0"))
+    arm = read_urdf(write(tmp_path, text))
+    assert (arm.geometries[0].size, arm.geometries[0].xyz) == ((1.0, 2.0, 3.0), (1.0, 2.0, 3.0))
+    assert (arm.joints[0].xyz, arm.joints[0].axis) == ((0.1, 0.2, 0.3), (0.0, 1.0, 0.0))
+
+
+def test_links_that_are_drawn_and_nothing_more_are_known(tmp_path):
+    drawn = "<visual><origin xyz='nowhere'/><geometry><teapot/></geometry></visual>"
+    text = urdf(
+        link("x", SPHERE + drawn),
+        link("camera", drawn + drawn),
+        link("frame", ""),
+        joint("a", "x", "camera"),
+        joint("b", "camera", "frame"),
+    )
+    assert read_urdf(write(tmp_path, text)).drawn_only == ("camera",)
+
+
+def _mesh(attributes):
+    return urdf(link("x", f"<collision><geometry><mesh filename={attributes}/></geometry></collision>"))
+
+
 BROKEN = {
+    "a mesh scaled to a point": (
+        _mesh("'a.stl' scale='0 0 0'"),
+        InvalidValue,
+        "link 'x' in .*: scale of <mesh> must not be 0, got '0 0 0'",
+    ),
+    "a mesh scaled flat": (
+        _mesh("'a.stl' scale='1 -1 -0.0'"),
+        InvalidValue,
+        "must not be 0, got '1 -1 -0.0'",
+    ),
+    "a mesh scaled by one 0": (_mesh("'a.stl' scale='0'"), InvalidValue, "must not be 0, got '0'"),
+    "a mesh in pieces": (
+        _mesh("'a.GLTF'"),
+        BrokenFile,
+        "link 'x' in .*: 'a.GLTF' has its triangles in other files; make a .glb of it",
+    ),
+    "a number as only Python writes it": (
+        urdf(link("x", "<collision><geometry><sphere radius='1_0'/></geometry></collision>")),
+        InvalidValue,
+        "link 'x' in .*: radius of <sphere> must be a finite number, got '1_0'",
+    ),
+    "two origins of a body": (
+        urdf(link("x", SPHERE.replace("<geometry>", "<origin/><origin xyz='0 0 1'/><geometry>"))),
+        BrokenFile,
+        "link 'x' in .*: <collision> has more than one <origin>",
+    ),
+    "two origins of a joint": (
+        urdf(link("x"), link("y"), joint("a", "x", "y", inside=LIMIT + "<origin/>")),
+        BrokenFile,
+        "joint 'a' in .*: <joint> has more than one <origin>",
+    ),
+    "two limits": (
+        urdf(link("x"), link("y"), joint("a", "x", "y", inside=LIMIT + LIMIT)),
+        BrokenFile,
+        "joint 'a' in .*: <joint> has more than one <limit>",
+    ),
     "no XML": ("<robot name='a'><link", BrokenFile, "is not XML"),
     "an empty file": ("", BrokenFile, "is not XML"),
     "another kind of XML": ("<sdf/>", BrokenFile, "not a URDF: its outermost element is <sdf>"),

@@ -86,6 +86,32 @@ def test_a_file_gives_the_mesh_that_was_written(tmp_path, suffix):
     )
 
 
+def _dae_in(unit, folder):
+    trimesh = pytest.importorskip("trimesh")
+    pytest.importorskip("collada")
+    file = folder / "cube.dae"
+    trimesh.Trimesh(CUBE.vertices, CUBE.triangles, process=False).export(file)
+    file.write_text(file.read_text().replace("</asset>", f"{unit}</asset>"))
+    return file
+
+
+@pytest.mark.parametrize(
+    ("unit", "metres"),
+    [("", 1.0), ('<unit name="millimetre" meter="0.001"/>', 0.001), ('<unit meter="10"/>', 10.0)],
+)
+def test_a_collada_file_is_read_in_metres_whatever_its_unit(tmp_path, unit, metres):
+    mesh = load_mesh(_dae_in(unit, tmp_path), scale=2.0)
+    np.testing.assert_allclose(np.ptp(mesh.vertices, axis=0), 2.0 * metres * np.array([1, 2, 3]), rtol=1e-6)
+
+
+@pytest.mark.parametrize("length", ["0", "-1", "nan"])
+def test_a_unit_without_a_length_is_refused(tmp_path, length):
+    with pytest.raises(
+        BrokenFile, match=rf"cube\.dae must have a unit of a finite length > 0, got {length} m"
+    ):
+        load_mesh(_dae_in(f'<unit meter="{length}"/>', tmp_path))
+
+
 def test_a_plain_text_stl_is_read(tmp_path):
     (tmp_path / "one.stl").write_text(ASCII_STL)
     mesh = load_mesh(tmp_path / "one.stl")

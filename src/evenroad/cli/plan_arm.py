@@ -16,6 +16,7 @@ from evenroad.cli.plan_parts import (
     refuse_options,
 )
 from evenroad.cli.plan_table import print_plan
+from evenroad.cli.robot_tables import bodiless_rows
 from evenroad.io import plan_record, save_json, save_path_csv
 from evenroad.roadmap import PlanResult, Status, default_rule
 from evenroad.robot import (
@@ -42,7 +43,10 @@ SEARCH = "lazy"
 
 
 def plan_arm(plan: Plan) -> int:
-    """Plan, write, report; return 0 when solved, else 1."""
+    """Plan, write, report; return 0 when solved, else 1.
+
+    Links without a body are named, with a warning where the URDF draws them: their collisions go unseen.
+    """
     assert plan.robot is not None
     refuse_options(plan, ("clearance", "unknown_is_free"), "--robot-radius")
     scene = load_scene(plan.world)
@@ -70,7 +74,11 @@ def plan_arm(plan: Plan) -> int:
         "resolution": world.resolution,
         **common_query(plan),
     }
-    record = plan_record(result, query) | {"meshes": None if meshes is None else asdict(meshes)}
+    record = plan_record(result, query) | {
+        "no_body": list(model.bodiless),
+        "drawn_only": list(model.drawn_only),
+        "meshes": None if meshes is None else asdict(meshes),
+    }
     save_json(files["json"], record)
     # An earlier run's path must not pass for this one's, nor one in collision for a free one.
     files["csv"].unlink(missing_ok=True)
@@ -85,6 +93,7 @@ def plan_arm(plan: Plan) -> int:
     held = ", ".join(f"{name} at {value:.6g}" for name, value in held_values(robot).items())
     if held:
         rows.append(("held", held))
+    rows += bodiless_rows(model)
     if meshes is not None:
         rows.append(("meshes", str(meshes)))
     print_plan(result, note, list(files.values()), rows)

@@ -26,6 +26,17 @@ def print_robot(model: RobotModel, world: ArmWorld) -> None:
         print()
 
 
+def bodiless_rows(model: RobotModel) -> list[tuple[str, str]]:
+    """Return what is to be said of links that nothing is ever found to touch: name and text of each row."""
+    rows = []
+    if model.bodiless:
+        rows.append(("no body", ", ".join(model.bodiless)))
+    if model.drawn_only:
+        text = "drawn, but without collision geometry, so that nothing is found to touch: "
+        rows.append(("WARNING", text + ", ".join(model.drawn_only)))
+    return rows
+
+
 def _joints(robot: Robot) -> Table:
     table = Table("joint", "kind", "limits", "velocity", "use", box=None, pad_edge=False, header_style="bold")
     table.columns[0].no_wrap = True
@@ -77,10 +88,8 @@ def _summary(model: RobotModel, world: ArmWorld) -> Table:
     table = Table(show_header=False, box=None, pad_edge=False)
     table.add_column(style="bold", no_wrap=True)
     table.add_column(overflow="fold")
-    bodied = {capsule.link for capsule in robot.capsules}
-    bodiless = [link for link in robot.links if link not in bodied]
-    if bodiless:
-        table.add_row("no body", Text(", ".join(bodiless)))
+    for name, value in bodiless_rows(model):
+        table.add_row(name, Text(value))
     table.add_row(
         "self pairs", Text(f"{len(robot.pairs)} tested ({model.pairs_from}): {_by_first(robot.pairs)}")
     )

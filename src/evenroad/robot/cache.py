@@ -20,7 +20,7 @@ from evenroad.robot.model import LinkBody, RobotModel
 from evenroad.robot.robot import Robot
 from evenroad.robot.urdf_xml import mesh_names, read_urdf_xml
 
-_FORMAT = 3
+_FORMAT = 4
 """Counted up when the same files would give another robot, or the files of this cache look different."""
 
 
@@ -60,7 +60,8 @@ def _parts(urdf: Path, srdf: Path | None, bodies: Path | None) -> Iterator[bytes
     files += [("mesh", find_mesh(name, urdf, link)) for link, name in mesh_names(root)]
     for what, path in files:
         try:
-            yield b"" if path is None else path.read_bytes()
+            # An empty file is refused where none at all is fine.
+            yield b"absent" if path is None else b"present" + path.read_bytes()
         except OSError as error:
             raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
 
@@ -75,6 +76,7 @@ def _model(record: dict[str, Any]) -> RobotModel:
         bodies=tuple(LinkBody(**body | {"shapes": tuple(body["shapes"])}) for body in record["bodies"]),
         pairs_from=record["pairs_from"],
         dropped=tuple((first, second, reason) for first, second, reason in record["dropped"]),
+        drawn_only=tuple(record["drawn_only"]),
     )
 
 

@@ -49,6 +49,10 @@ def load_model(
 
     What was made is kept in the user's cache, by the content of all files (meshes, too).
 
+    A link without collision geometry has no body, and nothing is found to touch it.  Where the URDF draws such a link
+    that is no error, since sensors and frames are often drawn and nothing more, but the model names it, as do
+    ``evenroad plan`` and ``evenroad robot``.
+
     Parameters
     ----------
     source : str or path-like
@@ -81,7 +85,9 @@ def load_model(
     if kept is not None:
         return kept
     model = _build(path, srdf_path, bodies_path, group)
-    keep(key, model)
+    # Files may have been saved while they were read: then nobody knows of which of their contents this is made.
+    if key_of(path, srdf_path, bodies_path, group) == key:
+        keep(key, model)
     return model
 
 
@@ -128,7 +134,8 @@ def _build(
     else:
         pairs, pairs_from = computed_pairs(robot), "computed"
     links = tuple(_link_body(urdf, link, capsules[link], link in given) for link in capsules)
-    return RobotModel(replace(robot, pairs=pairs.tested), links, pairs_from, pairs.dropped)
+    drawn_only = tuple(link for link in urdf.drawn_only if link not in capsules)
+    return RobotModel(replace(robot, pairs=pairs.tested), links, pairs_from, pairs.dropped, drawn_only)
 
 
 def _capsules(urdf: Urdf, given: dict[str, tuple[Capsule, ...]]) -> dict[str, tuple[Capsule, ...]]:

@@ -54,9 +54,18 @@ class RobotModel:
         ``SRDF`` or ``computed``: where the self pairs come from.
     dropped : tuple of (str, str, str)
         Pairs of links with bodies that are not tested, each with the reason.
+    drawn_only : tuple of str
+        Links that the URDF draws (``<visual>``) and that have no body: nothing is ever found to touch them.
     """
 
     robot: Robot
     bodies: tuple[LinkBody, ...]
     pairs_from: str
     dropped: tuple[tuple[str, str, str], ...]
+    drawn_only: tuple[str, ...] = ()
+
+    @property
+    def bodiless(self) -> tuple[str, ...]:
+        """Links without a body, those that are drawn among them."""
+        bodied = {body.link for body in self.bodies}
+        return tuple(link for link in self.robot.links if link not in bodied)

@@ -18,7 +18,7 @@ from evenroad.robot.joint import Joint, Mimic
 from evenroad.robot.meshes import find_mesh
 from evenroad.robot.mimic import with_direct_mimics, within_limits_of_mimics
 from evenroad.robot.tree import in_tree_order
-from evenroad.robot.urdf_xml import read_urdf_xml
+from evenroad.robot.urdf_xml import drawn_only, read_urdf_xml
 
 _KINDS = ("revolute", "continuous", "prismatic", "fixed")
 _NO_ROTATION = tuple(np.eye(3).ravel().tolist())
@@ -41,6 +41,8 @@ class Urdf:
         Names of the joints as the file lists them: the order of configurations.
     geometries : tuple of Geometry
         The collision geometry.
+    drawn_only : tuple of str
+        Links that have a ``<visual>`` but no ``<collision>``.
     """
 
     name: str
@@ -48,6 +50,7 @@ class Urdf:
     joints: tuple[Joint, ...]
     order: tuple[str, ...]
     geometries: tuple[Geometry, ...]
+    drawn_only: tuple[str, ...] = ()
 
     @property
     def free(self) -> frozenset[str]:
@@ -76,6 +79,7 @@ def read_urdf(path: Path) -> Urdf:
         If a joint is of a type that is not supported (floating, planar).
     """
     root = read_urdf_xml(path)
+    drawn = drawn_only(root)
     parsed = _parse(root, path)
     joints = [_joint(joint, path) for joint in parsed.joints]
     ordered = in_tree_order([link.name for link in parsed.links], joints, str(path))
@@ -88,12 +92,16 @@ def read_urdf(path: Path) -> Urdf:
         geometries=tuple(
             _geometry(link.name, collision, path) for link in parsed.links for collision in link.collisions
         ),
+        drawn_only=drawn,
     )
 
 
 def _parse(root: ElementTree.Element, path: Path) -> Any:
     """Return what yourdfpy reads from a checked tree; its kind of capsule is a cylinder named as such."""
     root.set("name", root.get("name", path.stem))
+    for link in root.findall("link"):
+        for visual in link.findall("visual"):
+            link.remove(visual)
     for collision in root.iterfind("link/collision"):
         capsule = collision.find("geometry/capsule")
         collision.set("name", "cylinder" if capsule is None else "capsule")

@@ -46,12 +46,16 @@ _REQUIRED = {
 }
 _SHAPES = ("box", "sphere", "cylinder", "capsule", "mesh")
 _LENGTHS = ("size", "radius", "length")
-_IGNORED = ("visual", "inertial", "material", "transmission", "gazebo", "sensor", "ros2_control")
+_SINGLE = ("origin", "axis", "limit", "mimic", "parent", "child", "geometry")
+"""Of these, the first would be taken and others passed over."""
+_IGNORED = ("inertial", "material", "transmission", "gazebo", "sensor", "ros2_control")
 """What collision checking does not need; much of it in dialects of its own."""
 
 
 def read_urdf_xml(path: Path) -> ElementTree.Element:
     """Return the ``<robot>`` element of a URDF file, without what collision checking does not need.
+
+    Numbers are rewritten with blanks between them; of a ``<visual>`` is kept that it is there.
 
     Raises
     ------
@@ -74,6 +78,8 @@ def read_urdf_xml(path: Path) -> ElementTree.Element:
         for parent in list(root.iter()):
             for element in parent.findall(name):
                 parent.remove(element)
+    for visual in list(root.iter("visual")):
+        visual.clear()
     for owner in root:
         if owner.tag in ("link", "joint"):
             _check(owner, path)
@@ -96,16 +102,30 @@ def mesh_names(root: ElementTree.Element) -> Iterator[tuple[str, str]]:
             yield link.attrib["name"], mesh.attrib["filename"]
 
 
+def drawn_only(root: ElementTree.Element) -> tuple[str, ...]:
+    """Return the links of a checked ``<robot>`` that have a ``<visual>`` and no ``<collision>``."""
+    return tuple(
+        link.attrib["name"]
+        for link in root.findall("link")
+        if link.find("visual") is not None and link.find("collision") is None
+    )
+
+
 def _check(owner: ElementTree.Element, path: Path) -> None:
     where = f"{owner.tag} {owner.get('name', '(without a name)')!r} in {path}"
     for element in owner.iter():
         for attribute in _REQUIRED.get(str(element.tag), ()):
             if not element.get(attribute):
                 raise BrokenFile(f"{where}: <{element.tag}> lacks {attribute!r}")
-        for attribute, text in element.attrib.items():
+        for tag in _SINGLE:
+            if len(element.findall(tag)) > 1:
+                raise BrokenFile(f"{where}: <{element.tag}> has more than one <{tag}>")
+        for attribute, text in list(element.attrib.items()):
             count = _NUMBERS.get((str(element.tag), attribute))
             if count is not None:
-                _check_numbers(f"{where}: {attribute} of <{element.tag}>", attribute, text, count)
+                what = f"{where}: {attribute} of <{element.tag}>"
+                # The readers that come after this one do not agree on what separates numbers.
+                element.set(attribute, " ".join(map(repr, _numbers(what, attribute, text, count))))
     if owner.tag == "joint":
         for tag in ("parent", "child"):
             if owner.find(tag) is None:
@@ -121,13 +141,18 @@ def _check_geometry(geometry: ElementTree.Element | None, where: str) -> None:
         raise BrokenFile(
             f"{where}: the geometry of a <collision> {found}; it must be one of {', '.join(_SHAPES)}"
         )
+    assert geometry is not None
+    filename = geometry[0].get("filename", "")
+    if filename.lower().endswith(".gltf"):
+        raise BrokenFile(f"{where}: {filename!r} has its triangles in other files; make a .glb of it")
 
 
-def _check_numbers(what: str, attribute: str, text: str, count: int) -> None:
+def _numbers(what: str, attribute: str, text: str, count: int) -> list[float]:
+    """Return the numbers that an attribute holds, or raise InvalidValue where they are not as they must be."""
     allowed = "a finite number" if count == 1 else f"{count} finite numbers"
     try:
-        # Commas between numbers are not in the standard, but in the wild.
-        numbers = [float(word) for word in text.replace(",", " ").split()]
+        # Commas between numbers are not in the standard, but in the wild; 1_0 is a number to Python alone.
+        numbers = [] if "_" in text else [float(word) for word in text.replace(",", " ").split()]
     except ValueError:
         numbers = []
     uniform_scale = attribute == "scale" and len(numbers) == 1
@@ -135,3 +160,8 @@ def _check_numbers(what: str, attribute: str, text: str, count: int) -> None:
         raise InvalidValue(f"{what} must be {allowed}, got {text!r}")
     if attribute in _LENGTHS and min(numbers) <= 0.0:
         raise InvalidValue(f"{what} must be > 0, got {text!r}: a body without volume would never collide")
+    if attribute == "scale" and 0.0 in numbers:
+        raise InvalidValue(
+            f"{what} must not be 0, got {text!r}: a mesh without volume would hardly ever collide"
+        )
+    return numbers

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from pathlib import Path
 
@@ -15,12 +16,14 @@ from evenroad.world.mesh.triangle_mesh import TriangleMesh
 def load_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> TriangleMesh:
     """Read a mesh from a file: .stl, .obj, .dae, .ply and whatever else trimesh reads.
 
+    Coordinates are in metres where the file says what its unit is (COLLADA and 3MF do), else in whatever it has.
+
     Parameters
     ----------
     path : str or path
         The file.  A scene of several meshes becomes one, each part where the scene has it.
     scale : float
-        What the coordinates are multiplied by, > 0: 0.001 for a file in millimetres.
+        What the coordinates are multiplied by, > 0: 0.001 for an .stl in millimetres.
 
     Returns
     -------
@@ -32,7 +35,7 @@ def load_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> TriangleMe
     NotAvailable
         If a package that reads such files is not installed.
     BrokenFile
-        If the file is missing, is no mesh, or has no triangles.
+        If the file is missing, is no mesh, has no triangles, or is in a unit that has no length.
     InvalidValue
         If `scale` is not such a number.
     """
@@ -44,6 +47,7 @@ def load_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> TriangleMe
         import trimesh
 
         mesh = trimesh.load_mesh(file, process=False)
+        unit = 1.0 if mesh.units is None else trimesh.units.unit_conversion(mesh.units, "meters")
         if isinstance(mesh, trimesh.Scene):
             mesh = mesh.to_mesh()
         vertices, triangles = np.array(mesh.vertices, dtype=float), np.array(mesh.faces, dtype=np.int64)
@@ -56,7 +60,9 @@ def load_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> TriangleMe
         raise BrokenFile(f"cannot read the mesh {file}: {error}") from error
     if len(triangles) == 0:
         raise BrokenFile(f"the mesh {file} is empty: a body without triangles would never collide")
+    if not (math.isfinite(unit) and unit > 0.0):
+        raise BrokenFile(f"the mesh {file} must have a unit of a finite length > 0, got {unit:g} m")
     try:
-        return TriangleMesh(factor * vertices, triangles, file.name)
+        return TriangleMesh(factor * unit * vertices, triangles, file.name)
     except InvalidValue as error:
         raise BrokenFile(f"the mesh {file} is broken: {error}") from error
