@@ -12,7 +12,7 @@ from evenroad.robot import arm_world
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.capsule import Capsule
 from evenroad.robot.joint import Joint, Mimic
-from evenroad.robot.kernel import scalar_batch, selftest
+from evenroad.robot.kernel import batch, scalar_batch, selftest
 from evenroad.robot.kernel.tables import pack
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle, Scene
@@ -207,22 +207,35 @@ def test_the_small_robot_of_the_self_test_has_its_verdicts_in_double_precision()
         selftest.small_batch(), selftest.small_bounds(), tables.ints, tables.floats
     )
     np.testing.assert_array_equal(free, selftest.expected_verdicts())
-    assert selftest.lanes_work()
+    assert selftest.lanes_failure() is None
+    assert five_joints().checked_with == "lanes"
+    assert five_joints(backend="scalar").checked_with == "scalar"
 
 
 def test_where_the_lanes_do_not_work_the_fallback_is_taken_and_said(monkeypatch):
-    monkeypatch.setattr(arm_world, "lanes_work", lambda: False)
+    monkeypatch.setattr(arm_world, "lanes_failure", lambda: "no vectors")
     assert five_joints().backend == "scalar"
+    assert five_joints().checked_with == "scalar (lanes do not work here: no vectors)"
     assert five_joints().valid(HOME[np.newaxis])[0]
-    with pytest.raises(NotAvailable, match="backend='scalar'"):
+    with pytest.raises(NotAvailable, match="[(]no vectors[)]; backend='scalar'"):
         five_joints(backend="lanes")
 
 
+def test_what_goes_wrong_in_compiling_the_lanes_is_kept(monkeypatch):
+    def broken(*arguments):
+        raise RuntimeError("no such instruction\nin line 3 of something long")
+
+    selftest.lanes_failure.cache_clear()
+    monkeypatch.setattr(batch, "configurations_free", broken)
+    assert selftest.lanes_failure() == "RuntimeError: no such instruction"
+    selftest.lanes_failure.cache_clear()
+
+
 def test_wrong_verdicts_of_the_lanes_are_found_out(monkeypatch):
-    selftest.lanes_work.cache_clear()
+    selftest.lanes_failure.cache_clear()
     monkeypatch.setattr(selftest, "expected_verdicts", lambda: np.zeros(64, dtype=bool))
-    assert not selftest.lanes_work()
-    selftest.lanes_work.cache_clear()
+    assert "wrong" in selftest.lanes_failure()
+    selftest.lanes_failure.cache_clear()
 
 
 def test_a_world_can_be_sent_to_another_process():

@@ -77,6 +77,7 @@ def plan_arm(plan: Plan) -> int:
     record = plan_record(result, query) | {
         "no_body": list(model.bodiless),
         "drawn_only": list(model.drawn_only),
+        "checked_with": world.checked_with,
         "meshes": None if meshes is None else asdict(meshes),
     }
     save_json(files["json"], record)
@@ -94,6 +95,7 @@ def plan_arm(plan: Plan) -> int:
     if held:
         rows.append(("held", held))
     rows += bodiless_rows(model)
+    rows.append(("checked with", world.checked_with))
     if meshes is not None:
         rows.append(("meshes", str(meshes)))
     print_plan(result, note, list(files.values()), rows)

@@ -127,7 +127,7 @@ def _speed(world: ArmWorld) -> str:
         passed = float(np.mean(world.motion_valid(a, b)))
         motions = _per_second(lambda: world.motion_valid(a, b), len(a))
         text += f", {motions:,.0f} motions/s between free ones ({100.0 * passed:.0f} % free)"
-    return f"{text}, one core, in {world.scene.name}"
+    return f"{text}, one core, with {world.checked_with}, in {world.scene.name}"
 
 
 def _per_second(call: Callable[[], object], count: int) -> float:

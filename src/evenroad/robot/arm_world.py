@@ -12,7 +12,7 @@ from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue, NotAvailable, UnknownName
 from evenroad.robot.kernel import scalar, scalar_batch
 from evenroad.robot.kernel.model import ArmModel, arm_model
-from evenroad.robot.kernel.selftest import lanes_work
+from evenroad.robot.kernel.selftest import lanes_failure
 from evenroad.robot.kernel.tables import ArmTables, pack
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
@@ -106,6 +106,12 @@ class ArmWorld:
         return self._space
 
     @property
+    def checked_with(self) -> str:
+        """The backend, and where it is the slow one because the lanes do not work here, why they do not."""
+        failure = lanes_failure() if self.backend == "scalar" else None
+        return self.backend if failure is None else f"{self.backend} (lanes do not work here: {failure})"
+
+    @property
     def excess(self) -> float:
         """By how much the spheres that obstacles are tested with exceed their capsules at most [m]."""
         return max(capsule.cover.radius - capsule.radius for capsule in self.model.capsules)
@@ -187,11 +193,12 @@ def _chosen(backend: str) -> str:
     """Return which of the two backends `backend` stands for here."""
     if backend not in _BACKENDS:
         raise UnknownName.among("backend", backend, _BACKENDS)
-    if backend == "scalar" or (backend == "auto" and not lanes_work()):
+    if backend == "scalar":
         return "scalar"
-    if not lanes_work():
-        raise NotAvailable("the lanes do not work on this machine; backend='scalar' does")
-    return "lanes"
+    failure = lanes_failure()
+    if failure is not None and backend == "lanes":
+        raise NotAvailable(f"the lanes do not work on this machine ({failure}); backend='scalar' does")
+    return "lanes" if failure is None else "scalar"
 
 
 def joint_space(robot: Robot) -> JointSpace:
