@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -129,6 +131,27 @@ def test_without_a_path_there_is_no_red_and_in_collision_the_two_bodies_are_red(
     with Image.open(tmp_path / "none.png") as none, Image.open(tmp_path / "hit.png") as picture:
         assert _pixels_of(none, style.COLLISION) < 50
         assert _pixels_of(picture, style.COLLISION) > 500
+
+
+def test_dollars_in_names_are_dollars(tmp_path):
+    robot = load_robot("arm7")
+    tip = robot.links[-1]
+    named = replace(
+        robot,
+        links=(*robot.links[:-1], "$tip_{$"),
+        joints=tuple(replace(each, child="$tip_{$") if each.child == tip else each for each in robot.joints),
+        capsules=tuple(
+            replace(each, link="$tip_{$") if each.link == tip else each for each in robot.capsules
+        ),
+        pairs=tuple((a if a != tip else "$tip_{$", b if b != tip else "$tip_{$") for a, b in robot.pairs),
+    )
+    ball = Obstacle("$\\frac{$", "sphere", (0.5,), (0, 0, 0.5))
+    far = Obstacle("$\\frac{$", "sphere", (0.05,), (9, 9, 9))
+    for obstacle, status in ((ball, "start_invalid"), (far, "solved")):
+        world = ArmWorld(named, Scene("$\\sqrt{$", (obstacle,)))
+        result = plan(world, np.zeros(7), np.full(7, 0.05), draw("halton", 8, 7))
+        assert result.status == status
+        save_arm_picture(tmp_path / "a.png", result, world)
 
 
 def test_an_empty_scene_and_a_huge_floor_are_drawn_too(tmp_path):

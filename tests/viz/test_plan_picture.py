@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -38,6 +40,14 @@ def test_a_solved_plan_shows_start_goal_and_both_paths():
         "goal",
     }
     assert axes.get_title().startswith("solved")
+
+
+def test_dollars_in_a_message_are_dollars(tmp_path):
+    world = _room().world(1.0)
+    result = plan(world, (5, 5), (5, 25), draw("halton", 10, 2))
+    result = replace(result, message="$\\frac{$ 1$ 2")
+    save_plan_picture(tmp_path / "a.png", result, world)
+    assert _axes(result, world).title.get_text().startswith(r"solved: \$\frac{\$ 1\$ 2")
 
 
 def test_a_bare_image_is_drawn_with_y_down_and_a_ros_map_with_y_up():

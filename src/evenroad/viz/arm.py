@@ -66,9 +66,8 @@ def draw_arm_plan(result: PlanResult, world: ArmWorld) -> Figure:
         axes.set_aspect("equal")
         axes.grid(visible=True, color=style.EDGE, linewidth=0.4, alpha=0.5)
     figure.legend(handles=_legend(result, world), loc="lower center", ncols=6, frameon=False)
-    figure.suptitle(
-        f"{world.robot.name} in {world.scene.name}: {result.status}; {result.message}", fontsize=11
-    )
+    title = f"{world.robot.name} in {world.scene.name}: {result.status}; {result.message}"
+    figure.suptitle(style.without_math(title), fontsize=11)
     return figure
 
 
@@ -209,7 +208,7 @@ def _legend(result: PlanResult, world: ArmWorld) -> list[Patch | Line2D]:
         Patch(facecolor=_tint(1.0, 0.55), edgecolor=style.GOAL, label="goal"),
     ]
     if result.path is not None:
-        tip = world.robot.links[_tip(world.robot)]
+        tip = style.without_math(world.robot.links[_tip(world.robot)])
         handles.append(Patch(facecolor=_tint(0.5, 0.25), edgecolor=_tint(0.5, 0.45), label="along the path"))
         handles.append(Line2D([], [], color=style.PATH, linewidth=1.8, label=f"way of {tip}"))
     elif result.status is not Status.NOT_CONNECTED:

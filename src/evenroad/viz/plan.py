@@ -125,9 +125,8 @@ def _set_frame(axes: Axes, result: PlanResult, gridmap: GridMap) -> None:
     axes.set_facecolor(style.OUTSIDE)
     axes.set_xlabel("x" if gridmap.frame.y_up else "x (right)")
     axes.set_ylabel("y" if gridmap.frame.y_up else "y (down)")
-    axes.set_title(
-        f"{result.status}: {result.message}\n{result.origin}, {result.rule}", fontsize=9, wrap=True
-    )
+    title = f"{result.status}: {result.message}\n{result.origin}, {result.rule}"
+    axes.set_title(style.without_math(title), fontsize=9, wrap=True)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=5, frameon=False, fontsize=9)
 
 
