@@ -1,36 +1,16 @@
-"""Distances of standing bodies against dense sampling."""
+"""Distances of points from obstacles."""
 
 import math
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from evenroad.robot.kernel.separation import point_to_obstacle, segment_to_segment
+from evenroad.robot.kernel.separation import point_to_obstacle
 from evenroad.robot.scene import Obstacle
 from tests.robot.kernel_arms import STRAIGHT, random_rotation, random_scene
 from tests.robot.oracle import obstacle_distance
 
 QUARTER = (0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)
-
-
-@given(st.integers(0, 2**32 - 1), st.sampled_from(["skew", "parallel", "points", "crossing"]))
-def test_the_distance_of_segments_is_the_least_between_their_points(seed, case):
-    rng = np.random.default_rng(seed)
-    a, b, c, d = rng.uniform(-1.0, 1.0, (4, 3))
-    if case == "parallel":
-        d = c + rng.uniform(-2.0, 2.0) * (b - a)
-    elif case == "points":
-        b, d = a, (d if seed % 2 else c)
-    elif case == "crossing":
-        d = 2.0 * (a + 0.3 * (b - a)) - c
-    shares = np.linspace(0.0, 1.0, 201)[:, None]
-    first, second = a + shares * (b - a), c + shares * (d - c)
-    sampled = np.linalg.norm(first[:, None] - second, axis=2).min()
-    exact = segment_to_segment(a, b, c, d)
-    step = 0.005 * (np.linalg.norm(b - a) + np.linalg.norm(d - c)) / 2.0
-    assert sampled - step - 1e-12 <= exact <= sampled + 1e-12
 
 
 def test_the_distance_of_points_from_obstacles_is_the_oracles():

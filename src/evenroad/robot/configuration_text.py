@@ -82,7 +82,7 @@ def _from_pairs(robot: Robot, text: str, degrees: bool) -> npt.NDArray[np.float6
     rest = text[place:].strip(", \t\n")
     if rest:
         raise InvalidValue(f"{rest!r} is not of the form name=value")
-    neutral = {name: min(max(0.0, joints[name].lower), joints[name].upper) for name in robot.group}
+    neutral = {name: joints[name].neutral for name in robot.group}
     return np.array([values.get(name, neutral[name]) for name in robot.group])
 
 

@@ -54,3 +54,8 @@ class Joint:
     upper: float = 0.0
     velocity: float = float("inf")
     mimic: Mimic | None = None
+
+    @property
+    def neutral(self) -> float:
+        """0, or the nearest to it within limits."""
+        return float(min(max(0.0, self.lower), self.upper))

@@ -34,7 +34,7 @@ def joint_values(robot: Robot, q: npt.ArrayLike) -> dict[str, npt.NDArray[np.flo
 def held_values(robot: Robot) -> dict[str, float]:
     """Return where the joints are that move by themselves and are not planned for, joint -> value [rad or m]."""
     return {
-        joint.name: float(robot.held.get(joint.name, min(max(0.0, joint.lower), joint.upper)))
+        joint.name: float(robot.held.get(joint.name, joint.neutral))
         for joint in robot.joints
         if joint.kind != "fixed" and joint.mimic is None and joint.name not in robot.group
     }

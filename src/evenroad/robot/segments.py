@@ -12,20 +12,28 @@ def segment_distance(
     """Return the distances of pairs of segments, (n, 2, 3) each, end points in the second axis: (n,).
 
     Closest points of two segments after C. Ericson, Real-Time Collision Detection (2005), section 5.1.9: the
-    parameter on the first is that of the two lines, clamped; that on the second follows, clamped; the first
-    follows once more.  A segment may be a point.
+    parameter on the second is that of the two lines, clamped; that on the first follows, clamped; the second
+    follows once more.  That of the lines comes from the parts across the first segment, which keeps its digits
+    where the two are nearly parallel.  A segment may be a point.
     """
     along, other = first[:, 1] - first[:, 0], second[:, 1] - second[:, 0]
     between = first[:, 0] - second[:, 0]
-    a, e, b = (np.einsum("ni,ni->n", *pair) for pair in ((along, along), (other, other), (along, other)))
-    c, f = np.einsum("ni,ni->n", along, between), np.einsum("ni,ni->n", other, between)
-    crossing = a * e - b * b
-    # Of parallel segments any first parameter does: the two steps after it find the closest ends.
-    s = _clamped(b * f - c * e, np.where(crossing > 1e-12 * a * e, crossing, 0.0))
-    t = _clamped(b * s + f, e)
+    a, e, b = _dot(along, along), _dot(other, other), _dot(along, other)
+    c, f = _dot(along, between), _dot(other, between)
+    safe = np.where(a > 0.0, a, 1.0)
+    across = other - (b / safe)[:, np.newaxis] * along
+    between_across = between - (c / safe)[:, np.newaxis] * along
+    crossing = _dot(across, across)
+    # Of parallel segments any second parameter does: the two steps after it find the closest ends.
+    t = _clamped(_dot(across, between_across), np.where(crossing > 1e-16 * e, crossing, 0.0))
     s = _clamped(b * t - c, a)
+    t = _clamped(b * s + f, e)
     gap = between + s[:, np.newaxis] * along - t[:, np.newaxis] * other
-    return np.sqrt(np.einsum("ni,ni->n", gap, gap))
+    return np.sqrt(_dot(gap, gap))
+
+
+def _dot(first: npt.NDArray[np.float64], second: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    return np.einsum("ni,ni->n", first, second)
 
 
 def _clamped(

@@ -12,10 +12,11 @@ from evenroad.errors import InvalidValue, UnknownName
 from evenroad.robot.capsule import Capsule
 from evenroad.robot.kernel.cover import Cover, cover_capsule
 from evenroad.robot.kernel.reach import farthest, largest_value
-from evenroad.robot.kernel.separation import point_to_obstacle, segment_to_segment
+from evenroad.robot.kernel.separation import point_to_obstacle
 from evenroad.robot.kernel.tree import MovingTree, Placement, moving_tree
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle, Scene
+from evenroad.robot.segments import segment_distance
 
 Vector = npt.NDArray[np.float64]
 
@@ -50,6 +51,11 @@ class PlacedCapsule:
     half: Vector
     radius: float
     cover: Cover
+
+    @property
+    def ends(self) -> Vector:
+        """End points of its segment, (2, 3) [m]."""
+        return np.stack([self.centre - self.half, self.centre + self.half])
 
     @property
     def half_length(self) -> float:
@@ -239,9 +245,8 @@ def _standing_contact(
     for a, b in fixed:
         for first in (capsule for capsule in capsules if capsule.link == a):
             for second in (capsule for capsule in capsules if capsule.link == b):
-                ends = (first.centre - first.half, first.centre + first.half)
-                others = (second.centre - second.half, second.centre + second.half)
-                if segment_to_segment(*ends, *others) < first.radius + second.radius:
+                apart = segment_distance(first.ends[np.newaxis], second.ends[np.newaxis])[0]
+                if apart < first.radius + second.radius:
                     return a, b
     return None
 

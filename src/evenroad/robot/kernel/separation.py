@@ -1,4 +1,4 @@
-"""Distances between bodies that do not move, in double precision and plain numpy: what tables are built with."""
+"""Distances of points from obstacles, in double precision and plain numpy: what tables are built with."""
 
 from __future__ import annotations
 
@@ -23,31 +23,3 @@ def point_to_obstacle(point: Vector, obstacle: Obstacle) -> float:
     if obstacle.shape == "capsule":
         return max(float(np.hypot(aside, above)) - radius, 0.0)
     return float(np.hypot(max(aside - radius, 0.0), above))
-
-
-def segment_to_segment(a: Vector, b: Vector, c: Vector, d: Vector) -> float:
-    """Return the distance between the segments from `a` to `b` and from `c` to `d`, each (3,) [m].
-
-    The nearest points are either an end of one segment and its nearest on the other, or inside both.
-    """
-    nearest = min(
-        _point_to_segment(a, c, d),
-        _point_to_segment(b, c, d),
-        _point_to_segment(c, a, b),
-        _point_to_segment(d, a, b),
-    )
-    system = np.column_stack([b - a, c - d])
-    gram = system.T @ system
-    if np.linalg.det(gram) <= 1e-14 * gram[0, 0] * gram[1, 1]:
-        return nearest
-    inside = np.linalg.solve(gram, system.T @ (c - a))
-    if ((inside >= 0.0) & (inside <= 1.0)).all():
-        nearest = min(nearest, float(np.linalg.norm(a - c + system @ inside)))
-    return nearest
-
-
-def _point_to_segment(point: Vector, a: Vector, b: Vector) -> float:
-    along = b - a
-    squared = float(along @ along)
-    share = 0.0 if squared == 0.0 else min(max(float((point - a) @ along) / squared, 0.0), 1.0)
-    return float(np.linalg.norm(point - a - share * along))

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.robot.joint import Joint
+from evenroad.robot.kinematics import held_values
 from evenroad.robot.robot import Robot
 
 Matrix = npt.NDArray[np.float64]
@@ -129,11 +130,6 @@ def rotation_from_z(axis: tuple[float, float, float]) -> Matrix:
     return np.column_stack([x, np.cross(z, x), z])
 
 
-def held_value(joint: Joint, robot: Robot) -> float:
-    """Return the value of a movable joint that is not planned for: the held one, or that nearest to 0."""
-    return float(robot.held.get(joint.name, min(max(0.0, joint.lower), joint.upper)))
-
-
 def _value(joint: Joint, joints: dict[str, Joint], robot: Robot) -> tuple[int, float, float]:
     """Return coordinate, multiplier and offset of a joint's value; the multiplier is 0 where it is constant."""
     multiplier, offset, follower = 1.0, 0.0, joint
@@ -144,7 +140,7 @@ def _value(joint: Joint, joints: dict[str, Joint], robot: Robot) -> tuple[int, f
             if joint.name in robot.group:
                 _require_whole_turns(follower, joint, multiplier)
                 return robot.group.index(joint.name), multiplier, offset
-            return 0, 0.0, multiplier * held_value(joint, robot) + offset
+            return 0, 0.0, multiplier * held_values(robot)[joint.name] + offset
         offset += multiplier * joint.mimic.offset
         multiplier *= joint.mimic.multiplier
         if joint.mimic.joint not in joints:
