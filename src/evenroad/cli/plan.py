@@ -36,7 +36,8 @@ class Plan:
     srdf: Path | None = None
     """Arm: its SRDF, with groups, named states and pairs of links that need no test."""
     group: str | None = None
-    """Arm: a group of the SRDF, or joints with commas between them; the others are held."""
+    """Arm: a group of the SRDF, or joints with commas between them; the others are held where the named states of start
+    and goal have them, else at 0."""
     bodies: Path | None = None
     """Arm: a YAML file of capsules and spheres in place of the URDF's collision geometry."""
     deg: bool = False
