@@ -21,6 +21,7 @@ from evenroad.bench.statistics import (
     student_test,
     wilson,
 )
+from evenroad.bench.statistics.bootstrap import _ratios, _weights
 from evenroad.bench.statistics.samples_needed import _isotonic
 from evenroad.errors import InvalidValue
 
@@ -272,3 +273,16 @@ def test_the_wider_of_two_intervals_is_taken():
     narrow, wide = Interval(0.4, 0.5, "a"), Interval(0.1, 0.3, "b")
     assert narrow.or_wider(wide) is wide is wide.or_wider(narrow)
     assert narrow.or_wider(Interval(0.4, 0.5, "c")) is narrow
+
+
+@given(st.integers(2, 30), st.booleans())
+def test_sums_of_resamples_are_those_of_double_precision(units, whole):
+    rng = np.random.default_rng(units)
+    above, below = rng.integers(0, 2**19, (units, 2)), rng.integers(1, 9, (units, 2))
+    if not whole:
+        above = above + 0.3
+    weights = _weights(units, 50, np.random.default_rng(0)).astype(np.float64)
+    assert np.array_equal(
+        _ratios(weights.astype(np.float32), above.astype(float), below.astype(float)),
+        (weights @ above) / (weights @ below),
+    )

@@ -20,7 +20,7 @@ from evenroad.report.comparisons import SIGNIFICANT, differences_from, pair_code
 from evenroad.report.fair_names import BY_RULE, CONNECT, GROUPINGS, is_fair
 from evenroad.report.groups import Ints, combined, first_rows, sums_by_unit
 from evenroad.report.runs import Runs, natural_key
-from evenroad.report.units import Mask, grouping_of
+from evenroad.report.units import grouping_of
 
 REFERENCE = "uniform"
 
@@ -74,14 +74,11 @@ def pooled(runs: Runs) -> dict[str, tuple[Pooled, ...]]:
     if not len(runs):
         return {}
     paired, difference = differences_from(runs, pair_codes(runs), REFERENCE)
-    runs, difference = runs.where(paired), difference[paired]
-    connects = np.array([question.search == CONNECT for question in runs.questions])[runs.question]
-    found = {}
-    for grouping in GROUPINGS:
-        chosen = np.ones(len(runs), dtype=bool) if grouping == BY_RULE else connects
-        if chosen.any():
-            found[grouping] = _pooled_by(grouping, runs.where(chosen), difference[chosen])
-    return found
+    every = _pairs_of(runs.where(paired), difference[paired])
+    connects = np.array([question.search == CONNECT for question in runs.questions])[every.runs.question]
+    connecting = every.where(np.flatnonzero(connects))
+    chosen = {grouping: every if grouping == BY_RULE else connecting for grouping in GROUPINGS}
+    return {grouping: _pooled_by(grouping, pairs) for grouping, pairs in chosen.items() if len(pairs.runs)}
 
 
 def fair_runs(runs: Runs) -> Runs:
@@ -97,29 +94,27 @@ def world_codes(runs: Runs) -> Ints:
     return combined(code[runs.question], runs.instance)
 
 
-def _pooled_by(grouping: str, runs: Runs, difference: Ints) -> tuple[Pooled, ...]:
+def _pooled_by(grouping: str, pairs: _Pairs) -> tuple[Pooled, ...]:
+    runs = pairs.runs
     names, group = _groups(grouping, runs)
     place = combined(group, runs.sampler)
     first = first_rows(place)
-    world = world_codes(runs)
-    by_world = sums_by_unit(place, len(first), world, difference)
-    pool_set, has_set, as_it_is = _pool_sets(runs)
-    sets = sums_by_unit(place[has_set], len(first), pool_set[has_set], difference[has_set])
-    # What has no set of a pool, or a permuted one, stays with its world.
-    shared = np.where(as_it_is, pool_set, -1 - world)
-    by_set = sums_by_unit(place, len(first), shared, difference)
-    shares_sets = np.bincount(place, weights=as_it_is) > 0
+    by_world = sums_by_unit(place, len(first), pairs.world, pairs.difference)
+    of_pool = np.flatnonzero(pairs.set >= 0)
+    sets = sums_by_unit(place[of_pool], len(first), pairs.set[of_pool], pairs.difference[of_pool])
+    by_set = sums_by_unit(place, len(first), pairs.shared, pairs.difference)
+    shares_sets = np.bincount(place, weights=pairs.shared >= 0) > 0
     solved = np.bincount(place, weights=runs.solved)
     found = []
     for g, row in enumerate(first):
         entries = by_world.of(g)
-        sums, pairs = by_world.sums[entries], by_world.runs[entries]
-        interval, p = clustered_difference(sums, pairs, "instances"), sign_flip_test(sums)
+        sums, counts = by_world.sums[entries], by_world.runs[entries]
+        interval, p = clustered_difference(sums, counts, "instances"), sign_flip_test(sums)
         if shares_sets[g]:
             of_sets = by_set.sums[by_set.of(g)], by_set.runs[by_set.of(g)]
             interval = interval.or_wider(student_interval(*of_sets, "sets"))
             p = max(p, student_test(*of_sets))
-        total, rate = int(pairs.sum()), float(solved[g] / pairs.sum())
+        total, rate = int(counts.sum()), float(solved[g] / counts.sum())
         found.append(
             Pooled(
                 group=names[group[row]],
@@ -138,9 +133,28 @@ def _pooled_by(grouping: str, runs: Runs, difference: Ints) -> tuple[Pooled, ...
     return tuple(replace(each, p_corrected=p) for each, p in zip(found, corrected, strict=True))
 
 
-def _pool_sets(runs: Runs) -> tuple[Ints, Mask, Mask]:
-    """Return codes of the pool's sets, which runs have one, and which of them use it as it is."""
-    cell = cell_codes(runs)
+@dataclass(frozen=True)
+class _Pairs:
+    """Runs with a counterpart, solved minus solved there, and what they share.
+
+    `set` is the set of a pool, -1 of sets drawn afresh; `shared` the same where it is used as it is, else a code of the
+    world, below 0.
+    """
+
+    runs: Runs
+    difference: Ints
+    world: Ints
+    set: Ints
+    shared: Ints
+
+    def where(self, rows: Ints) -> _Pairs:
+        return _Pairs(
+            self.runs.where(rows), self.difference[rows], self.world[rows], self.set[rows], self.shared[rows]
+        )
+
+
+def _pairs_of(runs: Runs, difference: Ints) -> _Pairs:
+    cell, world = cell_codes(runs), world_codes(runs)
     grouping = grouping_of(runs, cell)
     has_set = grouping.pooled[cell] & (runs.set > 0)
     # Problems of one dimension share their sets; those that are not known here share none.
@@ -149,7 +163,8 @@ def _pool_sets(runs: Runs) -> tuple[Ints, Mask, Mask]:
         for place, question in enumerate(runs.questions)
     ]
     code = combined(runs.sampler, np.array(dims)[runs.question], runs.n, runs.set)
-    return code, has_set, has_set & ~grouping.permuted[cell]
+    as_it_is = has_set & ~grouping.permuted[cell]
+    return _Pairs(runs, difference, world, np.where(has_set, code, -1), np.where(as_it_is, code, -1 - world))
 
 
 def _groups(grouping: str, runs: Runs) -> tuple[list[str], Ints]:

@@ -20,6 +20,8 @@ CACHED_UNITS = 1000
 """Up to so many units the resamples are kept, as they serve many cells; more would take too much memory."""
 BLOCK = 50
 """Resamples at a time of more units than that."""
+EXACT = 2**24
+"""Whole numbers up to this are exact in single precision."""
 
 
 def resampled_ratios(
@@ -86,26 +88,35 @@ def percentile_interval(values: npt.ArrayLike, *, level: float = LEVEL) -> tuple
 
 
 def _ratios(
-    weights: npt.NDArray[np.float64], above: npt.NDArray[np.float64], below: npt.NDArray[np.float64]
+    weights: npt.NDArray[np.float32], above: npt.NDArray[np.float64], below: npt.NDArray[np.float64]
 ) -> npt.NDArray[np.float64]:
-    totals = weights @ below
-    of_all = above.sum(axis=0) / below.sum(axis=0)
-    ratios: npt.NDArray[np.float64] = np.where(
-        totals > 0, (weights @ above) / np.where(totals > 0, totals, 1.0), of_all
-    )
-    return ratios
+    sums = _sums(weights, above)
+    of_all = below.sum(axis=0)
+    if np.all(below == below[0]):
+        # Every resample has as many units as there are, so its denominator is that of all.
+        return sums / of_all
+    totals = _sums(weights, below)
+    return np.where(totals > 0, sums / np.where(totals > 0, totals, 1.0), above.sum(axis=0) / of_all)
+
+
+def _sums(weights: npt.NDArray[np.float32], values: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Return weighted sums over units, in single precision where that is exact: it takes a third of the time."""
+    exact = np.all(values == np.trunc(values)) and np.abs(values).max() * len(values) < EXACT
+    single = weights @ values.astype(np.float32) if exact else weights.astype(np.float64) @ values
+    sums: npt.NDArray[np.float64] = single.astype(np.float64)
+    return sums
 
 
 @lru_cache(maxsize=8)
-def _cached_weights(units: int, draws: int, seed: int) -> npt.NDArray[np.float64]:
+def _cached_weights(units: int, draws: int, seed: int) -> npt.NDArray[np.float32]:
     """Return the weights of all resamples: one matrix serves a whole table, whose cells have the same units."""
     weights = _weights(units, draws, generator(seed))
     weights.setflags(write=False)
     return weights
 
 
-def _weights(units: int, draws: int, rng: np.random.Generator) -> npt.NDArray[np.float64]:
+def _weights(units: int, draws: int, rng: np.random.Generator) -> npt.NDArray[np.float32]:
     """Return how often each unit occurs in each resample, (draws, units)."""
     chosen = rng.integers(0, units, size=(draws, units))
     chosen += units * np.arange(draws)[:, np.newaxis]
-    return np.bincount(chosen.ravel(), minlength=draws * units).reshape(draws, units).astype(np.float64)
+    return np.bincount(chosen.ravel(), minlength=draws * units).reshape(draws, units).astype(np.float32)
