@@ -18,9 +18,7 @@ from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch, as_batch_pair
-
-_MOST_SEGMENTS = 2**30
-"""More of them in one motion would take hours: then the resolution is a slip."""
+from evenroad.world.bisection import require_few_segments
 
 _BACKENDS = ("auto", "lanes", "scalar")
 
@@ -85,12 +83,7 @@ class ArmWorld:
         object.__setattr__(self, "resolution", require_positive("resolution", self.resolution))
         space = joint_space(self.robot)
         low, high = np.array(space.low), np.array(space.high)
-        segments = float(np.linalg.norm(high - low)) / self.resolution
-        if segments > _MOST_SEGMENTS:
-            raise InvalidValue(
-                f"resolution must be larger: {self.resolution!r} divides a motion into {segments:.3g} segments,"
-                " more than 2^30"
-            )
+        require_few_segments(self.resolution, float(np.linalg.norm(high - low)) / self.resolution)
         bounds = np.stack([low, high, space.flat.period])
         bounds.setflags(write=False)
         model = arm_model(self.robot, self.scene)

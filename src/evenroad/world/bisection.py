@@ -12,8 +12,22 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
+from evenroad.errors import InvalidValue
+
+MOST_SEGMENTS = 2**30
+"""More of them in one motion would take hours: then the resolution is a slip."""
+
 _STATES_AT_ONCE = 65536
 """States handed out at a time: many enough to hide the cost of a call, few enough to stay in memory."""
+
+
+def require_few_segments(resolution: object, segments: float) -> None:
+    """Raise InvalidValue where a resolution divides the longest motion into more than 2^30 segments."""
+    if segments > MOST_SEGMENTS:
+        raise InvalidValue(
+            f"resolution must be larger: {resolution!r} divides a motion into {segments:.3g} segments,"
+            " more than 2^30"
+        )
 
 
 def between_ends(

@@ -53,7 +53,7 @@ def _way_is_free(
     for k in range(len(a)):
         squared += (b[k] - a[k]) * (b[k] - a[k])
     segments = math.ceil(math.sqrt(squared) / resolution)
-    # The order of evenroad.world.bisection, for one motion.
+    # As evenroad.world.bisection_kernel, but written out: a state takes so little here that a call for each shows.
     level = 1
     while (1 << (level - 1)) < segments:
         before = 0

@@ -14,10 +14,7 @@ from evenroad.errors import InvalidValue
 from evenroad.space import Product, Space
 from evenroad.space.axes import as_row
 from evenroad.space.batch import as_batch, as_batch_pair
-from evenroad.world.bisection import between_ends
-
-_MOST_SEGMENTS = 2**30
-"""More of them in one motion would take hours: then the resolution is a slip."""
+from evenroad.world.bisection import between_ends, require_few_segments
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,11 +105,7 @@ class FunctionWorld:
             assert isinstance(self.space, Product)  # as __post_init__ has seen to
             lengths = np.column_stack(self.space.part_distances(a, b))
             segments = np.ceil(lengths / np.array(self.resolution)).max(axis=1)
-        if (segments > _MOST_SEGMENTS).any():
-            raise InvalidValue(
-                f"resolution must be larger: {self.resolution!r} divides a motion into {segments.max():.3g}"
-                f" segments, more than 2^30"
-            )
+        require_few_segments(self.resolution, segments.max(initial=0.0))
         return segments.astype(np.int64)
 
     def _clear_blocked(

@@ -9,6 +9,7 @@ from numba import njit
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.motion import enter, span
 from evenroad.robot.kernel.scalar import SEPARATE, first_contact
+from evenroad.world.bisection_kernel import next_between
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -52,21 +53,12 @@ def motions_free(
             continue
         if first_contact(end, ints, floats, no_margins, no_margins, frames, capsules)[0] != SEPARATE:
             continue
-        blocked = False
-        level = 1
-        while not blocked and (1 << (level - 1)) < segments:
-            before = 0
-            for multiple in range(1, 1 << level, 2):
-                number = (multiple * segments) >> level
-                after = ((multiple + 1) * segments) >> level
-                if before < number < after:
-                    for k in range(dim):
-                        state[k] = start[k] + number / segments * way[k]
-                    kind = first_contact(state, ints, floats, no_margins, no_margins, frames, capsules)[0]
-                    if kind != SEPARATE:
-                        blocked = True
-                        break
-                before = after
-            level += 1
-        free[row] = not blocked
+        level, multiple, number = next_between(1, -1, segments)
+        while number > 0:
+            for k in range(dim):
+                state[k] = start[k] + number / segments * way[k]
+            if first_contact(state, ints, floats, no_margins, no_margins, frames, capsules)[0] != SEPARATE:
+                break
+            level, multiple, number = next_between(level, multiple, segments)
+        free[row] = number == 0
     return free

@@ -9,6 +9,7 @@ import numpy.typing as npt
 from numba import njit
 
 from evenroad.space.chain import chain_distance
+from evenroad.world.bisection_kernel import next_between
 
 FREE, SELF, WALL = 0, 1, 2
 """Verdicts: nothing is crossed; two links cross; a link crosses a wall."""
@@ -72,20 +73,13 @@ def motions_are_free(
 
 @njit(cache=True, nogil=True)
 def _way_is_free(start, difference, segments, walls, end_piece, chain, state):  # type: ignore[no-untyped-def]
-    # The order of evenroad.world.bisection, for one motion.
-    level = 1
-    while (1 << (level - 1)) < segments:
-        before = 0
-        for multiple in range(1, 1 << level, 2):
-            number = (multiple * segments) >> level
-            after = ((multiple + 1) * segments) >> level
-            if before < number < after:
-                for k in range(len(start)):
-                    state[k] = start[k] + number / segments * difference[k]
-                if _verdict(state, walls, end_piece, chain) != FREE:
-                    return False
-            before = after
-        level += 1
+    level, multiple, number = next_between(1, -1, segments)
+    while number > 0:
+        for k in range(len(start)):
+            state[k] = start[k] + number / segments * difference[k]
+        if _verdict(state, walls, end_piece, chain) != FREE:
+            return False
+        level, multiple, number = next_between(level, multiple, segments)
     return True
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from evenroad.world.bisection_kernel import next_between
 from evenroad.world.solids.overlap import first_contact
 from evenroad.world.solids.tables import BoxTable
 
@@ -69,20 +70,13 @@ def _way_is_free(a, b, step, turn_step, body, obstacles, near, planar, state, wo
     length = math.sqrt((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2 + (b[2] - a[2]) ** 2)
     angle = _angle(a, b)
     segments = max(math.ceil(length / step), math.ceil(angle / turn_step))
-    # The order of evenroad.world.bisection, for one motion.
-    level = 1
-    while (1 << (level - 1)) < segments:
-        before = 0
-        for multiple in range(1, 1 << level, 2):
-            number = (multiple * segments) >> level
-            after = ((multiple + 1) * segments) >> level
-            if before < number < after:
-                # Two weights, not one fraction: a motion and its reverse then have the same states.
-                _put_between(a, b, (segments - number) / segments, number / segments, angle, state)
-                if first_contact(state, body, obstacles, near, planar, work) >= 0:
-                    return False
-            before = after
-        level += 1
+    level, multiple, number = next_between(1, -1, segments)
+    while number > 0:
+        # Two weights, not one fraction: a motion and its reverse then have the same states.
+        _put_between(a, b, (segments - number) / segments, number / segments, angle, state)
+        if first_contact(state, body, obstacles, near, planar, work) >= 0:
+            return False
+        level, multiple, number = next_between(level, multiple, segments)
     return True
 
 

@@ -14,13 +14,11 @@ from evenroad.errors import InvalidValue
 from evenroad.space import Box, Product
 from evenroad.space.axes import as_row
 from evenroad.space.batch import as_batch, as_batch_pair
+from evenroad.world.bisection import require_few_segments
 from evenroad.world.solids.kernel import contacts, motions_are_free
 from evenroad.world.solids.oriented_box import OrientedBox
 from evenroad.world.solids.poses import RigidSpace, as_pose_pair, as_poses, body_dimension
 from evenroad.world.solids.tables import BoxTable, box_table, reach_of
-
-_MOST_SEGMENTS = 2**30
-"""More of them in one motion would take hours: then the resolution is a slip."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,8 +150,5 @@ def _as_steps(
         value = require_positive("resolution", resolution)
         steps = (value, 1.0)
     longest = math.dist(position.low, position.high)
-    if max(longest / steps[0], math.pi / steps[1]) > _MOST_SEGMENTS:
-        raise InvalidValue(
-            f"resolution must be larger: {resolution!r} divides motions into over 2^30 segments"
-        )
+    require_few_segments(resolution, max(longest / steps[0], math.pi / steps[1]))
     return value, steps
