@@ -9,6 +9,7 @@ from evenroad.bench.statistics import mcnemar_exact, sign_flip_test, student_int
 from evenroad.report.cells import cells_of
 from evenroad.report.comparisons import comparisons_of
 from evenroad.report.fair import pooled
+from evenroad.report.sections.expected import expected_table
 from evenroad.report.sections.paired import paired_tables
 from evenroad.report.sections.sets import spread_table
 from evenroad.report.sections.success import success_table
@@ -171,3 +172,22 @@ def test_the_only_grid_is_no_pool_in_random_worlds(tmp_path):
     cell, compared = _found(tmp_path, rows)
     assert (cell.interval.kind, compared.test) == ("wilson", "McNemar")
     assert [each.sets for each in pooled(runs_from(tmp_path / "b.db", rows))["all"]] == [0]
+
+
+def test_a_verdict_on_a_few_sets_says_so(tmp_path):
+    rows = from_pool("cubicles", "mpmc", 1024, (0.0,) * 4, **STOCK)
+    rows += from_pool("hypercube-legacy6", "mpmc", 1024, (0.0,) * 4, **STOCK)
+    table, verdicts = analysis_from(tmp_path / "a.db", rows).verdicts["paper"]
+    assert [each.expected.problem for each in verdicts if each.word == "differs"] == [
+        "cubicles",
+        "hypercube-legacy6",
+    ]
+    assert (
+        expected_table(table, verdicts).notes[-1].startswith("cubicles mpmc (4 sets at N = 1024): our runs")
+    )
+
+
+def test_a_single_run_is_not_tested(tmp_path):
+    rows = from_pool("maze-1", "sukharev", 256, (1.0,), runs=1, ids=("grid",))
+    _, compared = _found(tmp_path, _uniform("maze-1", 256), rows)
+    assert (compared.test, compared.is_tested, compared.significant) == ("too few runs to test", False, False)

@@ -46,7 +46,8 @@ class Comparison:
         Of the difference of success rates, cell minus reference.
     test : str
         ``McNemar``; where pairs are not independent ``sign flips over sets`` (or blocks, instances), and ``Student over
-        sets`` after it where both were done and the larger p counts; ``too few sets to test`` of fewer than six.
+        sets`` after it where both were done and the larger p counts; ``too few sets to test`` (or runs, ..) where there
+        are fewer than six.
     p : float
         NaN where nothing was tested.
     p_corrected : float
@@ -126,15 +127,17 @@ def _compare(cell: Cell, reference: str, sums: UnitSums, c: int, wins: int, loss
     entries = sums.of(c)
     pairs = int(sums.runs[entries].sum())
     kind = cell.units.kind
-    if kind == "runs":
-        interval, test = bonett_price(wins, losses, pairs), "McNemar"
-        p = float(mcnemar_exact(wins, losses))
+    independent = kind == "runs"
+    if independent:
+        interval = bonett_price(wins, losses, pairs)
     else:
         interval = clustered_difference(sums.sums[entries], sums.runs[entries], kind)
-        if entries.stop - entries.start < FEW_TO_TEST:
-            test, p = f"too few {kind} to test", math.nan
-        else:
-            test, p = f"sign flips over {kind}", sign_flip_test(sums.sums[entries])
+    if entries.stop - entries.start < FEW_TO_TEST:
+        test, p = f"too few {kind} to test", math.nan
+    elif independent:
+        test, p = "McNemar", float(mcnemar_exact(wins, losses))
+    else:
+        test, p = f"sign flips over {kind}", sign_flip_test(sums.sums[entries])
     return Comparison(cell, reference, pairs, wins, losses, interval, test, p, p)
 
 

@@ -33,6 +33,7 @@ def expected_table(table: ExpectedTable, verdicts: tuple[Verdict, ...]) -> Table
             " all cells of this table that can be tested; a mark (≠) is a cell that differs."
             " SR in percent; V is the mean number of milestones, ours counted as the source counts.",
             *_notes(verdicts),
+            *_few_sets(verdicts),
         ),
     )
 
@@ -72,6 +73,17 @@ def _pair(each: Verdict) -> list[Entry]:
         Entry(f"{expected} / {percent(each.ours.rate)}", mark),
         Entry(f"{number(each.expected.v)} / {number(each.our_v)}"),
     ]
+
+
+def _few_sets(verdicts: tuple[Verdict, ...]) -> tuple[str, ...]:
+    rows = dict.fromkeys(
+        f"{each.expected.problem} {each.expected.sampler} ({len(each.ours.sets)} sets at N = {each.expected.n})"
+        for each in verdicts
+        if each.ours is not None and each.ours.units.kind == "sets" and each.word == "differs"
+    )
+    if not rows:
+        return ()
+    return (f"{', '.join(rows)}: our runs of one set are not independent, so the mark is set too readily.",)
 
 
 def _notes(verdicts: tuple[Verdict, ...]) -> tuple[str, ...]:
