@@ -122,6 +122,16 @@ def test_an_angle_of_two_bars_gets_more_than_one_capsule():
     assert sum(map(volume, fitted)) < 0.5 * volume(capsule_around(np.array(bars.vertices)))
 
 
+def test_a_link_that_is_thick_at_both_ends_gets_capsules_of_its_own_there():
+    """Parting with one end alone saves nothing yet: the rest is as thick as before."""
+    places = [trimesh.transformations.translation_matrix((0, 0, z)) for z in (-0.25, 0.25)]
+    ends = [trimesh.creation.box((0.12, 0.16, 0.12), transform=place) for place in places]
+    link = trimesh.util.concatenate([trimesh.creation.cylinder(0.03, 0.6, sections=24), *ends])
+    fitted = capsules_around_mesh(np.array(link.vertices), np.array(link.faces))
+    assert len(fitted) == 3
+    assert min(radius for *_, radius in fitted) < 0.06
+
+
 def test_the_same_mesh_gives_the_same_capsules():
     mesh = trimesh.creation.cone(0.1, 0.5)
     first, second = (capsules_around_mesh(np.array(mesh.vertices), np.array(mesh.faces)) for _ in range(2))

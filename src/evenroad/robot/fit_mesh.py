@@ -12,18 +12,18 @@ from evenroad.robot.fit_points import Fitted, capsule_around, rough_capsule_arou
 
 MOST_CAPSULES = 4
 """Most capsules of a mesh."""
-WORTHWHILE = 0.85
-"""A split must bring the sum of volumes below this share."""
-_CUTS = (0.3, 0.5, 0.7)
+WORTHWHILE = 0.9
+"""Every further capsule must bring the sum of volumes below this share, on average."""
+_CUTS = (0.15, 0.3, 0.5, 0.7, 0.85)
 _LONGEST_EDGE = 1.0 / 6.0
 """Longer edges, in parts of the mesh's extent, are divided, so that large triangles can be shared out, too."""
-_LOOKED_AT = 1000
+_LOOKED_AT = 300
 """Triangles by which splits are compared."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Part:
-    """Some triangles, (t, 3, 3), the capsule around them, and the two parts that they would better be; or none."""
+    """Some triangles, (t, 3, 3), a capsule around them, and the two parts that splitting best makes of them, if any."""
 
     corners: npt.NDArray[np.float64]
     capsule: Fitted
@@ -31,26 +31,40 @@ class _Part:
 
     @property
     def gain(self) -> float:
-        split = sum(volume(half.capsule) for half in self.halves)
-        return volume(self.capsule) - split if 0.0 < split < WORTHWHILE * volume(self.capsule) else 0.0
+        """Volume that the split saves; less than nothing where it does not pay yet."""
+        if not self.halves:
+            return -math.inf
+        return volume(self.capsule) - sum(volume(half.capsule) for half in self.halves)
 
 
 def capsules_around_mesh(vertices: npt.NDArray[np.float64], triangles: npt.NDArray[np.int64]) -> list[Fitted]:
     """Return up to 4 capsules (a, b, radius) such that every triangle lies within one of them.
 
-    One capsule is fitted around everything; then the one whose split saves most is split, as long as that saves a
-    sixth of its volume.  A split shares triangles out by where along a coordinate axis, or along the direction in which
+    One capsule is fitted around everything; then the one whose split saves most is split, again and again, and that
+    number of capsules taken which pays best: a link that is thick at both ends gains nothing before its second split.
+    A split shares triangles out by where along a coordinate axis, or along the direction in which
     they reach furthest, their centres lie.  A capsule is convex, so it contains triangles whose corners it contains:
     what touches the surface of the mesh touches a capsule.
     """
     corners = _divided(vertices[triangles])
-    parts = [_splittable(_Part(corners, _fit(corners)))]
+    parts = [_splittable(_Part(corners, _rough(corners)))]
+    found = [parts]
     while len(parts) < MOST_CAPSULES:
         best = max(range(len(parts)), key=lambda i: parts[i].gain)
-        if parts[best].gain <= 0.0:
+        if not parts[best].halves:
             break
-        parts[best : best + 1] = map(_splittable, parts[best].halves)
-    return [part.capsule for part in parts]
+        halves = parts[best].halves
+        if len(parts) + 1 < MOST_CAPSULES:
+            halves = tuple(map(_splittable, halves))
+        parts = [*parts[:best], *halves, *parts[best + 1 :]]
+        found.append(parts)
+    chosen = min(found, key=_price)
+    return [capsule_around(part.corners.reshape(-1, 3)) for part in chosen]
+
+
+def _price(parts: list[_Part]) -> float:
+    """Return the sum of volumes, dearer for each capsule."""
+    return sum(volume(part.capsule) for part in parts) / WORTHWHILE ** len(parts)
 
 
 def _splittable(part: _Part) -> _Part:
@@ -67,17 +81,17 @@ def _splittable(part: _Part) -> _Part:
             sides = [corners[shown][side[shown]] for side in (below, ~below)]
             if min(map(len, sides)) == 0:
                 continue
-            total = sum(volume(rough_capsule_around(side.reshape(-1, 3))) for side in sides)
+            total = sum(volume(_rough(side)) for side in sides)
             if total < least:
                 least, best = total, below
     if best is None:
         return part
-    halves = tuple(_Part(corners[side], _fit(corners[side])) for side in (best, ~best))
+    halves = tuple(_Part(corners[side], _rough(corners[side])) for side in (best, ~best))
     return _Part(corners, part.capsule, halves)
 
 
-def _fit(corners: npt.NDArray[np.float64]) -> Fitted:
-    return capsule_around(corners.reshape(-1, 3))
+def _rough(corners: npt.NDArray[np.float64]) -> Fitted:
+    return rough_capsule_around(corners.reshape(-1, 3))
 
 
 def _divided(corners: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
