@@ -50,6 +50,10 @@ bench: $(VENV)/.peers
 	@mkdir -p out/bench
 	$(BIN)/python tools/forget_stale_kernels.py
 	$(BIN)/python -m benchmarks --out out/bench
+	$(BIN)/evenroad bench paper --runs 400 --store out/bench/paper.db
+	$(BIN)/evenroad bench fair --runs 400 --store out/bench/fair.db
+	$(BIN)/evenroad report out/bench/paper.db -o out/bench/paper
+	$(BIN)/evenroad report out/bench/fair.db -o out/bench/fair
 
 bank: $(VENV)/.dev
 	$(BIN)/python -m evenroad.points.bank.build
