@@ -84,6 +84,7 @@ def main() -> None:
         with open_store(path) as store:
             for task in tasks_of(options.rows):
                 store.add("overhead", task, Outcome("solved", 100, 50, 300, 1.5, 0.001, "7"), "host:1")
+                store.commit_if_due()
         print(
             f"write {options.rows} rows: {time.perf_counter() - began:.1f} s, {path.stat().st_size / 1e6:.0f} MB"
         )

@@ -74,6 +74,7 @@ def fill(path: Path, rows: int) -> int:
                         set_id=str(of_pool[run]) if sampler in POOLS else "",
                     )
                     store.add("made up", task, outcome, "here:1")
+                store.commit_if_due()
                 written += runs
     return written
 

@@ -84,6 +84,13 @@ def test_runs_and_seeds_are_different_draws():
     assert len(set(valid)) > 4
 
 
+def test_runs_of_a_block_protocol_are_other_points_of_one_sequence_whatever_the_seed():
+    task = replace(TASK, sampler="halton paper-blocks")
+    by_seed = [[_steady(run_task(replace(task, run=run, seed=seed))) for run in range(4)] for seed in (1, 2)]
+    assert by_seed[0] == by_seed[1]
+    assert len(set(by_seed[0])) > 1
+
+
 def test_a_pool_set_is_named_in_the_outcome():
     outcome = run_task(replace(TASK, sampler="hickernell"))
     assert 0 <= int(outcome.set_id) < 64

@@ -18,7 +18,8 @@ from evenroad.bench.rows import Labels
 from evenroad.bench.runner import run_tasks
 from evenroad.bench.store import open_store, read_rows
 from evenroad.bench.task import Task
-from evenroad.errors import InvalidValue, WorkerLost
+from evenroad.bench.time_limit import LONGEST_LIMIT
+from evenroad.errors import BrokenFile, InvalidValue, WorkerLost
 
 TASKS = tuple(
     Task(problem, 0, sampler, 64, rule, "stock", run, 3)
@@ -117,8 +118,11 @@ def test_a_task_that_fails_is_a_row_and_is_run_again_only_on_demand(path):
     rows = read_rows(path)
     assert "unknown sampler 'nonsense'" in rows.error[int(np.flatnonzero(~rows.answered)[0])]
     assert _run(path, (*TASKS[:3], broken)).finished == 0
+    report = _run(path, (*TASKS[:3], broken))
+    assert (report.found, report.found_failures, report.failures) == (4, 1, 0)
     report = _run(path, (*TASKS[:3], broken), retry=True)
-    assert (report.found, report.finished, report.failures) == (3, 1, 1)
+    assert (report.found, report.found_failures) == (3, 0)
+    assert (report.finished, report.failures) == (1, 1)
 
 
 # Dead workers.
@@ -182,6 +186,84 @@ def test_workers_that_die_again_and_again_end_the_run_with_advice(path):
     assert _run(path).finished == len(TASKS) - lost
 
 
+def _pools(*executors):
+    """Return workers whose executors are these, and then serial ones."""
+    left = list(executors)
+    return Workers(lambda: left.pop(0) if left else _SerialExecutor(), lambda executor: 1)
+
+
+class _Fails(_SerialExecutor):
+    def submit(self, fn, /, *args, **kwargs):
+        future = Future()
+        future.set_exception(BrokenExecutor("died"))
+        return future
+
+
+class _Refuses(_SerialExecutor):
+    def submit(self, fn, /, *args, **kwargs):
+        raise BrokenExecutor("broken before anything was sent")
+
+
+@pytest.mark.parametrize("executors", [(_Refuses(),) * 3, (_Fails(), _Refuses(), _Refuses())])
+def test_a_task_that_never_reached_a_worker_is_not_blamed_for_its_death(path, executors):
+    report = _run(path, TASKS[:1], _pools(*executors))
+    assert (report.finished, report.failures) == (1, 0)
+    assert read_rows(path).answered.all()
+
+
+def test_tasks_that_never_reached_a_worker_are_run_in_their_order(path):
+    ran = []
+
+    def note(tasks, limit):
+        ran.extend(tasks)
+        return run_chunk(tasks, limit)
+
+    executors = [_Refuses(), _Executor(note)]
+    report = _run(path, TASKS, Workers(lambda: executors.pop(0), lambda executor: 1))
+    assert (report.finished, tuple(ran)) == (len(TASKS), TASKS)
+
+
+def test_workers_that_cannot_be_sent_anything_end_the_run_without_blaming_a_task(path):
+    with pytest.raises(WorkerLost, match="run it again to go on"):
+        _run(path, workers=Workers(_Refuses, lambda executor: 1))
+    assert len(read_rows(path)) == 0
+
+
+# Stores that cannot be written.
+
+
+class _Batch(_SerialExecutor):
+    """Serial; notes what was asked, and whether it was let go."""
+
+    def __init__(self):
+        self.ran, self.is_let_go = [], False
+
+    def submit(self, fn, /, tasks, limit):
+        self.ran.extend(tasks)
+        return super().submit(fn, tasks, limit)
+
+    def shutdown(self, wait=True, *, cancel_futures=False):
+        self.is_let_go = True
+
+
+def test_a_store_that_cannot_be_written_ends_the_run_and_no_finished_row_is_lost(path, monkeypatch):
+    monkeypatch.setattr("evenroad.bench.store.COMMIT_SECONDS", 0.0)
+    executor = _Batch()
+
+    def run():
+        with open_store(path) as store:
+            store._connection.execute("PRAGMA query_only = 1")
+            run_tasks("test", TASKS, store, Workers(lambda: executor, lambda executor: 2))
+
+    with pytest.raises(BrokenFile, match=f"{len(TASKS[:8])} finished rows left in .*rescue: the next run"):
+        run()
+    assert executor.is_let_go
+    assert len(executor.ran) == 8
+    report = _run(path)
+    assert (report.found, report.finished) == (8, len(TASKS) - 8)
+    assert len(read_rows(path)) == len(TASKS)
+
+
 def test_a_suspect_runs_alone(path):
     sizes, running = [], threading.Semaphore(1)
 
@@ -223,9 +305,14 @@ def test_a_cancelled_chunk_is_run_again(path):
     assert (report.finished, report.failures) == (len(TASKS), 0)
 
 
-def test_a_limit_is_a_positive_number(path):
-    with pytest.raises(InvalidValue, match="limit"):
-        _run(path, limit=0.0)
+@pytest.mark.parametrize("limit", [0.0, -1.0, np.nan, np.inf, 1e300, 1.1e6])
+def test_a_limit_is_a_positive_number_that_clocks_can_take(path, limit):
+    with pytest.raises(InvalidValue, match="limit must be"):
+        _run(path, limit=limit)
+
+
+def test_the_longest_limit_is_no_failure(path):
+    assert _run(path, TASKS[:1], limit=LONGEST_LIMIT).failures == 0
 
 
 def test_the_limit_reaches_the_worker(path):
@@ -265,6 +352,13 @@ def test_chunks_of_fast_tasks_grow_and_those_of_slow_ones_are_single():
         assert len(chunker.next()) <= max(1.5 * expected, 1)
 
 
+def test_a_chunk_that_is_put_back_comes_next():
+    chunker = Chunker(TASKS)
+    first = chunker.next()
+    chunker.put_back(first)
+    assert chunker.next() == first
+
+
 # Processes.
 
 
@@ -287,6 +381,16 @@ def test_worker_processes_leave_ctrl_c_to_the_parent(path):
 def test_worker_processes_have_one_thread_each():
     with _Processes(1) as pool:
         assert pool.submit(os.getenv, "NUMBA_NUM_THREADS").result() == "1"
+
+
+def test_processes_that_are_not_waited_for_are_ended_in_what_they_do():
+    pool = _Processes(1)
+    pool.submit(os.getpid).result()
+    (process,) = pool._processes.values()
+    pool.submit(time.sleep, 600.0)
+    pool.shutdown(wait=False, cancel_futures=True)
+    process.join(60.0)
+    assert process.exitcode == -signal.SIGTERM
 
 
 def test_the_number_of_processes_is_a_positive_integer():

@@ -76,6 +76,10 @@ class Chunker:
             chunk.append(self._waiting.popleft())
         return tuple(chunk)
 
+    def put_back(self, chunk: Sequence[Task]) -> None:
+        """Take back a chunk that was not run; it comes next."""
+        self._waiting.extendleft(reversed(chunk))
+
     def learn(self, tasks: Sequence[Task], seconds: Sequence[float]) -> None:
         """Take note of how long each task of a chunk took."""
         for task, took in zip(tasks, seconds, strict=True):

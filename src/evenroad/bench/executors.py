@@ -82,6 +82,16 @@ class _Processes(ProcessPoolExecutor):
         with _interrupts_held_back():
             return super().submit(fn, *args, **kwargs)
 
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Shut down; without `wait`, end the processes in what they do, for which Python would wait when it exits."""
+        running = list((self._processes or {}).values())
+        try:
+            super().shutdown(wait, cancel_futures=cancel_futures)
+        finally:
+            if not wait:
+                for process in running:
+                    process.terminate()
+
 
 @contextmanager
 def _interrupts_held_back() -> Iterator[None]:

@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterable
 from concurrent.futures import BrokenExecutor, Executor, Future, wait
 from dataclasses import dataclass
 
-from evenroad._checks import require_positive
 from evenroad.bench.chunks import Chunker, Done, run_chunk
 from evenroad.bench.executors import Workers
 from evenroad.bench.outcome import Outcome
 from evenroad.bench.rows import FAILURES
 from evenroad.bench.store import Store
 from evenroad.bench.task import Task
+from evenroad.bench.time_limit import DEFAULT_LIMIT, require_limit
 from evenroad.errors import WorkerLost
 
 POLL_SECONDS = 0.2
@@ -42,11 +42,14 @@ class Report:
         Tasks that were run now, failures included.
     failures : int
         Of these, those that failed, took too long or lost their worker.
+    found_failures : int
+        The same of those that were found.
     """
 
     found: int
     finished: int
     failures: int
+    found_failures: int
 
 
 def run_tasks(
@@ -56,7 +59,7 @@ def run_tasks(
     workers: Workers,
     *,
     callback: Callback | None = None,
-    limit: float | None = 600.0,
+    limit: float | None = DEFAULT_LIMIT,
     retry: bool = False,
 ) -> Report:
     """Run all tasks that the store has no row of; a stopped run goes on with the next call.
@@ -77,7 +80,7 @@ def run_tasks(
         Called as ``callback(finished, tasks)`` a few times a second, with those found in the store counted; what it
         raises stops the run.
     limit : float, optional
-        Seconds for a task, after which its row says ``timeout``; None means no limit.
+        Seconds for a task, at most 10^6, after which its row says ``timeout``; None means no limit.
     retry : bool
         Run tasks again whose row is a failure.
 
@@ -88,27 +91,35 @@ def run_tasks(
 
     Raises
     ------
+    InvalidValue
+        If `limit` is no such number.
     WorkerLost
         If workers die again and again without finishing anything.
     BrokenFile
-        If the store cannot be written any more.
+        If the store cannot be written any more.  What was finished waits in it for its end.
     """
-    if limit is not None:
-        require_positive("limit", limit)
+    require_limit(limit)
     tasks = tuple(tasks)
-    known = store.finished(failures=not retry)
-    missing = [task for task in tasks if task.key not in known]
+    is_answer = store.finished()
+    missing, found, found_failures = [], 0, 0
+    for task in tasks:
+        answered = is_answer.get(task.key)
+        if answered is None or (retry and not answered):
+            missing.append(task)
+        else:
+            found += 1
+            found_failures += not answered
     run = _Run(suite, missing, store, workers, limit)
     try:
         while run.goes_on():
             if callback is not None:
-                callback(len(tasks) - len(missing) + run.finished, len(tasks))
+                callback(found + run.finished, len(tasks))
     finally:
         run.stop()
-        store.commit()
+    store.commit()
     if callback is not None:
         callback(len(tasks), len(tasks))
-    return Report(len(tasks) - len(missing), run.finished, run.failures)
+    return Report(found, run.finished, run.failures, found_failures)
 
 
 class _Run:
@@ -131,7 +142,8 @@ class _Run:
         """Send what there is room for, wait a moment and take what came back; False when nothing is left."""
         self._send()
         if not self._in_flight:
-            return False
+            # An executor that broke at once took nothing; the next one may.
+            return bool(self._suspects or self._chunker)
         done, _ = wait(self._in_flight, timeout=POLL_SECONDS, return_when="FIRST_COMPLETED")
         for future in done:
             # Not there any more, if one before it took the executor down.
@@ -142,9 +154,11 @@ class _Run:
 
     def stop(self) -> None:
         """Take what is finished, and let go of the executor; what is being run is not waited for."""
-        for future in [each for each in self._in_flight if _has_result(each)]:
-            self._take(future)
-        self._let_go()
+        try:
+            for future in [each for each in self._in_flight if _has_result(each)]:
+                self._take(future)
+        finally:
+            self._let_go()
 
     def _send(self) -> None:
         room = 0
@@ -156,13 +170,19 @@ class _Run:
             room = 1 if alone else room or IN_FLIGHT * self.workers.count(self._executor)
             if len(self._in_flight) >= room:
                 return
-            self._on_trial = bool(self._suspects)
-            chunk = (self._suspects.popleft(),) if self._suspects else self._chunker.next()
+            is_suspect = bool(self._suspects)
+            chunk = (self._suspects.popleft(),) if is_suspect else self._chunker.next()
             try:
                 self._in_flight[self._executor.submit(run_chunk, chunk, self.limit)] = chunk
             except BrokenExecutor as error:
-                self._dies([chunk, *self._broken()], error)
+                # It never ran, so this death is not its doing.
+                if is_suspect:
+                    self._suspects.extendleft(chunk)
+                else:
+                    self._chunker.put_back(chunk)
+                self._dies(self._broken(), error)
                 return
+            self._on_trial = is_suspect
 
     def _take(self, future: Future[Done]) -> None:
         chunk = self._in_flight.pop(future)
@@ -191,7 +211,7 @@ class _Run:
             self._executor = None
 
     def _dies(self, chunks: list[tuple[Task, ...]], error: BaseException | None) -> None:
-        """Take note that the worker of one of these chunks is gone; all of them are to be run again, one by one."""
+        """Take note that a worker is gone, and these chunks with it; they are to be run again, task by task."""
         self._deaths_in_a_row += 1
         tasks = [task for chunk in chunks for task in chunk]
         self._deaths.update(tasks)

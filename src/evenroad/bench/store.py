@@ -7,29 +7,59 @@ import os
 import platform
 import sqlite3
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, fields
 from datetime import UTC, datetime
 from pathlib import Path
-
-import numpy as np
 
 from evenroad import __version__
 from evenroad._files import require_writable_folder
 from evenroad.bench.outcome import Outcome
-from evenroad.bench.rows import FAILURES, Rows, rows_from
+from evenroad.bench.read_store import Session as Session
+from evenroad.bench.read_store import read_rows as read_rows
+from evenroad.bench.read_store import read_sessions as read_sessions
+from evenroad.bench.rescue import Row, leave_rows, rescue_file, waiting_rows
+from evenroad.bench.rows import FAILURES
 from evenroad.bench.schema import connect, create, sqlite_errors
 from evenroad.bench.task import PROTOCOL, Task
+from evenroad.bench.writer_lock import only_writer
 from evenroad.errors import BrokenFile
 
 COMMIT_SECONDS = 0.5
 """Rows are committed together, this often: what a kill can lose at most."""
 
 _COLUMNS = (
-    "key, protocol, suite, problem, instance, sampler, n, rule, search, run, seed, status, valid, valid_at_solution,"
-    " edges_checked, length, seconds, set_id, error, worker, finished"
+    "key",
+    "protocol",
+    "suite",
+    "problem",
+    "instance",
+    "sampler",
+    "n",
+    "rule",
+    "search",
+    "run",
+    "seed",
+    "status",
+    "valid",
+    "valid_at_solution",
+    "edges_checked",
+    "length",
+    "seconds",
+    "set_id",
+    "error",
+    "worker",
+    "finished",
 )
+_NAMED = {"suite", "problem", "sampler", "rule", "search", "status", "set_id", "error", "worker"}
+"""Columns whose texts are kept as numbers of names."""
+
+_INSERT_ROW = f"INSERT OR REPLACE INTO rows ({', '.join(_COLUMNS)}) VALUES ({', '.join('?' * len(_COLUMNS))})"
+
+_INSERT_NAME = (
+    "INSERT INTO names SELECT ?1, ?2 WHERE NOT EXISTS (SELECT 1 FROM names WHERE id = ?1 AND text = ?2)"
+)
+"""The same name again is no error: an interrupt may come right after a COMMIT, and the rows are then written again."""
 
 
 class Store:
@@ -38,49 +68,50 @@ class Store:
     def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
         self.path, self._connection = path, connection
         self._names = {text: number for number, text in connection.execute("SELECT id, text FROM names")}
-        self._new_names: list[tuple[int, str]] = []
-        self._new_rows: list[tuple[object, ...]] = []
+        self._stored_names = len(self._names)
+        self._waiting: list[Row] = []
+        self._failure: BrokenFile | None = None
         self._last_commit = time.monotonic()
         self._has_written = False
 
-    def finished(self, *, failures: bool = True) -> set[str]:
-        """Return the keys of the tasks that have a row; without `failures` only of those that gave an answer."""
+    def finished(self) -> dict[str, bool]:
+        """Return the keys of the tasks that have a row, and whether it is an answer, not a failure of the run."""
         with sqlite_errors(self.path):
             cursor = self._connection.execute("SELECT key, status FROM rows")
             failed = {self._names.get(status) for status in FAILURES}
-            return {key.hex() for key, status in cursor if failures or status not in failed}
+            return {key.hex(): status not in failed for key, status in cursor}
 
     def add(self, suite: str, task: Task, outcome: Outcome, worker: str) -> None:
-        """Take the row of a finished task, in place of an earlier one; commit if it is time."""
-        self._new_rows.append(
+        """Take the row of a finished task, in place of an earlier one, for the next commit; this cannot fail."""
+        self._waiting.append(
             (
-                bytes.fromhex(task.key),
+                task.key,
                 PROTOCOL,
-                self._number(suite),
-                self._number(task.problem),
+                suite,
+                task.problem,
                 task.instance,
-                self._number(task.sampler),
+                task.sampler,
                 task.n,
-                self._number(task.rule),
-                self._number(task.search),
+                task.rule,
+                task.search,
                 task.run,
                 task.seed,
-                self._number(outcome.status),
+                outcome.status,
                 outcome.valid,
                 outcome.valid_at_solution,
                 outcome.edges_checked,
                 _or_null(outcome.length),
                 _or_null(outcome.seconds),
-                self._number(outcome.set_id),
-                self._number(outcome.error),
-                self._number(worker),
+                outcome.set_id,
+                # SQLite takes no lone surrogates, as names of files can have them.
+                outcome.error.encode(errors="backslashreplace").decode(),
+                worker,
                 _now(),
             )
         )
-        self.commit_if_due()
 
     def commit_if_due(self) -> None:
-        """Commit, if the last time was long enough ago."""
+        """Commit, if the last time was long enough ago; errors as :meth:`commit`."""
         if time.monotonic() - self._last_commit >= COMMIT_SECONDS:
             self.commit()
 
@@ -90,53 +121,93 @@ class Store:
         Raises
         ------
         BrokenFile
-            If the disk is full, or another process locks the file; earlier rows are kept.
+            If the disk is full, or another process locks the file.  Earlier rows are kept, and those that were to be
+            written wait for another commit or for :meth:`close`.
         """
-        if self._new_rows:
-            places = ", ".join("?" * len(self._new_rows[0]))
-            with sqlite_errors(self.path):
-                try:
-                    self._connection.execute("BEGIN IMMEDIATE")
-                    if not self._has_written:
-                        self._connection.execute(
-                            "INSERT INTO sessions VALUES (?, ?, ?, ?, ?, ?, ?)", _session()
-                        )
-                    self._connection.executemany("INSERT INTO names VALUES (?, ?)", self._new_names)
-                    self._connection.executemany(
-                        f"INSERT OR REPLACE INTO rows ({_COLUMNS}) VALUES ({places})", self._new_rows
-                    )
-                    self._connection.execute("COMMIT")
-                except sqlite3.Error:
-                    with suppress(sqlite3.Error):
-                        self._connection.execute("ROLLBACK")
-                    raise
+        if self._waiting:
+            try:
+                with sqlite_errors(self.path):
+                    self._write()
+            except BrokenFile as error:
+                self._failure = error
+                raise
+            self._failure = None
             self._has_written = True
-            self._new_names.clear()
-            self._new_rows.clear()
+            self._stored_names = len(self._names)
+            self._waiting.clear()
         self._last_commit = time.monotonic()
 
-    def _number(self, text: str) -> int:
-        if text not in self._names:
-            self._names[text] = len(self._names) + 1
-            self._new_names.append((self._names[text], text))
-        return self._names[text]
+    def take_in_rescued(self) -> None:
+        """Write the rows that an earlier writer had to leave beside the store; errors as :meth:`commit`."""
+        self._waiting += waiting_rows(self.path, _COLUMNS)
+        if self._waiting:
+            try:
+                self.commit()
+            except BaseException:
+                # They stay where they are.
+                self._waiting.clear()
+                raise
+            rescue_file(self.path).unlink()
+
+    def close(self) -> None:
+        """Commit; rows that the store cannot take are left in a file beside it.
+
+        Raises
+        ------
+        BrokenFile
+            If the store cannot be written; the text says where the rows are.
+        """
+        try:
+            # What failed is not tried again: a locked file would be waited for once more.
+            if self._failure is None:
+                self.commit()
+        finally:
+            if self._waiting:
+                where = leave_rows(self.path, _COLUMNS, self._waiting)
+                if self._failure is not None:
+                    raise BrokenFile(f"{self._failure}; {where}") from self._failure
+
+    def _write(self) -> None:
+        rows = [self._numbered(row) for row in self._waiting]
+        names = [(number, text) for text, number in self._names.items() if number > self._stored_names]
+        try:
+            self._connection.execute("BEGIN IMMEDIATE")
+            if not self._has_written:
+                self._connection.execute("INSERT INTO sessions VALUES (?, ?, ?, ?, ?, ?, ?)", _session())
+            self._connection.executemany(_INSERT_NAME, names)
+            self._connection.executemany(_INSERT_ROW, rows)
+            self._connection.execute("COMMIT")
+        except BaseException:
+            # After an interrupt, too: no later commit could begin within this one.
+            with suppress(sqlite3.Error):
+                self._connection.execute("ROLLBACK")
+            raise
+
+    def _numbered(self, row: Row) -> tuple[object, ...]:
+        key, *others = row
+        values = [
+            self._names.setdefault(str(value), len(self._names) + 1) if column in _NAMED else value
+            for column, value in zip(_COLUMNS[1:], others, strict=True)
+        ]
+        return (bytes.fromhex(str(key)), *values)
 
 
 @contextmanager
 def open_store(path: str | os.PathLike[str]) -> Iterator[Store]:
     """Open a store for writing, or make one; what was added is committed when the block ends, however it does.
 
-    Between the commits, and after the block, it is one file that can be copied.
+    Between the commits, and after the block, it is one file that can be copied.  While it is open there is a lock
+    beside it, STORE.lock.  Rows that cannot be committed are left in STORE.rescue, which the next opening takes in.
 
     Raises
     ------
     BrokenFile
-        If the folder cannot be written, another process writes to this store, the file is not a store, or it has
-        another schema version.
+        If the folder cannot be written, another process writes to this store, the file is not a store, it has
+        another schema version, or it could not be written in the end; the text then says where the rows are.
     """
     target = Path(path)
     require_writable_folder(target)
-    with _only_writer(target):
+    with only_writer(target):
         if not target.exists() or target.stat().st_size == 0:
             create(target)
         connection = connect(target)
@@ -144,88 +215,12 @@ def open_store(path: str | os.PathLike[str]) -> Iterator[Store]:
             with sqlite_errors(target):
                 store = Store(target, connection)
             try:
+                store.take_in_rescued()
                 yield store
             finally:
-                store.commit()
+                store.close()
         finally:
             connection.close()
-
-
-def read_rows(
-    path: str | os.PathLike[str], *, suite: str | None = None, problems: Sequence[str] | None = None
-) -> Rows:
-    """Read finished rows of today's protocol, in the order of the tasks' fields; a million takes seconds.
-
-    Parameters
-    ----------
-    path : path
-        The store; it may be in use by a running benchmark.
-    suite : str, optional
-        Only rows of this suite.
-    problems : sequence of str, optional
-        Only rows of these problems.
-
-    Raises
-    ------
-    BrokenFile
-        If there is no such file, it is not a store, or one of another version.
-    """
-    target = Path(path)
-    connection = connect(target)
-    try:
-        with sqlite_errors(target):
-            connection.execute("BEGIN")
-            texts = dict(connection.execute("SELECT id, text FROM names").fetchall())
-            numbers = {text: number for number, text in texts.items()}
-            condition, values = f"protocol = {PROTOCOL}", []
-            if suite is not None:
-                condition += " AND suite = ?"
-                values.append(numbers.get(suite, 0))
-            if problems is not None:
-                values += [numbers.get(problem, 0) for problem in problems]
-                condition += f" AND problem IN ({', '.join('?' * len(problems))})"
-            count = connection.execute(f"SELECT count(*) FROM rows WHERE {condition}", values).fetchone()[0]
-            selected = connection.execute(f"SELECT {_SELECTED} FROM rows WHERE {condition}", values)
-            # Straight into one array: lists of a million tuples would take a gigabyte.
-            table = np.fromiter(selected, dtype=_RECORD, count=count)
-    finally:
-        connection.close()
-    columns = {name: table[name] for name in _FIELDS}
-    for name in ("length", "seconds"):
-        columns[name] = np.where(columns[name] == np.inf, np.nan, columns[name])
-    return rows_from(columns, texts)
-
-
-_FIELDS = tuple(field.name for field in fields(Rows))
-_RECORD = np.dtype([(name, np.float64 if name in ("length", "seconds") else np.int64) for name in _FIELDS])
-_NULLS = {"valid_at_solution": "-1", "length": "9e999", "seconds": "9e999"}
-"""What NULL is read as: SQL has no NaN, but infinity."""
-
-_SELECTED = ", ".join(f"ifnull({name}, {_NULLS[name]})" if name in _NULLS else name for name in _FIELDS)
-
-
-@dataclass(frozen=True)
-class Session:
-    """One time that a store was written to: when, and by what."""
-
-    started: str
-    evenroad: str
-    python: str
-    numpy: str
-    scipy: str
-    numba: str
-    platform: str
-
-
-def read_sessions(path: str | os.PathLike[str]) -> tuple[Session, ...]:
-    """Return the sessions that wrote a store, the first one first; errors as :func:`read_rows`."""
-    target = Path(path)
-    connection = connect(target)
-    try:
-        with sqlite_errors(target):
-            return tuple(Session(*row) for row in connection.execute("SELECT * FROM sessions ORDER BY rowid"))
-    finally:
-        connection.close()
 
 
 def _session() -> tuple[str, ...]:
@@ -241,33 +236,3 @@ def _now() -> str:
 
 def _or_null(value: float) -> float | None:
     return value if math.isfinite(value) else None
-
-
-@contextmanager
-def _only_writer(store: Path) -> Iterator[None]:
-    """Hold the lock of a store; the lock goes with the process, and its file with the block.
-
-    A lock of SQLite's own would keep readers out, too.
-    """
-    try:
-        import fcntl
-    except ImportError:
-        # Windows: two writers wait for each other at each commit, and may do the same work twice.
-        yield
-        return
-    lock = store.with_name(f"{store.name}.lock")
-    with open(lock, "w", encoding="utf-8") as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            # The writer before may have removed the file that was opened here: such a lock would be nobody's.
-            ours = os.path.samestat(os.stat(lock), os.fstat(file.fileno()))
-        except OSError:
-            ours = False
-        if not ours:
-            raise BrokenFile(
-                f"cannot write {store}: another benchmark is writing it; wait for it, or give another store"
-            )
-        try:
-            yield
-        finally:
-            lock.unlink(missing_ok=True)

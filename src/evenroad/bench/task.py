@@ -32,7 +32,8 @@ class Task:
     run : int
         Which draw of the sampler, from 0: run i of a block protocol takes the points i N + 1 .. (i + 1) N.
     seed : int
-        Seed of the whole suite; the run's generator is ``SeedSequence(seed, spawn_key=(run,))``.
+        Seed of the whole suite; the run's generator is ``SeedSequence(seed, spawn_key=(run,))``.  ``paper-blocks``
+        draw no random numbers: with another seed they are the same sets.
     """
 
     problem: str
