@@ -19,7 +19,7 @@ from evenroad.bench.runner import run_tasks
 from evenroad.bench.schedulers import dask_workers
 from evenroad.bench.store import open_store, read_rows
 from evenroad.bench.task import Task
-from evenroad.errors import NotAvailable
+from evenroad.errors import InvalidValue, NotAvailable
 
 PATIENCE = "3s"
 """For results that a dead worker has; Dask's own 30 s are long for a test."""
@@ -155,12 +155,11 @@ def test_a_scheduler_without_workers_is_refused(tmp_path, monkeypatch):
         scheduler.wait()
 
 
-@pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "nonsense"])
-def test_an_unreachable_scheduler_is_said_within_seconds(address, monkeypatch):
+def test_an_unreachable_scheduler_is_said_within_seconds(monkeypatch):
     monkeypatch.setattr(schedulers, "CONNECT_SECONDS", 1.0)
     began = time.monotonic()
     with pytest.raises(NotAvailable, match="no Dask scheduler answers at"):
-        dask_workers(address)
+        dask_workers("tcp://127.0.0.1:9")
     assert time.monotonic() - began < 20.0
 
 
@@ -168,3 +167,31 @@ def test_without_the_package_the_extra_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(NotAvailable, match=r"pip install 'evenroad\[dask\]'"):
         dask_workers("tcp://127.0.0.1:8786")
+
+
+@pytest.mark.parametrize(
+    "address",
+    [
+        "foo",
+        "127.0.0.1:8786",
+        "tcp://127.0.0.1",
+        "tcp://:8786",
+        "foo://host:8786",
+        "tcp://host:8786/x",
+        "tcp://a b:1",
+        "",
+    ],
+)
+def test_an_address_of_another_form_is_refused_with_an_example(address):
+    with pytest.raises(InvalidValue, match="of the form tcp://host:8786"):
+        dask_workers(address)
+
+
+@pytest.mark.parametrize("address", ["tcp://host.example.org:8786", "tls://10.0.0.1:1", "tcp://[::1]:8786"])
+def test_addresses_of_machines_are_of_that_form(address):
+    assert schedulers.ADDRESS.fullmatch(address)
+
+
+def test_an_encrypted_connection_without_certificates_is_refused():
+    with pytest.raises(NotAvailable, match="needs certificates"):
+        dask_workers("tls://127.0.0.1:8786")

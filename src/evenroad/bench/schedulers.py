@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from concurrent.futures import BrokenExecutor, Executor, Future
 from typing import Any
 
 from evenroad import __version__
 from evenroad.bench.executors import Workers
-from evenroad.errors import NotAvailable
+from evenroad.errors import InvalidValue, NotAvailable
 
 CONNECT_SECONDS = 8.0
 
 WORKER_SECONDS = 60.0
 """How long a cluster may be without any worker: these may be just starting."""
+
+ADDRESS = re.compile(r"(tcp|tls|wss?)://([^\s/:\[\]]+|\[[0-9a-fA-F:.]+\]):\d{1,5}")
 
 
 def dask_workers(address: str) -> Workers:
@@ -26,15 +29,20 @@ def dask_workers(address: str) -> Workers:
 
     Raises
     ------
+    InvalidValue
+        If the address is not of that form.
     NotAvailable
-        If the package is missing, no scheduler answers within seconds, it has no workers, or they have another
-        version of evenroad.
+        If the package is missing, Dask has no certificates for ``tls://``, no scheduler answers within seconds, it
+        has no workers, or they have another version of evenroad.
 
     Notes
     -----
     A chunk whose worker dies is sent to another one by the scheduler itself, three times.  Tasks run in threads of
     the workers, so the limit on a task's seconds does not hold there.
     """
+    # Not left to Dask: a client that cannot read its address takes a quarter of a minute to go away, with a traceback.
+    if not ADDRESS.fullmatch(address):
+        raise InvalidValue(f"the address of a scheduler must be of the form tcp://host:8786, got {address!r}")
     executor = _connect(address)
     try:
         executor.require_workers()
@@ -46,16 +54,19 @@ def dask_workers(address: str) -> Workers:
 def _connect(address: str) -> _DaskExecutor:
     try:
         from distributed import Client
+        from distributed.security import Security
     except ImportError as error:
         raise NotAvailable(
             f"a Dask scheduler needs the extra [dask]: pip install 'evenroad[dask]' ({error})"
         ) from error
+    encrypted = address.startswith(("tls:", "wss:"))
+    if encrypted and Security().get_connection_args("client")["ssl_context"] is None:
+        raise NotAvailable(f"{address!r} needs certificates, which Dask's configuration has none of")
     try:
         client = Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
     except (OSError, ValueError) as error:
         raise NotAvailable(
-            f"no Dask scheduler answers at {address!r} within {CONNECT_SECONDS:g} s: is it running, and is the"
-            f" address of the form tcp://host:8786? ({error})"
+            f"no Dask scheduler answers at {address!r} within {CONNECT_SECONDS:g} s: is it running there? ({error})"
         ) from error
     return _DaskExecutor(client, address)
 
