@@ -1,6 +1,5 @@
 """evenroad bench and evenroad export."""
 
-import os
 import re
 import signal
 import sqlite3
@@ -11,6 +10,7 @@ import time
 import pytest
 
 from evenroad.bench.store import read_rows
+from evenroad.errors import BrokenFile
 
 SMALL = ("bench", "paper", "--runs", 2, "--only", "hypercube-legacy6,corridor-2d-0.1", "--quick", "--jobs", 1)
 
@@ -39,6 +39,29 @@ def test_the_table_shows_success_by_problem_n_and_sampler_within_100_columns(run
     assert max(map(len, out.splitlines())) <= 100
 
 
+def test_the_table_names_its_rule_and_search_and_the_fair_one_shows_k_10(run, tmp_path):
+    fair = ("bench", "fair", "--runs", 3, "--only", "fair-balls-2d-50", "--quick", "--jobs", 1)
+    code, out, err = run(*fair)
+    assert code == 0, err
+    assert "rule: k=10 symmetrised · search: connect" in out
+    rows = read_rows(tmp_path / "results.db")
+    uniform = rows.where(rows.sampler.is_in(["uniform"]) & rows.search.is_in(["connect"]))
+    rates = {
+        rule: f"{100 * uniform.solved[uniform.rule.is_in([rule])].mean():.0f}" for rule in rows.rule.present()
+    }
+    line = next(line for line in out.splitlines() if line.startswith("fair-balls-2d-50 "))
+    assert line.split()[2] == rates["k=10 symmetrised"]
+
+
+def test_problems_with_different_rules_are_different_tables(run):
+    _, out, _ = run("bench", "--only", "maze-1,corridor-2d-0.1", "--runs", 1, "--quick", "--jobs", 1)
+    titles = [line.strip() for line in out.splitlines() if line.startswith("Success")]
+    assert titles == [
+        "Success [%] · rule: k=10 symmetrised · search: connect",
+        "Success [%] · rule: k=10 earlier · search: stock",
+    ]
+
+
 def test_two_processes_write_the_rows_of_one(run, tmp_path):
     run(*SMALL, "--store", "one.db")
     code, _, _ = run(*SMALL[:-1], 2, "--store", "two.db")
@@ -64,15 +87,43 @@ def test_list_shows_what_there_is_and_runs_nothing(run, tmp_path):
     assert not (tmp_path / "results.db").exists()
 
 
-def test_a_run_without_an_answer_is_exit_code_1_and_is_tried_again_on_demand(run):
+def test_runs_without_an_answer_are_exit_code_1_until_they_are_tried_again_on_demand(run):
     hopeless = ("bench", "--only", "maze-1", "--runs", 1, "--quick", "--jobs", 1, "--limit", "1e-6")
     code, out, _ = run(*hopeless)
     assert code == 1
-    assert "of them failures" in out
-    code, out, _ = run(*hopeless)
-    assert (code, "0 tasks run now" in out) == (0, True)
+    tasks = int(re.search(r"(\d+) tasks run now, \1 of them failures", out)[1])
+    # Not solved, and not a dash, which says that there is no such run.
+    cells = next(line for line in out.splitlines() if re.match(r"maze-1 +64 ", line)).split()[2:]
+    assert cells == ["0"] * 11
+    advice = f"{tasks} without an answer (failed, timeout, lost) count as not solved; --retry runs them again"
+    assert advice in out
+    for again in (hopeless, hopeless[:-2]):
+        code, out, _ = run(*again)
+        assert code == 1
+        assert f"0 tasks run now, {tasks} found done" in out
+        assert advice in out
+        assert f"most often, in {tasks} rows: took longer than 1e-06 s" in out
     code, out, _ = run(*hopeless[:-2], "--retry")
-    assert (code, "0 found done" in out, "failures" in out) == (0, True, False)
+    assert (code, "0 found done" in out, "without an answer" in out) == (0, True, False)
+
+
+def test_rows_that_a_store_could_not_take_are_named_and_taken_in_by_the_same_command(
+    run, monkeypatch, tmp_path
+):
+    def refuse(store):
+        raise BrokenFile("results.db: database or disk is full")
+
+    with monkeypatch.context() as change:
+        change.setattr("evenroad.bench.store.Store._write", refuse)
+        code, _, err = run(*SMALL)
+    assert code == 2
+    left = int(
+        re.search(r"disk is full; (\d+) finished rows left in results.db.rescue: the next run", err)[1]
+    )
+    assert len(err.splitlines()) == 1
+    code, out, _ = run(*SMALL)
+    assert (code, f"{left} found done" in out) == (0, True)
+    assert not (tmp_path / "results.db.rescue").exists()
 
 
 @pytest.mark.parametrize(
@@ -84,6 +135,11 @@ def test_a_run_without_an_answer_is_exit_code_1_and_is_tried_again_on_demand(run
         (("bench", "--seed", "-1"), "seed must be an integer >= 0"),
         (("bench", "--jobs", 0, "--quick"), "jobs must be an integer >= 1"),
         (("bench", "--limit", 0, *SMALL[2:]), "limit must be a finite number > 0"),
+        (("bench", "--limit", "1e300", *SMALL[2:]), "limit must be at most 1e+06 s, got 1e+300"),
+        (
+            ("bench", "--limit", "60", "--scheduler", "tcp://127.0.0.1:9"),
+            "--limit does not go with --scheduler",
+        ),
         (("bench", "--jobs", 2, "--scheduler", "tcp://127.0.0.1:9"), "--jobs does not go with --scheduler"),
         (("bench", "--store", "missing/results.db", *SMALL[2:]), "the folder missing does not exist"),
         (("export", "missing.db", "--arena", "-o", "arena.db"), "no such store: missing.db"),
@@ -104,39 +160,56 @@ def test_a_file_that_is_no_store_is_refused_before_anything_runs(run, tmp_path):
     assert "not a store of benchmark results" in err
 
 
-def test_ctrl_c_keeps_what_is_finished_and_the_same_command_goes_on(tmp_path):
-    arguments = [
-        "bench",
-        "--only",
-        "hypercube-legacy6",
-        "--runs",
-        "200",
-        "--jobs",
-        "1",
-        "--store",
-        "results.db",
-    ]
-    command = [
-        sys.executable,
-        "-c",
-        "import sys; from evenroad.cli import main; sys.exit(main())",
-        *arguments,
-    ]
-    process = subprocess.Popen(
-        command, cwd=tmp_path, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True
+@pytest.mark.parametrize("address", ["foo", "foo://host:8786", "tcp://127.0.0.1", "tcp://host:port"])
+def test_an_address_that_is_none_is_one_line_at_once(address, tmp_path):
+    pytest.importorskip("distributed")
+    done = subprocess.run(
+        [*COMMAND, "bench", "--quick", "--scheduler", address], cwd=tmp_path, capture_output=True, text=True
     )
-    store = tmp_path / "results.db"
+    assert done.returncode == 2
+    assert done.stderr == (
+        f"evenroad: error: the address of a scheduler must be of the form tcp://host:8786, got {address!r}\n"
+    )
+
+
+COMMAND = [sys.executable, "-c", "import sys; from evenroad.cli import main; sys.exit(main())"]
+
+
+def _interrupted(folder, times, jobs):
+    """Run a benchmark, press Ctrl-C when it has some rows; return its standard error."""
+    options = ["--only", "hypercube-legacy6", "--runs", "200", "--jobs", str(jobs), "--store", "results.db"]
+    process = subprocess.Popen(
+        [*COMMAND, "bench", *options],
+        cwd=folder,
+        stderr=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        text=True,
+    )
+    store = folder / "results.db"
     for _ in range(600):
         if store.exists() and store.stat().st_size > 60_000:
             break
         time.sleep(0.1)
-    os.kill(process.pid, signal.SIGINT)
+    for _ in range(times):
+        process.send_signal(signal.SIGINT)
+        time.sleep(0.05)
     _, err = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert "interrupted; what was finished is kept" in err
-    rows = read_rows(store)
+    return err
+
+
+@pytest.mark.parametrize(("times", "jobs"), [(1, 1), (2, 1), (2, 2)])
+def test_ctrl_c_keeps_what_is_finished_and_the_same_command_goes_on(tmp_path, times, jobs):
+    err = _interrupted(tmp_path, times, jobs)
+    # Before these lines there are those of the progress.
+    assert [line for line in err.splitlines() if not line.startswith("bench paper")] == [
+        "evenroad: stopping after this step (Ctrl-C again: at once)",
+        "evenroad: interrupted; what was finished is kept",
+    ]
+    rows = read_rows(tmp_path / "results.db")
     assert len(rows) > 0
     assert set(rows.status.present()) <= {"solved", "not_connected"}
+    assert [each.name for each in tmp_path.iterdir() if each.is_file()] == ["results.db"]
 
 
 def test_export_writes_a_planner_arena_database(run, tmp_path):

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 from collections.abc import Sequence
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run ``evenroad`` and return its exit code: 0 solved, 1 any other answer, 2 bad input, 130 interrupted."""
-    from evenroad.cli.verbs import run
+    from evenroad.cli.verbs import INTERRUPTED, run
 
-    return run(sys.argv[1:] if arguments is None else arguments)
+    code = run(sys.argv[1:] if arguments is None else arguments)
+    if code == INTERRUPTED and arguments is None:
+        # This process is leaving: one more Ctrl-C could only break that, with a traceback.
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+    return code

@@ -29,20 +29,20 @@ class Bench:
     only: str = ""
     """Names of problems, with commas between them; default: all of the suite."""
     store: Path = Path("results.db")
-    """The SQLite file for the rows; made where there is none."""
+    """The SQLite file for the rows, made where there is none; rows that it cannot take are left in STORE.rescue."""
     jobs: int | None = None
     """Processes (default: one a processor)."""
     scheduler: str | None = None
     """Address of a Dask scheduler whose workers run the tasks, tcp://host:port (needs the extra [dask])."""
     seed: int = 1
-    """Root of the random numbers that draw the sets."""
-    limit: float = 600.0
-    """Seconds for one task, after which its row says timeout."""
+    """Root of the random numbers that draw the sets (paper-blocks have none: run i is always the same set)."""
+    limit: float | None = None
+    """Seconds for one task, after which its row says timeout (default: 600); not with --scheduler."""
     retry: bool = False
-    """Run tasks again that failed, took too long or lost their worker."""
+    """Run those tasks again whose row is a failure (failed, timeout, lost)."""
 
     def run(self) -> int:
-        """Run what is missing, print a table of success; exit code 1 if a run gave no answer."""
+        """Run what is missing, print a table of success; exit code 1 if a run, now or before, gave no answer."""
         from evenroad.bench.suites import SUITES
         from evenroad.errors import InvalidValue, UnknownName
 
@@ -55,18 +55,24 @@ class Bench:
             raise UnknownName.among("suite", self.suite, SUITES)
         if self.jobs is not None and self.scheduler is not None:
             raise InvalidValue("--jobs does not go with --scheduler, whose workers are counted there")
+        if self.limit is not None and self.scheduler is not None:
+            raise InvalidValue("--limit does not go with --scheduler, whose workers run tasks in threads")
         only = [name.strip() for name in self.only.split(",") if name.strip()]
         suite = SUITES[self.suite](runs=self.runs, seed=self.seed, only=only, quick=self.quick)
         report = self._run(suite)
         self._print(suite, report)
-        return 1 if report.failures else 0
+        return 1 if report.failures or report.found_failures else 0
 
     def _run(self, suite: Suite) -> Report:
         from evenroad.bench.runner import run_tasks
         from evenroad.bench.store import open_store
+        from evenroad.bench.time_limit import DEFAULT_LIMIT, require_limit
         from evenroad.cli.interrupt import interrupt_between_steps
         from evenroad.cli.progress import progress_bar
 
+        # Tasks in threads, as Dask's are, cannot be stopped.
+        limit = None if self.scheduler is not None else DEFAULT_LIMIT if self.limit is None else self.limit
+        require_limit(limit)
         workers = self._workers()
         with (
             open_store(self.store) as store,
@@ -84,7 +90,7 @@ class Bench:
                 store,
                 workers,
                 callback=callback,
-                limit=self.limit,
+                limit=limit,
                 retry=self.retry,
             )
 
@@ -99,9 +105,12 @@ class Bench:
 
     def _print(self, suite: Suite, report: Report) -> None:
         from evenroad.bench.store import read_rows
-        from evenroad.cli.bench_table import print_success
+        from evenroad.cli.bench_table import print_failures, print_success
 
-        print_success(suite, read_rows(self.store, problems=sorted({task.problem for task in suite.tasks})))
+        rows = read_rows(self.store, problems=sorted({task.problem for task in suite.tasks}))
+        print_success(suite, rows)
         failures = f", {report.failures} of them failures" if report.failures else ""
         print(f"{self.store}: {report.finished} tasks run now{failures}, {report.found} found done")
+        if report.failures or report.found_failures:
+            print_failures(rows, report.failures + report.found_failures)
         print(f"report: evenroad report {self.store} -o out/")

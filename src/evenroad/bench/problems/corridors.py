@@ -1,4 +1,8 @@
-"""Corridors along edges of the hypercube, and the legacy problem that published tables are of."""
+"""Corridors along edges of the hypercube, and the legacy problem that published tables are of.
+
+"Low ones first": coordinates before the free one are at most the width, those after it at least one minus the width, as
+a comment in OMPL's demo says.  The demo's code has it the other way round.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +36,7 @@ CORRIDORS = (
             f"corridor-{d}d-{lam:g}",
             d,
             partial(_corridor, d, lam),
-            about=f"corridor along {d} edges of the cube, width {lam:g}, all coordinates tested",
+            about=f"corridor along {d} edges of the cube, width {lam:g}, all coordinates tested, low ones first",
         )
         for d, widths in WIDTHS.items()
         for lam in widths
@@ -41,6 +45,6 @@ CORRIDORS = (
         "hypercube-legacy6",
         10,
         _legacy6,
-        about="10-D corridor, width 0.37, only 6 coordinates tested (OMPL's demo)",
+        about="10-D corridor, width 0.37, only 6 coordinates tested, high ones first (OMPL's demo)",
     ),
 )
