@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -58,8 +59,18 @@ def capsules_around_mesh(vertices: npt.NDArray[np.float64], triangles: npt.NDArr
             halves = tuple(map(_splittable, halves))
         parts = [*parts[:best], *halves, *parts[best + 1 :]]
         found.append(parts)
-    chosen = min(found, key=_price)
+    chosen = min(map(_merged, found), key=_price)
     return [capsule_around(part.corners.reshape(-1, 3)) for part in chosen]
+
+
+def _merged(parts: list[_Part]) -> list[_Part]:
+    """Return the parts with those put together again that another cut had parted, while it pays."""
+    for i, j in itertools.combinations(range(len(parts)), 2):
+        corners = np.concatenate([parts[i].corners, parts[j].corners])
+        fewer = [part for k, part in enumerate(parts) if k not in (i, j)] + [_Part(corners, _rough(corners))]
+        if _price(fewer) < _price(parts):
+            return _merged(fewer)
+    return parts
 
 
 def _price(parts: list[_Part]) -> float:
