@@ -1,73 +1,89 @@
-"""Chain, Cubicles and Twistycool against counts that were measured with OMPL's rules and the original scenes.
+"""Uniform and Halton against success rates and milestones that were measured independently, with OMPL's rules.
 
-    python -m benchmarks.pinned_rows [--runs 400] [--only cubicles ...]
+    python -m benchmarks.pinned_rows [--runs 400] [--only cubicles,chain-10d] [--store results.db] [--jobs 2]
 
-k = 10 earlier, start and goal inserted first, stopped at the first solution.  For each cell: our successes and the
-mean of the valid milestones that had been added, those pinned, and Fisher's exact test of the two counts of
-successes, with Holm's correction over all cells.  Valid milestones leave out start and goal.
+Runs those cells of the paper's suite that have a pinned counterpart (`evenroad/report/expected/pinned.toml`), in a
+store of their own, or those that the given store lacks.  For each cell: our success with its 95 % interval, the mean
+number of milestones counted as the pinned row counts them, both beside what is pinned, and Fisher's exact test of the
+two counts with Holm's correction over all cells that are tested here.
 """
 
 from __future__ import annotations
 
 import argparse
-import time
+import math
+import tempfile
+from pathlib import Path
 
-import numpy as np
-
-from evenroad.bench.execute import run_task
-from evenroad.bench.statistics import fisher_exact, holm, wilson
+from evenroad._progress import LineProgress
+from evenroad.bench.executors import processes
+from evenroad.bench.runner import run_tasks
+from evenroad.bench.store import open_store, read_rows
+from evenroad.bench.suites.paper import SEED, paper_suite
 from evenroad.bench.task import Task
+from evenroad.report.cells import cells_of
+from evenroad.report.expected import load_expected
+from evenroad.report.runs import runs_of
+from evenroad.report.verdicts import Verdict, verdicts_of
 
-NUMBERS = (128, 256, 512, 1024)
+PINNED = load_expected("pinned")
 
-PINNED: dict[tuple[str, str], tuple[int, tuple[int | None, ...], tuple[float | None, ...]]] = {
-    ("chain-10d", "uniform"): (60, (3, 7, 17, 37), (27.0, 52.2, 97.8, 157.2)),
-    ("chain-10d", "halton paper-blocks"): (50, (1, 5, 11, 31), (None,) * 4),
-    ("cubicles", "uniform"): (50, (0, None, 2, 12), (54.9, 109.8, 219.5, None)),
-    ("cubicles", "halton paper-blocks"): (50, (0, None, 6, 27), (None,) * 4),
-    ("twistycool", "uniform"): (50, (1, 5, 15, 37), (90.0, 171.0, 306.0, 484.0)),
-    ("twistycool", "halton paper-blocks"): (50, (4, 7, 17, 31), (None,) * 4),
-}
-"""Problem and sampler -> runs, successes for each N, mean valid milestones for each N (None: not measured)."""
+
+def pinned_tasks(runs: int, only: list[str]) -> list[Task]:
+    """Return the tasks of the paper's suite whose cells are pinned."""
+    pinned = {(cell.problem, cell.sampler, cell.rule, cell.n) for cell in PINNED.cells}
+    problems = only or sorted({cell.problem for cell in PINNED.cells})
+    tasks = paper_suite(runs, only=problems).tasks
+    return [task for task in tasks if (task.problem, task.sampler, task.rule, task.n) in pinned]
+
+
+def line_of(verdict: Verdict) -> str:
+    """Return one cell as a line of the table."""
+    expected, ours = verdict.expected, verdict.ours
+    assert ours is not None
+    name = f"{expected.problem:17} {expected.sampler:19} {expected.n:5}"
+    success = f"{ours.rate:6.1%} [{ours.interval.low:6.1%}, {ours.interval.high:6.1%}]"
+    p = "" if math.isnan(verdict.p) else f", p {verdict.p:.3f}, corrected {verdict.p_corrected:.3f}"
+    return (
+        f"{name}: {success} of {ours.runs}, pinned {_given(expected.success)} % of {expected.runs or '?'}"
+        f" | V ({expected.v_definition}) {verdict.our_v:.1f}, pinned {_given(expected.v)} | {verdict.word}{p}"
+    )
+
+
+def _given(value: float) -> str:
+    return "-" if math.isnan(value) else f"{value:g}"
+
+
+def run(tasks: list[Task], store_path: Path, jobs: int | None) -> tuple[Verdict, ...]:
+    """Run what the store lacks; return the verdicts of the cells that these tasks are of."""
+    show = LineProgress(f"{len(tasks)} tasks", lambda line: print(line, flush=True))
+    with open_store(store_path) as store:
+        run_tasks("paper", tasks, store, processes(jobs), callback=show)
+    rows = read_rows(store_path, problems=sorted({task.problem for task in tasks}))
+    cells = cells_of(runs_of(rows.where(rows.seed == SEED)))
+    return tuple(verdict for verdict in verdicts_of(PINNED, cells) if verdict.ours is not None)
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+    """Print the table."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--runs", type=int, default=400)
-    parser.add_argument("--only", nargs="*", help="problems; default all")
+    parser.add_argument(
+        "--only", default="", help="problems with commas between them; default all that are pinned"
+    )
+    parser.add_argument("--store", type=Path, help="default: a temporary one")
+    parser.add_argument("--jobs", type=int)
     options = parser.parse_args()
-    p_values, lines = [], []
-    for (problem, sampler), (pinned_runs, pinned, pinned_valid) in PINNED.items():
-        if options.only and problem not in options.only:
-            continue
-        for n, successes, pinned_mean in zip(NUMBERS, pinned, pinned_valid, strict=True):
-            began = time.perf_counter()
-            outcomes = [
-                run_task(Task(problem, 0, sampler, n, "k=10 earlier", "stock", run, 0))
-                for run in range(options.runs)
-            ]
-            seconds = (time.perf_counter() - began) / options.runs
-            failed = [outcome.error for outcome in outcomes if outcome.error]
-            assert not failed, failed[0]
-            solved = sum(outcome.solved for outcome in outcomes)
-            added = [
-                outcome.valid if outcome.valid_at_solution is None else outcome.valid_at_solution
-                for outcome in outcomes
-            ]
-            low, high = wilson(solved, options.runs)
-            line = (
-                f"{problem:11} {sampler:20} {n:5}: {solved / options.runs:6.1%}"
-                f" [{low:.1%}, {high:.1%}] V {np.mean(added):6.1f}"
-                f" +- {np.std(added) / len(added) ** 0.5:.1f} of {np.mean([o.valid for o in outcomes]):6.1f}"
-                f" | pinned {'-' if successes is None else f'{successes / pinned_runs:.0%}':>4}"
-                f" V {'-' if pinned_mean is None else pinned_mean:>6} | {1e3 * seconds:6.1f} ms a run"
-            )
-            if successes is not None:
-                p_values.append(fisher_exact((solved, options.runs), (successes, pinned_runs)))
-                line += f" | p {p_values[-1]:.3f}"
-            print(line, flush=True)
-            lines.append(line)
-    print(f"smallest p after Holm's correction over {len(p_values)} cells: {min(holm(p_values)):.3f}")
+    tasks = pinned_tasks(options.runs, [name for name in options.only.split(",") if name])
+    with tempfile.TemporaryDirectory() as folder:
+        verdicts = run(tasks, options.store or Path(folder) / "pinned.db", options.jobs)
+    for verdict in verdicts:
+        print(line_of(verdict))
+    corrected = [verdict.p_corrected for verdict in verdicts if not math.isnan(verdict.p)]
+    smallest = f"{min(corrected):.3f}" if corrected else "-"
+    print(f"smallest p after Holm's correction over {len(corrected)} cells: {smallest}")
 
 
 if __name__ == "__main__":
