@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Bench:
-    """Run benchmarks; what the store has is not run again."""
+    """Run benchmarks; what the store has is not run again, so the same command goes on after Ctrl-C.
+
+    Exit code 1 if a run of the suite, now or before, gave no answer: see --retry.
+    """
 
     suite: Annotated[str, tyro.conf.Positional] = "paper"
     """paper: the published experiments. fair: a new random world in every run."""
@@ -27,17 +30,17 @@ class Bench:
     quick: bool = False
     """A taste in minutes; its rows are part of the whole suite's."""
     only: str = ""
-    """Names of problems, with commas between them; default: all of the suite."""
+    """Names of problems, with commas between them; empty: all of the suite."""
     store: Path = Path("results.db")
     """The SQLite file for the rows, made where there is none; rows that it cannot take are left in STORE.rescue."""
     jobs: int | None = None
-    """Processes (default: one a processor)."""
+    """Processes; None: one a processor."""
     scheduler: str | None = None
     """Address of a Dask scheduler whose workers run the tasks, tcp://host:port (needs the extra [dask])."""
     seed: int = 1
     """Root of the random numbers that draw the sets (paper-blocks have none: run i is always the same set)."""
     limit: float | None = None
-    """Seconds for one task, after which its row says timeout (default: 600); not with --scheduler."""
+    """Seconds for one task, after which its row says timeout; None: 600, and no limit with --scheduler."""
     retry: bool = False
     """Run those tasks again whose row is a failure (failed, timeout, lost)."""
 
