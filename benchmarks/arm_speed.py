@@ -140,7 +140,7 @@ def measure_call(world: ArmWorld) -> None:
     none, one = np.empty((0, 5)), np.zeros((1, 5))
     for q in (none, one):
         q.setflags(write=False)
-    tables = (world.bounds, world.tables.ints, world.tables.padded)
+    tables = (world.bounds, world.tables.lanes)
     calls = {
         "kernel, no configuration": partial(batch.configurations_free, none, *tables),
         "kernel, one": partial(batch.configurations_free, one, *tables),

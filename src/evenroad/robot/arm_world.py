@@ -131,7 +131,7 @@ class ArmWorld:
         # Imported late: where the vector type cannot even be defined, all else still works.
         from evenroad.robot.kernel import batch as lanes_batch
 
-        return lanes_batch.configurations_free(configurations, self.bounds, tables.ints, tables.padded)
+        return lanes_batch.configurations_free(configurations, self.bounds, tables.lanes)
 
     def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
         """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
@@ -149,7 +149,7 @@ class ArmWorld:
             return scalar_batch.motions_free(first, second, resolution, bounds, tables.ints, tables.floats)
         from evenroad.robot.kernel import batch as lanes_batch
 
-        return lanes_batch.motions_free(first, second, resolution, bounds, tables.ints, tables.padded)
+        return lanes_batch.motions_free(first, second, resolution, bounds, tables.lanes)
 
     def explain(self, q: npt.NDArray[np.float64]) -> str:
         """Return in words why one configuration, (dim,), is not free: the joint outside its limits and by

@@ -9,7 +9,7 @@ from numba import njit
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.contact import blocked_lanes
 from evenroad.robot.kernel.motion import enter, span
-from evenroad.robot.kernel.place import scratch_memory, write_values
+from evenroad.robot.kernel.place import scratch_memory, unpacked, write_values
 
 LANES = at.LANES
 Floats = npt.NDArray[np.float64]
@@ -18,11 +18,11 @@ Singles = npt.NDArray[np.float32]
 
 
 @njit(cache=True, nogil=True)
-def configurations_free(q: Floats, bounds: Floats, ints: Ints, table: Singles) -> npt.NDArray[np.bool_]:
+def configurations_free(q: Floats, bounds: Floats, tables: Ints) -> npt.NDArray[np.bool_]:
     """Return which rows of `q`, (n, dim), are within `bounds`, (3, dim), and free: (n,)."""
     n, dim = q.shape
-    scratch = scratch_memory(ints, table)
-    state, states = np.empty(dim), np.empty(dim * LANES)
+    ints, table = unpacked(tables)
+    states, state, scratch = scratch_memory(dim, ints, table)
     free = np.empty(n, dtype=np.bool_)
     for first in range(0, n, LANES):
         count = min(LANES, n - first)
@@ -42,7 +42,7 @@ def configurations_free(q: Floats, bounds: Floats, ints: Ints, table: Singles) -
 
 @njit(cache=True, nogil=True)
 def motions_free(
-    a: Floats, b: Floats, resolution: float, bounds: Floats, ints: Ints, table: Singles
+    a: Floats, b: Floats, resolution: float, bounds: Floats, tables: Ints
 ) -> npt.NDArray[np.bool_]:
     """Return which motions, from rows of `a` to those of `b`, are free at both ends and at states between.
 
@@ -51,9 +51,9 @@ def motions_free(
     before quarters before eighths.
     """
     m, dim = a.shape
-    scratch = scratch_memory(ints, table)
-    start, end, way, share = np.empty(dim), np.empty(dim), np.empty(dim), np.empty(LANES)
-    states = np.empty(dim * LANES)
+    ints, table = unpacked(tables)
+    states, start, scratch = scratch_memory(dim, ints, table)
+    end, way, share = np.empty(dim), np.empty(dim), np.empty(LANES)
     free = np.empty(m, dtype=np.bool_)
     for row in range(m):
         free[row] = False

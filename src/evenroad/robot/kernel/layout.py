@@ -1,7 +1,7 @@
-"""Where things lie in the packed tables: one array of floats and one of integers, both with a header of offsets.
+"""Where things lie in the packed tables: floats, and integers with a header of offsets.
 
-A compiled function takes some 0.1 microseconds an array to be called with: two arrays instead of twenty keep
-a call for one configuration cheap.  The constants below are compiled in; ``tables.py`` writes what
+A compiled function takes some 0.1 microseconds an array to be called with: one or two arrays instead of twenty
+keep a call for one configuration cheap.  The constants below are compiled in; ``tables.py`` writes what
 they say and the kernels read it.  Numba looks for changes in a function's own file only: who changes
 a number here removes what is kept in ``__pycache__`` of this folder.
 
@@ -24,6 +24,9 @@ FRAME_FLOATS, CAPSULE_FLOATS, SAMPLES, BODY_FLOATS, BODY_PAIR_FLOATS, PAIR_FLOAT
 
 OBSTACLE_FLOATS, BLOCK_FLOATS = range(21, 23)
 """Header: where rows of floats begin."""
+
+INTEGERS = 23
+"""Header: how many integers there are, header included; where lanes read, single-precision floats follow them."""
 
 HEADER = 24
 """Length of the header."""

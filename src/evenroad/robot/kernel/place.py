@@ -43,17 +43,32 @@ def scratch_places(ints: Ints) -> tuple[int, int, int, int]:
 
 
 @njit(cache=True, nogil=True)
-def scratch_memory(ints: Ints, table: Singles) -> Singles:
-    """Return scratch memory that begins on a cache line, with what does not move in its place."""
+def unpacked(tables: Ints) -> tuple[Ints, Singles]:
+    """Return the integers and the floats of ``ArmTables.lanes``."""
+    integers = tables[at.INTEGERS]
+    return tables[:integers], tables[integers:].view(np.float32)
+
+
+@njit(cache=True, nogil=True)
+def scratch_memory(dim: int, ints: Ints, table: Singles) -> tuple[Floats, Floats, Singles]:
+    """Return room for sixteen states of `dim` coordinates, for one, and scratch memory, cut out of one array.
+
+    The scratch memory begins on a cache line, and what does not move is in its place.
+    """
     frames, capsules, bodies, length = scratch_places(ints)
-    raw = np.empty(length + LANES, dtype=np.float32)
-    skip = (64 - raw.ctypes.data % 64) % 64 // 4
-    scratch = raw[skip : skip + length]
+    doubles = dim * LANES
+    raw = np.empty(doubles + length // 2 + LANES + dim)
+    skip = (64 - raw.ctypes.data % 64) % 64 // 8
+    states, scratch = (
+        raw[skip : skip + doubles],
+        raw[skip + doubles : skip + doubles + length // 2].view(np.float32),
+    )
+    state = raw[len(raw) - dim :]
     for entry in range(12):
         store(scratch, frames + entry * LANES, spread(ONE if entry in (0, 4, 8) else ZERO))
     _place_capsules(scratch, frames, capsules, 0, ints[at.STANDING], ints, table)
     _place_bodies(scratch, frames, bodies, 0, ints[at.STANDING_BODIES], ints, table)
-    return scratch
+    return states, state, scratch
 
 
 @njit(cache=True, nogil=True)
@@ -68,10 +83,12 @@ def write_values(scratch: Singles, states: Floats, ints: Ints, table: Singles) -
         multiplier = np.float64(table[data + 12]) + np.float64(table[data + 14])
         offset = np.float64(table[data + 13]) + np.float64(table[data + 15])
         turn = 0.0 if ints[row + 2] != 0 else _FULL_TURN
-        here, coordinate = i * LANES, ints[row + 1] * LANES
-        for lane in range(LANES):
-            value = multiplier * states[coordinate + lane] + offset
-            scratch[here + lane] = value - turn * np.rint(value * _TURNS)
+        coordinate = ints[row + 1] * LANES
+        numbers, values = states[coordinate : coordinate + LANES], scratch[i * LANES : (i + 1) * LANES]
+        # A length that the compiler does not know: it then makes vectors of the loop instead of unrolling it.
+        for lane in range(len(numbers)):
+            value = multiplier * numbers[lane] + offset
+            values[lane] = value - turn * np.rint(value * _TURNS)
 
 
 @njit(cache=True, nogil=True)

@@ -28,7 +28,7 @@ def lanes_failure() -> str | None:
         from evenroad.robot.kernel.tables import pack
 
         tables = pack(small_model())
-        free = configurations_free(small_batch(), small_bounds(), tables.ints, tables.padded)
+        free = configurations_free(small_batch(), small_bounds(), tables.lanes)
     except Exception as error:
         # Whatever goes wrong in compiling for a machine we have not seen, there is the other way.
         first_line = next(iter(str(error).strip().splitlines()), "")

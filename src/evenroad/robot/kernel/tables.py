@@ -1,4 +1,4 @@
-"""ArmTables: a model packed into the two arrays that compiled code takes."""
+"""ArmTables: a model packed into the few arrays that compiled code takes."""
 
 from __future__ import annotations
 
@@ -34,13 +34,14 @@ class ArmTables:
     Attributes
     ----------
     ints : int64 ndarray
-        Header and integers, for both precisions.
+        Header and integers.
     floats : float64 ndarray
         The model as it is.
-    padded : float32 ndarray
-        The model with larger radii, so that rounding never makes it optimistic.
+    lanes : int64 ndarray
+        For the lanes, in one piece: the integers, and behind them, as float32, the model with larger radii, so that
+        rounding never makes it optimistic.
     margin : float
-        A capsule and an obstacle nearer to each other than this may touch by `padded` [m].
+        A capsule and an obstacle nearer to each other than this may touch by `lanes` [m].
     pair_margins : float64 ndarray, shape (capsule pairs,)
         The same of the capsules of each pair [m].
     capsule_pairs : tuple of pairs of int
@@ -49,7 +50,7 @@ class ArmTables:
 
     ints: npt.NDArray[np.int64]
     floats: npt.NDArray[np.float64]
-    padded: npt.NDArray[np.float32]
+    lanes: npt.NDArray[np.int64]
     margin: float
     pair_margins: npt.NDArray[np.float64]
     capsule_pairs: tuple[tuple[int, int], ...]
@@ -69,10 +70,12 @@ def pack(model: ArmModel) -> ArmTables:
     pair_margins = 2.0 * _column(
         added, ints[layout.PAIR_FLOATS], layout.PAIR_FLOAT_ROW, 1, len(capsule_pairs)
     )
-    single = padded.astype(np.float32)
-    for array in (ints, floats, single, pair_margins):
+    # An even number of float32 fills whole places of an int64 array.
+    singles = np.append(padded, [0.0] * (len(padded) % 2)).astype(np.float32)
+    lanes = np.concatenate([ints, singles.view(np.int64)])
+    for array in (ints, floats, lanes, pair_margins):
         array.setflags(write=False)
-    return ArmTables(ints, floats, single, margin, pair_margins, capsule_pairs)
+    return ArmTables(ints, floats, lanes, margin, pair_margins, capsule_pairs)
 
 
 def _column(
@@ -114,6 +117,7 @@ def _pack(
     _pack_capsules(rows, model, padding)
     capsule_pairs = _pack_pairs(rows, model, padding)
     _pack_obstacles(rows, model, obstacle_padding)
+    rows.header[layout.INTEGERS] = layout.HEADER + len(rows.ints)
     ints = np.array([*rows.header, *rows.ints], dtype=np.int64)
     return ints, np.array(rows.floats, dtype=np.float64), capsule_pairs
 
