@@ -12,6 +12,7 @@ from evenroad.bench.statistics import (
     SamplesNeeded,
     clustered_difference,
     clustered_rate,
+    clusters,
     mcnemar_exact,
     percentile_interval,
     resampled_ratios,
@@ -95,9 +96,11 @@ def _flip_by_counting(sums):
     return np.mean(np.array(flips) >= abs(sum(sums)))
 
 
-@given(st.lists(st.integers(-5, 5), max_size=9))
-def test_sign_flips_are_counted_exactly(sums):
-    assert sign_flip_test(sums) == pytest.approx(_flip_by_counting(sums))
+@given(st.lists(st.integers(-5, 5), max_size=9), st.sampled_from((0, clusters.SHORT)))
+def test_sign_flips_are_counted_exactly(sums, short):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(clusters, "SHORT", short)
+        assert sign_flip_test(sums) == pytest.approx(_flip_by_counting(sums))
 
 
 @given(st.integers(0, 300), st.integers(0, 300), st.integers(0, 50))

@@ -22,6 +22,9 @@ FEW_UNITS = 10
 MANY_UNITS = 1000
 """With more units than this a bootstrap of a difference says what Student's interval says."""
 
+SHORT = 4000
+"""Below this, adding zeros up takes less time than leaving them out one by one."""
+
 
 def clustered_rate(
     solved: npt.ArrayLike,
@@ -133,13 +136,15 @@ def sign_flip_test(sums: npt.ArrayLike) -> float:
         heads = np.arange(count + 1)
         log_ways = gammaln(count + 1) - gammaln(heads + 1) - gammaln(count - heads + 1)
         shares = np.exp(log_ways - count * np.log(2.0))
-        together = np.zeros(len(chance) + stride * count)
-        if len(chance) == 1:
-            together[::stride] = shares
+        if len(chance) * stride < SHORT:
+            spread = np.zeros(stride * count + 1)
+            spread[::stride] = shares
+            chance = np.convolve(chance, spread)
         else:
+            together = np.zeros(len(chance) + stride * count)
             for head, share in enumerate(shares):
                 together[head * stride : head * stride + len(chance)] += share * chance
-        chance = together
+            chance = together
     reach = (len(chance) - 1) // 2
     total = np.abs(np.arange(-reach, reach + 1)) >= observed
     return float(min(1.0, chance[total].sum()))
