@@ -7,6 +7,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import statistics
 import subprocess
@@ -47,23 +48,30 @@ def main() -> None:
     print(
         f"import evenroad: {statistics.median(imports) - statistics.median(bare):.3f} s above a bare interpreter"
     )
+    maze = load_maze(3)
+    ends = ["--start", *map(str, maze.start), "--goal", *map(str, maze.goal)]
+    disk = [str(maze.path), *ends, "--robot-radius", str(maze.robot_radius), "-n", "1024"]
+    arm = ["box-reach.yaml", "--robot", "ur5", "--start", "home", "--goal", "inside", "-n", "512"]
+    for name, options in {"level 3": disk, "--robot ur5": arm}.items():
+        end_to_end(name, options)
+
+
+def end_to_end(name: str, options: list[str]) -> None:
+    """Print the seconds of ``evenroad plan`` with an empty cache and with a full one, and what of these is planning."""
     with tempfile.TemporaryDirectory() as folder:
-        maze = load_maze(3)
         command = [sys.executable, "-c", "from evenroad.cli import main; raise SystemExit(main())", "plan"]
-        command += [str(maze.path), "--start", *map(str, maze.start), "--goal", *map(str, maze.goal)]
-        command += [
-            "--robot-radius",
-            str(maze.robot_radius),
-            "-n",
-            "1024",
-            "--out",
-            str(Path(folder) / "result"),
-        ]
+        command += [*options, "--out", str(Path(folder) / "result")]
         cache = {"NUMBA_CACHE_DIR": str(Path(folder) / "numba")}
-        print(f"evenroad plan, first time (compiles): {seconds(command, **cache):.2f} s")
-        again = [seconds(command, **cache) for _ in range(7)]
+        first = seconds(command, **cache)
+        again, planning = [], []
+        for _ in range(7):
+            again.append(seconds(command, **cache))
+            record = json.loads((Path(folder) / "result.json").read_text())
+            planning.append(1e3 * sum(record["seconds"].values()))
         print(
-            f"evenroad plan, afterwards: median {statistics.median(again):.2f} s of 7, max {max(again):.2f} s"
+            f"evenroad plan {name}: first time (compiles) {first:.2f} s; then median"
+            f" {statistics.median(again):.2f} s of 7, max {max(again):.2f} s, of which planning"
+            f" {statistics.median(planning):.1f} ms, max {max(planning):.1f} ms"
         )
 
 
