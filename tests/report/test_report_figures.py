@@ -6,8 +6,10 @@ import pytest
 from evenroad.bench.samplers import SAMPLERS
 from evenroad.errors import NotAvailable
 from evenroad.report.cells import cells_of
+from evenroad.report.fair import pooled
 from evenroad.report.figures.canvas import as_png
 from evenroad.report.figures.curves import draw_curves
+from evenroad.report.figures.fair_gains import draw_fair_gains
 from evenroad.report.figures.found_path import poses_along
 from evenroad.report.figures.maze_success import draw_maze_success, maze_questions
 from evenroad.report.figures.scenes import draw_scene, scenes_among
@@ -43,6 +45,22 @@ def test_mazes_under_one_rule_share_a_picture(tmp_path):
     assert len({each.rule for each in mazes}) == 1
     figure = draw_maze_success([cell for cell in cells_of(runs) if cell.question in mazes])
     assert [axes.get_title().split(",")[0] for axes in figure.axes] == ["maze-1", "maze-2"]
+
+
+def test_gains_in_random_worlds_are_drawn_with_their_intervals_and_dimensions_without_what_has_none(tmp_path):
+    rows = made_up("fair-balls-2d-50", runs=12) + made_up("fair-maze-50", runs=12)
+    found = pooled(runs_from(tmp_path / "a.db", rows))
+    figure = draw_fair_gains(found)
+    titles = [axes.get_title() for axes in figure.axes]
+    assert titles == ["by generator", "by dimension", "by rule"]
+    assert [tick.get_text() for tick in figure.axes[1].get_xticklabels()] == ["2d"]
+    first = next(each for each in found["dimension"] if each.group == "2d")
+    (points, _, (bars,)) = figure.axes[1].containers[0]
+    assert points.get_ydata() == pytest.approx([100 * (first.rate - first.reference_rate)])
+    low, high = bars.get_segments()[0][:, 1]
+    assert low <= points.get_ydata()[0] <= high
+    (legend,) = figure.legends
+    assert "uniform" not in [text.get_text() for text in legend.get_texts()]
 
 
 def test_one_maze_alone_has_no_picture_of_all(tmp_path):

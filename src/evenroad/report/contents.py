@@ -8,6 +8,7 @@ from evenroad.report.analysis import Analysis
 from evenroad.report.fair_names import is_fair, pooled_rules
 from evenroad.report.figures.canvas import as_png
 from evenroad.report.figures.curves import draw_curves
+from evenroad.report.figures.fair_gains import draw_fair_gains
 from evenroad.report.figures.maze_success import draw_maze_success, maze_questions
 from evenroad.report.figures.point_sets import draw_point_sets
 from evenroad.report.figures.scenes import draw_scene, scenes_among
@@ -48,7 +49,8 @@ def _fair(analysis: Analysis) -> Section | None:
     tables = [fair_table(grouping, found, rules) for grouping, found in analysis.pooled.items()]
     if analysis.lazy:
         tables.append(lazy_table(analysis.lazy))
-    return Section("fair", "Fair suite: random worlds, starts and goals", tables=tuple(tables))
+    picture = Picture("fair-gains", "Gain over uniform points", as_png(draw_fair_gains(analysis.pooled)))
+    return Section("fair", "Fair suite: random worlds, starts and goals", "", (picture,), tuple(tables))
 
 
 def _question(analysis: Analysis, question: Question) -> Section:
