@@ -17,6 +17,7 @@ from tests.robot.kernel_arms import (
     Y,
     Z,
     box_scene,
+    random_rotation,
     random_scene,
     random_tree,
     seven_joint_arm,
@@ -106,24 +107,27 @@ def test_a_turned_floor_of_kilometres_is_never_called_farther_than_it_is():
     assert (clearance(ur5(), scene, edge(ur5(), scene, q)) > 0.0).all()
 
 
-@pytest.mark.parametrize("turn", [1e-4, 6e-4, 1e-3, 2e-3, 1e-2])
+@pytest.mark.parametrize("turn", [1e-7, 1e-5, 1e-4, 6e-4, 1e-3, 2e-3, 1e-2])
 @pytest.mark.parametrize("radius", [5e-4, 2e-3, 2e-2])
 def test_thin_and_nearly_parallel_rods_are_never_called_free_where_they_touch(turn, radius):
-    """Rods of 2 m: where they come nearest is lost in the rounding of the angle between them."""
-    slides = [
-        Joint(axis_name, "prismatic", parent, child, (0.0, 0.0, 0.0), STRAIGHT, axis, -most, most)
-        for axis_name, parent, child, axis, most in (
-            ("x", "base", "a", X, 1.5), ("y", "a", "b", Y, 1.2 * radius), ("z", "b", "c", Z, 3.0 * radius),
-        )
-    ]  # fmt: skip
-    joints = (*slides, Joint("turn", "revolute", "c", "rod", (0.0, 0.0, 0.0), STRAIGHT, Z, -turn, turn))
-    rods = tuple(Capsule(link, (-1.0, 0.0, 0.0), (1.0, 0.0, 0.0), radius) for link in ("base", "rod"))
-    robot = Robot(
-        "rods", ("base", "a", "b", "c", "rod"), joints, rods, (("base", "rod"),), ("x", "y", "z", "turn")
+    """Rods of 2 m in all directions: where they are nearest is lost in the rounding of the angle between them."""
+    tilt = random_rotation(np.random.default_rng(7))
+    ways = (
+        ("spin", "revolute", "root", "base", tilt, Y, 3.0),
+        ("x", "prismatic", "base", "a", STRAIGHT, X, 1.5),
+        ("y", "prismatic", "a", "b", STRAIGHT, Y, 1.2 * radius),
+        ("z", "prismatic", "b", "c", STRAIGHT, Z, 3.0 * radius),
+        ("turn", "revolute", "c", "rod", STRAIGHT, Z, turn),
     )
-    scene = Scene("empty", ())
+    joints = tuple(
+        Joint(name, kind, parent, child, (0.0, 0.0, 0.0), rotation, axis, -most, most)
+        for name, kind, parent, child, rotation, axis, most in ways
+    )
+    rods = tuple(Capsule(link, (-1.0, 0.0, 0.0), (1.0, 0.0, 0.0), radius) for link in ("base", "rod"))
+    links, group = ("root", *(way[3] for way in ways)), tuple(way[0] for way in ways)
+    robot, scene = Robot("rods", links, joints, rods, (("base", "rod"),), group), Scene("empty", ())
     space = ArmWorld(robot, scene).space
-    q = space.from_cube(np.random.default_rng(5).random((10_000, 4)))
+    q = space.from_cube(np.random.default_rng(5).random((10_000, 5)))
     assert (clearance(robot, scene, edge(robot, scene, q)) > 0.0).all()
 
 

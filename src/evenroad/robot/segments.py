@@ -23,9 +23,9 @@ def segment_distance(
     safe = np.where(a > 0.0, a, 1.0)
     across = other - (b / safe)[:, np.newaxis] * along
     between_across = between - (c / safe)[:, np.newaxis] * along
-    crossing = _dot(across, across)
+    squared = _dot(across, across)
     # Of parallel segments any second parameter does: the two steps after it find the closest ends.
-    t = _clamped(_dot(across, between_across), np.where(crossing > 1e-16 * e, crossing, 0.0))
+    t = _clamped(_dot(across, between_across), np.where(squared > 1e-30, squared, 0.0))
     s = _clamped(b * t - c, a)
     t = _clamped(b * s + f, e)
     gap = between + s[:, np.newaxis] * along - t[:, np.newaxis] * other

@@ -39,6 +39,7 @@ from evenroad.robot.kernel.place import (
 LANES = at.LANES
 ALL = (1 << LANES) - 1
 _HALF = np.float32(0.5)
+_LEAST = np.float32(at.LEAST_SQUARE)
 
 Ints = npt.NDArray[np.int64]
 Singles = npt.NDArray[np.float32]
@@ -189,12 +190,12 @@ def _touching(scratch: Singles, capsules: int, pair: int, ints: Ints, table: Sin
     ef = ex * fx + ey * fy + ez * fz
     er = ex * rx + ey * ry + ez * rz
     fr = fx * rx + fy * ry + fz * rz
-    one_by_ee, one_by_ff, least = table[data + 2], table[data + 3], table[data + 4]
+    one_by_ee, one_by_ff = table[data + 2], table[data + 3]
     along_f, along_r = ef * one_by_ee, er * one_by_ee
     # What of f and r is across e.
     gx, gy, gz = fx - ex * along_f, fy - ey * along_f, fz - ez * along_f
     qx, qy, qz = rx - ex * along_r, ry - ey * along_r, rz - ez * along_r
-    t = _cut((gx * qx + gy * qy + gz * qz) / larger(gx * gx + gy * gy + gz * gz, least))
+    t = _cut((gx * qx + gy * qy + gz * qz) / larger(gx * gx + gy * gy + gz * gz, _LEAST))
     s = _cut(along_f * t - along_r)
     t = _cut((ef * s + fr) * one_by_ff)
     x, y, z = rx + ex * s - fx * t, ry + ey * s - fy * t, rz + ez * s - fz * t

@@ -62,10 +62,12 @@ CAPSULE_FLOAT_ROW = 7
 BODY_FLOAT_ROW = 4
 """Centre (3) and radius of a ball around the capsules."""
 
-PAIR_FLOAT_ROW = 5
+PAIR_FLOAT_ROW = 4
 """Distance of centres from which on they cannot touch; sum of radii; one over the squared half lengths (0 for
-points); the least value that the squared part of the second half segment across the first is taken for, so that
-nothing is divided by zero."""
+points)."""
+
+LEAST_SQUARE = 1e-30
+"""What a squared length is taken for at least where one divides by it [m^2]; the kernels' own, in no row."""
 
 OBSTACLE_FLOAT_ROW = 16
 """Centre (3), half extents (3), rotation (9) to the root's frame, rounding of the edges.

@@ -188,12 +188,13 @@ def _squared_distance_of_pair(pair: int, ints: Ints, floats: Floats, capsules: F
     With segments ``centre + s half``, s from -1 to 1, the best t for all s, cut to the range, then the best s
     for that t, cut, then the best t for that s, cut again.  Without the last step contacts can be missed by
     millimetres where s was cut (after V. Lumelsky, 1985, and C. Ericson, Real-Time Collision Detection,
-    2005, section 5.1.9).  The first t is that of the parts across the first segment: written with products of
-    lengths alone, as usual, it loses twice the digits where segments are nearly parallel.
+    2005, section 5.1.9).  The first t is that of the parts across the first segment.  Written with products of
+    lengths alone, as usual, it loses twice the digits where segments are nearly parallel; so, the distance errs by
+    about the rounding of the half lengths, whatever the angle.
     """
     row, data = ints[at.PAIR_INTS] + at.PAIR_INT_ROW * pair, ints[at.PAIR_FLOATS] + at.PAIR_FLOAT_ROW * pair
     i, k = ints[row], ints[row + 1]
-    one_by_ee, one_by_ff, least = floats[data + 2], floats[data + 3], floats[data + 4]
+    one_by_ee, one_by_ff = floats[data + 2], floats[data + 3]
     ef, er, fr = 0.0, 0.0, 0.0
     for axis in range(3):
         r = capsules[i, axis] - capsules[k, axis]
@@ -208,7 +209,7 @@ def _squared_distance_of_pair(pair: int, ints: Ints, floats: Floats, capsules: F
         across_f = capsules[k, 3 + axis] - along_f * e
         across_ff += across_f * across_f
         across_fr += across_f * (capsules[i, axis] - capsules[k, axis] - along_r * e)
-    t = min(max(across_fr / max(across_ff, least), -1.0), 1.0)
+    t = min(max(across_fr / max(across_ff, at.LEAST_SQUARE), -1.0), 1.0)
     s = min(max(along_f * t - along_r, -1.0), 1.0)
     t = min(max((ef * s + fr) * one_by_ff, -1.0), 1.0)
     squared = 0.0

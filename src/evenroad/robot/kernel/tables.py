@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,9 +18,6 @@ PADDING = 2e-6
 
 OBSTACLE_PADDING = 2.5e-7
 """The same as a share of how far an obstacle's farthest point is from the origin."""
-
-PARALLEL = 1e-4
-"""Nearer to parallel than this [rad], single precision does not tell where two segments are nearest."""
 
 _NEVER_HIT = -1e30
 """Half extent that fills unused places of a block of obstacles."""
@@ -181,16 +177,13 @@ def _ball(capsules: list[PlacedCapsule]) -> tuple[npt.NDArray[np.float64], float
 
 
 def _pair_row(first: PlacedCapsule, second: PlacedCapsule, padding: float) -> list[float]:
-    parallel = PARALLEL if padding else 1e-8
-    # Whichever place is taken on segments so near to parallel, they are this much farther apart there, sideways.
-    radii = math.hypot(first.radius + second.radius, parallel * second.half_length) + 2.0 * padding
+    radii = first.radius + second.radius + 2.0 * padding
     a, b = first.half_length**2, second.half_length**2
     return [
         radii + first.half_length + second.half_length,
         radii,
         1.0 / a if a > 0.0 else 0.0,
         1.0 / b if b > 0.0 else 0.0,
-        max(parallel**2 * b, 1e-30),
     ]
 
 
