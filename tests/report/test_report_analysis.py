@@ -140,7 +140,7 @@ def test_each_pair_of_samplers_is_tested_once(runs, cells):
 
 def test_a_pool_is_compared_set_by_set(runs, cells):
     tests = {each.cell.sampler: each.test for each in comparisons_of(runs, cells)}
-    assert tests["even"] == "sign flips over sets"
+    assert tests["even"] == "Fisher over sets"
     assert tests["halton paper-blocks"] == "McNemar"
 
 

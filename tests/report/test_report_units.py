@@ -43,7 +43,7 @@ def test_runs_of_four_permuted_sets_are_independent_given_the_pool(tmp_path):
     assert compared.significant
 
 
-@pytest.mark.parametrize(("sets", "test"), [(4, "too few sets to test"), (6, "sign flips over sets")])
+@pytest.mark.parametrize(("sets", "test"), [(4, "too few sets to test"), (6, "Fisher over sets")])
 def test_runs_of_sets_in_few_dimensions_are_tested_set_by_set_if_there_are_six(tmp_path, sets, test):
     cell, compared = _found(tmp_path, _uniform("maze-1"), from_pool("maze-1", "mpmc", 128, (0.9,) * sets))
     assert (cell.units.kind, len(cell.units), cell.pool_given) == ("sets", sets, False)

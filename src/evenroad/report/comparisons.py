@@ -13,8 +13,11 @@ from evenroad.bench.statistics import (
     Interval,
     bonett_price,
     clustered_difference,
+    clustered_rate,
     holm,
     mcnemar_exact,
+    sets_difference,
+    sets_test,
     sign_flip_test,
     student_interval,
     student_test,
@@ -45,9 +48,9 @@ class Comparison:
     interval : Interval
         Of the difference of success rates, cell minus reference.
     test : str
-        ``McNemar``; where pairs are not independent ``sign flips over sets`` (or blocks, instances), and ``Student over
-        sets`` after it where both were done and the larger p counts; ``too few sets to test`` (or runs, ..) where there
-        are fewer than six.
+        ``McNemar``; where pairs are not independent ``Fisher over sets`` or ``sign flips over instances`` (or blocks),
+        the latter followed by ``Student over sets`` where both were done and the larger p counts; ``too few sets to
+        test`` (or runs, ..) where there are fewer than six.
     p : float
         NaN where nothing was tested.
     p_corrected : float
@@ -95,13 +98,15 @@ def comparisons_of(runs: Runs, cells: Sequence[Cell]) -> tuple[Comparison, ...]:
         paired, difference = differences_from(runs, pair, reference)
         rows = np.flatnonzero(paired)
         sums = sums_by_unit(cell[rows], len(cells), grouping.unit[rows], difference[rows])
+        solved = sums_by_unit(cell[rows], len(cells), grouping.unit[rows], runs.solved[rows].astype(np.int64))
         wins = np.bincount(cell[rows], weights=difference[rows] > 0, minlength=len(cells)).astype(int)
         losses = np.bincount(cell[rows], weights=difference[rows] < 0, minlength=len(cells)).astype(int)
         rows = rows[also_by_set[cell[rows]]]
         by_set = sums_by_unit(cell[rows], len(cells), runs.set[rows], difference[rows])
         for c, each in enumerate(cells):
             if each.sampler not in left_out and sums.of(c).stop > sums.of(c).start:
-                compared = _compare(each, reference, sums, c, int(wins[c]), int(losses[c]))
+                counts = solved.sums[solved.of(c)], int(wins[c]), int(losses[c])
+                compared = _compare(each, reference, sums, c, *counts)
                 found.append(_also_over_sets(compared, by_set, c) if also_by_set[c] else compared)
     return _corrected(found)
 
@@ -123,21 +128,29 @@ def differences_from(runs: Runs, pair: Ints, reference: str) -> tuple[npt.NDArra
     return (theirs >= 0) & ~of_reference, solved - theirs
 
 
-def _compare(cell: Cell, reference: str, sums: UnitSums, c: int, wins: int, losses: int) -> Comparison:
-    entries = sums.of(c)
-    pairs = int(sums.runs[entries].sum())
+def _compare(
+    cell: Cell, reference: str, sums: UnitSums, c: int, solved: Ints, wins: int, losses: int
+) -> Comparison:
+    """Compare by the units of a cell: their differences, and the runs that were `solved` in each."""
+    differences, counts = sums.sums[sums.of(c)], sums.runs[sums.of(c)]
+    pairs = int(counts.sum())
     kind = cell.units.kind
-    independent = kind == "runs"
-    if independent:
-        interval = bonett_price(wins, losses, pairs)
-    else:
-        interval = clustered_difference(sums.sums[entries], sums.runs[entries], kind)
-    if entries.stop - entries.start < FEW_TO_TEST:
+    match kind:
+        case "runs":
+            interval = bonett_price(wins, losses, pairs)
+            test, p = "McNemar", float(mcnemar_exact(wins, losses))
+        case "sets":
+            # A pool draws its sets by other numbers than the reference its points: nothing is paired.
+            of_pool = int(solved.sum())
+            of_reference = of_pool - (wins - losses)
+            over_sets = clustered_rate(solved, counts, kind)
+            interval = sets_difference(over_sets, of_pool / pairs, of_reference, pairs)
+            test, p = "Fisher over sets", sets_test(solved, counts, of_reference, pairs)
+        case _:
+            interval = clustered_difference(differences, counts, kind)
+            test, p = f"sign flips over {kind}", sign_flip_test(differences)
+    if len(counts) < FEW_TO_TEST:
         test, p = f"too few {kind} to test", math.nan
-    elif independent:
-        test, p = "McNemar", float(mcnemar_exact(wins, losses))
-    else:
-        test, p = f"sign flips over {kind}", sign_flip_test(sums.sums[entries])
     return Comparison(cell, reference, pairs, wins, losses, interval, test, p, p)
 
 

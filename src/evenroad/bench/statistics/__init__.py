@@ -15,6 +15,9 @@ from evenroad.bench.statistics.paired import mcnemar_exact as mcnemar_exact
 from evenroad.bench.statistics.samples_needed import UNKNOWN_INTERVAL as UNKNOWN_INTERVAL
 from evenroad.bench.statistics.samples_needed import SamplesNeeded as SamplesNeeded
 from evenroad.bench.statistics.samples_needed import samples_needed as samples_needed
+from evenroad.bench.statistics.sets import effective_runs as effective_runs
+from evenroad.bench.statistics.sets import sets_difference as sets_difference
+from evenroad.bench.statistics.sets import sets_test as sets_test
 from evenroad.bench.statistics.spread import Spread as Spread
 from evenroad.bench.statistics.spread import spread_over_sets as spread_over_sets
 from evenroad.bench.statistics.student import student_interval as student_interval

@@ -14,6 +14,7 @@ from evenroad.bench.statistics._counts import as_counts, as_successes
 from evenroad.bench.statistics.bootstrap import DRAWS, percentile_interval, resampled_ratios
 from evenroad.bench.statistics.interval import LEVEL, Interval, wilson
 from evenroad.bench.statistics.paired import bonett_price
+from evenroad.bench.statistics.sets import effective_runs
 from evenroad.bench.statistics.student import student_interval
 from evenroad.errors import InvalidValue
 
@@ -38,7 +39,7 @@ def clustered_rate(
     """Return the interval of a success rate whose runs come in units that are independent of each other.
 
     A percentile bootstrap over units.  With fewer than 10 units, or where all units say the same (a bootstrap
-    would have no width), Wilson's interval for as many runs as there are units: wide, and honest.
+    would have no width), Wilson's interval for as many runs as theirs are worth (:func:`effective_runs`).
 
     Parameters
     ----------
@@ -57,7 +58,8 @@ def clustered_rate(
         raise InvalidValue(f"counts per unit must be a list, got shape {successes.shape}")
     rates = successes / trials
     if len(rates) < FEW_UNITS or np.all(rates == rates[0]):
-        return _as_if_one_run_a_unit(float(successes.sum() / trials.sum()), len(rates), unit, level)
+        rate, worth = float(successes.sum() / trials.sum()), effective_runs(successes, trials)
+        return _as_if_so_many_runs(rate, worth, unit, level)
     values = resampled_ratios(successes, trials, draws=draws, seed=seed)
     return Interval(*percentile_interval(values, level=level), f"bootstrap over {unit}")
 
@@ -150,11 +152,11 @@ def sign_flip_test(sums: npt.ArrayLike) -> float:
     return float(min(1.0, chance[total].sum()))
 
 
-def _as_if_one_run_a_unit(rate: float, units: int, unit: str, level: float) -> Interval:
-    """Return Wilson's interval for `units` runs; between two counts the wider ends of both are taken."""
-    below, above = int(np.floor(rate * units)), int(np.ceil(rate * units))
-    low, _ = wilson(below, units, level=level)
-    _, high = wilson(above, units, level=level)
+def _as_if_so_many_runs(rate: float, runs: int, unit: str, level: float) -> Interval:
+    """Return Wilson's interval for so many runs; between two counts the wider ends of both are taken."""
+    below, above = int(np.floor(rate * runs)), int(np.ceil(rate * runs))
+    low, _ = wilson(below, runs, level=level)
+    _, high = wilson(above, runs, level=level)
     return Interval(float(low), float(high), f"wilson over {unit}")
 
 

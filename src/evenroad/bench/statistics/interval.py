@@ -25,7 +25,8 @@ class Interval:
     kind : str
         ``wilson``, of paired differences ``bonett-price``, where runs are independent.  Where they come in units
         (sets, blocks or instances): ``bootstrap over sets``, of differences ``paired bootstrap over sets``; with few
-        units or equal ones ``wilson over sets``, ``bonett-price over sets``; ``student over sets``.
+        units or equal ones ``wilson over sets``, ``bonett-price over sets``; ``student over sets``; of sets against
+        independent runs ``newcombe over sets``.
     """
 
     low: float
