@@ -10,12 +10,12 @@ from html import escape
 from evenroad.report.tables import Table, as_html
 
 _STYLE = """
-body { font: 15px/1.45 system-ui, sans-serif; color: #22262b; max-width: 1180px; margin: 2rem auto; padding: 0 1rem }
+body { font: 15px/1.45 system-ui, sans-serif; color: #22262b; max-width: 1560px; margin: 2rem auto; padding: 0 1rem }
 h1 { font-size: 1.7rem } h2 { font-size: 1.3rem; margin-top: 2.6rem; border-bottom: 1px solid #ccd2d9 }
 figure { margin: 1.4rem 0 } figcaption { font-weight: 600; margin-bottom: .35rem }
 img { max-width: 100%; height: auto } .wide { overflow-x: auto }
 table { border-collapse: collapse; font-size: 13px; font-variant-numeric: tabular-nums }
-th, td { padding: .18rem .6rem; text-align: right; white-space: nowrap; border-bottom: 1px solid #e6e9ed }
+th, td { padding: .18rem .45rem; text-align: right; white-space: nowrap; border-bottom: 1px solid #e6e9ed }
 th { border-bottom: 1.5px solid #69727d } td.label, th:first-child { text-align: left }
 td.better { background: #d9f0e1 } td.worse { background: #fbe0de } td.differs { background: #fdecc8 }
 td.better::after { content: " ▲" } td.worse::after { content: " ▼" } td.differs::after { content: " ≠" }
