@@ -110,14 +110,13 @@ def test_rows_of_another_protocol_are_kept_but_not_read(path, monkeypatch):
     assert len(read_rows(path)) == 0
 
 
-def test_rows_can_be_chosen_by_suite_and_problem(path):
+def test_rows_can_be_chosen_by_problem(path):
     with open_store(path) as store:
         store.add("paper", TASK, SOLVED, "")
         store.add("fair", replace(TASK, problem="maze-2"), SOLVED, "")
-    assert read_rows(path, suite="fair").problem.present() == ("maze-2",)
     assert read_rows(path, problems=["maze-1"]).suite.present() == ("paper",)
     assert len(read_rows(path, problems=["maze-1", "maze-2"])) == 2
-    assert len(read_rows(path, suite="nonsense")) == 0
+    assert len(read_rows(path, problems=["nonsense"])) == 0
     assert len(read_rows(path, problems=[])) == 0
 
 

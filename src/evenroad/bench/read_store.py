@@ -14,17 +14,13 @@ from evenroad.bench.schema import connect, sqlite_errors
 from evenroad.bench.task import PROTOCOL
 
 
-def read_rows(
-    path: str | os.PathLike[str], *, suite: str | None = None, problems: Sequence[str] | None = None
-) -> Rows:
+def read_rows(path: str | os.PathLike[str], *, problems: Sequence[str] | None = None) -> Rows:
     """Read finished rows of today's protocol, in the order of the tasks' fields; a million takes seconds.
 
     Parameters
     ----------
     path : path
         The store; it may be in use by a running benchmark.
-    suite : str, optional
-        Only rows of this suite.
     problems : sequence of str, optional
         Only rows of these problems.
 
@@ -41,9 +37,6 @@ def read_rows(
             texts = dict(connection.execute("SELECT id, text FROM names").fetchall())
             numbers = {text: number for number, text in texts.items()}
             condition, values = f"protocol = {PROTOCOL}", []
-            if suite is not None:
-                condition += " AND suite = ?"
-                values.append(numbers.get(suite, 0))
             if problems is not None:
                 values += [numbers.get(problem, 0) for problem in problems]
                 condition += f" AND problem IN ({', '.join('?' * len(problems))})"

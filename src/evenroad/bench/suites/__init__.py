@@ -6,7 +6,6 @@ from collections.abc import Callable
 
 from evenroad.bench.suites.fair import fair_suite
 from evenroad.bench.suites.paper import paper_suite
-from evenroad.bench.suites.suite import Absent as Absent
 from evenroad.bench.suites.suite import Suite as Suite
 
 SUITES: dict[str, Callable[..., Suite]] = {"paper": paper_suite, "fair": fair_suite}

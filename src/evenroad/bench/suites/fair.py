@@ -13,7 +13,7 @@ from evenroad.bench.problems import PROBLEMS
 from evenroad.bench.problems.fair import FAIR_PROBLEMS, FairProblem
 from evenroad.bench.problems.fair.streams import Stream
 from evenroad.bench.samplers import SAMPLERS, why_not
-from evenroad.bench.suites.suite import Absent, Suite, chosen_names
+from evenroad.bench.suites.suite import Suite, chosen_names
 from evenroad.bench.task import Task
 
 SEED = 1
@@ -63,26 +63,23 @@ def fair_suite(runs: int = 400, seed: int = SEED, only: Iterable[str] = (), quic
     runs = min(runs, QUICK_RUNS) if quick else runs
     problems = {name: each for name, each in FAIR_PROBLEMS.items() if _is_reported(each)}
     tasks: list[Task] = []
-    absent: list[Absent] = []
     for name in chosen_names(only, problems):
         problem = problems[name]
         main = problem.difficulty == MAIN_DIFFICULTY
         if quick and not main:
             continue
         counts = tuple(sorted({*COUNTS, problem.n})) if main and not quick else (problem.n,)
-        cells = []
-        for n in counts:
-            for sampler in SAMPLERS:
-                reason = why_not(sampler, n, PROBLEMS[name].set_dim)
-                if reason:
-                    absent.append(Absent(name, sampler, n, reason))
-                else:
-                    cells.append((sampler, n))
+        cells = [
+            (sampler, n)
+            for n in counts
+            for sampler in SAMPLERS
+            if not why_not(sampler, n, PROBLEMS[name].set_dim)
+        ]
         for instance in range(-(-runs // DRAWS)):
             for sampler, n in cells:
                 lazy = main and n == problem.n
                 tasks += _in_one_world(name, instance, sampler, n, runs, seed, lazy)
-    return Suite("fair", tuple(tasks), tuple(absent))
+    return Suite("fair", tuple(tasks))
 
 
 def _is_reported(problem: FairProblem) -> bool:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from evenroad._checks import require_count
 from evenroad.bench.problems import PROBLEMS
 from evenroad.bench.samplers import SAMPLERS, why_not
-from evenroad.bench.suites.suite import Absent, Suite, chosen_names
+from evenroad.bench.suites.suite import Suite, chosen_names
 from evenroad.bench.task import Task
 
 SEED = 1
@@ -102,16 +102,13 @@ def paper_suite(runs: int = 400, seed: int = SEED, only: Iterable[str] = (), qui
     runs = min(runs, QUICK_RUNS) if quick else runs
     experiments = {each.problem: each for each in EXPERIMENTS if each.problem in PROBLEMS}
     tasks: list[Task] = []
-    absent: list[Absent] = []
     for name in chosen_names(only, experiments):
         experiment = experiments[name]
         for n in experiment.counts:
             if quick and n > QUICK_COUNT:
                 continue
             for sampler in SAMPLERS:
-                reason = why_not(sampler, n, PROBLEMS[name].set_dim)
-                if reason:
-                    absent.append(Absent(name, sampler, n, reason))
+                if why_not(sampler, n, PROBLEMS[name].set_dim):
                     continue
                 here = 1 if sampler == "sukharev" and experiment.whole_sets else runs
                 tasks += [
@@ -119,4 +116,4 @@ def paper_suite(runs: int = 400, seed: int = SEED, only: Iterable[str] = (), qui
                     for run in range(here)
                     for rule in experiment.rules
                 ]
-    return Suite("paper", tuple(tasks), tuple(absent))
+    return Suite("paper", tuple(tasks))

@@ -1,4 +1,4 @@
-"""Suite: the tasks of one benchmark, and what it cannot have."""
+"""Suite: the tasks of one benchmark."""
 
 from __future__ import annotations
 
@@ -7,24 +7,6 @@ from dataclasses import dataclass
 
 from evenroad.bench.task import Task
 from evenroad.errors import UnknownName
-
-
-@dataclass(frozen=True)
-class Absent:
-    """A cell of a table that stays empty.
-
-    Attributes
-    ----------
-    problem, sampler : str
-    n : int
-    reason : str
-        One sentence, e.g. which n there are.
-    """
-
-    problem: str
-    sampler: str
-    n: int
-    reason: str
 
 
 @dataclass(frozen=True)
@@ -37,13 +19,10 @@ class Suite:
         The label of its rows in a store.
     tasks : tuple of Task
         In an order that suits caches: what shares a problem, and then a set, stands together.
-    absent : tuple of Absent
-        Cells without a set.
     """
 
     name: str
     tasks: tuple[Task, ...]
-    absent: tuple[Absent, ...] = ()
 
 
 def chosen_names(only: Iterable[str], known: Iterable[str]) -> tuple[str, ...]:
