@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from evenroad.bench.statistics import (
     Interval,
@@ -23,7 +22,8 @@ from evenroad.bench.statistics import (
     student_test,
 )
 from evenroad.report.cells import Cell, cell_codes
-from evenroad.report.groups import Ints, UnitSums, combined, sums_by_unit
+from evenroad.report.groups import Ints, UnitSums, sums_by_unit
+from evenroad.report.pairs import differences_from, pair_codes
 from evenroad.report.runs import Question, Runs
 from evenroad.report.units import grouping_of
 
@@ -109,23 +109,6 @@ def comparisons_of(runs: Runs, cells: Sequence[Cell]) -> tuple[Comparison, ...]:
                 compared = _compare(each, reference, sums, c, *counts)
                 found.append(_also_over_sets(compared, by_set, c) if also_by_set[c] else compared)
     return _corrected(found)
-
-
-def pair_codes(runs: Runs) -> Ints:
-    """Return one code a run that the same run of another sampler has, too."""
-    return combined(runs.question, runs.n, runs.instance, runs.run, runs.seed)
-
-
-def differences_from(runs: Runs, pair: Ints, reference: str) -> tuple[npt.NDArray[np.bool_], Ints]:
-    """Return which runs of others have a counterpart of the reference sampler, and solved minus solved there."""
-    solved = runs.solved.astype(np.int64)
-    if reference not in runs.samplers:
-        return np.zeros(len(runs), dtype=bool), np.zeros(len(runs), dtype=np.int64)
-    of_reference = runs.sampler == runs.samplers.index(reference)
-    counterpart = np.full(int(pair.max()) + 1, -1)
-    counterpart[pair[of_reference]] = solved[of_reference]
-    theirs = counterpart[pair]
-    return (theirs >= 0) & ~of_reference, solved - theirs
 
 
 def _compare(

@@ -16,9 +16,10 @@ from evenroad.bench.statistics import (
     student_test,
 )
 from evenroad.report.cells import cell_codes
-from evenroad.report.comparisons import SIGNIFICANT, differences_from, pair_codes
+from evenroad.report.comparisons import SIGNIFICANT
 from evenroad.report.fair_names import BY_RULE, CONNECT, GROUPINGS, is_fair
 from evenroad.report.groups import Ints, combined, first_rows, sums_by_unit
+from evenroad.report.pairs import differences_from, pair_codes
 from evenroad.report.runs import Runs, natural_key
 from evenroad.report.units import grouping_of
 
