@@ -8,7 +8,7 @@ PIP    := $(BIN)/python -m pip --disable-pip-version-check install -q -c constra
 help:
 	@echo "make demo   environment + plan through the shipped level-3 maze -> out/demo.png, out/demo.json"
 	@echo "make test   environment + lint + all tests"
-	@echo "make test-peers  tests against OMPL (installs its wheel)"
+	@echo "make test-peers  tests against OMPL, coal, pinocchio, Klamp't and Planner Arena (installs their wheels)"
 	@echo "make lint   ruff and mypy"
 	@echo "make bench  the slow tables and timings -> out/bench/"
 	@echo "make bank   rebuild (or finish) the shipped point sets"
