@@ -11,7 +11,6 @@ from evenroad.bench.statistics import (
     Interval,
     SamplesNeeded,
     clustered_difference,
-    clustered_rate,
     clusters,
     mcnemar_exact,
     percentile_interval,
@@ -20,7 +19,6 @@ from evenroad.bench.statistics import (
     sign_flip_test,
     student_interval,
     student_test,
-    wilson,
 )
 from evenroad.bench.statistics.bootstrap import _ratios, _weights
 from evenroad.bench.statistics.samples_needed import _isotonic
@@ -59,33 +57,6 @@ def test_a_bootstrap_of_nothing_is_refused(numbers):
 def test_percentiles_may_be_infinite():
     assert percentile_interval([-math.inf, 1.0, 2.0, math.inf]) == (-math.inf, math.inf)
     assert percentile_interval([3.0]) == (3.0, 3.0)
-
-
-def test_an_interval_over_sets_is_wider_than_one_that_takes_runs_for_independent():
-    """20 sets that either always or never solve, 20 runs each: the sets are what was drawn."""
-    solved, runs = np.repeat([20, 0], [14, 6]), np.full(20, 20)
-    over_sets, over_runs = clustered_rate(solved, runs, "sets"), wilson(solved.sum(), runs.sum())
-    assert over_sets.kind == "bootstrap over sets"
-    assert over_sets.high - over_sets.low > 3 * (over_runs[1] - over_runs[0])
-
-
-def test_an_interval_over_sets_covers_the_familys_rate():
-    rng = np.random.default_rng(5)
-    chances = rng.beta(2, 2, size=(400, 30))
-    solved = rng.binomial(12, chances)
-    intervals = [clustered_rate(each, np.full(30, 12), "sets", draws=400) for each in solved]
-    covered = np.mean([each.low <= 0.5 <= each.high for each in intervals])
-    assert 0.90 <= covered <= 0.98
-
-
-@pytest.mark.parametrize(("solved", "sets"), [([5] * 16, 16), ([0] * 12, 12), ([5, 0, 3], 3)])
-def test_where_a_bootstrap_says_too_much_sets_are_counted_as_runs(solved, sets):
-    interval = clustered_rate(solved, [5] * len(solved), "sets")
-    rate = sum(solved) / (5 * sets)
-    low, high = wilson(math.floor(rate * sets), sets)[0], wilson(math.ceil(rate * sets), sets)[1]
-    assert (interval.low, interval.high) == (low, high)
-    assert interval.kind == "wilson over sets"
-    assert interval.low <= rate <= interval.high
 
 
 def _flip_by_counting(sums):

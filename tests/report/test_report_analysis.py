@@ -63,7 +63,7 @@ def test_cells_come_in_the_order_of_tables(cells):
 def test_samplers_drawn_afresh_get_wilsons_interval_and_pools_one_over_sets(cells):
     for cell in cells:
         if cell.sampler == "even":
-            assert cell.interval.kind in ("bootstrap over sets", "wilson over sets")
+            assert cell.interval.kind == "wilson over sets"
             assert cell.units.runs.sum() == cell.runs
             assert cell.units.solved.sum() == cell.solved
         else:
@@ -82,7 +82,7 @@ def test_random_worlds_with_several_runs_each_are_the_units(tmp_path):
         (task("fair-balls-2d-50", run=run, instance=run // 3), solved(run // 3 % 2 == 0)) for run in range(60)
     ]
     (cell,) = cells_of(runs_from(tmp_path / "a.db", rows))
-    assert cell.interval.kind == "bootstrap over instances"
+    assert cell.interval.kind == "wilson over instances"
     assert len(cell.units.runs) == 20
 
 

@@ -98,7 +98,7 @@ def test_one_block_under_two_seeds_counts_once(tmp_path):
     ]
     cell, compared = _found(tmp_path, both)
     assert cell.runs == 80
-    assert (cell.units.kind, len(cell.units), cell.interval.kind) == ("blocks", 40, "bootstrap over blocks")
+    assert (cell.units.kind, len(cell.units), cell.interval.kind) == ("blocks", 40, "wilson over blocks")
     assert compared.test == "sign flips over blocks"
     (uniform,) = [each for each in cells_of(runs_from(tmp_path / "b.db", both)) if each.sampler == "uniform"]
     assert (uniform.units.kind, len(uniform.units)) == ("runs", 80)
@@ -147,7 +147,7 @@ def test_random_worlds_take_the_wider_interval_of_worlds_and_sets(tmp_path):
 def test_permuted_sets_in_random_worlds_are_as_many_as_the_worlds(tmp_path):
     rows = _in_random_worlds("fair-balls-10d-50", (0.1, 0.9, 0.2, 0.95))
     cell, compared = _found(tmp_path, rows)
-    assert cell.interval.kind == "bootstrap over instances"
+    assert cell.interval.kind == "wilson over instances"
     assert compared.test == "sign flips over instances"
     (all_pooled,) = pooled(runs_from(tmp_path / "b.db", rows))["all"]
     assert (all_pooled.interval, all_pooled.sets) == (compared.interval, 4)

@@ -6,6 +6,8 @@ gives much the same answer every time.  What is independent are the sets; in a s
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 from scipy.special import gammaln
@@ -19,7 +21,7 @@ from evenroad.bench.statistics.student import student_interval
 from evenroad.errors import InvalidValue
 
 FEW_UNITS = 10
-"""With fewer units than this a bootstrap is too narrow, and we count units instead of runs."""
+"""With fewer units than this a bootstrap is too narrow."""
 MANY_UNITS = 1000
 """With more units than this a bootstrap of a difference says what Student's interval says."""
 
@@ -28,18 +30,12 @@ SHORT = 4000
 
 
 def clustered_rate(
-    solved: npt.ArrayLike,
-    runs: npt.ArrayLike,
-    unit: str,
-    *,
-    level: float = LEVEL,
-    draws: int = DRAWS,
-    seed: int = 0,
+    solved: npt.ArrayLike, runs: npt.ArrayLike, unit: str, *, level: float = LEVEL
 ) -> Interval:
     """Return the interval of a success rate whose runs come in units that are independent of each other.
 
-    A percentile bootstrap over units.  With fewer than 10 units, or where all units say the same (a bootstrap
-    would have no width), Wilson's interval for as many runs as theirs are worth (:func:`effective_runs`).
+    Wilson's interval for as many runs as theirs are worth (:func:`effective_runs`).  A bootstrap over so few units as a
+    pool has sets would be too narrow, most where few of them solve.
 
     Parameters
     ----------
@@ -54,14 +50,12 @@ def clustered_rate(
         If there is no unit, or the counts are impossible.
     """
     successes, trials = as_successes(solved, runs)
-    if successes.ndim != 1 or len(successes) == 0:
-        raise InvalidValue(f"counts per unit must be a list, got shape {successes.shape}")
-    rates = successes / trials
-    if len(rates) < FEW_UNITS or np.all(rates == rates[0]):
-        rate, worth = float(successes.sum() / trials.sum()), effective_runs(successes, trials)
-        return _as_if_so_many_runs(rate, worth, unit, level)
-    values = resampled_ratios(successes, trials, draws=draws, seed=seed)
-    return Interval(*percentile_interval(values, level=level), f"bootstrap over {unit}")
+    worth = effective_runs(successes, trials, level=level)
+    rate = float(successes.sum() / trials.sum())
+    # Between two counts the wider ends of both are taken.
+    low, _ = wilson(math.floor(rate * worth), worth, level=level)
+    _, high = wilson(math.ceil(rate * worth), worth, level=level)
+    return Interval(float(low), float(high), f"wilson over {unit}")
 
 
 def clustered_difference(
@@ -150,14 +144,6 @@ def sign_flip_test(sums: npt.ArrayLike) -> float:
     reach = (len(chance) - 1) // 2
     total = np.abs(np.arange(-reach, reach + 1)) >= observed
     return float(min(1.0, chance[total].sum()))
-
-
-def _as_if_so_many_runs(rate: float, runs: int, unit: str, level: float) -> Interval:
-    """Return Wilson's interval for so many runs; between two counts the wider ends of both are taken."""
-    below, above = int(np.floor(rate * runs)), int(np.ceil(rate * runs))
-    low, _ = wilson(below, runs, level=level)
-    _, high = wilson(above, runs, level=level)
-    return Interval(float(low), float(high), f"wilson over {unit}")
 
 
 def _as_if_one_pair_a_unit(shares: npt.NDArray[np.float64], unit: str, level: float) -> Interval:

@@ -24,9 +24,9 @@ class Interval:
         Ends, as shares in [0, 1] (of a difference: in [-1, 1]).
     kind : str
         ``wilson``, of paired differences ``bonett-price``, where runs are independent.  Where they come in units
-        (sets, blocks or instances): ``bootstrap over sets``, of differences ``paired bootstrap over sets``; with few
-        units or equal ones ``wilson over sets``, ``bonett-price over sets``; ``student over sets``; of sets against
-        independent runs ``newcombe over sets``.
+        (sets, blocks or instances): ``wilson over sets``, of differences ``paired bootstrap over instances``, with few
+        or equal ones ``bonett-price over instances``; ``student over sets``; of sets against independent runs
+        ``newcombe over sets``.
     """
 
     low: float

@@ -8,12 +8,13 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import ndtri, stdtrit
 
-from evenroad.bench.statistics._counts import as_successes
+from evenroad.bench.statistics._counts import as_successes, require_share
 from evenroad.bench.statistics.fisher import fisher_exact
 from evenroad.bench.statistics.interval import LEVEL, Interval, wilson
+from evenroad.errors import InvalidValue
 
 
-def effective_runs(solved: npt.ArrayLike, runs: npt.ArrayLike) -> int:
+def effective_runs(solved: npt.ArrayLike, runs: npt.ArrayLike, *, level: float = LEVEL) -> int:
     """Return how many independent runs the runs of some units are worth.
 
     A rate p of variance v, estimated from the units, is as sure as p (1 - p) / v runs make it; fewer by the ratio of
@@ -24,6 +25,13 @@ def effective_runs(solved: npt.ArrayLike, runs: npt.ArrayLike) -> int:
     ----------
     solved, runs : array_like of int, shape (units,)
         Successes and runs per unit; every unit has a run.
+    level : float
+        Confidence of what is made of it, in (0, 1).
+
+    Raises
+    ------
+    InvalidValue
+        If there is no unit, or the counts are impossible.
 
     References
     ----------
@@ -31,12 +39,15 @@ def effective_runs(solved: npt.ArrayLike, runs: npt.ArrayLike) -> int:
     counts estimated from survey data, Survey Methodology 24, 193-201.
     """
     successes, trials = as_successes(solved, runs)
+    if successes.ndim != 1 or len(successes) == 0:
+        raise InvalidValue(f"counts per unit must be a list, got shape {successes.shape}")
     units, total = len(successes), int(trials.sum())
     rate = float(successes.sum()) / total
     if np.all(successes * trials[0] == successes[0] * trials):
         return units
     variance = float(((successes - rate * trials) ** 2).sum()) * units / (units - 1) / total**2
-    shrink = float(ndtri(0.5 + 0.5 * LEVEL) / stdtrit(units - 1, 0.5 + 0.5 * LEVEL)) ** 2
+    end = 0.5 + 0.5 * require_share("level", level)
+    shrink = float(ndtri(end) / stdtrit(units - 1, end)) ** 2
     return int(np.clip(math.floor(rate * (1.0 - rate) / variance * shrink), units, total))
 
 
