@@ -8,6 +8,7 @@ from numba import njit
 
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.contact import blocked_lanes
+from evenroad.robot.kernel.inner import inner
 from evenroad.robot.kernel.motion import enter, span
 from evenroad.robot.kernel.place import scratch_memory, unpacked, write_values
 
@@ -34,7 +35,7 @@ def configurations_free(q: Floats, bounds: Floats, tables: Ints) -> npt.NDArray[
                 # What is out of bounds may be too large for single precision.
                 states[k * LANES + lane] = state[k] if free[row] else bounds[0, k]
         write_values(scratch, states, ints, table)
-        blocked = blocked_lanes(scratch, ints, table, LANES)
+        blocked = blocked_lanes(scratch, ints, table, np.int64(LANES))
         for lane in range(count):
             free[first + lane] &= (blocked >> lane) & 1 == 0
     return free
@@ -68,14 +69,14 @@ def motions_free(
             # Exactly the end, so that a motion is free only where its end is.
             states[k * LANES + LANES - 1] = end[k]
         write_values(scratch, states, ints, table)
-        if blocked_lanes(scratch, ints, table, 1) == 0:
+        if blocked_lanes(scratch, ints, table, np.int64(1)) == 0:
             free[row] = segments < LANES or _rest_is_free(
                 scratch, states, start, way, share, segments, ints, table
             )
     return free
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _rest_is_free(
     scratch: Singles,
     states: Floats,
@@ -107,12 +108,12 @@ def _rest_is_free(
             share[lane] = (rank + 1 + gap) / segments
         _write_states(states, start, way, share)
         write_values(scratch, states, ints, table)
-        if blocked_lanes(scratch, ints, table, 1) != 0:
+        if blocked_lanes(scratch, ints, table, np.int64(1)) != 0:
             return False
     return True
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _write_states(states: Floats, start: Floats, way: Floats, share: Floats) -> None:
     """Write the configurations at sixteen shares of a motion."""
     for k in range(len(start)):

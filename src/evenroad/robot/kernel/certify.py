@@ -7,6 +7,7 @@ import numpy.typing as npt
 from numba import njit
 
 from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel.inner import inner
 from evenroad.robot.kernel.motion import enter, span
 from evenroad.robot.kernel.scalar import SEPARATE, first_contact
 
@@ -85,7 +86,7 @@ def motions_certified(
     return proved
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _largest_speed(arms: Floats, way: Floats, speeds: Floats) -> float:
     """Write how far each body can move during the whole motion, and return the largest [m]."""
     largest = 0.0

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel.inner import inlined, inner
 from evenroad.robot.kernel.lanes import (
     ONE,
     ZERO,
@@ -45,7 +45,7 @@ Ints = npt.NDArray[np.int64]
 Singles = npt.NDArray[np.float32]
 
 
-@njit(cache=True, nogil=True)
+@inner
 def blocked_lanes(scratch: Singles, ints: Ints, table: Singles, enough: int) -> int:
     """Return the mask of the configurations, whose values are in `scratch`, that touch something.
 
@@ -68,7 +68,7 @@ def blocked_lanes(scratch: Singles, ints: Ints, table: Singles, enough: int) -> 
     return _meeting_themselves(scratch, capsules, bodies, ints, table, blocked, enough)
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _meeting_obstacles(scratch: Singles, capsules: int, ints: Ints, table: Singles, enough: int) -> int:
     blocks = ints[at.BLOCKS]
     blocked = 0
@@ -105,7 +105,7 @@ def _meeting_obstacles(scratch: Singles, capsules: int, ints: Ints, table: Singl
     return blocked
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _meeting_one(scratch: Singles, here: int, capsule: int, obstacle: int, ints: Ints, table: Singles) -> int:
     """Return the mask of lanes in which a sphere along a capsule reaches into an obstacle."""
     data = ints[at.OBSTACLE_FLOATS] + at.OBSTACLE_FLOAT_ROW * obstacle
@@ -139,7 +139,7 @@ def _meeting_one(scratch: Singles, here: int, capsule: int, obstacle: int, ints:
     return meeting
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@inlined
 def _turned(x: Any, y: Any, z: Any, data: int, table: Singles) -> Any:
     """Return a vector in the frame whose rotation to the root's is at `data` of the table."""
     return (
@@ -149,7 +149,7 @@ def _turned(x: Any, y: Any, z: Any, data: int, table: Singles) -> Any:
     )
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _meeting_themselves(
     scratch: Singles, capsules: int, bodies: int, ints: Ints, table: Singles, blocked: int, enough: int
 ) -> int:
@@ -170,7 +170,7 @@ def _meeting_themselves(
     return blocked
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _touching(scratch: Singles, capsules: int, pair: int, ints: Ints, table: Singles, blocked: int) -> int:
     """Return the mask of lanes, not `blocked` ones, in which the capsules of a pair touch.
 
@@ -202,7 +202,7 @@ def _touching(scratch: Singles, capsules: int, pair: int, ints: Ints, table: Sin
     return below_zero(x * x + y * y + z * z - reach * reach)
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@inlined
 def _cut(place: Any) -> Any:
     """Return `place` cut to [-1, 1]."""
     return larger(smaller(place, ONE), -ONE)

@@ -6,12 +6,13 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
+
+from evenroad.robot.kernel.inner import inner
 
 Floats = npt.NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True)
+@inner
 def enter(q: Floats, bounds: Floats, into: Floats) -> bool:
     """Write `q` with its wrapping coordinates in their ranges and return whether the others are within theirs.
 
@@ -37,7 +38,7 @@ def enter(q: Floats, bounds: Floats, into: Floats) -> bool:
     return inside
 
 
-@njit(cache=True, nogil=True)
+@inner
 def span(start: Floats, end: Floats, bounds: Floats, resolution: float, way: Floats) -> int:
     """Put the ends in dictionary order, write the short way between them and return its number of segments.
 

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel.inner import inlined, inner
 from evenroad.robot.kernel.lanes import ONE, ZERO, absolute, load, spread, store
 from evenroad.robot.kernel.sine import sine_and_cosine
 
@@ -30,7 +30,7 @@ _FULL_TURN = 2.0 * np.pi
 _TURNS = 0.5 / np.pi
 
 
-@njit(cache=True, nogil=True)
+@inner
 def scratch_places(ints: Ints) -> tuple[int, int, int, int]:
     """Return where frames, capsules and bodies begin in the scratch memory, and its length.
 
@@ -42,14 +42,14 @@ def scratch_places(ints: Ints) -> tuple[int, int, int, int]:
     return frames, capsules, bodies, bodies + BODY * ints[at.BODIES]
 
 
-@njit(cache=True, nogil=True)
+@inner
 def unpacked(tables: Ints) -> tuple[Ints, Singles]:
     """Return the integers and the floats of ``ArmTables.lanes``."""
     integers = tables[at.INTEGERS]
     return tables[:integers], tables[integers:].view(np.float32)
 
 
-@njit(cache=True, nogil=True)
+@inner
 def scratch_memory(dim: int, ints: Ints, table: Singles) -> tuple[Floats, Floats, Singles]:
     """Return room for sixteen states of `dim` coordinates, for one, and scratch memory, cut out of one array.
 
@@ -66,12 +66,14 @@ def scratch_memory(dim: int, ints: Ints, table: Singles) -> tuple[Floats, Floats
     state = raw[len(raw) - dim :]
     for entry in range(12):
         store(scratch, frames + entry * LANES, spread(ONE if entry in (0, 4, 8) else ZERO))
-    _place_capsules(scratch, frames, capsules, 0, ints[at.STANDING], ints, table)
-    _place_bodies(scratch, frames, bodies, 0, ints[at.STANDING_BODIES], ints, table)
+    # Not a plain 0: numba compiles a function once more for a literal.
+    first = np.int64(0)
+    _place_capsules(scratch, frames, capsules, first, ints[at.STANDING], ints, table)
+    _place_bodies(scratch, frames, bodies, first, ints[at.STANDING_BODIES], ints, table)
     return states, state, scratch
 
 
-@njit(cache=True, nogil=True)
+@inner
 def write_values(scratch: Singles, states: Floats, ints: Ints, table: Singles) -> None:
     """Write the values of the frames for sixteen configurations, `states`: sixteen numbers a coordinate.
 
@@ -91,7 +93,7 @@ def write_values(scratch: Singles, states: Floats, ints: Ints, table: Singles) -
             values[lane] = value - turn * np.rint(value * _TURNS)
 
 
-@njit(cache=True, nogil=True)
+@inner
 def place_frames(scratch: Singles, frames: int, ints: Ints, table: Singles) -> None:
     """Write the frames for the values at the beginning of `scratch`."""
     for i in range(ints[at.FRAMES]):
@@ -126,19 +128,19 @@ def place_frames(scratch: Singles, frames: int, ints: Ints, table: Singles) -> N
             store(scratch, here + (9 + axis) * LANES, origin)
 
 
-@njit(cache=True, nogil=True)
+@inner
 def place_moving_capsules(scratch: Singles, frames: int, capsules: int, ints: Ints, table: Singles) -> None:
     """Write the capsules that move."""
     _place_capsules(scratch, frames, capsules, ints[at.STANDING], ints[at.CAPSULES], ints, table)
 
 
-@njit(cache=True, nogil=True)
+@inner
 def place_moving_bodies(scratch: Singles, frames: int, bodies: int, ints: Ints, table: Singles) -> None:
     """Write the bodies that move."""
     _place_bodies(scratch, frames, bodies, ints[at.STANDING_BODIES], ints[at.BODIES], ints, table)
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _place_capsules(
     scratch: Singles, frames: int, capsules: int, first: int, end: int, ints: Ints, table: Singles
 ) -> None:
@@ -156,7 +158,7 @@ def _place_capsules(
             store(scratch, here + (6 + axis) * LANES, absolute(half) + table[data + 6])
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _place_bodies(
     scratch: Singles, frames: int, bodies: int, first: int, end: int, ints: Ints, table: Singles
 ) -> None:
@@ -174,7 +176,7 @@ def _place_bodies(
             )
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@inlined
 def _moved(
     scratch: Singles, frame: int, axis: int, p0: Any, p1: Any, p2: Any, data: int, table: Singles
 ) -> Any:

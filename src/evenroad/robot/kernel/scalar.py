@@ -13,6 +13,7 @@ import numpy.typing as npt
 from numba import njit
 
 from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel.inner import inner
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -62,7 +63,7 @@ def first_contact(
     return SEPARATE, -1, -1
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _place_frames(q: Floats, ints: Ints, floats: Floats, frames: Floats) -> None:
     for entry in range(12):
         frames[0, entry] = 1.0 if entry in (0, 4, 8) else 0.0
@@ -85,7 +86,7 @@ def _place_frames(q: Floats, ints: Ints, floats: Floats, frames: Floats) -> None
             frames[i + 1, 9 + axis] = frames[parent, 9 + axis] + moved + z * slide
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _place_capsules(ints: Ints, floats: Floats, frames: Floats, capsules: Floats) -> None:
     for i in range(ints[at.CAPSULES]):
         frame = ints[ints[at.CAPSULE_INTS] + at.CAPSULE_INT_ROW * i]
@@ -97,7 +98,7 @@ def _place_capsules(ints: Ints, floats: Floats, frames: Floats, capsules: Floats
             capsules[i, 3 + axis] = p0 * floats[data + 3] + p1 * floats[data + 4] + p2 * floats[data + 5]
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _meets_obstacle(ints: Ints, floats: Floats, margins: Floats, capsules: Floats) -> tuple[int, int]:
     """Return a moving capsule and an obstacle nearer than the margin, or -1, -1; outer capsules come first."""
     blocks = ints[at.BLOCKS]
@@ -127,7 +128,7 @@ def _meets_obstacle(ints: Ints, floats: Floats, margins: Floats, capsules: Float
     return -1, -1
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _squared_distance_to_obstacle(
     x: float, y: float, z: float, obstacle: int, ints: Ints, floats: Floats
 ) -> float:
@@ -145,7 +146,7 @@ def _squared_distance_to_obstacle(
     return u * u + v * v + w * w
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _meets_itself(ints: Ints, floats: Floats, pair_margins: Floats, frames: Floats, capsules: Floats) -> int:
     """Return the number of a pair of capsules nearer than its margin, or -1."""
     for p in range(ints[at.BODY_PAIRS]):
@@ -165,7 +166,7 @@ def _meets_itself(ints: Ints, floats: Floats, pair_margins: Floats, frames: Floa
     return -1
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _squared_distance_of_bodies(a: int, b: int, ints: Ints, floats: Floats, frames: Floats) -> float:
     """Return the squared distance between the middles of two bodies' balls [m^2]."""
     first, second = ints[ints[at.BODY_INTS] + a], ints[ints[at.BODY_INTS] + b]
@@ -181,7 +182,7 @@ def _squared_distance_of_bodies(a: int, b: int, ints: Ints, floats: Floats, fram
     return squared
 
 
-@njit(cache=True, nogil=True)
+@inner
 def _squared_distance_of_pair(pair: int, ints: Ints, floats: Floats, capsules: Floats) -> float:
     """Return the squared distance between the segments of a pair of capsules [m^2].
 

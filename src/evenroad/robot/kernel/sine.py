@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 
+from evenroad.robot.kernel.inner import inlined
 from evenroad.robot.kernel.lanes import absolute, smaller, with_sign_of
 
 _PI = np.float32(np.pi)
@@ -21,7 +21,7 @@ _S7 = np.float32(-0.00019806615190)
 _S9 = np.float32(2.6000547418e-06)
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@inlined
 def sine_and_cosine(angle: Any) -> Any:
     """Return the sines and cosines of sixteen angles from -pi to pi [rad], to 2e-7."""
     size = absolute(angle)
@@ -30,7 +30,7 @@ def sine_and_cosine(angle: Any) -> Any:
     return sine, _sine_within_a_quarter(_HALF_PI - size)
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@inlined
 def _sine_within_a_quarter(angle: Any) -> Any:
     square = angle * angle
     return angle + angle * square * (_S3 + square * (_S5 + square * (_S7 + square * _S9)))
