@@ -64,6 +64,8 @@ def draw_arm_plan(result: PlanResult, world: ArmWorld) -> Figure:
             ylabel=f"{_AXES[second]} [m]",
         )
         axes.set_aspect("equal")
+        # Texts are what takes longest to draw.
+        axes.locator_params(nbins=6)
         axes.grid(visible=True, color=style.EDGE, linewidth=0.4, alpha=0.5)
     figure.legend(handles=_legend(result, world), loc="lower center", ncols=6, frameon=False)
     title = f"{world.robot.name} in {world.scene.name}: {result.status}; {result.message}"
