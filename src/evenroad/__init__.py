@@ -22,7 +22,11 @@ if TYPE_CHECKING:
     from evenroad.roadmap import Radius as Radius
     from evenroad.roadmap import Status as Status
     from evenroad.roadmap.plan import plan as plan
+    from evenroad.robot import ArmWorld as ArmWorld
+    from evenroad.robot import load_robot as load_robot
+    from evenroad.robot import load_scene as load_scene
     from evenroad.viz import save_plan_picture as save_plan_picture
+    from evenroad.viz.arm import save_arm_picture as save_arm_picture
     from evenroad.world import GridMap as GridMap
     from evenroad.world import load_map as load_map
 
@@ -38,7 +42,11 @@ _HOMES = {
     "Radius": "evenroad.roadmap",
     "Status": "evenroad.roadmap",
     "plan": "evenroad.roadmap",
+    "ArmWorld": "evenroad.robot",
+    "load_robot": "evenroad.robot",
+    "load_scene": "evenroad.robot",
     "save_plan_picture": "evenroad.viz",
+    "save_arm_picture": "evenroad.viz.arm",
     "GridMap": "evenroad.world",
     "load_map": "evenroad.world",
 }
