@@ -1,4 +1,4 @@
-"""How often does each sampler solve the level-1 maze with 128 points?  (The real table: docs/reproduce.md.)"""
+"""How often does each sampler solve the level-1 maze with 128 points?  (The real table: docs/results.md.)"""
 
 import evenroad as er
 from evenroad.mazes import load_maze
