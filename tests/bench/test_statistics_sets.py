@@ -37,6 +37,12 @@ def test_worked_examples_of_effective_runs():
     assert effective_runs([15, 20, 25, 15, 20, 25], [50] * 6) == int(180 * (1.959964 / 2.570582) ** 2)
 
 
+def test_sets_that_agree_exactly_are_worth_what_sets_are_that_nearly_agree():
+    exactly, nearly = effective_runs([50] * 4, [100] * 4), effective_runs([50, 51, 50, 49], [100] * 4)
+    assert exactly == nearly == int(400 * (1.959964 / 3.182446) ** 2)
+    assert effective_runs([7], [10]) == 1
+
+
 @pytest.mark.parametrize("chance", [0.05, 0.23, 0.6])
 def test_the_test_of_whole_sets_rejects_no_more_than_five_in_a_hundred(chance):
     rng = np.random.default_rng(4)
@@ -45,6 +51,18 @@ def test_the_test_of_whole_sets_rejects_no_more_than_five_in_a_hundred(chance):
         solved = 25 * (rng.random(16) < chance)
         rejected += sets_test(solved, np.full(16, 25), int(rng.binomial(400, chance)), 400) < 0.05
     assert rejected <= 0.06 * 400
+
+
+@pytest.mark.parametrize("alike", [0.1, 0.67, 5.0])
+@pytest.mark.parametrize("sets", [6, 16, 64])
+def test_the_test_of_sets_seldom_rejects_at_the_levels_of_holms_correction(sets, alike):
+    rng = np.random.default_rng(7)
+    runs = np.full(sets, 400 // sets)
+    rejected = 0
+    for _ in range(400):
+        solved = rng.binomial(runs, rng.beta(0.9 * alike, 0.1 * alike, sets))
+        rejected += sets_test(solved, runs, int(rng.binomial(400, 0.9)), 400) < 0.0007
+    assert rejected <= 4
 
 
 def test_whole_sets_are_tested_as_single_runs():

@@ -389,6 +389,18 @@ def test_a_store_that_stays_locked_keeps_what_was_left_beside_it(path, monkeypat
     assert len(read_rows(path)) == 1
 
 
+def test_an_answer_is_not_given_up_for_a_failure_that_was_rescued_before_it(path):
+    """The rescue lay in the temporary folder, say, while the task was run once more."""
+    left = _left_behind(path).replace('"solved"', '"timeout"')
+    assert "timeout" in left
+    with open_store(path) as store:
+        store.add("paper", TASK, SOLVED, "")
+    path.with_name("results.db.rescue").write_text(left)
+    _write(path, [])
+    assert read_rows(path).solved.tolist() == [True]
+    assert not path.with_name("results.db.rescue").exists()
+
+
 def _left_behind(path):
     """Return what a run that could not write its row left."""
 

@@ -139,8 +139,11 @@ class Store:
 
     def take_in_rescued(self) -> None:
         """Write the rows that an earlier writer had to leave beside the store; errors as :meth:`commit`."""
-        self._waiting += waiting_rows(self.path, _COLUMNS)
-        if self._waiting:
+        rescued = waiting_rows(self.path, _COLUMNS)
+        if rescued:
+            # An answer that was found since is not given up for what was rescued before.
+            is_answer = self.finished()
+            self._waiting += [row for row in rescued if not is_answer.get(str(row[0]), False)]
             try:
                 self.commit()
             except BaseException:

@@ -31,7 +31,7 @@ REFERENCES = ("uniform", "halton scrambled")
 SIGNIFICANT = 0.05
 """Corrected p-value below which a difference is marked."""
 FEW_TO_TEST = 6
-"""With fewer units than this no choice of signs has a p-value below .05."""
+"""With fewer units than this no choice of signs has a p-value below .05, and a pool of so few sets says as little."""
 
 
 @dataclass(frozen=True)

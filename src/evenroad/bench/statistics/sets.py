@@ -17,9 +17,9 @@ from evenroad.errors import InvalidValue
 def effective_runs(solved: npt.ArrayLike, runs: npt.ArrayLike, *, level: float = LEVEL) -> int:
     """Return how many independent runs the runs of some units are worth.
 
-    A rate p of variance v, estimated from the units, is as sure as p (1 - p) / v runs make it; fewer by the ratio of
-    the normal and Student's quantile, squared.  At least as many as units, which is what units with one outcome each
-    are worth; at most all runs; and as many as units where all of them say the same, as nothing is known of v.
+    A rate p of variance v, estimated from the units, is as sure as p (1 - p) / v runs make it, at most all runs; fewer
+    by the ratio of the normal and Student's quantile, squared.  At least as many as units, which is what units with one
+    outcome each are worth; and as many as units where p is 0 or 1, as nothing is known of v: there the number jumps.
 
     Parameters
     ----------
@@ -43,12 +43,13 @@ def effective_runs(solved: npt.ArrayLike, runs: npt.ArrayLike, *, level: float =
         raise InvalidValue(f"counts per unit must be a list, got shape {successes.shape}")
     units, total = len(successes), int(trials.sum())
     rate = float(successes.sum()) / total
-    if np.all(successes * trials[0] == successes[0] * trials):
+    if units == 1 or rate in (0.0, 1.0):
         return units
     variance = float(((successes - rate * trials) ** 2).sum()) * units / (units - 1) / total**2
     end = 0.5 + 0.5 * require_share("level", level)
     shrink = float(ndtri(end) / stdtrit(units - 1, end)) ** 2
-    return int(np.clip(math.floor(rate * (1.0 - rate) / variance * shrink), units, total))
+    worth = min(rate * (1.0 - rate) / variance, total) if variance > 0.0 else total
+    return max(math.floor(worth * shrink), units)
 
 
 def sets_difference(over_sets: Interval, rate: float, solved: int, runs: int) -> Interval:
@@ -79,8 +80,9 @@ def sets_difference(over_sets: Interval, rate: float, solved: int, runs: int) ->
 def sets_test(solved: npt.ArrayLike, runs: npt.ArrayLike, other_solved: int, other_runs: int) -> float:
     """Return the p-value that a pool solves as often as independent runs of another sampler do.
 
-    Fisher's exact test with as many runs as the pool's are worth.  No sign flips: one outcome a set against the other's
-    rate is skewed, and flips reject too often.
+    Fisher's exact test, with one outcome a set: the pool's rate times its sets, rounded.  Less would be claimed where
+    runs of a set are nearly independent, but how nearly is not known well enough from a few sets.  No sign flips: one
+    outcome a set against the other's rate is skewed, and flips reject too often.
 
     Parameters
     ----------
@@ -90,6 +92,5 @@ def sets_test(solved: npt.ArrayLike, runs: npt.ArrayLike, other_solved: int, oth
         Of the independent runs.
     """
     successes, trials = as_successes(solved, runs)
-    worth = effective_runs(successes, trials)
     rate = float(successes.sum() / trials.sum())
-    return fisher_exact((round(rate * worth), worth), (other_solved, other_runs))
+    return fisher_exact((round(rate * len(trials)), len(trials)), (other_solved, other_runs))
