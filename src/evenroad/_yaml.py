@@ -11,6 +11,7 @@ from evenroad.errors import BrokenFile
 
 # libyaml where PyYAML was built with it: ten times as fast.
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_DEEPEST = 100
 _MERGE = "tag:yaml.org,2002:merge"
 
 
@@ -30,12 +31,22 @@ def read_mapping(path: Path, what: str) -> dict[str, Any]:
     except ValueError as error:
         raise BrokenFile(f"{path} is not YAML: {error}") from error
     try:
+        _require_shallow(text, path)
         document = _document(text, path)
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
+    except (yaml.YAMLError, ValueError, LookupError, AttributeError, RecursionError) as error:
         raise BrokenFile(f"{path} is not YAML: {' '.join(str(error).split())}") from error
     if not isinstance(document, dict):
         raise BrokenFile(f"{path} is not a {what}: it must consist of 'key: value' lines")
     return {str(key): value for key, value in document.items()}
+
+
+def _require_shallow(text: str, path: Path) -> None:
+    """Refuse what is nested deeper than anybody writes: libyaml would overflow the stack, and the process die of it."""
+    depth = 0
+    for event in yaml.parse(text, Loader=_Loader):
+        depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
+        if depth > _DEEPEST:
+            raise BrokenFile(f"{path} is nested more than {_DEEPEST} levels deep")
 
 
 def _document(text: str, path: Path) -> object:
@@ -62,12 +73,16 @@ def _require_distinct_keys(loader: Any, root: yaml.Node, path: Path) -> None:
         if isinstance(node, yaml.SequenceNode):
             pending.extend(node.value)
         elif isinstance(node, yaml.MappingNode):
-            lines: dict[str, int] = {}
+            lines: dict[object, int] = {}
             for key, value in node.value:
                 pending.append(value)
                 if not isinstance(key, yaml.ScalarNode) or key.tag == _MERGE:
                     continue
-                name, line = str(loader.construct_object(key)), key.start_mark.line + 1
-                if name in lines:
-                    raise BrokenFile(f"{path} has the key {name!r} twice, in lines {lines[name]} and {line}")
-                lines[name] = line
+                made, line = loader.construct_object(key), key.start_mark.line + 1
+                # As text and as it is: 1 and '1' are one key to us, 1 and true to Python.
+                earlier = [lines[name] for name in (str(made), made) if name in lines]
+                if earlier:
+                    raise BrokenFile(
+                        f"{path} has the key {str(made)!r} twice, in lines {earlier[0]} and {line}"
+                    )
+                lines |= {str(made): line, made: line}

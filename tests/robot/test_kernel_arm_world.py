@@ -314,6 +314,18 @@ def test_a_mimic_that_a_full_turn_brings_elsewhere_is_refused():
         ArmWorld(robot, Scene("empty", ()))
 
 
+@pytest.mark.parametrize("mimic", [Mimic("turn", 1e39), Mimic("turn", -1.0, 2e9)], ids=["times", "plus"])
+def test_a_mimic_beyond_what_single_precision_holds_is_refused(mimic):
+    """The bounds of its leader may be so narrow that the angle itself is small."""
+    turn = Joint("turn", "revolute", "a", "b", (0.0, 0.0, 0.0), STRAIGHT, Z, -1e-39, 1e-39)
+    wild = Joint("wild", "revolute", "b", "c", (0.0, 0.0, 0.0), STRAIGHT, Z, -1.0, 1.0, mimic=mimic)
+    robot = Robot(
+        "gear", ("a", "b", "c"), (turn, wild), (Capsule("c", (0, 0, 0), (1, 0, 0), 0.1),), (), ("turn",)
+    )
+    with pytest.raises(InvalidValue, match=r"'turn' must do so .* at most 1e\+09"):
+        ArmWorld(robot, Scene("empty", ()))
+
+
 @pytest.mark.parametrize(
     ("obstacle", "error", "words"),
     [

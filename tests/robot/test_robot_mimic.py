@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from evenroad.errors import InvalidValue
+from evenroad.robot.alter import with_limits
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.joint import Joint, Mimic
 from evenroad.robot.kinematics import joint_values
@@ -31,7 +31,7 @@ def follower(lower, upper, multiplier, offset=0.0, name="b"):
 
 
 def limits(*joints):
-    first = within_limits_of_mimics(joints, "arm.urdf")[0]
+    first = within_limits_of_mimics(joints)[0]
     return first.kind, first.lower, first.upper
 
 
@@ -44,9 +44,8 @@ def limits(*joints):
         ([follower(-9.0, 9.0, 1.0)], (-1.0, 1.0)),
         ([follower(-math.inf, math.inf, 5.0)], (-1.0, 1.0)),
         ([follower(-1.0, 1.0, 0.0, 0.5)], (-1.0, 1.0)),
-        ([follower(0.0, 0.0, 1.0, -0.25)], (0.25, 0.25)),
     ],
-    ids=["half as far", "the other way", "two of them", "wider", "turns on", "stays", "cannot move"],
+    ids=["half as far", "the other way", "two of them", "wider", "turns on", "stays"],
 )
 def test_limits_of_a_leader_are_narrowed_to_those_of_its_mimics(followers, expected):
     kind, *found = limits(leader(-1.0, 1.0), *followers)
@@ -70,11 +69,21 @@ def test_limits_written_alike_up_to_rounding_stay_as_they_are_written():
 
 
 @pytest.mark.parametrize(
-    "alone", [follower(2.0, 3.0, 1.0), follower(-1.0, 1.0, 0.0, 1.5), follower(2.5, 2.6, -1.0, 0.0)]
+    "alone",
+    [
+        follower(2.0, 3.0, 1.0),
+        follower(-1.0, 1.0, 0.0, 1.5),
+        follower(2.5, 2.6, -1.0, 0.0),
+        follower(0.0, 0.0, 1.0, -0.25),
+    ],
+    ids=["never within", "stays outside", "the other way", "cannot move"],
 )
-def test_a_mimic_that_is_always_outside_its_limits_is_an_error(alone):
-    with pytest.raises(InvalidValue, match=r"'b' in arm\.urdf follows 'a' out of its own limits"):
-        limits(leader(-1.0, 1.0), alone)
+def test_limits_of_a_mimic_that_leave_its_leader_no_way_to_go_are_not_heeded(alone):
+    assert limits(leader(-1.0, 1.0), alone) == ("revolute", -1.0, 1.0)
+
+
+def test_a_mirrored_finger_with_the_limits_of_the_other_does_not_lock_the_gripper():
+    assert limits(leader(0.0, 0.04), follower(0.0, 0.04, -1.0)) == ("revolute", 0.0, 0.04)
 
 
 @settings(max_examples=200, deadline=None)
@@ -108,3 +117,14 @@ def test_no_configuration_of_a_loaded_robot_takes_a_mimic_out_of_its_limits(tmp_
         assert values[name].min() >= -0.4 - 1e-9
         assert values[name].max() <= 0.3 + 1e-9
     np.testing.assert_allclose([q.min(), q.max()], [-0.15, 0.1], atol=1e-12)
+
+
+def test_limits_of_a_mimic_given_later_narrow_its_leader_too(tmp_path):
+    text = urdf(
+        *(link(name) for name in "xyz"),
+        joint("a", "x", "y"),
+        joint("b", "y", "z", inside="<limit lower='-1' upper='1'/><mimic joint='a'/>"),
+    )
+    narrow = with_limits(load_robot(write(tmp_path, text)), {"b": (-0.2, 0.3)})
+    first = next(each for each in narrow.joints if each.name == "a")
+    assert (first.lower, first.upper) == (-0.2, 0.3)

@@ -86,6 +86,13 @@ BROKEN = {
         BrokenFile,
         "has the key '1' twice, in lines 2 and 4",
     ),
+    "keys that are one to Python": (
+        "obstacles:\n  true: {shape: sphere, radius: 1}\n  1: {shape: sphere, radius: 2}\n",
+        BrokenFile,
+        "has the key '1' twice, in lines 2 and 3",
+    ),
+    "nested too deep": ("a: " + 100_000 * "[", BrokenFile, "nested more than 100 levels deep"),
+    "a tag that does not fit": ("obstacles: !!bool q", BrokenFile, "is not YAML"),
     "a section given twice": (GOOD + "states: {}\n", BrokenFile, "has the key 'states' twice"),
     "a size given twice": (
         "obstacles: {a: {shape: sphere, radius: 1, radius: 0.1}}",

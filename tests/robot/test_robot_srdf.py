@@ -75,6 +75,14 @@ def test_passive_joints_are_in_no_group(read):
     assert choose_group(arm, read("<passive_joint name='shoulder'/>")[1], None) == ("elbow", "grip")
 
 
+def test_a_virtual_joint_may_be_passive(read):
+    _, srdf = read(
+        "<virtual_joint name='world_joint' type='fixed' parent_frame='world' child_link='base'/>"
+        "<passive_joint name='world_joint'/><group name='g'><joint name='elbow'/></group>"
+    )
+    assert srdf.groups == {"g": ("elbow",)}
+
+
 def test_a_joint_locked_by_its_limits_is_in_no_group(tmp_path):
     locked = "<limit lower='0.25' upper='0.25' velocity='1' effort='1'/>"
     text = urdf(*map(link, "xyz"), joint("a", "x", "y", inside=locked), joint("b", "y", "z"))

@@ -147,10 +147,19 @@ def test_a_state_is_never_taken_for_the_posture_that_it_is_not(only_a):
 
 def test_a_state_cannot_hold_a_joint_outside_its_limits_nor_one_that_is_not_there(only_a):
     scene = Scene("s", (), states={"far": {"a": 0, "b": 99}, "odd": {"a": 0, "knee": 1}})
-    with pytest.raises(InvalidValue, match="puts joint 'b' at 99 rad, 98 rad outside its limits"):
+    with pytest.raises(
+        InvalidValue, match="the state 'far' puts joint 'b' at 99 rad, 98 rad outside its limits"
+    ):
         at_states(only_a, ("far", "0"), scene)
     with pytest.raises(UnknownName, match="joint of the state 'odd': 'knee'; known: a, b"):
         at_states(only_a, ("odd", "0"), scene)
+
+
+def test_a_state_beyond_a_limit_by_rounding_holds_the_joint_at_the_limit(only_a):
+    scene = Scene("s", (), states={"up": {"a": 0.5, "b": 1.0000001}})
+    robot = at_states(only_a, ("up", "0"), scene)
+    assert held_values(robot) == {"b": 1.0}
+    np.testing.assert_array_equal(configuration(robot, "up", scene), [0.5])
 
 
 def test_a_joint_with_blanks_in_its_name_can_be_given_by_name(tmp_path):

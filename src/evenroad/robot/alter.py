@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.robot.limits import require_within
+from evenroad.robot.mimic import within_limits_of_mimics
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
 
@@ -60,7 +61,7 @@ def in_scene(robot: Robot, scene: Scene) -> Robot:
 def with_limits(robot: Robot, limits: Mapping[str, tuple[float, float]]) -> Robot:
     """Return the robot with other limits, joint -> (lower, upper) [rad or m].
 
-    A continuous joint that gets limits becomes a revolute one.
+    A continuous joint that gets limits becomes a revolute one; limits of a mimic narrow those of its leader.
 
     Raises
     ------
@@ -88,4 +89,5 @@ def with_limits(robot: Robot, limits: Mapping[str, tuple[float, float]]) -> Robo
         else joint
         for joint in robot.joints
     )
-    return replace(robot, joints=joints)
+    # A leader goes no further than its mimics may.
+    return replace(robot, joints=tuple(within_limits_of_mimics(joints)))

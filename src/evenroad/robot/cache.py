@@ -20,7 +20,7 @@ from evenroad.robot.model import LinkBody, RobotModel
 from evenroad.robot.robot import Robot
 from evenroad.robot.urdf_xml import mesh_names, read_urdf_xml
 
-_FORMAT = 4
+_FORMAT = 5
 """Counted up when the same files would give another robot, or the files of this cache look different."""
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.errors import BrokenFile
 from evenroad.robot.joint import Joint, Mimic
 
 _ROUNDING = 1e-9
@@ -43,22 +43,17 @@ def with_direct_mimics(joints: Sequence[Joint], path: Path) -> list[Joint]:
     return [direct(joint) for joint in joints]
 
 
-def within_limits_of_mimics(joints: Sequence[Joint], path: Path) -> list[Joint]:
+def within_limits_of_mimics(joints: Sequence[Joint]) -> list[Joint]:
     """Return the joints with the leaders' limits narrowed to where all of their mimics stay within their own.
 
-    A continuous joint whose mimic has limits becomes a revolute one: it cannot turn on.
+    A continuous joint whose mimic has limits becomes a revolute one: it cannot turn on.  Limits of a mimic that would
+    leave its leader no way to go are taken for a slip and not heeded: a gripper's mirrored finger often has
+    those of the other finger, without the sign.
 
     Parameters
     ----------
     joints : sequence of Joint
         Mimics follow joints that follow none (see :func:`with_direct_mimics`).
-    path : Path
-        The file, for errors.
-
-    Raises
-    ------
-    InvalidValue
-        If no value of a leader keeps a mimic within its limits.
     """
     narrowed = {joint.name: joint for joint in joints}
     for follower in joints:
@@ -68,12 +63,8 @@ def within_limits_of_mimics(joints: Sequence[Joint], path: Path) -> list[Joint]:
         low, high = _range_for(follower, follower.mimic)
         lower = low if low > leader.lower + _ROUNDING else leader.lower
         upper = high if high < leader.upper - _ROUNDING else leader.upper
-        if lower > upper:
-            raise InvalidValue(
-                f"joint {follower.name!r} in {path} follows {leader.name!r} out of its own limits"
-                f" [{follower.lower:g}, {follower.upper:g}] for every value that is left to it,"
-                f" [{leader.lower:g}, {leader.upper:g}]"
-            )
+        if upper - lower <= _ROUNDING:
+            continue
         if (lower, upper) != (leader.lower, leader.upper):
             kind = "revolute" if leader.kind == "continuous" else leader.kind
             narrowed[leader.name] = replace(leader, kind=kind, lower=lower, upper=upper)

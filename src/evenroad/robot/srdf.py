@@ -63,6 +63,8 @@ def read_srdf(path: Path, urdf: Urdf) -> Srdf:
     passive = frozenset(
         _known("joint", _attribute(joint, "name", path), urdf.order, path)
         for joint in root.findall("passive_joint")
+        # A virtual joint may be passive, too.
+        if joint.get("name") not in virtual
     )
     reader = _Groups(elements, virtual, urdf, path)
     groups = {name: _in_order(reader.joints(name, ()) - passive, urdf) for name in elements}

@@ -9,9 +9,14 @@ import numpy.typing as npt
 
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.robot.alter import with_group
+from evenroad.robot.joint import Joint
 from evenroad.robot.kinematics import held_values
+from evenroad.robot.limits import require_within
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
+
+_SLACK = 1e-6
+"""Values that files write differ by rounding [rad or m]."""
 
 
 def named_states(robot: Robot, scene: Scene | None = None) -> dict[str, dict[str, float]]:
@@ -40,10 +45,12 @@ def at_states(robot: Robot, texts: Iterable[str], scene: Scene | None = None) ->
         If a state has a joint that the robot does not have.
     """
     states = named_states(robot, scene)
+    joints = {joint.name: joint for joint in robot.joints}
     held: dict[str, float] = {}
     said: dict[str, str] = {}
     for name in (text.strip() for text in texts):
-        for joint, value in _outside_group(robot, name, states.get(name, {})).items():
+        for joint, written in _outside_group(robot, name, states.get(name, {})).items():
+            value = _within_limits(joints[joint], written, name)
             if held.setdefault(joint, value) != value:
                 raise InvalidValue(
                     f"joint {joint!r} is not planned for, so it cannot go from {held[joint]:.6g} in the state"
@@ -69,12 +76,20 @@ def state_values(robot: Robot, name: str, scene: Scene | None = None) -> npt.NDA
         raise InvalidValue(f"the state {name!r} has no value for {', '.join(missing)}")
     held = held_values(robot)
     for joint, value in _outside_group(robot, name, values).items():
-        if value != held[joint]:
+        if abs(value - held[joint]) > _SLACK:
             raise InvalidValue(
                 f"the state {name!r} has joint {joint!r} at {value:.6g}, where {robot.name!r} holds it at"
                 f" {held[joint]:.6g}: to hold it as the state does, see evenroad.robot.at_states"
             )
     return np.array([values[joint] for joint in robot.group], dtype=np.float64)
+
+
+def _within_limits(joint: Joint, value: float, state: str) -> float:
+    """Return the value, brought to a limit that it exceeds by no more than rounding."""
+    nearest = min(max(value, joint.lower), joint.upper)
+    if abs(value - nearest) > _SLACK:
+        require_within(joint, value, f"the state {state!r}")
+    return nearest
 
 
 def _outside_group(robot: Robot, name: str, values: Mapping[str, float]) -> dict[str, float]:

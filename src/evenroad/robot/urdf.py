@@ -87,7 +87,7 @@ def read_urdf(path: Path) -> Urdf:
     return Urdf(
         name=parsed.name,
         links=(first, *(joint.child for joint in ordered)),
-        joints=tuple(within_limits_of_mimics(with_direct_mimics(ordered, path), path)),
+        joints=tuple(within_limits_of_mimics(with_direct_mimics(ordered, path))),
         order=tuple(joint.name for joint in joints),
         geometries=tuple(
             _geometry(link.name, collision, path) for link in parsed.links for collision in link.collisions

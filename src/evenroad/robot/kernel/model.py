@@ -109,12 +109,18 @@ def arm_model(robot: Robot, scene: Scene) -> ArmModel:
     ------
     InvalidValue
         If a capsule or an obstacle has a size that is not a finite number > 0, the robot has no capsules, a length is
-        larger than 1e6 m (but for boxes along the axes) or an angle larger than 1e9 rad.
+        larger than 1e6 m (but for boxes along the axes), or an angle, or what a mimic multiplies by or adds, larger
+        than 1e9.
     UnknownName
         If capsules, pairs or allowed contacts name a link or an obstacle that is not there.
     """
     tree = moving_tree(robot)
     for frame in tree.frames:
+        if max(abs(frame.multiplier), abs(frame.offset)) > _MOST_TURNED:
+            raise InvalidValue(
+                f"what follows joint {robot.group[frame.coordinate]!r} must do so with a multiplier and an offset of"
+                f" at most {_MOST_TURNED:g}, got {frame.multiplier:g} and {frame.offset:g}"
+            )
         if not frame.slides and largest_value(frame, robot) > _MOST_TURNED:
             raise InvalidValue(
                 f"what joint {robot.group[frame.coordinate]!r} moves turns by up to"
