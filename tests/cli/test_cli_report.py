@@ -39,6 +39,15 @@ def test_the_fair_suite_is_summed_up_by_sampler(run, tmp_path):
     assert "+0.0" in out
 
 
+def test_rows_that_wait_for_the_store_are_named(run, tmp_path):
+    store = tmp_path / "results.db"
+    write_store(store, made_up("maze-1", runs=3))
+    (tmp_path / "results.db.rescue").touch()
+    code, out, _ = run("report", "results.db", "-o", "out")
+    assert code == 0
+    assert "not in it: the rows in" in " ".join(out.split())
+
+
 def test_only_some_problems_may_be_asked_for(run, tmp_path):
     write_store(tmp_path / "results.db", made_up("maze-1", runs=5) + made_up("maze-2", runs=5))
     code, out, _ = run("report", "results.db", "-o", "out", "--only", "maze-2,")
