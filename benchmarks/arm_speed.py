@@ -1,10 +1,10 @@
-"""Configurations and motions a second of arms, on one core; beside Klamp't where it is installed.
+"""Configurations and motions a second of arms, on one core; beside Klamp't, coal and pinocchio where there are any.
 
     python -m benchmarks.arm_speed
 
 Rates are the best of several repeats: what else runs on the machine only ever takes away.  Motions are between
 random free configurations, blocked ones included, at 0.05 rad.  Klamp't gets triangles made of our capsules and
-boxes, not the maker's meshes, and is asked in the same process.
+boxes, not the maker's meshes; coal and pinocchio get the capsules.  All are asked in the same process.
 """
 
 from __future__ import annotations
@@ -26,7 +26,10 @@ from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.robot.kernel import batch
 from evenroad.robot.load import load_robot
+from evenroad.robot.reference.coal_world import CoalWorld
+from evenroad.robot.reference.engine_world import EngineWorld
 from evenroad.robot.reference.klampt_world import KlamptWorld
+from evenroad.robot.reference.pinocchio_world import PinocchioWorld
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle, Scene
 from evenroad.robot.scene_file import load_scene
@@ -116,20 +119,20 @@ def measure_certified(world: ArmWorld) -> None:
     )
 
 
-def measure_klampt(world: ArmWorld, rates: tuple[float, float]) -> None:
-    """Print Klamp't's rates on the same configurations and motions, and ours as multiples of them."""
+def measure_engine(engine: type[EngineWorld], world: ArmWorld, rates: tuple[float, float]) -> None:
+    """Print the rates of another engine on the same configurations and motions, and ours as multiples of them."""
     try:
-        klampt = KlamptWorld(world.robot, world.scene)
+        other = engine(world.robot, world.scene)
     except NotAvailable as error:
         print(error)
         return
     q = world.space.from_cube(np.random.default_rng(0).random((10_000, world.space.dim)))
     a, b = (end[:400] for end in motions(world, 4_000))
-    rate = len(q) / seconds(partial(klampt.valid, q), 3)
-    motion_rate = len(a) / seconds(partial(klampt.motion_valid, a, b), 3)
-    ours, theirs = world.valid(q), klampt.valid(q)
+    rate = len(q) / seconds(partial(other.valid, q), 3)
+    motion_rate = len(a) / seconds(partial(other.motion_valid, a, b), 3)
+    ours, theirs = world.valid(q), other.valid(q)
     print(
-        f"Klamp't, scene a: {rate / 1e3:.1f} k configurations/s, {motion_rate:.0f} motions/s; ours are"
+        f"{engine.__name__}, scene a: {rate / 1e3:.1f} k configurations/s, {motion_rate:.0f} motions/s; ours are"
         f" {rates[0] / rate:.0f} and {rates[1] / motion_rate:.0f} times that; verdicts differ for"
         f" {(ours != theirs).mean():.2%}, ours free and theirs not: {(ours & ~theirs).sum()}"
     )
@@ -184,7 +187,8 @@ def main() -> None:
     measure("UR5, 100 random boxes", ArmWorld(wide.robot, random_boxes()))
     measure_certified(wide)
     measure_call(wide)
-    measure_klampt(narrow, rates)
+    for engine in (KlamptWorld, CoalWorld, PinocchioWorld):
+        measure_engine(engine, narrow, rates)
     print(f"load average of the last minute: {os.getloadavg()[0]:.1f}")
 
 

@@ -6,7 +6,6 @@ import signal
 import subprocess
 import sys
 import time
-from dataclasses import fields
 
 import dask
 import distributed  # noqa: F401  (its defaults must be there before one of them is changed)
@@ -14,12 +13,12 @@ import pytest
 
 from evenroad.bench import schedulers
 from evenroad.bench.executors import in_process
-from evenroad.bench.rows import Labels
 from evenroad.bench.runner import run_tasks
 from evenroad.bench.schedulers import dask_workers
 from evenroad.bench.store import open_store, read_rows
 from evenroad.bench.task import Task
 from evenroad.errors import InvalidValue, NotAvailable
+from tests.bench.tables import table_of
 
 PATIENCE = "3s"
 """For results that a dead worker has; Dask's own 30 s are long for a test."""
@@ -75,16 +74,6 @@ def _address(file, scheduler):
     raise AssertionError("the scheduler wrote no file")
 
 
-def _table(path):
-    rows = read_rows(path)
-    columns = {}
-    for field in fields(rows):
-        if field.name not in ("seconds", "worker"):
-            column = getattr(rows, field.name)
-            columns[field.name] = column.values().tolist() if isinstance(column, Labels) else column.tolist()
-    return repr(columns)
-
-
 def _wait_for(count, workers, executor):
     for _ in range(600):
         if workers.count(executor) >= count:
@@ -113,7 +102,7 @@ def test_a_cluster_that_loses_a_worker_gives_the_same_table_as_one_process(clust
     assert len(read_rows(tmp_path / "dask.db").worker.present()) == 2
     with open_store(tmp_path / "alone.db") as store:
         run_tasks("test", TASKS, store, in_process())
-    assert _table(tmp_path / "dask.db") == _table(tmp_path / "alone.db")
+    assert table_of(tmp_path / "dask.db") == table_of(tmp_path / "alone.db")
 
 
 def test_a_scheduler_that_goes_away_ends_the_run_and_keeps_its_rows(cluster, tmp_path, monkeypatch):

@@ -5,7 +5,7 @@ import signal
 import threading
 import time
 from concurrent.futures import BrokenExecutor, Future, ThreadPoolExecutor
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,12 +14,12 @@ from evenroad.bench import chunks
 from evenroad.bench.chunks import Chunker, Done, run_chunk
 from evenroad.bench.executors import Workers, _Processes, _SerialExecutor, in_process, processes
 from evenroad.bench.outcome import Outcome
-from evenroad.bench.rows import Labels
 from evenroad.bench.runner import run_tasks
 from evenroad.bench.store import open_store, read_rows
 from evenroad.bench.task import Task
 from evenroad.bench.time_limit import LONGEST_LIMIT
 from evenroad.errors import BrokenFile, InvalidValue, WorkerLost
+from tests.bench.tables import table_of
 
 TASKS = tuple(
     Task(problem, 0, sampler, 64, rule, "stock", run, 3)
@@ -40,17 +40,6 @@ def path(tmp_path):
 def _run(path, tasks=TASKS, workers=None, **options):
     with open_store(path) as store:
         return run_tasks("test", tasks, store, workers or in_process(), **options)
-
-
-def _table(path):
-    """Return all columns but the clock and the worker."""
-    rows = read_rows(path)
-    columns = {}
-    for field in fields(rows):
-        if field.name not in ("seconds", "worker"):
-            column = getattr(rows, field.name)
-            columns[field.name] = column.values().tolist() if isinstance(column, Labels) else column.tolist()
-    return repr(columns)
 
 
 class _Executor(_SerialExecutor):
@@ -98,16 +87,16 @@ def test_a_stopped_run_keeps_its_rows_and_goes_on(path, tmp_path):
     report = _run(path)
     assert (report.found, report.finished) == (kept, len(TASKS) - kept)
     _run(tmp_path / "whole.db")
-    assert _table(path) == _table(tmp_path / "whole.db")
+    assert table_of(path) == table_of(tmp_path / "whole.db")
 
 
-def test_one_process_two_processes_and_threads_give_the_same_table(path, tmp_path):
+def test_one_process_two_processes_and_threads_give_the_sametable_of(path, tmp_path):
     _run(path)
     _run(tmp_path / "two.db", workers=processes(2))
     _run(tmp_path / "threads.db", workers=Workers(lambda: ThreadPoolExecutor(3), lambda executor: 3))
     _run(tmp_path / "backwards.db", tasks=TASKS[::-1])
     for other in ("two.db", "threads.db", "backwards.db"):
-        assert _table(tmp_path / other) == _table(path)
+        assert table_of(tmp_path / other) == table_of(path)
     assert len(read_rows(tmp_path / "two.db").worker.present()) == 2
 
 
@@ -171,7 +160,7 @@ def test_a_worker_that_is_killed_from_outside_costs_nothing(path, tmp_path):
     report = _run(path, tasks, Workers(make, lambda executor: 2), callback=kill_one)
     assert (report.finished, report.failures) == (len(tasks), 0)
     _run(tmp_path / "calm.db", tasks)
-    assert _table(path) == _table(tmp_path / "calm.db")
+    assert table_of(path) == table_of(tmp_path / "calm.db")
 
 
 def test_workers_that_die_again_and_again_end_the_run_with_advice(path):

@@ -165,3 +165,19 @@ def random_scene(seed, count=12, spread=0.8, sizes=(0.05, 0.2), clear=0.3):
         if np.linalg.norm(place) > clear:
             obstacles.append(Obstacle(f"obstacle{len(obstacles)}", shape, size, tuple(place), rotation))
     return Scene(f"random{seed}", tuple(obstacles))
+
+
+def edge(world, q, most=2_000):
+    """Return configurations that a world calls free and others, each next to one, that it calls blocked: by bisection.
+
+    Random configurations are never so near to contact that a rounding decides; these all are.
+    """
+    valid = world.valid(q)
+    count = min(valid.sum(), (~valid).sum(), most)
+    assert count > 50
+    free, blocked = q[valid][:count], q[~valid][:count]
+    for _ in range(60):
+        middle = 0.5 * (free + blocked)
+        valid = world.valid(middle)[:, np.newaxis]
+        free, blocked = np.where(valid, middle, free), np.where(valid, blocked, middle)
+    return free, blocked

@@ -18,7 +18,7 @@ from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle, Scene
 from evenroad.testing import WorldContract
 from evenroad.world import FunctionWorld
-from tests.robot.kernel_arms import STRAIGHT, Z, box_scene, random_scene, random_tree, ur5
+from tests.robot.kernel_arms import STRAIGHT, Z, box_scene, edge, random_scene, random_tree, ur5
 
 HOME = np.array([0.0, -math.pi / 2, 0.0, -math.pi / 2, 0.0])
 INSIDE = np.array([-0.1216, -0.6993, 1.2160, -2.1070, 2.3023])
@@ -137,14 +137,7 @@ def test_explain_has_a_reason_for_what_only_rounding_brings_into_contact():
     floor = Obstacle("floor", "box", (2000.0, 2000.0, 1.0), (-0.7, 0.0, -0.9), tilt)
     world = ArmWorld(ur5(math.pi, joints=5), Scene("hill", (floor,)), backend="lanes")
     q = world.space.from_cube(np.random.default_rng(12).random((500, 5)))
-    valid = world.valid(q)
-    count = min(valid.sum(), (~valid).sum())
-    assert count > 50
-    free, blocked = q[valid][:count], q[~valid][:count]
-    for _ in range(50):
-        middle = 0.5 * (free + blocked)
-        valid = world.valid(middle)[:, np.newaxis]
-        free, blocked = np.where(valid, middle, free), np.where(valid, blocked, middle)
+    _, blocked = edge(world, q)
     assert all("touches" in world.explain(row) for row in blocked)
 
 

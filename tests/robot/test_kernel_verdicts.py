@@ -17,6 +17,7 @@ from tests.robot.kernel_arms import (
     Y,
     Z,
     box_scene,
+    edge,
     random_rotation,
     random_scene,
     random_tree,
@@ -57,24 +58,15 @@ def test_verdicts_are_the_oracles(arm, backend):
     np.testing.assert_array_equal(free[clear], apart[clear] > 0.0)
 
 
-def edge(robot, scene, q):
-    """Configurations that the lanes call free, each next to one that they call blocked: found by bisection."""
-    world = ArmWorld(robot, scene, backend="lanes")
-    valid = world.valid(q)
-    count = min(valid.sum(), (~valid).sum(), 2_000)
-    assert count > 50
-    free, blocked = q[valid][:count], q[~valid][:count]
-    for _ in range(60):
-        middle = 0.5 * (free + blocked)
-        valid = world.valid(middle)[:, np.newaxis]
-        free, blocked = np.where(valid, middle, free), np.where(valid, blocked, middle)
-    return free
+def free_edge(robot, scene, q):
+    """Configurations that the lanes call free, each next to one that they call blocked."""
+    return edge(ArmWorld(robot, scene, backend="lanes"), q)[0]
 
 
 def test_single_precision_is_never_optimistic(arm):
     """Random configurations are never so near to contact that a rounding decides: these all are."""
     robot, scene, q, _ = arm
-    apart = clearance(robot, scene, edge(robot, scene, q))
+    apart = clearance(robot, scene, free_edge(robot, scene, q))
     assert (apart > 0.0).all()
     assert np.median(apart) < BAND
 
@@ -96,7 +88,7 @@ def test_large_angles_cost_no_digits(robot):
     scene = random_scene(5)
     space = ArmWorld(robot, scene).space
     q = space.from_cube(np.random.default_rng(4).random((5_000, space.dim)))
-    assert (clearance(robot, scene, edge(robot, scene, q)) > 0.0).all()
+    assert (clearance(robot, scene, free_edge(robot, scene, q)) > 0.0).all()
 
 
 def test_a_turned_floor_of_kilometres_is_never_called_farther_than_it_is():
@@ -104,7 +96,7 @@ def test_a_turned_floor_of_kilometres_is_never_called_farther_than_it_is():
     # Its middle lies 850 m down the hill; its face passes 0.4 m below the robot.
     scene = Scene("hill", (Obstacle("floor", "box", (2000.0, 2000.0, 1.0), (679.7, 0.0, -510.9), tilt),))
     q = ArmWorld(ur5(), scene).space.from_cube(np.random.default_rng(6).random((4_000, 6)))
-    assert (clearance(ur5(), scene, edge(ur5(), scene, q)) > 0.0).all()
+    assert (clearance(ur5(), scene, free_edge(ur5(), scene, q)) > 0.0).all()
 
 
 @pytest.mark.parametrize("turn", [1e-7, 1e-5, 1e-4, 6e-4, 1e-3, 2e-3, 1e-2])
@@ -128,7 +120,7 @@ def test_thin_and_nearly_parallel_rods_are_never_called_free_where_they_touch(tu
     robot, scene = Robot("rods", links, joints, rods, (("base", "rod"),), group), Scene("empty", ())
     space = ArmWorld(robot, scene).space
     q = space.from_cube(np.random.default_rng(5).random((10_000, 5)))
-    assert (clearance(robot, scene, edge(robot, scene, q)) > 0.0).all()
+    assert (clearance(robot, scene, free_edge(robot, scene, q)) > 0.0).all()
 
 
 def test_what_is_free_touches_nothing_as_true_capsules(arm):

@@ -11,8 +11,7 @@ from collections.abc import Sequence
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run ``evenroad`` and return its exit code: 0 solved, 1 any other answer, 2 bad input, 130 interrupted."""
     if arguments is None:
-        # A process of our own: imports make hundreds of thousands of objects and no garbage, and looking for some
-        # takes a twentieth of the time of a plan.
+        # A process of our own: imports make very many objects and no garbage, and looking for some takes time.
         gc.set_threshold(100_000, 50, 50)
     from evenroad.cli.verbs import INTERRUPTED, run
 

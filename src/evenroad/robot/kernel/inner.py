@@ -1,4 +1,4 @@
-"""How functions are compiled that only compiled code calls: without what Python would call, a fifth of the time."""
+"""How functions are compiled that only compiled code calls: sooner, without what Python would call."""
 
 from __future__ import annotations
 

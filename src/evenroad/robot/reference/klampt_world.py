@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -11,62 +11,37 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.errors import NotAvailable
-from evenroad.robot.arm_world import joint_space
-from evenroad.robot.geometry import Geometry
+from evenroad._extras import require_extra
+from evenroad.errors import BrokenFile
 from evenroad.robot.kinematics import joint_values
-from evenroad.robot.reference.bodies import sound_geometries
+from evenroad.robot.reference.engine_world import EngineWorld
 from evenroad.robot.reference.surface import link_surfaces, shape_surface
 from evenroad.robot.reference.urdf_text import as_urdf
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
-from evenroad.space import JointSpace
-from evenroad.world import FunctionWorld
 from evenroad.world.mesh import TriangleMesh
 from evenroad.world.mesh.triangle_mesh import merged
 
 
 @dataclass(frozen=True, eq=False)
-class KlamptWorld:
-    """Configurations in which Klamp't finds no contact of triangles; tens of thousands a second.
+class KlamptWorld(EngineWorld):
+    """Configurations in which Klamp't finds no contact of triangles.
 
     Klamp't reads joints and links from files that we write for it, and each link's triangles are counted after
     that: a body that it does not find (``package://``) it takes for empty, and every check passes.  Meshes and boxes
     are exact; round shapes are triangles within them, which lose less than 0.9 % of the radius.  Obstacles that
     are tested against the same links are one mesh.  All are surfaces: a link wholly inside of a closed obstacle
-    does not meet it.
-
-    Parameters
-    ----------
-    robot, scene, geometries, resolution
-        As for :class:`evenroad.robot.reference.coal_world.CoalWorld`.
-
-    Raises
-    ------
-    NotAvailable
-        If Klamp't, or what reads a mesh, is not installed.
-    BrokenFile, InvalidValue
-        As for CoalWorld.
+    does not meet it.  Parameters and errors are those of :class:`EngineWorld`.
     """
 
-    robot: Robot
-    scene: Scene
-    geometries: Sequence[Geometry] | None = None
-    resolution: float = 0.05
-    _states: FunctionWorld = field(init=False, repr=False)
     _world: Any = field(init=False, repr=False)
     _model: Any = field(init=False, repr=False)
     _bodies: list[tuple[Any, list[Any]]] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        try:
-            import klampt
-        except ImportError as error:
-            raise NotAvailable(
-                f"Klamp't needs the extra: pip install 'evenroad[klampt]' ({error})"
-            ) from error
-        geometries = sound_geometries(self.robot, self.geometries)
-        surfaces = link_surfaces(geometries)
+        klampt = require_extra("klampt", "klampt", "KlamptWorld")
+        super().__post_init__()
+        surfaces = link_surfaces(self._shapes)
         world = _read(klampt, self.robot, surfaces)
         model = world.robot(0)
         meshes = {
@@ -77,33 +52,20 @@ class KlamptWorld:
         for link, surface in surfaces.items():
             geometry = model.link(link).geometry()
             read = geometry.numElements()
-            assert read == len(surface.triangles), f"Klamp't read {read} triangles for {link!r}"
+            if read != len(surface.triangles):
+                raise BrokenFile(
+                    f"Klamp't read {read} of {len(surface.triangles)} triangles of {link!r}: the others would never"
+                    " collide"
+                )
             bodies.append((geometry, [mesh for links, mesh in meshes.items() if link in links]))
         pairs = {frozenset(pair) for pair in self.robot.pairs}
         for i, a in enumerate(self.robot.links):
             for b in self.robot.links[:i]:
                 wanted = frozenset((a, b)) in pairs and a in surfaces and b in surfaces
                 model.enableSelfCollision(model.link(a).getIndex(), model.link(b).getIndex(), wanted)
-        states = FunctionWorld(joint_space(self.robot), self._free, self.resolution)
-        object.__setattr__(self, "geometries", geometries)
-        object.__setattr__(self, "_states", states)
         # The robot is a part of Klamp't's world and is lost with it.
-        object.__setattr__(self, "_world", world)
-        object.__setattr__(self, "_model", model)
-        object.__setattr__(self, "_bodies", bodies)
-
-    @property
-    def space(self) -> JointSpace:
-        """The ranges of the group's joints."""
-        return self._states.space  # type: ignore[return-value]
-
-    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-        """Return which configurations, (n, dim), are within the limits and touch nothing: (n,)."""
-        return self._states.valid(q)
-
-    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-        """Return which motions, two (m, dim) arrays, are free at states at most `resolution` apart: (m,)."""
-        return self._states.motion_valid(a, b)
+        for name, value in (("_world", world), ("_model", model), ("_bodies", bodies)):
+            object.__setattr__(self, name, value)
 
     def _free(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
         model = self._model
@@ -144,7 +106,7 @@ def _read(klampt: Any, robot: Robot, surfaces: Mapping[str, TriangleMesh]) -> An
         file = Path(folder) / "robot.urdf"
         file.write_text(as_urdf(robot, meshes))
         if not world.readFile(str(file)):
-            raise AssertionError(f"Klamp't does not read the joints of {robot.name!r}")
+            raise BrokenFile(f"Klamp't does not read the joints of {robot.name!r}")
     return world
 
 
@@ -165,5 +127,6 @@ def _mesh(klampt: Any, surface: TriangleMesh) -> Any:
 def _geometry(klampt: Any, surface: TriangleMesh) -> Any:
     geometry = klampt.Geometry3D()
     geometry.setTriangleMesh(_mesh(klampt, surface))
-    assert not geometry.empty()
+    if geometry.empty():
+        raise BrokenFile("Klamp't took a surface of triangles for empty: it would never collide")
     return geometry

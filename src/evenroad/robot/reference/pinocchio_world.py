@@ -9,80 +9,42 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.errors import NotAvailable
-from evenroad.robot.arm_world import joint_space
+from evenroad._extras import require_extra
 from evenroad.robot.geometry import Geometry
 from evenroad.robot.kinematics import joint_values
-from evenroad.robot.reference.bodies import sound_geometries
 from evenroad.robot.reference.coal_shapes import asking_for_contacts, coal_shape, placement
 from evenroad.robot.reference.coal_world import tests_of
+from evenroad.robot.reference.engine_world import EngineWorld
 from evenroad.robot.reference.urdf_text import as_urdf
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle, Scene
-from evenroad.space import JointSpace
-from evenroad.world import FunctionWorld
 from evenroad.world.mesh.trees import require_coal
 
 
 @dataclass(frozen=True, eq=False)
-class PinocchioWorld:
-    """Configurations that pinocchio finds free of contacts; some hundred thousand a second.
+class PinocchioWorld(EngineWorld):
+    """Configurations that pinocchio finds free of contacts, a batch at a time.
 
     Pinocchio reads the tree of joints from a URDF that we write for it and places the links by its own kinematics, so
     that its verdicts check ours from end to end.  Shapes are those of
-    :class:`evenroad.robot.reference.coal_world.CoalWorld`, tested by the same coal.
-
-    Parameters
-    ----------
-    robot, scene, geometries, resolution
-        As for CoalWorld.
-
-    Raises
-    ------
-    NotAvailable
-        If pinocchio, or what reads a mesh, is not installed.
-    BrokenFile, InvalidValue
-        As for CoalWorld.
+    :class:`evenroad.robot.reference.coal_world.CoalWorld`, tested by the same coal.  Parameters and errors are those
+    of :class:`EngineWorld`.
     """
 
-    robot: Robot
-    scene: Scene
-    geometries: Sequence[Geometry] | None = None
-    resolution: float = 0.05
-    _states: FunctionWorld = field(init=False, repr=False)
     _pinocchio: Any = field(init=False, repr=False)
     _model: Any = field(init=False, repr=False)
     _pool: Any = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        pinocchio = require_pinocchio()
-        geometries = sound_geometries(self.robot, self.geometries)
+        pinocchio = require_extra("pinocchio", "pinocchio", "PinocchioWorld")
+        super().__post_init__()
         model = pinocchio.buildModelFromXML(as_urdf(self.robot))
-        bodies = _bodies(pinocchio, model, self.robot, self.scene, geometries)
+        bodies = _bodies(pinocchio, model, self.robot, self.scene, self._shapes)
         pool = pinocchio.BroadPhaseManagerPool_DynamicAABBTreeCollisionManager(model, bodies, 1)
         for request in pool.getBroadPhaseManager(0).getGeometryData().collisionRequests:
             asking_for_contacts(request)
-        for name, value in (
-            ("geometries", geometries),
-            ("_states", FunctionWorld(joint_space(self.robot), self._free, self.resolution)),
-            ("_pinocchio", pinocchio),
-            ("_model", model),
-            ("_pool", pool),
-        ):
+        for name, value in (("_pinocchio", pinocchio), ("_model", model), ("_pool", pool)):
             object.__setattr__(self, name, value)
-
-    @property
-    def space(self) -> JointSpace:
-        """The ranges of the group's joints."""
-        return self._states.space  # type: ignore[return-value]
-
-    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-        """Return which configurations, (n, dim), are within the limits and touch nothing: (n,)."""
-        return self._states.valid(q)
-
-    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-        """Return which motions, two (m, dim) arrays, are free at states at most `resolution` apart: (m,)."""
-        return self._states.motion_valid(a, b)
 
     def link_poses(self, q: npt.ArrayLike) -> npt.NDArray[np.float64]:
         """Return pinocchio's frames of all links in that of the root, (n, links, 4, 4), for (n, dim).
@@ -97,23 +59,6 @@ class PinocchioWorld:
         # One thread, as all our timings; True: no more contacts than the first of a configuration.
         touching = self._pinocchio.computeCollisionsInParallel(1, self._pool, coordinates.T.copy(), True)
         return ~np.asarray(touching, dtype=np.bool_)
-
-
-def require_pinocchio() -> Any:
-    """Return the module pinocchio.
-
-    Raises
-    ------
-    NotAvailable
-        If it is not installed.
-    """
-    try:
-        import pinocchio
-    except ImportError as error:
-        raise NotAvailable(
-            f"pinocchio needs the extra: pip install 'evenroad[pinocchio]' ({error})"
-        ) from error
-    return pinocchio
 
 
 def placements(

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from evenroad.errors import NotAvailable
+from evenroad._extras import require_extra
+from evenroad.errors import BrokenFile
 from evenroad.world.mesh.triangle_mesh import TriangleMesh
 
 
@@ -16,19 +17,24 @@ def require_coal() -> Any:
     NotAvailable
         If it is not installed.
     """
-    try:
-        import coal
-    except ImportError as error:
-        raise NotAvailable(f"meshes need the extra: pip install 'evenroad[mesh]' ({error})") from error
-    return coal
+    return require_extra("coal", "mesh", "checking meshes")
 
 
 def tree_of(coal: Any, mesh: TriangleMesh) -> Any:
-    """Return coal's tree of oriented boxes over the triangles of a mesh; its surface as it is, nothing made convex."""
+    """Return coal's tree of oriented boxes over the triangles of a mesh; its surface as it is, nothing made convex.
+
+    Raises
+    ------
+    BrokenFile
+        If coal leaves triangles out.
+    """
     tree = coal.BVHModelOBBRSS()
     tree.beginModel(len(mesh.triangles), len(mesh.vertices))
     tree.addVertices(mesh.vertices)
     tree.addTriangles(mesh.triangles)
     tree.endModel()
-    assert tree.num_tris == len(mesh.triangles) > 0, "a tree without triangles would never collide"
+    if not tree.num_tris == len(mesh.triangles) > 0:
+        raise BrokenFile(
+            f"coal took {tree.num_tris} of {len(mesh.triangles)} triangles: the others would never collide"
+        )
     return tree
