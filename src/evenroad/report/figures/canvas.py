@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import io
-from typing import Literal
+from collections.abc import Callable
+from typing import Any, Literal
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -18,6 +19,22 @@ def new_figure(
     figure = Figure(figsize=(width, height), dpi=DPI, layout=layout)
     FigureCanvasAgg(figure)
     return figure
+
+
+def add_legend(figure: Figure, order: Callable[[str], Any]) -> None:
+    """Name what any panel of the figure shows, once, at its right, sorted by `order` of the names.
+
+    A sampler may have nothing to show in one of the panels.
+    """
+    handles = {
+        name: handle
+        for axes in figure.axes
+        for handle, name in zip(*axes.get_legend_handles_labels(), strict=True)
+    }
+    names = sorted(handles, key=order)
+    figure.legend(
+        [handles[name] for name in names], names, loc="outside right center", frameon=False, fontsize=9
+    )
 
 
 def as_png(figure: Figure) -> bytes:

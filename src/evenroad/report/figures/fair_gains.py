@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from evenroad.report.fair import Pooled
-from evenroad.report.figures.canvas import new_figure
+from evenroad.report.figures.canvas import add_legend, new_figure
 from evenroad.report.palette import look_of, sampler_place
 
 PANELS = ("generator", "dimension", "rule")
@@ -35,15 +35,7 @@ def draw_fair_gains(pooled: Mapping[str, Sequence[Pooled]]) -> Figure:
         found = [each for each in pooled[grouping] if grouping != "dimension" or each.group[0].isdigit()]
         _draw_panel(axes, grouping, found)
     panels[0].set_ylabel("points above uniform")
-    handles = {
-        name: handle
-        for axes in panels
-        for handle, name in zip(*axes.get_legend_handles_labels(), strict=True)
-    }
-    names = sorted(handles, key=sampler_place)
-    figure.legend(
-        [handles[name] for name in names], names, loc="outside right center", frameon=False, fontsize=9
-    )
+    add_legend(figure, sampler_place)
     return figure
 
 

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from evenroad.report.cells import Cell
-from evenroad.report.figures.canvas import new_figure
+from evenroad.report.figures.canvas import add_legend, new_figure
 from evenroad.report.figures.curves import draw_with_intervals
 from evenroad.report.runs import Question
 
@@ -49,14 +49,5 @@ def draw_maze_success(cells: Sequence[Cell]) -> Figure:
         axes.grid(alpha=0.3)
     panels[0].set_ylim(-3, 103)
     panels[0].set_ylabel("success [%]")
-    # A sampler may have no set in one of the mazes: names come from all panels.
-    handles = {
-        name: handle
-        for axes in panels
-        for handle, name in zip(*axes.get_legend_handles_labels(), strict=True)
-    }
-    names = [sampler for sampler in samplers if sampler in handles]
-    figure.legend(
-        [handles[name] for name in names], names, loc="outside right center", frameon=False, fontsize=9
-    )
+    add_legend(figure, samplers.index)
     return figure
