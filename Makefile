@@ -56,7 +56,7 @@ bench: $(VENV)/.peers
 	$(BIN)/evenroad report out/bench/fair.db -o out/bench/fair
 
 bank: $(VENV)/.dev
-	$(BIN)/python -m evenroad.points.bank.build
+	$(BIN)/python -m evenroad.research.training.bank
 
 mazes: $(VENV)/.core
 	$(BIN)/python tools/draw_mazes.py

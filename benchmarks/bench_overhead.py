@@ -15,12 +15,12 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from evenroad.bench.chunks import Done
-from evenroad.bench.executors import Workers, _Processes, _SerialExecutor
-from evenroad.bench.outcome import Outcome
-from evenroad.bench.runner import run_tasks
-from evenroad.bench.store import open_store, read_rows
-from evenroad.bench.task import Task
+from evenroad.research.bench.chunks import Done
+from evenroad.research.bench.executors import Workers, _Processes, _SerialExecutor
+from evenroad.research.bench.outcome import Outcome
+from evenroad.research.bench.runner import run_tasks
+from evenroad.research.bench.store import open_store, read_rows
+from evenroad.research.bench.task import Task
 
 SAMPLERS = ("uniform", "halton paper-blocks", "sobol scrambled", "lattice", "hickernell", "even", "korobov")
 

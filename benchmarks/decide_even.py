@@ -38,13 +38,13 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.nested_k import smallest_k
-from evenroad.bench.problems.fair.cubes import cube_problem
-from evenroad.bench.problems.fair.sizes import DIFFICULTIES, SIZES
-from evenroad.bench.problems.fair.streams import Family, Stream
 from evenroad.points import draw
 from evenroad.points.bank import open_bank
 from evenroad.points.bank.bank import Cell
-from evenroad.points.optimise import anneal_many
+from evenroad.research.problems.fair.cubes import cube_problem
+from evenroad.research.problems.fair.sizes import DIFFICULTIES, SIZES
+from evenroad.research.problems.fair.streams import Family, Stream
+from evenroad.research.training import anneal_many
 
 DIMENSIONS = (5, 3, 2, 4, 7, 10)
 COUNTS = (128, 256, 512)

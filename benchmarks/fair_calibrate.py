@@ -25,11 +25,11 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.nested_k import NEVER, smallest_k
-from evenroad.bench.problem import Problem
-from evenroad.bench.problems.fair.cubes import BALLS, BOUNDED_AXES, BOXES
-from evenroad.bench.problems.fair.instance import make_instance
-from evenroad.bench.problems.fair.sizes import CALIBRATED_AT
-from evenroad.bench.problems.fair.streams import Family, Stream
+from evenroad.research.bench.problem import Problem
+from evenroad.research.problems.fair.cubes import BALLS, BOUNDED_AXES, BOXES
+from evenroad.research.problems.fair.instance import make_instance
+from evenroad.research.problems.fair.sizes import CALIBRATED_AT
+from evenroad.research.problems.fair.streams import Family, Stream
 
 DENSE_WORLDS = {Family.SE3: 10}
 """Family -> worlds for the dense roadmap, where neighbours take seconds; 100 elsewhere."""

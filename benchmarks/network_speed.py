@@ -20,8 +20,8 @@ import time
 import numpy as np
 
 from evenroad.points.measures import HICKERNELL
-from evenroad.points.network import NetworkConfig, refine, train
 from evenroad.points.pointset import PointSet
+from evenroad.research.network import NetworkConfig, refine, train
 
 COUNTS = (128, 512, 1024)
 D = 10

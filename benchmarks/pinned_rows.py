@@ -2,10 +2,11 @@
 
     python -m benchmarks.pinned_rows [--runs 400] [--only cubicles,chain-10d] [--store results.db] [--jobs 2]
 
-Runs those cells of the paper's suite that have a pinned counterpart (`evenroad/report/expected/pinned.toml`), in a
-store of their own, or those that the given store lacks.  For each cell: our success with its 95 % interval, the mean
-number of milestones counted as the pinned row counts them, both beside what is pinned, and Fisher's exact test of the
-two counts with Holm's correction over all cells that are tested here.
+Runs those cells of the paper's suite that have a pinned counterpart
+(`evenroad/research/report/expected/pinned.toml`), in a store of their own, or those that the given store lacks.  For
+each cell: our success with its 95 % interval, the mean number of milestones counted as the pinned row counts them, both
+beside what is pinned, and Fisher's exact test of the two counts with Holm's correction over all cells that are tested
+here.
 """
 
 from __future__ import annotations
@@ -16,15 +17,15 @@ import tempfile
 from pathlib import Path
 
 from evenroad._progress import LineProgress
-from evenroad.bench.executors import processes
-from evenroad.bench.runner import run_tasks
-from evenroad.bench.store import open_store, read_rows
-from evenroad.bench.suites.paper import SEED, paper_suite
-from evenroad.bench.task import Task
-from evenroad.report.cells import cells_of
-from evenroad.report.expected import load_expected
-from evenroad.report.runs import runs_of
-from evenroad.report.verdicts import Verdict, verdicts_of
+from evenroad.research.bench.executors import processes
+from evenroad.research.bench.runner import run_tasks
+from evenroad.research.bench.store import open_store, read_rows
+from evenroad.research.bench.task import Task
+from evenroad.research.report.cells import cells_of
+from evenroad.research.report.expected import load_expected
+from evenroad.research.report.runs import runs_of
+from evenroad.research.report.verdicts import Verdict, verdicts_of
+from evenroad.research.suites.paper import SEED, paper_suite
 
 PINNED = load_expected("pinned")
 

@@ -16,8 +16,8 @@ import tempfile
 import time
 from pathlib import Path
 
-from evenroad.mazes import LEVELS, load_maze
 from evenroad.points import draw
+from evenroad.research.mazes import LEVELS, load_maze
 from evenroad.roadmap import plan
 
 REPEATS = 31

@@ -19,13 +19,13 @@ from pathlib import Path
 
 import numpy as np
 
-from evenroad.bench.outcome import Outcome
-from evenroad.bench.problems import PROBLEMS
-from evenroad.bench.samplers import SAMPLERS
-from evenroad.bench.store import open_store, read_rows
-from evenroad.bench.task import Task
-from evenroad.report import write_report
-from evenroad.report.analysis import analyse
+from evenroad.research.bench.outcome import Outcome
+from evenroad.research.bench.samplers import SAMPLERS
+from evenroad.research.bench.store import open_store, read_rows
+from evenroad.research.bench.task import Task
+from evenroad.research.problems import PROBLEMS
+from evenroad.research.report import write_report
+from evenroad.research.report.analysis import analyse
 
 POOLS = ("mpmc", "hickernell", "even")
 POOL = 64

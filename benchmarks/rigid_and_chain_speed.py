@@ -15,8 +15,8 @@ from functools import partial
 
 import numpy as np
 
-from evenroad.bench.problems import source_named
 from evenroad.errors import NotAvailable
+from evenroad.research.problems import source_named
 from evenroad.roadmap import KNearest
 from evenroad.world import MeshWorld, SolidWorld, World
 from evenroad.world.mesh import surface_of

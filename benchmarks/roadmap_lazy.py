@@ -13,8 +13,8 @@ import argparse
 
 import numpy as np
 
-from evenroad.mazes import LEVELS, load_maze
 from evenroad.points import draw
+from evenroad.research.mazes import LEVELS, load_maze
 from evenroad.roadmap import KNearest, PlanResult, fmt, plan
 
 PHASES = ("validity", "motions", "search")

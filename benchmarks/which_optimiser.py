@@ -19,8 +19,8 @@ import numpy as np
 
 from evenroad.points import PointSet
 from evenroad.points.measures import MEASURES
-from evenroad.points.network import NetworkConfig, refine, train
-from evenroad.points.optimise import anneal_many
+from evenroad.research.network import NetworkConfig, refine, train
+from evenroad.research.training import anneal_many
 
 CELLS = [(d, n) for n in (128, 512) for d in (2, 5, 10)]
 SETS = 8

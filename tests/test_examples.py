@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 from evenroad.cli import main
-from evenroad.mazes import load_maze
+from evenroad.research.mazes import load_maze
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text()

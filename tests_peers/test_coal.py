@@ -6,7 +6,7 @@ import coal
 import numpy as np
 import pytest
 
-from evenroad.bench.problems import source_named
+from evenroad.research.problems import source_named
 from evenroad.space import SE3, Box
 from evenroad.testing import WorldContract
 from evenroad.world import OrientedBox, SolidWorld

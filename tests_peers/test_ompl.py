@@ -5,9 +5,10 @@ import pytest
 from benchmarks.ompl_peer import ompl_prm
 
 from evenroad.points import draw
+from evenroad.research.worlds import Corridor
 from evenroad.roadmap import KEarlier, plan
 from evenroad.space import Box
-from evenroad.world import Corridor, FunctionWorld
+from evenroad.world import FunctionWorld
 
 
 def _balls(seed):

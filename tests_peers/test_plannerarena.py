@@ -7,11 +7,11 @@ import pytest
 from plannerarena.database import load_database
 from plannerarena.performance import boxplot, ecdf_plot, enums_plot
 
-from evenroad.bench.arena import write_arena
-from evenroad.bench.executors import in_process
-from evenroad.bench.runner import run_tasks
-from evenroad.bench.store import open_store, read_rows
-from evenroad.bench.task import Task
+from evenroad.research.bench.arena import write_arena
+from evenroad.research.bench.executors import in_process
+from evenroad.research.bench.runner import run_tasks
+from evenroad.research.bench.store import open_store, read_rows
+from evenroad.research.bench.task import Task
 
 TASKS = [
     Task(problem, 0, sampler, n, "k=10 earlier", search, run, 1)

@@ -1,6 +1,6 @@
 """Draw the three shipped mazes, and measure how hard they are for uniform points.
 
-    python tools/draw_mazes.py            # draw: src/evenroad/mazes/level{1,2,3}.png and mazes.json
+    python tools/draw_mazes.py            # draw: src/evenroad/research/mazes/level{1,2,3}.png and mazes.json
     python tools/draw_mazes.py --measure  # success of uniform points on the drawn mazes, 400 runs a cell
 
 The design rule: only the success of *uniform* points may guide it, so that no sampler is favoured.  With k = 10
@@ -17,9 +17,9 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from evenroad.mazes import DrawnMaze, MazeDesign, draw_maze
+from evenroad.research.mazes import DrawnMaze, MazeDesign, draw_maze
 
-FOLDER = Path(__file__).parents[1] / "src" / "evenroad" / "mazes"
+FOLDER = Path(__file__).parents[1] / "src" / "evenroad" / "research" / "mazes"
 ROBOT_RADIUS = 6.0
 TUNING_SEED = 900_000
 

@@ -9,8 +9,8 @@ import time
 
 import pytest
 
-from evenroad.bench.store import open_store, read_rows
 from evenroad.errors import BrokenFile
+from evenroad.research.bench.store import open_store, read_rows
 
 SMALL = ("bench", "paper", "--runs", 2, "--only", "hypercube-legacy6,corridor-2d-0.1", "--quick", "--jobs", 1)
 
@@ -114,7 +114,7 @@ def test_rows_that_a_store_could_not_take_are_named_and_taken_in_by_the_same_com
         raise BrokenFile("results.db: database or disk is full")
 
     with monkeypatch.context() as change:
-        change.setattr("evenroad.bench.store.Store._write", refuse)
+        change.setattr("evenroad.research.bench.store.Store._write", refuse)
         code, _, err = run(*SMALL)
     assert code == 2
     left = int(

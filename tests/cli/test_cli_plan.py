@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from evenroad.cli.plan_parts import draw_points
-from evenroad.mazes import load_maze
+from evenroad.research.mazes import load_maze
 
 MAZE = load_maze(1)
 

@@ -1,8 +1,8 @@
 import pytest
 
-from evenroad.report import contents
-from evenroad.report.figures.canvas import new_figure
-from tests.report.stores import made_up, solved, task, write_store
+from evenroad.research.report import contents
+from evenroad.research.report.figures.canvas import new_figure
+from tests.research.report.stores import made_up, solved, task, write_store
 
 
 @pytest.fixture(autouse=True)

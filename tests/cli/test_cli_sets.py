@@ -229,7 +229,7 @@ def test_a_folder_of_another_seed_is_refused_by_the_name_of_the_option(run):
 
 
 def test_refined_sets_are_kept_one_by_one_and_read_back(run, tmp_path, monkeypatch):
-    from evenroad.points import network
+    from evenroad.research import network
 
     line = (*MPMC, "--steps", 3, "--refine", 20)
     refine = network.refine
@@ -254,10 +254,10 @@ def test_refined_sets_are_kept_one_by_one_and_read_back(run, tmp_path, monkeypat
 
 INTERRUPTED_INSIDE_STEP_5 = """
 import os, signal, sys
-import evenroad.points.network
+import evenroad.research.network
 from evenroad.cli import main
 
-training = sys.modules["evenroad.points.network.train"]  # the name in the package is the function
+training = sys.modules["evenroad.research.network.train"]  # the name in the package is the function
 step = training.advance
 
 def advance(state, *rest):
@@ -298,7 +298,7 @@ def test_the_first_ctrl_c_waits_for_the_step_and_the_second_does_not():
 
 
 def test_without_torch_the_network_says_what_to_install(run, monkeypatch):
-    for name in [name for name in sys.modules if name.startswith("evenroad.points.network")]:
+    for name in [name for name in sys.modules if name.startswith("evenroad.research.network")]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "torch", None)
     code, _, err = run("train", "-n", 8, "-d", 2, "--method", "mpmc", "--sets", 1, "-o", "sets")

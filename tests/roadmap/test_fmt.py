@@ -4,8 +4,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue
-from evenroad.mazes import load_maze
 from evenroad.points import PointSet, draw
+from evenroad.research.mazes import load_maze
 from evenroad.roadmap import Radius, Status, fmt, plan
 from evenroad.roadmap.search import Graph, Ledger
 from evenroad.roadmap.search.marching import march

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from evenroad.points import draw
+from evenroad.research.worlds import Corridor
 from evenroad.roadmap import KEarlier, KNearest, Radius, Roadmap, fmt, plan, plan_anytime
 from evenroad.space import SE2, SE3, JointSpace
-from evenroad.world import Corridor, Counting, FunctionWorld
+from evenroad.world import Counting, FunctionWorld
 
 
 def _slit(q):

@@ -4,8 +4,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue, UnknownName
-from evenroad.mazes import load_maze
 from evenroad.points import PointSet, draw
+from evenroad.research.mazes import load_maze
 from evenroad.roadmap import Complete, KNearest, Radius, Roadmap, Status
 from evenroad.roadmap.neighbours.newcomer import Surroundings, nearest_of
 from evenroad.space import Rectangle

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from evenroad.research.worlds import Corridor
 from evenroad.testing import WorldContract
-from evenroad.world import Corridor, Counting, Explains, GridMap
+from evenroad.world import Counting, Explains, GridMap
 
 CORRIDOR = Corridor(2, 0.3)
 

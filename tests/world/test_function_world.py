@@ -10,9 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue
+from evenroad.research.worlds import Corridor
 from evenroad.space import SE2, SE3, Box, Circle, JointSpace, Product
 from evenroad.testing import WorldContract
-from evenroad.world import Corridor, Explains, FunctionWorld
+from evenroad.world import Explains, FunctionWorld
 from evenroad.world.bisection import between_ends
 
 SQUARE = Box([0.0, 0.0], [1.0, 1.0])

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 if TYPE_CHECKING:
-    from evenroad.bench.executors import Workers
-    from evenroad.bench.runner import Report
-    from evenroad.bench.suites import Suite
+    from evenroad.research.bench.executors import Workers
+    from evenroad.research.bench.runner import Report
+    from evenroad.research.suites import Suite
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,8 +46,8 @@ class Bench:
 
     def run(self) -> int:
         """Run what is missing, print a table of success; exit code 1 if a run, now or before, gave no answer."""
-        from evenroad.bench.suites import SUITES
         from evenroad.errors import InvalidValue, UnknownName
+        from evenroad.research.suites import SUITES
 
         if self.list:
             from evenroad.cli.bench_table import print_catalogue
@@ -67,11 +67,11 @@ class Bench:
         return 1 if report.failures or report.found_failures else 0
 
     def _run(self, suite: Suite) -> Report:
-        from evenroad.bench.runner import run_tasks
-        from evenroad.bench.store import open_store
-        from evenroad.bench.time_limit import DEFAULT_LIMIT, require_limit
         from evenroad.cli.interrupt import interrupt_between_steps
         from evenroad.cli.progress import progress_bar
+        from evenroad.research.bench.runner import run_tasks
+        from evenroad.research.bench.store import open_store
+        from evenroad.research.bench.time_limit import DEFAULT_LIMIT, require_limit
 
         # Tasks in threads, as Dask's are, cannot be stopped.
         limit = None if self.scheduler is not None else DEFAULT_LIMIT if self.limit is None else self.limit
@@ -98,17 +98,17 @@ class Bench:
             )
 
     def _workers(self) -> Workers:
-        from evenroad.bench.executors import in_process, processes
+        from evenroad.research.bench.executors import in_process, processes
 
         if self.scheduler is not None:
-            from evenroad.bench.schedulers import dask_workers
+            from evenroad.research.bench.schedulers import dask_workers
 
             return dask_workers(self.scheduler)
         return in_process() if self.jobs == 1 else processes(self.jobs)
 
     def _print(self, suite: Suite, report: Report) -> None:
-        from evenroad.bench.store import read_rows
         from evenroad.cli.bench_table import print_failures, print_success
+        from evenroad.research.bench.store import read_rows
 
         rows = read_rows(self.store, problems=sorted({task.problem for task in suite.tasks}))
         print_success(suite, rows)

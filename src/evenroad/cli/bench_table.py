@@ -8,13 +8,13 @@ import numpy as np
 from rich.table import Table
 from rich.text import Text
 
-from evenroad.bench.problems import PROBLEMS
-from evenroad.bench.rows import Rows
-from evenroad.bench.samplers import SAMPLERS
-from evenroad.bench.suites import SUITES, Suite
-from evenroad.bench.task import Task
 from evenroad.cli.console import print_table
-from evenroad.report.failures import failures_of
+from evenroad.research.bench.rows import Rows
+from evenroad.research.bench.samplers import SAMPLERS
+from evenroad.research.bench.task import Task
+from evenroad.research.problems import PROBLEMS
+from evenroad.research.report.failures import failures_of
+from evenroad.research.suites import SUITES, Suite
 
 HEADINGS = {
     "uniform": "uni",

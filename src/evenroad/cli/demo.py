@@ -24,7 +24,7 @@ class Demo:
 
     def run(self) -> int:
         """Run ``evenroad plan`` on the maze with its own start and goal."""
-        from evenroad.mazes import load_maze
+        from evenroad.research.mazes import load_maze
 
         maze = load_maze(self.level)
         return Plan(

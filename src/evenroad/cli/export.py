@@ -22,8 +22,8 @@ class Export:
 
     def run(self) -> int:
         """Export, and say how much."""
-        from evenroad.bench.arena import write_arena
         from evenroad.errors import InvalidValue
+        from evenroad.research.bench.arena import write_arena
 
         if not self.arena:
             raise InvalidValue("say in which format: --arena (for CSV and tables: evenroad report)")

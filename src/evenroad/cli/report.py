@@ -23,9 +23,9 @@ class Report:
 
     def run(self) -> int:
         """Write the report and print its gist."""
-        from evenroad.bench.rescue import rescue_file
         from evenroad.cli.report_table import print_report
-        from evenroad.report import write_report
+        from evenroad.research.bench.rescue import rescue_file
+        from evenroad.research.report import write_report
 
         problems = [name.strip() for name in self.only.split(",") if name.strip()]
         print_report(write_report(self.store, self.out, only=problems, command=self._command()))

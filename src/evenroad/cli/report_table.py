@@ -6,13 +6,13 @@ from rich.table import Table
 from rich.text import Text
 
 from evenroad.cli.console import print_table
-from evenroad.report import Report
-from evenroad.report.analysis import Analysis
-from evenroad.report.comparisons import REFERENCES
-from evenroad.report.fair_names import is_fair, pooled_rules
-from evenroad.report.runs import Question
-from evenroad.report.sections.expected import verdict_counts
-from evenroad.report.text import difference
+from evenroad.research.report import Report
+from evenroad.research.report.analysis import Analysis
+from evenroad.research.report.comparisons import REFERENCES
+from evenroad.research.report.fair_names import is_fair, pooled_rules
+from evenroad.research.report.runs import Question
+from evenroad.research.report.sections.expected import verdict_counts
+from evenroad.research.report.text import difference
 
 
 def print_report(report: Report) -> None:

@@ -10,8 +10,8 @@ import tyro
 
 if TYPE_CHECKING:
     from evenroad.points import PointSet
-    from evenroad.points.network import NetworkConfig
     from evenroad.points.optimise.anneal import Callback
+    from evenroad.research.network import NetworkConfig
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,7 +82,7 @@ class Train:
         if self.jobs is not None:
             require_count("jobs", self.jobs)
         if self.method == "mpmc":
-            from evenroad.points.network.device import choose_device
+            from evenroad.research.network.device import choose_device
 
             self._config()
             choose_device(self.device or "auto")
@@ -99,7 +99,7 @@ class Train:
         require_writable_folder(self.out / "set-0000.npz")
 
     def _anneal(self, callback: Callback) -> tuple[PointSet, ...]:
-        from evenroad.points.optimise import anneal_many
+        from evenroad.research.training import anneal_many
 
         return anneal_many(
             self.n,
@@ -114,14 +114,14 @@ class Train:
         )
 
     def _config(self) -> NetworkConfig:
-        from evenroad.points.network import NetworkConfig
+        from evenroad.research.network import NetworkConfig
 
         return NetworkConfig(
             n=self.n, d=self.d, objective=self.objective, sets=self.sets, steps=self.steps, seed=self.seed
         )
 
     def _network(self, callback: Callback) -> tuple[PointSet, ...]:
-        from evenroad.points.network import train
+        from evenroad.research.network import train
 
         sets = train(self._config(), folder=self.out, callback=callback, device=self.device or "auto")
         if not self.refine:
@@ -152,7 +152,7 @@ class Train:
         """Refine set i and save it at once, or read it where an earlier run did."""
         from evenroad.errors import BrokenFile
         from evenroad.points import load_points, save_points
-        from evenroad.points.network import refine
+        from evenroad.research.network import refine
 
         path = self.out / f"refined-{i:04d}.npz"
         try:

@@ -1,8 +1,5 @@
 """Worlds: which configurations and motions are free, in batches."""
 
-from evenroad.world.chain import ChainWorld as ChainWorld
-from evenroad.world.corridor import Corridor as Corridor
-from evenroad.world.corridor import hypercube_legacy6 as hypercube_legacy6
 from evenroad.world.counting import Counting as Counting
 from evenroad.world.function import FunctionWorld as FunctionWorld
 from evenroad.world.gridmap import GridMap as GridMap
@@ -11,7 +8,10 @@ from evenroad.world.gridmap import load_map as load_map
 from evenroad.world.mesh import MeshWorld as MeshWorld
 from evenroad.world.mesh import TriangleMesh as TriangleMesh
 from evenroad.world.mesh import load_mesh as load_mesh
+from evenroad.world.protocol import Connection as Connection
+from evenroad.world.protocol import ConnectsItself as ConnectsItself
 from evenroad.world.protocol import Explains as Explains
+from evenroad.world.protocol import Rechecks as Rechecks
 from evenroad.world.protocol import World as World
 from evenroad.world.solids import OrientedBox as OrientedBox
 from evenroad.world.solids import SolidWorld as SolidWorld

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -38,4 +39,59 @@ class Explains(Protocol):
 
     def explain(self, q: npt.NDArray[np.float64]) -> str:
         """Return for one configuration, (dim,), that is not free, what it collides with."""
+        ...
+
+
+@runtime_checkable
+class Rechecks(Protocol):
+    """A world whose verdicts on motions have gaps, and that can look closer at the path that is handed out."""
+
+    @property
+    def proof(self) -> str:
+        """What `recheck` shows: ``resolution`` (states closer than planned with) or ``certified`` (no gap)."""
+        ...
+
+    def recheck(self, path: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Return which motions of a path, (p, dim), are free by the strict check: (p - 1,)."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Connection:
+    """What a world that plans by itself found between a start and its goals.
+
+    Attributes
+    ----------
+    path : float64 ndarray, shape (p, dim)
+        Waypoints from the start to one goal, every motion free; shape (0, dim) when there is none.
+    goal : int
+        Which of the goals the path ends at; -1 when there is none.
+    nodes, configurations, motions : int
+        Nodes grown, and states and motions checked.
+    """
+
+    path: npt.NDArray[np.float64]
+    goal: int
+    nodes: int
+    configurations: int
+    motions: int
+
+
+@runtime_checkable
+class ConnectsItself(Protocol):
+    """A world with a compiled planner of its own; planners ask it before they build a roadmap."""
+
+    def connect(
+        self,
+        start: npt.NDArray[np.float64],
+        goals: npt.NDArray[np.float64],
+        *,
+        most_motions: int,
+        seconds: float,
+    ) -> Connection:
+        """Join the start, (dim,), to the first of the goals, (g, dim), that can be reached within the budget."""
+        ...
+
+    def shorten(self, path: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], int]:
+        """Return a path that is not longer and passes the strict check, and how many motions were checked."""
         ...

@@ -8,7 +8,7 @@ from pathlib import Path
 from evenroad import __version__
 from evenroad._files import cache_folder, require_writable_folder
 from evenroad.errors import BrokenFile
-from evenroad.points.bank.recipe import SEED
+from evenroad.points.bank.bank import SEED
 from evenroad.points.npz import load_points, save_points
 from evenroad.points.pointset import PointSet
 

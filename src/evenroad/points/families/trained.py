@@ -11,7 +11,7 @@ from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import NotAvailable, UnknownName
 from evenroad.points.bank import Bank, open_bank
-from evenroad.points.bank.recipe import SEED
+from evenroad.points.bank.bank import SEED
 from evenroad.points.even import KOROBOV, even_choice
 from evenroad.points.families.cache import cached, keep, require_cache
 from evenroad.points.pointset import BELOW_ONE, Origin, PointSet

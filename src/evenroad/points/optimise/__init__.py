@@ -3,7 +3,6 @@
 from evenroad.points.optimise.anneal import SCHEDULE as SCHEDULE
 from evenroad.points.optimise.anneal import Annealed as Annealed
 from evenroad.points.optimise.anneal import anneal as anneal
-from evenroad.points.optimise.many import anneal_many as anneal_many
 from evenroad.points.optimise.objective import Objective as Objective
 from evenroad.points.optimise.objective import Term as Term
 from evenroad.points.optimise.parse import known_names as known_names

@@ -1,8 +1,0 @@
-"""Mazes for a disk robot: three that ship with evenroad, drawn by ``tools/draw_mazes.py``, and random ones."""
-
-from evenroad.mazes.maze import LEVELS as LEVELS
-from evenroad.mazes.maze import Maze as Maze
-from evenroad.mazes.maze import load_maze as load_maze
-from evenroad.mazes.random_maze import DrawnMaze as DrawnMaze
-from evenroad.mazes.random_maze import MazeDesign as MazeDesign
-from evenroad.mazes.random_maze import draw_maze as draw_maze

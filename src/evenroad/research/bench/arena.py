@@ -1,0 +1,161 @@
+"""Planner Arena: the rows of a store as a database of OMPL's benchmark schema.
+
+The schema is that of OMPL's ``ompl_benchmark_statistics.py``: experiments with twelve fixed columns and then their
+parameters, planner configurations, runs with their attributes, enums, and an empty table of progress.  An experiment is
+a problem with its N, a planner is a sampler with its connection rule and search.
+"""
+
+from __future__ import annotations
+
+import os
+import sqlite3
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from evenroad._files import atomic_write, require_writable_folder
+from evenroad.errors import InvalidValue, NotAvailable
+from evenroad.research.bench.rows import Rows
+from evenroad.research.bench.schema import sqlite_errors
+from evenroad.research.bench.store import Session, read_rows, read_sessions
+
+STATUSES = {
+    "start_invalid": (1, "Invalid start"),
+    "goal_invalid": (2, "Invalid goal"),
+    "timeout": (4, "Timeout"),
+    "solved": (6, "Exact solution"),
+    "failed": (7, "Crash"),
+    "lost": (8, "Worker lost"),
+    "not_connected": (9, "Not connected"),
+}
+"""Ours -> number and text; the numbers are OMPL's where it has such a status."""
+
+TABLES = """
+CREATE TABLE experiments (
+    id INTEGER PRIMARY KEY AUTOINCREMENT, name VARCHAR(512), totaltime REAL, timelimit REAL, memorylimit REAL,
+    runcount INTEGER, version VARCHAR(128), hostname VARCHAR(1024), cpuinfo TEXT, date DATETIME, seed INTEGER,
+    setup TEXT,
+    N INTEGER
+);
+CREATE TABLE plannerConfigs (id INTEGER PRIMARY KEY AUTOINCREMENT, name VARCHAR(512) NOT NULL, settings TEXT);
+CREATE TABLE enums (name VARCHAR(512), value INTEGER, description TEXT, PRIMARY KEY (name, value));
+CREATE TABLE runs (
+    id INTEGER PRIMARY KEY AUTOINCREMENT, experimentid INTEGER, plannerid INTEGER,
+    time REAL, solved BOOLEAN, status ENUM, valid_milestones INTEGER, valid_milestones_at_solution INTEGER,
+    motions_checked INTEGER, solution_length REAL, run INTEGER, problem_instance INTEGER,
+    FOREIGN KEY (experimentid) REFERENCES experiments(id) ON DELETE CASCADE,
+    FOREIGN KEY (plannerid) REFERENCES plannerConfigs(id) ON DELETE CASCADE
+);
+CREATE TABLE progress (runid INTEGER, time REAL, PRIMARY KEY (runid, time));
+"""
+
+
+def write_arena(store: str | os.PathLike[str], out: str | os.PathLike[str]) -> int:
+    """Write a Planner Arena database of all rows of a store, atomically; return how many runs it has.
+
+    Parameters
+    ----------
+    store : path
+        What ``evenroad bench`` wrote.
+    out : path
+        The database to write; replaced if it exists.
+
+    Raises
+    ------
+    BrokenFile
+        If the store cannot be read, or `out` not be written.
+    NotAvailable
+        If the store has no rows.
+    InvalidValue
+        If both are the same file.
+    """
+    target = Path(out)
+    require_writable_folder(target)
+    rows, sessions = read_rows(store), read_sessions(store)
+    if target.exists() and target.samefile(store):
+        raise InvalidValue(f"cannot export {store} onto itself: give another file")
+    if not len(rows):
+        raise NotAvailable(f"{store} has no rows to export")
+    # SQLite writes to a path, and only whole files are put in place.
+    with tempfile.TemporaryDirectory(dir=target.parent, prefix=".evenroad-") as folder:
+        made = Path(folder) / "arena.db"
+        with sqlite_errors(target):
+            _write(made, rows, sessions[-1])
+        with atomic_write(target) as file:
+            file.write(made.read_bytes())
+    return len(rows)
+
+
+def _write(path: Path, rows: Rows, session: Session) -> None:
+    connection = sqlite3.connect(path)
+    try:
+        connection.executescript(TABLES)
+        connection.executemany(
+            "INSERT INTO enums VALUES ('status', ?, ?)", [STATUSES[name] for name in STATUSES]
+        )
+        experiment = _numbers(rows, "problem", "n", "seed")
+        planner = _numbers(rows, "sampler", "rule", "search")
+        for number, row in _first_rows(experiment):
+            here = experiment == number
+            connection.execute(
+                "INSERT INTO experiments VALUES (?, ?, ?, 0, 0, ?, ?, ?, '', ?, ?, ?, ?)",
+                (
+                    number,
+                    rows.problem[row],
+                    float(np.nansum(rows.seconds[here])),
+                    int(here.sum()),
+                    f"evenroad {session.evenroad}",
+                    session.platform,
+                    session.started,
+                    int(rows.seed[row]),
+                    f"python {session.python}, numpy {session.numpy}, numba {session.numba}",
+                    int(rows.n[row]),
+                ),
+            )
+        for number, row in _first_rows(planner):
+            sampler, rule, search = rows.sampler[row], rows.rule[row], rows.search[row]
+            connection.execute(
+                "INSERT INTO plannerConfigs VALUES (?, ?, ?)",
+                (number, f"{sampler}, {rule}, {search}", f"sampler={sampler}; rule={rule}; search={search}"),
+            )
+        connection.executemany(
+            f"INSERT INTO runs VALUES ({', '.join('?' * 12)})", _runs(rows, experiment, planner)
+        )
+        connection.commit()
+    finally:
+        connection.close()
+
+
+def _numbers(rows: Rows, *names: str) -> np.ndarray:
+    """Return for each row which of the different combinations of these columns it has, from 1."""
+    columns = [np.asarray(getattr(getattr(rows, name), "codes", getattr(rows, name))) for name in names]
+    _, number = np.unique(np.stack(columns, axis=1), axis=0, return_inverse=True)
+    return number.ravel() + 1
+
+
+def _first_rows(numbers: np.ndarray) -> Iterator[tuple[int, int]]:
+    """Yield each number with the first row that has it."""
+    values, first = np.unique(numbers, return_index=True)
+    yield from zip(values.tolist(), first.tolist(), strict=True)
+
+
+def _runs(rows: Rows, experiment: np.ndarray, planner: np.ndarray) -> Iterator[tuple[object, ...]]:
+    status = [STATUSES[name][0] for name in rows.status.names]
+    columns = (
+        range(1, len(rows) + 1),
+        experiment.tolist(),
+        planner.tolist(),
+        # SQLite writes NaN as NULL.
+        rows.seconds.tolist(),
+        rows.solved.astype(int).tolist(),
+        [status[code] for code in rows.status.codes.tolist()],
+        rows.valid.tolist(),
+        [None if count < 0 else count for count in rows.valid_at_solution.tolist()],
+        rows.edges_checked.tolist(),
+        rows.length.tolist(),
+        rows.run.tolist(),
+        rows.instance.tolist(),
+    )
+    yield from zip(*columns, strict=True)

@@ -1,0 +1,237 @@
+"""The runner: tasks to workers, rows to the store; what was finished once is never run again."""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from collections.abc import Callable, Iterable
+from concurrent.futures import BrokenExecutor, Executor, Future, wait
+from dataclasses import dataclass
+
+from evenroad.errors import WorkerLost
+from evenroad.research.bench.chunks import Chunker, Done, run_chunk
+from evenroad.research.bench.executors import Workers
+from evenroad.research.bench.outcome import Outcome
+from evenroad.research.bench.rows import FAILURES
+from evenroad.research.bench.store import Store
+from evenroad.research.bench.task import Task
+from evenroad.research.bench.time_limit import DEFAULT_LIMIT, require_limit
+
+POLL_SECONDS = 0.2
+
+IN_FLIGHT = 2
+"""Chunks for each worker: one to work on and one to go on with."""
+
+DEATHS_OF_A_TASK = 2
+"""A task whose worker died so often, the last time with this task alone, is given up as lost."""
+
+DEATHS_IN_A_ROW = 8
+"""So many dead workers without a single finished chunk between them are not the tasks' doing."""
+
+Callback = Callable[[int, int], object]
+
+
+@dataclass(frozen=True)
+class Report:
+    """How a run of a suite went.
+
+    Attributes
+    ----------
+    found : int
+        Tasks that the store had rows of before.
+    finished : int
+        Tasks that were run now, failures included.
+    failures : int
+        Of these, those that failed, took too long or lost their worker.
+    found_failures : int
+        The same of those that were found.
+    """
+
+    found: int
+    finished: int
+    failures: int
+    found_failures: int
+
+
+def run_tasks(
+    suite: str,
+    tasks: Iterable[Task],
+    store: Store,
+    workers: Workers,
+    *,
+    callback: Callback | None = None,
+    limit: float | None = DEFAULT_LIMIT,
+    retry: bool = False,
+) -> Report:
+    """Run all tasks that the store has no row of; a stopped run goes on with the next call.
+
+    Outcomes do not depend on the workers, nor on how often the run was stopped; seconds do.
+
+    Parameters
+    ----------
+    suite : str
+        Label of the rows.
+    tasks : iterable of Task
+        In an order that suits caches (see :func:`~evenroad.research.bench.execute.run_task`).
+    store : Store
+        Open for writing.
+    workers : Workers
+        Where tasks run: :func:`in_process`, :func:`processes`, :func:`dask_workers`, or any executor's.
+    callback : callable, optional
+        Called as ``callback(finished, tasks)`` a few times a second, with those found in the store counted; what it
+        raises stops the run.
+    limit : float, optional
+        Seconds for a task, at most 10^6, after which its row says ``timeout``; None means no limit.
+    retry : bool
+        Run tasks again whose row is a failure.
+
+    Returns
+    -------
+    Report
+        What was done.
+
+    Raises
+    ------
+    InvalidValue
+        If `limit` is no such number.
+    WorkerLost
+        If workers die again and again without finishing anything.
+    BrokenFile
+        If the store cannot be written any more.  What was finished waits in it for its end.
+    """
+    require_limit(limit)
+    tasks = tuple(tasks)
+    is_answer = store.finished()
+    missing, found, found_failures = [], 0, 0
+    for task in tasks:
+        answered = is_answer.get(task.key)
+        if answered is None or (retry and not answered):
+            missing.append(task)
+        else:
+            found += 1
+            found_failures += not answered
+    run = _Run(suite, missing, store, workers, limit)
+    try:
+        while run.goes_on():
+            if callback is not None:
+                callback(found + run.finished, len(tasks))
+    finally:
+        run.stop()
+    store.commit()
+    if callback is not None:
+        callback(len(tasks), len(tasks))
+    return Report(found, run.finished, run.failures, found_failures)
+
+
+class _Run:
+    """The state of one run: what waits, what is in flight, and who is under suspicion of killing workers."""
+
+    def __init__(
+        self, suite: str, tasks: list[Task], store: Store, workers: Workers, limit: float | None
+    ) -> None:
+        self.suite, self.store, self.workers, self.limit = suite, store, workers, limit
+        self.finished = self.failures = 0
+        self._chunker = Chunker(tasks)
+        self._suspects: deque[Task] = deque()
+        self._deaths: Counter[Task] = Counter()
+        self._deaths_in_a_row = 0
+        self._on_trial = False
+        self._executor: Executor | None = None
+        self._in_flight: dict[Future[Done], tuple[Task, ...]] = {}
+
+    def goes_on(self) -> bool:
+        """Send what there is room for, wait a moment and take what came back; False when nothing is left."""
+        self._send()
+        if not self._in_flight:
+            # An executor that broke at once took nothing; the next one may.
+            return bool(self._suspects or self._chunker)
+        done, _ = wait(self._in_flight, timeout=POLL_SECONDS, return_when="FIRST_COMPLETED")
+        for future in done:
+            # Not there any more, if one before it took the executor down.
+            if future in self._in_flight:
+                self._take(future)
+        self.store.commit_if_due()
+        return True
+
+    def stop(self) -> None:
+        """Take what is finished, and let go of the executor; what is being run is not waited for."""
+        try:
+            for future in [each for each in self._in_flight if _has_result(each)]:
+                self._take(future)
+        finally:
+            self._let_go()
+
+    def _send(self) -> None:
+        room = 0
+        while self._suspects or self._chunker:
+            if self._executor is None:
+                self._executor = self.workers.make()
+            # A suspect runs alone: if a worker dies, it is known whose doing that was.
+            alone = bool(self._suspects) or self._on_trial
+            room = 1 if alone else room or IN_FLIGHT * self.workers.count(self._executor)
+            if len(self._in_flight) >= room:
+                return
+            is_suspect = bool(self._suspects)
+            chunk = (self._suspects.popleft(),) if is_suspect else self._chunker.next()
+            try:
+                self._in_flight[self._executor.submit(run_chunk, chunk, self.limit)] = chunk
+            except BrokenExecutor as error:
+                # It never ran, so this death is not its doing.
+                if is_suspect:
+                    self._suspects.extendleft(chunk)
+                else:
+                    self._chunker.put_back(chunk)
+                self._dies(self._broken(), error)
+                return
+            self._on_trial = is_suspect
+
+    def _take(self, future: Future[Done]) -> None:
+        chunk = self._in_flight.pop(future)
+        self._on_trial = False
+        if not _has_result(future):
+            # Exceptions of tasks are outcomes, so this one is the worker's.
+            error = BrokenExecutor("cancelled") if future.cancelled() else future.exception()
+            others = self._broken() if isinstance(error, BrokenExecutor) else []
+            self._dies([chunk, *others], error)
+            return
+        done = future.result()
+        self._deaths_in_a_row = 0
+        self._chunker.learn(chunk, done.seconds)
+        for task, outcome in zip(chunk, done.outcomes, strict=True):
+            self._write(task, outcome, done.worker)
+
+    def _broken(self) -> list[tuple[Task, ...]]:
+        """Let go of an executor that is broken, and return the chunks that went with it."""
+        self._let_go()
+        gone = [future for future in self._in_flight if not _has_result(future)]
+        return [self._in_flight.pop(future) for future in gone]
+
+    def _let_go(self) -> None:
+        if self._executor is not None:
+            self._executor.shutdown(wait=False, cancel_futures=True)
+            self._executor = None
+
+    def _dies(self, chunks: list[tuple[Task, ...]], error: BaseException | None) -> None:
+        """Take note that a worker is gone, and these chunks with it; they are to be run again, task by task."""
+        self._deaths_in_a_row += 1
+        tasks = [task for chunk in chunks for task in chunk]
+        self._deaths.update(tasks)
+        if len(tasks) == 1 and self._deaths[tasks[0]] >= DEATHS_OF_A_TASK:
+            message = f"its worker died {self._deaths[tasks[0]]} times: {error!r}"
+            self._write(tasks[0], Outcome(status="lost", error=message), "")
+        else:
+            self._suspects.extend(tasks)
+        if self._deaths_in_a_row >= DEATHS_IN_A_ROW:
+            raise WorkerLost(
+                f"{self._deaths_in_a_row} workers died without finishing a task, the last one with {error!r}: out of"
+                ' memory (fewer --jobs), a script without `if __name__ == "__main__"`, or another version on a worker.'
+                " Finished rows are in the store; run it again to go on"
+            ) from error
+
+    def _write(self, task: Task, outcome: Outcome, worker: str) -> None:
+        self.finished += 1
+        self.failures += outcome.status in FAILURES
+        self.store.add(self.suite, task, outcome, worker)
+
+
+def _has_result(future: Future[Done]) -> bool:
+    return future.done() and not future.cancelled() and future.exception() is None

@@ -1,0 +1,156 @@
+"""Runs that are not independent: those of one trained set, or of one random world.
+
+A pool of 64 sets that is drawn from 400 times does not give 400 independent runs: on a fixed problem the same set
+gives much the same answer every time.  What is independent are the sets; in a suite of random worlds, the worlds.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+from scipy.special import gammaln
+
+from evenroad.errors import InvalidValue
+from evenroad.research.statistics._counts import as_counts, as_successes
+from evenroad.research.statistics.bootstrap import DRAWS, percentile_interval, resampled_ratios
+from evenroad.research.statistics.interval import LEVEL, Interval, wilson
+from evenroad.research.statistics.paired import bonett_price
+from evenroad.research.statistics.sets import effective_runs
+from evenroad.research.statistics.student import student_interval
+
+FEW_UNITS = 10
+"""With fewer units than this a bootstrap is too narrow."""
+MANY_UNITS = 1000
+"""With more units than this a bootstrap of a difference says what Student's interval says."""
+
+SHORT = 4000
+"""Below this, adding zeros up takes less time than leaving them out one by one."""
+
+
+def clustered_rate(
+    solved: npt.ArrayLike, runs: npt.ArrayLike, unit: str, *, level: float = LEVEL
+) -> Interval:
+    """Return the interval of a success rate whose runs come in units that are independent of each other.
+
+    Wilson's interval for as many runs as theirs are worth (:func:`effective_runs`).  A bootstrap over so few units as a
+    pool has sets would be too narrow, most where few of them solve.
+
+    Parameters
+    ----------
+    solved, runs : array_like of int, shape (units,)
+        Successes and runs per unit; every unit has a run.
+    unit : str
+        What a unit is, in the plural, for `Interval.kind`: ``sets``, ``blocks`` or ``instances``.
+
+    Raises
+    ------
+    InvalidValue
+        If there is no unit, or the counts are impossible.
+    """
+    successes, trials = as_successes(solved, runs)
+    worth = effective_runs(successes, trials, level=level)
+    rate = float(successes.sum() / trials.sum())
+    # Between two counts the wider ends of both are taken.
+    low, _ = wilson(math.floor(rate * worth), worth, level=level)
+    _, high = wilson(math.ceil(rate * worth), worth, level=level)
+    return Interval(float(low), float(high), f"wilson over {unit}")
+
+
+def clustered_difference(
+    sums: npt.ArrayLike,
+    pairs: npt.ArrayLike,
+    unit: str,
+    *,
+    level: float = LEVEL,
+    draws: int = DRAWS,
+    seed: int = 0,
+) -> Interval:
+    """Return the interval of a paired difference of success rates, by a bootstrap over units.
+
+    With more than 1000 units, where a bootstrap takes long and says the same, :func:`student_interval`; with fewer
+    than 10, or where all units say the same, the interval of Bonett and Price for as many pairs as there are units.
+
+    Parameters
+    ----------
+    sums : array_like of int, shape (units,)
+        Runs of a unit that only the first solved, minus those that only the second solved.
+    pairs : array_like of int, shape (units,)
+        Pairs of runs in the unit, >= 1.
+    unit : str
+        As for :func:`clustered_rate`.
+
+    Raises
+    ------
+    InvalidValue
+        If there is no unit, or a sum is larger than its unit's pairs.
+    """
+    differences, totals = np.asarray(sums), as_counts("pairs", pairs)
+    if differences.ndim != 1 or differences.shape != totals.shape or len(totals) == 0:
+        raise InvalidValue(
+            f"sums and pairs must be lists of one length, got {differences.shape}, {totals.shape}"
+        )
+    if np.any(totals < 1) or np.any(np.abs(differences) > totals):
+        raise InvalidValue("a unit has at least one pair, and as many pairs as its sum")
+    ratios = differences / totals
+    if len(ratios) < FEW_UNITS or np.all(ratios == ratios[0]):
+        return _as_if_one_pair_a_unit(differences / totals.sum(), unit, level)
+    if len(ratios) > MANY_UNITS:
+        return student_interval(differences, totals, unit, level=level)
+    values = resampled_ratios(differences, totals, draws=draws, seed=seed)
+    return Interval(*percentile_interval(values, level=level), f"paired bootstrap over {unit}")
+
+
+def sign_flip_test(sums: npt.ArrayLike) -> float:
+    """Return the two-sided p-value that units' differences are as likely to have either sign.
+
+    The exact distribution of ``|sum of +-s_u|`` over all choices of signs.  With one pair a unit (all s_u are
+    -1, 0 or 1) this is McNemar's exact test; with more it keeps the pairs of a unit together.  Exact where the two
+    samplers are exchangeable inside a unit, which holds for draws in one random world; for runs of a pool's
+    sets it is the usual large-sample test of a mean.
+
+    Parameters
+    ----------
+    sums : array_like of int, shape (units,)
+        As for :func:`clustered_difference`.
+
+    References
+    ----------
+    R. A. Fisher (1935), The Design of Experiments, section 21.
+    """
+    values = np.asarray(sums)
+    if values.ndim != 1 or np.any(values != np.trunc(values)):
+        raise InvalidValue(f"sums per unit must be a list of whole numbers, got {sums!r}")
+    observed = abs(int(values.sum()))
+    sizes, units_of_size = np.unique(np.abs(values[values != 0]).astype(np.int64), return_counts=True)
+    # chance[i] is the probability that the signed sum is i - (len(chance) - 1) / 2; the largest groups come first, as
+    # each one's shares are added up one by one.
+    chance = np.ones(1)
+    for place in np.argsort(-units_of_size, kind="stable"):
+        count, stride = int(units_of_size[place]), 2 * int(sizes[place])
+        heads = np.arange(count + 1)
+        log_ways = gammaln(count + 1) - gammaln(heads + 1) - gammaln(count - heads + 1)
+        shares = np.exp(log_ways - count * np.log(2.0))
+        if len(chance) * stride < SHORT:
+            spread = np.zeros(stride * count + 1)
+            spread[::stride] = shares
+            chance = np.convolve(chance, spread)
+        else:
+            together = np.zeros(len(chance) + stride * count)
+            for head, share in enumerate(shares):
+                together[head * stride : head * stride + len(chance)] += share * chance
+            chance = together
+    reach = (len(chance) - 1) // 2
+    total = np.abs(np.arange(-reach, reach + 1)) >= observed
+    return float(min(1.0, chance[total].sum()))
+
+
+def _as_if_one_pair_a_unit(shares: npt.NDArray[np.float64], unit: str, level: float) -> Interval:
+    """Return Bonett and Price's interval for as many pairs as units; `shares` add up to the difference."""
+    units = len(shares)
+    wins, losses = (units * float(np.maximum(sign * shares, 0.0).sum()) for sign in (1, -1))
+    # Rounded to whole units; the difference that was seen is always inside.
+    rounded = bonett_price(round(wins), min(round(losses), units - round(wins)), units, level=level)
+    seen = (wins - losses) / units
+    return Interval(min(rounded.low, seen), max(rounded.high, seen), f"bonett-price over {unit}")

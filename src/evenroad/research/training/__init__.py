@@ -1,0 +1,3 @@
+"""Making many sets, in parallel and resumable, and the bank of shipped ones."""
+
+from evenroad.research.training.many import anneal_many as anneal_many

@@ -1,0 +1,174 @@
+"""Build the bank, or finish it: ``python -m evenroad.research.training.bank``.
+
+Every set is written to a work folder as soon as it is made, and every cell enters the index in one atomic step when all
+its sets are there: a stop at any moment loses at most the sets that were being made, and the bank stays whole.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import os
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._files import atomic_write, one_at_a_time
+from evenroad._progress import LineProgress
+from evenroad.points.bank.bank import DATA, INDEX, SEED, Bank, cell_name
+from evenroad.points.measures import MEASURES, separation
+from evenroad.points.pointset import BELOW_ONE, PointSet
+from evenroad.research.training import anneal_many
+from evenroad.research.training.recipe import Recipe, recipes
+
+LOCK = ".lock"
+"""Held while the index changes: several builds may work on one bank, on different cells."""
+
+NETWORK_WIDTH = 64
+"""Half the usual width takes a third of the time a step; in equal time on a CPU its sets are better."""
+
+NETWORK_RATE = 3e-3
+"""First learning rate; three times the usual one suits a network that makes one set only."""
+
+POINTS_OF_A_NETWORK = 256
+"""Sets of one network have about so many points together.  Sixteen sets of 128 points are a sixth worse than one in
+d = 10 (mean D_H .241 and .208), but one set of 32 points alone often ends in a poor minimum (d = 2: .026 and .023)."""
+
+MEAN_NEIGHBOURS = 4.0
+LARGEST_RADIUS = 0.35
+"""A point hears of the others within the radius that holds so many on average, or within the paper's 0.35 if that is
+less.  In d = 10 hardly anybody is that near, and the network moves each point by itself."""
+
+MEASURED: dict[str, Callable[[npt.NDArray[np.float64]], float]] = {
+    "hickernell_rooted": MEASURES["hickernell"].rooted,
+    "star_rooted": MEASURES["star"].rooted,
+    "average_squared_rooted": MEASURES["average_squared"].rooted,
+    "separation_periodic": lambda points: separation(points, periodic=True),
+}
+"""What the index tells of every set."""
+
+
+def build(recipe: Recipe, folder: Path, work: Path, jobs: int, report: Callable[[str], object]) -> None:
+    """Make the sets of one cell that are not in the work folder yet, then put the cell into the bank."""
+    own_work = work / f"{recipe.family}-d{recipe.d:02d}-n{recipe.n:04d}"
+    own_work.mkdir(parents=True, exist_ok=True)
+    progress = LineProgress(f"{recipe.family} d={recipe.d} n={recipe.n}, {recipe.sets} sets", report)
+    make = _train if recipe.method == "network" else _anneal
+    store(recipe, make(recipe, own_work, jobs, progress), folder)
+
+
+def _anneal(recipe: Recipe, work: Path, jobs: int, progress: LineProgress) -> tuple[PointSet, ...]:
+    return anneal_many(
+        recipe.n,
+        recipe.d,
+        recipe.objective,
+        recipe.sets,
+        steps=recipe.steps,
+        rng=SEED,
+        workers=jobs,
+        folder=work,
+        family=recipe.family,
+        callback=progress,
+    )
+
+
+def _train(recipe: Recipe, work: Path, jobs: int, progress: LineProgress) -> tuple[PointSet, ...]:
+    """Train networks of few sets each, so that each set gets enough of its network's weights."""
+    # Here, because only these cells need torch.
+    from evenroad.research.network import NetworkConfig, train
+
+    made: list[PointSet] = []
+    together = min(max(POINTS_OF_A_NETWORK // recipe.n, 1), recipe.sets)
+    networks = recipe.sets // together
+    for network in range(networks):
+        config = NetworkConfig(
+            n=recipe.n,
+            d=recipe.d,
+            objective=recipe.objective,
+            sets=together,
+            width=NETWORK_WIDTH,
+            radius=_radius(recipe.n, recipe.d),
+            steps=recipe.steps,
+            rate=NETWORK_RATE,
+            seed=SEED + network,
+        )
+        own_work = work / f"network-{network:02d}"
+        own_work.mkdir(exist_ok=True)
+        before = network * recipe.steps
+
+        def report(step: int, steps: int, best: float, before: int = before) -> None:
+            progress(before + step, networks * steps, best)
+
+        made += train(config, folder=own_work, callback=report, threads=jobs)
+    return tuple(made)
+
+
+def _radius(n: int, d: int) -> float:
+    ball = math.pi ** (d / 2) / math.gamma(d / 2 + 1)
+    return min((MEAN_NEIGHBOURS / (n * ball)) ** (1 / d), LARGEST_RADIUS)
+
+
+def store(recipe: Recipe, sets: Sequence[PointSet], folder: Path) -> None:
+    """Write the sets of a cell as float32, then its record in the index; measures are those of the stored values."""
+    rounded = np.minimum(np.stack([each.points for each in sets]).astype(np.float32), np.float32(BELOW_ONE))
+    path = folder / recipe.family / cell_name(recipe.n, recipe.d)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with atomic_write(path) as file:
+        np.save(file, rounded)
+    stored = [PointSet(each) for each in rounded]
+    record = {
+        "method": sets[0].origin.method,
+        "objective": recipe.objective,
+        "steps": recipe.steps,
+        "seed": SEED,
+        "version": sets[0].origin.version,
+        "hashes": [each.hash for each in stored],
+        "measures": {
+            name: [_six_digits(value(each.points)) for each in stored] for name, value in MEASURED.items()
+        },
+    }
+    with one_at_a_time(folder / LOCK):
+        index_path = folder / INDEX
+        index = json.loads(index_path.read_text(encoding="utf-8")) if index_path.exists() else {}
+        index.setdefault(recipe.family, {}).setdefault(str(recipe.d), {})[str(recipe.n)] = record
+        with atomic_write(index_path) as file:
+            file.write((json.dumps(index, indent=1, sort_keys=True) + "\n").encode())
+
+
+def _six_digits(value: float) -> float:
+    return float(f"{value:.6g}")
+
+
+def main() -> None:
+    """Build every cell that the bank does not hold yet."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--folder", type=Path, default=DATA, help="the bank")
+    parser.add_argument(
+        "--work", type=Path, default=Path("out/bank"), help="where finished sets wait for their cell"
+    )
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--family", help="only the cells of this family")
+    parser.add_argument("-d", type=int, nargs="*", help="only these dimensions")
+    parser.add_argument("--list", action="store_true", help="only name the cells that are not built yet")
+    options = parser.parse_args()
+    options.folder.mkdir(parents=True, exist_ok=True)
+    bank = Bank(options.folder)
+    wanted = [
+        each
+        for each in recipes()
+        if options.family in (None, each.family) and (options.d is None or each.d in options.d)
+    ]
+    missing = [each for each in wanted if not bank.has(each.family, each.n, each.d)]
+    print(f"{len(wanted) - len(missing)} of {len(wanted)} cells are in the bank", flush=True)
+    for recipe in missing:
+        if options.list:
+            print(f"missing: {recipe.family} d={recipe.d} n={recipe.n}")
+        else:
+            build(recipe, options.folder, options.work, options.jobs, lambda line: print(line, flush=True))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,230 @@
+"""Annealing many sets, one a process; finished ones are on disk at once, so that a stopped run goes on."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Iterator
+from concurrent.futures import Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from evenroad._checks import require_count
+from evenroad._rng import RngLike, seed_of
+from evenroad.errors import InvalidValue, WorkerLost
+from evenroad.points.optimise.anneal import Callback
+from evenroad.points.optimise.objective import Objective, require_points_for
+from evenroad.points.optimise.parse import parse_objective
+from evenroad.points.pointset import PointSet
+from evenroad.research.training.request import claim_folder, set_name
+from evenroad.research.training.set_task import SetTask, finished_set, make_set, request_of
+
+_POLL_SECONDS = 0.2
+
+
+def anneal_many(
+    n: int,
+    d: int,
+    objective: str | Objective = "hickernell",
+    sets: int = 1,
+    *,
+    steps: int = 5000,
+    rng: RngLike = 0,
+    workers: int | None = None,
+    folder: str | os.PathLike[str] | None = None,
+    family: str | None = None,
+    callback: Callback | None = None,
+) -> tuple[PointSet, ...]:
+    """Anneal `sets` independent sets, each from its own seed, in parallel processes.
+
+    Set i is drawn from the i-th child of the seed, so it is the same whatever the number of processes and
+    whichever sets are already there.
+
+    Parameters
+    ----------
+    n, d, objective, steps
+        As for :func:`~evenroad.points.optimise.anneal`.
+    sets : int
+        How many sets, >= 1.
+    rng : int, SeedSequence or Generator
+        Root of the seeds.  To resume, pass the same int or SeedSequence; a Generator is spawned and so gives
+        other sets in every call.
+    workers : int, optional
+        Processes; by default the processors that this process may use.  1 works in this process.
+    folder : path, optional
+        An existing folder that gets ``set-0000.npz``, ... each as soon as it is finished, and a file that says
+        which request they belong to.  Sets that are already there are read instead of annealed.
+    family : str, optional
+        Name of the family in the origins; the objective's expression if not given.
+    callback : callable, optional
+        Called as ``callback(step, steps, best)`` with the steps of all sets together and the best value so far
+        (``inf`` before the first), a few times a second; what it raises stops the work.
+
+    Returns
+    -------
+    tuple of PointSet
+        In order, each with its origin: family, objective, seed and replica.
+
+    Raises
+    ------
+    InvalidValue
+        For an argument out of range, or a folder that holds sets of another request.
+    BrokenFile
+        If the folder is missing or cannot be written.
+    WorkerLost
+        If a process was killed.  Finished sets are in the folder; the same call goes on.
+
+    Notes
+    -----
+    The processes are spawned: a script must guard its main part with ``if __name__ == "__main__"``.
+    """
+    n, d, sets = require_count("n", n), require_count("d", d), require_count("sets", sets)
+    steps = require_count("steps", steps)
+    processes = require_count("workers", _usable_processors() if workers is None else workers)
+    target = parse_objective(objective)
+    require_points_for(target, n)
+    root = _root_sequence(rng)
+    tasks = [
+        SetTask(
+            n=n,
+            d=d,
+            objective=str(target),
+            steps=steps,
+            entropy=root.entropy,
+            spawn_key=(*root.spawn_key, i),
+            family=str(target) if family is None else family,
+            seed=seed_of(rng),
+            replica=i,
+            path=None if folder is None else str(Path(folder) / set_name(i)),
+        )
+        for i in range(sets)
+    ]
+    if folder is not None:
+        claim_folder(Path(folder), request_of(tasks[0]))
+    done = {task.replica: points for task in tasks if (points := finished_set(task)) is not None}
+    missing = [task for task in tasks if task.replica not in done]
+    already = steps * len(done)
+    make = _one_by_one if min(processes, len(missing)) <= 1 else _in_processes
+    for points in make(missing, processes, already, steps * sets, callback):
+        done[int(points.origin.replica or 0)] = points
+    return tuple(done[i] for i in range(sets))
+
+
+def _one_by_one(
+    tasks: list[SetTask], processes: int, already: int, total: int, callback: Callback | None
+) -> Iterator[PointSet]:
+    best = np.inf
+    for number, task in enumerate(tasks):
+
+        def report(step: int, steps: int, value: float, before: int = already + number * task.steps) -> None:
+            nonlocal best
+            best = min(best, value)
+            if callback is not None:
+                callback(before + step, total, best)
+
+        yield make_set(task, report)
+
+
+def _in_processes(
+    tasks: list[SetTask], processes: int, already: int, total: int, callback: Callback | None
+) -> Iterator[PointSet]:
+    # Spawned, not forked: a fork of a process with threads (numba, BLAS) can hang.
+    context = multiprocessing.get_context("spawn")
+    steps_done = context.Array("q", len(tasks), lock=False)
+    best_values = context.Array("d", [np.inf] * len(tasks), lock=False)
+    stop = context.Value("b", 0, lock=False)
+    pool = ProcessPoolExecutor(
+        min(processes, len(tasks)), context, initializer=_share, initargs=(steps_done, best_values, stop)
+    )
+    try:
+        with _born_deaf_to_interrupts():
+            waiting: set[Future[PointSet]] = {
+                pool.submit(_make_set_shared, slot, task) for slot, task in enumerate(tasks)
+            }
+        while waiting:
+            finished, waiting = wait(waiting, timeout=_POLL_SECONDS, return_when="FIRST_COMPLETED")
+            if callback is not None:
+                callback(already + sum(steps_done), total, min(best_values))
+            for future in finished:
+                yield future.result()
+    except BrokenProcessPool as error:
+        raise WorkerLost(
+            "a process of anneal_many ended early: killed, out of memory, or a script without"
+            ' `if __name__ == "__main__"`. Finished sets are in the folder, if one was given; call again to go on'
+        ) from error
+    finally:
+        stop.value = 1
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+@contextmanager
+def _born_deaf_to_interrupts() -> Iterator[None]:
+    """Let processes that start in the block ignore Ctrl-C from their first moment: the parent alone decides.
+
+    An initializer alone comes too late: importing takes a second, and a terminal sends the signal to all.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        # Only the main thread may set handlers; the initializer has to do.
+        yield
+        return
+    before = signal.getsignal(signal.SIGINT)
+    # Ignoring is inherited, a handler is not: a signal to the parent in these milliseconds is lost.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+_shared: tuple[Any, Any, Any] | None = None
+"""In a worker process only: steps done and best value of every set, for the parent, and its wish to stop."""
+
+
+class _Stopped(Exception):
+    """The parent gave up; nobody reads this one."""
+
+
+def _share(steps_done: Any, best_values: Any, stop: Any) -> None:
+    global _shared
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    _shared = (steps_done, best_values, stop)
+
+
+def _make_set_shared(slot: int, task: SetTask) -> PointSet:
+    assert _shared is not None  # set by the initializer
+    steps_done, best_values, stop = _shared
+    parent = os.getppid()
+
+    def report(step: int, steps: int, best: float) -> None:
+        steps_done[slot] = step
+        best_values[slot] = best
+        if stop.value:
+            raise _Stopped
+        if os.getppid() != parent:
+            # The parent was killed and nobody is left to take the set, nor to end this process.
+            os._exit(1)
+
+    return make_set(task, report)
+
+
+def _root_sequence(rng: RngLike) -> np.random.SeedSequence:
+    if isinstance(rng, np.random.SeedSequence):
+        return rng
+    if isinstance(rng, np.random.Generator):
+        child = rng.bit_generator.seed_seq.spawn(1)[0]  # type: ignore[attr-defined]
+        return np.random.SeedSequence(child.entropy, spawn_key=child.spawn_key)
+    if isinstance(rng, bool) or not isinstance(rng, int | np.integer) or rng < 0:
+        raise InvalidValue(f"rng must be an int >= 0, a numpy SeedSequence or a numpy Generator, got {rng!r}")
+    return np.random.SeedSequence(int(rng))
+
+
+def _usable_processors() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

@@ -1,0 +1,5 @@
+"""The worlds of the published experiments."""
+
+from evenroad.research.worlds.chain import ChainWorld as ChainWorld
+from evenroad.research.worlds.corridor import Corridor as Corridor
+from evenroad.research.worlds.corridor import hypercube_legacy6 as hypercube_legacy6

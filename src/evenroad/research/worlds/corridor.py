@@ -1,0 +1,132 @@
+"""Corridor: a corridor along edges of the unit cube, of any dimension; the reference world."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._checks import require_count, require_positive
+from evenroad.errors import InvalidValue, UnknownName
+from evenroad.research.worlds.corridor_kernel import motions_are_free, points_are_free
+from evenroad.space import Box
+from evenroad.space.batch import as_batch, as_batch_pair
+
+_SIDES = ("comment", "demo")
+
+
+@dataclass(frozen=True)
+class Corridor:
+    """The corridor of width `lam` along d edges of the unit cube, from (0, .., 0) to (1, .., 1).
+
+    A configuration is free iff it lies in [0, 1]^d and there is a k with ``x_i <= lam`` for all i < k and
+    ``x_i >= 1 - lam`` for all i > k: the Hypercube benchmark of OMPL's demos.  Motions are straight and
+    tested at ``n = ceil(length / resolution)`` segments' ends, the first included, in bisection order.
+
+    Parameters
+    ----------
+    d : int
+        Dimension, >= 1.
+    lam : float
+        Width, in (0, 1).  From one half on, the straight way from start to goal is free.
+    checked : int, optional
+        Only the first so many coordinates are tested, in [1, d]; all by default.  OMPL's demo tests 6,
+        whatever its dimension: published results for "d = 10" are of that.
+    side : {"comment", "demo"}
+        Which end of the coordinates goes first.  "comment" is the definition above, which the comment in
+        OMPL's demo states; "demo" has the two sides swapped, as its code does: ``x_i >= 1 - lam`` for i < k
+        and ``x_i <= lam`` for i > k.  It matters only where coordinates are not alike (Halton).
+
+    Raises
+    ------
+    InvalidValue
+        If a number is outside of its range.
+    UnknownName
+        If `side` is neither.
+    """
+
+    d: int
+    lam: float
+    checked: int | None = None
+    side: Literal["comment", "demo"] = "comment"
+    _axes: npt.NDArray[np.int64] = field(init=False, repr=False, compare=False)
+    _space: Box = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        d = require_count("d", self.d)
+        lam = require_positive("lam", self.lam)
+        if lam >= 1.0:
+            raise InvalidValue(f"lam must be in (0, 1), got {self.lam!r}")
+        checked = d if self.checked is None else require_count("checked", self.checked)
+        if checked > d:
+            raise InvalidValue(f"checked must be at most d = {d}, got {self.checked!r}")
+        if self.side not in _SIDES:
+            raise UnknownName.among("side", self.side, _SIDES)
+        axes = np.arange(checked) if self.side == "comment" else np.arange(checked)[::-1].copy()
+        axes.setflags(write=False)
+        for name, value in (("d", d), ("lam", lam), ("_axes", axes), ("_space", Box([0.0] * d, [1.0] * d))):
+            object.__setattr__(self, name, value)
+
+    @property
+    def name(self) -> str:
+        """The problem's name: "hypercube", or "hypercube-legacy6" with only the first 6 coordinates tested."""
+        return "hypercube" if len(self._axes) == self.d else f"hypercube-legacy{len(self._axes)}"
+
+    @property
+    def space(self) -> Box:
+        """The unit cube with the Euclidean metric."""
+        return self._space
+
+    @property
+    def resolution(self) -> float:
+        """Largest distance between states that are tested on a motion: ``0.001 sqrt(d)``, as in the demo."""
+        return 0.001 * math.sqrt(self.d)
+
+    @property
+    def start(self) -> npt.NDArray[np.float64]:
+        """One end of the corridor, (0, .., 0)."""
+        return np.zeros(self.d)
+
+    @property
+    def goal(self) -> npt.NDArray[np.float64]:
+        """The other end, (1, .., 1)."""
+        return np.ones(self.d)
+
+    @property
+    def free_volume(self) -> float:
+        """Share of the cube that is free, ``m (1 - lam) lam^(m - 1) + lam^m`` with m coordinates tested.
+
+        Either all m are at most lam, or exactly one k is the first above it and the m - 1 others are each on
+        their side, which has the length lam before k as after it.
+        """
+        m = len(self._axes)
+        return m * (1.0 - self.lam) * self.lam ** (m - 1) + self.lam**m
+
+    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Return which configurations, (n, d), are free: (n,).
+
+        Raises
+        ------
+        InvalidValue
+            If `q` has another shape or an entry that is not finite.
+        """
+        return points_are_free(as_batch("q", q, self.d), self.lam, self._axes)
+
+    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Return which straight motions from a row of `a` to that of `b`, two (m, d) arrays, are free: (m,).
+
+        Raises
+        ------
+        InvalidValue
+            If the two differ in length, or as `valid`.
+        """
+        first, second = as_batch_pair(a, b, self.d)
+        return motions_are_free(first, second, self.resolution, self.lam, self._axes)
+
+
+def hypercube_legacy6(side: Literal["comment", "demo"] = "demo") -> Corridor:
+    """Return "hypercube-legacy6": d = 10, lam = 0.37, the first 6 coordinates tested, sides as in the demo."""
+    return Corridor(10, 0.37, checked=6, side=side)

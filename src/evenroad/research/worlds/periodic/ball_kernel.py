@@ -1,0 +1,126 @@
+"""Compiled checks of balls on the torus, for points and for straight motions in the unit cube."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from evenroad.research.worlds.periodic.cube import ROUNDING, comes_first, is_in_cube
+
+
+@njit(cache=True, nogil=True)
+def points_are_free(
+    q: npt.NDArray[np.float64], centres: npt.NDArray[np.float64], squared_radius: float
+) -> npt.NDArray[np.bool_]:
+    """Return which rows of `q`, (n, d), lie in the unit cube and in no ball."""
+    free = np.empty(len(q), dtype=np.bool_)
+    for row in range(len(q)):
+        free[row] = is_in_cube(q[row]) and _is_outside_all(q[row], centres, squared_radius)
+    return free
+
+
+@njit(cache=True, nogil=True)
+def motions_are_free(
+    a: npt.NDArray[np.float64],
+    b: npt.NDArray[np.float64],
+    centres: npt.NDArray[np.float64],
+    squared_radius: float,
+) -> npt.NDArray[np.bool_]:
+    """Return which straight motions stay in the unit cube and meet no ball."""
+    free = np.empty(len(a), dtype=np.bool_)
+    d = a.shape[1]
+    # A step along an axis is at most 1 long: it passes at most two borders between copies.
+    step, times, axes = np.empty(d), np.empty(2 * d), np.empty(2 * d, dtype=np.int64)
+    for row in range(len(a)):
+        first, last = (a[row], b[row]) if comes_first(a[row], b[row]) else (b[row], a[row])
+        free[row] = (
+            is_in_cube(first)
+            and is_in_cube(last)
+            and _is_outside_all(first, centres, squared_radius)
+            and _is_outside_all(last, centres, squared_radius)
+            and _misses_all(first, last, centres, squared_radius, step, times, axes)
+        )
+    return free
+
+
+@njit(cache=True, nogil=True)
+def _is_outside_all(
+    q: npt.NDArray[np.float64], centres: npt.NDArray[np.float64], squared_radius: float
+) -> bool:
+    for i in range(len(centres)):
+        squared = 0.0
+        for k in range(len(q)):
+            offset = q[k] - centres[i, k]
+            offset -= np.rint(offset)
+            squared += offset * offset
+        if squared < squared_radius:
+            return False
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _misses_all(
+    a: npt.NDArray[np.float64],
+    b: npt.NDArray[np.float64],
+    centres: npt.NDArray[np.float64],
+    squared_radius: float,
+    step: npt.NDArray[np.float64],
+    times: npt.NDArray[np.float64],
+    axes: npt.NDArray[np.int64],
+) -> bool:
+    """Return whether ``a + t (b - a)``, t in [0, 1], stays out of every ball; the last three are room to work in.
+
+    The squared distance from a centre on the torus is the sum over the axes of the squared distance from its nearest
+    copy along that axis.  Between the times at which some axis changes its nearest copy it is one parabola.
+    """
+    squared_length = 0.0
+    for k in range(len(a)):
+        step[k] = b[k] - a[k]
+        squared_length += step[k] * step[k]
+    if squared_length == 0.0:
+        return True
+    in_reach = math.sqrt(squared_radius) + 0.5 * math.sqrt(squared_length) + ROUNDING
+    for i in range(len(centres)):
+        # Most balls are out of reach of a short motion, wherever on it: its middle says so.
+        squared = 0.0
+        for k in range(len(a)):
+            offset = a[k] + 0.5 * step[k] - centres[i, k]
+            offset -= np.rint(offset)
+            squared += offset * offset
+        if squared > in_reach * in_reach:
+            continue
+        # The parabola squared + 2 t along + t^2 squared_length, and the changes in the order of their times.
+        squared, along, changes = 0.0, 0.0, 0
+        for k in range(len(a)):
+            offset = a[k] - centres[i, k]
+            offset -= np.rint(offset)
+            squared += offset * offset
+            along += offset * step[k]
+            sign = 1.0 if step[k] > 0.0 else -1.0
+            border = 0.5
+            while sign * (offset + step[k]) > border:
+                time = (sign * border - offset) / step[k]
+                place = changes
+                while place > 0 and times[place - 1] > time:
+                    times[place], axes[place] = times[place - 1], axes[place - 1]
+                    place -= 1
+                times[place], axes[place] = time, k
+                changes += 1
+                border += 1.0
+        begin = 0.0
+        for change in range(changes + 1):
+            end = times[change] if change < changes else 1.0
+            nearest = min(max(-along / squared_length, begin), end)
+            if squared + nearest * (2.0 * along + nearest * squared_length) < squared_radius:
+                return False
+            if change < changes:
+                # The offset that is now half a period is minus half a period from the next copy.
+                k = axes[change]
+                sign = 1.0 if step[k] > 0.0 else -1.0
+                squared += 1.0 - 2.0 * sign * (0.5 * sign - end * step[k])
+                along -= sign * step[k]
+                begin = end
+    return True

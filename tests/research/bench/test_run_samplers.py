@@ -1,0 +1,93 @@
+"""Which set the run of a benchmark gets."""
+
+import numpy as np
+import pytest
+
+from evenroad.errors import NotAvailable, UnknownName
+from evenroad.points import draw
+from evenroad.points.bank import open_bank
+from evenroad.points.samplers.sequences import Halton, Sobol, paper_block
+from evenroad.research.bench.samplers import SAMPLERS, draw_set, why_not
+
+
+def _draw(name, n, d, run=0, seed=0):
+    return draw_set(name, n, d, run, np.random.default_rng(seed))
+
+
+@pytest.mark.parametrize("name", SAMPLERS)
+def test_every_sampler_draws_a_set_of_the_size_asked_for_and_the_same_one_again(name):
+    if why_not(name, 64, 2):
+        pytest.skip(why_not(name, 64, 2))
+    points, set_id = _draw(name, 64, 2, run=3, seed=5)
+    assert (points.n, points.d) == (64, 2)
+    assert (points, set_id) == _draw(name, 64, 2, run=3, seed=5)
+
+
+@pytest.mark.parametrize("name", ["uniform", "halton scrambled", "sobol scrambled", "lattice", "korobov"])
+def test_samplers_drawn_afresh_differ_by_seed_and_name_no_set(name):
+    first, set_id = _draw(name, 32, 3, seed=1)
+    second, _ = _draw(name, 32, 3, seed=2)
+    assert set_id == ""
+    assert not np.array_equal(first.points, second.points)
+
+
+@pytest.mark.parametrize(("name", "family"), [("halton", Halton), ("sobol", Sobol)])
+@pytest.mark.parametrize("run", [0, 1, 31, 32, 100])
+def test_a_block_is_what_the_paper_takes_whatever_the_seed(name, family, run):
+    points, set_id = _draw(f"{name} paper-blocks", 50, 4, run=run, seed=run)
+    assert points == paper_block(family(), run + 1, 50).draw(50, 4)
+    assert set_id == ""
+
+
+def test_runs_of_a_block_protocol_follow_each_other_in_the_sequence():
+    blocks = [_draw("halton paper-blocks", 10, 2, run=run)[0].points for run in range(3)]
+    sequence = Halton(scramble=False, start=1).draw(30, 2).points
+    np.testing.assert_array_equal(np.concatenate(blocks), sequence)
+
+
+def test_a_pool_set_is_named_by_its_number():
+    points, set_id = _draw("hickernell", 64, 3, seed=4)
+    stored = open_bank().cell("hickernell", 64, 3).load()
+    np.testing.assert_array_equal(points.points, stored[int(set_id)])
+
+
+def test_many_runs_take_many_sets_of_the_pool():
+    assert len({_draw("hickernell", 64, 2, seed=seed)[1] for seed in range(100)}) > 30
+
+
+def test_from_five_dimensions_on_a_pool_set_comes_with_permuted_coordinates():
+    points, set_id = _draw("hickernell", 64, 5, seed=4)
+    stored = open_bank().cell("hickernell", 64, 5).load()[int(set_id)]
+    columns = {column.tobytes() for column in stored.T.astype(np.float64)}
+    assert {column.tobytes() for column in points.points.T} == columns
+    assert "permuted" in points.origin.method
+
+
+def test_even_in_high_dimensions_is_constructed_and_so_a_set_of_its_own_each_time():
+    first, set_id = _draw("even", 100, 7, seed=1)
+    assert set_id == ""
+    assert first.origin.family == "even"
+    assert not np.array_equal(first.points, _draw("even", 100, 7, seed=2)[0].points)
+
+
+def test_the_grid_is_one_set_where_it_exists():
+    points, set_id = _draw("sukharev", 64, 3)
+    assert set_id == "grid"
+    np.testing.assert_array_equal(points.points, draw("sukharev", 64, 3).points)
+    assert "nearest are 27 and 64" in why_not("sukharev", 63, 3)
+
+
+def test_a_pool_that_is_not_in_the_bank_says_which_n_there_are():
+    assert "it has n = 16, 32" in why_not("hickernell", 100, 2)
+    with pytest.raises(NotAvailable, match="it has n = 16, 32"):
+        _draw("hickernell", 100, 2)
+
+
+def test_the_lattice_ends_at_twelve_dimensions():
+    assert why_not("lattice", 10, 12) == ""
+    assert "12" in why_not("lattice", 10, 13)
+
+
+def test_an_unknown_sampler_gets_the_list():
+    with pytest.raises(UnknownName, match="known: even, halton paper-blocks"):
+        why_not("nonsense", 10, 2)
