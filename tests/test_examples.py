@@ -67,3 +67,15 @@ def test_links_of_the_readme_and_the_docs_lead_somewhere():
 def test_the_example_runs(path, capsys):
     runpy.run_path(str(path), run_name="__main__")
     assert capsys.readouterr().out
+
+
+def test_prose_of_the_documents_is_at_most_120_characters_wide():
+    too_wide = []
+    for path in [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]:
+        in_code = False
+        for number, line in enumerate(path.read_text().splitlines(), start=1):
+            in_code ^= line.startswith("```")
+            # What a terminal printed is shown as it was, and tables cannot be wrapped.
+            if len(line) > 120 and not in_code and not line.startswith("|"):
+                too_wide.append(f"{path.name}:{number}")
+    assert too_wide == []
