@@ -6,10 +6,7 @@ import pytest
 
 from evenroad.errors import BrokenFile, NotAvailable, UnknownName
 from evenroad.points import draw, load_points
-from evenroad.points.even import EVEN, even_choice
 from evenroad.points.families import Trained, cache_folder
-from evenroad.points.measures import MEASURES, separation
-from evenroad.points.optimise import parse_objective
 from tests.points.samplers.sampler_contract import SamplerContract
 
 
@@ -23,13 +20,8 @@ class TestHickernell(SamplerContract):
     shapes = ((16, 2), (64, 2), (1024, 2))
 
 
-class TestEvenWhereItIsConstructed(SamplerContract):
-    sampler = Trained("even")
-    shapes = ((5, 1), (3, 2), (1, 6), (20, 7), (100, 10))
-
-
-class TestEvenMadeOnDemand(SamplerContract):
-    sampler = Trained("even", train=True)
+class TestHickernellMadeOnDemand(SamplerContract):
+    sampler = Trained("hickernell", train=True)
     shapes = ((5, 3), (7, 3), (6, 4))
 
 
@@ -118,25 +110,8 @@ def test_the_advice_makes_exactly_the_set_that_was_missing():
 
 
 def test_an_unknown_family_is_refused_with_the_list():
-    with pytest.raises(UnknownName, match="even, hickernell, mpmc"):
+    with pytest.raises(UnknownName, match="known: hickernell, mpmc"):
         Trained("odd")
-
-
-def test_the_even_family_has_a_choice_for_every_dimension():
-    for d in range(1, 40):
-        choice = even_choice(d)
-        assert (choice == "korobov") == (d not in EVEN)
-        if d in EVEN:
-            assert str(parse_objective(choice)) == choice
-
-
-@pytest.mark.parametrize("d", [2, 3])
-def test_even_sets_are_both_of_low_discrepancy_and_well_separated(d):
-    even = Trained("even", train=True).draw(60, d)
-    random = [draw("uniform", 60, d, rng=seed) for seed in range(20)]
-    assert separation(even, periodic=True) > 2 * max(separation(each, periodic=True) for each in random)
-    discrepancy = MEASURES["average_squared"].rooted
-    assert discrepancy(even) < 0.5 * min(map(discrepancy, random))
 
 
 def test_stored_values_are_float32_whether_shipped_or_made():

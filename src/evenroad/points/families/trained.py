@@ -12,7 +12,6 @@ from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import NotAvailable, UnknownName
 from evenroad.points.bank import Bank, open_bank
 from evenroad.points.bank.bank import SEED
-from evenroad.points.even import KOROBOV, even_choice
 from evenroad.points.families.cache import cached, keep, require_cache
 from evenroad.points.pointset import BELOW_ONE, Origin, PointSet
 
@@ -21,7 +20,7 @@ ON_DEMAND_SETS = 8
 
 ON_DEMAND_STEPS = 5000
 
-TRAINED_FAMILIES = ("even", "hickernell", "mpmc")
+TRAINED_FAMILIES = ("hickernell", "mpmc")
 
 Callback = Callable[[int, int, float], object]
 
@@ -35,7 +34,7 @@ class Trained:
     Parameters
     ----------
     family : str
-        ``even``, ``hickernell`` or ``mpmc``.
+        ``hickernell`` or ``mpmc``.
     train : bool
         Anneal a set that is neither in the bank nor in the cache; else refuse, naming the n that there are.
         The network's sets are never made on demand.
@@ -70,7 +69,7 @@ class Trained:
         -------
         points : PointSet
         source : str
-            ``exact`` (shipped, or constructed), ``cached`` (made before, on this machine) or ``fresh``.
+            ``exact`` (shipped), ``cached`` (made before, on this machine) or ``fresh``.
 
         Raises
         ------
@@ -78,14 +77,12 @@ class Trained:
             If there is no such set and it may not be made.
         """
         n, d = require_count("n", n), require_count("d", d)
-        if self.family == "even" and even_choice(d) == KOROBOV:
-            return self._korobov(n, d, rng), "exact"
         bank = self.bank or open_bank()
         if bank.has(self.family, n, d):
             return self._from_bank(bank, n, d, rng), "exact"
         if self.family == "mpmc":
             bank.cell(self.family, n, d)  # says what there is
-        objective = even_choice(d) if self.family == "even" else self.family
+        objective = self.family
         replica = int(generator(rng).integers(ON_DEMAND_SETS))
         key = (self.family, objective, ON_DEMAND_STEPS, n, d, replica)
         points, source = cached(*key), "cached"
@@ -109,12 +106,6 @@ class Trained:
             version=cell.version,
         )
         return PointSet(cell.load()[replica], origin)
-
-    def _korobov(self, n: int, d: int, rng: RngLike) -> PointSet:
-        # Here, because the samplers by name include this one.
-        from evenroad.points.samplers.korobov import Korobov
-
-        return Korobov().draw(n, d, rng=rng).with_origin(family=self.family)
 
     def _anneal(self, n: int, d: int, objective: str, replica: int) -> PointSet:
         from evenroad.points.optimise import anneal

@@ -10,6 +10,7 @@ from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points.families.trained import TRAINED_FAMILIES, Trained
 from evenroad.points.pointset import PointSet
+from evenroad.points.samplers.korobov import Even as Even
 from evenroad.points.samplers.korobov import Korobov as Korobov
 from evenroad.points.samplers.lattice import Lattice as Lattice
 from evenroad.points.samplers.sampler import Sampler as Sampler
@@ -37,6 +38,7 @@ SAMPLERS: dict[str, Callable[..., Sampler]] = {
     "sukharev": Sukharev,
     "lattice": Lattice,
     "korobov": Korobov,
+    "even": Even,
     **{family: partial(Trained, family) for family in TRAINED_FAMILIES},
 }
 """Name -> how to make the sampler from its options."""
