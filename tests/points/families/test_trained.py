@@ -1,12 +1,13 @@
 import multiprocessing
 import os
+import shutil
 
 import numpy as np
 import pytest
 
 from evenroad.errors import BrokenFile, NotAvailable, UnknownName
-from evenroad.points import draw, load_points
-from evenroad.points.families import Trained, cache_folder
+from evenroad.points import draw, load_points, save_points
+from evenroad.points.families import Trained, cache_folder, trained
 from tests.points.samplers.sampler_contract import SamplerContract
 
 
@@ -57,6 +58,51 @@ def test_a_damaged_file_of_the_cache_is_made_again():
     assert source == "fresh"
     assert again == made
     assert load_points(file).hash == made.hash
+
+
+def _seeds_of_two_sets():
+    """Return the seeds of two different sets of a pool made on demand."""
+    replicas = [int(np.random.default_rng(seed).integers(8)) for seed in range(9)]
+    return 0, next(seed for seed in range(9) if replicas[seed] != replicas[0])
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"replica": 7}, {"family": "mpmc"}, {"objective": "star"}, {"steps": 4999}, {"steps": None}],
+    ids=str,
+)
+def test_a_file_of_the_cache_that_holds_another_set_is_made_again(changes):
+    family = Trained("hickernell", train=True)
+    made = family.draw(6, 2)
+    (file,) = (cache_folder() / "sets").iterdir()
+    save_points(file, load_points(file).with_origin(**changes))
+    again, source = family.find(6, 2)
+    assert (again, source) == (made, "fresh")
+    assert load_points(file).origin == made.with_origin(seed=None).origin
+
+
+def test_the_file_of_another_set_of_the_pool_is_not_taken():
+    family = Trained("hickernell", train=True)
+    first, second = _seeds_of_two_sets()
+    one = family.draw(6, 2, rng=first)
+    (file,) = (cache_folder() / "sets").iterdir()
+    other = family.draw(6, 2, rng=second)
+    (other_file,) = set((cache_folder() / "sets").iterdir()) - {file}
+    shutil.copy(other_file, file)
+    assert family.find(6, 2, rng=first) == (one, "fresh")
+    assert family.find(6, 2, rng=second) == (other, "cached")
+
+
+def test_sets_of_other_steps_have_files_of_their_own(monkeypatch):
+    family = Trained("hickernell", train=True)
+    standard = family.draw(6, 2)
+    monkeypatch.setattr(trained, "ON_DEMAND_STEPS", 50)
+    short, source = family.find(6, 2)
+    assert source == "fresh"
+    assert short.hash != standard.hash
+    assert family.find(6, 2) == (short, "cached")
+    monkeypatch.setattr(trained, "ON_DEMAND_STEPS", 5000)
+    assert family.find(6, 2) == (standard, "cached")
 
 
 def test_a_cache_that_cannot_be_written_is_our_error(monkeypatch, tmp_path):

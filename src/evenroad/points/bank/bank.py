@@ -36,6 +36,7 @@ class Cell:
     Attributes
     ----------
     method, objective, version : str
+    steps : int
         How its sets were made, and by which version.
     hashes : tuple of str
         ``PointSet.hash`` of every set, of the stored float32 values.
@@ -49,6 +50,7 @@ class Cell:
     method: str
     objective: str
     version: str
+    steps: int
     hashes: tuple[str, ...]
     measures: dict[str, tuple[float, ...]]
 
@@ -106,6 +108,7 @@ class Bank:
             method=record["method"],
             objective=record["objective"],
             version=record["version"],
+            steps=record["steps"],
             hashes=tuple(record["hashes"]),
             measures={name: tuple(values) for name, values in record["measures"].items()},
         )

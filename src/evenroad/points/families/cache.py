@@ -26,12 +26,14 @@ def require_cache() -> None:
 
 
 def cached(family: str, objective: str, steps: int, n: int, d: int, replica: int) -> PointSet | None:
-    """Return the set from the cache; None when it is not there, or damaged and to be made again."""
+    """Return the set from the cache; None when it is not there, damaged or another one, and to be made again."""
     try:
         points = load_points(_file(family, objective, steps, n, d, replica))
     except BrokenFile:
         return None
-    return points if points.points.shape == (n, d) and points.origin.objective == objective else None
+    origin = points.origin
+    found = (origin.family, origin.objective, origin.steps, points.n, points.d, origin.replica)
+    return points if found == (family, objective, steps, n, d, replica) else None
 
 
 def keep(family: str, objective: str, steps: int, n: int, d: int, replica: int, points: PointSet) -> None:

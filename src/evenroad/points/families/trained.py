@@ -103,6 +103,7 @@ class Trained:
             objective=cell.objective,
             seed=seed_of(rng),
             replica=replica,
+            steps=cell.steps,
             version=cell.version,
         )
         return PointSet(cell.load()[replica], origin)
@@ -113,9 +114,14 @@ class Trained:
         seed = np.random.SeedSequence(SEED, spawn_key=(replica,))
         made = anneal(n, d, objective, steps=ON_DEMAND_STEPS, rng=seed, callback=self.callback)
         stored = np.minimum(made.points.astype(np.float32), np.float32(BELOW_ONE))
-        return PointSet(
-            stored, Origin(family=self.family, method="annealed", objective=objective, replica=replica)
+        origin = Origin(
+            family=self.family,
+            method="annealed",
+            objective=objective,
+            replica=replica,
+            steps=ON_DEMAND_STEPS,
         )
+        return PointSet(stored, origin)
 
     def _what_there_is(self, bank: Bank, n: int, d: int, rng: RngLike) -> str:
         try:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.errors import InvalidValue
+from evenroad.errors import InvalidValue, shown
 from evenroad.points.measures.pairs import pair_sums
 from evenroad.points.measures.terms import Array, ProductTerms
 from evenroad.points.pointset import as_unit_points
@@ -109,7 +109,9 @@ class Measure:
         except (TypeError, ValueError):
             gamma = np.array(np.nan)
         if gamma.shape != (d,) or not np.isfinite(gamma).all() or (gamma < 0).any():
-            raise InvalidValue(f"weights must be {d} finite numbers >= 0, one a coordinate, got {weights!r}")
+            raise InvalidValue(
+                f"weights must be {d} finite numbers >= 0, one a coordinate, got {shown(weights)}"
+            )
         return gamma
 
 

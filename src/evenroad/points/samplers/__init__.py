@@ -61,7 +61,7 @@ def make_sampler(name: str, **options: Any) -> Sampler:
     InvalidValue
         If the sampler does not take an option.
     """
-    if name not in SAMPLERS:
+    if not isinstance(name, str) or name not in SAMPLERS:
         raise UnknownName.among("sampler", name, SAMPLERS)
     try:
         return SAMPLERS[name](**options)
