@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from evenroad.cli.interrupt import interrupt_between_steps
-from evenroad.points import PointSet, draw, load_points, save_points
+from evenroad.points import SAMPLERS, PointSet, draw, load_points, save_points
 
 
 def test_a_shipped_set_is_written_as_a_plain_array(run, tmp_path):
@@ -45,6 +45,13 @@ def test_the_default_family_in_ten_dimensions_is_there_at_once(run, tmp_path):
     code, _, _ = run("points", "-n", 512, "-d", 10, "-o", "a.npz")
     assert code == 0
     assert load_points(tmp_path / "a.npz").origin.family == "even"
+
+
+@pytest.mark.parametrize(("verb", "option"), [("points", "--family"), ("plan", "--sampler")])
+def test_the_help_names_every_sampler(run, verb, option):
+    _, out, _ = run(verb, "--help")
+    named = re.findall(r"\w+", out.rpartition(option)[2].partition("--")[0])
+    assert set(SAMPLERS) <= set(named)
 
 
 def test_constructed_families_are_written_too(run, tmp_path):

@@ -51,7 +51,7 @@ class Points:
         from evenroad.cli.progress import progress_bar
         from evenroad.errors import InvalidValue
         from evenroad.points import make_sampler
-        from evenroad.points.families import TRAINED_FAMILIES, Trained
+        from evenroad.points.bank import TRAINED_FAMILIES, Trained
 
         if self.family not in TRAINED_FAMILIES and self.no_train:
             raise InvalidValue(f"--no-train does not go with {self.family!r}, whose sets are constructed")

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.errors import BrokenFile, NotAvailable, UnknownName
+from evenroad.errors import BrokenFile, NotAvailable, UnknownName, shown
 from evenroad.points.pointset import PointSet
 
 DATA = Path(__file__).parent / "data"
@@ -158,8 +158,8 @@ def _parse_index(path: Path, mtime_ns: int) -> dict[str, Any]:
 def _load_checked(path: Path, shape: tuple[int, ...], hashes: tuple[str, ...]) -> npt.NDArray[np.float32]:
     try:
         sets = np.load(path, allow_pickle=False)
-    except (OSError, ValueError, EOFError) as error:
-        raise BrokenFile(f"the bank's file {path} cannot be read: {error}") from error
+    except Exception as error:  # no list is complete: see evenroad.points.npz
+        raise BrokenFile(f"the bank's file {path} cannot be read: {shown(error)}") from error
     if not isinstance(sets, np.ndarray) or sets.dtype != np.float32 or sets.shape != shape:
         raise BrokenFile(f"the bank's file {path} is not a float32 array of shape {shape}")
     for replica, expected in enumerate(hashes):

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 from itertools import islice
 from math import gcd
-from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +19,7 @@ from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import Origin, PointSet
+from evenroad.points.sampler import ALL_SYMMETRIES
 
 MAX_N = 2**26
 """Up to here products of two residues, and the multiple of n next to them, are exact in float64."""
@@ -45,10 +45,13 @@ class Korobov:
     equally spaced values, each once.
     """
 
-    name: ClassVar[str] = "korobov"
+    name = "korobov"
+    about = "best Korobov lattice, randomly shifted"
+    any_n = True
+    symmetries = ALL_SYMMETRIES
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
-        """Return n lattice points, shape (n, d), in the order of i; see :class:`Sampler`.
+        """Return n lattice points, shape (n, d), in the order of i; see :class:`~evenroad.points.Sampler`.
 
         Raises
         ------
@@ -89,7 +92,8 @@ class Even(Korobov):
     ``python -m benchmarks.decide_even`` gives all candidates, every n and every k.
     """
 
-    name: ClassVar[str] = "even"
+    name = "even"
+    about = "our default: a randomly shifted Korobov lattice"
 
 
 def korobov_generator(n: int, d: int) -> int:

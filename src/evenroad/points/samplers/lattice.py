@@ -11,6 +11,7 @@ from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import Origin, PointSet
+from evenroad.points.sampler import Symmetry
 
 MAX_D = 12
 """Beyond this the ball around the cube holds thousands of lattice points for each one inside the cube."""
@@ -26,9 +27,14 @@ class Lattice:
     """
 
     name = "lattice"
+    about = "A_d*, randomly turned and shifted"
+    any_n = True
+    # The cube's own give an equally likely set.  A shift would join two sides of the cut, where the lattice does not
+    # fit together.
+    symmetries = frozenset({Symmetry.PERMUTATION, Symmetry.REFLECTION})
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
-        """Return n lattice points of the unit cube, shape (n, d); see :class:`Sampler`.
+        """Return n lattice points of the unit cube, shape (n, d); see :class:`~evenroad.points.Sampler`.
 
         Raises
         ------

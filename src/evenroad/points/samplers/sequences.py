@@ -5,12 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy.typing as npt
-from scipy.stats import qmc
 
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import Origin, PointSet
+from evenroad.points.sampler import Symmetry
+
+SEQUENCE_SYMMETRIES = frozenset({Symmetry.PERMUTATION})
+"""The sequences are known for their star discrepancy, which sees only the corner at the origin."""
 
 SOBOL_LENGTH = 2**30
 """How many distinct points SciPy's Sobol engine has at its default 30 bits."""
@@ -31,12 +34,18 @@ class Halton:
     scramble: bool = True
     start: int = 0
     name = "halton"
+    about = "Halton, randomly permuted digits, or plain"
+    any_n = True
+    symmetries = SEQUENCE_SYMMETRIES
 
     def __post_init__(self) -> None:
         require_count("start", self.start, at_least=0)
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
-        """Return points start .. start + n - 1 of the sequence, shape (n, d); see :class:`Sampler`."""
+        """Return points start .. start + n - 1 of the sequence, shape (n, d); see :class:`~evenroad.points.Sampler`."""
+        # Here, because it takes half a second to import: only those who ask for a sequence pay for it.
+        from scipy.stats import qmc
+
         n, d = require_count("n", n), require_count("d", d)
         engine = qmc.Halton(d, scramble=self.scramble, rng=generator(rng))
         if self.start:
@@ -59,18 +68,23 @@ class Sobol:
     scramble: bool = True
     start: int = 0
     name = "sobol"
+    about = "Sobol, scrambled, or plain"
+    any_n = True
+    symmetries = SEQUENCE_SYMMETRIES
 
     def __post_init__(self) -> None:
         require_count("start", self.start, at_least=0)
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
-        """Return points start .. start + n - 1 of the sequence, shape (n, d); see :class:`Sampler`.
+        """Return points start .. start + n - 1 of the sequence, shape (n, d); see :class:`~evenroad.points.Sampler`.
 
         Raises
         ------
         InvalidValue
             Also if start + n exceeds 2**30 points, or d exceeds the 21201 dimensions of the direction numbers.
         """
+        from scipy.stats import qmc
+
         n, d = require_count("n", n), require_count("d", d)
         if self.start + n > SOBOL_LENGTH:
             raise InvalidValue(f"the Sobol sequence ends at index {SOBOL_LENGTH}, asked for {self.start + n}")

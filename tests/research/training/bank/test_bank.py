@@ -5,9 +5,8 @@ import numpy as np
 import pytest
 
 from evenroad.errors import BrokenFile, NotAvailable, UnknownName
-from evenroad.points.bank import Bank, open_bank
+from evenroad.points.bank import Bank, Trained, open_bank
 from evenroad.points.bank.bank import DATA, INDEX, SEED
-from evenroad.points.families import Trained
 from evenroad.points.pointset import PointSet
 from evenroad.research.training import anneal_many
 from evenroad.research.training.bank import MEASURED, build, store

@@ -1,26 +1,34 @@
-"""Trained families for any n and d: from the bank, from the user's cache, or annealed on demand."""
+"""Trained families: a set of any n and d, from the bank, from the user's cache, or annealed on demand."""
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
+from evenroad import __version__
 from evenroad._checks import require_count
+from evenroad._files import cache_folder, require_writable_folder
 from evenroad._rng import RngLike, generator, seed_of
-from evenroad.errors import NotAvailable, UnknownName
-from evenroad.points.bank import Bank, open_bank
-from evenroad.points.bank.bank import SEED
-from evenroad.points.families.cache import cached, keep, require_cache
+from evenroad.errors import BrokenFile, NotAvailable, UnknownName
+from evenroad.points.bank.bank import SEED, Bank, open_bank
+from evenroad.points.npz import load_points, save_points
 from evenroad.points.pointset import BELOW_ONE, Origin, PointSet
+from evenroad.points.sampler import Symmetry
 
 ON_DEMAND_SETS = 8
 """Size of the pool of an (n, d) that is not in the bank; its sets are made one by one, as they are drawn."""
 
 ON_DEMAND_STEPS = 5000
 
-TRAINED_FAMILIES = ("hickernell", "mpmc")
+TRAINED_FAMILIES = {
+    "hickernell": "sets annealed for the Hickernell L2 discrepancy",
+    "mpmc": "sets of the paper's message-passing network, trained for the same discrepancy; only those that ship",
+}
+"""Name -> one line about the family."""
 
 Callback = Callable[[int, int, float], object]
 
@@ -48,6 +56,8 @@ class Trained:
     train: bool = False
     callback: Callback | None = field(default=None, compare=False)
     bank: Bank | None = None
+    any_n = False
+    symmetries = frozenset({Symmetry.PERMUTATION})
 
     def __post_init__(self) -> None:
         if self.family not in TRAINED_FAMILIES:
@@ -57,6 +67,11 @@ class Trained:
     def name(self) -> str:
         """The family's name."""
         return self.family
+
+    @property
+    def about(self) -> str:
+        """One line about the family."""
+        return TRAINED_FAMILIES[self.family]
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
         """Return one set of n points in d dimensions; see :meth:`find`."""
@@ -75,23 +90,30 @@ class Trained:
         ------
         NotAvailable
             If there is no such set and it may not be made.
+        BrokenFile
+            If a new set could not be kept; nothing is annealed then.
         """
         n, d = require_count("n", n), require_count("d", d)
         bank = self.bank or open_bank()
         if bank.has(self.family, n, d):
             return self._from_bank(bank, n, d, rng), "exact"
         if self.family == "mpmc":
-            bank.cell(self.family, n, d)  # says what there is
-        objective = self.family
+            bank.cell(self.family, n, d)  # raises, and says what there is
         replica = int(generator(rng).integers(ON_DEMAND_SETS))
-        key = (self.family, objective, ON_DEMAND_STEPS, n, d, replica)
-        points, source = cached(*key), "cached"
+        # The family's name is that of what it minimises.
+        origin = Origin(
+            family=self.family,
+            method="annealed",
+            objective=self.family,
+            replica=replica,
+            steps=ON_DEMAND_STEPS,
+        )
+        file = _cache_file(origin, n, d)
+        points, source = _cached(file, origin, n, d), "cached"
         if points is None:
             if not self.train:
                 raise NotAvailable(self._what_there_is(bank, n, d, rng))
-            require_cache()
-            points, source = self._anneal(n, d, objective, replica), "fresh"
-            keep(*key, points)
+            points, source = self._anneal(file, origin, n, d), "fresh"
         return points.with_origin(seed=seed_of(rng)), source
 
     def _from_bank(self, bank: Bank, n: int, d: int, rng: RngLike) -> PointSet:
@@ -108,20 +130,20 @@ class Trained:
         )
         return PointSet(cell.load()[replica], origin)
 
-    def _anneal(self, n: int, d: int, objective: str, replica: int) -> PointSet:
+    def _anneal(self, file: Path, origin: Origin, n: int, d: int) -> PointSet:
+        """Make a set and keep it.
+
+        One kind of processor always makes the same bits, and a file appears in one step: two processes that anneal
+        it at once write the same content, whichever comes last.
+        """
         from evenroad.points.optimise import anneal
 
-        seed = np.random.SeedSequence(SEED, spawn_key=(replica,))
-        made = anneal(n, d, objective, steps=ON_DEMAND_STEPS, rng=seed, callback=self.callback)
-        stored = np.minimum(made.points.astype(np.float32), np.float32(BELOW_ONE))
-        origin = Origin(
-            family=self.family,
-            method="annealed",
-            objective=objective,
-            replica=replica,
-            steps=ON_DEMAND_STEPS,
-        )
-        return PointSet(stored, origin)
+        _require_cache(file)
+        seed = np.random.SeedSequence(SEED, spawn_key=(origin.replica or 0,))
+        made = anneal(n, d, origin.objective, steps=ON_DEMAND_STEPS, rng=seed, callback=self.callback)
+        points = PointSet(np.minimum(made.points.astype(np.float32), np.float32(BELOW_ONE)), origin)
+        save_points(file, points)
+        return points
 
     def _what_there_is(self, bank: Bank, n: int, d: int, rng: RngLike) -> str:
         try:
@@ -132,3 +154,31 @@ class Trained:
             f"evenroad points -n {n} -d {d} --family {self.family} --seed {seed_of(rng) or 0} -o set.npy"
         )
         return f"{known}; this one is made by: {command}"
+
+
+def _cache_file(origin: Origin, n: int, d: int) -> Path:
+    # All that decides the bits is part of the name: sets of an earlier recipe are not mistaken for today's.
+    recipe = f"{origin.objective}|{origin.steps}|{SEED}|{__version__}"
+    digest = hashlib.sha256(recipe.encode()).hexdigest()[:8]
+    name = f"{origin.family}-{digest}-d{d:02d}-n{n:05d}-{origin.replica:03d}.npz"
+    return cache_folder() / "sets" / name
+
+
+def _cached(file: Path, origin: Origin, n: int, d: int) -> PointSet | None:
+    """Return the set from the cache; None where it is missing, damaged or another one, and to be made again."""
+    try:
+        points = load_points(file)
+    except BrokenFile:
+        return None
+    return points if (points.n, points.d, points.origin) == (n, d, origin) else None
+
+
+def _require_cache(file: Path) -> None:
+    """Raise BrokenFile unless a set could be kept now: before the minutes that annealing it may take."""
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise BrokenFile(
+            f"cannot make the cache folder {file.parent}: {error.strerror or error} (EVENROAD_CACHE names another)"
+        ) from error
+    require_writable_folder(file)

@@ -5,9 +5,10 @@ import shutil
 import numpy as np
 import pytest
 
+from evenroad._files import cache_folder
 from evenroad.errors import BrokenFile, NotAvailable, UnknownName
 from evenroad.points import draw, load_points, save_points
-from evenroad.points.families import Trained, cache_folder, trained
+from evenroad.points.bank import Trained, trained
 from tests.points.samplers.sampler_contract import SamplerContract
 
 

@@ -1,0 +1,63 @@
+"""What a sampler is: a small frozen value that draws point sets, and says itself what others need to know of it."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Protocol
+
+from evenroad._rng import RngLike
+from evenroad.points.pointset import PointSet
+
+
+class Symmetry(StrEnum):
+    """A kind of transformation of the unit cube."""
+
+    PERMUTATION = "permutations of the coordinates"
+    REFLECTION = "reflections"
+    SHIFT = "shifts modulo 1"
+
+
+ALL_SYMMETRIES = frozenset(Symmetry)
+
+
+class Sampler(Protocol):
+    """Draws sets of n points in d dimensions; the same arguments always give the same bits."""
+
+    @property
+    def name(self) -> str:
+        """The name under which users ask for it."""
+        ...
+
+    @property
+    def about(self) -> str:
+        """What its sets are, in one line."""
+        ...
+
+    @property
+    def any_n(self) -> bool:
+        """Whether it has a set of every n, in every dimension that it takes."""
+        ...
+
+    @property
+    def symmetries(self) -> frozenset[Symmetry]:
+        """Which transformations keep the quality of its sets."""
+        ...
+
+    def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
+        """Return n points of [0, 1)^d, with their origin.
+
+        Parameters
+        ----------
+        n, d : int
+            Number of points and dimension, >= 1.
+        rng : int, SeedSequence or Generator
+            All that is random comes from it.  A passed Generator is spawned.
+
+        Raises
+        ------
+        InvalidValue
+            If n, d or rng is not of that kind, or the sampler does not go up to this n or d.
+        NotAvailable
+            If the sampler has no set of this n and d.
+        """
+        ...
