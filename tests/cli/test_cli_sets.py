@@ -79,6 +79,16 @@ def test_bad_requests_for_points_get_one_line(run, tmp_path, arguments, says):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("option", ["-n", "-d", "--family", "--seed", "-o"])
+def test_an_error_repeats_a_little_of_what_points_was_asked_for(run, tmp_path, option):
+    line = {"-n": 8, "-d": 2, "--family": "uniform", "--seed": 0, "-o": "a.npy"}
+    line[option] = "-" + "7" * 3000 if option in ("-n", "-d", "--seed") else "x" * 5000
+    code, out, err = run("points", *(each for pair in line.items() for each in pair))
+    assert (code, out) == (2, "")
+    assert len(err) < 500
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_measures_are_printed_as_a_table_within_100_columns(run):
     np.save("set.npy", draw("halton", 50, 2).points)
     code, out, err = run("measure", "set.npy")

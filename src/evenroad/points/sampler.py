@@ -21,7 +21,7 @@ ALL_SYMMETRIES = frozenset(Symmetry)
 
 
 class Sampler(Protocol):
-    """Draws sets of n points in d dimensions; the same arguments always give the same bits."""
+    """Draws sets of n points in d dimensions; the same arguments give the same bits on one kind of processor."""
 
     @property
     def name(self) -> str:

@@ -96,22 +96,29 @@ class Bank:
             If the bank has no such family.
         NotAvailable
             If the family has no set of this n and d; the text names the n (or the d) it has.
+        BrokenFile
+            If the index is damaged.
         """
         counts = self.counts(family, d)
         if n not in counts:
             raise NotAvailable(self._what_there_is(family, n, d, counts))
         record = _index(self.folder)[family][str(d)][str(n)]
-        return Cell(
-            path=self.folder / family / cell_name(n, d),
-            n=n,
-            d=d,
-            method=record["method"],
-            objective=record["objective"],
-            version=record["version"],
-            steps=record["steps"],
-            hashes=tuple(record["hashes"]),
-            measures={name: tuple(values) for name, values in record["measures"].items()},
-        )
+        try:
+            return Cell(
+                path=self.folder / family / cell_name(n, d),
+                n=n,
+                d=d,
+                method=record["method"],
+                objective=record["objective"],
+                version=record["version"],
+                steps=record["steps"],
+                hashes=tuple(record["hashes"]),
+                measures={name: tuple(values) for name, values in record["measures"].items()},
+            )
+        except (KeyError, TypeError, AttributeError) as error:
+            raise BrokenFile(
+                f"the index of the bank {self.folder}: {family} n={n} d={d} is no record ({shown(error)})"
+            ) from error
 
     def has(self, family: str, n: int, d: int) -> bool:
         """Say whether the bank holds a pool of this family at this n and d."""

@@ -71,7 +71,7 @@ def riesz_energy(points: object, s: int | None = None, periodic: bool = True) ->
 def riesz_rooted(points: object, s: int | None = None, periodic: bool = True) -> float:
     """Return :func:`riesz_energy` to the power 1/s: as s grows, the spacing over the smallest distance.
 
-    It stays in the range of a float where the energy does not; coincident points count as 10^-100 apart.
+    It stays in the range of a float where the energy does not; the distance of coincident points counts as 10^-100.
     """
     return riesz_rooted_with_gradient(points, s, periodic)[0]
 
@@ -98,8 +98,8 @@ def log_riesz_of_columns(columns: Array, s: int, periodic: bool, want_gradient: 
     """Return log(riesz_energy) and its gradient, shape (d, n), at checked points of shape (d, n).
 
     Every power is taken relative to the largest of its row, and rows are joined in the log: nothing
-    overflows, whatever d.  Coincident points count as 10^-100 apart and do not push each other: there is no
-    direction.
+    overflows, whatever d.  The distance of coincident points counts as 10^-100, and they do not push each other:
+    there is no direction.  Sums run as vectors, so another kind of processor gives last digits of its own (2e-16).
     """
     d, n = columns.shape
     nearest, rows, pushes = _row_energies(columns, s, periodic, want_gradient)

@@ -107,7 +107,7 @@ def anneal(
 
     Notes
     -----
-    "Deterministic" means the same bits on the same kind of processor and versions of numpy and numba: sums run
+    "Deterministic" means the same bits on one kind of processor, with one version of numpy and numba: sums run
     as vectors, whose width, and so the order of additions, is the processor's.
     """
     n, d, steps = require_count("n", n), require_count("d", d), require_count("steps", steps)

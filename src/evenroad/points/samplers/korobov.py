@@ -85,11 +85,11 @@ class Even(Korobov):
     10  12.4 / 37.7  13.5 / 38.6  14.2 / 38.8  13.8 / 40.1  33.0
     ==  ===========  ===========  ===========  ===========  =====
 
-    Only in d = 3 and 4 do annealed sets (for average-squared discrepancy + 10 x Riesz energy, and for the energy
-    alone) solve more on average, by 0.5 (standard error 0.4) and 1.2 (0.5) points.  That is not worth a default
-    that has to be stored or made first: the lattice takes milliseconds and exists for every n.  Its known weakness
-    is the plane with 64 points, where annealed sets were 2.6 (0.7) points ahead.
-    ``python -m benchmarks.decide_even`` gives all candidates, every n and every k.
+    "Annealed" is for average-squared discrepancy + 10 x Riesz energy, in d = 4 and 10 for the energy alone; "mean" is
+    the lattice's.  Annealed sets are ahead of it by more than one standard error only in d = 3, by 0.5 (0.4) points,
+    and in d = 4, by 1.2 (0.5).  That is not worth a default that has to be stored or made first: the lattice takes
+    milliseconds and exists for every n.  Its known weakness is the plane with 64 points, where annealed sets were
+    2.6 (0.7) points ahead.  ``python -m benchmarks.decide_even`` gives all candidates, every n and every k.
     """
 
     name = "even"

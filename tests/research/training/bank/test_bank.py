@@ -122,6 +122,7 @@ def _damage_array(folder):
             "of shape",
         ),
         (lambda folder: (folder / INDEX).write_text("{"), "index"),
+        (lambda folder: (folder / INDEX).write_text('{"hickernell": {"2": {"8": {}}}}'), "no record"),
         (lambda folder: (folder / INDEX).write_text("[]"), "JSON object"),
     ],
 )
