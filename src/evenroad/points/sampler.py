@@ -1,4 +1,4 @@
-"""What a sampler is: a small frozen value that draws point sets, and says itself what others need to know of it."""
+"""What a sampler is: a small frozen value that draws point sets."""
 
 from __future__ import annotations
 
@@ -28,21 +28,6 @@ class Sampler(Protocol):
         """The name under which users ask for it."""
         ...
 
-    @property
-    def about(self) -> str:
-        """What its sets are, in one line."""
-        ...
-
-    @property
-    def any_n(self) -> bool:
-        """Whether it has a set of every n, in every dimension that it takes."""
-        ...
-
-    @property
-    def symmetries(self) -> frozenset[Symmetry]:
-        """Which transformations keep the quality of its sets."""
-        ...
-
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
         """Return n points of [0, 1)^d, with their origin.
 
@@ -60,4 +45,23 @@ class Sampler(Protocol):
         NotAvailable
             If the sampler has no set of this n and d.
         """
+        ...
+
+
+class KnownSampler(Sampler, Protocol):
+    """A sampler of the registry: it says itself what lists and other verbs need to know of it."""
+
+    @property
+    def about(self) -> str:
+        """What its sets are, in one line."""
+        ...
+
+    @property
+    def any_n(self) -> bool:
+        """Whether it has a set of every n, in every dimension that it takes."""
+        ...
+
+    @property
+    def symmetries(self) -> frozenset[Symmetry]:
+        """Which transformations keep the quality of its sets."""
         ...

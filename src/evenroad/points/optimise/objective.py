@@ -173,7 +173,7 @@ def parse_objective(text: str | Objective) -> Objective:
         raise InvalidValue(f"an objective is text such as 'hickernell+10*riesz', got {shown(text)}")
     reader = _Reader(text)
     terms = [_read_term(reader)]
-    while reader.next_text:
+    while reader.word:
         reader.take("+", "'+' or the end")
         terms.append(_read_term(reader))
     bare_energy = any(term.name in ENERGIES and not term.logarithm for term in terms)
@@ -188,46 +188,34 @@ def known_names() -> list[str]:
 
 
 class _Reader:
-    """The tokens of a text, one ahead, with their columns."""
+    """The tokens of a text, one ahead: `kind`, `word` and `column` (from 1) are the next one's."""
 
     def __init__(self, text: str) -> None:
         self.text = text
-        self.tokens = [
-            (match.lastgroup or "", match.group(match.lastgroup or 0), match.start(match.lastgroup or 0) + 1)
-            for match in _TOKEN.finditer(text.rstrip())
-        ]
-        self.position = 0
+        self._tokens = _TOKEN.finditer(text.rstrip())
+        self._advance()
 
-    @property
-    def next_kind(self) -> str:
-        return self.tokens[self.position][0] if self.position < len(self.tokens) else "end"
-
-    @property
-    def next_text(self) -> str:
-        return self.tokens[self.position][1] if self.position < len(self.tokens) else ""
-
-    @property
-    def column(self) -> int:
-        return self.tokens[self.position][2] if self.position < len(self.tokens) else len(self.text) + 1
+    def _advance(self) -> None:
+        match = next(self._tokens, None)
+        self.kind = (match and match.lastgroup) or "end"
+        self.word = match.group(self.kind) if match else ""
+        self.column = 1 + (match.start(self.kind) if match else len(self.text))
 
     def take(self, wanted: str, expected: str) -> str:
         """Return the next token if its text or kind is `wanted`, else raise InvalidValue."""
-        if wanted not in (self.next_text, self.next_kind):
-            raise self.error(expected)
-        taken = self.next_text
-        self.position += 1
+        if wanted not in (self.word, self.kind):
+            found = f"found {shown(self.word)}" if self.word else "the text ends"
+            raise InvalidValue(
+                f"objective {shown(self.text)}, column {self.column}: expected {expected}, {found}"
+            )
+        taken = self.word
+        self._advance()
         return taken
-
-    def error(self, expected: str) -> InvalidValue:
-        found = f"found {shown(self.next_text)}" if self.next_text else "the text ends"
-        return InvalidValue(
-            f"objective {shown(self.text)}, column {self.column}: expected {expected}, {found}"
-        )
 
 
 def _read_term(reader: _Reader) -> Term:
     weight = 1.0
-    if reader.next_kind == "number":
+    if reader.kind == "number":
         column = reader.column
         weight = float(reader.take("number", "a number"))
         if not 0.0 < weight < math.inf:
@@ -235,7 +223,7 @@ def _read_term(reader: _Reader) -> Term:
                 f"objective {shown(reader.text)}, column {column}: a weight must be finite and > 0, got {weight!r}"
             )
         reader.take("*", "'*' after the weight")
-    if reader.next_text == "log":
+    if reader.word == "log":
         reader.take("log", "log")
         reader.take("(", "'(' after log")
         name = _read_name(reader)

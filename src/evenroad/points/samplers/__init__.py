@@ -10,7 +10,8 @@ from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points.bank import TRAINED_FAMILIES, Trained
 from evenroad.points.pointset import PointSet
-from evenroad.points.sampler import Sampler
+from evenroad.points.sampler import KnownSampler as KnownSampler
+from evenroad.points.sampler import Sampler as Sampler
 from evenroad.points.samplers.korobov import Even as Even
 from evenroad.points.samplers.korobov import Korobov as Korobov
 from evenroad.points.samplers.lattice import Lattice as Lattice
@@ -19,13 +20,13 @@ from evenroad.points.samplers.plain import Uniform as Uniform
 from evenroad.points.samplers.sequences import Halton as Halton
 from evenroad.points.samplers.sequences import Sobol as Sobol
 
-SAMPLERS: dict[str, Callable[..., Sampler]] = {
+SAMPLERS: dict[str, Callable[..., KnownSampler]] = {
     each.name: each for each in (Even, Korobov, Lattice, Halton, Sobol, Sukharev, Uniform)
 } | {family: partial(Trained, family) for family in TRAINED_FAMILIES}
 """Name -> how to make the sampler from its options; without any it says what it is, and what keeps its sets even."""
 
 
-def make_sampler(name: str, **options: Any) -> Sampler:
+def make_sampler(name: str, **options: Any) -> KnownSampler:
     """Return the sampler of this name.
 
     Parameters
