@@ -19,7 +19,7 @@ import time
 
 import numpy as np
 
-from evenroad.points.measures import HICKERNELL
+from evenroad.points.measures import MEASURES
 from evenroad.points.pointset import PointSet
 from evenroad.research.network import NetworkConfig, refine, train
 
@@ -41,7 +41,7 @@ def time_steps(n: int, micro_batch: int | None, device: str) -> tuple[float, flo
     for _ in range(REPEATS):
         began = time.perf_counter()
         for each in sets:
-            HICKERNELL.rooted_with_gradient(each)
+            MEASURES["hickernell"].rooted_with_gradient(each)
         losses.append(time.perf_counter() - began)
     return float(np.median(seconds)), float(seconds.max()), statistics.median(losses), peak
 
@@ -69,7 +69,7 @@ def print_training(n: int, d: int, sets: int, steps: int, refine_steps: int, dev
 
 
 def print_values(title: str, sets: tuple[PointSet, ...]) -> None:
-    values = [HICKERNELL.rooted(each) for each in sets]
+    values = [MEASURES["hickernell"].rooted(each) for each in sets]
     print(f"{title}: Hickernell best {min(values):.5f}, mean {np.mean(values):.5f}, worst {max(values):.5f}")
 
 

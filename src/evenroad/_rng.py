@@ -6,7 +6,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from evenroad.errors import InvalidValue
+from evenroad.errors import InvalidValue, shown
 
 RngLike: TypeAlias = int | np.integer | np.random.SeedSequence | np.random.Generator
 
@@ -32,7 +32,7 @@ def generator(rng: RngLike) -> np.random.Generator:
     if isinstance(rng, int | np.integer) and not isinstance(rng, bool) and rng >= 0:
         return np.random.default_rng(int(rng))
     raise InvalidValue(
-        f"rng must be an int >= 0, a numpy SeedSequence or a numpy Generator, got {rng!r}"
+        f"rng must be an int >= 0, a numpy SeedSequence or a numpy Generator, got {shown(rng)}"
         " (nothing here draws hidden entropy: pass a seed)"
     )
 

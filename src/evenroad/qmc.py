@@ -24,7 +24,7 @@ from evenroad.points.samplers import make_sampler
 class FamilyEngine(QMCEngine):
     """An engine over one set of a family; a subclass names the ``family``, any name of ``SAMPLERS``.
 
-    The set is drawn from the family and then randomised in every way that keeps its quality
+    The set is drawn from the family and then randomised by every move that keeps its quality
     (:func:`evenroad.points.randomise.randomise`).  ``random`` hands its points out in their order and raises
     Exhausted when fewer are left than asked for.  A set is even as a whole, but its first points alone are
     not, those of a lattice least of all: choose as n what you will use.
@@ -109,7 +109,7 @@ class FamilyEngine(QMCEngine):
 
 
 class Even(FamilyEngine):
-    """Sets of the default family."""
+    """Sets of the default family: the Korobov lattices, by the name that follows the default."""
 
     family = "even"
 
@@ -127,6 +127,6 @@ class Korobov(FamilyEngine):
 
 
 class Lattice(FamilyEngine):
-    """A_d* lattices, turned and shifted at random, d <= 12."""
+    """A_d* lattices, rotated and shifted at random, d <= 12."""
 
     family = "lattice"

@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from evenroad.cli.plan_parts import draw_points
+from evenroad.points import draw
 from evenroad.research.mazes import load_maze
 
 MAZE = load_maze(1)
@@ -65,14 +66,10 @@ def test_the_default_set_of_the_plane_is_even_for_any_n_and_the_output_says_so(r
     assert json.loads((tmp_path / "a.json").read_text())["counts"]["points"] == n
 
 
-def test_where_even_is_annealed_and_not_in_the_bank_scrambled_halton_steps_in_and_says_so():
-    asked = SimpleNamespace(n=500, seed=0, sampler="auto", plain=False, skip=0, allow_fewer=False)
-    points, note = draw_points(asked, 3)
-    assert points.origin.family == "halton"
-    assert "no set of n=500, d=3" in note
-    asked.n = 512
-    points, note = draw_points(asked, 3)
-    assert (points.origin.family, note) == ("even", "")
+@pytest.mark.parametrize("d", [3, 4, 6])
+def test_the_default_set_of_every_dimension_is_even(d):
+    asked = SimpleNamespace(n=500, seed=4, sampler="auto", plain=False, skip=0, allow_fewer=False)
+    assert draw_points(asked, d) == draw("even", 500, d, rng=4)
 
 
 def test_the_same_command_gives_the_same_path_and_another_seed_another(run, tmp_path):
@@ -165,7 +162,7 @@ BAD = {
     "a connection radius of zero": ({"connect_radius": 0}, "connection radius"),
     "both rules": ({"connect_radius": 5, "k": 5}, "not both"),
     "a negative seed": ({"seed": -1}, "rng must be"),
-    "an unknown sampler": ({"sampler": "sobel"}, "known: .*halton.*sobol"),
+    "an unknown sampler": ({"sampler": "sobel"}, "known: auto, even, .*halton.*sobol"),
     "a family without this n": (
         {"sampler": "hickernell", "n": 100},
         "it has n = 16, 32, 64, 128, 256, 512, 1024, 2048",

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from evenroad.cli.interrupt import interrupt_between_steps
-from evenroad.points import PointSet, draw, load_points, save_points
+from evenroad.points import SAMPLERS, PointSet, draw, load_points, save_points
 
 
 def test_a_shipped_set_is_written_as_a_plain_array(run, tmp_path):
@@ -47,6 +47,13 @@ def test_the_default_family_in_ten_dimensions_is_there_at_once(run, tmp_path):
     assert load_points(tmp_path / "a.npz").origin.family == "even"
 
 
+@pytest.mark.parametrize(("verb", "option"), [("points", "--family"), ("plan", "--sampler")])
+def test_the_help_names_every_sampler(run, verb, option):
+    _, out, _ = run(verb, "--help")
+    named = re.findall(r"\w+", out.rpartition(option)[2].partition("--")[0])
+    assert set(SAMPLERS) <= set(named)
+
+
 def test_constructed_families_are_written_too(run, tmp_path):
     for family in ("korobov", "lattice", "halton", "uniform"):
         assert run("points", "-n", 20, "-d", 3, "--family", family, "-o", f"{family}.npy")[0] == 0
@@ -69,6 +76,16 @@ def test_bad_requests_for_points_get_one_line(run, tmp_path, arguments, says):
     assert (code, out) == (2, "")
     assert err.count("\n") == 1
     assert re.search(says, err)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("option", ["-n", "-d", "--family", "--seed", "-o"])
+def test_an_error_repeats_a_little_of_what_points_was_asked_for(run, tmp_path, option):
+    line = {"-n": 8, "-d": 2, "--family": "uniform", "--seed": 0, "-o": "a.npy"}
+    line[option] = "-" + "7" * 3000 if option in ("-n", "-d", "--seed") else "x" * 5000
+    code, out, err = run("points", *(each for pair in line.items() for each in pair))
+    assert (code, out) == (2, "")
+    assert len(err) < 500
     assert list(tmp_path.iterdir()) == []
 
 

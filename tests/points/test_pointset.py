@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from evenroad.errors import BrokenFile, InvalidValue
-from evenroad.points import Origin, PointSet, load_points, save_points
+from evenroad.errors import BrokenFile, InvalidValue, UnknownName
+from evenroad.points import Origin, PointSet, draw, load_points, save_points
 from evenroad.points.npz import read_points
 
 unit = st.floats(0, 1, exclude_max=True, allow_subnormal=True)
@@ -64,6 +64,23 @@ def test_only_matrices_are_point_sets(shape):
 def test_what_is_not_a_real_number_is_refused(bad):
     with pytest.raises(InvalidValue, match="array of numbers"):
         PointSet(bad)
+
+
+def test_an_error_repeats_only_a_little_of_a_long_value():
+    for bad in (
+        "0.5, " * 1000,
+        ["0.5" * 1000],
+        {"points": "0.5" * 1000},
+        np.array([["x" * 5000]], dtype=object),
+    ):
+        with pytest.raises(InvalidValue) as caught:
+            PointSet(bad)
+        assert len(str(caught.value)) < 300
+    for bad in ("7" * 5000, [0] * 5000):
+        for arguments in ({"n": bad}, {"d": bad}, {"rng": bad}, {"name": bad}):
+            with pytest.raises((InvalidValue, UnknownName)) as caught:
+                draw(**{"name": "uniform", "n": 3, "d": 2, "rng": 0} | arguments)
+            assert len(str(caught.value)) < 300
 
 
 def test_every_kind_of_real_number_is_taken():
@@ -119,6 +136,11 @@ def saved(tmp_path):
         ({"origin": "{"}, "set.npz"),
         ({"origin": '{"family": "a", "colour": "red"}'}, "keys among"),
         ({"origin": "[1]"}, "keys among"),
+        ({"origin": "{}"}, "family"),
+        ({"origin": '{"family": 3}'}, "the origin's family cannot be 3"),
+        ({"origin": '{"family": "a", "seed": "1"}'}, "the origin's seed cannot be '1'"),
+        ({"origin": '{"family": "a", "start": null}'}, "the origin's start cannot be None"),
+        ({"origin": "[" * 100_000}, "set.npz"),
     ],
 )
 def test_a_file_that_was_changed_is_refused_with_the_reason(saved, changes, says):
@@ -166,6 +188,27 @@ def test_a_header_that_lies_or_does_not_parse_is_a_broken_file(tmp_path, shape):
         with pytest.raises(BrokenFile, match=rf"{name} is not a readable") as caught:
             read_points(tmp_path / name)
         assert "\n" not in str(caught.value)
+
+
+def test_a_file_with_flipped_or_missing_bytes_gives_the_same_set_or_is_a_broken_file(saved):
+    original, points = saved.read_bytes(), load_points(saved)
+    rng = np.random.default_rng(0)
+    refusals = []
+    for number in range(1500):
+        content = bytearray(original)
+        if number % 10 == 0:
+            del content[rng.integers(len(content)) :]
+        for place in rng.integers(len(content) or 1, size=1 + number % 3):
+            content[place:place] = b"" if number % 7 else bytes([rng.integers(256)])
+            if content:
+                content[place % len(content)] ^= 1 << rng.integers(8)
+        saved.write_bytes(content)
+        try:
+            assert load_points(saved) == points
+        except BrokenFile as error:
+            refusals.append(str(error))
+    assert len(refusals) > 1000
+    assert not any("\n" in each or len(each) > 300 for each in refusals)
 
 
 @pytest.mark.parametrize("offset", [(6, 8), (8, 10)], ids=["flags", "compression"])

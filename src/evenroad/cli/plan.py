@@ -51,8 +51,8 @@ class Plan:
     connect_radius: float | None = None
     """Connect milestones up to this distance instead, in map units or radians."""
     sampler: str = "auto"
-    """even, hickernell, mpmc, korobov, lattice, halton, sobol, sukharev or uniform; auto takes even where it ships for
-    this n, else scrambled Halton, and says which."""
+    """even, hickernell, mpmc, korobov, lattice, halton, sobol, sukharev or uniform; auto, the default, is
+    even."""
     plain: bool = False
     """halton and sobol: the plain sequence instead of the scrambled one."""
     skip: int = 0

@@ -57,7 +57,7 @@ def plan_arm(plan: Plan) -> int:
     start, goal = (configuration(robot, end, scene, degrees=plan.deg) for end in ends)
     world = ArmWorld(robot, scene, resolution=RESOLUTION if plan.resolution is None else plan.resolution)
     rule = chosen_rule(plan, default_rule(world.space).k)
-    points, note = draw_points(plan, world.space.cube_dim)
+    points = draw_points(plan, world.space.cube_dim)
     load_compiled_code(world, start, goal, points, rule, SEARCH)
     result = roadmap.plan(world, start, goal, points, rule=rule, search=SEARCH, shorten=not plan.raw)
     meshes = None
@@ -98,7 +98,7 @@ def plan_arm(plan: Plan) -> int:
     rows.append(("checked with", world.checked_with))
     if meshes is not None:
         rows.append(("meshes", str(meshes)))
-    print_plan(result, note, list(files.values()), rows)
+    print_plan(result, list(files.values()), rows)
     return 0 if result.solved else 1
 
 

@@ -44,7 +44,7 @@ def plan_disk(plan: Plan) -> int:
     world = gridmap.world(plan.robot_radius, clearance=plan.clearance)
     for name, value in (("start", start), ("goal", goal)):
         _require_on_map(gridmap, name, value)
-    points, note = draw_points(plan, 2)
+    points = draw_points(plan, 2)
     load_compiled_code(world, start, goal, points, rule)
     result = roadmap.plan(world, start, goal, points, rule=rule, shorten=not plan.raw)
     query = {
@@ -63,7 +63,7 @@ def plan_disk(plan: Plan) -> int:
         else:
             save_path_csv(files["csv"], result.path, ("x", "y"))
     save_plan_picture(files["png"], result, world)
-    print_plan(result, note, list(files.values()))
+    print_plan(result, list(files.values()))
     return 0 if result.solved else 1
 
 

@@ -12,10 +12,8 @@ from evenroad import roadmap
 from evenroad._checks import require_count
 from evenroad._files import require_writable_folder
 from evenroad._rng import generator
-from evenroad.errors import InvalidValue
-from evenroad.points import PointSet, make_sampler
-from evenroad.points.bank import open_bank
-from evenroad.points.even import KOROBOV, even_choice
+from evenroad.errors import InvalidValue, UnknownName
+from evenroad.points import SAMPLERS, PointSet, make_sampler
 from evenroad.roadmap import KNearest, Radius, Rule
 
 if TYPE_CHECKING:
@@ -44,16 +42,14 @@ def chosen_rule(plan: Plan, default_k: int) -> Rule:
     return Radius(plan.connect_radius)
 
 
-def draw_points(plan: Plan, d: int) -> tuple[PointSet, str]:
-    """Draw the set, and say in words why it is not of the default family."""
+def draw_points(plan: Plan, d: int) -> PointSet:
+    """Draw the set of n points in d dimensions that was asked for."""
     require_count("n", plan.n)
     generator(plan.seed)
-    name, note = plan.sampler, ""
-    if name == "auto":
-        name = DEFAULT_FAMILY
-        if even_choice(d) != KOROBOV and not open_bank().has(DEFAULT_FAMILY, plan.n, d):
-            name, note = "halton", f"the bank has no set of n={plan.n}" + ("" if d == 2 else f", d={d}")
-    return make_sampler(name, **_sampler_options(plan, name)).draw(plan.n, d, rng=plan.seed), note
+    name = DEFAULT_FAMILY if plan.sampler == "auto" else plan.sampler
+    if name not in SAMPLERS:
+        raise UnknownName.among("sampler", name, [*SAMPLERS, "auto"])
+    return make_sampler(name, **_sampler_options(plan, name)).draw(plan.n, d, rng=plan.seed)
 
 
 def load_compiled_code(

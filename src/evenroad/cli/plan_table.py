@@ -12,16 +12,14 @@ from evenroad.cli.console import print_table
 from evenroad.roadmap import PlanResult
 
 
-def print_plan(
-    result: PlanResult, note: str, files: Sequence[Path], more: Sequence[tuple[str, str]] = ()
-) -> None:
+def print_plan(result: PlanResult, files: Sequence[Path], more: Sequence[tuple[str, str]] = ()) -> None:
     """Print a plan as a table of two columns; `more` are rows of its own."""
     table = Table(show_header=False, box=None, pad_edge=False)
     table.add_column(style="bold", no_wrap=True)
     table.add_column(overflow="fold")
     colour = "green" if result.solved else "red"
     table.add_row("status", Text.assemble((str(result.status), colour), f": {result.message}"))
-    table.add_row("points", Text(f"{result.origin}" + (f" ({note})" if note else "")))
+    table.add_row("points", Text(str(result.origin)))
     if result.roadmap is not None:
         counts = result.counts
         table.add_row("milestones", f"{counts['valid']} valid of {counts['points']}")

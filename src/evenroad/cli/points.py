@@ -32,12 +32,12 @@ class Points:
     def run(self) -> int:
         """Find or make the set, and write it."""
         from evenroad._files import require_writable_folder
-        from evenroad.errors import UnknownName
+        from evenroad.errors import UnknownName, shown
         from evenroad.points.npz import save_array, save_points
 
         if self.out.suffix not in (".npy", ".npz"):
             raise UnknownName.among(
-                f"kind of file {str(self.out)!r}: suffix", self.out.suffix, (".npy", ".npz")
+                f"kind of file {shown(str(self.out))}: suffix", self.out.suffix, (".npy", ".npz")
             )
         require_writable_folder(self.out)
         points, source = self._find()
@@ -51,7 +51,7 @@ class Points:
         from evenroad.cli.progress import progress_bar
         from evenroad.errors import InvalidValue
         from evenroad.points import make_sampler
-        from evenroad.points.families import TRAINED_FAMILIES, Trained
+        from evenroad.points.bank import TRAINED_FAMILIES, Trained
 
         if self.family not in TRAINED_FAMILIES and self.no_train:
             raise InvalidValue(f"--no-train does not go with {self.family!r}, whose sets are constructed")

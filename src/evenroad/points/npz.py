@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import json
 import os
-from dataclasses import asdict, fields
+from dataclasses import asdict
+from typing import get_args, get_type_hints
 
 import numpy as np
 
 from evenroad._files import atomic_write
-from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.errors import BrokenFile, shown
 from evenroad.points.pointset import Origin, PointSet
 
-_NAMES = {"points", "origin", "hash"}
+_NAMES = ("points", "origin", "hash")
+
+_ORIGIN_TYPES = {name: get_args(kind) or (kind,) for name, kind in get_type_hints(Origin).items()}
+"""Field of an origin -> the types that it may have."""
 
 
 def save_points(path: str | os.PathLike[str], points: PointSet) -> None:
@@ -51,12 +55,12 @@ def read_points(path: str | os.PathLike[str]) -> PointSet:
     except FileNotFoundError:
         raise BrokenFile(f"no such file: {path}") from None
     except Exception as error:  # see load_points
-        raise BrokenFile(f"{path} is not a readable .npy array: {_one_line(error)}") from error
-    return PointSet(array, Origin(family="given", method="given"))
+        raise BrokenFile(f"{path} is not a readable .npy array: {shown(error)}") from error
+    return PointSet(array)
 
 
 def load_points(path: str | os.PathLike[str]) -> PointSet:
-    """Read a point set written by :func:`save_points`, checking names, dtype, shape, range and hash.
+    """Read a point set written by :func:`save_points`, checking names, types, shape, range and hash.
 
     Raises
     ------
@@ -69,13 +73,11 @@ def load_points(path: str | os.PathLike[str]) -> PointSet:
             archive = np.load(file, allow_pickle=False)
             if not isinstance(archive, np.lib.npyio.NpzFile):
                 raise BrokenFile(f"{path} is a plain array, not a .npz point set")
-            names = set(archive.files)
-            if names != _NAMES:
-                raise BrokenFile(f"{path} holds {sorted(names)}, a point set holds {sorted(_NAMES)}")
-            coordinates, origin, digest = archive["points"], str(archive["origin"]), str(archive["hash"])
-            if not isinstance(coordinates, np.ndarray):
-                # NumPy hands out a member without the magic of an array as bytes.
-                raise BrokenFile(f"{path}: points is no array")
+            if sorted(archive.files) != sorted(_NAMES):
+                raise BrokenFile(
+                    f"{path} holds {shown(sorted(archive.files))}, a point set holds {sorted(_NAMES)}"
+                )
+            arrays = {name: archive[name] for name in _NAMES}
     except FileNotFoundError:
         raise BrokenFile(f"no such file: {path}") from None
     except BrokenFile:
@@ -83,25 +85,27 @@ def load_points(path: str | os.PathLike[str]) -> PointSet:
     except Exception as error:
         # No list is complete: damaged headers alone give errors of the tokenizer, of memory and of overflow, and
         # zipfile has its own for every compression, encryption and version that it does not know.
-        raise BrokenFile(f"{path} is not a readable .npz point set: {_one_line(error)}") from error
-    if coordinates.dtype != np.float64:
-        raise BrokenFile(f"{path}: points have dtype {coordinates.dtype}, expected float64")
+        raise BrokenFile(f"{path} is not a readable .npz point set: {shown(error)}") from error
+    for name, array in arrays.items():
+        if not isinstance(array, np.ndarray):
+            # NumPy hands out a member without the magic of an array as bytes.
+            raise BrokenFile(f"{path}: {name} is no array")
+    if arrays["points"].dtype != np.float64:
+        raise BrokenFile(f"{path}: points have dtype {arrays['points'].dtype}, expected float64")
     try:
-        loaded = PointSet(coordinates, _origin_from_json(origin))
-    except (InvalidValue, TypeError, ValueError) as error:
+        loaded = PointSet(arrays["points"], _origin_from_json(str(arrays["origin"])))
+    except (TypeError, ValueError, RecursionError) as error:
         raise BrokenFile(f"{path}: {error}") from error
-    if loaded.hash != digest:
+    if loaded.hash != str(arrays["hash"]):
         raise BrokenFile(f"{path}: the points do not match their hash; the file was changed or damaged")
     return loaded
 
 
-def _one_line(error: BaseException) -> str:
-    return " ".join(f"{type(error).__name__}: {error}".split())
-
-
 def _origin_from_json(text: str) -> Origin:
     record = json.loads(text)
-    known = {f.name for f in fields(Origin)}
-    if not isinstance(record, dict) or not set(record) <= known:
-        raise ValueError(f"the origin must be an object with keys among {sorted(known)}")
+    if not isinstance(record, dict) or not set(record) <= set(_ORIGIN_TYPES):
+        raise ValueError(f"the origin must be an object with keys among {sorted(_ORIGIN_TYPES)}")
+    for name, value in record.items():
+        if type(value) not in _ORIGIN_TYPES[name]:
+            raise ValueError(f"the origin's {name} cannot be {shown(value)}")
     return Origin(**record)

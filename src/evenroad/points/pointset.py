@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad import __version__
-from evenroad.errors import InvalidValue
+from evenroad.errors import InvalidValue, shown
 
 BELOW_ONE = float(np.nextafter(np.float32(1.0), np.float32(0.0)))
 """Largest float32 below 1: what a coordinate that rounds up to 1 becomes."""
@@ -34,6 +34,8 @@ class Origin:
         The seed it was drawn with; None when a Generator was passed, or none was used.
     replica : int or None
         Index of the set in its pool (trained families).
+    steps : int or None
+        Steps of the optimiser (trained families), else None.
     start : int
         Index of the first point in its sequence (sequences only, else 0).
     version : str
@@ -45,6 +47,7 @@ class Origin:
     objective: str = ""
     seed: int | None = None
     replica: int | None = None
+    steps: int | None = None
     start: int = 0
     version: str = __version__
 
@@ -153,6 +156,6 @@ def _require_real(array: npt.NDArray[Any]) -> None:
         for element in array.flat:
             # A duration is an integer to NumPy's scalars.
             if not isinstance(element, Real | Decimal) or isinstance(element, np.timedelta64):
-                raise InvalidValue(f"points must be an (n, d) array of numbers, one is {element!r}")
+                raise InvalidValue(f"points must be an (n, d) array of numbers, one is {shown(element)}")
     elif array.dtype.kind not in "biuf":
         raise InvalidValue(f"points must be an (n, d) array of numbers, got dtype {array.dtype}")

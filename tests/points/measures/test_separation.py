@@ -1,10 +1,20 @@
-"""Separation against a double loop."""
+"""Separation and the Riesz energy against double loops, and where floats end."""
+
+import math
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue
-from evenroad.points.measures import separation
+from evenroad.points.measures import (
+    riesz_energy,
+    riesz_energy_with_gradient,
+    riesz_rooted,
+    riesz_rooted_with_gradient,
+    separation,
+)
 
 
 def slow_separation(points, periodic):
@@ -34,3 +44,104 @@ def test_coincident_points_have_separation_zero():
 def test_a_single_point_has_no_separation():
     with pytest.raises(InvalidValue, match="at least 2 points, got 1"):
         separation([[0.5]])
+
+
+def slow_energy(points, s, periodic):
+    n, d = points.shape
+    total = 0.0
+    for i in range(n):
+        for j in range(n):
+            if i != j:
+                gap = np.abs(points[i] - points[j])
+                if periodic:
+                    gap = np.minimum(gap, 1 - gap)
+                total += (n ** (-1 / d) / np.linalg.norm(gap)) ** s
+    return total / n
+
+
+def random_points(n, d, seed=0):
+    return np.random.default_rng(seed).random((n, d))
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+@pytest.mark.parametrize(("n", "d", "s"), [
+    (2, 1, 1), (9, 1, 2), (20, 2, 3), (20, 3, None), (7, 5, 7), (12, 14, None), (40, 2, 1),
+])  # fmt: skip
+def test_the_energy_is_the_double_loop(n, d, s, periodic):
+    points = random_points(n, d, seed=n)
+    expected = slow_energy(points, s or 2 * d, periodic)
+    assert riesz_energy(points, s, periodic) == pytest.approx(expected, rel=1e-12)
+    assert riesz_rooted(points, s, periodic) == pytest.approx(expected ** (1 / (s or 2 * d)), rel=1e-12)
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+@pytest.mark.parametrize("pair", [
+    (riesz_energy, riesz_energy_with_gradient), (riesz_rooted, riesz_rooted_with_gradient),
+])  # fmt: skip
+@pytest.mark.parametrize(("d", "s"), [(1, 1), (2, None), (3, 5), (6, None)])
+def test_gradients_are_those_of_central_differences(pair, d, s, periodic):
+    plain, with_gradient = pair
+    points = random_points(7, d, seed=1)
+    value, gradient = with_gradient(points, s, periodic)
+    assert value == plain(points, s, periodic)
+    slow = np.empty_like(points)
+    for place in np.ndindex(*points.shape):
+        up, down = points.copy(), points.copy()
+        up[place] += 1e-6
+        down[place] -= 1e-6
+        slow[place] = (plain(up, s, periodic) - plain(down, s, periodic)) / 2e-6
+    np.testing.assert_allclose(gradient, slow, atol=1e-6 * np.abs(slow).max())
+
+
+@settings(max_examples=30, deadline=None)
+@given(seed=st.integers(0, 10**6), n=st.integers(2, 12), d=st.integers(1, 6))
+def test_the_periodic_energy_does_not_feel_shifts_and_reflections(seed, n, d):
+    rng = np.random.default_rng(seed)
+    points = rng.random((n, d))
+    moved = (np.where(rng.random(d) < 0.5, 1 - points, points)[:, rng.permutation(d)] + rng.random(d)) % 1.0
+    assert riesz_rooted(moved) == pytest.approx(riesz_rooted(points), rel=1e-6)
+
+
+def test_the_root_of_a_large_exponent_is_spacing_over_separation():
+    points = random_points(30, 2)
+    limit = 30 ** (-1 / 2) / separation(points, periodic=True)
+    assert riesz_rooted(points, s=2000) == pytest.approx(limit, rel=1e-2)
+
+
+def test_an_energy_beyond_floats_is_infinite_but_its_root_is_not():
+    points = np.array([[0.5] * 14, [0.5] * 13 + [0.5 + 1e-14], [0.1] * 14])
+    assert riesz_energy(points) == math.inf
+    spacing, distance = 3 ** (-1 / 14), points[1, 13] - 0.5
+    assert riesz_rooted(points) == pytest.approx(spacing / distance * (2 / 3) ** (1 / 28), rel=1e-9)
+    root, gradient = riesz_rooted_with_gradient(points)
+    assert np.isfinite(gradient).all()
+    assert gradient[0, 13] > 0 > gradient[1, 13]
+    assert gradient[0, 13] == pytest.approx(root / distance / 2 * 2, rel=1e-9)
+
+
+def test_coincident_points_have_an_infinite_energy_and_no_nan():
+    points = np.full((3, 4), 0.25)
+    value, gradient = riesz_energy_with_gradient(points)
+    assert value == math.inf
+    assert not np.isnan(gradient).any()
+    root, gradient = riesz_rooted_with_gradient(points)
+    assert root > 1e90
+    assert not gradient.any()
+
+
+def test_distances_wrap_only_if_periodic():
+    points = [[0.01], [0.99]]
+    assert riesz_rooted(points, s=1) == pytest.approx(0.5 / 0.02)
+    assert riesz_rooted(points, s=1, periodic=False) == pytest.approx(0.5 / 0.98)
+
+
+@pytest.mark.parametrize("points", [np.zeros((0, 2)), np.zeros((1, 2))])
+def test_fewer_than_two_points_have_no_energy(points):
+    with pytest.raises(InvalidValue, match="at least 2 points"):
+        riesz_energy(points)
+
+
+@pytest.mark.parametrize("s", [0, -2, 1.5, True, "4"])
+def test_an_exponent_that_is_no_positive_integer_is_refused(s):
+    with pytest.raises(InvalidValue, match="s must be an integer >= 1"):
+        riesz_energy([[0.1], [0.2]], s=s)

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue
 from evenroad.points import SAMPLERS, draw
-from evenroad.points.measures import riesz_rooted
+from evenroad.points.measures import MEASURES, riesz_rooted, separation
 from evenroad.points.samplers import korobov
-from evenroad.points.samplers.korobov import Korobov, korobov_generator
+from evenroad.points.samplers.korobov import Even, Korobov, korobov_generator
 from tests.points.samplers.sampler_contract import SamplerContract
 
 
@@ -62,6 +62,26 @@ class TestKorobov(SamplerContract):
         monkeypatch.setattr(korobov, "generator", lambda rng: AlmostOne())
         for n in (1, 2, 3, 49, 64):
             assert self.sampler.draw(n, 2).n == n
+
+
+class TestEven(SamplerContract):
+    sampler = Even()
+    shapes = ((5, 1), (3, 2), (5, 3), (6, 4), (1, 6), (20, 7), (100, 10))
+
+    def test_it_is_the_korobov_lattice_under_its_own_name_in_every_dimension(self):
+        for n, d in self.shapes:
+            points = self.sampler.draw(n, d, rng=3)
+            assert points == Korobov().draw(n, d, rng=3).with_origin(family="even")
+            assert points == draw("even", n, d, rng=3)
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_even_sets_are_both_of_low_discrepancy_and_well_separated(d):
+    even = draw("even", 60, d)
+    random = [draw("uniform", 60, d, rng=seed) for seed in range(20)]
+    assert separation(even, periodic=True) > 2 * max(separation(each, periodic=True) for each in random)
+    discrepancy = MEASURES["average_squared"].rooted
+    assert discrepancy(even) < 0.5 * min(map(discrepancy, random))
 
 
 @pytest.mark.parametrize("d", [1, 2, 3, 5, 9])

@@ -157,3 +157,16 @@ def test_every_error_is_both_ours_and_a_builtin():
 def test_every_name_makes_a_sampler_of_that_name():
     for name in SAMPLERS:
         assert make_sampler(name).name == name
+
+
+@pytest.mark.parametrize("name", SAMPLERS)
+def test_a_sampler_of_any_n_has_sets_of_all_and_the_others_have_not(name):
+    sampler = make_sampler(name)
+    refused = []
+    for n, d in ((1, 1), (2, 3), (63, 2), (100, 7)):
+        try:
+            assert sampler.draw(n, d).n == n
+        except NotAvailable:
+            refused.append(n)
+    assert bool(refused) != sampler.any_n
+    assert sampler.about

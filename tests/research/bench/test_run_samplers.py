@@ -63,11 +63,12 @@ def test_from_five_dimensions_on_a_pool_set_comes_with_permuted_coordinates():
     assert "permuted" in points.origin.method
 
 
-def test_even_in_high_dimensions_is_constructed_and_so_a_set_of_its_own_each_time():
-    first, set_id = _draw("even", 100, 7, seed=1)
+@pytest.mark.parametrize("d", [2, 3, 4, 7])
+def test_even_is_constructed_and_so_a_set_of_its_own_each_time(d):
+    first, set_id = _draw("even", 100, d, seed=1)
     assert set_id == ""
     assert first.origin.family == "even"
-    assert not np.array_equal(first.points, _draw("even", 100, 7, seed=2)[0].points)
+    assert not np.array_equal(first.points, _draw("even", 100, d, seed=2)[0].points)
 
 
 def test_the_grid_is_one_set_where_it_exists():

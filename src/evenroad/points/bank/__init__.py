@@ -1,5 +1,7 @@
-"""The bank: trained point sets that ship with evenroad, with an index of their hashes and measures."""
+"""Trained point sets: those that ship, with an index of their hashes and measures, and others made on demand."""
 
 from evenroad.points.bank.bank import Bank as Bank
 from evenroad.points.bank.bank import Cell as Cell
 from evenroad.points.bank.bank import open_bank as open_bank
+from evenroad.points.bank.trained import TRAINED_FAMILIES as TRAINED_FAMILIES
+from evenroad.points.bank.trained import Trained as Trained

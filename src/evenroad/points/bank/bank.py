@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.errors import BrokenFile, NotAvailable, UnknownName
+from evenroad.errors import BrokenFile, NotAvailable, UnknownName, shown
 from evenroad.points.pointset import PointSet
 
 DATA = Path(__file__).parent / "data"
@@ -36,6 +36,7 @@ class Cell:
     Attributes
     ----------
     method, objective, version : str
+    steps : int
         How its sets were made, and by which version.
     hashes : tuple of str
         ``PointSet.hash`` of every set, of the stored float32 values.
@@ -49,6 +50,7 @@ class Cell:
     method: str
     objective: str
     version: str
+    steps: int
     hashes: tuple[str, ...]
     measures: dict[str, tuple[float, ...]]
 
@@ -94,21 +96,29 @@ class Bank:
             If the bank has no such family.
         NotAvailable
             If the family has no set of this n and d; the text names the n (or the d) it has.
+        BrokenFile
+            If the index is damaged.
         """
         counts = self.counts(family, d)
         if n not in counts:
             raise NotAvailable(self._what_there_is(family, n, d, counts))
         record = _index(self.folder)[family][str(d)][str(n)]
-        return Cell(
-            path=self.folder / family / cell_name(n, d),
-            n=n,
-            d=d,
-            method=record["method"],
-            objective=record["objective"],
-            version=record["version"],
-            hashes=tuple(record["hashes"]),
-            measures={name: tuple(values) for name, values in record["measures"].items()},
-        )
+        try:
+            return Cell(
+                path=self.folder / family / cell_name(n, d),
+                n=n,
+                d=d,
+                method=record["method"],
+                objective=record["objective"],
+                version=record["version"],
+                steps=record["steps"],
+                hashes=tuple(record["hashes"]),
+                measures={name: tuple(values) for name, values in record["measures"].items()},
+            )
+        except (KeyError, TypeError, AttributeError) as error:
+            raise BrokenFile(
+                f"the index of the bank {self.folder}: {family} n={n} d={d} is no record ({shown(error)})"
+            ) from error
 
     def has(self, family: str, n: int, d: int) -> bool:
         """Say whether the bank holds a pool of this family at this n and d."""
@@ -155,8 +165,8 @@ def _parse_index(path: Path, mtime_ns: int) -> dict[str, Any]:
 def _load_checked(path: Path, shape: tuple[int, ...], hashes: tuple[str, ...]) -> npt.NDArray[np.float32]:
     try:
         sets = np.load(path, allow_pickle=False)
-    except (OSError, ValueError, EOFError) as error:
-        raise BrokenFile(f"the bank's file {path} cannot be read: {error}") from error
+    except Exception as error:  # no list is complete: see evenroad.points.npz
+        raise BrokenFile(f"the bank's file {path} cannot be read: {shown(error)}") from error
     if not isinstance(sets, np.ndarray) or sets.dtype != np.float32 or sets.shape != shape:
         raise BrokenFile(f"the bank's file {path} is not a float32 array of shape {shape}")
     for replica, expected in enumerate(hashes):

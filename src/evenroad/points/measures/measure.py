@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.errors import InvalidValue
-from evenroad.points.measures.pairs import pair_sums
-from evenroad.points.measures.terms import Array, ProductTerms
+from evenroad.errors import InvalidValue, UnknownName, shown
+from evenroad.points.measures import l2
+from evenroad.points.measures.l2 import Array, ProductTerms
 from evenroad.points.pointset import as_unit_points
 
 
@@ -109,7 +109,9 @@ class Measure:
         except (TypeError, ValueError):
             gamma = np.array(np.nan)
         if gamma.shape != (d,) or not np.isfinite(gamma).all() or (gamma < 0).any():
-            raise InvalidValue(f"weights must be {d} finite numbers >= 0, one a coordinate, got {weights!r}")
+            raise InvalidValue(
+                f"weights must be {d} finite numbers >= 0, one a coordinate, got {shown(weights)}"
+            )
         return gamma
 
 
@@ -123,7 +125,7 @@ def squared_of_columns(
     n = columns.shape[1]
     terms = measure.terms(columns, weights)
     products = terms.linear.prod(axis=0)
-    sums, gradient = pair_sums(columns, terms.pairs, want_gradient)
+    sums, gradient = l2.pair_sums(columns, terms.pairs, want_gradient)
     # The parts nearly cancel: taken point by point the differences are small before they are added up, which
     # keeps digits that the textbook order of the sum loses for large n.
     value = float(np.mean((sums / n - products) - (products - terms.constant)))
@@ -144,3 +146,41 @@ def rooted_of_columns(measure: Measure, columns: Array, weights: Array) -> tuple
         return 0.0, np.zeros_like(gradient)
     gradient *= 0.5 / root
     return root, gradient
+
+
+MEASURES: dict[str, Measure] = {
+    measure.name: measure
+    for measure in (
+        Measure("star", "L2 star discrepancy (Warnock 1972)", l2.star, weighted=False),
+        Measure(
+            "hickernell",
+            "Hickernell L2 discrepancy, all projections (Hickernell 1998; Joe 1997)",
+            l2.hickernell,
+        ),
+        Measure("centred", "centred L2 discrepancy (Hickernell 1998)", l2.centred, reflectable=True),
+        Measure(
+            "wrap_around",
+            "wrap-around L2 discrepancy (Hickernell 1998)",
+            l2.wrap_around,
+            periodic=True,
+            reflectable=True,
+        ),
+        Measure("mixture", "mixture L2 discrepancy (Zhou, Fang and Ning 2013)", l2.mixture, reflectable=True),
+        Measure("symmetric", "symmetric L2 discrepancy (Hickernell 1998)", l2.symmetric, reflectable=True),
+        Measure(
+            "average_squared",
+            "average-squared L2 discrepancy over all corners",
+            l2.average_squared,
+            weighted=False,
+            reflectable=True,
+        ),
+    )
+}
+"""The L2 discrepancies by name."""
+
+
+def measure_named(name: str) -> Measure:
+    """Return the measure of this name, or raise UnknownName with the known ones."""
+    if name not in MEASURES:
+        raise UnknownName.among("measure", name, MEASURES)
+    return MEASURES[name]

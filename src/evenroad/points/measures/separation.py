@@ -1,11 +1,17 @@
-"""Separation: the smallest distance between two points."""
+"""How far points keep from each other: the smallest distance, and the Riesz energy, which close pairs raise."""
 
 from __future__ import annotations
 
+import math
+import operator
+
 import numpy as np
+from numba import njit
 from scipy.spatial import cKDTree
 
+from evenroad._checks import require_count
 from evenroad.errors import InvalidValue
+from evenroad.points.measures.l2 import Array
 from evenroad.points.pointset import as_unit_points
 
 
@@ -33,3 +39,164 @@ def separation(points: object, periodic: bool = False) -> float:
     tree = cKDTree(coordinates, boxsize=np.ones(d)) if periodic else cKDTree(coordinates)
     distances = np.asarray(tree.query(coordinates, k=2)[0])
     return float(distances[:, 1].min())
+
+
+def riesz_energy(points: object, s: int | None = None, periodic: bool = True) -> float:
+    """Return the normalised Riesz s-energy, (1/n) sum over i and j != i of (spacing / distance_ij)^s.
+
+    Parameters
+    ----------
+    points : array_like or PointSet, shape (n, d)
+        Coordinates in [0, 1), n >= 2.
+    s : int, optional
+        The exponent >= 1; 2d if not given, which makes close pairs count and far ones not.
+    periodic : bool
+        Whether distances are those of the torus, each coordinate wrapping modulo 1.
+
+    Returns
+    -------
+    float
+        The energy in units of ``spacing = n^(-1/d)``, so that it hardly depends on n;
+        ``inf`` where it exceeds the range of a float, as for coincident points.
+
+    Raises
+    ------
+    InvalidValue
+        For fewer than two points, bad coordinates, or an s that is not an integer >= 1.
+    """
+    logarithm = log_riesz_of_columns(*_checked(points, s), periodic, want_gradient=False)[0]
+    return _exp(logarithm)
+
+
+def riesz_rooted(points: object, s: int | None = None, periodic: bool = True) -> float:
+    """Return :func:`riesz_energy` to the power 1/s: as s grows, the spacing over the smallest distance.
+
+    It stays in the range of a float where the energy does not; the distance of coincident points counts as 10^-100.
+    """
+    return riesz_rooted_with_gradient(points, s, periodic)[0]
+
+
+def riesz_energy_with_gradient(
+    points: object, s: int | None = None, periodic: bool = True
+) -> tuple[float, Array]:
+    """Return :func:`riesz_energy` and its gradient, shape (n, d); infinite where the energy is."""
+    columns, exponent = _checked(points, s)
+    logarithm, gradient = log_riesz_of_columns(columns, exponent, periodic, want_gradient=True)
+    return _scaled(_exp(logarithm), gradient)
+
+
+def riesz_rooted_with_gradient(
+    points: object, s: int | None = None, periodic: bool = True
+) -> tuple[float, Array]:
+    """Return :func:`riesz_rooted` and its gradient, shape (n, d)."""
+    columns, exponent = _checked(points, s)
+    logarithm, gradient = log_riesz_of_columns(columns, exponent, periodic, want_gradient=True)
+    return _scaled(_exp(logarithm / exponent), gradient / exponent)
+
+
+def log_riesz_of_columns(columns: Array, s: int, periodic: bool, want_gradient: bool) -> tuple[float, Array]:
+    """Return log(riesz_energy) and its gradient, shape (d, n), at checked points of shape (d, n).
+
+    Every power is taken relative to the largest of its row, and rows are joined in the log: nothing
+    overflows, whatever d.  The distance of coincident points counts as 10^-100, and they do not push each other:
+    there is no direction.  Sums run as vectors, so another kind of processor gives last digits of its own (2e-16).
+    """
+    d, n = columns.shape
+    nearest, rows, pushes = _row_energies(columns, s, periodic, want_gradient)
+    row_logs = np.log(rows) - (0.5 * s) * np.log(nearest)
+    largest = row_logs.max()
+    total_log = largest + math.log(np.exp(row_logs - largest).sum())
+    logarithm = total_log - math.log(n) - (s / d) * math.log(n)
+    if want_gradient:
+        # A pair stands in the sum twice, so a point's own row holds half of what its coordinates change.
+        pushes *= -2.0 * s * np.exp(row_logs - np.log(rows) - total_log)
+    return logarithm, pushes
+
+
+def _checked(points: object, s: int | None) -> tuple[Array, int]:
+    coordinates = as_unit_points(points)
+    n, d = coordinates.shape
+    if n < 2:
+        raise InvalidValue(f"an energy needs at least 2 points, got {n}")
+    exponent = 2 * d if s is None else require_count("s", s)
+    return np.ascontiguousarray(coordinates.T), operator.index(exponent)
+
+
+def _exp(logarithm: float) -> float:
+    return math.exp(logarithm) if logarithm < 709.0 else math.inf
+
+
+def _scaled(value: float, log_gradient: Array) -> tuple[float, Array]:
+    gradient = np.ascontiguousarray(log_gradient.T)
+    if math.isinf(value):
+        return value, np.where(gradient == 0.0, 0.0, np.copysign(np.inf, gradient))
+    return value, value * gradient
+
+
+SMALLEST_SQUARED = 1e-200
+"""Squared distance that coincident points count as: far below any real one, and its ratio to itself is 1."""
+
+
+@njit(cache=True, fastmath=True)
+def _row_energies(columns, s, periodic, want_gradient):  # type: ignore[no-untyped-def]
+    """Row sums of (nearest / distance^2)^(s/2), the nearest squared distances, and the rows' gradients."""
+    d, n = columns.shape
+    nearest = np.empty(n)
+    rows = np.empty(n)
+    pushes = np.zeros((d, n))
+    squared = np.empty(n)
+    inverse = np.empty(n)
+    power = np.empty(n)
+    base = np.empty(n)
+    wrap = 1.0 if periodic else 0.0
+    for i in range(n):
+        for j in range(n):
+            squared[j] = 0.0
+        for k in range(d):
+            at, others = columns[k, i], columns[k]
+            for j in range(n):
+                gap = abs(at - others[j])
+                gap = min(gap, abs(wrap - gap)) if periodic else gap
+                squared[j] += gap * gap
+        squared[i] = 1e300
+        smallest = 1e300
+        for j in range(n):
+            squared[j] = max(squared[j], SMALLEST_SQUARED)
+            smallest = min(smallest, squared[j])
+        for j in range(n):
+            inverse[j] = 1.0 / squared[j]
+            base[j] = smallest * inverse[j]
+            power[j] = 1.0
+        # Powers by repeated squaring of whole rows: a few multiplications, no exp or log in the pair loop.
+        if s % 2 == 1:
+            for j in range(n):
+                power[j] = math.sqrt(base[j])
+        half = s // 2
+        while half > 0:
+            odd = half % 2
+            half //= 2
+            if odd == 1:
+                for j in range(n):
+                    power[j] *= base[j]
+            if half > 0:
+                for j in range(n):
+                    base[j] *= base[j]
+        power[i] = 0.0
+        row = 0.0
+        for j in range(n):
+            row += power[j]
+        rows[i] = row
+        nearest[i] = smallest
+        if want_gradient:
+            for j in range(n):
+                power[j] *= inverse[j]
+            for k in range(d):
+                at, others = columns[k, i], columns[k]
+                push = 0.0
+                for j in range(n):
+                    step = at - others[j]
+                    if periodic:
+                        step -= math.copysign(1.0, step) if abs(step) > 0.5 else 0.0
+                    push += power[j] * step
+                pushes[k, i] = push
+    return nearest, rows, pushes

@@ -5,5 +5,5 @@ from evenroad.points.optimise.anneal import Annealed as Annealed
 from evenroad.points.optimise.anneal import anneal as anneal
 from evenroad.points.optimise.objective import Objective as Objective
 from evenroad.points.optimise.objective import Term as Term
-from evenroad.points.optimise.parse import known_names as known_names
-from evenroad.points.optimise.parse import parse_objective as parse_objective
+from evenroad.points.optimise.objective import known_names as known_names
+from evenroad.points.optimise.objective import parse_objective as parse_objective

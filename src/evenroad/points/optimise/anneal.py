@@ -9,14 +9,18 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from numba import njit
 
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator
 from evenroad.errors import InvalidValue
-from evenroad.points.measures.terms import Array
-from evenroad.points.optimise.adam import adam_step
-from evenroad.points.optimise.objective import Objective, objective_of_columns, require_points_for
-from evenroad.points.optimise.parse import parse_objective
+from evenroad.points.measures.l2 import Array
+from evenroad.points.optimise.objective import (
+    Objective,
+    objective_of_columns,
+    parse_objective,
+    require_points_for,
+)
 from evenroad.points.pointset import BELOW_ONE, as_unit_points
 
 LOWEST = 1.0 - BELOW_ONE
@@ -31,6 +35,13 @@ SCHEDULE = 2
 LARGEST_RATE = 0.02
 LAST_OVER_FIRST = 1 / 2000
 HOTTEST = 0.3
+
+FIRST_DECAY = 0.9
+SECOND_DECAY = 0.999
+"""Of Adam's moments."""
+
+TINY = 1e-30
+"""Keeps 0/0 away and nothing more, so that the scale of the objective does not matter."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +107,7 @@ def anneal(
 
     Notes
     -----
-    "Deterministic" means the same bits on the same kind of processor and versions of numpy and numba: sums run
+    "Deterministic" means the same bits on one kind of processor, with one version of numpy and numba: sums run
     as vectors, whose width, and so the order of additions, is the processor's.
     """
     n, d, steps = require_count("n", n), require_count("d", d), require_count("steps", steps)
@@ -115,7 +126,7 @@ def anneal(
             best_columns[:] = columns
         rate = learning_rate(step, steps, highest_rate)
         draws.standard_normal(out=noise)
-        adam_step(
+        _adam_step(
             columns, first, second, gradient, noise, step, rate, spread * rate,
             LOWEST, BELOW_ONE, target.periodic,
         )  # fmt: skip
@@ -167,3 +178,25 @@ def _first_columns(n: int, d: int, start: npt.ArrayLike | None, draws: np.random
     if given.shape != (n, d):
         raise InvalidValue(f"start must have shape ({n}, {d}), got {given.shape}")
     return np.ascontiguousarray(np.clip(given.T, LOWEST, BELOW_ONE))
+
+
+@njit(cache=True)
+def _adam_step(columns, first, second, gradient, noise, step, rate, spread, low, high, wrap):  # type: ignore[no-untyped-def]
+    """Move `columns` (d, n) against `gradient` by Adam (Kingma and Ba 2015) and along `noise`; update both moments.
+
+    `step` counts from 1, `rate` is the learning rate, `spread` the standard deviation of the noise.
+    Coordinates stay in [low, high]: wrapped modulo 1 first if `wrap`, then clipped.
+    """
+    first_scale = 1.0 / (1.0 - FIRST_DECAY**step)
+    second_scale = 1.0 / (1.0 - SECOND_DECAY**step)
+    d, n = columns.shape
+    for k in range(d):
+        for i in range(n):
+            slope = gradient[k, i]
+            first[k, i] = FIRST_DECAY * first[k, i] + (1.0 - FIRST_DECAY) * slope
+            second[k, i] = SECOND_DECAY * second[k, i] + (1.0 - SECOND_DECAY) * slope * slope
+            move = first[k, i] * first_scale / (math.sqrt(second[k, i] * second_scale) + TINY)
+            moved = columns[k, i] - rate * move + spread * noise[k, i]
+            if wrap:
+                moved -= math.floor(moved)
+            columns[k, i] = min(max(moved, low), high)

@@ -1,4 +1,4 @@
-"""Samplers behind one interface, by name."""
+"""Samplers behind one interface, by name: the one list from which all others come."""
 
 from __future__ import annotations
 
@@ -8,41 +8,25 @@ from typing import Any
 
 from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue, UnknownName
-from evenroad.points.families.trained import TRAINED_FAMILIES, Trained
+from evenroad.points.bank import TRAINED_FAMILIES, Trained
 from evenroad.points.pointset import PointSet
+from evenroad.points.sampler import KnownSampler as KnownSampler
+from evenroad.points.sampler import Sampler as Sampler
+from evenroad.points.samplers.korobov import Even as Even
 from evenroad.points.samplers.korobov import Korobov as Korobov
 from evenroad.points.samplers.lattice import Lattice as Lattice
-from evenroad.points.samplers.sampler import Sampler as Sampler
-from evenroad.points.samplers.sukharev import Sukharev as Sukharev
-from evenroad.points.samplers.uniform import Uniform as Uniform
+from evenroad.points.samplers.plain import Sukharev as Sukharev
+from evenroad.points.samplers.plain import Uniform as Uniform
+from evenroad.points.samplers.sequences import Halton as Halton
+from evenroad.points.samplers.sequences import Sobol as Sobol
+
+SAMPLERS: dict[str, Callable[..., KnownSampler]] = {
+    each.name: each for each in (Even, Korobov, Lattice, Halton, Sobol, Sukharev, Uniform)
+} | {family: partial(Trained, family) for family in TRAINED_FAMILIES}
+"""Name -> how to make the sampler from its options; without any it says what it is, and what keeps its sets even."""
 
 
-def _halton(**options: Any) -> Sampler:
-    # scipy.stats takes half a second to import: only those who ask for a sequence pay for it.
-    from evenroad.points.samplers.sequences import Halton
-
-    return Halton(**options)
-
-
-def _sobol(**options: Any) -> Sampler:
-    from evenroad.points.samplers.sequences import Sobol
-
-    return Sobol(**options)
-
-
-SAMPLERS: dict[str, Callable[..., Sampler]] = {
-    "uniform": Uniform,
-    "halton": _halton,
-    "sobol": _sobol,
-    "sukharev": Sukharev,
-    "lattice": Lattice,
-    "korobov": Korobov,
-    **{family: partial(Trained, family) for family in TRAINED_FAMILIES},
-}
-"""Name -> how to make the sampler from its options."""
-
-
-def make_sampler(name: str, **options: Any) -> Sampler:
+def make_sampler(name: str, **options: Any) -> KnownSampler:
     """Return the sampler of this name.
 
     Parameters
@@ -59,7 +43,7 @@ def make_sampler(name: str, **options: Any) -> Sampler:
     InvalidValue
         If the sampler does not take an option.
     """
-    if name not in SAMPLERS:
+    if not isinstance(name, str) or name not in SAMPLERS:
         raise UnknownName.among("sampler", name, SAMPLERS)
     try:
         return SAMPLERS[name](**options)

@@ -1,4 +1,4 @@
-"""The A_d* lattice, randomly turned and shifted: the thinnest known lattice covering in low dimensions."""
+"""The A_d* lattice, randomly rotated and shifted: the thinnest known lattice covering in low dimensions."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import Origin, PointSet
+from evenroad.points.sampler import Symmetry
 
 MAX_D = 12
 """Beyond this the ball around the cube holds thousands of lattice points for each one inside the cube."""
@@ -20,15 +21,20 @@ MAX_D = 12
 class Lattice:
     """A_d* (Conway and Sloane 1999, chapter 4.6.6), under a random rotation and a random shift.
 
-    The rule that keeps exactly n points: around a uniformly random centre in the turned lattice of unit density,
-    grow a cube until it holds n lattice points, go on half way to the point that would enter next, and scale that
-    cube to the unit cube.
+    The rule that keeps exactly n points: around a uniformly random centre in the rotated lattice of unit density,
+    grow a cube until it holds n lattice points, go on half the distance to the point that would enter next, and scale
+    that cube to the unit cube.
     """
 
     name = "lattice"
+    about = "A_d*, randomly rotated and shifted"
+    any_n = True
+    # The cube's own give an equally likely set.  A shift would join two sides of the cut, where the lattice does not
+    # fit together.
+    symmetries = frozenset({Symmetry.PERMUTATION, Symmetry.REFLECTION})
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
-        """Return n lattice points of the unit cube, shape (n, d); see :class:`Sampler`.
+        """Return n lattice points of the unit cube, shape (n, d); see :class:`~evenroad.points.Sampler`.
 
         Raises
         ------

@@ -3,21 +3,44 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy.typing as npt
-from scipy.stats import qmc
 
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import Origin, PointSet
+from evenroad.points.sampler import Symmetry
 
 SOBOL_LENGTH = 2**30
 """How many distinct points SciPy's Sobol engine has at its default 30 bits."""
 
 
 @dataclass(frozen=True)
-class Halton:
+class _Sequence:
+    scramble: bool = True
+    start: int = 0
+    name = ""
+    any_n = True
+    # Known for their star discrepancy, which sees only the corner at the origin.
+    symmetries = frozenset({Symmetry.PERMUTATION})
+
+    def __post_init__(self) -> None:
+        require_count("start", self.start, at_least=0)
+
+    def _set(self, points: npt.NDArray[Any], rng: RngLike) -> PointSet:
+        origin = Origin(
+            family=self.name,
+            method="scrambled" if self.scramble else "plain",
+            seed=seed_of(rng) if self.scramble else None,
+            start=self.start,
+        )
+        return PointSet(points, origin)
+
+
+@dataclass(frozen=True)
+class Halton(_Sequence):
     """Halton's sequence in the first d prime bases (Halton 1960).
 
     Parameters
@@ -28,49 +51,41 @@ class Halton:
         Index of the first point, >= 0.  Index 0 of the plain sequence is the origin of the cube.
     """
 
-    scramble: bool = True
-    start: int = 0
     name = "halton"
-
-    def __post_init__(self) -> None:
-        require_count("start", self.start, at_least=0)
+    about = "Halton, randomly permuted digits, or plain"
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
-        """Return points start .. start + n - 1 of the sequence, shape (n, d); see :class:`Sampler`."""
+        """Return points start .. start + n - 1 of the sequence, shape (n, d); see :class:`~evenroad.points.Sampler`."""
+        # Here, because it takes half a second to import: only those who ask for a sequence pay for it.
+        from scipy.stats import qmc
+
         n, d = require_count("n", n), require_count("d", d)
         engine = qmc.Halton(d, scramble=self.scramble, rng=generator(rng))
         if self.start:
             engine.fast_forward(self.start)
-        return _with_origin(self, engine.random(n), rng)
+        return self._set(engine.random(n), rng)
 
 
 @dataclass(frozen=True)
-class Sobol:
-    """Sobol's sequence with the direction numbers of Joe and Kuo (2008).
+class Sobol(_Sequence):
+    """Sobol's sequence with the direction numbers of Joe and Kuo (2008); parameters as for :class:`Halton`.
 
-    Parameters
-    ----------
-    scramble : bool
-        Linear matrix scramble with a digital shift (Matousek 1998) drawn from `rng`; else plain, ignoring `rng`.
-    start : int
-        Index of the first point, >= 0.  Index 0 of the plain sequence is the origin of the cube.
+    The scramble is a linear matrix scramble with a digital shift (Matousek 1998).
     """
 
-    scramble: bool = True
-    start: int = 0
     name = "sobol"
-
-    def __post_init__(self) -> None:
-        require_count("start", self.start, at_least=0)
+    about = "Sobol, scrambled, or plain"
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
-        """Return points start .. start + n - 1 of the sequence, shape (n, d); see :class:`Sampler`.
+        """Return points start .. start + n - 1 of the sequence, shape (n, d); see :class:`~evenroad.points.Sampler`.
 
         Raises
         ------
         InvalidValue
             Also if start + n exceeds 2**30 points, or d exceeds the 21201 dimensions of the direction numbers.
         """
+        from scipy.stats import qmc
+
         n, d = require_count("n", n), require_count("d", d)
         if self.start + n > SOBOL_LENGTH:
             raise InvalidValue(f"the Sobol sequence ends at index {SOBOL_LENGTH}, asked for {self.start + n}")
@@ -79,11 +94,9 @@ class Sobol:
         engine = qmc.Sobol(d, scramble=self.scramble, rng=generator(rng))
         if self.start:
             engine.fast_forward(self.start)
-            points = engine.random(n)
-        else:
-            # From index 0 SciPy warns unless n is a power of two; users of a roadmap choose n freely.
-            points = engine.random_base2((n - 1).bit_length())[:n]
-        return _with_origin(self, points, rng)
+            return self._set(engine.random(n), rng)
+        # From index 0 SciPy warns unless n is a power of two; users of a roadmap choose n freely.
+        return self._set(engine.random_base2((n - 1).bit_length())[:n], rng)
 
 
 def paper_block(sampler: Halton | Sobol, run: int, n: int) -> Halton | Sobol:
@@ -93,13 +106,3 @@ def paper_block(sampler: Halton | Sobol, run: int, n: int) -> Halton | Sobol:
     """
     run, n = require_count("run", run), require_count("n", n)
     return type(sampler)(scramble=False, start=(run - 1) * n + 1)
-
-
-def _with_origin(sampler: Halton | Sobol, points: npt.ArrayLike, rng: RngLike) -> PointSet:
-    origin = Origin(
-        family=sampler.name,
-        method="scrambled" if sampler.scramble else "plain",
-        seed=seed_of(rng) if sampler.scramble else None,
-        start=sampler.start,
-    )
-    return PointSet(points, origin)  # type: ignore[arg-type]

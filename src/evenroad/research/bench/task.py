@@ -6,7 +6,7 @@ import hashlib
 import json
 from dataclasses import dataclass
 
-PROTOCOL = 2
+PROTOCOL = 3
 """Counted up when the same task would give another row: rows of another protocol are not taken for done."""
 
 

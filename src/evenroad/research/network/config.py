@@ -6,8 +6,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from evenroad._checks import require_count, require_positive
-from evenroad.points.optimise.objective import require_points_for
-from evenroad.points.optimise.parse import parse_objective
+from evenroad.points.optimise.objective import parse_objective, require_points_for
 
 POINTS_AT_ONCE = 4096
 """Points whose activations are held in memory together, unless a micro-batch is asked for."""

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from evenroad.errors import BrokenFile, InvalidValue
-from evenroad.points.measures.terms import Array
+from evenroad.points.measures.l2 import Array
 from evenroad.points.npz import load_points, save_points
 from evenroad.points.pointset import Origin, PointSet
 from evenroad.research.network.config import NetworkConfig

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
-from evenroad.points.measures.terms import Array
+from evenroad.points.measures.l2 import Array
 
 Indices = npt.NDArray[np.int64]
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 
-from evenroad.points.measures.terms import Array
+from evenroad.points.measures.l2 import Array
 from evenroad.points.optimise.objective import Objective
 from evenroad.research.network.config import NetworkConfig
 from evenroad.research.network.graph import edges_of_sets

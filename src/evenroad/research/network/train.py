@@ -8,7 +8,7 @@ from pathlib import Path
 
 from evenroad._checks import require_count, require_positive
 from evenroad.points.optimise.anneal import Callback
-from evenroad.points.optimise.parse import parse_objective
+from evenroad.points.optimise.objective import parse_objective
 from evenroad.points.pointset import PointSet
 from evenroad.research.network.checkpoint import load_checkpoint, save_checkpoint
 from evenroad.research.network.config import NetworkConfig

@@ -19,8 +19,7 @@ from evenroad._checks import require_count
 from evenroad._rng import RngLike, seed_of
 from evenroad.errors import InvalidValue, WorkerLost
 from evenroad.points.optimise.anneal import Callback
-from evenroad.points.optimise.objective import Objective, require_points_for
-from evenroad.points.optimise.parse import parse_objective
+from evenroad.points.optimise.objective import Objective, parse_objective, require_points_for
 from evenroad.points.pointset import PointSet
 from evenroad.research.training.request import claim_folder, set_name
 from evenroad.research.training.set_task import SetTask, finished_set, make_set, request_of

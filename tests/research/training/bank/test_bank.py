@@ -5,9 +5,8 @@ import numpy as np
 import pytest
 
 from evenroad.errors import BrokenFile, NotAvailable, UnknownName
-from evenroad.points.bank import Bank, open_bank
+from evenroad.points.bank import Bank, Trained, open_bank
 from evenroad.points.bank.bank import DATA, INDEX, SEED
-from evenroad.points.families import Trained
 from evenroad.points.pointset import PointSet
 from evenroad.research.training import anneal_many
 from evenroad.research.training.bank import MEASURED, build, store
@@ -123,6 +122,7 @@ def _damage_array(folder):
             "of shape",
         ),
         (lambda folder: (folder / INDEX).write_text("{"), "index"),
+        (lambda folder: (folder / INDEX).write_text('{"hickernell": {"2": {"8": {}}}}'), "no record"),
         (lambda folder: (folder / INDEX).write_text("[]"), "JSON object"),
     ],
 )

@@ -1,4 +1,4 @@
-"""Sukharev's grid: the centres of k^d equal cells."""
+"""Independent uniform points and Sukharev's grid: what every other sampler is compared with."""
 
 from __future__ import annotations
 
@@ -7,9 +7,26 @@ from dataclasses import dataclass
 import numpy as np
 
 from evenroad._checks import require_count
-from evenroad._rng import RngLike
+from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import NotAvailable
 from evenroad.points.pointset import Origin, PointSet
+from evenroad.points.sampler import ALL_SYMMETRIES, Symmetry
+
+
+@dataclass(frozen=True)
+class Uniform:
+    """Independent points, uniform on the cube (PCG64)."""
+
+    name = "uniform"
+    about = "independent points"
+    any_n = True
+    symmetries = ALL_SYMMETRIES
+
+    def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
+        """Return n independent points, shape (n, d); see :class:`~evenroad.points.Sampler`."""
+        n, d = require_count("n", n), require_count("d", d)
+        origin = Origin(family=self.name, method="independent", seed=seed_of(rng))
+        return PointSet(generator(rng).random((n, d)), origin)
 
 
 @dataclass(frozen=True)
@@ -24,6 +41,10 @@ class Sukharev:
 
     allow_fewer: bool = False
     name = "sukharev"
+    about = "the grid of k^d cell centres; always the same set"
+    any_n = False
+    # Those of the cube; a shift would move its cells off the faces.
+    symmetries = frozenset({Symmetry.PERMUTATION, Symmetry.REFLECTION})
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
         """Return the k^d cell centres ((i + 1/2) / k per axis), first axis slowest; `rng` is not used.

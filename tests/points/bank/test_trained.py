@@ -1,15 +1,14 @@
 import multiprocessing
 import os
+import shutil
 
 import numpy as np
 import pytest
 
+from evenroad._files import cache_folder
 from evenroad.errors import BrokenFile, NotAvailable, UnknownName
-from evenroad.points import draw, load_points
-from evenroad.points.even import EVEN, even_choice
-from evenroad.points.families import Trained, cache_folder
-from evenroad.points.measures import MEASURES, separation
-from evenroad.points.optimise import parse_objective
+from evenroad.points import draw, load_points, save_points
+from evenroad.points.bank import Trained, trained
 from tests.points.samplers.sampler_contract import SamplerContract
 
 
@@ -23,13 +22,8 @@ class TestHickernell(SamplerContract):
     shapes = ((16, 2), (64, 2), (1024, 2))
 
 
-class TestEvenWhereItIsConstructed(SamplerContract):
-    sampler = Trained("even")
-    shapes = ((5, 1), (3, 2), (1, 6), (20, 7), (100, 10))
-
-
-class TestEvenMadeOnDemand(SamplerContract):
-    sampler = Trained("even", train=True)
+class TestHickernellMadeOnDemand(SamplerContract):
+    sampler = Trained("hickernell", train=True)
     shapes = ((5, 3), (7, 3), (6, 4))
 
 
@@ -65,6 +59,51 @@ def test_a_damaged_file_of_the_cache_is_made_again():
     assert source == "fresh"
     assert again == made
     assert load_points(file).hash == made.hash
+
+
+def _seeds_of_two_sets():
+    """Return the seeds of two different sets of a pool made on demand."""
+    replicas = [int(np.random.default_rng(seed).integers(8)) for seed in range(9)]
+    return 0, next(seed for seed in range(9) if replicas[seed] != replicas[0])
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"replica": 7}, {"family": "mpmc"}, {"objective": "star"}, {"steps": 4999}, {"steps": None}],
+    ids=str,
+)
+def test_a_file_of_the_cache_that_holds_another_set_is_made_again(changes):
+    family = Trained("hickernell", train=True)
+    made = family.draw(6, 2)
+    (file,) = (cache_folder() / "sets").iterdir()
+    save_points(file, load_points(file).with_origin(**changes))
+    again, source = family.find(6, 2)
+    assert (again, source) == (made, "fresh")
+    assert load_points(file).origin == made.with_origin(seed=None).origin
+
+
+def test_the_file_of_another_set_of_the_pool_is_not_taken():
+    family = Trained("hickernell", train=True)
+    first, second = _seeds_of_two_sets()
+    one = family.draw(6, 2, rng=first)
+    (file,) = (cache_folder() / "sets").iterdir()
+    other = family.draw(6, 2, rng=second)
+    (other_file,) = set((cache_folder() / "sets").iterdir()) - {file}
+    shutil.copy(other_file, file)
+    assert family.find(6, 2, rng=first) == (one, "fresh")
+    assert family.find(6, 2, rng=second) == (other, "cached")
+
+
+def test_sets_of_other_steps_have_files_of_their_own(monkeypatch):
+    family = Trained("hickernell", train=True)
+    standard = family.draw(6, 2)
+    monkeypatch.setattr(trained, "ON_DEMAND_STEPS", 50)
+    short, source = family.find(6, 2)
+    assert source == "fresh"
+    assert short.hash != standard.hash
+    assert family.find(6, 2) == (short, "cached")
+    monkeypatch.setattr(trained, "ON_DEMAND_STEPS", 5000)
+    assert family.find(6, 2) == (standard, "cached")
 
 
 def test_a_cache_that_cannot_be_written_is_our_error(monkeypatch, tmp_path):
@@ -118,25 +157,8 @@ def test_the_advice_makes_exactly_the_set_that_was_missing():
 
 
 def test_an_unknown_family_is_refused_with_the_list():
-    with pytest.raises(UnknownName, match="even, hickernell, mpmc"):
+    with pytest.raises(UnknownName, match="known: hickernell, mpmc"):
         Trained("odd")
-
-
-def test_the_even_family_has_a_choice_for_every_dimension():
-    for d in range(1, 40):
-        choice = even_choice(d)
-        assert (choice == "korobov") == (d not in EVEN)
-        if d in EVEN:
-            assert str(parse_objective(choice)) == choice
-
-
-@pytest.mark.parametrize("d", [2, 3])
-def test_even_sets_are_both_of_low_discrepancy_and_well_separated(d):
-    even = Trained("even", train=True).draw(60, d)
-    random = [draw("uniform", 60, d, rng=seed) for seed in range(20)]
-    assert separation(even, periodic=True) > 2 * max(separation(each, periodic=True) for each in random)
-    discrepancy = MEASURES["average_squared"].rooted
-    assert discrepancy(even) < 0.5 * min(map(discrepancy, random))
 
 
 def test_stored_values_are_float32_whether_shipped_or_made():

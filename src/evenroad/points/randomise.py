@@ -1,4 +1,7 @@
-"""Random transformations of a point set that keep its quality; those that would not are refused."""
+"""Many sets from one: random permutations, reflections and shifts that keep what a set is good at.
+
+A transformation that would change what a set was made for is refused.
+"""
 
 from __future__ import annotations
 
@@ -8,10 +11,71 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._rng import RngLike, generator
-from evenroad.points.pointset import PointSet
-from evenroad.points.randomise.symmetry import Symmetry, require_symmetry, symmetries_of
+from evenroad.errors import InvalidValue, shown
+from evenroad.points.measures import MEASURES
+from evenroad.points.optimise import parse_objective
+from evenroad.points.pointset import Origin, PointSet
+from evenroad.points.sampler import ALL_SYMMETRIES, Symmetry
+from evenroad.points.samplers import SAMPLERS
 
 LARGEST_COORDINATE = float(np.nextafter(1.0, 0.0))
+
+ENERGY_SYMMETRIES = {
+    "riesz": ALL_SYMMETRIES,
+    "riesz_open": frozenset({Symmetry.PERMUTATION, Symmetry.REFLECTION}),
+}
+"""Of the energies; a discrepancy says it itself (``Measure.periodic``, ``Measure.reflectable``)."""
+
+
+def symmetries_of_term(name: str) -> frozenset[Symmetry]:
+    """Return what leaves the measure or energy of this name as it is.
+
+    Coordinates have equal weights in an objective, so their order never matters.
+    """
+    if name in ENERGY_SYMMETRIES:
+        return ENERGY_SYMMETRIES[name]
+    measure = MEASURES[name]
+    kept = {Symmetry.PERMUTATION}
+    if measure.reflectable:
+        kept.add(Symmetry.REFLECTION)
+    if measure.periodic:
+        kept.add(Symmetry.SHIFT)
+    return frozenset(kept)
+
+
+def symmetries_of(origin: Origin) -> frozenset[Symmetry]:
+    """Return what keeps the quality of a set with this origin: the symmetries of every term of its objective.
+
+    A set without an objective has those of its sampler.  Of other sets (``given``) nothing is known: none.
+
+    Raises
+    ------
+    InvalidValue
+        If the origin's objective does not parse (UnknownName for a measure that is not known).
+    """
+    if not origin.objective:
+        return SAMPLERS[origin.family]().symmetries if origin.family in SAMPLERS else frozenset()
+    terms = parse_objective(origin.objective).terms
+    return frozenset.intersection(*(symmetries_of_term(term.name) for term in terms))
+
+
+def require_symmetry(origin: Origin, symmetry: Symmetry) -> None:
+    """Raise InvalidValue unless `symmetry` keeps the quality of sets with this origin; the text says why not."""
+    kept = symmetries_of(origin)
+    if symmetry in kept:
+        return
+    allowed = ", ".join(each for each in Symmetry if each in kept) or "nothing"
+    if origin.objective:
+        terms = parse_objective(origin.objective).terms
+        spoilt = [term.name for term in terms if symmetry not in symmetries_of_term(term.name)]
+        why = f"{symmetry} change {' and '.join(dict.fromkeys(spoilt))}, which this {origin.family} set was made for"
+    elif origin.family in SAMPLERS:
+        why = f"{symmetry} would spoil what {origin.family} points are good at"
+    else:
+        why = (
+            f"nothing is known about what a {shown(origin.family)} set is good at, so {symmetry} may spoil it"
+        )
+    raise InvalidValue(f"{why}; legal for it: {allowed}")
 
 
 def permute_coordinates(points: PointSet, *, rng: RngLike = 0) -> PointSet:
