@@ -13,10 +13,9 @@ import pytest
 from evenroad.errors import BrokenFile, InvalidValue, WorkerLost
 from evenroad.research.bench import chunks
 from evenroad.research.bench.chunks import Chunker, Done, run_chunk
-from evenroad.research.bench.outcome import Outcome
 from evenroad.research.bench.runner import run_tasks
 from evenroad.research.bench.store import open_store, read_rows
-from evenroad.research.bench.task import Task
+from evenroad.research.bench.task import Outcome, Task
 from evenroad.research.bench.time_limit import LONGEST_LIMIT
 from evenroad.research.workers import ProcessPool, SerialExecutor, Workers, in_process, processes
 from tests.research.bench.tables import table_of
