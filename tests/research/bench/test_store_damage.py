@@ -53,9 +53,9 @@ def _mutant(whole, rng):
     return bytes(content)
 
 
-def test_a_damaged_store_gives_the_same_rows_or_an_error_of_ours(path):
+def test_a_damaged_store_gives_the_same_rows_and_sessions_or_an_error_of_ours(path):
     _write(path)
-    whole, rows = path.read_bytes(), table_of(path)
+    whole, rows, sessions = path.read_bytes(), table_of(path), read_sessions(path)
     rng = np.random.default_rng(0)
     refused = 0
     for number in range(MUTANTS):
@@ -63,7 +63,7 @@ def test_a_damaged_store_gives_the_same_rows_or_an_error_of_ours(path):
         mutant.write_bytes(_mutant(whole, rng))
         try:
             assert table_of(mutant) == rows, f"mutant {number} has other rows"
-            read_sessions(mutant)
+            assert read_sessions(mutant) == sessions, f"mutant {number} has other sessions"
             read_rows(mutant, problems=["maze-2"])
         except BrokenFile:
             refused += 1

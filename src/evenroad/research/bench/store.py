@@ -28,12 +28,11 @@ from evenroad.research.bench.store_file import (
     checksum_of,
     connect,
     create,
-    is_of_its_task,
     only_writer,
     read_names,
     sqlite_errors,
 )
-from evenroad.research.bench.task import PROTOCOL, Outcome, Task
+from evenroad.research.bench.task import PROTOCOL, Outcome, Task, key_of
 
 Row = tuple[str | int | float | None, ...]
 """The values of COLUMNS, texts as texts."""
@@ -46,7 +45,7 @@ _STATUS = COLUMNS.index("status")
 _INSERT_ROW = f"INSERT OR REPLACE INTO rows VALUES ({', '.join('?' * (len(COLUMNS) + 1))})"
 
 _INSERT_NAME = (
-    "INSERT INTO names SELECT ?1, ?2 WHERE NOT EXISTS (SELECT 1 FROM names WHERE id = ?1 AND text = ?2)"
+    "INSERT INTO names SELECT ?1, ?2, ?3 WHERE NOT EXISTS (SELECT 1 FROM names WHERE id = ?1 AND text = ?2)"
 )
 """The same name again is no error: an interrupt may come right after a COMMIT, and the rows are then written again."""
 
@@ -56,7 +55,7 @@ class Store:
 
     def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
         self.path, self._connection = path, connection
-        self._names = {text: number for number, text in read_names(connection).items()}
+        self._names = {text: number for number, text in read_names(connection, path).items()}
         self._stored_names = len(self._names)
         self._waiting: list[Row] = []
         self._failure: BrokenFile | None = None
@@ -74,7 +73,7 @@ class Store:
         texts = {number: text for text, number in self._names.items()}
         with sqlite_errors(self.path):
             rows = checked_rows(self._connection, self.path, texts)
-            return {row[0]: row[_STATUS] not in FAILURES for row, _ in rows}
+            return {row[0].hex(): texts[row[_STATUS]] not in FAILURES for row in rows}
 
     def add(self, suite: str, task: Task, outcome: Outcome, worker: str) -> None:
         """Take the row of a finished task, in place of an earlier one, for the next commit; this cannot fail."""
@@ -167,11 +166,15 @@ class Store:
 
     def _write(self) -> None:
         rows = [self._numbered(row) for row in self._waiting]
-        names = [(number, text) for text, number in self._names.items() if number > self._stored_names]
+        names = [
+            (number, text, checksum_of((number, text)))
+            for text, number in self._names.items()
+            if number > self._stored_names
+        ]
         try:
             self._connection.execute("BEGIN IMMEDIATE")
             if not self._has_written:
-                self._connection.execute("INSERT INTO sessions VALUES (?, ?, ?, ?, ?, ?, ?)", _session())
+                self._connection.execute("INSERT INTO sessions VALUES (?, ?, ?, ?, ?, ?, ?, ?)", _session())
             self._connection.executemany(_INSERT_NAME, names)
             self._connection.executemany(_INSERT_ROW, rows)
             self._connection.execute("COMMIT")
@@ -187,7 +190,7 @@ class Store:
             self._names.setdefault(str(value), len(self._names) + 1) if column in NAMED else value
             for column, value in zip(COLUMNS[1:], others, strict=True)
         ]
-        return (bytes.fromhex(str(key)), *values, checksum_of(row))
+        return (bytes.fromhex(str(key)), *values, checksum_of(values[:-1]))
 
 
 @contextmanager
@@ -221,11 +224,12 @@ def open_store(path: str | os.PathLike[str]) -> Iterator[Store]:
             connection.close()
 
 
-def _session() -> tuple[str, ...]:
+def _session() -> tuple[object, ...]:
     from importlib.metadata import version
 
     versions = tuple(version(name) for name in ("numpy", "scipy", "numba"))
-    return (_now(), __version__, platform.python_version(), *versions, platform.platform())
+    session = (_now(), __version__, platform.python_version(), *versions, platform.platform())
+    return (*session, checksum_of(session))
 
 
 def _now() -> str:
@@ -272,7 +276,7 @@ def waiting_rows(store: Path) -> list[Row]:
     try:
         records = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
         rows = [tuple(record[column] for column in COLUMNS) for record in records]
-        if wrong := [row[0] for row in rows if not is_of_its_task(row)]:
+        if wrong := [row[0] for row in rows if row[0] != key_of(row[1], *row[3:_STATUS])]:
             raise ValueError(f"{wrong[0]!r} is not the key of its task")
         return rows
     except FileNotFoundError:

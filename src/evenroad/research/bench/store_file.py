@@ -26,9 +26,10 @@ TABLES = """
 CREATE TABLE sessions (
     started TEXT NOT NULL,   -- UTC
     evenroad TEXT NOT NULL, python TEXT NOT NULL, numpy TEXT NOT NULL, scipy TEXT NOT NULL, numba TEXT NOT NULL,
-    platform TEXT NOT NULL
+    platform TEXT NOT NULL,
+    checksum INTEGER NOT NULL   -- here and below: CRC-32 of the columns before, see checksum_of
 );
-CREATE TABLE names (id INTEGER PRIMARY KEY, text TEXT NOT NULL UNIQUE);
+CREATE TABLE names (id INTEGER PRIMARY KEY, text TEXT NOT NULL UNIQUE, checksum INTEGER NOT NULL);
 -- One row a finished task. Texts are numbers of names: a million rows then load in seconds.
 CREATE TABLE rows (
     key BLOB PRIMARY KEY,    -- SHA-256 of the task
@@ -40,7 +41,7 @@ CREATE TABLE rows (
     length REAL, seconds REAL, set_id INTEGER NOT NULL, error INTEGER NOT NULL,
     worker INTEGER NOT NULL,
     finished TEXT NOT NULL,  -- UTC
-    checksum INTEGER NOT NULL   -- CRC-32 of all columns before `finished`, see checksum_of
+    checksum INTEGER NOT NULL   -- of the columns between `key` and `finished`
 ) WITHOUT ROWID;
 -- For people: SELECT * FROM results.
 CREATE VIEW results AS SELECT
@@ -84,12 +85,6 @@ COLUMNS = (
 
 NAMED = ("suite", "problem", "sampler", "rule", "search", "status", "set_id", "error", "worker")
 """Columns whose texts are kept as numbers of names."""
-
-_PLACES_OF_NAMES = tuple(COLUMNS.index(name) for name in NAMED)
-_PLACES_OF_TASK = tuple(
-    COLUMNS.index(name)
-    for name in ("protocol", "problem", "instance", "sampler", "n", "rule", "search", "run", "seed")
-)
 
 _READ_ROLLBACK = ("SQLITE_READONLY_ROLLBACK", "SQLITE_READONLY_RECOVERY", "SQLITE_CANTOPEN")
 """Errors of SQLite where a commit that was cut off must be undone first, and the file or folder is read-only."""
@@ -172,44 +167,41 @@ def create(path: Path) -> None:
             connection.close()
 
 
-def checksum_of(row: Sequence[object]) -> int:
-    """Return the checksum of a row: CRC-32 of its values before `finished`, whose texts are texts, not numbers."""
-    return zlib.crc32(repr(tuple(row[:-1])).encode("utf-8", "backslashreplace"))
+def checksum_of(values: Sequence[object]) -> int:
+    """Return the checksum of values: CRC-32 of how Python writes them as a tuple."""
+    return zlib.crc32(repr(tuple(values)).encode("utf-8", "backslashreplace"))
 
 
-def is_of_its_task(row: Sequence[Any]) -> bool:
-    """Return whether the key of a row, whose texts are texts, is the key of the task in its other fields."""
-    return bool(row[0] == key_of(*(row[place] for place in _PLACES_OF_TASK)))
-
-
-def read_names(connection: sqlite3.Connection) -> dict[int, str]:
-    """Return the texts of a store by their numbers."""
-    return dict(connection.execute("SELECT id, text FROM names").fetchall())
+def read_names(connection: sqlite3.Connection, path: Path) -> dict[int, str]:
+    """Return the texts of a store by their numbers; BrokenFile if one is not as it was written."""
+    names = connection.execute("SELECT id, text, checksum FROM names").fetchall()
+    for number, text, checksum in names:
+        if checksum != checksum_of((number, text)):
+            raise damaged(path, f"the text {text!r} is not as it was written")
+    return {number: text for number, text, _ in names}
 
 
 def checked_rows(
     connection: sqlite3.Connection, path: Path, texts: dict[int, str]
-) -> Iterator[tuple[list[Any], tuple[Any, ...]]]:
-    """Yield every row of a store twice: with texts, and with their numbers.
+) -> Iterator[tuple[Any, ...]]:
+    """Yield the columns of every row of a store, texts as numbers, and then its checksum.
 
     Raises
     ------
     BrokenFile
         If a row is not as it was written: its checksum or its task's key is not that of its fields.
     """
-    for *numbers, checksum in connection.execute(f"SELECT {', '.join(COLUMNS)}, checksum FROM rows"):
-        row = list(numbers)
+    for row in connection.execute(f"SELECT {', '.join(COLUMNS)}, checksum FROM rows"):
+        key, protocol, _, problem, instance, sampler, n, rule, search, run, seed, *_ = row
+        if row[-1] != checksum_of(row[1:-2]):
+            raise damaged(path, f"the row with the key {key!r} is not as it was written")
         try:
-            row[0] = row[0].hex()
-            for place in _PLACES_OF_NAMES:
-                row[place] = texts[row[place]]
-        except (AttributeError, KeyError, TypeError) as error:
-            raise damaged(path, f"a row has a text that is not there ({error!r})") from error
-        if checksum != checksum_of(row):
-            raise damaged(path, f"the row with the key {row[0][:12]}... is not as it was written")
-        if not is_of_its_task(row):
-            raise damaged(path, f"the row with the key {row[0][:12]}... has fields of another task")
-        yield row, tuple(numbers)
+            task = (texts[problem], instance, texts[sampler], n, texts[rule], texts[search], run, seed)
+        except KeyError as error:
+            raise damaged(path, f"a text with the number {error} is missing") from error
+        if key.hex() != key_of(protocol, *task):
+            raise damaged(path, f"the row with the key {key!r} has the fields of another task")
+        yield row
 
 
 @contextmanager
