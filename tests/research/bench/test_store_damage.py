@@ -116,7 +116,7 @@ def test_a_row_that_is_not_as_it_was_written_is_refused_by_readers_and_writers(p
         read_rows(path)
     with pytest.raises(BrokenFile, match="results.db is damaged: "):
         read_rows(path, problems=["maze-2"])
-    with open_store(path) as store, pytest.raises(BrokenFile, match="results.db is damaged: "):
+    with pytest.raises(BrokenFile, match="results.db is damaged: "), open_store(path) as store:
         store.finished()
 
 
