@@ -103,6 +103,7 @@ def _change(path, statement):
         "UPDATE rows SET run = 60 WHERE run = 6",
         "UPDATE rows SET protocol = protocol - 1 WHERE run = 6",
         "UPDATE rows SET key = zeroblob(32) WHERE run = 6",
+        "UPDATE rows SET key = 'a text' WHERE run = 6",
         "UPDATE rows SET status = 9999 WHERE run = 6",
         "UPDATE rows SET n = 'many' WHERE run = 6",
         "UPDATE names SET text = 'maze-4' WHERE text = 'maze-1'",
@@ -125,7 +126,7 @@ def test_a_key_that_is_not_its_tasks_is_refused_whatever_the_checksum_says(path,
     monkeypatch.setattr("evenroad.research.bench.task.key_of", lambda *fields: "00" * 32)
     _write(path, rows=1)
     monkeypatch.undo()
-    with pytest.raises(BrokenFile, match="has fields of another task"):
+    with pytest.raises(BrokenFile, match="has the fields of another task"):
         read_rows(path)
 
 

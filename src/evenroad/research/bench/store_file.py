@@ -7,6 +7,7 @@ import sqlite3
 import zlib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -85,6 +86,8 @@ COLUMNS = (
 
 NAMED = ("suite", "problem", "sampler", "rule", "search", "status", "set_id", "error", "worker")
 """Columns whose texts are kept as numbers of names."""
+
+_names_in = itemgetter(*map(COLUMNS.index, NAMED))
 
 _READ_ROLLBACK = ("SQLITE_READONLY_ROLLBACK", "SQLITE_READONLY_RECOVERY", "SQLITE_CANTOPEN")
 """Errors of SQLite where a commit that was cut off must be undone first, and the file or folder is read-only."""
@@ -192,15 +195,15 @@ def checked_rows(
         If a row is not as it was written: its checksum or its task's key is not that of its fields.
     """
     for row in connection.execute(f"SELECT {', '.join(COLUMNS)}, checksum FROM rows"):
-        key, protocol, _, problem, instance, sampler, n, rule, search, run, seed, *_ = row
-        if row[-1] != checksum_of(row[1:-2]):
-            raise damaged(path, f"the row with the key {key!r} is not as it was written")
+        blob, protocol, _, _, instance, _, n, _, _, run, seed, *_ = row
+        if not isinstance(blob, bytes) or row[-1] != checksum_of(row[1:-2]):
+            raise damaged(path, f"the row with the key {blob!r} is not as it was written")
         try:
-            task = (texts[problem], instance, texts[sampler], n, texts[rule], texts[search], run, seed)
+            _, problem, sampler, rule, search, *_ = [texts[number] for number in _names_in(row)]
         except KeyError as error:
             raise damaged(path, f"a text with the number {error} is missing") from error
-        if key.hex() != key_of(protocol, *task):
-            raise damaged(path, f"the row with the key {key!r} has the fields of another task")
+        if blob.hex() != key_of(protocol, problem, instance, sampler, n, rule, search, run, seed):
+            raise damaged(path, f"the row with the key {blob.hex()[:12]}... has the fields of another task")
         yield row
 
 
