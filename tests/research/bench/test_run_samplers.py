@@ -23,7 +23,7 @@ def test_every_sampler_draws_a_set_of_the_size_asked_for_and_the_same_one_again(
     assert (points, set_id) == _draw(name, 64, 2, run=3, seed=5)
 
 
-@pytest.mark.parametrize("name", ["uniform", "halton scrambled", "sobol scrambled", "lattice", "korobov"])
+@pytest.mark.parametrize("name", ["uniform", "halton scrambled", "sobol scrambled", "lattice"])
 def test_samplers_drawn_afresh_differ_by_seed_and_name_no_set(name):
     first, set_id = _draw(name, 32, 3, seed=1)
     second, _ = _draw(name, 32, 3, seed=2)
@@ -63,11 +63,12 @@ def test_from_five_dimensions_on_a_pool_set_comes_with_permuted_coordinates():
     assert "permuted" in points.origin.method
 
 
-def test_even_in_high_dimensions_is_constructed_and_so_a_set_of_its_own_each_time():
-    first, set_id = _draw("even", 100, 7, seed=1)
+@pytest.mark.parametrize("d", [2, 5, 7])
+def test_even_is_constructed_and_so_a_set_of_its_own_each_time(d):
+    first, set_id = _draw("even", 100, d, seed=1)
     assert set_id == ""
     assert first.origin.family == "even"
-    assert not np.array_equal(first.points, _draw("even", 100, 7, seed=2)[0].points)
+    assert not np.array_equal(first.points, _draw("even", 100, d, seed=2)[0].points)
 
 
 def test_the_grid_is_one_set_where_it_exists():

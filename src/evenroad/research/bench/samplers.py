@@ -11,7 +11,6 @@ import numpy as np
 from evenroad.errors import NotAvailable, UnknownName
 from evenroad.points import PointSet, draw
 from evenroad.points.bank import open_bank
-from evenroad.points.even import KOROBOV, even_choice
 from evenroad.points.randomise import permute_coordinates
 from evenroad.points.samplers.lattice import MAX_D
 
@@ -115,7 +114,7 @@ def _from_pool(family: str, n: int, d: int, run: int, rng: np.random.Generator) 
     choice, order = rng.spawn(2)
     points = draw(family, n, d, rng=choice)
     if points.origin.replica is None:
-        # Constructed, as `even` is in most dimensions: its random shift makes it a set of its own.
+        # Constructed, as `even` is: its random shift makes it a set of its own.
         return points, ""
     if d >= PERMUTED_FROM:
         points = permute_coordinates(points, rng=order)
@@ -139,8 +138,6 @@ def _grid_exists(n: int, d: int) -> str:
 
 
 def _pool_exists(family: str, n: int, d: int) -> str:
-    if family == "even" and even_choice(d) == KOROBOV:
-        return ""
     try:
         open_bank().cell(family, n, d)
     except (NotAvailable, UnknownName) as error:
@@ -166,9 +163,9 @@ SAMPLERS: dict[str, RunSampler] = {
     "sukharev": RunSampler(_grid, _grid_exists, "the grid of k^d cell centres; always the same set"),
     "mpmc": _pool("mpmc", "a set of the pool trained by the message-passing network"),
     "hickernell": _pool("hickernell", "a set of the pool annealed for the network's discrepancy"),
-    "even": _pool(
-        "even", "our family: in d = 3 and 4 a set of the annealed pool, else a shifted Korobov lattice"
+    # Drawn as from a pool, though it is none: so its rows keep their bits where it was constructed all along.
+    "even": RunSampler(
+        partial(_from_pool, "even"), _always, "our default: a randomly shifted Korobov lattice"
     ),
-    "korobov": RunSampler(partial(_fresh, "korobov"), _always, "best Korobov lattice, randomly shifted"),
 }
 """Name -> how the set of a run is drawn, in the order of tables."""
