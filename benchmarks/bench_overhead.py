@@ -16,11 +16,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from evenroad.research.bench.chunks import Done
-from evenroad.research.bench.executors import Workers, _Processes, _SerialExecutor
-from evenroad.research.bench.outcome import Outcome
 from evenroad.research.bench.runner import run_tasks
 from evenroad.research.bench.store import open_store, read_rows
-from evenroad.research.bench.task import Task
+from evenroad.research.bench.task import Outcome, Task
+from evenroad.research.workers import ProcessPool, SerialExecutor, Workers
 
 SAMPLERS = ("uniform", "halton paper-blocks", "sobol scrambled", "lattice", "hickernell", "even", "korobov")
 
@@ -31,12 +30,12 @@ def answer_at_once(tasks: Sequence[Task], limit: float | None) -> Done:
     return Done((outcome,) * len(tasks), (0.001,) * len(tasks), "host:1")
 
 
-class _Serial(_SerialExecutor):
+class _Serial(SerialExecutor):
     def submit(self, fn, /, *args, **kwargs):
         return super().submit(answer_at_once, *args, **kwargs)
 
 
-class _Pool(_Processes):
+class _Pool(ProcessPool):
     def submit(self, fn, /, *args, **kwargs):
         return super().submit(answer_at_once, *args, **kwargs)
 

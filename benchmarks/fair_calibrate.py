@@ -25,7 +25,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.nested_k import NEVER, smallest_k
-from evenroad.research.bench.problem import Problem
+from evenroad.research.bench.task import Problem
 from evenroad.research.problems.fair.cubes import BALLS, BOUNDED_AXES, BOXES
 from evenroad.research.problems.fair.instance import make_instance
 from evenroad.research.problems.fair.sizes import CALIBRATED_AT

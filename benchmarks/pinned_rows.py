@@ -17,7 +17,6 @@ import tempfile
 from pathlib import Path
 
 from evenroad._progress import LineProgress
-from evenroad.research.bench.executors import processes
 from evenroad.research.bench.runner import run_tasks
 from evenroad.research.bench.store import open_store, read_rows
 from evenroad.research.bench.task import Task
@@ -26,6 +25,7 @@ from evenroad.research.report.expected import load_expected
 from evenroad.research.report.runs import runs_of
 from evenroad.research.report.verdicts import Verdict, verdicts_of
 from evenroad.research.suites.paper import SEED, paper_suite
+from evenroad.research.workers import processes
 
 PINNED = load_expected("pinned")
 

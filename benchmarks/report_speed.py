@@ -19,10 +19,9 @@ from pathlib import Path
 
 import numpy as np
 
-from evenroad.research.bench.outcome import Outcome
 from evenroad.research.bench.samplers import SAMPLERS
 from evenroad.research.bench.store import open_store, read_rows
-from evenroad.research.bench.task import Task
+from evenroad.research.bench.task import Outcome, Task
 from evenroad.research.problems import PROBLEMS
 from evenroad.research.report import write_report
 from evenroad.research.report.analysis import analyse

@@ -1,3 +1,5 @@
+import signal
+
 import pytest
 
 from evenroad.cli import main
@@ -22,3 +24,12 @@ def run(capsys):
 def _in_an_empty_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("EVENROAD_CACHE", str(tmp_path / ".cache"))
+
+
+@pytest.fixture(autouse=True)
+def _ctrl_c_interrupts():
+    """Give commands a Ctrl-C, also where the tests themselves run with SIGINT ignored, as `nohup` and `&` have it."""
+    before = signal.getsignal(signal.SIGINT)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)

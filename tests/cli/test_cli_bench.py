@@ -10,9 +10,18 @@ import time
 import pytest
 
 from evenroad.errors import BrokenFile
+from evenroad.research.bench.samplers import SAMPLERS
 from evenroad.research.bench.store import open_store, read_rows
 
 SMALL = ("bench", "paper", "--runs", 2, "--only", "hypercube-legacy6,corridor-2d-0.1", "--quick", "--jobs", 1)
+
+
+def _cells(out, problem, n):
+    """Return what the table shows of a problem and N, by sampler."""
+    lines = out.splitlines()
+    below = lines[lines.index(problem) + 1 :]
+    _, *cells = next(line.split() for line in below if line.split()[0] == str(n))
+    return dict(zip(SAMPLERS, cells, strict=True))
 
 
 def test_a_suite_is_run_shown_and_found_done_the_next_time(run, tmp_path):
@@ -27,16 +36,17 @@ def test_a_suite_is_run_shown_and_found_done_the_next_time(run, tmp_path):
     assert f"0 tasks run now, {len(rows)} found done" in out
 
 
-def test_the_table_shows_success_by_problem_n_and_sampler_within_100_columns(run, tmp_path):
+def test_the_table_shows_success_by_problem_n_and_sampler_within_80_columns(run, tmp_path):
     _, out, _ = run(*SMALL)
     rows = read_rows(tmp_path / "results.db")
     here = rows.problem.is_in(["corridor-2d-0.1"]) & (rows.n == 256) & rows.sampler.is_in(["uniform"])
-    line = next(line for line in out.splitlines() if re.match(r"corridor-2d-0.1 +256 ", line))
-    assert line.split()[2] == f"{100 * rows.solved[here].mean():.0f}"
+    lines = out.splitlines()
+    assert _cells(out, "corridor-2d-0.1", 256)["uniform"] == f"{100 * rows.solved[here].mean():.0f}"
     # There is no grid of 128 points.
-    line = next(line for line in out.splitlines() if re.match(r"corridor-2d-0.1 +128 ", line))
-    assert "–" in line
-    assert max(map(len, out.splitlines())) <= 100
+    assert _cells(out, "corridor-2d-0.1", 128)["sukharev"] == "–"
+    assert [word[:6] for word in lines[1].split()[1:]] == [name.split()[0][:6] for name in SAMPLERS]
+    assert lines[2].split() == ["blocks", "scram.", "blocks", "scram.", "nell"]
+    assert max(map(len, lines)) <= 80
 
 
 def test_the_table_names_its_rule_and_search_and_the_fair_one_shows_k_10(run, tmp_path):
@@ -49,8 +59,8 @@ def test_the_table_names_its_rule_and_search_and_the_fair_one_shows_k_10(run, tm
     rates = {
         rule: f"{100 * uniform.solved[uniform.rule.is_in([rule])].mean():.0f}" for rule in rows.rule.present()
     }
-    line = next(line for line in out.splitlines() if line.startswith("fair-balls-2d-50 "))
-    assert line.split()[2] == rates["k=10 symmetrised"]
+    (n,) = set(rows.n.tolist())
+    assert _cells(out, "fair-balls-2d-50", n)["uniform"] == rates["k=10 symmetrised"]
 
 
 def test_problems_with_different_rules_are_different_tables(run):
@@ -81,7 +91,7 @@ def test_list_shows_what_there_is_and_runs_nothing(run, tmp_path):
         "maze-1",
         "hypercube-legacy6",
         "halton paper-blocks",
-        "korobov",
+        "Korobov",
     ):
         assert word in out
     assert not (tmp_path / "results.db").exists()
@@ -93,8 +103,7 @@ def test_runs_without_an_answer_are_exit_code_1_until_they_are_tried_again_on_de
     assert code == 1
     tasks = int(re.search(r"(\d+) tasks run now, \1 of them failures", out)[1])
     # Not solved, and not a dash, which says that there is no such run.
-    cells = next(line for line in out.splitlines() if re.match(r"maze-1 +64 ", line)).split()[2:]
-    assert cells == ["0"] * 11
+    assert set(_cells(out, "maze-1", 64).values()) == {"0"}
     advice = f"{tasks} without an answer (failed, timeout, lost) count as not solved; --retry runs them again"
     assert advice in out
     for again in (hopeless, hopeless[:-2]):
@@ -142,7 +151,7 @@ def test_rows_that_a_store_could_not_take_are_named_and_taken_in_by_the_same_com
         ),
         (("bench", "--jobs", 2, "--scheduler", "tcp://127.0.0.1:9"), "--jobs does not go with --scheduler"),
         (("bench", "--store", "missing/results.db", *SMALL[2:]), "the folder missing does not exist"),
-        (("export", "missing.db", "--arena", "-o", "arena.db"), "no such store: missing.db"),
+        (("export", "missing.db", "-o", "arena.db"), "no such store: missing.db"),
     ],
 )
 def test_bad_input_is_one_line_and_exit_code_2(run, arguments, says):
@@ -178,22 +187,25 @@ COMMAND = [sys.executable, "-c", "import sys; from evenroad.cli import main; sys
 def _interrupted(folder, times, jobs):
     """Run a benchmark, press Ctrl-C when it has some rows; return its standard error."""
     options = ["--only", "hypercube-legacy6", "--runs", "200", "--jobs", str(jobs), "--store", "results.db"]
-    process = subprocess.Popen(
+    with subprocess.Popen(
         [*COMMAND, "bench", *options],
         cwd=folder,
         stderr=subprocess.PIPE,
         stdout=subprocess.DEVNULL,
         text=True,
-    )
-    store = folder / "results.db"
-    for _ in range(600):
-        if store.exists() and store.stat().st_size > 60_000:
-            break
-        time.sleep(0.1)
-    for _ in range(times):
-        process.send_signal(signal.SIGINT)
-        time.sleep(0.05)
-    _, err = process.communicate(timeout=60)
+    ) as process:
+        try:
+            store = folder / "results.db"
+            for _ in range(600):
+                if store.exists() and store.stat().st_size > 60_000:
+                    break
+                time.sleep(0.1)
+            for _ in range(times):
+                process.send_signal(signal.SIGINT)
+                time.sleep(0.05)
+            _, err = process.communicate(timeout=60)
+        finally:
+            process.kill()
     assert process.returncode == 130
     return err
 
@@ -220,16 +232,12 @@ def test_ctrl_c_keeps_what_is_finished_and_the_same_command_goes_on(tmp_path, ti
 
 def test_export_writes_a_planner_arena_database(run, tmp_path):
     run(*SMALL)
-    code, out, err = run("export", "results.db", "--arena", "-o", "arena.db")
+    code, out, err = run("export", "results.db", "-o", "arena.db")
     assert code == 0, err
     connection = sqlite3.connect(tmp_path / "arena.db")
     (runs,) = connection.execute("SELECT count(*) FROM runs").fetchone()
     connection.close()
     assert runs == len(read_rows(tmp_path / "results.db"))
     assert f"{runs} runs" in out
-
-
-def test_export_asks_for_a_format(run):
-    code, _, err = run("export", "results.db", "-o", "arena.db")
-    assert code == 2
-    assert "--arena" in err
+    # What scripts of earlier versions say.
+    assert run("export", "results.db", "--arena", "-o", "arena.db")[0] == 0

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 if TYPE_CHECKING:
-    from evenroad.research.bench.executors import Workers
     from evenroad.research.bench.runner import Report
     from evenroad.research.suites import Suite
+    from evenroad.research.workers import Workers
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,7 +98,7 @@ class Bench:
             )
 
     def _workers(self) -> Workers:
-        from evenroad.research.bench.executors import in_process, processes
+        from evenroad.research.workers import in_process, processes
 
         if self.scheduler is not None:
             from evenroad.research.bench.schedulers import dask_workers

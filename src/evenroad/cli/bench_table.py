@@ -17,19 +17,13 @@ from evenroad.research.report.failures import failures_of
 from evenroad.research.suites import SUITES, Suite
 
 HEADINGS = {
-    "uniform": "uni",
-    "halton paper-blocks": "halt\npap",
-    "halton scrambled": "halt\nscr",
-    "sobol paper-blocks": "sob\npap",
-    "sobol scrambled": "sob\nscr",
-    "lattice": "latt",
-    "sukharev": "sukh",
-    "mpmc": "mpmc",
-    "hickernell": "hick",
-    "even": "even",
-    "korobov": "koro",
+    "halton paper-blocks": ("halton", "blocks"),
+    "halton scrambled": ("halton", "scram."),
+    "sobol paper-blocks": ("sobol", "blocks"),
+    "sobol scrambled": ("sobol", "scram."),
+    "hickernell": ("hicker-", "nell"),
 }
-"""Short enough for eleven columns side by side."""
+"""Names of samplers in two lines: all of them, side by side, fit 80 columns."""
 
 
 def print_catalogue() -> None:
@@ -53,8 +47,13 @@ def print_success(suite: Suite, rows: Rows) -> None:
     """Print the success of each problem, N and sampler: a table for each rule and search that are shown."""
     shown = shown_tasks(suite)
     for rule, search in dict.fromkeys((task.rule, task.search) for task in shown.values()):
-        problems = [name for name, task in shown.items() if (task.rule, task.search) == (rule, search)]
-        print_table(_success(suite, rows, [shown[name] for name in problems]))
+        print(f"Success [%] · rule: {rule} · search: {search}")
+        _print_line("N", [HEADINGS.get(sampler, (sampler, ""))[0] for sampler in SAMPLERS])
+        _print_line("", [HEADINGS.get(sampler, (sampler, ""))[1] for sampler in SAMPLERS])
+        for task in shown.values():
+            if (task.rule, task.search) == (rule, search):
+                _print_problem(suite, rows, task)
+        print()
 
 
 def shown_tasks(suite: Suite) -> dict[str, Task]:
@@ -73,26 +72,21 @@ def _is_main(task: Task) -> bool:
     return task.rule.startswith("k=10 ")
 
 
-def _success(suite: Suite, rows: Rows, shown: list[Task]) -> Table:
-    """Return the table of problems that have one rule and search; a failure of a run counts as not solved."""
-    rule, search = shown[0].rule, shown[0].search
-    title = f"Success [%] · rule: {rule} · search: {search}"
-    table = Table(title=title, title_justify="left", box=None, pad_edge=False, padding=(0, 0, 0, 1))
-    table.add_column("problem", no_wrap=True, overflow="ellipsis")
-    table.add_column("N", justify="right", no_wrap=True)
-    for sampler in SAMPLERS:
-        table.add_column(HEADINGS.get(sampler, sampler[:4]), justify="right", no_wrap=True)
-    counts: dict[str, set[int]] = {}
-    for task in suite.tasks:
-        counts.setdefault(task.problem, set()).add(task.n)
-    of_question = rows.rule.is_in([rule]) & rows.search.is_in([search])
-    for task in shown:
-        of_problem = of_question & rows.problem.is_in([task.problem]) & (rows.seed == task.seed)
-        for n in sorted(counts[task.problem]):
-            here = of_problem & (rows.n == n)
-            cells = [_per_cent(rows.solved[here & rows.sampler.is_in([sampler])]) for sampler in SAMPLERS]
-            table.add_row(Text(task.problem), str(n), *cells)
-    return table
+def _print_problem(suite: Suite, rows: Rows, shown: Task) -> None:
+    """Print a problem's name, and a line for each N; a failure of a run counts as not solved."""
+    print(shown.problem)
+    here = rows.problem.is_in([shown.problem]) & (rows.seed == shown.seed)
+    here &= rows.rule.is_in([shown.rule]) & rows.search.is_in([shown.search])
+    for n in sorted({task.n for task in suite.tasks if task.problem == shown.problem}):
+        of_n = here & (rows.n == n)
+        cells = [_per_cent(rows.solved[of_n & rows.sampler.is_in([sampler])]) for sampler in SAMPLERS]
+        _print_line(str(n), cells)
+
+
+def _print_line(first: str, cells: list[str]) -> None:
+    widths = [max(map(len, HEADINGS.get(sampler, (sampler,)))) for sampler in SAMPLERS]
+    line = [f"{first:>5}", *(f"{cell:>{width}}" for cell, width in zip(cells, widths, strict=True))]
+    print(" ".join(line).rstrip())
 
 
 def _per_cent(solved: np.ndarray) -> str:

@@ -24,7 +24,7 @@ class Report:
     def run(self) -> int:
         """Write the report and print its gist."""
         from evenroad.cli.report_table import print_report
-        from evenroad.research.bench.rescue import rescue_file
+        from evenroad.research.bench.store import rescue_file
         from evenroad.research.report import write_report
 
         problems = [name.strip() for name in self.only.split(",") if name.strip()]

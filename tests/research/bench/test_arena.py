@@ -7,10 +7,9 @@ import pytest
 
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 from evenroad.research.bench.arena import STATUSES, write_arena
-from evenroad.research.bench.outcome import Outcome
 from evenroad.research.bench.rows import FAILURES
 from evenroad.research.bench.store import open_store
-from evenroad.research.bench.task import Task
+from evenroad.research.bench.task import Outcome, Task
 from evenroad.roadmap import Status
 
 TASK = Task("maze-1", 0, "uniform", 128, "k=10 earlier", "stock", 0, 1)

@@ -13,11 +13,11 @@ import pytest
 
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.research.bench import schedulers
-from evenroad.research.bench.executors import in_process
 from evenroad.research.bench.runner import run_tasks
 from evenroad.research.bench.schedulers import dask_workers
 from evenroad.research.bench.store import open_store, read_rows
 from evenroad.research.bench.task import Task
+from evenroad.research.workers import in_process
 from tests.research.bench.tables import table_of
 
 PATIENCE = "3s"

@@ -13,12 +13,11 @@ import pytest
 from evenroad.errors import BrokenFile, InvalidValue, WorkerLost
 from evenroad.research.bench import chunks
 from evenroad.research.bench.chunks import Chunker, Done, run_chunk
-from evenroad.research.bench.executors import Workers, _Processes, _SerialExecutor, in_process, processes
-from evenroad.research.bench.outcome import Outcome
 from evenroad.research.bench.runner import run_tasks
 from evenroad.research.bench.store import open_store, read_rows
-from evenroad.research.bench.task import Task
+from evenroad.research.bench.task import Outcome, Task
 from evenroad.research.bench.time_limit import LONGEST_LIMIT
+from evenroad.research.workers import ProcessPool, SerialExecutor, Workers, in_process, processes
 from tests.research.bench.tables import table_of
 
 TASKS = tuple(
@@ -42,7 +41,7 @@ def _run(path, tasks=TASKS, workers=None, **options):
         return run_tasks("test", tasks, store, workers or in_process(), **options)
 
 
-class _Executor(_SerialExecutor):
+class _Executor(SerialExecutor):
     """Serial, but another function runs the chunks."""
 
     def __init__(self, run):
@@ -117,7 +116,7 @@ def test_a_task_that_fails_is_a_row_and_is_run_again_only_on_demand(path):
 # Dead workers.
 
 
-class _Mortal(_Processes):
+class _Mortal(ProcessPool):
     def submit(self, fn, /, *args, **kwargs):
         return super().submit(_run_unless_deadly, *args, **kwargs)
 
@@ -148,7 +147,7 @@ def test_a_worker_that_is_killed_from_outside_costs_nothing(path, tmp_path):
     pools, killed = [], []
 
     def make():
-        pools.append(_Processes(2))
+        pools.append(ProcessPool(2))
         return pools[-1]
 
     def kill_one(finished, tasks):
@@ -178,17 +177,17 @@ def test_workers_that_die_again_and_again_end_the_run_with_advice(path):
 def _pools(*executors):
     """Return workers whose executors are these, and then serial ones."""
     left = list(executors)
-    return Workers(lambda: left.pop(0) if left else _SerialExecutor(), lambda executor: 1)
+    return Workers(lambda: left.pop(0) if left else SerialExecutor(), lambda executor: 1)
 
 
-class _Fails(_SerialExecutor):
+class _Fails(SerialExecutor):
     def submit(self, fn, /, *args, **kwargs):
         future = Future()
         future.set_exception(BrokenExecutor("died"))
         return future
 
 
-class _Refuses(_SerialExecutor):
+class _Refuses(SerialExecutor):
     def submit(self, fn, /, *args, **kwargs):
         raise BrokenExecutor("broken before anything was sent")
 
@@ -221,7 +220,7 @@ def test_workers_that_cannot_be_sent_anything_end_the_run_without_blaming_a_task
 # Stores that cannot be written.
 
 
-class _Batch(_SerialExecutor):
+class _Batch(SerialExecutor):
     """Serial; notes what was asked, and whether it was let go."""
 
     def __init__(self):
@@ -280,7 +279,7 @@ def test_a_suspect_runs_alone(path):
 def test_a_cancelled_chunk_is_run_again(path):
     cancelled = []
 
-    class Pool(_SerialExecutor):
+    class Pool(SerialExecutor):
         def submit(self, fn, /, *args, **kwargs):
             if not cancelled:
                 future = Future()
@@ -360,28 +359,8 @@ def test_worker_processes_leave_ctrl_c_to_the_parent(path):
     pools = []
 
     def make():
-        pools.append(_Processes(1))
+        pools.append(ProcessPool(1))
         return pools[-1]
 
     report = _run(path, workers=Workers(make, lambda executor: 1), callback=interrupt)
     assert (report.finished, report.failures, len(pools)) == (len(TASKS), 0, 1)
-
-
-def test_worker_processes_have_one_thread_each():
-    with _Processes(1) as pool:
-        assert pool.submit(os.getenv, "NUMBA_NUM_THREADS").result() == "1"
-
-
-def test_processes_that_are_not_waited_for_are_ended_in_what_they_do():
-    pool = _Processes(1)
-    pool.submit(os.getpid).result()
-    (process,) = pool._processes.values()
-    pool.submit(time.sleep, 600.0)
-    pool.shutdown(wait=False, cancel_futures=True)
-    process.join(60.0)
-    assert process.exitcode == -signal.SIGTERM
-
-
-def test_the_number_of_processes_is_a_positive_integer():
-    with pytest.raises(InvalidValue, match="jobs"):
-        processes(0)

@@ -1,5 +1,6 @@
 """The store: rows in, columns out, and nothing lost."""
 
+import json
 import os
 import re
 import shutil
@@ -12,13 +13,12 @@ import numpy as np
 import pytest
 
 from evenroad.errors import BrokenFile
-from evenroad.research.bench import read_store
+from evenroad.research.bench import rows as rows_module
 from evenroad.research.bench import store as store_module
-from evenroad.research.bench.outcome import Outcome
-from evenroad.research.bench.rescue import leave_rows
-from evenroad.research.bench.schema import SCHEMA
-from evenroad.research.bench.store import open_store, read_rows, read_sessions
-from evenroad.research.bench.task import PROTOCOL, Task
+from evenroad.research.bench import task as task_module
+from evenroad.research.bench.store import leave_rows, open_store, read_rows, read_sessions
+from evenroad.research.bench.store_file import COLUMNS, SCHEMA
+from evenroad.research.bench.task import PROTOCOL, Outcome, Task
 
 TASK = Task("maze-1", 0, "uniform", 128, "k=10 earlier", "stock", 0, 1)
 SOLVED = Outcome("solved", 20, 7, 93, 1.25, 0.003, "12", "")
@@ -102,7 +102,7 @@ def test_a_later_row_of_the_same_task_takes_the_place_of_the_first(path):
 
 
 def test_rows_of_another_protocol_are_kept_but_not_read(path, monkeypatch):
-    for module in (store_module, read_store):
+    for module in (store_module, rows_module, task_module):
         monkeypatch.setattr(module, "PROTOCOL", PROTOCOL - 1)
     _write(path, [(TASK, SOLVED)])
     assert len(read_rows(path)) == 1
@@ -237,7 +237,7 @@ def test_a_killed_writer_leaves_what_it_committed(path):
         "import os, sys\n"
         "from evenroad.research.bench.store import open_store\n"
         "from evenroad.research.bench.task import Task\n"
-        "from evenroad.research.bench.outcome import Outcome\n"
+        "from evenroad.research.bench.task import Outcome\n"
         f"with open_store({str(path)!r}) as store:\n"
         "    for run in range(10):\n"
         "        store.add('paper', Task('p', 0, 's', 1, 'r', 'x', run, 0), Outcome('solved'), '')\n"
@@ -329,7 +329,7 @@ def _columns(path):
 
 
 def test_rows_that_a_locked_file_cannot_take_are_left_beside_it_and_taken_in_the_next_time(path, monkeypatch):
-    monkeypatch.setattr("evenroad.research.bench.schema.PATIENCE", 0.1)
+    monkeypatch.setattr("evenroad.research.bench.store_file.PATIENCE", 0.1)
     outcomes = [(TASK, SOLVED), (replace(TASK, run=1), NOT_CONNECTED), (replace(TASK, run=2), FAILED)]
     _write(path, outcomes[:1])
     other = sqlite3.connect(path, isolation_level=None)
@@ -355,7 +355,7 @@ def test_rows_that_a_locked_file_cannot_take_are_left_beside_it_and_taken_in_the
 
 
 def test_a_locked_file_is_waited_for_once(path, monkeypatch):
-    monkeypatch.setattr("evenroad.research.bench.schema.PATIENCE", 0.01)
+    monkeypatch.setattr("evenroad.research.bench.store_file.PATIENCE", 0.01)
     begun = []
     _write(path, [])
     other = sqlite3.connect(path, isolation_level=None)
@@ -374,7 +374,7 @@ def test_a_locked_file_is_waited_for_once(path, monkeypatch):
 
 
 def test_a_store_that_stays_locked_keeps_what_was_left_beside_it(path, monkeypatch):
-    monkeypatch.setattr("evenroad.research.bench.schema.PATIENCE", 0.01)
+    monkeypatch.setattr("evenroad.research.bench.store_file.PATIENCE", 0.01)
     _write(path, [])
     beside, left = path.with_name("results.db.rescue"), _left_behind(path)
     beside.write_text(left)
@@ -429,7 +429,7 @@ def test_a_store_that_can_be_written_again_takes_what_waits(path):
 FILL = """
 import resource, sys
 from dataclasses import replace
-from evenroad.research.bench.outcome import Outcome
+from evenroad.research.bench.task import Outcome
 from evenroad.research.bench.store import open_store
 from evenroad.research.bench.task import Task
 from evenroad.errors import BrokenFile
@@ -500,18 +500,18 @@ def test_without_room_beside_the_store_rows_go_to_the_temporary_folder(path, tmp
     (tmp_path / "temporary").mkdir()
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "temporary"))
     path.with_name("results.db.rescue").mkdir()
-    where = leave_rows(path, ["run"], [(1,), (2,)])
+    where = leave_rows(path, [(run,) * len(COLUMNS) for run in (1, 2)])
     (left,) = (tmp_path / "temporary").iterdir()
     assert (
         where == f"2 finished rows left in {left}: move it to {path}.rescue, and the next run takes them in"
     )
-    assert left.read_text() == '{"run": 1}\n{"run": 2}\n'
+    assert [json.loads(line)["run"] for line in left.read_text().splitlines()] == [1, 2]
 
 
 def test_rows_that_can_be_left_nowhere_are_said_to_be_lost(path, tmp_path, monkeypatch):
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "missing"))
     path.with_name("results.db.rescue").mkdir()
-    where = leave_rows(path, ["run"], [(1,)])
+    where = leave_rows(path, [(1,) * len(COLUMNS)])
     assert (
         where == f"1 finished row could not be left in {path}.rescue either: the next run computes them again"
     )

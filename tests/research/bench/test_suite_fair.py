@@ -29,7 +29,7 @@ def test_every_task_is_there_once():
 def test_three_runs_share_a_world_and_every_sampler_meets_the_same_ones():
     tasks = fair_suite(7, only=["fair-balls-5d-50"]).tasks
     assert all(task.instance == task.run // 3 for task in tasks)
-    for sampler in ("uniform", "even", "korobov"):
+    for sampler in ("uniform", "even", "lattice"):
         runs = {task.run for task in tasks if task.sampler == sampler}
         assert runs == set(range(7))
 

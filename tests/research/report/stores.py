@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from evenroad.research.bench.outcome import Outcome
 from evenroad.research.bench.store import open_store, read_rows
-from evenroad.research.bench.task import Task
+from evenroad.research.bench.task import Outcome, Task
 from evenroad.research.report.analysis import analyse
 from evenroad.research.report.runs import runs_of
 

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from evenroad.research.bench.outcome import Outcome
 from evenroad.research.bench.store import read_rows
+from evenroad.research.bench.task import Outcome
 from evenroad.research.report import groups
 from evenroad.research.report.analysis import analyse
 from evenroad.research.report.cells import cells_of

@@ -10,7 +10,7 @@ from html.parser import HTMLParser
 import pytest
 
 from evenroad.errors import BrokenFile, NotAvailable, UnknownName
-from evenroad.research.bench.outcome import Outcome
+from evenroad.research.bench.task import Outcome
 from evenroad.research.report import contents, write_report
 from evenroad.research.report.figures.canvas import new_figure
 from tests.research.report.stores import made_up, solved, task, write_store

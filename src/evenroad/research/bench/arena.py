@@ -18,8 +18,8 @@ import numpy as np
 from evenroad._files import atomic_write, require_writable_folder
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.research.bench.rows import Rows
-from evenroad.research.bench.schema import sqlite_errors
 from evenroad.research.bench.store import Session, read_rows, read_sessions
+from evenroad.research.bench.store_file import sqlite_errors
 
 STATUSES = {
     "start_invalid": (1, "Invalid start"),

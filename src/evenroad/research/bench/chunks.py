@@ -10,8 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from evenroad.research.bench.execute import run_task
-from evenroad.research.bench.outcome import Outcome
-from evenroad.research.bench.task import Task
+from evenroad.research.bench.task import Outcome, Task
 
 CHUNK_SECONDS = 0.7
 """Work in a chunk: much against the milliseconds of sending it, little to lose, or to wait for."""

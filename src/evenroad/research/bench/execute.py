@@ -9,11 +9,9 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.research.bench.outcome import Outcome
-from evenroad.research.bench.problem import Problem
 from evenroad.research.bench.samplers import draw_set
 from evenroad.research.bench.searches import Finding, search_named
-from evenroad.research.bench.task import Task
+from evenroad.research.bench.task import Outcome, Problem, Task
 from evenroad.research.bench.time_limit import OverTime, time_limit
 from evenroad.research.problems import source_named
 from evenroad.roadmap import rule_named

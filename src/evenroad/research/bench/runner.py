@@ -9,12 +9,11 @@ from dataclasses import dataclass
 
 from evenroad.errors import WorkerLost
 from evenroad.research.bench.chunks import Chunker, Done, run_chunk
-from evenroad.research.bench.executors import Workers
-from evenroad.research.bench.outcome import Outcome
 from evenroad.research.bench.rows import FAILURES
 from evenroad.research.bench.store import Store
-from evenroad.research.bench.task import Task
+from evenroad.research.bench.task import Outcome, Task
 from evenroad.research.bench.time_limit import DEFAULT_LIMIT, require_limit
+from evenroad.research.workers import Workers
 
 POLL_SECONDS = 0.2
 

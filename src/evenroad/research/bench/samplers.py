@@ -167,6 +167,5 @@ SAMPLERS: dict[str, RunSampler] = {
     "even": RunSampler(
         partial(_from_pool, "even"), _always, "our default: a randomly shifted Korobov lattice"
     ),
-    "korobov": RunSampler(partial(_fresh, "korobov"), _always, "best Korobov lattice, randomly shifted"),
 }
 """Name -> how the set of a run is drawn, in the order of tables."""

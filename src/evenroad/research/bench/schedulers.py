@@ -8,7 +8,7 @@ from typing import Any
 
 from evenroad import __version__
 from evenroad.errors import InvalidValue, NotAvailable
-from evenroad.research.bench.executors import Workers
+from evenroad.research.workers import Workers
 
 CONNECT_SECONDS = 8.0
 

@@ -2,62 +2,50 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import platform
 import sqlite3
+import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
 from evenroad import __version__
-from evenroad._files import require_writable_folder
+from evenroad._files import atomic_write, require_writable_folder
 from evenroad.errors import BrokenFile
-from evenroad.research.bench.outcome import Outcome
-from evenroad.research.bench.read_store import Session as Session
-from evenroad.research.bench.read_store import read_rows as read_rows
-from evenroad.research.bench.read_store import read_sessions as read_sessions
-from evenroad.research.bench.rescue import Row, leave_rows, rescue_file, waiting_rows
 from evenroad.research.bench.rows import FAILURES
-from evenroad.research.bench.schema import connect, create, sqlite_errors
-from evenroad.research.bench.task import PROTOCOL, Task
-from evenroad.research.bench.writer_lock import only_writer
+from evenroad.research.bench.rows import Session as Session
+from evenroad.research.bench.rows import read_rows as read_rows
+from evenroad.research.bench.rows import read_sessions as read_sessions
+from evenroad.research.bench.store_file import (
+    COLUMNS,
+    NAMED,
+    checked_rows,
+    checksum_of,
+    connect,
+    create,
+    only_writer,
+    read_names,
+    sqlite_errors,
+)
+from evenroad.research.bench.task import PROTOCOL, Outcome, Task, key_of
+
+Row = tuple[str | int | float | None, ...]
+"""The values of COLUMNS, texts as texts."""
 
 COMMIT_SECONDS = 0.5
 """Rows are committed together, this often: what a kill can lose at most."""
 
-_COLUMNS = (
-    "key",
-    "protocol",
-    "suite",
-    "problem",
-    "instance",
-    "sampler",
-    "n",
-    "rule",
-    "search",
-    "run",
-    "seed",
-    "status",
-    "valid",
-    "valid_at_solution",
-    "edges_checked",
-    "length",
-    "seconds",
-    "set_id",
-    "error",
-    "worker",
-    "finished",
-)
-_NAMED = {"suite", "problem", "sampler", "rule", "search", "status", "set_id", "error", "worker"}
-"""Columns whose texts are kept as numbers of names."""
+_STATUS = COLUMNS.index("status")
 
-_INSERT_ROW = f"INSERT OR REPLACE INTO rows ({', '.join(_COLUMNS)}) VALUES ({', '.join('?' * len(_COLUMNS))})"
+_INSERT_ROW = f"INSERT OR REPLACE INTO rows VALUES ({', '.join('?' * (len(COLUMNS) + 1))})"
 
 _INSERT_NAME = (
-    "INSERT INTO names SELECT ?1, ?2 WHERE NOT EXISTS (SELECT 1 FROM names WHERE id = ?1 AND text = ?2)"
+    "INSERT INTO names SELECT ?1, ?2, ?3 WHERE NOT EXISTS (SELECT 1 FROM names WHERE id = ?1 AND text = ?2)"
 )
 """The same name again is no error: an interrupt may come right after a COMMIT, and the rows are then written again."""
 
@@ -67,7 +55,7 @@ class Store:
 
     def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
         self.path, self._connection = path, connection
-        self._names = {text: number for number, text in connection.execute("SELECT id, text FROM names")}
+        self._names = {text: number for number, text in read_names(connection, path).items()}
         self._stored_names = len(self._names)
         self._waiting: list[Row] = []
         self._failure: BrokenFile | None = None
@@ -75,11 +63,17 @@ class Store:
         self._has_written = False
 
     def finished(self) -> dict[str, bool]:
-        """Return the keys of the tasks that have a row, and whether it is an answer, not a failure of the run."""
+        """Return the keys of the tasks that have a row, and whether it is an answer, not a failure of the run.
+
+        Raises
+        ------
+        BrokenFile
+            If the store is damaged.
+        """
+        texts = {number: text for text, number in self._names.items()}
         with sqlite_errors(self.path):
-            cursor = self._connection.execute("SELECT key, status FROM rows")
-            failed = {self._names.get(status) for status in FAILURES}
-            return {key.hex(): status not in failed for key, status in cursor}
+            rows = checked_rows(self._connection, self.path, texts)
+            return {row[0].hex(): texts[row[_STATUS]] not in FAILURES for row in rows}
 
     def add(self, suite: str, task: Task, outcome: Outcome, worker: str) -> None:
         """Take the row of a finished task, in place of an earlier one, for the next commit; this cannot fail."""
@@ -97,9 +91,9 @@ class Store:
                 task.run,
                 task.seed,
                 outcome.status,
-                outcome.valid,
-                outcome.valid_at_solution,
-                outcome.edges_checked,
+                int(outcome.valid),
+                None if outcome.valid_at_solution is None else int(outcome.valid_at_solution),
+                int(outcome.edges_checked),
                 _or_null(outcome.length),
                 _or_null(outcome.seconds),
                 outcome.set_id,
@@ -139,7 +133,7 @@ class Store:
 
     def take_in_rescued(self) -> None:
         """Write the rows that an earlier writer had to leave beside the store; errors as :meth:`commit`."""
-        rescued = waiting_rows(self.path, _COLUMNS)
+        rescued = waiting_rows(self.path)
         if rescued:
             # An answer that was found since is not given up for what was rescued before.
             is_answer = self.finished()
@@ -166,17 +160,21 @@ class Store:
                 self.commit()
         finally:
             if self._waiting:
-                where = leave_rows(self.path, _COLUMNS, self._waiting)
+                where = leave_rows(self.path, self._waiting)
                 if self._failure is not None:
                     raise BrokenFile(f"{self._failure}; {where}") from self._failure
 
     def _write(self) -> None:
         rows = [self._numbered(row) for row in self._waiting]
-        names = [(number, text) for text, number in self._names.items() if number > self._stored_names]
+        names = [
+            (number, text, checksum_of((number, text)))
+            for text, number in self._names.items()
+            if number > self._stored_names
+        ]
         try:
             self._connection.execute("BEGIN IMMEDIATE")
             if not self._has_written:
-                self._connection.execute("INSERT INTO sessions VALUES (?, ?, ?, ?, ?, ?, ?)", _session())
+                self._connection.execute("INSERT INTO sessions VALUES (?, ?, ?, ?, ?, ?, ?, ?)", _session())
             self._connection.executemany(_INSERT_NAME, names)
             self._connection.executemany(_INSERT_ROW, rows)
             self._connection.execute("COMMIT")
@@ -189,10 +187,10 @@ class Store:
     def _numbered(self, row: Row) -> tuple[object, ...]:
         key, *others = row
         values = [
-            self._names.setdefault(str(value), len(self._names) + 1) if column in _NAMED else value
-            for column, value in zip(_COLUMNS[1:], others, strict=True)
+            self._names.setdefault(str(value), len(self._names) + 1) if column in NAMED else value
+            for column, value in zip(COLUMNS[1:], others, strict=True)
         ]
-        return (bytes.fromhex(str(key)), *values)
+        return (bytes.fromhex(str(key)), *values, checksum_of(values[:-1]))
 
 
 @contextmanager
@@ -226,11 +224,12 @@ def open_store(path: str | os.PathLike[str]) -> Iterator[Store]:
             connection.close()
 
 
-def _session() -> tuple[str, ...]:
+def _session() -> tuple[object, ...]:
     from importlib.metadata import version
 
     versions = tuple(version(name) for name in ("numpy", "scipy", "numba"))
-    return (_now(), __version__, platform.python_version(), *versions, platform.platform())
+    session = (_now(), __version__, platform.python_version(), *versions, platform.platform())
+    return (*session, checksum_of(session))
 
 
 def _now() -> str:
@@ -238,4 +237,60 @@ def _now() -> str:
 
 
 def _or_null(value: float) -> float | None:
-    return value if math.isfinite(value) else None
+    return float(value) if math.isfinite(value) else None
+
+
+def rescue_file(store: Path) -> Path:
+    """Return where the rows of a store wait: STORE.rescue."""
+    return store.with_name(f"{store.name}.rescue")
+
+
+def leave_rows(store: Path, rows: Sequence[Row]) -> str:
+    """Write rows into the rescue file, one JSON object a line; or, if its disk is full, into the temporary folder.
+
+    Returns
+    -------
+    str
+        Where they are, as the end of a sentence for the user.
+    """
+    text = "".join(json.dumps(dict(zip(COLUMNS, row, strict=True))) + "\n" for row in rows).encode()
+    beside = rescue_file(store)
+    elsewhere = Path(tempfile.gettempdir()) / f"{store.name}.{os.getpid()}.rescue"
+    how_many = f"{len(rows)} finished row{'s' if len(rows) > 1 else ''}"
+    if _is_written(beside, text):
+        return f"{how_many} left in {beside}: the next run with this store takes them in"
+    if _is_written(elsewhere, text):
+        return f"{how_many} left in {elsewhere}: move it to {beside}, and the next run takes them in"
+    return f"{how_many} could not be left in {beside} either: the next run computes them again"
+
+
+def waiting_rows(store: Path) -> list[Row]:
+    """Return the rows in the rescue file of a store; none where there is no such file.
+
+    Raises
+    ------
+    BrokenFile
+        If the file is something else.
+    """
+    path = rescue_file(store)
+    try:
+        records = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
+        rows = [tuple(record[column] for column in COLUMNS) for record in records]
+        if wrong := [row[0] for row in rows if row[0] != key_of(row[1], *row[3:_STATUS])]:
+            raise ValueError(f"{wrong[0]!r} is not the key of its task")
+        return rows
+    except FileNotFoundError:
+        return []
+    except (OSError, ValueError, LookupError, TypeError) as error:
+        raise BrokenFile(
+            f"{path} does not hold rows of a store ({error!r}): move it away to go on without them"
+        ) from error
+
+
+def _is_written(path: Path, text: bytes) -> bool:
+    try:
+        with atomic_write(path) as file:
+            file.write(text)
+    except BrokenFile:
+        return False
+    return True

@@ -1,13 +1,76 @@
-"""Task: one run of a benchmark, and the key under which its row is kept."""
+"""The values of a benchmark: a problem, a task (one run of it), and the outcome of the task."""
 
 from __future__ import annotations
 
 import hashlib
 import json
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.points.pointset import PointSet
+from evenroad.world import World
 
 PROTOCOL = 3
 """Counted up when the same task would give another row: rows of another protocol are not taken for done."""
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """A world, a start and a goal.
+
+    Attributes
+    ----------
+    world : World
+        Says which configurations and motions are free.
+    start, goal : ndarray, shape (dim,)
+        Configurations of the world's space.
+    set_dim : int
+        Dimension of the point sets, at most the space's `cube_dim`.  Where it is smaller, as for the paper's
+        SE(3) puzzles, the sets give the first coordinates of the cube and the others are drawn uniformly.
+    """
+
+    world: World
+    start: npt.NDArray[np.float64]
+    goal: npt.NDArray[np.float64]
+    set_dim: int
+
+    def configurations(self, points: PointSet, rng: np.random.Generator) -> npt.NDArray[np.float64]:
+        """Return the set's configurations, (n, dim); `rng` draws the coordinates that the set does not give."""
+        missing = self.world.space.cube_dim - self.set_dim
+        cube = points.points
+        if missing:
+            cube = np.concatenate([cube, rng.random((points.n, missing))], axis=1)
+        return self.world.space.from_cube(cube)
+
+
+@dataclass(frozen=True)
+class ProblemSource:
+    """A named problem, or a named stream of random problems.
+
+    Attributes
+    ----------
+    name : str
+        What tasks and tables call it, e.g. ``maze-3``.
+    set_dim : int
+        As in :class:`Problem`; known without making one.
+    make : callable
+        From the number of an instance (>= 0; a fixed problem takes no notice of it) to the problem.  The same number
+        gives the same problem in every process.
+    random : bool
+        Whether instances differ.
+    about : str
+        One line for lists and tables: geometry, protocol, source.
+    """
+
+    name: str
+    set_dim: int
+    make: Callable[[int], Problem]
+    random: bool = False
+    about: str = ""
 
 
 @dataclass(frozen=True)
@@ -48,6 +111,69 @@ class Task:
     @property
     def key(self) -> str:
         """SHA-256 of the fields and the protocol's number, in hexadecimal."""
-        # Not asdict, which copies: a suite asks for a million keys.
-        record = json.dumps({"protocol": PROTOCOL, **vars(self)}, sort_keys=True)
-        return hashlib.sha256(record.encode()).hexdigest()
+        return key_of(PROTOCOL, *vars(self).values())
+
+
+def key_of(
+    protocol: int,
+    problem: str,
+    instance: int,
+    sampler: str,
+    n: int,
+    rule: str,
+    search: str,
+    run: int,
+    seed: int,
+) -> str:
+    """Return the key of a task of some protocol: SHA-256 of its fields as JSON with sorted names, in hexadecimal."""
+    # Not json.dumps, which takes three times as long: a store has a million rows whose keys are checked.
+    record = (
+        f'{{"instance": {instance}, "n": {n}, "problem": {_quoted(problem)}, "protocol": {protocol},'
+        f' "rule": {_quoted(rule)}, "run": {run}, "sampler": {_quoted(sampler)}, "search": {_quoted(search)},'
+        f' "seed": {seed}}}'
+    )
+    return hashlib.sha256(record.encode()).hexdigest()
+
+
+_quoted = json.encoder.encode_basestring_ascii
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What one task gave; a task that failed has an outcome, too.
+
+    Attributes
+    ----------
+    status : str
+        ``solved``, ``not_connected``, ``start_invalid``, ``goal_invalid``; or ``failed`` (an exception),
+        ``timeout``, ``lost`` (the worker died).  The last three are failures of the run, not answers.
+    valid : int
+        Valid milestones among all n points, start and goal not counted.
+    valid_at_solution : int or None
+        Valid milestones that had been added when start and goal were first connected (search ``stock``).
+    edges_checked : int
+        Motions asked of the world.
+    length : float
+        Length of the path in the space's metric; NaN where none was looked for or found.
+    seconds : float
+        Wall time of the run, without the making of the problem and of the set.
+    set_id : str
+        Which set of a pool it was, by which statistics cluster; ``grid`` for the only set that there is; empty for sets
+        drawn afresh.
+    error : str
+        Traceback of a failure, else empty.
+    """
+
+    status: str
+    valid: int = 0
+    valid_at_solution: int | None = None
+    edges_checked: int = 0
+    length: float = math.nan
+    seconds: float = math.nan
+    set_id: str = ""
+    error: str = ""
+
+    @property
+    def solved(self) -> bool:
+        """Whether there was a path."""
+        return self.status == "solved"

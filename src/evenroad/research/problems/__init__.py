@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from evenroad.errors import UnknownName
-from evenroad.research.bench.problem import ProblemSource
+from evenroad.research.bench.task import ProblemSource
 from evenroad.research.problems.chain import CHAINS
 from evenroad.research.problems.corridors import CORRIDORS
 from evenroad.research.problems.fair import FAIR

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from evenroad.research.bench.problem import Problem, ProblemSource
+from evenroad.research.bench.task import Problem, ProblemSource
 from evenroad.research.worlds.chain import ChainWorld
 
 

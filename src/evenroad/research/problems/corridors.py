@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from evenroad.research.bench.problem import Problem, ProblemSource
+from evenroad.research.bench.task import Problem, ProblemSource
 from evenroad.research.worlds.corridor import Corridor, hypercube_legacy6
 
 WIDTHS: dict[int, tuple[float, ...]] = {2: (0.1, 0.0225), 3: (0.2, 0.1), 10: (0.37, 0.495)}

@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from evenroad.research.bench.problem import Problem, ProblemSource
+from evenroad.research.bench.task import Problem, ProblemSource
 from evenroad.research.mazes import LEVELS, load_maze
 
 

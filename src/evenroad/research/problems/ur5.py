@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from evenroad.research.bench.problem import Problem, ProblemSource
+from evenroad.research.bench.task import Problem, ProblemSource
 from evenroad.robot.alter import in_scene, with_group
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.load import load_robot

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import multiprocessing
 import os
-import signal
-import threading
 from collections.abc import Iterator
-from concurrent.futures import Future, ProcessPoolExecutor, wait
+from concurrent.futures import Future, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +20,7 @@ from evenroad.points.optimise.objective import Objective, parse_objective, requi
 from evenroad.points.pointset import PointSet
 from evenroad.research.training.request import claim_folder, set_name
 from evenroad.research.training.set_task import SetTask, finished_set, make_set, request_of
+from evenroad.research.workers import ProcessPool, usable_processors
 
 _POLL_SECONDS = 0.2
 
@@ -85,7 +83,7 @@ def anneal_many(
     """
     n, d, sets = require_count("n", n), require_count("d", d), require_count("sets", sets)
     steps = require_count("steps", steps)
-    processes = require_count("workers", _usable_processors() if workers is None else workers)
+    processes = require_count("workers", usable_processors() if workers is None else workers)
     target = parse_objective(objective)
     require_points_for(target, n)
     root = _root_sequence(rng)
@@ -133,19 +131,15 @@ def _one_by_one(
 def _in_processes(
     tasks: list[SetTask], processes: int, already: int, total: int, callback: Callback | None
 ) -> Iterator[PointSet]:
-    # Spawned, not forked: a fork of a process with threads (numba, BLAS) can hang.
     context = multiprocessing.get_context("spawn")
     steps_done = context.Array("q", len(tasks), lock=False)
     best_values = context.Array("d", [np.inf] * len(tasks), lock=False)
     stop = context.Value("b", 0, lock=False)
-    pool = ProcessPoolExecutor(
-        min(processes, len(tasks)), context, initializer=_share, initargs=(steps_done, best_values, stop)
-    )
+    pool = ProcessPool(min(processes, len(tasks)), _share, (steps_done, best_values, stop))
     try:
-        with _born_deaf_to_interrupts():
-            waiting: set[Future[PointSet]] = {
-                pool.submit(_make_set_shared, slot, task) for slot, task in enumerate(tasks)
-            }
+        waiting: set[Future[PointSet]] = {
+            pool.submit(_make_set_shared, slot, task) for slot, task in enumerate(tasks)
+        }
         while waiting:
             finished, waiting = wait(waiting, timeout=_POLL_SECONDS, return_when="FIRST_COMPLETED")
             if callback is not None:
@@ -162,25 +156,6 @@ def _in_processes(
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-@contextmanager
-def _born_deaf_to_interrupts() -> Iterator[None]:
-    """Let processes that start in the block ignore Ctrl-C from their first moment: the parent alone decides.
-
-    An initializer alone comes too late: importing takes a second, and a terminal sends the signal to all.
-    """
-    if threading.current_thread() is not threading.main_thread():
-        # Only the main thread may set handlers; the initializer has to do.
-        yield
-        return
-    before = signal.getsignal(signal.SIGINT)
-    # Ignoring is inherited, a handler is not: a signal to the parent in these milliseconds is lost.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-
-
 _shared: tuple[Any, Any, Any] | None = None
 """In a worker process only: steps done and best value of every set, for the parent, and its wish to stop."""
 
@@ -191,23 +166,18 @@ class _Stopped(Exception):
 
 def _share(steps_done: Any, best_values: Any, stop: Any) -> None:
     global _shared
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
     _shared = (steps_done, best_values, stop)
 
 
 def _make_set_shared(slot: int, task: SetTask) -> PointSet:
     assert _shared is not None  # set by the initializer
     steps_done, best_values, stop = _shared
-    parent = os.getppid()
 
     def report(step: int, steps: int, best: float) -> None:
         steps_done[slot] = step
         best_values[slot] = best
         if stop.value:
             raise _Stopped
-        if os.getppid() != parent:
-            # The parent was killed and nobody is left to take the set, nor to end this process.
-            os._exit(1)
 
     return make_set(task, report)
 
@@ -221,9 +191,3 @@ def _root_sequence(rng: RngLike) -> np.random.SeedSequence:
     if isinstance(rng, bool) or not isinstance(rng, int | np.integer) or rng < 0:
         raise InvalidValue(f"rng must be an int >= 0, a numpy SeedSequence or a numpy Generator, got {rng!r}")
     return np.random.SeedSequence(int(rng))
-
-
-def _usable_processors() -> int:
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1

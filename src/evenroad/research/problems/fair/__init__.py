@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import partial
 
-from evenroad.research.bench.problem import ProblemSource
+from evenroad.research.bench.task import ProblemSource
 from evenroad.research.problems.fair.instance import make_instance
 from evenroad.research.problems.fair.sizes import CALIBRATED_AT, DIFFICULTIES, SIZES
 from evenroad.research.problems.fair.streams import PREFIX, Family, Stream

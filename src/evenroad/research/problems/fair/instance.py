@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from evenroad.research.bench.problem import Problem
+from evenroad.research.bench.task import Problem
 from evenroad.research.problems.fair.cubes import cube_problem
 from evenroad.research.problems.fair.mazes import maze_problem
 from evenroad.research.problems.fair.rigid import rigid_problem

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.research.bench.problem import Problem
+from evenroad.research.bench.task import Problem
 from evenroad.research.mazes import MazeDesign, draw_maze
 from evenroad.research.problems.fair.query import draw_query
 from evenroad.research.problems.fair.streams import Family, Stream, instance_rng

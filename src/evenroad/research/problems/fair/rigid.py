@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.research.bench.problem import Problem
+from evenroad.research.bench.task import Problem
 from evenroad.research.problems.fair.query import draw_query, far_on_torus
 from evenroad.research.problems.fair.streams import Family, Stream, instance_rng
 from evenroad.space import SE2, SE3

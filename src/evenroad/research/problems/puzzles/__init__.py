@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from evenroad.research.bench.problem import Problem, ProblemSource
+from evenroad.research.bench.task import Problem, ProblemSource
 from evenroad.research.problems.puzzles.cubicles import cubicles
 from evenroad.research.problems.puzzles.puzzle import Puzzle, problem_of
 from evenroad.research.problems.puzzles.twistycool import twistycool

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evenroad.research.bench.problem import Problem
+from evenroad.research.bench.task import Problem
 from evenroad.space import SE3
 from evenroad.world.solids import OrientedBox, SolidWorld
 

@@ -8,7 +8,7 @@ from matplotlib import colormaps
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from evenroad.research.bench.problem import Problem
+from evenroad.research.bench.task import Problem
 from evenroad.research.report.figures.canvas import new_figure
 from evenroad.research.report.figures.found_path import find_path, poses_along
 from evenroad.research.worlds.chain import ChainWorld

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.points import draw
-from evenroad.research.bench.problem import Problem
+from evenroad.research.bench.task import Problem
 from evenroad.roadmap import KNearest, PlanResult, plan
 from evenroad.space import Space
 

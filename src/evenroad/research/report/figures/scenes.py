@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 
 from evenroad.errors import NotAvailable
-from evenroad.research.bench.problem import Problem
+from evenroad.research.bench.task import Problem
 from evenroad.research.problems import PROBLEMS
 from evenroad.research.report.figures.canvas import new_figure
 from evenroad.research.report.figures.chain_scene import draw_chain

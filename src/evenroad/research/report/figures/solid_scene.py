@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
-from evenroad.research.bench.problem import Problem
+from evenroad.research.bench.task import Problem
 from evenroad.research.report.figures.canvas import new_figure
 from evenroad.research.report.figures.found_path import find_path, poses_along
 from evenroad.viz import style

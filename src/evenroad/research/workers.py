@@ -1,4 +1,4 @@
-"""Workers: where chunks of tasks run; in this process, in others, or wherever an executor sends them."""
+"""Workers: where calls run; in this process, in others of this machine, or wherever an executor sends them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import multiprocessing
 import os
 import signal
 import threading
-import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
@@ -30,7 +29,7 @@ class Workers:
     make : callable
         Returns a fresh ``concurrent.futures.Executor``.
     count : callable
-        From the executor to how many chunks it works on at a time; asked again and again, as clusters may grow.
+        From the executor to how many calls it works on at a time; asked again and again, as clusters may grow.
     """
 
     make: Callable[[], Executor]
@@ -39,7 +38,7 @@ class Workers:
 
 def in_process() -> Workers:
     """Return the worker that is this process: for tests, debuggers and profilers."""
-    return Workers(_SerialExecutor, lambda executor: 1)
+    return Workers(SerialExecutor, lambda executor: 1)
 
 
 def processes(jobs: int | None = None) -> Workers:
@@ -47,11 +46,11 @@ def processes(jobs: int | None = None) -> Workers:
 
     They are spawned: a script must guard its main part with ``if __name__ == "__main__"``.
     """
-    jobs = _usable_processors() if jobs is None else require_count("jobs", jobs)
-    return Workers(lambda: _Processes(jobs), lambda executor: jobs)
+    jobs = usable_processors() if jobs is None else require_count("jobs", jobs)
+    return Workers(lambda: ProcessPool(jobs), lambda executor: jobs)
 
 
-class _SerialExecutor(Executor):
+class SerialExecutor(Executor):
     """Runs what is submitted at once, and returns when it is done."""
 
     def submit(
@@ -66,13 +65,26 @@ class _SerialExecutor(Executor):
         return future
 
 
-class _Processes(ProcessPoolExecutor):
-    """A pool whose processes leave Ctrl-C to the parent, and do not outlive it."""
+class ProcessPool(ProcessPoolExecutor):
+    """A pool whose processes have one thread each, leave Ctrl-C to the parent, and end when the parent ends.
 
-    def __init__(self, jobs: int) -> None:
+    Parameters
+    ----------
+    jobs : int
+        Processes, >= 1.
+    initializer : callable, optional
+        Called once in each process, with `initargs`.
+    """
+
+    def __init__(
+        self, jobs: int, initializer: Callable[..., object] | None = None, initargs: tuple[Any, ...] = ()
+    ) -> None:
         # Spawned, not forked: a fork of a process with threads (numba, BLAS) can hang.
         super().__init__(
-            jobs, multiprocessing.get_context("spawn"), initializer=_settle, initargs=(os.getpid(),)
+            jobs,
+            multiprocessing.get_context("spawn"),
+            initializer=_settle,
+            initargs=(initializer, initargs),
         )
 
     def submit(
@@ -93,6 +105,13 @@ class _Processes(ProcessPoolExecutor):
                     process.terminate()
 
 
+def usable_processors() -> int:
+    """Return how many processors this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
 @contextmanager
 def _interrupts_held_back() -> Iterator[None]:
     """Block SIGINT in this thread for the block; processes and threads that start in it have it blocked.
@@ -109,22 +128,19 @@ def _interrupts_held_back() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _settle(parent: int) -> None:
+def _settle(initializer: Callable[..., object] | None, initargs: tuple[Any, ...]) -> None:
     """Prepare a worker process, before NumPy is imported there."""
     for name in THREAD_VARIABLES:
         os.environ.setdefault(name, "1")
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_leave_with, args=(parent,), daemon=True).start()
+    threading.Thread(target=_leave_with_parent, daemon=True).start()
+    if initializer is not None:
+        initializer(*initargs)
 
 
-def _leave_with(parent: int) -> Any:
-    """End this process when the parent is gone: it would wait for tasks for ever."""
-    while os.getppid() == parent:
-        time.sleep(1.0)
+def _leave_with_parent() -> None:
+    """End this process when the parent has ended, however it did: nobody would send it a task, nor an end."""
+    parent = multiprocessing.parent_process()
+    assert parent is not None  # a worker has one
+    parent.join()
     os._exit(1)
-
-
-def _usable_processors() -> int:
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1

@@ -1,0 +1,254 @@
+"""The file of a store: its tables, how it is opened, who may write it, and how every row of it is checked."""
+
+from __future__ import annotations
+
+import os
+import sqlite3
+import zlib
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from operator import itemgetter
+from pathlib import Path
+from typing import Any
+
+from evenroad.errors import BrokenFile
+from evenroad.research.bench.task import key_of
+
+SCHEMA = 2
+"""Version of the tables below."""
+
+APPLICATION = 0x45564E52
+"""What the header of the file says whose it is: "EVNR"."""
+
+PATIENCE = 15.0
+"""Seconds to wait for another process that holds the file."""
+
+TABLES = """
+CREATE TABLE sessions (
+    started TEXT NOT NULL,   -- UTC
+    evenroad TEXT NOT NULL, python TEXT NOT NULL, numpy TEXT NOT NULL, scipy TEXT NOT NULL, numba TEXT NOT NULL,
+    platform TEXT NOT NULL,
+    checksum INTEGER NOT NULL   -- here and below: CRC-32 of the columns before, see checksum_of
+);
+CREATE TABLE names (id INTEGER PRIMARY KEY, text TEXT NOT NULL UNIQUE, checksum INTEGER NOT NULL);
+-- One row a finished task. Texts are numbers of names: a million rows then load in seconds.
+CREATE TABLE rows (
+    key BLOB PRIMARY KEY,    -- SHA-256 of the task
+    protocol INTEGER NOT NULL,
+    suite INTEGER NOT NULL,
+    problem INTEGER NOT NULL, instance INTEGER NOT NULL, sampler INTEGER NOT NULL, n INTEGER NOT NULL,
+    rule INTEGER NOT NULL, search INTEGER NOT NULL, run INTEGER NOT NULL, seed INTEGER NOT NULL,
+    status INTEGER NOT NULL, valid INTEGER NOT NULL, valid_at_solution INTEGER, edges_checked INTEGER NOT NULL,
+    length REAL, seconds REAL, set_id INTEGER NOT NULL, error INTEGER NOT NULL,
+    worker INTEGER NOT NULL,
+    finished TEXT NOT NULL,  -- UTC
+    checksum INTEGER NOT NULL   -- of the columns between `key` and `finished`
+) WITHOUT ROWID;
+-- For people: SELECT * FROM results.
+CREATE VIEW results AS SELECT
+    lower(hex(key)) AS key, protocol, of_suite.text AS suite, of_problem.text AS problem, instance,
+    of_sampler.text AS sampler, n, of_rule.text AS rule, of_search.text AS search, run, seed,
+    of_status.text AS status, valid, valid_at_solution, edges_checked, length, seconds,
+    of_set.text AS set_id, of_error.text AS error, of_worker.text AS worker, finished
+FROM rows
+JOIN names of_suite ON of_suite.id = suite JOIN names of_problem ON of_problem.id = problem
+JOIN names of_sampler ON of_sampler.id = sampler JOIN names of_rule ON of_rule.id = rule
+JOIN names of_search ON of_search.id = search JOIN names of_status ON of_status.id = status
+JOIN names of_set ON of_set.id = set_id JOIN names of_error ON of_error.id = error
+JOIN names of_worker ON of_worker.id = worker;
+"""
+
+
+COLUMNS = (
+    "key",
+    "protocol",
+    "suite",
+    "problem",
+    "instance",
+    "sampler",
+    "n",
+    "rule",
+    "search",
+    "run",
+    "seed",
+    "status",
+    "valid",
+    "valid_at_solution",
+    "edges_checked",
+    "length",
+    "seconds",
+    "set_id",
+    "error",
+    "worker",
+    "finished",
+)
+"""Columns of a row, in the order of the table, without its checksum."""
+
+NAMED = ("suite", "problem", "sampler", "rule", "search", "status", "set_id", "error", "worker")
+"""Columns whose texts are kept as numbers of names."""
+
+_names_in = itemgetter(*map(COLUMNS.index, NAMED))
+
+_READ_ROLLBACK = ("SQLITE_READONLY_ROLLBACK", "SQLITE_READONLY_RECOVERY", "SQLITE_CANTOPEN")
+"""Errors of SQLite where a commit that was cut off must be undone first, and the file or folder is read-only."""
+
+
+@contextmanager
+def sqlite_errors(path: Path) -> Iterator[None]:
+    """Turn the errors of SQLite into BrokenFile, which names the file and says what can be done."""
+    try:
+        yield
+    except UnicodeDecodeError as error:
+        # The name of a column; texts in rows are errors of SQLite's.
+        raise damaged(path, error) from error
+    except sqlite3.Error as error:
+        if "not a database" in str(error):
+            raise BrokenFile(f"{path} is not a store of benchmark results: {error}") from error
+        journal = path.with_name(f"{path.name}-journal")
+        if getattr(error, "sqlite_errorname", "") in _READ_ROLLBACK and os.path.exists(journal):
+            raise BrokenFile(
+                f"{path}: {error}: its writer was stopped in the middle of a commit, which {journal.name} undoes, and"
+                " here nothing can be written: copy both files into a folder that can be written, and open the copy"
+            ) from error
+        if isinstance(error, sqlite3.DatabaseError) and "malformed" in str(error):
+            raise damaged(path, error) from error
+        raise BrokenFile(f"{path}: {error} (rows that were written before are kept)") from error
+
+
+def damaged(path: Path, what: object) -> BrokenFile:
+    """Return the error of a store whose content is not what was written."""
+    return BrokenFile(f"{path} is damaged: {what}; use a copy of it, or another file")
+
+
+def connect(path: Path) -> sqlite3.Connection:
+    """Open the file of a store for reading, and writing where that is permitted.
+
+    Raises
+    ------
+    BrokenFile
+        If there is no such file, it is not a store, one of another version, or SQLite finds it damaged.
+    """
+    # Not Path.is_file, which raises where a name is too long.
+    if not os.path.isfile(path):
+        raise BrokenFile(f"no such store: {path}")
+    with sqlite_errors(path):
+        # Not read-only: a run that was killed in the middle of a commit is rolled back by the next one to open.
+        connection = sqlite3.connect(
+            f"{path.absolute().as_uri()}?mode=rw", uri=True, timeout=PATIENCE, isolation_level=None
+        )
+    try:
+        with sqlite_errors(path):
+            application = connection.execute("PRAGMA application_id").fetchone()[0]
+            schema = connection.execute("PRAGMA user_version").fetchone()[0]
+        if application != APPLICATION:
+            raise BrokenFile(f"{path} is a SQLite file, but not a store of benchmark results")
+        if schema != SCHEMA:
+            raise BrokenFile(
+                f"{path} has schema version {schema}, this evenroad reads {SCHEMA}: use another file,"
+                " or the evenroad that wrote it"
+            )
+        with sqlite_errors(path):
+            (verdict,) = connection.execute("PRAGMA quick_check(1)").fetchone()
+        if verdict != "ok":
+            raise damaged(path, " ".join(str(verdict).split()))
+    except BaseException:
+        connection.close()
+        raise
+    return connection
+
+
+def create(path: Path) -> None:
+    """Make an empty store at `path`, where there is no file yet or an empty one; all of it or nothing."""
+    with sqlite_errors(path):
+        connection = sqlite3.connect(path, timeout=PATIENCE, isolation_level=None)
+        try:
+            connection.executescript(
+                f"BEGIN EXCLUSIVE; {TABLES} PRAGMA application_id = {APPLICATION};"
+                f" PRAGMA user_version = {SCHEMA}; COMMIT;"
+            )
+        finally:
+            connection.close()
+
+
+def checksum_of(values: Sequence[object]) -> int:
+    """Return the checksum of values: CRC-32 of how Python writes them as a tuple."""
+    return zlib.crc32(repr(tuple(values)).encode("utf-8", "backslashreplace"))
+
+
+def read_names(connection: sqlite3.Connection, path: Path) -> dict[int, str]:
+    """Return the texts of a store by their numbers; BrokenFile if one is not as it was written."""
+    names = connection.execute("SELECT id, text, checksum FROM names").fetchall()
+    for number, text, checksum in names:
+        if checksum != checksum_of((number, text)):
+            raise damaged(path, f"the text {text!r} is not as it was written")
+    return {number: text for number, text, _ in names}
+
+
+def checked_rows(
+    connection: sqlite3.Connection, path: Path, texts: dict[int, str]
+) -> Iterator[tuple[Any, ...]]:
+    """Yield the columns of every row of a store, texts as numbers, and then its checksum.
+
+    Raises
+    ------
+    BrokenFile
+        If a row is not as it was written: its checksum or its task's key is not that of its fields.
+    """
+    for row in connection.execute(f"SELECT {', '.join(COLUMNS)}, checksum FROM rows"):
+        blob, protocol, _, _, instance, _, n, _, _, run, seed, *_ = row
+        if not isinstance(blob, bytes) or row[-1] != checksum_of(row[1:-2]):
+            raise damaged(path, f"the row with the key {blob!r} is not as it was written")
+        try:
+            _, problem, sampler, rule, search, *_ = [texts[number] for number in _names_in(row)]
+        except KeyError as error:
+            raise damaged(path, f"a text with the number {error} is missing") from error
+        if blob.hex() != key_of(protocol, problem, instance, sampler, n, rule, search, run, seed):
+            raise damaged(path, f"the row with the key {blob.hex()[:12]}... has the fields of another task")
+        yield row
+
+
+@contextmanager
+def only_writer(store: Path) -> Iterator[None]:
+    """Hold the lock of a store; the lock goes with the process, and its file, STORE.lock, with the block.
+
+    A lock of SQLite's own would keep readers out, too.
+
+    Raises
+    ------
+    BrokenFile
+        If another process holds it, or its file cannot be made.
+    """
+    try:
+        import fcntl
+    except ImportError:
+        # Windows: two writers wait for each other at each commit, and may do the same work twice.
+        yield
+        return
+    lock = store.with_name(f"{store.name}.lock")
+    try:
+        # The longest name beside a store, which SQLite would say nothing helpful about.
+        with suppress(FileNotFoundError):
+            os.stat(f"{store}-journal")
+        file = open(lock, "w", encoding="utf-8")  # noqa: SIM115
+    except OSError as error:
+        raise BrokenFile(
+            f"cannot write {store}: {os.path.basename(error.filename)} beside it: {error.strerror}; remove what is"
+            " there, or give another store"
+        ) from error
+    with file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            # The writer before may have removed the file that was opened here: such a lock would be nobody's.
+            ours = os.path.samestat(os.stat(lock), os.fstat(file.fileno()))
+        except OSError:
+            ours = False
+        if not ours:
+            raise BrokenFile(
+                f"cannot write {store}: another benchmark is writing it; wait for it, or give another store"
+            )
+        try:
+            yield
+        finally:
+            # In a folder with the sticky bit only its owner may remove it.
+            with suppress(OSError):
+                lock.unlink()
