@@ -16,6 +16,9 @@ class _Output(Console):
 
 
 def print_table(table: Table) -> None:
-    """Print a table on standard output, within the terminal and 100 columns."""
-    console = _Output(highlight=False)
+    """Print a table on standard output, within the terminal and 100 columns.
+
+    Texts are printed as they are: neither ``[ms]`` nor ``:key:`` in a name is a command to the terminal.
+    """
+    console = _Output(highlight=False, markup=False, emoji=False)
     console.print(table, width=min(WIDTH, console.width))
