@@ -39,6 +39,27 @@ def test_the_fair_suite_is_summed_up_by_sampler(run, tmp_path):
     assert "+0.0" in out
 
 
+@pytest.mark.parametrize("width", [80, 100, 200])
+def test_every_row_stays_on_its_line(run, tmp_path, monkeypatch, width):
+    monkeypatch.setenv("COLUMNS", str(width))
+    rates = {"uniform": (0.0, 0.1, 0.5), "halton paper-blocks": (0.5, 0.95, 1.0)}
+    rows = made_up("corridor-10d-0.495", rates=rates, counts=(1024, 2048, 4096), rule="radius* gamma=638")
+    rows += [
+        (task("fair-balls-3d-50", sampler, 256, each, instance=each, rule=f"k={k} symmetrised"), solved())
+        for sampler in ("uniform", "korobov")
+        for k in (4, 6, 10, 20)
+        for each in range(12)
+    ]
+    write_store(tmp_path / "results.db", rows)
+    _, out, _ = run("report", "results.db", "-o", "out")
+    lines = [line.rstrip() for line in out.splitlines()]
+    assert max(map(len, lines)) <= min(width, 100)
+    (row,) = [line for line in lines if line.startswith("corridor-10d-0.495")]
+    assert row.endswith(": halton paper-blocks")
+    assert ("240" in row.split()) == (width >= 100)
+    assert "Fair suite, k=4, 6, 10, 20 symmetrised: success minus uniform's [points]" in lines
+
+
 def test_rows_that_wait_for_the_store_are_named(run, tmp_path):
     store = tmp_path / "results.db"
     write_store(store, made_up("maze-1", runs=3))
