@@ -5,6 +5,19 @@ Every error we raise on purpose is an :class:`EvenroadError` and also the builti
 allowed.  "No path" is not here: it is an answer (see ``evenroad.roadmap.PlanResult.status``).
 """
 
+SHOWN = 80
+"""Characters of a value that an error's text repeats."""
+
+
+def shown(value: object) -> str:
+    """Return ``repr(value)`` for an error's text, its middle left out where it has more than 80 characters."""
+    text = repr(value)
+    if len(text) <= SHOWN:
+        return text
+    mark = f" ... ({len(text)} characters) ... "
+    end = (SHOWN - len(mark)) // 2
+    return text[: SHOWN - len(mark) - end] + mark + text[-end:]
+
 
 class EvenroadError(Exception):
     """Base of every error that evenroad raises on purpose."""
@@ -20,7 +33,7 @@ class UnknownName(EvenroadError, ValueError):
     @classmethod
     def among(cls, what: str, name: object, known: object) -> "UnknownName":
         """Build the usual sentence: ``unknown sampler 'x'; known: a, b, c``."""
-        return cls(f"unknown {what} {name!r}; known: {', '.join(map(str, sorted(known)))}")  # type: ignore[call-overload]
+        return cls(f"unknown {what} {shown(name)}; known: {', '.join(map(str, sorted(known)))}")  # type: ignore[call-overload]
 
 
 class NotAvailable(EvenroadError, LookupError):

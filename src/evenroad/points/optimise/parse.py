@@ -16,7 +16,7 @@ import math
 import re
 from dataclasses import replace
 
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad.errors import InvalidValue, UnknownName, shown
 from evenroad.points.measures import MEASURES
 from evenroad.points.optimise.objective import ENERGIES, Objective, Term
 
@@ -41,7 +41,7 @@ def parse_objective(text: str | Objective) -> Objective:
     if isinstance(text, Objective):
         return text
     if not isinstance(text, str):
-        raise InvalidValue(f"an objective is text such as 'hickernell+10*riesz', got {text!r}")
+        raise InvalidValue(f"an objective is text such as 'hickernell+10*riesz', got {shown(text)}")
     reader = _Reader(text)
     terms = [_read_term(reader)]
     while reader.next_text:
@@ -90,8 +90,10 @@ class _Reader:
         return taken
 
     def error(self, expected: str) -> InvalidValue:
-        found = f"found {self.next_text!r}" if self.next_text else "the text ends"
-        return InvalidValue(f"objective {self.text!r}, column {self.column}: expected {expected}, {found}")
+        found = f"found {shown(self.next_text)}" if self.next_text else "the text ends"
+        return InvalidValue(
+            f"objective {shown(self.text)}, column {self.column}: expected {expected}, {found}"
+        )
 
 
 def _read_term(reader: _Reader) -> Term:
@@ -101,7 +103,7 @@ def _read_term(reader: _Reader) -> Term:
         weight = float(reader.take("number", "a number"))
         if not 0.0 < weight < math.inf:
             raise InvalidValue(
-                f"objective {reader.text!r}, column {column}: a weight must be finite and > 0, got {weight!r}"
+                f"objective {shown(reader.text)}, column {column}: a weight must be finite and > 0, got {weight!r}"
             )
         reader.take("*", "'*' after the weight")
     if reader.next_text == "log":
@@ -119,7 +121,7 @@ def _read_name(reader: _Reader) -> str:
     name = ALIASES.get(given, given)
     if name not in MEASURES and name not in ENERGIES:
         raise UnknownName(
-            f"objective {reader.text!r}, column {column}: unknown name {given!r};"
+            f"objective {shown(reader.text)}, column {column}: unknown name {shown(given)};"
             f" known: {', '.join(known_names())}"
         )
     return name

@@ -18,7 +18,7 @@ import torch
 from safetensors import SafetensorError
 
 from evenroad._files import atomic_write
-from evenroad.errors import BrokenFile
+from evenroad.errors import BrokenFile, shown
 from evenroad.research.network.config import NetworkConfig
 from evenroad.research.network.state import TrainingState
 
@@ -133,7 +133,7 @@ def _steps_of(record: Any, config: NetworkConfig) -> tuple[int, int]:
 
 def _require_same_layout(found: dict[str, torch.Tensor], wanted: dict[str, torch.Tensor]) -> None:
     if set(found) != set(wanted):
-        raise ValueError(f"its tensors differ in {sorted(set(found) ^ set(wanted))[:4]}")
+        raise ValueError(f"its tensors differ in {shown(sorted(set(found) ^ set(wanted))[:4])}")
     for name, tensor in wanted.items():
         there = found[name]
         if there.shape != tensor.shape or there.dtype != tensor.dtype:

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 import torch
 
-from evenroad.errors import InvalidValue, NotAvailable
+from evenroad.errors import InvalidValue, NotAvailable, shown
 
 
 def choose_device(name: str) -> torch.device:
@@ -25,11 +25,13 @@ def choose_device(name: str) -> torch.device:
         return torch.device("cuda" if torch.cuda.is_available() else "cpu")
     if name == "cpu":
         return torch.device("cpu")
-    parsed = re.fullmatch(r"cuda(:(?P<number>\d+))?", name, re.ASCII) if isinstance(name, str) else None
+    parsed = re.fullmatch(r"cuda(:(?P<number>\d{1,9}))?", name, re.ASCII) if isinstance(name, str) else None
     if parsed is None:
-        raise InvalidValue(f"device must be auto, cpu, cuda or cuda:NUMBER, got {name!r}")
+        raise InvalidValue(f"device must be auto, cpu, cuda or cuda:NUMBER, got {shown(name)}")
     if int(parsed["number"] or 0) >= torch.cuda.device_count():
-        raise NotAvailable(f"there is no device {name!r} here: torch sees {torch.cuda.device_count()} GPUs")
+        raise NotAvailable(
+            f"there is no device {shown(name)} here: torch sees {torch.cuda.device_count()} GPUs"
+        )
     return torch.device(name)
 
 

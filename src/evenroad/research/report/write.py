@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from evenroad._files import atomic_write, require_writable_folder
+from evenroad._files import atomic_write, remove_abandoned_parts, require_writable_folder
 from evenroad.errors import BrokenFile, NotAvailable, UnknownName
 from evenroad.research.bench.rows import Rows
 from evenroad.research.bench.store import read_rows, read_sessions
@@ -104,3 +104,4 @@ def _make_folder(folder: Path) -> None:
     except OSError as error:
         raise BrokenFile(f"cannot make the folder {folder}: {error.strerror or error}") from error
     require_writable_folder(folder / PAGE)
+    remove_abandoned_parts(folder)

@@ -6,8 +6,8 @@ import json
 from pathlib import Path
 from typing import Any
 
-from evenroad._files import atomic_write
-from evenroad.errors import BrokenFile, InvalidValue
+from evenroad._files import atomic_write, remove_abandoned_parts
+from evenroad.errors import BrokenFile, InvalidValue, shown
 
 REQUEST_FILE = "request.json"
 
@@ -20,6 +20,8 @@ def set_name(index: int) -> str:
 def claim_folder(folder: Path, request: dict[str, Any]) -> None:
     """Write the request into `folder`, or check that the one already there is the same.
 
+    Temporary files of trainings that were killed are removed from it.
+
     Raises
     ------
     InvalidValue
@@ -28,6 +30,7 @@ def claim_folder(folder: Path, request: dict[str, Any]) -> None:
         If the folder is missing or cannot be written, or its request is not readable.
     """
     path = folder / REQUEST_FILE
+    remove_abandoned_parts(folder)
     if not path.exists():
         with atomic_write(path) as file:
             file.write(json.dumps(request, indent=1).encode())
@@ -40,5 +43,6 @@ def claim_folder(folder: Path, request: dict[str, Any]) -> None:
         there = found.get(name) if isinstance(found, dict) else None
         if there != wanted:
             raise InvalidValue(
-                f"{folder} holds sets with {name}={there!r}, asked for {name}={wanted!r}; use another folder"
+                f"{folder} holds sets with {name}={shown(there)}, asked for {name}={shown(wanted)};"
+                " use another folder"
             )
