@@ -1,15 +1,15 @@
 import pytest
 
-from evenroad.research.report import contents
+from evenroad.research.report import page
 from evenroad.research.report.figures.canvas import new_figure
 from tests.research.report.stores import made_up, solved, task, write_store
 
 
 @pytest.fixture(autouse=True)
 def _without_pictures(monkeypatch):
-    monkeypatch.setattr(contents, "draw_curves", lambda cells, title: new_figure(1, 1))
-    monkeypatch.setattr(contents, "draw_scene", lambda problem: new_figure(1, 1))
-    monkeypatch.setattr(contents, "draw_point_sets", lambda: new_figure(1, 1))
+    monkeypatch.setattr(page, "draw_curves", lambda cells, title: new_figure(1, 1))
+    monkeypatch.setattr(page, "draw_scene", lambda problem: new_figure(1, 1))
+    monkeypatch.setattr(page, "draw_point_sets", lambda: new_figure(1, 1))
 
 
 def test_a_report_is_written_and_summed_up_within_100_columns(run, tmp_path):

@@ -8,10 +8,10 @@ from evenroad.cli.console import WIDTH, print_table, table_width
 from evenroad.research.report import Report
 from evenroad.research.report.analysis import Analysis
 from evenroad.research.report.comparisons import REFERENCES
-from evenroad.research.report.fair_names import is_fair, pooled_rules
+from evenroad.research.report.fair import is_fair, pooled_rules
 from evenroad.research.report.runs import Question
-from evenroad.research.report.sections.expected import verdict_counts
-from evenroad.research.report.text import difference
+from evenroad.research.report.sections.suites import verdict_counts
+from evenroad.research.report.tables import difference
 
 
 def print_report(report: Report) -> None:

@@ -82,7 +82,7 @@ class Train:
         if self.jobs is not None:
             require_count("jobs", self.jobs)
         if self.method == "mpmc":
-            from evenroad.research.network.device import choose_device
+            from evenroad.research.network.config import choose_device
 
             self._config()
             choose_device(self.device or "auto")

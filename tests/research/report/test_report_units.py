@@ -8,10 +8,8 @@ import pytest
 from evenroad.research.report.cells import cells_of
 from evenroad.research.report.comparisons import comparisons_of
 from evenroad.research.report.fair import pooled
-from evenroad.research.report.sections.expected import expected_table
-from evenroad.research.report.sections.paired import paired_tables
-from evenroad.research.report.sections.sets import spread_table
-from evenroad.research.report.sections.success import success_table
+from evenroad.research.report.sections.questions import paired_tables, spread_table, success_table
+from evenroad.research.report.sections.suites import expected_table
 from evenroad.research.statistics import mcnemar_exact, sign_flip_test, student_interval, student_test, wilson
 from tests.research.report.stores import analysis_from, from_pool, runs_from, solved, task
 

@@ -7,12 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import numpy.typing as npt
 
-from evenroad.research.report.cells import Cell, cell_codes
-from evenroad.research.report.groups import Ints, UnitSums, sums_by_unit
-from evenroad.research.report.pairs import differences_from, pair_codes
-from evenroad.research.report.runs import Question, Runs
-from evenroad.research.report.units import grouping_of
+from evenroad.research.report.cells import Cell, cell_codes, grouping_of
+from evenroad.research.report.runs import Ints, Question, Runs, UnitSums, combined, sums_by_unit
 from evenroad.research.statistics import (
     Interval,
     bonett_price,
@@ -26,6 +24,24 @@ from evenroad.research.statistics import (
     student_interval,
     student_test,
 )
+
+
+def pair_codes(runs: Runs) -> Ints:
+    """Return one code a run that the same run of another sampler has, too."""
+    return combined(runs.question, runs.n, runs.instance, runs.run, runs.seed)
+
+
+def differences_from(runs: Runs, pair: Ints, reference: str) -> tuple[npt.NDArray[np.bool_], Ints]:
+    """Return which runs of others have a counterpart of the reference sampler, and solved minus solved there."""
+    solved = runs.solved.astype(np.int64)
+    if reference not in runs.samplers:
+        return np.zeros(len(runs), dtype=bool), np.zeros(len(runs), dtype=np.int64)
+    of_reference = runs.sampler == runs.samplers.index(reference)
+    counterpart = np.full(int(pair.max()) + 1, -1)
+    counterpart[pair[of_reference]] = solved[of_reference]
+    theirs = counterpart[pair]
+    return (theirs >= 0) & ~of_reference, solved - theirs
+
 
 REFERENCES = ("uniform", "halton scrambled")
 SIGNIFICANT = 0.05

@@ -2,26 +2,86 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from evenroad.research.problems import PROBLEMS
-from evenroad.research.report.cells import cell_codes
-from evenroad.research.report.comparisons import SIGNIFICANT
-from evenroad.research.report.fair_names import BY_RULE, CONNECT, GROUPINGS, is_fair
-from evenroad.research.report.groups import Ints, combined, first_rows, sums_by_unit
-from evenroad.research.report.pairs import differences_from, pair_codes
-from evenroad.research.report.runs import Runs, natural_key
-from evenroad.research.report.units import grouping_of
+from evenroad.research.report.cells import cell_codes, grouping_of
+from evenroad.research.report.comparisons import SIGNIFICANT, differences_from, pair_codes
+from evenroad.research.report.runs import (
+    Ints,
+    Question,
+    Runs,
+    combined,
+    first_rows,
+    natural_key,
+    sums_by_unit,
+)
 from evenroad.research.statistics import (
     Interval,
     clustered_difference,
     holm,
+    percentile_interval,
+    resampled_ratios,
     sign_flip_test,
     student_interval,
     student_test,
 )
+
+PREFIX = "fair-"
+CONNECT = "connect"
+"""The search whose runs are pooled."""
+
+
+def is_fair(question: Question) -> bool:
+    """Say whether a question belongs to the fair suite."""
+    return question.problem.startswith(PREFIX)
+
+
+def generator_of(problem: str) -> str:
+    """Return the generator's name: ``balls`` of ``fair-balls-5d-50``."""
+    parts = problem.removeprefix(PREFIX).split("-")
+    return "-".join(part for part in parts if not re.fullmatch(r"\d+d?", part)) or problem
+
+
+def dimension_of(problem: str) -> str:
+    """Return the dimension as the name has it, ``5d``; where it has none, the generator."""
+    found = re.search(r"-(\d+d)(?=-|$)", problem)
+    return found.group(1) if found else generator_of(problem)
+
+
+def difficulty_of(problem: str) -> str:
+    """Return uniform's intended success in percent, the number at the end of the name; ``-`` without."""
+    found = re.search(r"-(\d+)$", problem)
+    return f"{found.group(1)} %" if found else "-"
+
+
+BY_RULE = "rule"
+
+GROUPINGS: dict[str, Callable[[Question, int], str]] = {
+    "all": lambda question, n: "all",
+    "generator": lambda question, n: generator_of(question.problem),
+    "dimension": lambda question, n: dimension_of(question.problem),
+    "difficulty": lambda question, n: difficulty_of(question.problem),
+    "samples": lambda question, n: str(n),
+    BY_RULE: lambda question, n: f"{question.rule}, {question.search}",
+}
+"""What the fair suite is pooled by."""
+
+
+def pooled_rules(questions: Iterable[Question]) -> str:
+    """Return the connection rules that are pooled, in short: ``k=4, 6, 10, 20 symmetrised``."""
+    rules = {each.rule for each in questions if is_fair(each) and each.search == CONNECT}
+    names = sorted(rules, key=natural_key)
+    parts = [re.fullmatch(r"k=(\d+) (.+)", name) for name in names]
+    kinds = {part.group(2) if part else "" for part in parts}
+    if len(kinds) != 1 or "" in kinds:
+        return ", ".join(names)
+    return f"k={', '.join(part.group(1) for part in parts if part)} {kinds.pop()}"
+
 
 REFERENCE = "uniform"
 
@@ -176,3 +236,70 @@ def _groups(grouping: str, runs: Runs) -> tuple[list[str], Ints]:
     names = sorted(set(labels), key=natural_key)
     number = {name: place for place, name in enumerate(names)}
     return names, np.array([number[label] for label in labels])[code]
+
+
+LAZY = "lazy"
+
+
+@dataclass(frozen=True)
+class LazyChecks:
+    """Motions checked by both searches of a sampler, on the same roadmaps in random worlds.
+
+    Attributes
+    ----------
+    rule, sampler : str
+    instances, pairs : int
+        Random worlds and roadmaps.
+    connect, lazy : float
+        Mean motions checked.
+    ratio : Interval
+        Of lazy / connect, by a bootstrap over worlds; not a share.
+    """
+
+    rule: str
+    sampler: str
+    instances: int
+    pairs: int
+    connect: float
+    lazy: float
+    ratio: Interval
+
+
+def lazy_checks(runs: Runs) -> tuple[LazyChecks, ...]:
+    """Compare the two searches wherever the fair suite has both; by rule and sampler."""
+    runs = fair_runs(runs)
+    runs = runs.where(~runs.failed)
+    if not len(runs):
+        return ()
+    search = np.array([question.search for question in runs.questions])[runs.question]
+    roadmaps = sorted({(question.problem, question.rule) for question in runs.questions})
+    codes = np.array([roadmaps.index((each.problem, each.rule)) for each in runs.questions])
+    pair = combined(codes[runs.question], runs.sampler, runs.n, runs.instance, runs.run, runs.seed)
+    connect_row = np.full(int(pair.max()) + 1, -1)
+    connects = np.flatnonzero(search == CONNECT)
+    connect_row[pair[connects]] = connects
+    lazy = np.flatnonzero((search == LAZY) & (connect_row[pair] >= 0))
+    connect = connect_row[pair[lazy]]
+    rules = sorted({question.rule for question in runs.questions})
+    rule = np.array([rules.index(question.rule) for question in runs.questions])[runs.question[lazy]]
+    world = world_codes(runs)[lazy]
+    place = combined(rule, runs.sampler[lazy])
+    found = []
+    for code in range(int(place.max()) + 1 if len(place) else 0):
+        rows = np.flatnonzero(place == code)
+        unit = combined(world[rows])
+        asked = runs.edges_checked[lazy[rows]], runs.edges_checked[connect[rows]]
+        sums = [np.bincount(unit, weights=column) for column in asked]
+        if sums[1].any():
+            found.append(
+                LazyChecks(
+                    rules[rule[rows[0]]],
+                    runs.samplers[runs.sampler[lazy[rows[0]]]],
+                    len(sums[0]),
+                    len(rows),
+                    float(asked[1].mean()),
+                    float(asked[0].mean()),
+                    Interval(*percentile_interval(resampled_ratios(*sums)), "bootstrap over instances"),
+                )
+            )
+    return tuple(found)

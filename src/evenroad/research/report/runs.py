@@ -1,4 +1,4 @@
-"""Runs: the columns that the report is made of, in its own order of questions and samplers."""
+"""Runs: the columns that a report is made of, in the order of its tables, and sums over groups of them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.research.bench.rows import Labels, Rows
-from evenroad.research.report.palette import sampler_place
+from evenroad.research.bench.samplers import SAMPLERS
 
 
 @dataclass(frozen=True, order=True)
@@ -122,7 +122,100 @@ def _natural(question: Question) -> list[list[tuple[int, int, str]]]:
     return [natural_key(text) for text in (question.problem, question.rule, question.search)]
 
 
+def sampler_place(sampler: str) -> tuple[int, str]:
+    """Return what to sort samplers by: the order of :data:`SAMPLERS`, then the name."""
+    known = list(SAMPLERS)
+    return (known.index(sampler) if sampler in known else len(known)), sampler
+
+
 def natural_key(text: str) -> list[tuple[int, int, str]]:
     """Return what to sort texts by so that numbers inside them count as numbers: ``5d`` before ``10d``."""
     parts = filter(None, re.split(r"(\d+)", text))
     return [(0, int(part), "") if part.isdigit() else (1, 0, part) for part in parts]
+
+
+Ints = npt.NDArray[np.int64]
+
+TABLE_LIMIT = 2**25
+"""Largest code that a table is made for, of 128 MiB."""
+WIDE = 2**31
+"""Span of a column from which on its values are numbered first."""
+
+
+@dataclass(frozen=True)
+class UnitSums:
+    """Sums per (group, unit), sorted by group and then unit.
+
+    Attributes
+    ----------
+    begins : ndarray, shape (groups + 1,)
+        Group g has the entries ``begins[g]`` up to ``begins[g + 1]``.
+    unit : ndarray, shape (entries,)
+    runs : ndarray, shape (entries,)
+        Rows of each.
+    sums : ndarray, shape (entries,)
+        Sum of the column.
+    """
+
+    begins: Ints
+    unit: Ints
+    runs: Ints
+    sums: Ints
+
+    def of(self, group: int) -> slice:
+        """Return where a group's entries are."""
+        return slice(int(self.begins[group]), int(self.begins[group + 1]))
+
+
+def combined(*columns: Ints) -> Ints:
+    """Return one code a row, equal where all columns are; codes have no gaps and ascend as the columns do."""
+    code = np.zeros(len(columns[0]), dtype=np.int64)
+    for column in columns:
+        if len(column):
+            offset = column - int(column.min())
+            if int(offset.max()) >= WIDE:
+                # Seeds may be any number: products of those would overflow.
+                offset = np.unique(offset, return_inverse=True)[1]
+            # Without gaps after each column, so the product stays below rows times span.
+            code = _without_gaps(code * (int(offset.max()) + 1) + offset)
+    return code
+
+
+def first_rows(code: Ints) -> Ints:
+    """Return the first row of every code, codes being without gaps."""
+    first = np.zeros(int(code.max()) + 1 if len(code) else 0, dtype=np.int64)
+    # Written from the end on: what is left is the earliest.
+    first[code[::-1]] = np.arange(len(code) - 1, -1, -1)
+    return first
+
+
+def _without_gaps(code: Ints) -> Ints:
+    """Return codes >= 0 numbered anew from 0, in the same order."""
+    span = int(code.max()) + 1
+    if span > TABLE_LIMIT:
+        return np.unique(code, return_inverse=True)[1]
+    # A table of what occurs: a fraction of the time that sorting a million rows takes.
+    occurs = np.zeros(span, dtype=np.int32)
+    occurs[code] = 1
+    return (np.cumsum(occurs, dtype=np.int32)[code] - 1).astype(np.int64)
+
+
+def sums_by_unit(group: Ints, groups: int, unit: Ints, column: Ints) -> UnitSums:
+    """Return the sums of a column over the units of each group.
+
+    Parameters
+    ----------
+    group : ndarray of int, shape (rows,)
+        In [0, groups).
+    groups : int
+        Groups may be empty.
+    unit, column : ndarray of int, shape (rows,)
+        Units may have any numbers.
+    """
+    place = combined(group, unit)
+    first = first_rows(place)
+    begins = np.searchsorted(group[first], np.arange(groups + 1))
+    runs = np.bincount(place, minlength=len(first))
+    # Whole numbers below 2^53, so a float sum is exact.
+    sums = np.rint(np.bincount(place, weights=column, minlength=len(first))).astype(np.int64)
+    return UnitSums(begins.astype(np.int64), unit[first], runs.astype(np.int64), sums)
