@@ -80,6 +80,6 @@ def _fair_table(analysis: Analysis) -> Table:
     for name in ("worlds", "runs", "difference"):
         table.add_column(name, justify="right", no_wrap=True)
     for each in analysis.pooled["all"]:
-        change = difference(each.rate - each.reference_rate, each.interval)
+        change = difference(each.difference, each.interval)
         table.add_row(each.sampler, str(each.instances), str(each.pairs), change)
     return table

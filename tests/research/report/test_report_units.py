@@ -67,7 +67,7 @@ def test_the_page_says_which_runs_are_independent_given_the_pool_only(tmp_path):
     problem = "hypercube-legacy6"
     analysis = analysis_from(tmp_path / "a.db", _uniform(problem) + from_pool(problem, "mpmc", 128, EASY))
     question = analysis.runs.questions[0]
-    said = "mpmc: given the pool's sets; coordinates permuted anew in every run."
+    said = "mpmc: the intervals hold for the sets of the pool; every run permutes the coordinates of one of them."
     assert said in success_table(analysis, question, "name").notes
     assert said in paired_tables(analysis, question, "name")[0].notes
     (row,) = spread_table(analysis, question, "name").rows

@@ -119,6 +119,11 @@ class Pooled:
     p_corrected: float
 
     @property
+    def difference(self) -> float:
+        """Success rate of the sampler minus that of uniform."""
+        return self.rate - self.reference_rate
+
+    @property
     def significant(self) -> bool:
         """Whether the corrected test tells the two apart."""
         return self.p_corrected < SIGNIFICANT

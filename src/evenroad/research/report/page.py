@@ -37,7 +37,7 @@ figure { margin: 1.4rem 0 } figcaption { font-weight: 600; margin-bottom: .35rem
 img { max-width: 100%; height: auto } .wide { overflow-x: auto }
 table { border-collapse: collapse; font-size: 13px; font-variant-numeric: tabular-nums }
 th, td { padding: .18rem .45rem; text-align: right; white-space: nowrap; border-bottom: 1px solid #e6e9ed }
-th { border-bottom: 1.5px solid #69727d } td.label, th:first-child { text-align: left }
+th { border-bottom: 1.5px solid #69727d } td.label, th.label { text-align: left }
 td.better { background: #d9f0e1 } td.worse { background: #fbe0de } td.differs { background: #fdecc8 }
 td.better::after { content: " ▲" } td.worse::after { content: " ▼" } td.differs::after { content: " ≠" }
 td.faint { color: #99a1aa }

@@ -19,7 +19,7 @@ class Entry:
     text : str
         Plain text: each format escapes what it must.
     mark : str
-        ``""``; ``better``, ``worse`` or ``differs`` for what a test has found; ``faint`` for what is beside the point.
+        ``better``, ``worse`` or ``differs``: what a test has found. ``faint``: there is no result. Else empty.
     """
 
     text: str
@@ -33,16 +33,16 @@ class Table:
     Attributes
     ----------
     name : str
-        Unique in a report; also what links and labels are made of.
+        Unique in a report; links and labels are made of it.
     title : str
-        One line above it.
+        One line above the table.
     header : tuple of str
     rows : tuple of tuple of Entry
         Each as long as the header.
     labels : int
-        So many first columns name the row and are set left; the others are numbers.
+        Number of first columns that name the row; they are set left, the others right.
     notes : tuple of str
-        Sentences below it: what was tested and how.
+        Sentences below the table.
     """
 
     name: str
@@ -56,6 +56,21 @@ class Table:
         for row in self.rows:
             if len(row) != len(self.header):
                 raise InvalidValue(f"{self.name}: a row of {len(row)} under a header of {len(self.header)}")
+
+
+NOTHING = Entry("–", "faint")
+"""Where there is no number."""
+
+
+def row(*parts: Entry | str | int) -> tuple[Entry, ...]:
+    """Return a row; texts and numbers become entries without a mark."""
+    return tuple(part if isinstance(part, Entry) else Entry(str(part)) for part in parts)
+
+
+def change_entry(change: float, interval: Interval, significant: bool, after: str = "") -> Entry:
+    """Return the entry of a difference of success rates, marked if a test found it."""
+    mark = ("better" if change > 0 else "worse") if significant else ""
+    return Entry(difference(change, interval) + after, mark)
 
 
 def percent(share: float) -> str:
@@ -79,7 +94,7 @@ def number(value: float, digits: int = 1) -> str:
 
 
 def count_range(counts: tuple[int, ...]) -> str:
-    """Write the range of some counts: ``400`` or ``64–400``."""
+    """Write the smallest and the largest of some counts: ``400`` or ``64–400``."""
     low, high = min(counts), max(counts)
     return str(low) if low == high else f"{low}–{high}"
 
@@ -90,7 +105,10 @@ def _ends(interval: Interval) -> str:
 
 def as_html(table: Table) -> str:
     """Return a ``<figure>`` with caption, table and notes; marks become classes."""
-    head = "".join(f"<th>{escape(name)}</th>" for name in table.header)
+    head = "".join(
+        f"<th class='label'>{escape(name)}</th>" if place < table.labels else f"<th>{escape(name)}</th>"
+        for place, name in enumerate(table.header)
+    )
     rows = "\n".join(
         "<tr>" + "".join(_html_cell(entry, place < table.labels) for place, entry in enumerate(row)) + "</tr>"
         for row in table.rows

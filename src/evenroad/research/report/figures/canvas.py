@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 @dataclass(frozen=True)
 class Look:
-    """How a sampler's line is drawn."""
+    """How a sampler is drawn: the colour, marker and line that it has in every figure."""
 
     colour: str
     marker: str
@@ -21,8 +21,15 @@ class Look:
     width: float = 1.4
     size: float = 5.0
 
+    def as_line(self) -> dict[str, Any]:
+        """Return the look as arguments of matplotlib's `plot` and `errorbar`."""
+        line = {"color": self.colour, "linestyle": self.line, "linewidth": self.width}
+        return line | {"marker": self.marker, "markersize": self.size}
 
-# Families share a colour, their two protocols are told apart by the line; what we recommend is red and thick.
+
+DPI = 110
+
+# Protocols of one sequence share a colour and differ in the line; the default sampler is red and thick.
 LOOKS: dict[str, Look] = {
     "uniform": Look("#555555", "o", width=2.0),
     "halton paper-blocks": Look("#1b9e5a", "s", "--"),
@@ -45,9 +52,6 @@ def look_of(sampler: str) -> Look:
     return LOOKS.get(sampler, OTHER)
 
 
-DPI = 110
-
-
 def new_figure(
     width: float, height: float, *, layout: Literal["constrained"] | None = "constrained"
 ) -> Figure:
@@ -58,10 +62,7 @@ def new_figure(
 
 
 def add_legend(figure: Figure, order: Callable[[str], Any]) -> None:
-    """Name what any panel of the figure shows, once, at its right, sorted by `order` of the names.
-
-    A sampler may have nothing to show in one of the panels.
-    """
+    """Put one legend at the right of the figure; it names what any panel shows, in the order of `order`."""
     handles = {
         name: handle
         for axes in figure.axes

@@ -26,8 +26,50 @@ from evenroad.viz.arm import draw_arm_plan
 from evenroad.world.gridmap.disk import DiskWorld
 from evenroad.world.solids import OrientedBox, SolidWorld, quaternion_turn
 
+SCENES = ("maze-1", "maze-2", "maze-3", "chain-10d", "cubicles", "twistycool", "ur5-c", "ur5-a")
+"""Problems that have a picture."""
+SAME_SCENE = {"cubicles-6d": "cubicles", "twistycool-6d": "twistycool"}
+"""Problems that share the picture of another one."""
+
 TRIES = ((1024, 10), (2048, 10), (4096, 10), (2048, 40), (8192, 40))
-"""Points and neighbours: more points, where they do not help (a goal deep in a box) more neighbours."""
+"""Numbers of points and of neighbours that are tried in turn; a goal deep in a box needs more neighbours."""
+
+CHAIN_POSES = 25
+BODY_POSES = 13
+"""Poses along the path that are drawn."""
+
+
+def scenes_among(problems: Sequence[str]) -> tuple[str, ...]:
+    """Return the scenes of the problems, in the order of :data:`SCENES`."""
+    wanted = {SAME_SCENE.get(problem, problem) for problem in problems}
+    return tuple(scene for scene in SCENES if scene in wanted and scene in PROBLEMS)
+
+
+def draw_scene(name: str) -> Figure:
+    """Return the picture of a problem's world with a found path.
+
+    Raises
+    ------
+    NotAvailable
+        If there is no picture of such a world.
+    """
+    problem = PROBLEMS[name].make(0)
+    match problem.world:
+        case DiskWorld():
+            return _draw_maze(problem, problem.world)
+        case ChainWorld():
+            return draw_chain(problem, problem.world, name)
+        case SolidWorld():
+            return draw_solids(problem, problem.world, name)
+        case ArmWorld():
+            return draw_arm_plan(find_path(problem), problem.world)
+    raise NotAvailable(f"there is no picture of the scene of {name}")
+
+
+def _draw_maze(problem: Problem, world: DiskWorld) -> Figure:
+    figure = new_figure(8.4, 7.4)
+    draw_plan(figure.add_subplot(), find_path(problem), world)
+    return figure
 
 
 def find_path(problem: Problem) -> PlanResult:
@@ -56,9 +98,6 @@ def poses_along(space: Space, path: npt.NDArray[np.float64], count: int) -> npt.
     leg = np.clip(np.searchsorted(ends, along, side="right") - 1, 0, len(lengths) - 1)
     shares = (along - ends[leg]) / np.where(lengths[leg] > 0, lengths[leg], 1.0)
     return space.interpolate(path[leg], path[leg + 1], np.clip(shares, 0.0, 1.0))
-
-
-CHAIN_POSES = 25
 
 
 def draw_chain(problem: Problem, world: ChainWorld, title: str) -> Figure:
@@ -93,14 +132,13 @@ def _joints(pose: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     return np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)])
 
 
-BODY_POSES = 13
-_FACES = ((0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5))
+FACES = ((0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5))
 """Corners of a box's faces, in the order of `OrientedBox.corners`."""
 
 
 def draw_solids(problem: Problem, world: SolidWorld, title: str) -> Figure:
     """Return two views of the obstacles, see-through, with the body along a path from start to goal."""
-    figure = new_figure(12.0, 6.0, layout=None)
+    figure = new_figure(12.0, 5.6, layout=None)
     figure.subplots_adjust(left=0.0, right=1.0, bottom=0.0, top=0.92, wspace=0.0)
     result = find_path(problem)
     poses = np.stack([problem.start, problem.goal])
@@ -111,7 +149,12 @@ def draw_solids(problem: Problem, world: SolidWorld, title: str) -> Figure:
         axes = figure.add_subplot(1, 2, place, projection="3d")
         axes.add_collection3d(
             Poly3DCollection(
-                obstacles, facecolors=style.OBSTACLE, alpha=0.13, edgecolors=style.OBSTACLE, linewidths=0.25
+                obstacles,
+                facecolors=style.OBSTACLE,
+                alpha=0.13,
+                edgecolors=style.OBSTACLE,
+                linewidths=0.25,
+                clip_on=False,
             )
         )
         _draw_body(axes, world.body, poses)
@@ -138,56 +181,19 @@ def _draw_body(axes: Axes3D, body: Iterable[OrientedBox], poses: npt.NDArray[np.
                 edgecolors="black",
                 linewidths=0.4 if strong else 0.15,
                 alpha=0.95 if strong else 0.55,
+                clip_on=False,
             )
         )
 
 
 def _faces(corners: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """Return the faces of a box, (6, 4, 3)."""
-    return corners[np.array(_FACES)]
+    return corners[np.array(FACES)]
 
 
 def _set_view(axes: Axes3D, points: npt.NDArray[np.float64], elevation: float, turn: float) -> None:
     low, high = points.min(axis=0), points.max(axis=0)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axes.set_box_aspect(high - low, zoom=0.95)
+    axes.set_box_aspect(high - low, zoom=1.05)
     axes.view_init(elev=elevation, azim=turn)
     axes.set_axis_off()
-
-
-SCENES = ("maze-1", "maze-2", "maze-3", "chain-10d", "cubicles", "twistycool", "ur5-c", "ur5-a")
-"""Problems that have a picture; another protocol in the same scene has that of the first."""
-_SAME_SCENE = {"cubicles-6d": "cubicles", "twistycool-6d": "twistycool"}
-
-
-def scenes_among(problems: Sequence[str]) -> tuple[str, ...]:
-    """Return which pictures of scenes the problems call for, in our order."""
-    wanted = {_SAME_SCENE.get(problem, problem) for problem in problems}
-    return tuple(scene for scene in SCENES if scene in wanted and scene in PROBLEMS)
-
-
-def draw_scene(name: str) -> Figure:
-    """Return the picture of a problem's world with a found path.
-
-    Raises
-    ------
-    NotAvailable
-        If there is no picture of such a world.
-    """
-    problem = PROBLEMS[name].make(0)
-    match problem.world:
-        case DiskWorld():
-            return _draw_maze(problem, problem.world)
-        case ChainWorld():
-            return draw_chain(problem, problem.world, name)
-        case SolidWorld():
-            return draw_solids(problem, problem.world, name)
-        case ArmWorld():
-            return draw_arm_plan(find_path(problem), problem.world)
-    raise NotAvailable(f"there is no picture of the scene of {name}")
-
-
-def _draw_maze(problem: Problem, world: DiskWorld) -> Figure:
-    figure = new_figure(8.4, 7.4)
-    draw_plan(figure.add_subplot(), find_path(problem), world)
-    return figure

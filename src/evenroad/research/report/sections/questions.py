@@ -10,20 +10,28 @@ from evenroad.research.report.analysis import Analysis
 from evenroad.research.report.cells import Cell
 from evenroad.research.report.comparisons import REFERENCES, SIGNIFICANT, Comparison
 from evenroad.research.report.runs import Question
-from evenroad.research.report.tables import Entry, Table, count_range, difference, percent, with_interval
+from evenroad.research.report.tables import (
+    NOTHING,
+    Entry,
+    Table,
+    change_entry,
+    count_range,
+    percent,
+    row,
+    with_interval,
+)
 from evenroad.research.statistics import FEW_UNITS, UNKNOWN_INTERVAL, spread_over_sets
 
 
 def pool_notes(cells: Iterable[Cell]) -> tuple[str, ...]:
-    """Return what the runs of small pools stand for where coordinates are permuted, as a sentence; or nothing."""
-    samplers = dict.fromkeys(cell.sampler for cell in cells if cell.pool_given)
-    if not samplers:
-        return ()
-    return (f"{', '.join(samplers)}: given the pool's sets; coordinates permuted anew in every run.",)
+    """Return a sentence on the samplers whose runs permute the coordinates of a pool's sets, if there are any."""
+    samplers = ", ".join(dict.fromkeys(cell.sampler for cell in cells if cell.pool_given))
+    said = "the intervals hold for the sets of the pool; every run permutes the coordinates of one of them."
+    return (f"{samplers}: {said}",) if samplers else ()
 
 
 def success_table(analysis: Analysis, question: Question, name: str) -> Table:
-    """Return the success rates of one question with intervals, and the samples that each sampler needs for 90 %."""
+    """Return the success rates of one question, with intervals, and the N at which a sampler reaches 90 %."""
     cells = {(cell.sampler, cell.n): cell for cell in analysis.cells_of(question)}
     counts = sorted({n for _, n in cells})
     reasons: dict[str, list[str]] = {}
@@ -32,17 +40,10 @@ def success_table(analysis: Analysis, question: Question, name: str) -> Table:
         mine = tuple(cells[sampler, n] for n in counts if (sampler, n) in cells)
         entries = [_success_entry(cells.get((sampler, n)), question, sampler, n, reasons) for n in counts]
         if mine:
-            needed = str(analysis.needed[question, sampler])
-            rows.append(
-                (
-                    Entry(sampler),
-                    Entry(count_range(tuple(cell.runs for cell in mine))),
-                    *entries,
-                    Entry(needed),
-                )
-            )
+            runs = count_range(tuple(cell.runs for cell in mine))
+            rows.append(row(sampler, runs, *entries, str(analysis.needed[question, sampler])))
         elif any(entry.text == "no set" for entry in entries):
-            rows.append((Entry(sampler), Entry("0"), *entries, Entry("–", "faint")))
+            rows.append(row(sampler, 0, *entries, NOTHING))
     return Table(
         name=name,
         title=f"{question}: success [%]",
@@ -51,7 +52,7 @@ def success_table(analysis: Analysis, question: Question, name: str) -> Table:
         notes=(
             _intervals(tuple(cells.values())),
             *pool_notes(cells.values()),
-            *_unsure([row[-1] for row in rows]),
+            *_unsure([each[-1] for each in rows]),
             *_why_no_set(reasons),
             *_failures(tuple(cells.values())),
         ),
@@ -73,11 +74,9 @@ def _success_entry(
 
 
 def _intervals(cells: tuple[Cell, ...]) -> str:
-    samplers: dict[str, list[str]] = {}
+    samplers: dict[str, dict[str, None]] = {}
     for cell in cells:
-        names = samplers.setdefault(cell.interval.kind, [])
-        if cell.sampler not in names:
-            names.append(cell.sampler)
+        samplers.setdefault(cell.interval.kind, {})[cell.sampler] = None
     kinds = "; ".join(
         f"{kind} ({', '.join(names)})" if len(samplers) > 1 else kind for kind, names in samplers.items()
     )
@@ -87,9 +86,7 @@ def _intervals(cells: tuple[Cell, ...]) -> str:
 def _unsure(needed: list[Entry]) -> tuple[str, ...]:
     if not any(entry.text.endswith(UNKNOWN_INTERVAL) for entry in needed):
         return ()
-    return (
-        f"{UNKNOWN_INTERVAL}: fewer than {FEW_UNITS} runs, or sets, at some N are too few for an interval.",
-    )
+    return (f"{UNKNOWN_INTERVAL}: fewer than {FEW_UNITS} runs or sets at some N; too few for an interval.",)
 
 
 def _why_no_set(reasons: dict[str, list[str]]) -> tuple[str, ...]:
@@ -98,11 +95,11 @@ def _why_no_set(reasons: dict[str, list[str]]) -> tuple[str, ...]:
 
 def _failures(cells: tuple[Cell, ...]) -> tuple[str, ...]:
     failed = sum(cell.failures for cell in cells)
-    return (f"{failed} failed runs are counted as not solved.",) if failed else ()
+    return (f"{failed} failed runs count as not solved.",) if failed else ()
 
 
 def paired_tables(analysis: Analysis, question: Question, name: str) -> tuple[Table, ...]:
-    """Return a table a reference that the question has."""
+    """Return a table of differences for each reference sampler that the question has."""
     mine = [each for each in analysis.comparisons if each.cell.question == question]
     tables = []
     for reference in REFERENCES:
@@ -119,8 +116,7 @@ def _paired_table(found: list[Comparison], reference: str, name: str, question: 
     counts = sorted({n for _, n in by_place})
     samplers = list(dict.fromkeys(each.cell.sampler for each in found))
     rows = tuple(
-        (Entry(sampler), *(comparison_entry(by_place.get((sampler, n))) for n in counts))
-        for sampler in samplers
+        row(sampler, *(_comparison_entry(by_place.get((sampler, n))) for n in counts)) for sampler in samplers
     )
     tests = sorted({each.test for each in found if each.is_tested})
     return Table(
@@ -129,8 +125,8 @@ def _paired_table(found: list[Comparison], reference: str, name: str, question: 
         header=("sampler", *(f"N = {n}" for n in counts)),
         rows=rows,
         notes=(
-            f"On the same runs. Marked: p < {SIGNIFICANT:g} after Holm's correction over the {family} comparisons of"
-            f" this question that were tested; {', '.join(tests) or 'none here'}. Intervals are 95 %, each for itself.",
+            f"Over the same runs. Marked: p < {SIGNIFICANT:g} after Holm's correction over the {family} comparisons of"
+            f" this question that were tested; {', '.join(tests) or 'none here'}. Intervals: 95 %, not corrected.",
             *_untested(found),
             *pool_notes(each.cell for each in found),
         ),
@@ -145,31 +141,19 @@ def _untested(found: list[Comparison]) -> tuple[str, ...]:
     return tuple(f"{sampler}, N = {', '.join(counts[test, sampler])}: {test}." for test, sampler in counts)
 
 
-def comparison_entry(each: Comparison | None) -> Entry:
-    """Write one comparison, marked where the corrected test tells the two apart."""
-    if each is None:
-        return Entry("–", "faint")
-    mark = ("better" if each.difference > 0 else "worse") if each.significant else ""
-    return Entry(difference(each.difference, each.interval), mark)
+def _comparison_entry(each: Comparison | None) -> Entry:
+    return NOTHING if each is None else change_entry(each.difference, each.interval, each.significant)
 
 
 def spread_table(analysis: Analysis, question: Question, name: str) -> Table | None:
-    """Return success per set of the families that draw from a pool; None where no set was drawn twice."""
+    """Return the spread of success over the sets of each pool; None where no set was drawn twice."""
     rows = []
     for cell in analysis.cells_of(question):
         if len(cell.sets) < 2 or cell.sets.runs.max() < 2:
             continue
         spread = spread_over_sets(cell.sets.solved, cell.sets.runs)
         shares = (spread.mean, spread.lowest, spread.highest, spread.sd, spread.sd_by_chance)
-        rows.append(
-            (
-                Entry(cell.sampler),
-                Entry(str(cell.n)),
-                Entry(str(spread.sets)),
-                Entry(str(cell.runs)),
-                *(Entry(percent(share)) for share in shares),
-            )
-        )
+        rows.append(row(cell.sampler, cell.n, spread.sets, cell.runs, *map(percent, shares)))
     if not rows:
         return None
     return Table(
@@ -178,7 +162,7 @@ def spread_table(analysis: Analysis, question: Question, name: str) -> Table | N
         header=("family", "N", "sets", "runs", "mean", "lowest", "highest", "sd", "sd by chance"),
         rows=tuple(rows),
         notes=(
-            "sd by chance is what sets that are all alike would show with so few runs each; a larger sd says that some"
-            " sets suit this problem better than others.",
+            "sd by chance: what equally good sets would show with so few runs each. A larger sd means that some sets"
+            " suit this problem better than others.",
         ),
     )

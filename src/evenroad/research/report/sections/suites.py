@@ -3,17 +3,27 @@
 from __future__ import annotations
 
 import math
+from itertools import chain
 
 from evenroad.research.report.analysis import Failure
 from evenroad.research.report.comparisons import SIGNIFICANT
 from evenroad.research.report.fair import BY_RULE, REFERENCE, LazyChecks, Pooled
 from evenroad.research.report.runs import sampler_place
-from evenroad.research.report.tables import Entry, Table, count_range, difference, number, percent
+from evenroad.research.report.tables import (
+    NOTHING,
+    Entry,
+    Table,
+    change_entry,
+    count_range,
+    number,
+    percent,
+    row,
+)
 from evenroad.research.report.verdicts import LEVEL, ExpectedTable, Verdict
 
 
 def expected_table(table: ExpectedTable, verdicts: tuple[Verdict, ...]) -> Table:
-    """Return expected and our success rates and numbers of milestones, with a mark where they differ."""
+    """Return the table of expected and our success rates and numbers of milestones; marked where they differ."""
     counts = sorted({each.expected.n for each in verdicts})
     rows: dict[tuple[str, str, str], dict[int, Verdict]] = {}
     for each in verdicts:
@@ -31,9 +41,9 @@ def expected_table(table: ExpectedTable, verdicts: tuple[Verdict, ...]) -> Table
         labels=3,
         notes=(
             f"{table.source}. {table.about}",
-            f"{verdict_counts(verdicts)}. Two-sample Fisher tests on the counts at {LEVEL:g}, Holm's correction over"
-            " all cells of this table that can be tested; a mark (≠) is a cell that differs."
-            " SR in percent; V is the mean number of milestones, ours counted as the source counts.",
+            f"{verdict_counts(verdicts)}. Fisher's exact test compares the counts of each cell, at {LEVEL:g} after"
+            " Holm's correction over all cells of this table with counts; ≠ marks the cells that differ."
+            " SR: success rate in percent. V: mean number of milestones, ours counted as the source counts.",
             *_source_notes(verdicts),
             *_few_sets(verdicts),
         ),
@@ -41,7 +51,7 @@ def expected_table(table: ExpectedTable, verdicts: tuple[Verdict, ...]) -> Table
 
 
 def verdict_counts(verdicts: tuple[Verdict, ...]) -> str:
-    """Return how many cells agree, differ and were not run, as a phrase."""
+    """Say how many cells agree, differ, have no count and were not run."""
     words = [each.word for each in verdicts]
     return ", ".join(
         f"{words.count(word)} {label}"
@@ -59,13 +69,8 @@ def _expected_row(by_count: dict[int, Verdict], counts: list[int]) -> tuple[Entr
     first = next(iter(by_count.values())).expected
     ours = {each.ours.runs for each in by_count.values() if each.ours is not None}
     runs = f"{first.runs or '?'} / {'–' if not ours else max(ours)}"
-    names = (first.problem, first.sampler, first.rule, runs, first.v_definition)
-    entries = [Entry(name) for name in names]
-    for n in counts:
-        entries += (
-            _expected_pair(by_count[n]) if n in by_count else [Entry("–", "faint"), Entry("–", "faint")]
-        )
-    return tuple(entries)
+    pairs = [_expected_pair(by_count[n]) if n in by_count else [NOTHING, NOTHING] for n in counts]
+    return row(first.problem, first.sampler, first.rule, runs, first.v_definition, *chain(*pairs))
 
 
 def _expected_pair(each: Verdict) -> list[Entry]:
@@ -87,29 +92,22 @@ def _few_sets(verdicts: tuple[Verdict, ...]) -> tuple[str, ...]:
     )
     if not rows:
         return ()
-    return (f"{', '.join(rows)}: our runs of one set are not independent, so the mark is set too readily.",)
+    return (
+        f"{', '.join(rows)}: our runs share these sets and are not independent; the test marks too readily.",
+    )
 
 
 def _source_notes(verdicts: tuple[Verdict, ...]) -> tuple[str, ...]:
-    rows: dict[str, list[str]] = {}
-    for each in verdicts:
-        row = f"{each.expected.problem} {each.expected.sampler}"
-        names = rows.setdefault(each.expected.note, [])
-        if each.expected.note and row not in names:
-            names.append(row)
-    return tuple(f"{', '.join(names)}: {note}." for note, names in rows.items() if note)
+    names: dict[str, dict[str, None]] = {}
+    for expected in (each.expected for each in verdicts):
+        names.setdefault(expected.note, {})[f"{expected.problem} {expected.sampler}"] = None
+    return tuple(f"{', '.join(rows)}: {note}." for note, rows in names.items() if note)
 
 
 def fair_table(grouping: str, found: tuple[Pooled, ...], rules: str) -> Table:
-    """Return each sampler's difference from uniform, pooled over random worlds; groups down, samplers across.
+    """Return the differences from uniform, pooled over random worlds and over connection `rules`.
 
-    Parameters
-    ----------
-    grouping : str
-        What the groups are.
-    found : tuple of Pooled
-    rules : str
-        The connection rules that are pooled.
+    A row is a group (a generator, a dimension, ... as `grouping` says), a column a sampler.
     """
     samplers = sorted({each.sampler for each in found}, key=sampler_place)
     groups = list(dict.fromkeys(each.group for each in found))
@@ -119,14 +117,8 @@ def fair_table(grouping: str, found: tuple[Pooled, ...], rules: str) -> Table:
         mine = [by_place[group, sampler] for sampler in samplers if (group, sampler) in by_place]
         widest = max(mine, key=lambda each: each.pairs)
         worlds = count_range(tuple(each.instances for each in mine))
-        rows.append(
-            (
-                Entry(group),
-                Entry(worlds),
-                Entry(percent(widest.reference_rate)),
-                *(_gain_entry(by_place.get((group, sampler))) for sampler in samplers),
-            )
-        )
+        gains = [_gain_entry(by_place.get((group, sampler))) for sampler in samplers]
+        rows.append(row(group, worlds, percent(widest.reference_rate), *gains))
     over = "" if grouping == BY_RULE else f", over {rules}"
     return Table(
         name=f"fair-by-{grouping}",
@@ -134,26 +126,23 @@ def fair_table(grouping: str, found: tuple[Pooled, ...], rules: str) -> Table:
         header=(grouping, "worlds", f"{REFERENCE} [%]", *samplers),
         rows=tuple(rows),
         notes=(
-            "Every world, start and goal is random; a sampler is compared with uniform in the same worlds, over those"
-            " runs that it has a set for. 95 % intervals and tests are over worlds, or over the sets of a pool where"
-            " that is wider; how many sets there were stands behind the interval. From 5 dimensions on it is given the"
-            " pool's sets, as coordinates are permuted anew in every run."
+            "Every world, start and goal is random. A sampler is compared with uniform in the same worlds, over the"
+            " runs that it has a set for. Intervals (95 %) and tests are over worlds; for a pool of sets in fewer than"
+            " 5 dimensions they are over its sets where that is wider. The number of sets stands behind the interval."
+            " From 5 dimensions on every run permutes the coordinates of a set, and the interval holds for the sets of"
+            " the pool."
             f" Marked: p < {SIGNIFICANT:g} after Holm's correction over this table.",
         ),
     )
 
 
 def lazy_table(found: tuple[LazyChecks, ...]) -> Table:
-    """Return the motions that the lazy search checks, beside those of the search that only connects."""
+    """Return the numbers of motions that the lazy search and the connecting search check."""
     rules = ", ".join(dict.fromkeys(each.rule for each in found))
     rows = tuple(
-        (
-            Entry(each.sampler),
-            Entry(str(each.instances)),
-            Entry(str(each.pairs)),
-            Entry(number(each.connect)),
-            Entry(number(each.lazy)),
-            Entry(f"{each.lazy / each.connect:.2f} [{each.ratio.low:.2f}, {each.ratio.high:.2f}]"),
+        row(
+            *(each.sampler, each.instances, each.pairs, number(each.connect), number(each.lazy)),
+            f"{each.lazy / each.connect:.2f} [{each.ratio.low:.2f}, {each.ratio.high:.2f}]",
         )
         for each in found
     )
@@ -163,8 +152,8 @@ def lazy_table(found: tuple[LazyChecks, ...]) -> Table:
         header=("sampler", "worlds", "roadmaps", "connect", "lazy", "lazy / connect"),
         rows=rows,
         notes=(
-            "Means on the same roadmaps. The lazy search finds the shortest path, checking only what may lie on it;"
-            " connecting says only whether there is a path. 95 % intervals resample worlds.",
+            "Means over the same roadmaps. The lazy search finds the shortest path and checks only motions that may"
+            " lie on it; connecting only finds out whether there is a path. Intervals (95 %) resample worlds.",
         ),
     )
 
@@ -172,26 +161,17 @@ def lazy_table(found: tuple[LazyChecks, ...]) -> Table:
 def _gain_entry(each: Pooled | None) -> Entry:
     if each is None:
         return Entry("no set", "faint")
-    change = each.rate - each.reference_rate
-    mark = ("better" if change > 0 else "worse") if each.significant else ""
     sets = f" ({each.sets} sets)" if each.sets else ""
-    return Entry(difference(change, each.interval) + sets, mark)
+    return change_entry(each.difference, each.interval, each.significant, after=sets)
 
 
 FAILURES_SHOWN = 40
 
 
 def failure_table(found: tuple[Failure, ...]) -> Table:
-    """Return the failures that are alike counted together; the rest beyond 40 kinds as a number."""
+    """Return the kinds of failures with their numbers of runs; beyond 40 kinds only how many more there are."""
     rows = tuple(
-        (
-            Entry(each.problem),
-            Entry(each.sampler),
-            Entry(each.rule),
-            Entry(each.status),
-            Entry(each.message or "–"),
-            Entry(str(each.runs)),
-        )
+        row(each.problem, each.sampler, each.rule, each.status, each.message or "–", each.runs)
         for each in found[:FAILURES_SHOWN]
     )
     rest = found[FAILURES_SHOWN:]
@@ -202,5 +182,5 @@ def failure_table(found: tuple[Failure, ...]) -> Table:
         header=("problem", "sampler", "rule", "status", "last line of the error", "runs"),
         rows=rows,
         labels=5,
-        notes=("They are counted as runs that were not solved.", *left_out),
+        notes=("These runs count as not solved.", *left_out),
     )
