@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -18,6 +19,11 @@ from evenroad.research.report.verdicts import SOURCES, ExpectedTable, Verdict, l
 from evenroad.research.statistics import FEW_UNITS, SamplesNeeded, resampled_ratios, samples_needed
 from evenroad.research.statistics.bootstrap import DRAWS
 
+TARGET = 0.9
+"""Success rate that the samples needed are asked for."""
+
+Rates = npt.NDArray[np.float64]
+
 
 @dataclass(frozen=True)
 class Failure:
@@ -32,25 +38,19 @@ class Failure:
 
 
 def failures_of(rows: Rows) -> tuple[Failure, ...]:
-    """Return the failures, alike ones counted together, the most frequent first."""
-    counted: dict[tuple[str, str, str, str, str], int] = {}
+    """Count the failures by kind; the most frequent kind comes first."""
+    counted: Counter[tuple[str, str, str, str, str]] = Counter()
     for row in np.flatnonzero(~rows.answered).tolist():
         last_line = (rows.error[row].strip().splitlines() or [""])[-1].strip()
-        key = (rows.problem[row], rows.sampler[row], rows.rule[row], rows.status[row], last_line)
-        counted[key] = counted.get(key, 0) + 1
+        counted[rows.problem[row], rows.sampler[row], rows.rule[row], rows.status[row], last_line] += 1
     found = [Failure(*key, runs) for key, runs in counted.items()]
     return tuple(sorted(found, key=lambda each: (-each.runs, each.problem, each.sampler, each.message)))
 
 
-TARGET = 0.9
-
-Rates = npt.NDArray[np.float64]
-
-
 def needed_of(cells: Sequence[Cell]) -> dict[tuple[Question, str], SamplesNeeded]:
-    """Return, for every question and sampler, how many samples bring a success rate of 90 %.
+    """Return for every question and sampler the number of samples at which 90 % of the runs succeed.
 
-    There is no interval where a cell of the curve has fewer than 10 units (runs, sets, blocks or instances).
+    It has an interval if every cell of the curve has at least 10 units.
     """
     curves: dict[Question, dict[str, list[Cell]]] = {}
     for cell in cells:
@@ -76,9 +76,10 @@ def _needed(curve: Sequence[Cell], resampled: Rates | None) -> SamplesNeeded:
 def resampled_curves(curves: Sequence[Sequence[Cell]]) -> list[Rates]:
     """Return bootstrap resamples of the success rates of each curve, shape (draws, cells of the curve).
 
-    Units are resampled for all numbers of samples at once: one run's generator draws its sets for all of them, and the
-    first points of a larger set may be the smaller set.  Where all units of a cell say the same a bootstrap would have
-    no width; there, rates are drawn from a beta distribution (Jeffreys' posterior) of as many runs as there are units.
+    A unit is resampled for all numbers of samples together, since its results at different numbers are related: one
+    generator draws all sets of a run, and the first points of a larger set may be the smaller set.  If all units of a
+    cell have the same result a bootstrap has no width; there, rates are drawn from Jeffreys' posterior, a beta
+    distribution, with one run for each unit.
     """
     alike: dict[bytes, list[int]] = {}
     for place, curve in enumerate(curves):
@@ -86,7 +87,7 @@ def resampled_curves(curves: Sequence[Sequence[Cell]]) -> list[Rates]:
         alike.setdefault(labels.tobytes(), []).append(place)
     found: list[Rates] = [np.empty((0, 0))] * len(curves)
     for places in alike.values():
-        # Curves with the same units at once, which is much faster than one by one, and the same.
+        # Curves with the same units are resampled together: much faster, with the same result.
         rates = _resampled([cell for place in places for cell in curves[place]])
         ends = np.cumsum([len(curves[place]) for place in places])
         for place, part in zip(places, np.split(rates, ends[:-1], axis=1), strict=True):
@@ -112,7 +113,7 @@ def _resampled(cells: Sequence[Cell]) -> Rates:
 
 @dataclass(frozen=True)
 class Analysis:
-    """What was found in a store.
+    """All results of a store.
 
     Attributes
     ----------
@@ -122,7 +123,7 @@ class Analysis:
     comparisons : tuple of Comparison
     needed : dict of (Question, sampler) to SamplesNeeded
     verdicts : dict of source name to (ExpectedTable, tuple of Verdict)
-        Of the sources that have at least one problem in common with the store.
+        Of the sources with a cell that the store has runs for.
     pooled : dict of grouping to tuple of Pooled
         Empty without a fair suite.
     lazy : tuple of LazyChecks
