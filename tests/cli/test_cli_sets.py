@@ -296,7 +296,7 @@ def test_refined_sets_are_kept_one_by_one_and_read_back(run, tmp_path, monkeypat
     assert load_points(tmp_path / "sets" / "refined-0001.npz").origin.replica == 1
     code, _, err = run(*MPMC, "--steps", 3, "--refine", 21)
     assert code == 2
-    assert "refined otherwise" in err
+    assert "steps=20, asked for steps=21; use another folder (what there is: refined.json)" in err
 
 
 INTERRUPTED_INSIDE_STEP_5 = """

@@ -1,4 +1,4 @@
-"""Training and refining: from a config to sets, in a folder that a stopped training goes on from."""
+"""Training and refining: from a config to sets, in a folder where a stopped training goes on."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from evenroad._checks import require_count, require_positive
-from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.errors import InvalidValue
 from evenroad.points.measures.terms import Array
-from evenroad.points.npz import load_points, save_points
+from evenroad.points.npz import save_points
 from evenroad.points.optimise import Objective, anneal, parse_objective
 from evenroad.points.optimise.anneal import Callback
 from evenroad.points.pointset import Origin, PointSet
@@ -27,11 +27,11 @@ from evenroad.research.network.state import (
     load_checkpoint,
     save_checkpoint,
 )
-from evenroad.research.training.folder import claim_folder, set_name
+from evenroad.research.training.folder import claim_folder, read_set, set_name
 
 
 def request_of(config: NetworkConfig) -> dict[str, Any]:
-    """Return what the folder of a training says it was asked for."""
+    """Return the request of a training, which its folder holds."""
     return {"method": "network", **config.as_record()}
 
 
@@ -54,23 +54,14 @@ def save_sets(folder: Path, sets: Sequence[PointSet]) -> None:
 
 
 def finished_sets(folder: Path, config: NetworkConfig) -> tuple[PointSet, ...] | None:
-    """Return the sets of `folder`, or None if one is missing or damaged and all have to be written again."""
-    try:
-        sets = tuple(load_points(folder / set_name(index)) for index in range(config.sets))
-    except BrokenFile:
-        return None
-    for index, points in enumerate(sets):
-        expected = origin_of(config, index)
-        # The version may be an older one's: the sets are as good.
-        if points.with_origin(version=expected.version).origin != expected:
-            raise InvalidValue(
-                f"{folder / set_name(index)} holds another set ({points!r}); use another folder"
-            )
-        if points.points.shape != (config.n, config.d):
-            raise InvalidValue(
-                f"{folder / set_name(index)} holds another set ({points!r}); use another folder"
-            )
-    return sets
+    """Return the sets of `folder`; None if one is missing or damaged, and all have to be written again."""
+    sets = []
+    for index in range(config.sets):
+        points = read_set(folder / set_name(index), origin_of(config, index), (config.n, config.d))
+        if points is None:
+            return None
+        sets.append(points)
+    return tuple(sets)
 
 
 def train(

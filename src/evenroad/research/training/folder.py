@@ -1,9 +1,11 @@
-"""A folder of sets: the one request that it belongs to, and the tasks that fill it."""
+"""A folder of sets: the one request that it belongs to, and the tasks that fill it.
+
+The request is written beside the sets, so sets of two requests never mix unnoticed.
+"""
 
 from __future__ import annotations
 
 import json
-import os
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -24,19 +26,19 @@ def set_name(index: int) -> str:
     return f"set-{index:04d}.npz"
 
 
-def claim_folder(folder: Path, request: dict[str, Any]) -> None:
-    """Write the request into `folder`, or check that the one already there is the same.
+def claim_folder(folder: Path, request: dict[str, Any], name: str = REQUEST_FILE) -> None:
+    """Write the request into the file `name` of `folder`; if it is there, check that it is the same.
 
-    Temporary files of trainings that were killed are removed from it.
+    Temporary files that killed trainings left in the folder are removed.
 
     Raises
     ------
     InvalidValue
         If the folder belongs to another request; the text names the first difference.
     BrokenFile
-        If the folder is missing or cannot be written, or its request is not readable.
+        If the folder is missing or cannot be written, or the request in it cannot be read.
     """
-    path = folder / REQUEST_FILE
+    path = folder / name
     remove_abandoned_parts(folder)
     if not path.exists():
         with atomic_write(path) as file:
@@ -46,29 +48,48 @@ def claim_folder(folder: Path, request: dict[str, Any]) -> None:
         found = json.loads(path.read_bytes())
     except (OSError, ValueError) as error:
         raise BrokenFile(f"{path} is not readable as JSON: {error}") from None
-    for name, wanted in request.items():
-        there = found.get(name) if isinstance(found, dict) else None
+    for key, wanted in request.items():
+        there = found.get(key) if isinstance(found, dict) else None
         if there != wanted:
             raise InvalidValue(
-                f"{folder} holds sets with {name}={shown(there)}, asked for {name}={shown(wanted)};"
-                " use another folder"
+                f"{folder} holds sets with {key}={shown(there)}, asked for {key}={shown(wanted)};"
+                f" use another folder (what there is: {name})"
             )
+
+
+def read_set(path: Path, origin: Origin, shape: tuple[int, int]) -> PointSet | None:
+    """Return a finished set; None if its file is missing or damaged.
+
+    Raises
+    ------
+    InvalidValue
+        If the file holds a set of another shape, method, objective, seed or replica.
+    """
+    try:
+        points = load_points(path)
+    except BrokenFile:
+        return None
+    names = ("method", "objective", "seed", "replica")
+    same = all(getattr(points.origin, name) == getattr(origin, name) for name in names)
+    if points.points.shape != shape or not same:
+        raise InvalidValue(f"{path} holds another set ({points!r}); use another folder")
+    return points
 
 
 @dataclass(frozen=True)
 class SetTask:
-    """All that a process needs to anneal one set; plain values, so that it can be sent there.
+    """All that a process needs to anneal one set, as plain values that can be sent to it.
 
     Attributes
     ----------
     n, d, objective, steps
-        As for ``anneal``, the objective as text.
+        As for :func:`~evenroad.points.optimise.anneal`; the objective is text.
     entropy, spawn_key
-        Of the set's own seed sequence.
+        They make the set's own seed sequence.
     family, seed, replica
-        For the origin of the set.
+        They go into the origin of the set.
     path : str or None
-        The file that the finished set goes to.
+        The file of the finished set.
     """
 
     n: int
@@ -101,25 +122,12 @@ def origin_of(task: SetTask) -> Origin:
 
 
 def finished_set(task: SetTask) -> PointSet | None:
-    """Return the set of a task from its file, or None where it is missing or damaged and must be made."""
-    if task.path is None or not os.path.exists(task.path):
-        return None
-    try:
-        points = load_points(task.path)
-    except BrokenFile:
-        return None
-    expected = origin_of(task)
-    same = all(
-        getattr(points.origin, name) == getattr(expected, name)
-        for name in ("method", "objective", "seed", "replica")
-    )
-    if points.points.shape != (task.n, task.d) or not same:
-        raise InvalidValue(f"{task.path} holds another set ({points!r}); use another folder")
-    return points
+    """Return the set of a task from its file; None if it is missing or damaged and has to be made."""
+    return None if task.path is None else read_set(Path(task.path), origin_of(task), (task.n, task.d))
 
 
 def request_of(task: SetTask) -> dict[str, Any]:
-    """Return what the sets of a folder have in common, whatever their number."""
+    """Return what all sets of a folder have in common; their number is not part of it."""
     request = {name: asdict(task)[name] for name in ("n", "d", "objective", "steps", "family")}
     return {
         **request,
