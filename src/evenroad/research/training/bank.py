@@ -20,7 +20,6 @@ import numpy.typing as npt
 from evenroad._files import atomic_write, one_at_a_time
 from evenroad._progress import LineProgress
 from evenroad.points.bank.bank import DATA, INDEX, SEED, Bank, cell_name
-from evenroad.points.even import EVEN
 from evenroad.points.measures import MEASURES, separation
 from evenroad.points.pointset import BELOW_ONE, PointSet
 from evenroad.research.training import anneal_many
@@ -64,41 +63,29 @@ MPMC_CELLS = tuple((2, n) for n in COUNTS[1:-1]) + tuple(
 
 def recipes() -> list[Recipe]:
     """Return every cell of the bank, in the order in which they are built: most wanted first."""
-    first = [
-        (2, "hickernell"),
-        (10, "hickernell"),
-        (3, "hickernell"),
-        (5, "hickernell"),
-        (3, "even"),
-    ]
-    cells = [(d, "hickernell") for d in HICKERNELL_DIMENSIONS] + [(d, "even") for d in EVEN]
-    order = first + [cell for cell in cells if cell not in first]
-    return [_recipe(family, d, n) for d, family in order for n in COUNTS] + [
-        _mpmc(d, n) for d, n in MPMC_CELLS
-    ]
+    first = (2, 10, 3, 5)
+    order = [*first, *(d for d in HICKERNELL_DIMENSIONS if d not in first)]
+    return [_hickernell(d, n) for d in order for n in COUNTS] + [_mpmc(d, n) for d, n in MPMC_CELLS]
 
 
-def _recipe(family: str, d: int, n: int) -> Recipe:
-    objective = "hickernell" if family == "hickernell" else EVEN[d]
-    return Recipe(family, d, n, sets=_sets(family, d, n), objective=objective, steps=_steps(family, d, n))
+def _hickernell(d: int, n: int) -> Recipe:
+    return Recipe("hickernell", d, n, sets=_sets(d, n), objective="hickernell", steps=_steps(d, n))
 
 
-def _sets(family: str, d: int, n: int) -> int:
+def _sets(d: int, n: int) -> int:
     """Success depends on which set is drawn, most in low dimensions: larger pools there, smaller for slow cells."""
     if n == 2048:
-        return 4 if d <= 3 and family != "even" else 2
-    if family == "even" and n > 256:
-        return 8
+        return 4 if d <= 3 else 2
     return {1: 32, 2: 64, 3: 32}.get(d, 8)
 
 
-def _steps(family: str, d: int, n: int) -> int:
+def _steps(d: int, n: int) -> int:
     """5000 steps are the standard; four times as many, for the paper's d = 2 and 10, gain about 2 %."""
-    if family == "hickernell" and d == 10 and n <= 1024:
+    if d == 10 and n <= 1024:
         return 20_000 if n <= 512 else 10_000
-    if family == "hickernell" and d == 2 and n <= 512:
+    if d == 2 and n <= 512:
         return 20_000 if n <= 128 else 10_000
-    if family == "hickernell" and n <= 256:
+    if n <= 256:
         return 10_000
     return 5_000 if n <= 1024 else 3_000
 
