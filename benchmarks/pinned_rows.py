@@ -21,9 +21,8 @@ from evenroad.research.bench.runner import run_tasks
 from evenroad.research.bench.store import open_store, read_rows
 from evenroad.research.bench.task import Task
 from evenroad.research.report.cells import cells_of
-from evenroad.research.report.expected import load_expected
 from evenroad.research.report.runs import runs_of
-from evenroad.research.report.verdicts import Verdict, verdicts_of
+from evenroad.research.report.verdicts import Verdict, load_expected, verdicts_of
 from evenroad.research.suites.paper import SEED, paper_suite
 from evenroad.research.workers import processes
 

@@ -13,10 +13,20 @@ from typing import IO
 
 from evenroad.errors import BrokenFile
 
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None  # type: ignore[assignment]
+
+_PREFIX, _SUFFIX = ".evenroad-", ".part"
+"""Of the names of temporary files."""
+
 
 @contextmanager
 def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     """Open a temporary file beside `path`; on success it replaces `path`, on any error it is removed.
+
+    A process that is killed leaves its temporary file behind; see :func:`remove_abandoned_parts`.
 
     Raises
     ------
@@ -26,8 +36,7 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     target = Path(path)
     require_writable_folder(target)
     try:
-        # A short name of its own: the target's may already be as long as the file system takes.
-        handle, name = tempfile.mkstemp(prefix=".evenroad-", suffix=".part", dir=target.parent)
+        handle, lock, name = _new_part(target.parent)
     except OSError as error:
         raise _cannot_write(target, error) from error
     try:
@@ -45,6 +54,39 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     except BaseException:
         _remove(name)
         raise
+    finally:
+        if lock is not None:
+            os.close(lock)
+
+
+def remove_abandoned_parts(folder: str | os.PathLike[str]) -> None:
+    """Remove the temporary files of :func:`atomic_write` whose processes were killed.
+
+    Every writer holds a lock on its file, which goes with the process: what can be locked is nobody's.  Where the
+    platform or the file system has no ``flock`` everything stays.
+    """
+    if fcntl is None:
+        return
+    for part in Path(folder).glob(f"{_PREFIX}*{_SUFFIX}"):
+        with suppress(OSError), open(part, "rb") as file:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            part.unlink()
+
+
+def _new_part(folder: Path) -> tuple[int, int | None, str]:
+    """Make a temporary file; return its handle, a second handle that holds its lock (or None), and its name."""
+    while True:
+        # A short name of its own: the target's may already be as long as the file system takes.
+        handle, name = tempfile.mkstemp(prefix=_PREFIX, suffix=_SUFFIX, dir=folder)
+        if fcntl is None:
+            return handle, None, name
+        with suppress(OSError):
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        if os.fstat(handle).st_nlink:
+            # The lock is shared by both handles, and outlives the first, which is closed before the file is moved.
+            return handle, os.dup(handle), name
+        # Between the two steps somebody took it for an abandoned one.
+        os.close(handle)
 
 
 @contextmanager
@@ -54,9 +96,7 @@ def one_at_a_time(path: str | os.PathLike[str]) -> Iterator[None]:
     The lock goes with the process, so a killed one leaves none.  Where the platform has no ``flock`` (Windows)
     nothing is locked.
     """
-    try:
-        import fcntl
-    except ImportError:
+    if fcntl is None:
         yield
         return
     with open(path, "w", encoding="utf-8") as file:

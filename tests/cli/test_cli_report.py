@@ -1,15 +1,15 @@
 import pytest
 
-from evenroad.research.report import contents
+from evenroad.research.report import page
 from evenroad.research.report.figures.canvas import new_figure
 from tests.research.report.stores import made_up, solved, task, write_store
 
 
 @pytest.fixture(autouse=True)
 def _without_pictures(monkeypatch):
-    monkeypatch.setattr(contents, "draw_curves", lambda cells, title: new_figure(1, 1))
-    monkeypatch.setattr(contents, "draw_scene", lambda problem: new_figure(1, 1))
-    monkeypatch.setattr(contents, "draw_point_sets", lambda: new_figure(1, 1))
+    monkeypatch.setattr(page, "draw_curves", lambda cells, title: new_figure(1, 1))
+    monkeypatch.setattr(page, "draw_scene", lambda problem: new_figure(1, 1))
+    monkeypatch.setattr(page, "draw_point_sets", lambda: new_figure(1, 1))
 
 
 def test_a_report_is_written_and_summed_up_within_100_columns(run, tmp_path):
@@ -39,6 +39,27 @@ def test_the_fair_suite_is_summed_up_by_sampler(run, tmp_path):
     assert "+0.0" in out
 
 
+@pytest.mark.parametrize("width", [80, 100, 200])
+def test_every_row_stays_on_its_line(run, tmp_path, monkeypatch, width):
+    monkeypatch.setenv("COLUMNS", str(width))
+    rates = {"uniform": (0.0, 0.1, 0.5), "halton paper-blocks": (0.5, 0.95, 1.0)}
+    rows = made_up("corridor-10d-0.495", rates=rates, counts=(1024, 2048, 4096), rule="radius* gamma=638")
+    rows += [
+        (task("fair-balls-3d-50", sampler, 256, each, instance=each, rule=f"k={k} symmetrised"), solved())
+        for sampler in ("uniform", "korobov")
+        for k in (4, 6, 10, 20)
+        for each in range(12)
+    ]
+    write_store(tmp_path / "results.db", rows)
+    _, out, _ = run("report", "results.db", "-o", "out")
+    lines = [line.rstrip() for line in out.splitlines()]
+    assert max(map(len, lines)) <= min(width, 100)
+    (row,) = [line for line in lines if line.startswith("corridor-10d-0.495")]
+    assert row.endswith(": halton paper-blocks")
+    assert ("240" in row.split()) == (width >= 100)
+    assert "Fair suite, k=4, 6, 10, 20 symmetrised: success minus uniform's [points]" in lines
+
+
 def test_rows_that_wait_for_the_store_are_named(run, tmp_path):
     store = tmp_path / "results.db"
     write_store(store, made_up("maze-1", runs=3))
@@ -62,6 +83,7 @@ def test_only_some_problems_may_be_asked_for(run, tmp_path):
         (("empty.db", "-o", "out"), "no rows"),
         (("text.db", "-o", "out"), "text.db"),
         (("results.db", "-o", "no/such/folder"), "no/such does not exist"),
+        (("results.db", "-o", "out", "--only", "m" * 5000), "unknown problem in results.db: 'mmm"),
         (
             ("results.db", "-o", "out", "--only", "maze-7"),
             "unknown problem in results.db: 'maze-7'; known: maze-1",
@@ -78,3 +100,4 @@ def test_bad_input_is_one_line_and_exit_code_2(run, tmp_path, arguments, text):
     assert (code, out) == (2, "")
     assert text in err
     assert len(err.splitlines()) == 1
+    assert len(err) < 300

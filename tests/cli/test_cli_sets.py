@@ -237,6 +237,53 @@ def test_bad_requests_to_train_leave_no_folder(run, tmp_path, arguments, says):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("--objective", "x" * 5000),
+        ("--objective", "hickernell+" * 500),
+        ("--objective", "(" * 5000),
+        ("--objective", "1" * 5000 + "*riesz"),
+        ("--method", "mpmc", "--device", "cuda:" + "9" * 5000),
+        ("--method", "mpmc", "--device", "x" * 5000),
+    ],
+)
+def test_an_error_repeats_a_little_of_what_was_asked_for(run, arguments):
+    code, out, err = run("train", "-n", 8, "-d", 2, "-o", "sets", *arguments)
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert len(err) < 400
+
+
+def test_a_request_that_was_written_by_hand_is_repeated_in_short(run, tmp_path):
+    line = ("train", "-n", 8, "-d", 2, "--jobs", 1, "--sets", 1, "--steps", 5, "-o", "sets")
+    (tmp_path / "sets").mkdir()
+    (tmp_path / "sets" / "request.json").write_text(json.dumps({"n": "8" * 5000}))
+    code, _, err = run(*line)
+    assert code == 2
+    assert "holds sets with n=" in err
+    assert len(err) < 400
+
+
+KILLED_WHILE_SAVING = """
+import os, signal, sys
+from evenroad.cli import main
+os.replace = lambda *names: os.kill(os.getpid(), signal.SIGKILL)
+main(sys.argv[1:])
+"""
+
+
+def test_what_a_killed_training_was_writing_is_removed_by_the_next_one(run, tmp_path):
+    line = [
+        str(each)
+        for each in ("train", "-n", 8, "-d", 2, "--jobs", 1, "--sets", 1, "--steps", 5, "-o", "sets")
+    ]
+    killed = subprocess.run([sys.executable, "-c", KILLED_WHILE_SAVING, *line], check=False, timeout=120)
+    assert killed.returncode == -signal.SIGKILL
+    assert [path.name.startswith(".evenroad-") for path in (tmp_path / "sets").iterdir()] == [True]
+    assert run(*line)[0] == 0
+    assert sorted(path.name for path in (tmp_path / "sets").iterdir()) == ["request.json", "set-0000.npz"]
+
+
 def test_a_folder_of_another_seed_is_refused_by_the_name_of_the_option(run):
     line = ("train", "-n", 8, "-d", 2, "--jobs", 1, "--sets", 1, "--steps", 5, "-o", "sets", "--seed")
     assert run(*line, 0)[0] == 0
@@ -266,7 +313,7 @@ def test_refined_sets_are_kept_one_by_one_and_read_back(run, tmp_path, monkeypat
     assert load_points(tmp_path / "sets" / "refined-0001.npz").origin.replica == 1
     code, _, err = run(*MPMC, "--steps", 3, "--refine", 21)
     assert code == 2
-    assert "refined otherwise" in err
+    assert "steps=20, asked for steps=21; use another folder (what there is: refined.json)" in err
 
 
 INTERRUPTED_INSIDE_STEP_5 = """

@@ -1,12 +1,16 @@
 import json
 import os
+import signal
+import subprocess
+import sys
 import threading
 import time
 
 import numpy as np
 import pytest
 
-from evenroad._files import atomic_write, one_at_a_time, require_writable_folder
+from evenroad import _files
+from evenroad._files import atomic_write, one_at_a_time, remove_abandoned_parts, require_writable_folder
 from evenroad.errors import BrokenFile
 from evenroad.io import plan_record, save_json, save_path_csv
 from evenroad.points import draw
@@ -38,6 +42,55 @@ def test_an_error_while_writing_leaves_the_old_file_and_no_litter(tmp_path, erro
         stopped_half_way()
     assert path.read_text() == "old"
     assert list(tmp_path.iterdir()) == [path]
+
+
+KILLED_WHILE_WRITING = """
+import os, signal
+from evenroad._files import atomic_write
+with atomic_write("a.txt") as file:
+    file.write(b"half")
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_a_killed_writers_file_is_removed_and_a_living_ones_stays(tmp_path):
+    killed = subprocess.run([sys.executable, "-c", KILLED_WHILE_WRITING], cwd=tmp_path, check=False)
+    assert killed.returncode == -signal.SIGKILL
+    assert len(list(tmp_path.glob(".evenroad-*.part"))) == 1
+    with atomic_write(tmp_path / "b.txt") as file:
+        file.write(b"whole")
+        remove_abandoned_parts(tmp_path)
+        assert len(list(tmp_path.glob(".evenroad-*.part"))) == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["b.txt"]
+
+
+def test_a_finished_file_is_nobodys_prey_on_its_way_to_its_place(tmp_path, monkeypatch):
+    replace = os.replace
+
+    def replace_after_a_cleaning(source, target):
+        remove_abandoned_parts(tmp_path)
+        replace(source, target)
+
+    monkeypatch.setattr(os, "replace", replace_after_a_cleaning)
+    with atomic_write(tmp_path / "a.txt") as file:
+        file.write(b"x")
+    assert (tmp_path / "a.txt").read_bytes() == b"x"
+
+
+def test_a_file_that_is_taken_for_an_abandoned_one_before_its_lock_is_made_again(tmp_path, monkeypatch):
+    make, made = _files.tempfile.mkstemp, []
+
+    def make_and_lose_the_first(**options):
+        made.append(make(**options))
+        if len(made) == 1:
+            remove_abandoned_parts(tmp_path)
+        return made[-1]
+
+    monkeypatch.setattr(_files.tempfile, "mkstemp", make_and_lose_the_first)
+    with atomic_write(tmp_path / "a.txt") as file:
+        file.write(b"x")
+    assert len(made) == 2
+    assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
 
 
 def test_files_are_readable_as_the_umask_says(tmp_path):

@@ -13,7 +13,7 @@ from evenroad.research.bench.rows import Rows
 from evenroad.research.bench.samplers import SAMPLERS
 from evenroad.research.bench.task import Task
 from evenroad.research.problems import PROBLEMS
-from evenroad.research.report.failures import failures_of
+from evenroad.research.report.analysis import failures_of
 from evenroad.research.suites import SUITES, Suite
 
 HEADINGS = {

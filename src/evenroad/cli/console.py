@@ -16,6 +16,22 @@ class _Output(Console):
 
 
 def print_table(table: Table) -> None:
-    """Print a table on standard output, within the terminal and 100 columns."""
-    console = _Output(highlight=False)
-    console.print(table, width=min(WIDTH, console.width))
+    """Print a table on standard output, within the terminal and 100 columns.
+
+    Texts are printed as they are: neither ``[ms]`` nor ``:key:`` in a name is a command to the terminal.
+    A title may be wider than its table.
+    """
+    console = _console()
+    title, table.title = table.title, None
+    if title:
+        console.print(title, style="table.title", width=table_width())
+    console.print(table, width=table_width())
+
+
+def table_width() -> int:
+    """Return how many columns a table may take here."""
+    return min(WIDTH, _console().width)
+
+
+def _console() -> Console:
+    return _Output(highlight=False, markup=False, emoji=False)

@@ -32,7 +32,7 @@ def progress_bar(title: str) -> Iterator[Advance]:
         yield LineProgress(title, lambda line: print(line, file=sys.stderr, flush=True))
         return
     columns = (
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
         TextColumn("{task.percentage:3.0f} %{task.fields[value]}"),
         TimeElapsedColumn(),

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from rich.table import Table
-from rich.text import Text
 
-from evenroad.cli.console import print_table
+from evenroad.cli.console import WIDTH, print_table, table_width
 from evenroad.research.report import Report
 from evenroad.research.report.analysis import Analysis
 from evenroad.research.report.comparisons import REFERENCES
-from evenroad.research.report.fair_names import is_fair, pooled_rules
+from evenroad.research.report.fair import is_fair, pooled_rules
 from evenroad.research.report.runs import Question
-from evenroad.research.report.sections.expected import verdict_counts
-from evenroad.research.report.text import difference
+from evenroad.research.report.sections.suites import verdict_counts
+from evenroad.research.report.tables import difference
 
 
 def print_report(report: Report) -> None:
@@ -32,21 +31,25 @@ def print_report(report: Report) -> None:
 
 
 def _needed_table(analysis: Analysis, questions: list[Question]) -> Table:
-    table = Table(title="Samples for 90 % success", title_justify="left", box=None, pad_edge=False)
+    # In a narrow terminal every row stays on its line, and the numbers of runs are left to the page.
+    shows_runs = table_width() >= WIDTH
+    table = Table(
+        title="Samples for 90 % success",
+        title_justify="left",
+        box=None,
+        pad_edge=False,
+        padding=(0, 1, 0, 0),
+    )
     for name in ("problem", "rule"):
         table.add_column(name, no_wrap=True)
-    for name in ("runs", *REFERENCES):
+    for name in ("runs",) * shows_runs + REFERENCES:
         table.add_column(name.replace(" ", "\n"), justify="right", no_wrap=True)
-    table.add_column("fewest")
+    table.add_column("fewest", no_wrap=True)
     for question in questions:
-        cells = analysis.cells_of(question)
-        needed = {sampler: analysis.needed.get((question, sampler)) for sampler in REFERENCES}
-        references = [
-            "–" if each is None or not each.has_interval else each.short for each in needed.values()
-        ]
-        runs = str(sum(cell.runs for cell in cells))
-        row = (question.problem, question.rule, runs, *references, _fewest(analysis, question))
-        table.add_row(*map(Text, row))
+        needed = [analysis.needed.get((question, sampler)) for sampler in REFERENCES]
+        short = ["–" if each is None or not each.has_interval else each.short for each in needed]
+        runs = [str(sum(cell.runs for cell in analysis.cells_of(question)))] * shows_runs
+        table.add_row(question.problem, question.rule, *runs, *short, _fewest(analysis, question))
     return table
 
 
@@ -77,6 +80,6 @@ def _fair_table(analysis: Analysis) -> Table:
     for name in ("worlds", "runs", "difference"):
         table.add_column(name, justify="right", no_wrap=True)
     for each in analysis.pooled["all"]:
-        change = difference(each.rate - each.reference_rate, each.interval)
-        table.add_row(*map(Text, (each.sampler, str(each.instances), str(each.pairs), change)))
+        change = difference(each.difference, each.interval)
+        table.add_row(each.sampler, str(each.instances), str(each.pairs), change)
     return table

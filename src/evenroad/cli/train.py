@@ -82,7 +82,7 @@ class Train:
         if self.jobs is not None:
             require_count("jobs", self.jobs)
         if self.method == "mpmc":
-            from evenroad.research.network.device import choose_device
+            from evenroad.research.network.config import choose_device
 
             self._config()
             choose_device(self.device or "auto")
@@ -121,32 +121,15 @@ class Train:
         )
 
     def _network(self, callback: Callback) -> tuple[PointSet, ...]:
+        from evenroad.points.optimise import SCHEDULE
         from evenroad.research.network import train
+        from evenroad.research.training.folder import claim_folder
 
         sets = train(self._config(), folder=self.out, callback=callback, device=self.device or "auto")
         if not self.refine:
             return sets
-        self._claim_refined()
+        claim_folder(self.out, {"steps": self.refine, "schedule": SCHEDULE}, "refined.json")
         return tuple(self._refined(i, points, callback) for i, points in enumerate(sets))
-
-    def _claim_refined(self) -> None:
-        """Write down how sets are refined, or refuse a folder whose refined sets were made otherwise."""
-        import json
-
-        from evenroad._files import atomic_write
-        from evenroad.errors import InvalidValue
-        from evenroad.points.optimise import SCHEDULE
-
-        path, request = self.out / "refined.json", {"steps": self.refine, "schedule": SCHEDULE}
-        text = json.dumps(request).encode()
-        if not path.exists():
-            with atomic_write(path) as file:
-                file.write(text)
-        elif path.read_bytes() != text:
-            raise InvalidValue(
-                f"{self.out} holds sets refined otherwise (see {path}), asked for {request};"
-                " move refined* away or use another folder"
-            )
 
     def _refined(self, i: int, points: PointSet, callback: Callback) -> PointSet:
         """Refine set i and save it at once, or read it where an earlier run did."""

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from evenroad.research.network.graph import edges_of_sets, nearest_edges, radius_edges
+from evenroad.research.network.model import edges_of_sets, nearest_edges, radius_edges
 
 
 def heard_by(edges, i):

@@ -4,7 +4,7 @@ import torch
 
 from evenroad.errors import InvalidValue
 from evenroad.points.optimise import parse_objective
-from evenroad.research.network.loss import objective_of_sets
+from evenroad.research.network.model import objective_of_sets
 
 
 def torch_hickernell(points):

@@ -3,9 +3,13 @@ import pytest
 import torch
 
 from evenroad.research.network import NetworkConfig
-from evenroad.research.network.graph import edges_of_sets
-from evenroad.research.network.layer import instance_norm
-from evenroad.research.network.model import PointNetwork, build_network, draw_weights
+from evenroad.research.network.model import (
+    PointNetwork,
+    build_network,
+    draw_weights,
+    edges_of_sets,
+    instance_norm,
+)
 
 
 def network_for(d=2, width=8, layers=2, seed=0):

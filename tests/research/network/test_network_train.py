@@ -15,7 +15,7 @@ from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 from evenroad.points import load_points
 from evenroad.points.optimise import parse_objective
 from evenroad.research.network import NetworkConfig, train
-from evenroad.research.network.device import choose_device
+from evenroad.research.network.config import choose_device
 from evenroad.research.network.state import TrainingState, advance, first_state, is_finished, learning_rate
 from evenroad.research.training import anneal_many
 

@@ -7,17 +7,13 @@ import pytest
 
 from evenroad.research.bench.store import read_rows
 from evenroad.research.bench.task import Outcome
-from evenroad.research.report import groups
-from evenroad.research.report.analysis import analyse
+from evenroad.research.report import runs as module
+from evenroad.research.report.analysis import analyse, needed_of
 from evenroad.research.report.cells import cells_of
 from evenroad.research.report.comparisons import comparisons_of
-from evenroad.research.report.expected import load_expected
-from evenroad.research.report.fair import pooled
-from evenroad.research.report.fair_names import difficulty_of, dimension_of, generator_of
-from evenroad.research.report.groups import combined, first_rows, sums_by_unit
-from evenroad.research.report.needed import needed_of
-from evenroad.research.report.runs import natural_key
-from evenroad.research.report.verdicts import verdicts_of
+from evenroad.research.report.fair import difficulty_of, dimension_of, generator_of, pooled
+from evenroad.research.report.runs import combined, first_rows, natural_key, sums_by_unit
+from evenroad.research.report.verdicts import load_expected, verdicts_of
 from evenroad.research.statistics import bonett_price, fisher_exact, holm, mcnemar_exact, wilson
 from tests.research.report.stores import made_up, runs_from, solved, task, write_store
 
@@ -351,7 +347,7 @@ def test_codes_of_very_large_numbers_do_not_overflow():
 def test_codes_are_the_same_by_table_and_by_sorting(monkeypatch):
     columns = np.random.default_rng(0).integers(-5, 40, size=(3, 500))
     by_table = combined(*columns)
-    monkeypatch.setattr(groups, "TABLE_LIMIT", 0)
+    monkeypatch.setattr(module, "TABLE_LIMIT", 0)
     assert np.array_equal(combined(*columns), by_table)
     assert np.array_equal(first_rows(by_table), np.unique(by_table, return_index=True)[1])
 

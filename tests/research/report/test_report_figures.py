@@ -7,13 +7,14 @@ from evenroad.errors import NotAvailable
 from evenroad.research.bench.samplers import SAMPLERS
 from evenroad.research.report.cells import cells_of
 from evenroad.research.report.fair import pooled
-from evenroad.research.report.figures.canvas import as_png
-from evenroad.research.report.figures.curves import draw_curves
-from evenroad.research.report.figures.fair_gains import draw_fair_gains
-from evenroad.research.report.figures.found_path import poses_along
-from evenroad.research.report.figures.maze_success import draw_maze_success, maze_questions
-from evenroad.research.report.figures.scenes import draw_scene, scenes_among
-from evenroad.research.report.palette import LOOKS
+from evenroad.research.report.figures.canvas import LOOKS, as_png
+from evenroad.research.report.figures.charts import (
+    draw_curves,
+    draw_fair_gains,
+    draw_maze_success,
+    maze_questions,
+)
+from evenroad.research.report.figures.scenes import draw_scene, poses_along, scenes_among
 from evenroad.space import Box
 from tests.research.report.stores import made_up, runs_from
 

@@ -11,7 +11,8 @@ import pytest
 
 from evenroad.errors import BrokenFile, NotAvailable, UnknownName
 from evenroad.research.bench.task import Outcome
-from evenroad.research.report import contents, write_report
+from evenroad.research.report import page as module
+from evenroad.research.report import write_report
 from evenroad.research.report.figures.canvas import new_figure
 from tests.research.report.stores import made_up, solved, task, write_store
 
@@ -167,9 +168,9 @@ def test_the_same_store_gives_the_same_bytes(store, report, tmp_path):
 @pytest.fixture
 def _without_pictures(monkeypatch):
     """Pictures are most of the time, and not what these tests look at."""
-    monkeypatch.setattr(contents, "draw_curves", lambda cells, title: new_figure(1, 1))
-    monkeypatch.setattr(contents, "draw_scene", lambda problem: new_figure(1, 1))
-    monkeypatch.setattr(contents, "draw_point_sets", lambda: new_figure(1, 1))
+    monkeypatch.setattr(module, "draw_curves", lambda cells, title: new_figure(1, 1))
+    monkeypatch.setattr(module, "draw_scene", lambda problem: new_figure(1, 1))
+    monkeypatch.setattr(module, "draw_point_sets", lambda: new_figure(1, 1))
 
 
 @pytest.mark.usefixtures("_without_pictures")

@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 
-from evenroad.research.report.fair import pooled
-from evenroad.research.report.fair_names import pooled_rules
-from evenroad.research.report.lazy import lazy_checks
+from evenroad.research.report.fair import lazy_checks, pooled, pooled_rules
 from evenroad.research.report.runs import Question
-from evenroad.research.report.sections.fair import lazy_table
+from evenroad.research.report.sections.suites import lazy_table
 from tests.research.report.stores import runs_from, solved, task
 
 RULES = ("k=4 symmetrised", "k=20 symmetrised")

@@ -8,10 +8,8 @@ import pytest
 from evenroad.research.report.cells import cells_of
 from evenroad.research.report.comparisons import comparisons_of
 from evenroad.research.report.fair import pooled
-from evenroad.research.report.sections.expected import expected_table
-from evenroad.research.report.sections.paired import paired_tables
-from evenroad.research.report.sections.sets import spread_table
-from evenroad.research.report.sections.success import success_table
+from evenroad.research.report.sections.questions import paired_tables, spread_table, success_table
+from evenroad.research.report.sections.suites import expected_table
 from evenroad.research.statistics import mcnemar_exact, sign_flip_test, student_interval, student_test, wilson
 from tests.research.report.stores import analysis_from, from_pool, runs_from, solved, task
 
@@ -69,7 +67,7 @@ def test_the_page_says_which_runs_are_independent_given_the_pool_only(tmp_path):
     problem = "hypercube-legacy6"
     analysis = analysis_from(tmp_path / "a.db", _uniform(problem) + from_pool(problem, "mpmc", 128, EASY))
     question = analysis.runs.questions[0]
-    said = "mpmc: given the pool's sets; coordinates permuted anew in every run."
+    said = "mpmc: the intervals hold for the sets of the pool; every run permutes the coordinates of one of them."
     assert said in success_table(analysis, question, "name").notes
     assert said in paired_tables(analysis, question, "name")[0].notes
     (row,) = spread_table(analysis, question, "name").rows

@@ -14,5 +14,5 @@ except ImportError as error:
     ) from error
 
 from evenroad.research.network.config import NetworkConfig as NetworkConfig
-from evenroad.research.network.refine import refine as refine
+from evenroad.research.network.train import refine as refine
 from evenroad.research.network.train import train as train

@@ -1,16 +1,139 @@
-"""The network: encoder, message-passing layers, decoder, and back into the cube."""
+"""The network: a graph of neighbours, message-passing layers between encoder and decoder, the loss."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import torch
+from scipy.spatial import cKDTree
 from torch import nn
+from torch.autograd.function import once_differentiable
+from torch.nn import functional
 
+from evenroad.errors import InvalidValue
+from evenroad.points.measures.l2 import Array
+from evenroad.points.optimise.objective import Objective, objective_of_columns
 from evenroad.points.pointset import BELOW_ONE
 from evenroad.research.network.config import NetworkConfig
-from evenroad.research.network.layer import MessageLayer
+
+Indices = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Edges:
+    """Messages of a graph: message e goes from point ``sender[e]`` to point ``receiver[e]``.
+
+    Attributes
+    ----------
+    sender, receiver : ndarray of int64, shape (m,)
+        Sorted by receiver.
+    """
+
+    sender: Indices
+    receiver: Indices
+
+
+def nearest_edges(points: Array, k: int) -> Edges:
+    """Let every point of (n, d) hear of its k nearest others, or of all others where n <= k."""
+    n = len(points)
+    k = min(k, n - 1)
+    _, found = cKDTree(points).query(points, k=k + 1)
+    found = found.reshape(n, k + 1)
+    other = found != np.arange(n)[:, np.newaxis]
+    # Where more than k others lie at distance 0, a point may be missing among its own nearest ones.
+    other[other.all(axis=1), -1] = False
+    return Edges(found[other].astype(np.int64), np.repeat(np.arange(n), k))
+
+
+def radius_edges(points: Array, radius: float) -> Edges:
+    """Let every point of (n, d) hear of all points at most `radius` away, itself included."""
+    lists = cKDTree(points).query_ball_point(points, radius, return_sorted=True)
+    found = [np.array(each, dtype=np.int64) for each in lists]
+    degrees = [len(each) for each in found]
+    return Edges(np.concatenate(found), np.repeat(np.arange(len(points)), degrees))
+
+
+def edges_of_sets(sets: Array, k: int, radius: float | None) -> Edges:
+    """Build the graph of every set of (s, n, d); point i of set t has the number t n + i.
+
+    Parameters
+    ----------
+    sets : ndarray, shape (s, n, d)
+        Starting points, n >= 2.
+    k : int
+        Nearest neighbours, if there is no radius.
+    radius : float or None
+        Distance within which all are neighbours.
+    """
+    n = sets.shape[1]
+    graphs = [nearest_edges(each, k) if radius is None else radius_edges(each, radius) for each in sets]
+    return Edges(
+        np.concatenate([graph.sender + t * n for t, graph in enumerate(graphs)]),
+        np.concatenate([graph.receiver + t * n for t, graph in enumerate(graphs)]),
+    )
+
+
+NORM_FLOOR = 1e-5
+"""Added to a variance before its root is divided by."""
+
+
+class MessageLayer(nn.Module):
+    """Rewrite the description of every point from its own and its neighbours' (Rusch et al. 2024).
+
+        m_i  = sum over neighbours j of message(x_i, x_j)
+        x_i' = instance_norm(relu(update(x_i, m_i)))
+
+    Both `message` and `update` are linear -> ReLU -> linear on the two arguments side by side.
+
+    Parameters
+    ----------
+    width : int
+        Numbers that describe a point.
+    """
+
+    def __init__(self, width: int) -> None:
+        super().__init__()
+        self.message_in = nn.utils.skip_init(nn.Linear, 2 * width, width)
+        self.message_out = nn.utils.skip_init(nn.Linear, width, width)
+        self.update_in = nn.utils.skip_init(nn.Linear, 2 * width, width)
+        self.update_out = nn.utils.skip_init(nn.Linear, width, width)
+
+    def forward(
+        self, points: torch.Tensor, sender: torch.Tensor, receiver: torch.Tensor, n: int
+    ) -> torch.Tensor:
+        """Return the new descriptions of the points of several sets of n, shape (sets * n, width)."""
+        update = functional.relu(
+            self.update_in(torch.cat([points, self.heard(points, sender, receiver)], dim=1))
+        )
+        return instance_norm(functional.relu(self.update_out(update)), n)
+
+    def heard(self, points: torch.Tensor, sender: torch.Tensor, receiver: torch.Tensor) -> torch.Tensor:
+        """Return the sum of the messages that every point gets, shape (sets * n, width).
+
+        Only the ReLU between the two linear maps of a message is done edge by edge: the first map is a sum of
+        one map of x_i and one of x_j, and the second may follow the sum over j.  All products with matrices so
+        cost as many as there are points, not edges.
+        """
+        width = points.shape[1]
+        own = functional.linear(points, self.message_in.weight[:, :width], self.message_in.bias)
+        theirs = functional.linear(points, self.message_in.weight[:, width:])
+        # In place: these are the largest tensors of a training, a row an edge.
+        hidden = own.index_select(0, receiver).add_(theirs.index_select(0, sender)).relu_()
+        summed = torch.zeros_like(own).index_add(0, receiver, hidden)
+        messages = torch.bincount(receiver, minlength=len(points)).to(points.dtype)
+        return functional.linear(summed, self.message_out.weight) + messages[:, None] * self.message_out.bias
+
+
+def instance_norm(points: torch.Tensor, n: int) -> torch.Tensor:
+    """Give every number of the descriptions mean 0 and variance 1 over the n points of its set."""
+    sets = points.view(-1, n, points.shape[1])
+    centred = sets - sets.mean(dim=1, keepdim=True)
+    scale = torch.rsqrt(centred.square().mean(dim=1, keepdim=True) + NORM_FLOOR)
+    return (centred * scale).view(points.shape)
 
 
 class PointNetwork(nn.Module):
@@ -77,3 +200,54 @@ def draw_weights(network: PointNetwork, draws: np.random.Generator) -> None:
                 for parameter in (module.weight, module.bias):
                     drawn = draws.uniform(-bound, bound, tuple(parameter.shape))
                     parameter.copy_(torch.from_numpy(drawn))
+
+
+def objective_of_sets(points: torch.Tensor, objective: Objective) -> torch.Tensor:
+    """Return the objective of every set, differentiable once.
+
+    Parameters
+    ----------
+    points : Tensor of float64, shape (sets, n, d)
+        In [0, 1), on any device.
+    objective : Objective
+        Any that ``points.optimise`` knows.
+
+    Returns
+    -------
+    Tensor of float64, shape (sets,)
+        On the device of the points.
+
+    Raises
+    ------
+    InvalidValue
+        If a point, a value or a gradient is not finite: the training has diverged.
+    """
+    return _ObjectiveOfSets.apply(points, objective)
+
+
+class _ObjectiveOfSets(torch.autograd.Function):
+    """The bridge: the gradient comes with the value, so it is computed forward and kept for backward."""
+
+    @staticmethod
+    def forward(ctx: Any, points: torch.Tensor, objective: Objective) -> torch.Tensor:
+        given = points.detach().cpu().numpy()
+        _require_finite("the network's points", given)  # before the kernels: their fastmath knows no NaN
+        values, gradient = np.empty(len(given)), np.empty_like(given)
+        for index, each in enumerate(given):
+            values[index], by_columns = objective_of_columns(objective, np.ascontiguousarray(each.T))
+            gradient[index] = by_columns.T
+        _require_finite(f"the objective '{objective}'", values)
+        _require_finite(f"the gradient of '{objective}'", gradient)
+        ctx.save_for_backward(torch.from_numpy(gradient).to(points.device))
+        return torch.from_numpy(values).to(points.device)
+
+    @staticmethod
+    @once_differentiable
+    def backward(ctx: Any, slope: torch.Tensor) -> tuple[torch.Tensor, None]:
+        (gradient,) = ctx.saved_tensors
+        return slope[:, None, None] * gradient, None
+
+
+def _require_finite(what: str, values: np.ndarray) -> None:
+    if not np.isfinite(values).all():
+        raise InvalidValue(f"{what} became infinite or NaN: the training diverged; use a smaller rate")

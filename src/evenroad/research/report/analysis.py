@@ -2,24 +2,118 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._rng import generator
 from evenroad.research.bench.rows import Rows
 from evenroad.research.report.cells import Cell, cells_of
 from evenroad.research.report.comparisons import Comparison, comparisons_of
-from evenroad.research.report.expected import SOURCES, ExpectedTable, load_expected
-from evenroad.research.report.failures import Failure, failures_of
-from evenroad.research.report.fair import Pooled, pooled
-from evenroad.research.report.lazy import LazyChecks, lazy_checks
-from evenroad.research.report.needed import needed_of
+from evenroad.research.report.fair import LazyChecks, Pooled, lazy_checks, pooled
 from evenroad.research.report.runs import Question, Runs, runs_of
-from evenroad.research.report.verdicts import Verdict, verdicts_of
-from evenroad.research.statistics import SamplesNeeded
+from evenroad.research.report.verdicts import SOURCES, ExpectedTable, Verdict, load_expected, verdicts_of
+from evenroad.research.statistics import FEW_UNITS, SamplesNeeded, resampled_ratios, samples_needed
+from evenroad.research.statistics.bootstrap import DRAWS
+
+TARGET = 0.9
+"""Success rate that the samples needed are asked for."""
+
+Rates = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Runs of one problem, sampler and rule that failed alike."""
+
+    problem: str
+    sampler: str
+    rule: str
+    status: str
+    message: str
+    runs: int
+
+
+def failures_of(rows: Rows) -> tuple[Failure, ...]:
+    """Count the failures by kind; the most frequent kind comes first."""
+    counted: Counter[tuple[str, str, str, str, str]] = Counter()
+    for row in np.flatnonzero(~rows.answered).tolist():
+        last_line = (rows.error[row].strip().splitlines() or [""])[-1].strip()
+        counted[rows.problem[row], rows.sampler[row], rows.rule[row], rows.status[row], last_line] += 1
+    found = [Failure(*key, runs) for key, runs in counted.items()]
+    return tuple(sorted(found, key=lambda each: (-each.runs, each.problem, each.sampler, each.message)))
+
+
+def needed_of(cells: Sequence[Cell]) -> dict[tuple[Question, str], SamplesNeeded]:
+    """Return for every question and sampler the number of samples at which 90 % of the runs succeed.
+
+    It has an interval if every cell of the curve has at least 10 units.
+    """
+    curves: dict[Question, dict[str, list[Cell]]] = {}
+    for cell in cells:
+        curves.setdefault(cell.question, {}).setdefault(cell.sampler, []).append(cell)
+    found = {}
+    for question, of_sampler in curves.items():
+        sure = [curve for curve in of_sampler.values() if _has_enough(curve)]
+        resampled = iter(resampled_curves(sure))
+        for sampler, curve in of_sampler.items():
+            found[question, sampler] = _needed(curve, next(resampled) if _has_enough(curve) else None)
+    return found
+
+
+def _has_enough(curve: Sequence[Cell]) -> bool:
+    return min(len(cell.units) for cell in curve) >= FEW_UNITS
+
+
+def _needed(curve: Sequence[Cell], resampled: Rates | None) -> SamplesNeeded:
+    rates, runs = [cell.rate for cell in curve], [cell.runs for cell in curve]
+    return samples_needed([cell.n for cell in curve], rates, resampled, runs, target=TARGET)
+
+
+def resampled_curves(curves: Sequence[Sequence[Cell]]) -> list[Rates]:
+    """Return bootstrap resamples of the success rates of each curve, shape (draws, cells of the curve).
+
+    A unit is resampled for all numbers of samples together, since its results at different numbers are related: one
+    generator draws all sets of a run, and the first points of a larger set may be the smaller set.  If all units of a
+    cell have the same result a bootstrap has no width; there, rates are drawn from Jeffreys' posterior, a beta
+    distribution, with one run for each unit.
+    """
+    alike: dict[bytes, list[int]] = {}
+    for place, curve in enumerate(curves):
+        labels = np.unique(np.concatenate([cell.units.unit for cell in curve]))
+        alike.setdefault(labels.tobytes(), []).append(place)
+    found: list[Rates] = [np.empty((0, 0))] * len(curves)
+    for places in alike.values():
+        # Curves with the same units are resampled together: much faster, with the same result.
+        rates = _resampled([cell for place in places for cell in curves[place]])
+        ends = np.cumsum([len(curves[place]) for place in places])
+        for place, part in zip(places, np.split(rates, ends[:-1], axis=1), strict=True):
+            found[place] = part
+    return found
+
+
+def _resampled(cells: Sequence[Cell]) -> Rates:
+    labels, place = np.unique(np.concatenate([cell.units.unit for cell in cells]), return_inverse=True)
+    column = np.repeat(np.arange(len(cells)), [len(cell.units) for cell in cells])
+    solved, runs = np.zeros((2, len(labels), len(cells)))
+    solved[place, column] = np.concatenate([cell.units.solved for cell in cells])
+    runs[place, column] = np.concatenate([cell.units.runs for cell in cells])
+    rates = resampled_ratios(solved, runs)
+    for number, cell in enumerate(cells):
+        shares = cell.units.solved / cell.units.runs
+        if np.all(shares == shares[0]):
+            units, yes = len(shares), len(shares) * float(shares[0])
+            # Seeded by the number of samples, so that two cells of one curve do not go in step.
+            rates[:, number] = generator(cell.n).beta(yes + 0.5, units - yes + 0.5, size=DRAWS)
+    return rates
 
 
 @dataclass(frozen=True)
 class Analysis:
-    """What was found in a store.
+    """All results of a store.
 
     Attributes
     ----------
@@ -29,7 +123,7 @@ class Analysis:
     comparisons : tuple of Comparison
     needed : dict of (Question, sampler) to SamplesNeeded
     verdicts : dict of source name to (ExpectedTable, tuple of Verdict)
-        Of the sources that have at least one problem in common with the store.
+        Of the sources with a cell that the store has runs for.
     pooled : dict of grouping to tuple of Pooled
         Empty without a fair suite.
     lazy : tuple of LazyChecks

@@ -8,11 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from evenroad.research.report.cells import Cell, cell_codes
-from evenroad.research.report.groups import Ints, UnitSums, sums_by_unit
-from evenroad.research.report.pairs import differences_from, pair_codes
-from evenroad.research.report.runs import Question, Runs
-from evenroad.research.report.units import grouping_of
+from evenroad.research.report.cells import Cell, cell_codes, grouping_of
+from evenroad.research.report.runs import Floats, Ints, Mask, Question, Runs, UnitSums, combined, sums_by_unit
 from evenroad.research.statistics import (
     Interval,
     bonett_price,
@@ -31,7 +28,32 @@ REFERENCES = ("uniform", "halton scrambled")
 SIGNIFICANT = 0.05
 """Corrected p-value below which a difference is marked."""
 FEW_TO_TEST = 6
-"""With fewer units than this no choice of signs has a p-value below .05, and a pool of so few sets says as little."""
+"""Smallest number of units that is tested: with fewer, no choice of signs has a p-value below .05."""
+
+
+def pair_codes(runs: Runs) -> Ints:
+    """Return a code for every run; the same run of another sampler has the same code."""
+    return combined(runs.question, runs.n, runs.instance, runs.run, runs.seed)
+
+
+def differences_from(runs: Runs, pair: Ints, reference: str) -> tuple[Mask, Ints]:
+    """Compare every run with the same run of the reference sampler.
+
+    Returns
+    -------
+    paired : ndarray of bool, shape (rows,)
+        Whether there is such a run; False for runs of the reference itself.
+    difference : ndarray of int, shape (rows,)
+        1 if only this run is solved, -1 if only the reference's is, else 0; meaningless where not paired.
+    """
+    solved = runs.solved.astype(np.int64)
+    if reference not in runs.samplers:
+        return np.zeros(len(runs), dtype=bool), np.zeros(len(runs), dtype=np.int64)
+    of_reference = runs.sampler == runs.samplers.index(reference)
+    counterpart = np.full(int(pair.max()) + 1, -1)
+    counterpart[pair[of_reference]] = solved[of_reference]
+    theirs = counterpart[pair]
+    return (theirs >= 0) & ~of_reference, solved - theirs
 
 
 @dataclass(frozen=True)
@@ -48,13 +70,13 @@ class Comparison:
     interval : Interval
         Of the difference of success rates, cell minus reference.
     test : str
-        ``McNemar``; where pairs are not independent ``Fisher over sets`` or ``sign flips over instances`` (or blocks),
-        the latter followed by ``Student over sets`` where both were done and the larger p counts; ``too few sets to
-        test`` (or runs, ..) where there are fewer than six.
+        ``McNemar`` where runs are independent, else ``Fisher over sets``, ``sign flips over blocks`` or ``sign flips
+        over instances``.  ``sign flips over instances, Student over sets``: both were done, and the larger p counts.
+        ``too few sets to test`` (or runs, blocks, instances): there are fewer than six.
     p : float
-        NaN where nothing was tested.
+        NaN if it was not tested.
     p_corrected : float
-        By Holm's method over all comparisons of the question that were tested.
+        By Holm's method over all tested comparisons of the question.
     """
 
     cell: Cell
@@ -79,12 +101,12 @@ class Comparison:
 
     @property
     def is_tested(self) -> bool:
-        """Whether there were enough units for a test."""
+        """Whether there are enough units for a test."""
         return not math.isnan(self.p)
 
 
 def comparisons_of(runs: Runs, cells: Sequence[Cell]) -> tuple[Comparison, ...]:
-    """Compare every cell with every reference that has runs in common; Holm's correction question by question."""
+    """Compare every cell with every reference that has the same runs; p-values are corrected within a question."""
     if not len(runs):
         return ()
     cell = cell_codes(runs)
@@ -93,7 +115,7 @@ def comparisons_of(runs: Runs, cells: Sequence[Cell]) -> tuple[Comparison, ...]:
     pair = pair_codes(runs)
     found = []
     for place, reference in enumerate(REFERENCES):
-        # A reference against an earlier one has been said already, the other way round.
+        # A pair of references is compared once.
         left_out = REFERENCES[: place + 1]
         paired, difference = differences_from(runs, pair, reference)
         rows = np.flatnonzero(paired)
@@ -114,7 +136,17 @@ def comparisons_of(runs: Runs, cells: Sequence[Cell]) -> tuple[Comparison, ...]:
 def _compare(
     cell: Cell, reference: str, sums: UnitSums, c: int, solved: Ints, wins: int, losses: int
 ) -> Comparison:
-    """Compare by the units of a cell: their differences, and the runs that were `solved` in each."""
+    """Compare one cell.
+
+    Parameters
+    ----------
+    sums : UnitSums
+        Differences by unit; those of `cell` are in group `c`.
+    solved : ndarray of int, shape (units,)
+        Solved runs of each unit.
+    wins, losses : int
+        Pairs that only the cell, and only the reference, solved.
+    """
     differences, counts = sums.sums[sums.of(c)], sums.runs[sums.of(c)]
     pairs = int(counts.sum())
     kind = cell.units.kind
@@ -123,7 +155,7 @@ def _compare(
             interval = bonett_price(wins, losses, pairs)
             test, p = "McNemar", float(mcnemar_exact(wins, losses))
         case "sets":
-            # A pool draws its sets by other numbers than the reference its points: nothing is paired.
+            # The draw of a set has nothing to do with the reference's draw of points: runs are no pairs.
             of_pool = int(solved.sum())
             of_reference = of_pool - (wins - losses)
             over_sets = clustered_rate(solved, counts, kind)
@@ -138,7 +170,7 @@ def _compare(
 
 
 def _also_over_sets(compared: Comparison, by_set: UnitSums, c: int) -> Comparison:
-    """Return the comparison with the wider interval and the larger p of it and of Student's over sets."""
+    """Test over sets, too; return the comparison with the wider interval and the larger p of both tests."""
     entries = by_set.of(c)
     sums, pairs = by_set.sums[entries], by_set.runs[entries]
     p = max(compared.p, student_test(sums, pairs)) if compared.is_tested else math.nan
@@ -154,12 +186,16 @@ def _also_over_sets(compared: Comparison, by_set: UnitSums, c: int) -> Compariso
 def _corrected(found: list[Comparison]) -> tuple[Comparison, ...]:
     families: dict[Question, list[int]] = {}
     for place, each in enumerate(found):
-        if each.is_tested:
-            families.setdefault(each.cell.question, []).append(place)
-    corrected: dict[int, float] = {}
+        families.setdefault(each.cell.question, []).append(place)
+    values = np.empty(len(found))
     for family in families.values():
-        values = holm([found[place].p for place in family])
-        corrected.update(zip(family, values.tolist(), strict=True))
-    return tuple(
-        replace(each, p_corrected=corrected.get(place, math.nan)) for place, each in enumerate(found)
-    )
+        values[family] = holm_of_tested([found[place].p for place in family])
+    return tuple(replace(each, p_corrected=p) for each, p in zip(found, values.tolist(), strict=True))
+
+
+def holm_of_tested(p_values: Sequence[float]) -> Floats:
+    """Correct p-values by Holm's method; NaN means "not tested", does not count and stays."""
+    values = np.array(p_values, dtype=np.float64)
+    tested = ~np.isnan(values)
+    values[tested] = holm(values[tested])
+    return values

@@ -7,6 +7,8 @@ import io
 from collections.abc import Iterable, Sequence
 
 from evenroad.research.report.analysis import Analysis
+from evenroad.research.report.cells import Cell
+from evenroad.research.statistics import Interval
 
 PAPER_ADDS = 3
 """The paper's |V| is the valid milestones when the planner stopped, plus 3."""
@@ -17,8 +19,8 @@ STOPS_EARLY = "stock"
 def cells_csv(analysis: Analysis) -> bytes:
     """Return every cell.
 
-    `mean_paper_v` is the number of milestones as the paper counts them, of the search that stops early as its planner
-    does; `unit` is what is independent, `units` how many of them and `sets` how many sets of a pool there were.
+    `mean_paper_v` is the number of milestones as the paper counts them; only the search that stops as early as the
+    paper's planner has it.  `unit` names what is independent, `units` counts them, and `sets` the sets of a pool.
     """
     header = (
         "problem sampler n rule search runs solved success low high interval unit units sets mean_valid sd_valid"
@@ -27,28 +29,14 @@ def cells_csv(analysis: Analysis) -> bytes:
     )
     rows = []
     for cell in analysis.cells:
-        question, needed = cell.question, analysis.needed[cell.question, cell.sampler]
-        paper_v = (
-            (cell.mean_early + PAPER_ADDS, cell.sd_early) if question.search == STOPS_EARLY else ("", "")
-        )
-        rows.append(
-            (
-                *(question.problem, cell.sampler, cell.n, question.rule, question.search),
-                *(
-                    cell.runs,
-                    cell.solved,
-                    cell.rate,
-                    cell.interval.low,
-                    cell.interval.high,
-                    cell.interval.kind,
-                ),
-                *(cell.units.kind, len(cell.units), len(cell.sets)),
-                *(cell.mean_valid, cell.sd_valid, *paper_v),
-                *(cell.mean_edges, cell.mean_seconds, cell.failures),
-                *(needed.estimate, needed.low, needed.high),
-            )
-        )
-    return _csv(header.split(), rows)
+        needed = analysis.needed[cell.question, cell.sampler]
+        early = cell.question.search == STOPS_EARLY
+        paper_v = (cell.mean_early + PAPER_ADDS, cell.sd_early) if early else ("", "")
+        units = (cell.units.kind, len(cell.units), len(cell.sets))
+        means = (cell.mean_valid, cell.sd_valid, *paper_v, cell.mean_edges, cell.mean_seconds)
+        counted = (*_names(cell), cell.runs, cell.solved, cell.rate, *_fields(cell.interval), *units)
+        rows.append((*counted, *means, cell.failures, needed.estimate, needed.low, needed.high))
+    return _csv(header, rows)
 
 
 def comparisons_csv(analysis: Analysis) -> bytes:
@@ -59,22 +47,10 @@ def comparisons_csv(analysis: Analysis) -> bytes:
     )
     rows = []
     for each in analysis.comparisons:
-        question = each.cell.question
-        rows.append(
-            (
-                *(question.problem, each.cell.sampler, each.cell.n, question.rule, question.search),
-                *(each.reference, each.pairs, each.only_cell, each.only_reference, each.difference),
-                *(
-                    each.interval.low,
-                    each.interval.high,
-                    each.interval.kind,
-                    each.test,
-                    each.p,
-                    each.p_corrected,
-                ),
-            )
-        )
-    return _csv(header.split(), rows)
+        counts = (each.reference, each.pairs, each.only_cell, each.only_reference, each.difference)
+        tested = (*_fields(each.interval), each.test, each.p, each.p_corrected)
+        rows.append((*_names(each.cell), *counts, *tested))
+    return _csv(header, rows)
 
 
 def expected_csv(analysis: Analysis) -> bytes:
@@ -86,17 +62,13 @@ def expected_csv(analysis: Analysis) -> bytes:
     rows = []
     for name, (_, verdicts) in analysis.verdicts.items():
         for each in verdicts:
-            expected, ours = each.expected, each.ours
+            theirs, ours = each.expected, each.ours
+            names = (name, theirs.problem, theirs.sampler, theirs.n, theirs.rule)
             counted = ("", "", "") if ours is None else (ours.runs, ours.solved, ours.rate)
-            rows.append(
-                (
-                    *(name, expected.problem, expected.sampler, expected.n, expected.rule),
-                    *(expected.runs, expected.solved, expected.success / 100.0, *counted),
-                    *(each.p, each.p_corrected, each.word),
-                    *(expected.v_counts, expected.v_add, expected.v, each.our_v),
-                )
-            )
-    return _csv(header.split(), rows)
+            counts = (theirs.runs, theirs.solved, theirs.success / 100.0, *counted)
+            v = (theirs.v_counts, theirs.v_add, theirs.v, each.our_v)
+            rows.append((*names, *counts, each.p, each.p_corrected, each.word, *v))
+    return _csv(header, rows)
 
 
 def fair_csv(analysis: Analysis) -> bytes:
@@ -105,28 +77,27 @@ def fair_csv(analysis: Analysis) -> bytes:
         "pooled_by group sampler worlds pairs sets success uniform_success difference low high interval p"
         " p_corrected"
     )
-    rows = [
-        (
-            *(grouping, each.group, each.sampler, each.instances, each.pairs, each.sets),
-            *(
-                each.rate,
-                each.reference_rate,
-                each.rate - each.reference_rate,
-                each.interval.low,
-                each.interval.high,
-            ),
-            *(each.interval.kind, each.p, each.p_corrected),
-        )
-        for grouping, found in analysis.pooled.items()
-        for each in found
-    ]
-    return _csv(header.split(), rows)
+    rows = []
+    for grouping, found in analysis.pooled.items():
+        for each in found:
+            counts = (grouping, each.group, each.sampler, each.instances, each.pairs, each.sets)
+            rates = (each.rate, each.reference_rate, each.difference, *_fields(each.interval))
+            rows.append((*counts, *rates, each.p, each.p_corrected))
+    return _csv(header, rows)
 
 
-def _csv(header: Sequence[str], rows: Iterable[Sequence[object]]) -> bytes:
+def _names(cell: Cell) -> tuple[object, ...]:
+    return cell.question.problem, cell.sampler, cell.n, cell.question.rule, cell.question.search
+
+
+def _fields(interval: Interval) -> tuple[object, ...]:
+    return interval.low, interval.high, interval.kind
+
+
+def _csv(header: str, rows: Iterable[Sequence[object]]) -> bytes:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(header)
-    # NaN is "nothing to say", which CSV writes as nothing.
+    writer.writerow(header.split())
+    # NaN means that there is no number, which CSV writes as nothing.
     writer.writerows(["" if value is None or value != value else value for value in row] for row in rows)
     return text.getvalue().encode()

@@ -2,49 +2,110 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from evenroad.research.problems import PROBLEMS
-from evenroad.research.report.cells import cell_codes
-from evenroad.research.report.comparisons import SIGNIFICANT
-from evenroad.research.report.fair_names import BY_RULE, CONNECT, GROUPINGS, is_fair
-from evenroad.research.report.groups import Ints, combined, first_rows, sums_by_unit
-from evenroad.research.report.pairs import differences_from, pair_codes
-from evenroad.research.report.runs import Runs, natural_key
-from evenroad.research.report.units import grouping_of
+from evenroad.research.report.cells import cell_codes, grouping_of
+from evenroad.research.report.comparisons import SIGNIFICANT, differences_from, pair_codes
+from evenroad.research.report.runs import (
+    Ints,
+    Question,
+    Runs,
+    combined,
+    first_rows,
+    natural_key,
+    sums_by_unit,
+)
 from evenroad.research.statistics import (
     Interval,
     clustered_difference,
     holm,
+    percentile_interval,
+    resampled_ratios,
     sign_flip_test,
     student_interval,
     student_test,
 )
 
+PREFIX = "fair-"
+"""Begin of the names of the suite's problems."""
 REFERENCE = "uniform"
+CONNECT = "connect"
+"""The search whose runs are pooled."""
+LAZY = "lazy"
+"""The search that is compared with it by the motions that it checks."""
+BY_RULE = "rule"
+"""The grouping that pools every search."""
+
+
+def is_fair(question: Question) -> bool:
+    """Say whether a question belongs to the fair suite."""
+    return question.problem.startswith(PREFIX)
+
+
+def generator_of(problem: str) -> str:
+    """Return the name of a problem's generator: ``balls`` of ``fair-balls-5d-50``."""
+    parts = problem.removeprefix(PREFIX).split("-")
+    return "-".join(part for part in parts if not re.fullmatch(r"\d+d?", part)) or problem
+
+
+def dimension_of(problem: str) -> str:
+    """Return the dimension in a problem's name, ``5d``; the generator if there is none."""
+    found = re.search(r"-(\d+d)(?=-|$)", problem)
+    return found.group(1) if found else generator_of(problem)
+
+
+def difficulty_of(problem: str) -> str:
+    """Return the success that uniform points are to have, from the end of a problem's name: ``50 %``, or ``-``."""
+    found = re.search(r"-(\d+)$", problem)
+    return f"{found.group(1)} %" if found else "-"
+
+
+GROUPINGS: dict[str, Callable[[Question, int], str]] = {
+    "all": lambda question, n: "all",
+    "generator": lambda question, n: generator_of(question.problem),
+    "dimension": lambda question, n: dimension_of(question.problem),
+    "difficulty": lambda question, n: difficulty_of(question.problem),
+    "samples": lambda question, n: str(n),
+    BY_RULE: lambda question, n: f"{question.rule}, {question.search}",
+}
+"""What the fair suite is pooled by: name -> group of a question and a number of samples."""
+
+
+def pooled_rules(questions: Iterable[Question]) -> str:
+    """Return the connection rules that are pooled, in short: ``k=4, 6, 10, 20 symmetrised``."""
+    rules = {each.rule for each in questions if is_fair(each) and each.search == CONNECT}
+    names = sorted(rules, key=natural_key)
+    parts = [re.fullmatch(r"k=(\d+) (.+)", name) for name in names]
+    kinds = {part.group(2) if part else "" for part in parts}
+    if len(kinds) != 1 or "" in kinds:
+        return ", ".join(names)
+    return f"k={', '.join(part.group(1) for part in parts if part)} {kinds.pop()}"
 
 
 @dataclass(frozen=True)
 class Pooled:
-    """A sampler against uniform over all random worlds of a group, on the same worlds and runs.
+    """A sampler against uniform in the same random worlds and runs, over a group of problems.
 
     Attributes
     ----------
     group : str
-        Value of what is pooled by: ``balls``, ``5d``, ``256``, ``k=10 symmetrised, connect``, ``all``.
+        ``all``, ``balls``, ``5d``, ``50 %``, ``256``, ``k=10 symmetrised, connect``, ...
     sampler : str
     instances, pairs, sets : int
-        Random worlds, runs, and sets of the sampler's pool that they had: 0 for sets drawn afresh, and for the grid.
+        Number of random worlds, of runs, and of sets of the sampler's pool; no sets if it draws afresh or is the grid.
     rate, reference_rate : float
         Success rates over the pairs.
     interval : Interval
-        Of their difference: over worlds; or over sets, where that is wider and a pool's sets are used as they are, in
-        fewer than 5 dimensions.
+        Of their difference, over worlds.  In fewer than 5 dimensions a pool's sets are used as they are: the interval
+        is over sets where that is wider.
     p, p_corrected : float
-        Sign flips over worlds, or Student's test over such sets if its p is larger; with Holm's correction over the
-        table.
+        p-value of sign flips over worlds, or of Student's test over sets where that is done and larger; and the same
+        after Holm's correction over the groups and samplers of a table.
     """
 
     group: str
@@ -59,40 +120,45 @@ class Pooled:
     p_corrected: float
 
     @property
+    def difference(self) -> float:
+        """Success rate of the sampler minus that of uniform."""
+        return self.rate - self.reference_rate
+
+    @property
     def significant(self) -> bool:
         """Whether the corrected test tells the two apart."""
         return self.p_corrected < SIGNIFICANT
 
 
 def pooled(runs: Runs) -> dict[str, tuple[Pooled, ...]]:
-    """Pool the fair suite by everything in :data:`GROUPINGS`; groups in natural order, samplers in ours.
+    """Pool the fair suite by everything in :data:`GROUPINGS`.
 
-    Only runs with a counterpart of uniform on the same world are counted: a sampler that has no set for the hard
-    worlds does not profit from it.  Other searches than ``connect`` repeat outcomes of that one, so they are counted
-    among the rules only.  Empty where there are none.
+    A run counts if uniform has the same run in the same world, so a sampler without sets for hard worlds gains nothing
+    by it.  Other searches repeat the outcomes of ``connect``, so they count only where rules are compared.
+
+    Returns
+    -------
+    dict of grouping to tuple of Pooled
+        Groups in natural order, samplers in that of the tables; empty without runs of the suite.
     """
     runs = fair_runs(runs)
     if not len(runs):
         return {}
     paired, difference = differences_from(runs, pair_codes(runs), REFERENCE)
     every = _pairs_of(runs.where(paired), difference[paired])
-    connects = np.array([question.search == CONNECT for question in runs.questions])[every.runs.question]
-    connecting = every.where(np.flatnonzero(connects))
+    connecting = every.where(np.flatnonzero(every.runs.by_question(lambda each: each.search == CONNECT)))
     chosen = {grouping: every if grouping == BY_RULE else connecting for grouping in GROUPINGS}
     return {grouping: _pooled_by(grouping, pairs) for grouping, pairs in chosen.items() if len(pairs.runs)}
 
 
 def fair_runs(runs: Runs) -> Runs:
     """Return the runs of the fair suite."""
-    fair = np.array([is_fair(question) for question in runs.questions], dtype=bool)
-    return runs.where(np.flatnonzero(fair[runs.question]) if fair.any() else np.zeros(0, dtype=np.int64))
+    return runs.where(np.flatnonzero(runs.by_question(is_fair)) if len(runs) else np.zeros(0, dtype=np.int64))
 
 
 def world_codes(runs: Runs) -> Ints:
-    """Return one code a run that all runs in the same random world have."""
-    problems = sorted({question.problem for question in runs.questions})
-    code = np.array([problems.index(question.problem) for question in runs.questions])
-    return combined(code[runs.question], runs.instance)
+    """Return a code for every run; runs in the same random world have the same code."""
+    return combined(runs.question_codes(lambda question: question.problem), runs.instance)
 
 
 def _pooled_by(grouping: str, pairs: _Pairs) -> tuple[Pooled, ...]:
@@ -136,10 +202,18 @@ def _pooled_by(grouping: str, pairs: _Pairs) -> tuple[Pooled, ...]:
 
 @dataclass(frozen=True)
 class _Pairs:
-    """Runs with a counterpart, solved minus solved there, and what they share.
+    """Runs that uniform has, too, and what they have in common with each other.
 
-    `set` is the set of a pool, -1 of sets drawn afresh; `shared` the same where it is used as it is, else a code of the
-    world, below 0.
+    Attributes
+    ----------
+    difference : ndarray of int, shape (rows,)
+        1 if only this run is solved, -1 if only uniform's is, else 0.
+    world : ndarray of int, shape (rows,)
+        Code of the random world.
+    set : ndarray of int, shape (rows,)
+        Code of the set of a pool; -1 if it is drawn afresh.
+    shared : ndarray of int, shape (rows,)
+        Code of the set if it is used as it is; else a code of the world, below 0.
     """
 
     runs: Runs
@@ -158,12 +232,12 @@ def _pairs_of(runs: Runs, difference: Ints) -> _Pairs:
     cell, world = cell_codes(runs), world_codes(runs)
     grouping = grouping_of(runs, cell)
     has_set = grouping.pooled[cell] & (runs.set > 0)
-    # Problems of one dimension share their sets; those that are not known here share none.
-    dims = [
-        PROBLEMS[question.problem].set_dim if question.problem in PROBLEMS else -1 - place
+    # Problems of one dimension share their sets; a problem that is not known here shares none.
+    dims = {
+        question: PROBLEMS[question.problem].set_dim if question.problem in PROBLEMS else -1 - place
         for place, question in enumerate(runs.questions)
-    ]
-    code = combined(runs.sampler, np.array(dims)[runs.question], runs.n, runs.set)
+    }
+    code = combined(runs.sampler, runs.by_question(dims.__getitem__), runs.n, runs.set)
     as_it_is = has_set & ~grouping.permuted[cell]
     return _Pairs(runs, difference, world, np.where(has_set, code, -1), np.where(as_it_is, code, -1 - world))
 
@@ -176,3 +250,64 @@ def _groups(grouping: str, runs: Runs) -> tuple[list[str], Ints]:
     names = sorted(set(labels), key=natural_key)
     number = {name: place for place, name in enumerate(names)}
     return names, np.array([number[label] for label in labels])[code]
+
+
+@dataclass(frozen=True)
+class LazyChecks:
+    """Motions that two searches check on the same roadmaps in random worlds.
+
+    Attributes
+    ----------
+    rule, sampler : str
+    instances, pairs : int
+        Number of random worlds and of roadmaps.
+    connect, lazy : float
+        Mean number of motions checked.
+    ratio : Interval
+        Of the ratio lazy / connect, by a bootstrap over worlds.
+    """
+
+    rule: str
+    sampler: str
+    instances: int
+    pairs: int
+    connect: float
+    lazy: float
+    ratio: Interval
+
+
+def lazy_checks(runs: Runs) -> tuple[LazyChecks, ...]:
+    """Compare the two searches on every roadmap of the fair suite that both were run on, by rule and sampler."""
+    runs = fair_runs(runs)
+    runs = runs.where(~runs.failed)
+    if not len(runs):
+        return ()
+    search = runs.by_question(lambda question: question.search)
+    roadmap = runs.question_codes(lambda question: (question.problem, question.rule))
+    pair = combined(roadmap, runs.sampler, runs.n, runs.instance, runs.run, runs.seed)
+    connect_row = np.full(int(pair.max()) + 1, -1)
+    connects = np.flatnonzero(search == CONNECT)
+    connect_row[pair[connects]] = connects
+    lazy = np.flatnonzero((search == LAZY) & (connect_row[pair] >= 0))
+    connect = connect_row[pair[lazy]]
+    place = combined(runs.question_codes(lambda question: question.rule)[lazy], runs.sampler[lazy])
+    world = world_codes(runs)[lazy]
+    found = []
+    for code, first in enumerate(lazy[first_rows(place)]):
+        rows = np.flatnonzero(place == code)
+        unit = combined(world[rows])
+        asked = runs.edges_checked[lazy[rows]], runs.edges_checked[connect[rows]]
+        sums = [np.bincount(unit, weights=column) for column in asked]
+        if sums[1].any():
+            found.append(
+                LazyChecks(
+                    runs.questions[runs.question[first]].rule,
+                    runs.samplers[runs.sampler[first]],
+                    len(sums[0]),
+                    len(rows),
+                    float(asked[1].mean()),
+                    float(asked[0].mean()),
+                    Interval(*percentile_interval(resampled_ratios(*sums)), "bootstrap over instances"),
+                )
+            )
+    return tuple(found)

@@ -1,12 +1,33 @@
-"""The page: one HTML file that needs no other."""
+"""The page: its sections in their order, and one HTML file that needs no other."""
 
 from __future__ import annotations
 
 import base64
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
+from evenroad.research.report.analysis import Analysis
+from evenroad.research.report.fair import is_fair, pooled_rules
+from evenroad.research.report.figures.canvas import as_png
+from evenroad.research.report.figures.charts import (
+    draw_curves,
+    draw_fair_gains,
+    draw_maze_success,
+    draw_point_sets,
+    maze_questions,
+)
+from evenroad.research.report.figures.scenes import draw_scene, scenes_among
+from evenroad.research.report.runs import Question
+from evenroad.research.report.sections.questions import paired_tables, spread_table, success_table
+from evenroad.research.report.sections.suites import (
+    expected_table,
+    failure_table,
+    fair_table,
+    lazy_table,
+    verdict_counts,
+)
 from evenroad.research.report.tables import Table, as_html
 
 _STYLE = """
@@ -16,7 +37,7 @@ figure { margin: 1.4rem 0 } figcaption { font-weight: 600; margin-bottom: .35rem
 img { max-width: 100%; height: auto } .wide { overflow-x: auto }
 table { border-collapse: collapse; font-size: 13px; font-variant-numeric: tabular-nums }
 th, td { padding: .18rem .45rem; text-align: right; white-space: nowrap; border-bottom: 1px solid #e6e9ed }
-th { border-bottom: 1.5px solid #69727d } td.label, th:first-child { text-align: left }
+th { border-bottom: 1.5px solid #69727d } td.label, th.label { text-align: left }
 td.better { background: #d9f0e1 } td.worse { background: #fbe0de } td.differs { background: #fdecc8 }
 td.better::after { content: " ▲" } td.worse::after { content: " ▼" } td.differs::after { content: " ≠" }
 td.faint { color: #99a1aa }
@@ -54,20 +75,96 @@ def as_page(title: str, facts: Sequence[tuple[str, str]], sections: Sequence[Sec
         f"<!doctype html>\n<html lang='en'><head><meta charset='utf-8'><title>{escape(title)}</title>"
         f"<meta name='viewport' content='width=device-width'><style>{_STYLE}</style></head>\n<body>\n"
         f"<h1>{escape(title)}</h1>\n<dl>{terms}</dl>\n<nav><ul>{links}</ul></nav>\n"
-        + "".join(map(_section, sections))
+        + "".join(map(_section_html, sections))
         + "</body></html>\n"
     )
 
 
-def _section(section: Section) -> str:
+def _section_html(section: Section) -> str:
     text = f"<p>{escape(section.text)}</p>\n" if section.text else ""
-    pictures = "".join(map(_picture, section.pictures))
+    pictures = "".join(map(_picture_html, section.pictures))
     tables = "".join(map(as_html, section.tables))
     heading = f"<h2 id='{section.name}'>{escape(section.title)}</h2>"
     return f"<section>{heading}\n{text}{pictures}{tables}</section>\n"
 
 
-def _picture(picture: Picture) -> str:
+def _picture_html(picture: Picture) -> str:
     data = base64.b64encode(picture.png).decode()
     # The title stands in the picture or above it as a heading; here it is for those who do not see it.
     return f"<figure><img alt='{escape(picture.title, quote=True)}' src='data:image/png;base64,{data}'></figure>\n"
+
+
+def sections_of(analysis: Analysis) -> tuple[Section, ...]:
+    """Return all sections that the analysis has something for."""
+    questions = [question for question in analysis.runs.questions if not is_fair(question)]
+    sections = [_expected(analysis), _fair(analysis), *(_question(analysis, each) for each in questions)]
+    sections += [_mazes(analysis, questions), _scenes(questions), _point_sets()]
+    if analysis.failures:
+        sections.append(Section("failures", "Failures", tables=(failure_table(analysis.failures),)))
+    return tuple(section for section in sections if section is not None)
+
+
+def _expected(analysis: Analysis) -> Section | None:
+    if not analysis.verdicts:
+        return None
+    tables = tuple(expected_table(table, verdicts) for table, verdicts in analysis.verdicts.values())
+    text = " ".join(
+        f"{table.title}: {verdict_counts(verdicts)}." for table, verdicts in analysis.verdicts.values()
+    )
+    return Section("expected", "Published and independent results beside ours", text, tables=tables)
+
+
+def _fair(analysis: Analysis) -> Section | None:
+    if not analysis.pooled:
+        return None
+    rules = pooled_rules(analysis.runs.questions)
+    tables = [fair_table(grouping, found, rules) for grouping, found in analysis.pooled.items()]
+    if analysis.lazy:
+        tables.append(lazy_table(analysis.lazy))
+    picture = Picture("fair-gains", "Gain over uniform points", as_png(draw_fair_gains(analysis.pooled)))
+    return Section("fair", "Fair suite: random worlds, starts and goals", "", (picture,), tuple(tables))
+
+
+def _question(analysis: Analysis, question: Question) -> Section:
+    name = slug(str(question))
+    picture = Picture(name, str(question), as_png(draw_curves(analysis.cells_of(question), str(question))))
+    spread = spread_table(analysis, question, f"{name}-sets")
+    tables = [success_table(analysis, question, f"{name}-success"), *paired_tables(analysis, question, name)]
+    return Section(
+        name, str(question), "", (picture,), tuple(tables if spread is None else [*tables, spread])
+    )
+
+
+def _mazes(analysis: Analysis, questions: list[Question]) -> Section | None:
+    mazes = maze_questions(questions)
+    if not mazes:
+        return None
+    cells = [cell for cell in analysis.cells if cell.question in mazes]
+    picture = Picture("maze-success", "Success on the mazes", as_png(draw_maze_success(cells)))
+    text = "The paper's figure, on our mazes: its own are not published."
+    return Section("maze-success", "Success on the mazes", text, (picture,))
+
+
+def _scenes(questions: list[Question]) -> Section | None:
+    problems = scenes_among([question.problem for question in questions])
+    if not problems:
+        return None
+    pictures = tuple(
+        Picture(f"scene-{slug(problem)}", f"{problem} with a path", as_png(draw_scene(problem)))
+        for problem in problems
+    )
+    return Section("scenes", "Scenes with a found path", pictures=pictures)
+
+
+def _point_sets() -> Section:
+    picture = Picture("point-sets", "Point sets in the unit square", as_png(draw_point_sets()))
+    text = (
+        "The first set of each sampler in two dimensions. Discrepancies in ten dimensions are drawn by"
+        " `python -m benchmarks.discrepancy_d10`."
+    )
+    return Section("point-sets", "Point sets", text, (picture,))
+
+
+def slug(text: str) -> str:
+    """Return a name for files and links: lower-case letters, digits and hyphens."""
+    return re.sub(r"[^a-z0-9.]+", "-", text.lower()).strip("-")

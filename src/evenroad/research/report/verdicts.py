@@ -1,18 +1,112 @@
-"""Verdicts: does a published or independently measured cell agree with ours?"""
+"""Verdicts: do our results agree with what was published or measured elsewhere?"""
 
 from __future__ import annotations
 
 import math
+import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
 
+from evenroad.errors import UnknownName
 from evenroad.research.report.cells import Cell
-from evenroad.research.report.expected import ExpectedCell, ExpectedTable
-from evenroad.research.statistics import fisher_exact, holm
+from evenroad.research.report.comparisons import holm_of_tested
+from evenroad.research.statistics import fisher_exact
 
+FOLDER = Path(__file__).parent / "expected"
+SOURCES = ("paper", "pinned")
+"""Names of the data files."""
 SEARCHES = ("stock", "connect", "full", "lazy")
-"""Which of our cells speaks where there are several: all have the same success, the first also stops early."""
+"""Searches of our cells: the first that was run is compared.  All have the same success; ``stock`` stops early, too."""
 LEVEL = 0.05
+"""Corrected p-value below which two cells differ."""
+
+
+@dataclass(frozen=True)
+class ExpectedCell:
+    """One cell of a published or measured table.
+
+    Attributes
+    ----------
+    problem, sampler, rule, n
+        Those of our cell that it is compared with.
+    success : float
+        Success rate, in percent; NaN if the source gives none.
+    v, v_sd : float
+        Mean number of milestones and its standard deviation over runs; NaN if the source gives none.
+    v_counts : str
+        ``all``: `v` counts all valid milestones; ``early``: those that were added until there was a path.
+    v_add : int
+        What the source adds to `v` for start and goal.
+    runs : int or None
+        Number of runs; None if the source does not say it, and then there is nothing to test.
+    note : str
+        What a reader must know of this cell.
+    """
+
+    problem: str
+    sampler: str
+    rule: str
+    n: int
+    success: float
+    v: float
+    v_sd: float
+    v_counts: str
+    v_add: int
+    runs: int | None = None
+    note: str = ""
+
+    @property
+    def solved(self) -> int | None:
+        """Number of solved runs; None if the source does not give enough to tell it."""
+        if self.runs is None or math.isnan(self.success):
+            return None
+        return round(self.success / 100.0 * self.runs)
+
+    @property
+    def v_definition(self) -> str:
+        """How `v` is counted, in short: ``all + 2``, ``early + 3``."""
+        return f"{self.v_counts} + {self.v_add}"
+
+
+@dataclass(frozen=True)
+class ExpectedTable:
+    """All expected cells of one source, in the order of its file."""
+
+    name: str
+    title: str
+    source: str
+    about: str
+    cells: tuple[ExpectedCell, ...]
+
+
+@cache
+def load_expected(name: str) -> ExpectedTable:
+    """Read one of :data:`SOURCES`.
+
+    Raises
+    ------
+    UnknownName
+        If there is no such source.
+    """
+    if name not in SOURCES:
+        raise UnknownName.among("source of expected results", name, SOURCES)
+    record = tomllib.loads((FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
+    cells = tuple(cell for row in record["rows"] for cell in _cells_of(row))
+    return ExpectedTable(record["name"], record["title"], record["source"], record["about"], cells)
+
+
+def _cells_of(row: dict[str, Any]) -> list[ExpectedCell]:
+    """Return the cells of a row of a data file, which lists `n` and, in the same order, its numbers."""
+    unknown = [math.nan] * len(row["n"])
+    columns = (row["n"], row["success"], row.get("v", unknown), row.get("v_sd", unknown))
+    shared = {key: value for key, value in row.items() if key not in ("n", "success", "v", "v_sd")}
+    return [
+        ExpectedCell(n=n, success=float(success), v=float(v), v_sd=float(v_sd), **shared)
+        for n, success, v, v_sd in zip(*columns, strict=True)
+    ]
 
 
 @dataclass(frozen=True)
@@ -23,10 +117,10 @@ class Verdict:
     ----------
     expected : ExpectedCell
     ours : Cell or None
-        None where the store has no such runs.
+        None if the store has no such runs.
     p, p_corrected : float
-        Fisher's exact test on the counts, and with Holm's correction over all cells of the source that can be
-        tested; NaN where there is nothing to test.
+        p-value of Fisher's exact test on the counts, and the same after Holm's correction over all tested cells of the
+        source; NaN if there is nothing to test.
     """
 
     expected: ExpectedCell
@@ -53,20 +147,16 @@ class Verdict:
 
 
 def verdicts_of(table: ExpectedTable, cells: Sequence[Cell]) -> tuple[Verdict, ...]:
-    """Hold every expected cell against ours.
+    """Compare every expected cell with ours.
 
-    A cell whose runs come from sets of a pool is tested by its counts as well: its runs are not independent, so
-    "differs" is there said too readily rather than too late.
+    The test takes runs for independent.  Where they share sets of a pool they are not, and it says "differs" too
+    readily.
     """
     ours = {(c.question.problem, c.sampler, c.question.rule, c.n, c.question.search): c for c in cells}
     found = [_ours_for(expected, ours) for expected in table.cells]
     p_values = [_p_value(expected, cell) for expected, cell in zip(table.cells, found, strict=True)]
-    tested = [place for place, p in enumerate(p_values) if not math.isnan(p)]
-    corrected = dict(zip(tested, holm([p_values[place] for place in tested]).tolist(), strict=True))
-    return tuple(
-        Verdict(expected, cell, p_values[place], corrected.get(place, math.nan))
-        for place, (expected, cell) in enumerate(zip(table.cells, found, strict=True))
-    )
+    corrected = holm_of_tested(p_values).tolist()
+    return tuple(map(Verdict, table.cells, found, p_values, corrected))
 
 
 def _ours_for(expected: ExpectedCell, ours: dict[tuple[str, str, str, int, str], Cell]) -> Cell | None:

@@ -7,16 +7,50 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from evenroad._files import atomic_write, require_writable_folder
+import numpy as np
+
+from evenroad import __version__
+from evenroad._files import atomic_write, remove_abandoned_parts, require_writable_folder
 from evenroad.errors import BrokenFile, NotAvailable, UnknownName
 from evenroad.research.bench.rows import Rows
-from evenroad.research.bench.store import read_rows, read_sessions
+from evenroad.research.bench.store import Session, read_rows, read_sessions
+from evenroad.research.bench.task import PROTOCOL
 from evenroad.research.report.analysis import Analysis, analyse
-from evenroad.research.report.contents import sections_of
 from evenroad.research.report.csv_files import cells_csv, comparisons_csv, expected_csv, fair_csv
-from evenroad.research.report.facts import facts_of
-from evenroad.research.report.page import as_page
+from evenroad.research.report.page import as_page, sections_of
 from evenroad.research.report.tables import as_latex, as_markdown
+
+
+def facts_of(store: Path, rows: Rows, sessions: Sequence[Session], command: str) -> list[tuple[str, str]]:
+    """Return (term, fact): command, rows, failures, seeds, versions, machines."""
+    failed = int((~rows.answered).sum())
+    by_status = ", ".join(
+        f"{int(rows.status.is_in([status]).sum())} {status}"
+        for status in rows.status.present()
+        if not bool(rows.answered[rows.status.is_in([status])].any())
+    )
+    seeds = ", ".join(str(seed) for seed in np.unique(rows.seed))
+    facts = [
+        ("command", command),
+        ("store", f"{store.name}: {len(rows)} rows of {', '.join(rows.suite.present())}"),
+        ("failures", f"{failed}" + (f" ({by_status})" if failed else "")),
+        ("seeds", seeds),
+        ("protocol", f"{PROTOCOL}; rows of others are left out"),
+        ("report by", f"evenroad {__version__}"),
+    ]
+    if sessions:
+        facts += [
+            ("runs by", "; ".join(dict.fromkeys(_versions(session) for session in sessions))),
+            ("machines", "; ".join(dict.fromkeys(session.platform for session in sessions))),
+            ("started", f"{sessions[0].started}, last resumed {sessions[-1].started}"),
+        ]
+    return facts
+
+
+def _versions(session: Session) -> str:
+    parts = (f"evenroad {session.evenroad}", f"Python {session.python}", f"numpy {session.numpy}")
+    return ", ".join((*parts, f"scipy {session.scipy}", f"numba {session.numba}"))
+
 
 PAGE = "report.html"
 
@@ -104,3 +138,4 @@ def _make_folder(folder: Path) -> None:
     except OSError as error:
         raise BrokenFile(f"cannot make the folder {folder}: {error.strerror or error}") from error
     require_writable_folder(folder / PAGE)
+    remove_abandoned_parts(folder)

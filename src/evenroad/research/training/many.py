@@ -18,8 +18,14 @@ from evenroad.errors import InvalidValue, WorkerLost
 from evenroad.points.optimise.anneal import Callback
 from evenroad.points.optimise.objective import Objective, parse_objective, require_points_for
 from evenroad.points.pointset import PointSet
-from evenroad.research.training.request import claim_folder, set_name
-from evenroad.research.training.set_task import SetTask, finished_set, make_set, request_of
+from evenroad.research.training.folder import (
+    SetTask,
+    claim_folder,
+    finished_set,
+    make_set,
+    request_of,
+    set_name,
+)
 from evenroad.research.workers import ProcessPool, usable_processors
 
 _POLL_SECONDS = 0.2

@@ -9,8 +9,7 @@ from evenroad.points.bank import Bank, Trained, open_bank
 from evenroad.points.bank.bank import DATA, INDEX, SEED
 from evenroad.points.pointset import PointSet
 from evenroad.research.training import anneal_many
-from evenroad.research.training.bank import MEASURED, build, store
-from evenroad.research.training.recipe import Recipe, recipes
+from evenroad.research.training.bank import MEASURED, Recipe, build, recipes, store
 
 SHIPPED = [each for each in recipes() if open_bank().has(each.family, each.n, each.d)]
 QUICK = [each for each in SHIPPED if each.n <= 512]

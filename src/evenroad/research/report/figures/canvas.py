@@ -1,15 +1,55 @@
-"""Figures without pyplot: no global state, no display."""
+"""What all figures share: how a sampler looks, and figures without pyplot (no global state, no display)."""
 
 from __future__ import annotations
 
 import io
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, Literal
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+
+@dataclass(frozen=True)
+class Look:
+    """How a sampler is drawn: the colour, marker and line that it has in every figure."""
+
+    colour: str
+    marker: str
+    line: str = "-"
+    width: float = 1.4
+    size: float = 5.0
+
+    def as_line(self) -> dict[str, Any]:
+        """Return the look as arguments of matplotlib's `plot` and `errorbar`."""
+        line = {"color": self.colour, "linestyle": self.line, "linewidth": self.width}
+        return line | {"marker": self.marker, "markersize": self.size}
+
+
 DPI = 110
+
+# Protocols of one sequence share a colour and differ in the line; the default sampler is red and thick.
+LOOKS: dict[str, Look] = {
+    "uniform": Look("#555555", "o", width=2.0),
+    "halton paper-blocks": Look("#1b9e5a", "s", "--"),
+    "halton scrambled": Look("#1b9e5a", "s"),
+    "sobol paper-blocks": Look("#2f5fd0", "^", "--"),
+    "sobol scrambled": Look("#2f5fd0", "^"),
+    "lattice": Look("#e6a23c", "v"),
+    "sukharev": Look("#12a5b5", "X", ":"),
+    "mpmc": Look("#e05fa8", "D"),
+    "hickernell": Look("#8e5bd0", "p"),
+    "even": Look("#d1343b", "*", width=2.4, size=9.0),
+    "korobov": Look("#7a4a21", "P", size=6.0),
+}
+OTHER = Look("#000000", ".", ":")
+"""For a sampler that this version does not know."""
+
+
+def look_of(sampler: str) -> Look:
+    """Return how a sampler is drawn."""
+    return LOOKS.get(sampler, OTHER)
 
 
 def new_figure(
@@ -22,10 +62,7 @@ def new_figure(
 
 
 def add_legend(figure: Figure, order: Callable[[str], Any]) -> None:
-    """Name what any panel of the figure shows, once, at its right, sorted by `order` of the names.
-
-    A sampler may have nothing to show in one of the panels.
-    """
+    """Put one legend at the right of the figure; it names what any panel shows, in the order of `order`."""
     handles = {
         name: handle
         for axes in figure.axes

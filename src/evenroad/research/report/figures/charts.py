@@ -1,0 +1,214 @@
+"""Charts: success against its costs, gains in random worlds, point sets in the unit square."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
+
+from evenroad._rng import generator
+from evenroad.research.bench.samplers import draw_set, why_not
+from evenroad.research.report.cells import Cell
+from evenroad.research.report.fair import Pooled
+from evenroad.research.report.figures.canvas import add_legend, look_of, new_figure
+from evenroad.research.report.runs import Question, sampler_place
+from evenroad.research.statistics import Interval
+
+DODGE = 0.025
+"""On an axis of log2 N, the distance between the error bars of two samplers at the same N."""
+
+MAZES = "maze-"
+"""Begin of the names of the paper's mazes."""
+
+GROUPINGS_DRAWN = ("generator", "dimension", "rule")
+"""Groupings of the fair suite that have a panel."""
+
+GROUP_DODGE = 0.07
+"""Distance between two samplers of a group; groups are 1 apart."""
+
+SETS_DRAWN = ("uniform", "halton paper-blocks", "sobol paper-blocks", "mpmc", "even")
+COUNTS_DRAWN = (32, 64, 128, 256)
+"""Samplers and numbers of points in the picture of point sets."""
+
+
+def draw_curves(cells: Sequence[Cell], title: str) -> Figure:
+    """Return three panels of the same success rates, over samples, checked edges and seconds.
+
+    Parameters
+    ----------
+    cells : sequence of Cell
+        Of one question; samplers and numbers of samples ascending.
+    title : str
+        Above the panels.
+    """
+    # A fixed layout: solving for one takes longer than drawing, and a report has many of these.
+    figure = new_figure(12.5, 4.4, layout=None)
+    figure.subplots_adjust(left=0.05, right=0.845, bottom=0.125, top=0.9, wspace=0.07)
+    by_samples, by_edges, by_seconds = figure.subplots(1, 3, sharey=True)
+    _draw_by_samples(by_samples, cells, _samplers(cells))
+    for sampler in _samplers(cells):
+        curve = [cell for cell in cells if cell.sampler == sampler]
+        _draw_against(by_edges, curve, [cell.mean_edges for cell in curve])
+        _draw_against(by_seconds, curve, [1e3 * cell.mean_seconds for cell in curve])
+    for axes, label in ((by_edges, "mean edges checked"), (by_seconds, "mean time [ms]")):
+        axes.set_xlabel(label)
+        axes.grid(alpha=0.3)
+        if axes.lines:
+            _scale_by_logarithm(axes)
+    by_samples.set_ylabel("success [%]")
+    figure.suptitle(title, fontsize=11, x=0.05, y=0.965, ha="left")
+    handles, names = by_samples.get_legend_handles_labels()
+    figure.legend(handles, names, loc="center left", bbox_to_anchor=(0.85, 0.5), frameon=False, fontsize=9)
+    return figure
+
+
+def maze_questions(questions: Sequence[Question]) -> tuple[Question, ...]:
+    """Return the mazes with the rule and search of the first maze; empty if they are fewer than two."""
+    mazes = [question for question in questions if question.problem.startswith(MAZES)]
+    alike = [each for each in mazes if (each.rule, each.search) == (mazes[0].rule, mazes[0].search)]
+    return tuple(alike) if len(alike) > 1 else ()
+
+
+def draw_maze_success(cells: Sequence[Cell]) -> Figure:
+    """Return the paper's figure of success against samples, with a panel for each maze.
+
+    Parameters
+    ----------
+    cells : sequence of Cell
+        Of :func:`maze_questions`.
+    """
+    questions = list(dict.fromkeys(cell.question for cell in cells))
+    figure = new_figure(12.5, 4.6)
+    panels = figure.subplots(1, len(questions), sharey=True, squeeze=False)[0]
+    for axes, question in zip(panels, questions, strict=True):
+        _draw_by_samples(axes, [cell for cell in cells if cell.question == question], _samplers(cells))
+        axes.set_title(f"{question.problem}, {question.rule}", fontsize=10)
+    panels[0].set_ylabel("success [%]")
+    add_legend(figure, _samplers(cells).index)
+    return figure
+
+
+def draw_fair_gains(pooled: Mapping[str, Sequence[Pooled]]) -> Figure:
+    """Return differences from uniform in random worlds, with a panel for each grouping.
+
+    Parameters
+    ----------
+    pooled : mapping of str to sequence of Pooled
+        Of :func:`~evenroad.research.report.fair.pooled`: grouping -> groups and samplers.
+    """
+    shown = [grouping for grouping in GROUPINGS_DRAWN if grouping in pooled]
+    figure = new_figure(13.5, 4.8)
+    panels = figure.subplots(1, len(shown), squeeze=False)[0]
+    for axes, grouping in zip(panels, shown, strict=True):
+        # Mazes and rigid bodies have no dimension of their own, and are among the generators.
+        found = [each for each in pooled[grouping] if grouping != "dimension" or each.group[0].isdigit()]
+        _draw_gains(axes, found)
+        axes.set_title(f"by {grouping}", fontsize=10)
+    panels[0].set_ylabel("points above uniform")
+    add_legend(figure, sampler_place)
+    return figure
+
+
+def draw_point_sets(seed: int = 0) -> Figure:
+    """Return a grid of squares: a row a number of points, a column a sampler; "no set" where there is none."""
+    figure = new_figure(2.3 * len(SETS_DRAWN), 2.35 * len(COUNTS_DRAWN))
+    panels = figure.subplots(len(COUNTS_DRAWN), len(SETS_DRAWN), squeeze=False)
+    for row, n in zip(panels, COUNTS_DRAWN, strict=True):
+        for axes, sampler in zip(row, SETS_DRAWN, strict=True):
+            axes.set(xlim=(0, 1), ylim=(0, 1), xticks=(), yticks=(), aspect="equal")
+            if why_not(sampler, n, 2):
+                axes.text(0.5, 0.5, "no set", ha="center", va="center", color="#777777")
+            else:
+                points, _ = draw_set(sampler, n, 2, 0, generator(seed))
+                size = 300.0 / n + 2.5
+                axes.scatter(*points.points.T, s=size, color=look_of(sampler).colour, linewidths=0)
+        row[0].set_ylabel(f"N = {n}", fontsize=11)
+    for axes, sampler in zip(panels[0], SETS_DRAWN, strict=True):
+        axes.set_title(sampler, fontsize=11)
+    return figure
+
+
+def _samplers(cells: Sequence[Cell]) -> list[str]:
+    return list(dict.fromkeys(cell.sampler for cell in cells))
+
+
+def _draw_by_samples(axes: Axes, cells: Sequence[Cell], samplers: Sequence[str]) -> None:
+    """Draw the success of one question against samples; every sampler's error bars have a place of their own."""
+    for place, sampler in enumerate(samplers):
+        curve = [cell for cell in cells if cell.sampler == sampler]
+        if curve:
+            shift = 2.0 ** (DODGE * (place - (len(samplers) - 1) / 2))
+            look = look_of(sampler)
+            _draw_intervals(
+                axes,
+                [cell.n * shift for cell in curve],
+                [cell.rate for cell in curve],
+                [cell.interval for cell in curve],
+                **look.as_line(),
+                elinewidth=0.8,
+                capsize=1.5,
+                label=sampler,
+            )
+    counts = sorted({cell.n for cell in cells})
+    axes.set_xscale("log", base=2)
+    axes.set_xticks(counts, [str(n) for n in counts])
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.set_xlabel("samples N")
+    axes.set_ylim(-3, 103)
+    axes.grid(alpha=0.3)
+
+
+def _draw_gains(axes: Axes, found: Sequence[Pooled]) -> None:
+    """Draw the differences from uniform of one grouping; a place on x is a group."""
+    groups = list(dict.fromkeys(each.group for each in found))
+    samplers = sorted({each.sampler for each in found}, key=sampler_place)
+    for place, sampler in enumerate(samplers):
+        mine = [each for each in found if each.sampler == sampler]
+        aside = (place - 0.5 * (len(samplers) - 1)) * GROUP_DODGE
+        look = look_of(sampler)
+        _draw_intervals(
+            axes,
+            [groups.index(each.group) + aside for each in mine],
+            [each.difference for each in mine],
+            [each.interval for each in mine],
+            **look.as_line() | {"linestyle": "none"},
+            markerfacecolor="white" if look.line == "--" else look.colour,
+            elinewidth=0.9,
+            label=sampler,
+        )
+    axes.axhline(0.0, color=look_of("uniform").colour, linewidth=1.2)
+    names = [group.replace(" symmetrised, ", "\n") for group in groups]
+    axes.set_xticks(range(len(groups)), names, fontsize=8)
+    axes.grid(axis="y", alpha=0.3)
+
+
+def _draw_intervals(
+    axes: Axes, x: Sequence[float], shares: Sequence[float], intervals: Sequence[Interval], **style: object
+) -> None:
+    """Draw shares in percent with their intervals."""
+    values = 100.0 * np.array(shares)
+    ends = 100.0 * np.array([[each.low, each.high] for each in intervals]).T
+    # An end may miss its value by rounding, and a negative length is refused.
+    axes.errorbar(x, values, yerr=np.maximum(np.abs(ends - values), 0.0), **style)  # type: ignore[arg-type]
+
+
+def _draw_against(axes: Axes, curve: Sequence[Cell], costs: Sequence[float]) -> None:
+    known: list[tuple[float, float]] = [
+        (cost, 100 * cell.rate) for cost, cell in zip(costs, curve, strict=True) if cost > 0
+    ]
+    if known:
+        axes.plot(*zip(*known, strict=True), **look_of(curve[0].sampler).as_line())
+
+
+def _scale_by_logarithm(axes: Axes) -> None:
+    """Scale x by its logarithm, with plain numbers, few or many to a decade as there is room."""
+    axes.set_xscale("log")
+    low, high = axes.get_xlim()
+    steps = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0) if high < 6 * low else (1.0, 2.0, 5.0)
+    axes.xaxis.set_major_locator(LogLocator(subs=steps if high < 300 * low else (1.0,)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_locator(NullLocator())

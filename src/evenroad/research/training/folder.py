@@ -1,0 +1,138 @@
+"""A folder of sets: the one request that it belongs to, and the tasks that fill it.
+
+The request is written beside the sets, so sets of two requests never mix unnoticed.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from evenroad._files import atomic_write, remove_abandoned_parts
+from evenroad.errors import BrokenFile, InvalidValue, shown
+from evenroad.points.npz import load_points, save_points
+from evenroad.points.optimise.anneal import SCHEDULE, Callback, anneal
+from evenroad.points.pointset import Origin, PointSet
+
+REQUEST_FILE = "request.json"
+
+
+def set_name(index: int) -> str:
+    """Return the file name of a set inside its folder."""
+    return f"set-{index:04d}.npz"
+
+
+def claim_folder(folder: Path, request: dict[str, Any], name: str = REQUEST_FILE) -> None:
+    """Write the request into the file `name` of `folder`; if it is there, check that it is the same.
+
+    Temporary files that killed trainings left in the folder are removed.
+
+    Raises
+    ------
+    InvalidValue
+        If the folder belongs to another request; the text names the first difference.
+    BrokenFile
+        If the folder is missing or cannot be written, or the request in it cannot be read.
+    """
+    path = folder / name
+    remove_abandoned_parts(folder)
+    if not path.exists():
+        with atomic_write(path) as file:
+            file.write(json.dumps(request, indent=1).encode())
+        return
+    try:
+        found = json.loads(path.read_bytes())
+    except (OSError, ValueError) as error:
+        raise BrokenFile(f"{path} is not readable as JSON: {error}") from None
+    for key, wanted in request.items():
+        there = found.get(key) if isinstance(found, dict) else None
+        if there != wanted:
+            raise InvalidValue(
+                f"{folder} holds sets with {key}={shown(there)}, asked for {key}={shown(wanted)};"
+                f" use another folder (what there is: {name})"
+            )
+
+
+def read_set(path: Path, origin: Origin, shape: tuple[int, int]) -> PointSet | None:
+    """Return a finished set; None if its file is missing or damaged.
+
+    Raises
+    ------
+    InvalidValue
+        If the file holds a set of another shape, method, objective, seed or replica.
+    """
+    try:
+        points = load_points(path)
+    except BrokenFile:
+        return None
+    names = ("method", "objective", "seed", "replica")
+    same = all(getattr(points.origin, name) == getattr(origin, name) for name in names)
+    if points.points.shape != shape or not same:
+        raise InvalidValue(f"{path} holds another set ({points!r}); use another folder")
+    return points
+
+
+@dataclass(frozen=True)
+class SetTask:
+    """All that a process needs to anneal one set, as plain values that can be sent to it.
+
+    Attributes
+    ----------
+    n, d, objective, steps
+        As for :func:`~evenroad.points.optimise.anneal`; the objective is text.
+    entropy, spawn_key
+        They make the set's own seed sequence.
+    family, seed, replica
+        They go into the origin of the set.
+    path : str or None
+        The file of the finished set.
+    """
+
+    n: int
+    d: int
+    objective: str
+    steps: int
+    entropy: Any
+    spawn_key: tuple[int, ...]
+    family: str
+    seed: int | None
+    replica: int
+    path: str | None
+
+
+def make_set(task: SetTask, callback: Callback) -> PointSet:
+    """Anneal the set of a task, save it if it has a file, and return it."""
+    sequence = np.random.SeedSequence(task.entropy, spawn_key=task.spawn_key)
+    annealed = anneal(task.n, task.d, task.objective, steps=task.steps, rng=sequence, callback=callback)
+    points = PointSet(annealed.points, origin_of(task))
+    if task.path is not None:
+        save_points(task.path, points)
+    return points
+
+
+def origin_of(task: SetTask) -> Origin:
+    """Return the origin that the set of a task gets."""
+    return Origin(
+        family=task.family, method="annealed", objective=task.objective, seed=task.seed, replica=task.replica
+    )
+
+
+def finished_set(task: SetTask) -> PointSet | None:
+    """Return the set of a task from its file; None if it is missing or damaged and has to be made."""
+    return None if task.path is None else read_set(Path(task.path), origin_of(task), (task.n, task.d))
+
+
+def request_of(task: SetTask) -> dict[str, Any]:
+    """Return what all sets of a folder have in common; their number is not part of it."""
+    request = {name: asdict(task)[name] for name in ("n", "d", "objective", "steps", "family")}
+    return {
+        **request,
+        "schedule": SCHEDULE,
+        "seed": task.seed,
+        "entropy": str(task.entropy),
+        "spawn_key": list(task.spawn_key[:-1]),
+    }
