@@ -28,7 +28,10 @@ def require_positive(name: str, value: object, *, or_zero: bool = False) -> floa
     allowed = "a finite number >= 0" if or_zero else "a finite number > 0"
     if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
         raise InvalidValue(f"{name} must be {allowed}, got {shown(value)}")
-    number = float(value)
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
     if not math.isfinite(number) or number < 0 or (number == 0 and not or_zero):
         raise InvalidValue(f"{name} must be {allowed}, got {shown(value)}")
     return number

@@ -68,6 +68,8 @@ def test_constructed_families_are_written_too(run, tmp_path):
         (("-n", 8, "-d", 2, "-o", "a.txt"), r"known: \.npy, \.npz"),
         (("-n", 8, "-d", 2, "-o", "no/a.npy"), "does not exist"),
         (("-n", 8, "-d", 2, "--family", "evn", "-o", "a.npy"), "unknown sampler 'evn'; known: .*even"),
+        (("-n", 8, "-d", 2, "--family", "evn", "--no-train", "-o", "a.npy"), "unknown sampler 'evn'"),
+        (("-n", 8, "-d", 2, "--no-train", "-o", "a.npy"), "--no-train does not go with 'even'"),
         (("-n", 8, "-d", 2, "--seed", -1, "-o", "a.npy"), "rng must be"),
     ],
 )

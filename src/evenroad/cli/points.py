@@ -53,10 +53,11 @@ class Points:
         from evenroad.points import make_sampler
         from evenroad.points.bank import TRAINED_FAMILIES, Trained
 
-        if self.family not in TRAINED_FAMILIES and self.no_train:
-            raise InvalidValue(f"--no-train does not go with {self.family!r}, whose sets are constructed")
+        sampler = make_sampler(self.family)
         if self.family not in TRAINED_FAMILIES:
-            return make_sampler(self.family).draw(self.n, self.d, rng=self.seed), "exact"
+            if self.no_train:
+                raise InvalidValue(f"--no-train does not go with {self.family!r}, whose sets are constructed")
+            return sampler.draw(self.n, self.d, rng=self.seed), "exact"
         with progress_bar(f"annealing {self.family} n={self.n} d={self.d}") as callback:
             family = Trained(self.family, train=not self.no_train, callback=callback)
             return family.find(self.n, self.d, rng=self.seed)

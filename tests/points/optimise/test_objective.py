@@ -125,8 +125,9 @@ def test_any_text_parses_or_is_refused_in_words(text):
 def test_a_term_checks_its_name_and_weight():
     with pytest.raises(UnknownName, match="unknown term 'sobol'; known: average_squared"):
         Term("sobol")
-    with pytest.raises(InvalidValue, match="weight must be a finite number > 0"):
-        Term("star", -1.0)
+    for bad in (-1.0, 10**400, math.nan, "2"):
+        with pytest.raises(InvalidValue, match="weight must be a finite number > 0"):
+            Term("star", bad)
 
 
 def test_something_else_than_text_is_refused():
