@@ -27,7 +27,7 @@ from evenroad.research.problems import PROBLEMS
 from evenroad.research.report import write_report
 from evenroad.research.report.analysis import analyse
 
-POOLS = ("mpmc", "hickernell", "even")
+POOLS = ("mpmc", "hickernell")
 POOL = 64
 COUNTS = (128, 256, 512, 1024)
 FAIR_RULES = tuple(f"k={k} symmetrised" for k in (4, 6, 10, 20))
