@@ -3,7 +3,7 @@
     python -m benchmarks.report_speed --rows 1000000 --out out/bench
 
 The store is made up, in the shape of the real suites: half of it problems of the paper's table (their names, so that
-scenes and verdicts are drawn and tested, too), half random worlds under four rules; three of the samplers draw from
+scenes and verdicts are drawn and tested, too), half random worlds under four rules; two of the samplers draw from
 pools of 64 sets.  Each phase is run `repeats` times; the median is printed.
 """
 
