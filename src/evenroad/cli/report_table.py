@@ -54,7 +54,7 @@ def _needed_table(analysis: Analysis, questions: list[Question]) -> Table:
 
 
 def _fewest(analysis: Analysis, question: Question) -> str:
-    """Return who needs the fewest samples, among samplers with an interval and with cells for every N there is."""
+    """Name the sampler that needs the fewest samples, of those that have an interval and cells for every N."""
     tried: dict[str, set[int]] = {}
     for cell in analysis.cells_of(question):
         tried.setdefault(cell.sampler, set()).add(cell.n)

@@ -11,7 +11,7 @@ RATES = {
     "uniform": (0.2, 0.5, 0.8),
     "halton scrambled": (0.3, 0.6, 0.95),
     "halton paper-blocks": (0.25, 0.6, 0.9),
-    "even": (0.5, 0.9, 1.0),
+    "hickernell": (0.5, 0.9, 1.0),
 }
 COUNTS = (128, 256, 512)
 POOL = 16
@@ -28,7 +28,7 @@ def solved(yes=True, **others):
 
 
 def made_up(problem="maze-1", runs=40, rates=RATES, counts=COUNTS, seed=0, **others):
-    """Return (task, outcome) of every cell of one question; `even` draws from a pool of 16 sets."""
+    """Return (task, outcome) of every cell of one question; `hickernell` draws from a pool of 16 sets."""
     rng = np.random.default_rng(seed)
     rows = []
     for sampler, chances in rates.items():
@@ -36,7 +36,7 @@ def made_up(problem="maze-1", runs=40, rates=RATES, counts=COUNTS, seed=0, **oth
             of_set = rng.random(POOL) < chance
             for run in range(runs):
                 which = int(rng.integers(POOL))
-                pooled = sampler == "even"
+                pooled = sampler == "hickernell"
                 yes = bool(of_set[which] if pooled else rng.random() < chance)
                 valid = int(n * 0.4 + rng.integers(5))
                 outcome = solved(

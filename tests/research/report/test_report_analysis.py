@@ -51,14 +51,14 @@ def test_cells_come_in_the_order_of_tables(cells):
         "uniform",
         "halton paper-blocks",
         "halton scrambled",
-        "even",
+        "hickernell",
     ]
     assert [cell.n for cell in cells[:3]] == [128, 256, 512]
 
 
 def test_samplers_drawn_afresh_get_wilsons_interval_and_pools_one_over_sets(cells):
     for cell in cells:
-        if cell.sampler == "even":
+        if cell.sampler == "hickernell":
             assert cell.interval.kind == "wilson over sets"
             assert cell.units.runs.sum() == cell.runs
             assert cell.units.solved.sum() == cell.solved
@@ -68,7 +68,7 @@ def test_samplers_drawn_afresh_get_wilsons_interval_and_pools_one_over_sets(cell
 
 
 def test_sets_that_were_drawn_once_each_are_independent_runs(tmp_path):
-    rows = [(task(sampler="even", run=run), solved(run % 3 > 0, set_id=str(run))) for run in range(12)]
+    rows = [(task(sampler="hickernell", run=run), solved(run % 3 > 0, set_id=str(run))) for run in range(12)]
     (cell,) = cells_of(runs_from(tmp_path / "a.db", rows))
     assert cell.interval.kind == "wilson"
 
@@ -136,7 +136,7 @@ def test_each_pair_of_samplers_is_tested_once(runs, cells):
 
 def test_a_pool_is_compared_set_by_set(runs, cells):
     tests = {each.cell.sampler: each.test for each in comparisons_of(runs, cells)}
-    assert tests["even"] == "Fisher over sets"
+    assert tests["hickernell"] == "Fisher over sets"
     assert tests["halton paper-blocks"] == "McNemar"
 
 
@@ -163,7 +163,7 @@ def test_samples_needed_are_found_for_every_curve(cells):
         "uniform",
         "halton scrambled",
         "halton paper-blocks",
-        "even",
+        "hickernell",
     }
     for each in needed.values():
         assert each.low <= each.estimate <= each.high

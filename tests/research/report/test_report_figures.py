@@ -46,6 +46,9 @@ def test_mazes_under_one_rule_share_a_picture(tmp_path):
     assert len({each.rule for each in mazes}) == 1
     figure = draw_maze_success([cell for cell in cells_of(runs) if cell.question in mazes])
     assert [axes.get_title().split(",")[0] for axes in figure.axes] == ["maze-1", "maze-2"]
+    for axes in figure.axes:
+        places = [tuple(points.get_xdata()) for points, _, _ in axes.containers]
+        assert len(set(places)) == len(places) == 4, "error bars of two samplers cover each other"
 
 
 def test_gains_in_random_worlds_are_drawn_with_their_intervals_and_dimensions_without_what_has_none(tmp_path):

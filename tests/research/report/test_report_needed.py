@@ -92,10 +92,12 @@ def test_curves_that_are_resampled_together_are_as_if_alone(tmp_path):
     rows = (
         _curve("uniform", (0.3, 0.5, 1.0))
         + _curve("lattice", (0.5, 0.7, 0.9))
-        + _curve("even", (0.2, 0.4, 0.6), runs=30)
+        + _curve("hickernell", (0.2, 0.4, 0.6), runs=30)
     )
     cells = cells_of(runs_from(tmp_path / "a.db", rows))
-    curves = [[cell for cell in cells if cell.sampler == name] for name in ("uniform", "even", "lattice")]
+    curves = [
+        [cell for cell in cells if cell.sampler == name] for name in ("uniform", "hickernell", "lattice")
+    ]
     for together, curve in zip(resampled_curves(curves), curves, strict=True):
         (alone,) = resampled_curves([curve])
         assert np.array_equal(together, alone)

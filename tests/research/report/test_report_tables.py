@@ -26,6 +26,14 @@ def test_html_escapes_what_it_must_and_marks_by_class():
     assert "<td class='label'>uniform</td>" in text
 
 
+def test_html_sets_the_headings_of_labels_as_the_labels():
+    text = as_html(
+        _table(header=("sampler", "rule", "N"), rows=((Entry("a"), Entry("b"), Entry("1")),), labels=2)
+    )
+    assert "<tr><th class='label'>sampler</th><th class='label'>rule</th><th>N</th></tr>" in text
+    assert "<td class='label'>a</td><td class='label'>b</td><td>1</td>" in text
+
+
 def test_markdown_has_as_many_columns_in_every_line():
     lines = [line for line in as_markdown(_table()).splitlines() if line.startswith("|")]
     assert {len(re.findall(r"(?<!\\)\|", line)) for line in lines} == {3}

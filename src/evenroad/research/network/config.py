@@ -15,40 +15,39 @@ from evenroad.errors import InvalidValue, NotAvailable, shown
 from evenroad.points.optimise.objective import parse_objective, require_points_for
 
 POINTS_AT_ONCE = 4096
-"""Points whose activations are held in memory together, unless a micro-batch is asked for."""
+"""Number of points in memory together, unless a micro-batch is asked for."""
 
 
 @dataclass(frozen=True)
 class NetworkConfig:
-    """All that decides the result of a training; two equal configs give the same bits on one machine's CPU.
+    """All that decides the result of a training: on one machine's CPU equal configs give the same bits.
 
     Attributes
     ----------
     n, d : int
         Number of points of a set, >= 2, and dimension, >= 1.
     objective : str
-        What the mean over the sets is taken of, see :func:`~evenroad.points.optimise.parse_objective`; kept in
-        the spelling that ``str`` of the parsed objective gives.
+        Its mean over the sets is made small, see :func:`~evenroad.points.optimise.parse_objective`.  Kept as ``str``
+        writes the parsed objective.
     sets : int
-        How many sets are trained together: they share the network, each has its own random start.
+        Number of sets that are trained together: they share the network, and each has its own random start.
     width, layers : int
-        Numbers that describe a point inside the network, and message-passing layers.
+        How many numbers describe a point inside the network; number of message-passing layers.
     k : int
-        Nearest neighbours that a point hears of, or n - 1 where there are not so many.
+        Number of nearest neighbours that send a point messages, at most n - 1.
     radius : float or None
-        If given, a point hears of all within this distance instead, itself included.
+        If given, all points within this distance send messages instead, the point itself included.
     steps : int
-        Steps of Adam at most; the learning rate falls to zero along a half cosine over them.
+        Largest number of steps of Adam; over them the learning rate falls to zero along a half cosine.
     rate, weight_decay : float
         First learning rate and L2 penalty of Adam.
     micro_batch : int or None
-        Sets that are in memory at once.  It bounds the memory and hardly changes the speed; None takes as many
-        as make about 4096 points.
+        Number of sets in memory at once: it bounds the memory and hardly changes the speed.  None: about 4096 points.
     patience : int or None
-        Stop after so many steps without a new best mean; None, since the last steps with their small rates
-        usually still gain, never stops early.
+        Stop after so many steps without a new best mean.  None never stops early: the last steps with their small
+        rates usually still gain.
     seed : int
-        Draws the starts and the first weights; nothing is drawn later.
+        Draws the starting points and the first weights; nothing is drawn later.
 
     Raises
     ------
@@ -72,8 +71,7 @@ class NetworkConfig:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        # Kept as plain ints and floats, whatever kind of number came in: they go into JSON.
-        # Two points at least: the instance norm over a set of one would leave nothing of it.
+        # Plain ints and floats, since they go into JSON.  The instance norm of a set of one point would be zero.
         counts = {"n": 2, "d": 1, "sets": 1, "width": 1, "layers": 1, "k": 1, "steps": 1, "seed": 0}
         for name, least in counts.items():
             object.__setattr__(self, name, require_count(name, getattr(self, name), at_least=least))

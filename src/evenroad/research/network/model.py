@@ -1,4 +1,9 @@
-"""The network: a graph of neighbours, message-passing layers between encoder and decoder, the loss."""
+"""The network: the graph of neighbours, message-passing layers between encoder and decoder, and the loss.
+
+The graph links neighbours among the starting points and stays the same during the training.  The loss is an objective
+of the compiled kernels, with its gradient.  They run on the CPU in float64 wherever the network runs: to hand over 16
+sets of 1024 points in d = 10 takes 1.3 MB, and no measure has to be written a second time.
+"""
 
 from __future__ import annotations
 
@@ -38,19 +43,19 @@ class Edges:
 
 
 def nearest_edges(points: Array, k: int) -> Edges:
-    """Let every point of (n, d) hear of its k nearest others, or of all others where n <= k."""
+    """Send every point of (n, d) messages from its k nearest others, or from all others if n <= k."""
     n = len(points)
     k = min(k, n - 1)
     _, found = cKDTree(points).query(points, k=k + 1)
     found = found.reshape(n, k + 1)
     other = found != np.arange(n)[:, np.newaxis]
-    # Where more than k others lie at distance 0, a point may be missing among its own nearest ones.
+    # If more than k others lie at distance 0, the point itself may not be among the k + 1 nearest.
     other[other.all(axis=1), -1] = False
     return Edges(found[other].astype(np.int64), np.repeat(np.arange(n), k))
 
 
 def radius_edges(points: Array, radius: float) -> Edges:
-    """Let every point of (n, d) hear of all points at most `radius` away, itself included."""
+    """Send every point of (n, d) messages from all points at most `radius` away, itself included."""
     lists = cKDTree(points).query_ball_point(points, radius, return_sorted=True)
     found = [np.array(each, dtype=np.int64) for each in lists]
     degrees = [len(each) for each in found]
@@ -58,16 +63,16 @@ def radius_edges(points: Array, radius: float) -> Edges:
 
 
 def edges_of_sets(sets: Array, k: int, radius: float | None) -> Edges:
-    """Build the graph of every set of (s, n, d); point i of set t has the number t n + i.
+    """Return the graphs of several sets as one; point i of set t has the number t n + i.
 
     Parameters
     ----------
     sets : ndarray, shape (s, n, d)
         Starting points, n >= 2.
     k : int
-        Nearest neighbours, if there is no radius.
+        Number of nearest neighbours; used if `radius` is None.
     radius : float or None
-        Distance within which all are neighbours.
+        Distance up to which points are neighbours.
     """
     n = sets.shape[1]
     graphs = [nearest_edges(each, k) if radius is None else radius_edges(each, radius) for each in sets]
@@ -78,7 +83,7 @@ def edges_of_sets(sets: Array, k: int, radius: float | None) -> Edges:
 
 
 NORM_FLOOR = 1e-5
-"""Added to a variance before its root is divided by."""
+"""Added to a variance, so that its root can be divided by."""
 
 
 class MessageLayer(nn.Module):
@@ -114,14 +119,14 @@ class MessageLayer(nn.Module):
     def heard(self, points: torch.Tensor, sender: torch.Tensor, receiver: torch.Tensor) -> torch.Tensor:
         """Return the sum of the messages that every point gets, shape (sets * n, width).
 
-        Only the ReLU between the two linear maps of a message is done edge by edge: the first map is a sum of
-        one map of x_i and one of x_j, and the second may follow the sum over j.  All products with matrices so
-        cost as many as there are points, not edges.
+        Matrices are multiplied once a point, not once an edge: the first linear map of a message is a map of x_i
+        plus a map of x_j, and the second is applied to the sum over j.  Only the ReLU between them is done edge by
+        edge.
         """
         width = points.shape[1]
         own = functional.linear(points, self.message_in.weight[:, :width], self.message_in.bias)
         theirs = functional.linear(points, self.message_in.weight[:, width:])
-        # In place: these are the largest tensors of a training, a row an edge.
+        # In place: with a row for each edge these are the largest tensors of a training.
         hidden = own.index_select(0, receiver).add_(theirs.index_select(0, sender)).relu_()
         summed = torch.zeros_like(own).index_add(0, receiver, hidden)
         messages = torch.bincount(receiver, minlength=len(points)).to(points.dtype)
@@ -148,7 +153,7 @@ class PointNetwork(nn.Module):
 
     Notes
     -----
-    Built without weights: call :func:`draw_weights`, or load some.
+    It is built without weights; :func:`draw_weights` draws them.
     """
 
     def __init__(self, d: int, width: int, layers: int) -> None:
@@ -165,7 +170,7 @@ class PointNetwork(nn.Module):
         starts : Tensor of float32, shape (sets, n, d)
             Random points.
         sender, receiver : Tensor of int64, shape (m,)
-            Their graph, with points counted through all sets.
+            Their graph, as of :func:`edges_of_sets`.
 
         Returns
         -------
@@ -189,9 +194,9 @@ def build_network(config: NetworkConfig, draws: np.random.Generator) -> PointNet
 
 
 def draw_weights(network: PointNetwork, draws: np.random.Generator) -> None:
-    """Draw weights and biases of every linear map uniformly within 1 / sqrt(its inputs), torch's own habit.
+    """Draw weights and biases of every linear map uniformly within 1 / sqrt(its inputs), as torch does.
 
-    NumPy draws, as everywhere here: torch would take its global generator.
+    NumPy draws them: torch would use its global generator.
     """
     with torch.no_grad():
         for module in network.modules():
@@ -226,7 +231,7 @@ def objective_of_sets(points: torch.Tensor, objective: Objective) -> torch.Tenso
 
 
 class _ObjectiveOfSets(torch.autograd.Function):
-    """The bridge: the gradient comes with the value, so it is computed forward and kept for backward."""
+    """An objective in torch: the kernels give value and gradient together, so `forward` keeps it for `backward`."""
 
     @staticmethod
     def forward(ctx: Any, points: torch.Tensor, objective: Objective) -> torch.Tensor:

@@ -1,4 +1,8 @@
-"""A training between two steps: one step further, and onto disk and back."""
+"""A training between two steps: one step further, onto disk and back.
+
+A checkpoint is a safetensors file and a JSON file, which names it and holds its hash.  The JSON file is replaced last
+and in one step, so a killed training leaves a whole checkpoint: the new one or the one before.
+"""
 
 from __future__ import annotations
 
@@ -22,10 +26,13 @@ from evenroad.points.optimise.objective import Objective
 from evenroad.research.network.config import NetworkConfig
 from evenroad.research.network.model import PointNetwork, build_network, edges_of_sets, objective_of_sets
 
+CHECKPOINT_FILE = "checkpoint.json"
+FORMAT = 1
+
 
 @dataclass(frozen=True, eq=False)
 class MicroBatch:
-    """Sets that go through the network together: ``first``, ``first + 1``, ... of all.
+    """Sets that go through the network together: ``first``, ``first + 1``, ...
 
     Attributes
     ----------
@@ -43,18 +50,18 @@ class MicroBatch:
 
 @dataclass(eq=False)
 class TrainingState:
-    """What changes during a training; all of it goes into a checkpoint.
+    """All that changes during a training; a checkpoint holds it.
 
     Attributes
     ----------
     network : PointNetwork
     optimiser : torch.optim.Adam
     best_points, best_values : ndarray, shapes (sets, n, d) and (sets,)
-        Best of every set over all steps, and its objective; ``inf`` before the first step.
+        Best points of every set over all steps, and their objectives; ``inf`` before the first step.
     best_mean : float
-        Smallest mean of the objective over the sets at one step.
+        Smallest mean of the objective over the sets, of all steps.
     step, last_improved : int
-        Steps done, and the one with the best mean.
+        Number of steps done, and the step with the best mean.
     """
 
     network: PointNetwork
@@ -67,7 +74,7 @@ class TrainingState:
 
 
 def first_state(config: NetworkConfig, device: torch.device) -> tuple[TrainingState, tuple[MicroBatch, ...]]:
-    """Draw the weights and the starts; return the state before the first step, and the starts in micro-batches."""
+    """Draw weights and starting points; return the state before the first step, and the points in micro-batches."""
     for_starts, for_weights = np.random.SeedSequence(config.seed).spawn(2)
     starts = np.random.default_rng(for_starts).random((config.sets, config.n, config.d))
     network = build_network(config, np.random.default_rng(for_weights)).to(device)
@@ -87,9 +94,9 @@ def first_state(config: NetworkConfig, device: torch.device) -> tuple[TrainingSt
 def advance(
     state: TrainingState, batches: tuple[MicroBatch, ...], config: NetworkConfig, objective: Objective
 ) -> None:
-    """Do one step of Adam on the mean objective of all sets, taking note of the best points.
+    """Do one step of Adam on the mean objective of all sets, and keep the best points.
 
-    The gradient is added up over the micro-batches, so only one of them is in memory at a time.
+    The gradient is summed over the micro-batches: only one of them is in memory at a time.
     """
     for group in state.optimiser.param_groups:
         group["lr"] = learning_rate(state.step + 1, config)
@@ -109,13 +116,13 @@ def advance(
 
 
 def is_finished(state: TrainingState, config: NetworkConfig) -> bool:
-    """Return whether all steps are done, or the mean has not improved for as long as the config allows."""
+    """Return whether all steps are done, or the mean has not improved for `patience` steps."""
     waited = state.step - state.last_improved
     return state.step >= config.steps or (config.patience is not None and waited >= config.patience)
 
 
 def learning_rate(step: int, config: NetworkConfig) -> float:
-    """Return the rate of step 1 .. `steps`: from the config's rate towards 0 along a half cosine."""
+    """Return the rate of a step in 1 .. `steps`: it falls from the config's rate towards 0 along a half cosine."""
     return config.rate * 0.5 * (1.0 + math.cos(math.pi * (step - 1) / config.steps))
 
 
@@ -124,10 +131,6 @@ def _take_note(state: TrainingState, first: int, points: Array, values: Array) -
         if value < state.best_values[index]:
             state.best_values[index] = value
             state.best_points[index] = points[index - first]
-
-
-CHECKPOINT_FILE = "checkpoint.json"
-FORMAT = 1
 
 
 def save_checkpoint(folder: Path, config: NetworkConfig, state: TrainingState) -> None:
@@ -140,7 +143,7 @@ def save_checkpoint(folder: Path, config: NetworkConfig, state: TrainingState) -
     """
     data = safetensors.torch.save(tensors_of(state))
     digest = hashlib.sha256(data).hexdigest()
-    # A name of its own for every content, so that nothing which the old JSON file names is overwritten.
+    # The name depends on the content: the tensors that the old JSON file names are not overwritten.
     tensors_path = folder / f"checkpoint-{digest[:16]}.safetensors"
     with atomic_write(tensors_path) as file:
         file.write(data)
@@ -168,7 +171,7 @@ def load_checkpoint(folder: Path, config: NetworkConfig, state: TrainingState) -
     Raises
     ------
     BrokenFile
-        If it is damaged, incomplete, or of another config; the state is then as it was.
+        If it is damaged, incomplete, or of another config; then the state has not changed.
     """
     path = folder / CHECKPOINT_FILE
     if not path.exists():

@@ -171,16 +171,19 @@ def _compare(
 
 def _also_over_sets(compared: Comparison, by_set: UnitSums, c: int) -> Comparison:
     """Test over sets, too; return the comparison with the wider interval and the larger p of both tests."""
-    entries = by_set.of(c)
-    sums, pairs = by_set.sums[entries], by_set.runs[entries]
-    p = max(compared.p, student_test(sums, pairs)) if compared.is_tested else math.nan
-    return replace(
-        compared,
-        interval=compared.interval.or_wider(student_interval(sums, pairs, "sets")),
-        test=f"{compared.test}, Student over sets" if compared.is_tested else compared.test,
-        p=p,
-        p_corrected=p,
-    )
+    interval, p = also_over_sets(compared.interval, compared.p, by_set, c)
+    test = f"{compared.test}, Student over sets" if compared.is_tested else compared.test
+    return replace(compared, interval=interval, test=test, p=p, p_corrected=p)
+
+
+def also_over_sets(interval: Interval, p: float, by_set: UnitSums, group: int) -> tuple[Interval, float]:
+    """Return the wider interval and the larger p of those given and of Student's over the sets of a group.
+
+    A p of NaN, "not tested", stays.
+    """
+    sums, runs = by_set.sums[by_set.of(group)], by_set.runs[by_set.of(group)]
+    wider = interval.or_wider(student_interval(sums, runs, "sets"))
+    return wider, p if math.isnan(p) else max(p, student_test(sums, runs))
 
 
 def _corrected(found: list[Comparison]) -> tuple[Comparison, ...]:

@@ -10,7 +10,13 @@ import numpy as np
 
 from evenroad.research.problems import PROBLEMS
 from evenroad.research.report.cells import cell_codes, grouping_of
-from evenroad.research.report.comparisons import SIGNIFICANT, differences_from, pair_codes
+from evenroad.research.report.comparisons import (
+    SIGNIFICANT,
+    also_over_sets,
+    differences_from,
+    holm_of_tested,
+    pair_codes,
+)
 from evenroad.research.report.runs import (
     Ints,
     Question,
@@ -23,12 +29,9 @@ from evenroad.research.report.runs import (
 from evenroad.research.statistics import (
     Interval,
     clustered_difference,
-    holm,
     percentile_interval,
     resampled_ratios,
     sign_flip_test,
-    student_interval,
-    student_test,
 )
 
 PREFIX = "fair-"
@@ -178,9 +181,7 @@ def _pooled_by(grouping: str, pairs: _Pairs) -> tuple[Pooled, ...]:
         sums, counts = by_world.sums[entries], by_world.runs[entries]
         interval, p = clustered_difference(sums, counts, "instances"), sign_flip_test(sums)
         if shares_sets[g]:
-            of_sets = by_set.sums[by_set.of(g)], by_set.runs[by_set.of(g)]
-            interval = interval.or_wider(student_interval(*of_sets, "sets"))
-            p = max(p, student_test(*of_sets))
+            interval, p = also_over_sets(interval, p, by_set, g)
         total, rate = int(counts.sum()), float(solved[g] / counts.sum())
         found.append(
             Pooled(
@@ -196,7 +197,7 @@ def _pooled_by(grouping: str, pairs: _Pairs) -> tuple[Pooled, ...]:
                 p_corrected=p,
             )
         )
-    corrected = holm([each.p for each in found]).tolist()
+    corrected = holm_of_tested([each.p for each in found]).tolist()
     return tuple(replace(each, p_corrected=p) for each, p in zip(found, corrected, strict=True))
 
 

@@ -1,4 +1,4 @@
-"""The page: its sections in their order, and one HTML file that needs no other."""
+"""The page: its sections in their order, in one HTML file that needs no other."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class Section:
-    """A heading with what stands below it, in this order: text, pictures, tables."""
+    """A heading, and below it text, pictures and tables, in this order."""
 
     name: str
     title: str
@@ -67,35 +67,8 @@ class Section:
     tables: tuple[Table, ...] = ()
 
 
-def as_page(title: str, facts: Sequence[tuple[str, str]], sections: Sequence[Section]) -> str:
-    """Return the page: title, facts as a list of terms, contents, sections; pictures are inside."""
-    terms = "".join(f"<dt>{escape(term)}</dt><dd>{escape(fact)}</dd>" for term, fact in facts)
-    links = "".join(f"<li><a href='#{each.name}'>{escape(each.title)}</a></li>" for each in sections)
-    return (
-        f"<!doctype html>\n<html lang='en'><head><meta charset='utf-8'><title>{escape(title)}</title>"
-        f"<meta name='viewport' content='width=device-width'><style>{_STYLE}</style></head>\n<body>\n"
-        f"<h1>{escape(title)}</h1>\n<dl>{terms}</dl>\n<nav><ul>{links}</ul></nav>\n"
-        + "".join(map(_section_html, sections))
-        + "</body></html>\n"
-    )
-
-
-def _section_html(section: Section) -> str:
-    text = f"<p>{escape(section.text)}</p>\n" if section.text else ""
-    pictures = "".join(map(_picture_html, section.pictures))
-    tables = "".join(map(as_html, section.tables))
-    heading = f"<h2 id='{section.name}'>{escape(section.title)}</h2>"
-    return f"<section>{heading}\n{text}{pictures}{tables}</section>\n"
-
-
-def _picture_html(picture: Picture) -> str:
-    data = base64.b64encode(picture.png).decode()
-    # The title stands in the picture or above it as a heading; here it is for those who do not see it.
-    return f"<figure><img alt='{escape(picture.title, quote=True)}' src='data:image/png;base64,{data}'></figure>\n"
-
-
 def sections_of(analysis: Analysis) -> tuple[Section, ...]:
-    """Return all sections that the analysis has something for."""
+    """Return the sections of the page, those without results left out."""
     questions = [question for question in analysis.runs.questions if not is_fair(question)]
     sections = [_expected(analysis), _fair(analysis), *(_question(analysis, each) for each in questions)]
     sections += [_mazes(analysis, questions), _scenes(questions), _point_sets()]
@@ -107,10 +80,9 @@ def sections_of(analysis: Analysis) -> tuple[Section, ...]:
 def _expected(analysis: Analysis) -> Section | None:
     if not analysis.verdicts:
         return None
-    tables = tuple(expected_table(table, verdicts) for table, verdicts in analysis.verdicts.values())
-    text = " ".join(
-        f"{table.title}: {verdict_counts(verdicts)}." for table, verdicts in analysis.verdicts.values()
-    )
+    found = analysis.verdicts.values()
+    tables = tuple(expected_table(table, verdicts) for table, verdicts in found)
+    text = " ".join(f"{table.title}: {verdict_counts(verdicts)}." for table, verdicts in found)
     return Section("expected", "Published and independent results beside ours", text, tables=tables)
 
 
@@ -128,11 +100,12 @@ def _fair(analysis: Analysis) -> Section | None:
 def _question(analysis: Analysis, question: Question) -> Section:
     name = slug(str(question))
     picture = Picture(name, str(question), as_png(draw_curves(analysis.cells_of(question), str(question))))
-    spread = spread_table(analysis, question, f"{name}-sets")
-    tables = [success_table(analysis, question, f"{name}-success"), *paired_tables(analysis, question, name)]
-    return Section(
-        name, str(question), "", (picture,), tuple(tables if spread is None else [*tables, spread])
+    tables = (
+        success_table(analysis, question, f"{name}-success"),
+        *paired_tables(analysis, question, name),
+        spread_table(analysis, question, f"{name}-sets"),
     )
+    return Section(name, str(question), "", (picture,), tuple(each for each in tables if each is not None))
 
 
 def _mazes(analysis: Analysis, questions: list[Question]) -> Section | None:
@@ -141,7 +114,7 @@ def _mazes(analysis: Analysis, questions: list[Question]) -> Section | None:
         return None
     cells = [cell for cell in analysis.cells if cell.question in mazes]
     picture = Picture("maze-success", "Success on the mazes", as_png(draw_maze_success(cells)))
-    text = "The paper's figure, on our mazes: its own are not published."
+    text = "The paper's figure, on our mazes; the paper's own are not published."
     return Section("maze-success", "Success on the mazes", text, (picture,))
 
 
@@ -168,3 +141,30 @@ def _point_sets() -> Section:
 def slug(text: str) -> str:
     """Return a name for files and links: lower-case letters, digits and hyphens."""
     return re.sub(r"[^a-z0-9.]+", "-", text.lower()).strip("-")
+
+
+def as_page(title: str, facts: Sequence[tuple[str, str]], sections: Sequence[Section]) -> str:
+    """Return the page: title, facts, contents, sections.  Pictures are part of the file."""
+    terms = "".join(f"<dt>{escape(term)}</dt><dd>{escape(fact)}</dd>" for term, fact in facts)
+    links = "".join(f"<li><a href='#{each.name}'>{escape(each.title)}</a></li>" for each in sections)
+    return (
+        f"<!doctype html>\n<html lang='en'><head><meta charset='utf-8'><title>{escape(title)}</title>"
+        f"<meta name='viewport' content='width=device-width'><style>{_STYLE}</style></head>\n<body>\n"
+        f"<h1>{escape(title)}</h1>\n<dl>{terms}</dl>\n<nav><ul>{links}</ul></nav>\n"
+        + "".join(map(_section_html, sections))
+        + "</body></html>\n"
+    )
+
+
+def _section_html(section: Section) -> str:
+    text = f"<p>{escape(section.text)}</p>\n" if section.text else ""
+    pictures = "".join(map(_picture_html, section.pictures))
+    tables = "".join(map(as_html, section.tables))
+    heading = f"<h2 id='{section.name}'>{escape(section.title)}</h2>"
+    return f"<section>{heading}\n{text}{pictures}{tables}</section>\n"
+
+
+def _picture_html(picture: Picture) -> str:
+    data = base64.b64encode(picture.png).decode()
+    # Readers see the title in the picture or as a heading above it; this is for those who cannot see it.
+    return f"<figure><img alt='{escape(picture.title, quote=True)}' src='data:image/png;base64,{data}'></figure>\n"

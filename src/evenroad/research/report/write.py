@@ -20,44 +20,12 @@ from evenroad.research.report.csv_files import cells_csv, comparisons_csv, expec
 from evenroad.research.report.page import as_page, sections_of
 from evenroad.research.report.tables import as_latex, as_markdown
 
-
-def facts_of(store: Path, rows: Rows, sessions: Sequence[Session], command: str) -> list[tuple[str, str]]:
-    """Return (term, fact): command, rows, failures, seeds, versions, machines."""
-    failed = int((~rows.answered).sum())
-    by_status = ", ".join(
-        f"{int(rows.status.is_in([status]).sum())} {status}"
-        for status in rows.status.present()
-        if not bool(rows.answered[rows.status.is_in([status])].any())
-    )
-    seeds = ", ".join(str(seed) for seed in np.unique(rows.seed))
-    facts = [
-        ("command", command),
-        ("store", f"{store.name}: {len(rows)} rows of {', '.join(rows.suite.present())}"),
-        ("failures", f"{failed}" + (f" ({by_status})" if failed else "")),
-        ("seeds", seeds),
-        ("protocol", f"{PROTOCOL}; rows of others are left out"),
-        ("report by", f"evenroad {__version__}"),
-    ]
-    if sessions:
-        facts += [
-            ("runs by", "; ".join(dict.fromkeys(_versions(session) for session in sessions))),
-            ("machines", "; ".join(dict.fromkeys(session.platform for session in sessions))),
-            ("started", f"{sessions[0].started}, last resumed {sessions[-1].started}"),
-        ]
-    return facts
-
-
-def _versions(session: Session) -> str:
-    parts = (f"evenroad {session.evenroad}", f"Python {session.python}", f"numpy {session.numpy}")
-    return ", ".join((*parts, f"scipy {session.scipy}", f"numba {session.numba}"))
-
-
 PAGE = "report.html"
 
 
 @dataclass(frozen=True)
 class Report:
-    """A written report: what it says, and its files, the page first."""
+    """A written report: its results, and its files, the page first."""
 
     analysis: Analysis
     files: tuple[Path, ...]
@@ -139,3 +107,34 @@ def _make_folder(folder: Path) -> None:
         raise BrokenFile(f"cannot make the folder {folder}: {error.strerror or error}") from error
     require_writable_folder(folder / PAGE)
     remove_abandoned_parts(folder)
+
+
+def facts_of(store: Path, rows: Rows, sessions: Sequence[Session], command: str) -> list[tuple[str, str]]:
+    """Return where the numbers of a report come from, as (term, fact): command, rows, seeds, versions, machines."""
+    failed = int((~rows.answered).sum())
+    by_status = ", ".join(
+        f"{int(rows.status.is_in([status]).sum())} {status}"
+        for status in rows.status.present()
+        if not bool(rows.answered[rows.status.is_in([status])].any())
+    )
+    seeds = ", ".join(str(seed) for seed in np.unique(rows.seed))
+    facts = [
+        ("command", command),
+        ("store", f"{store.name}: {len(rows)} rows of {', '.join(rows.suite.present())}"),
+        ("failures", f"{failed}" + (f" ({by_status})" if failed else "")),
+        ("seeds", seeds),
+        ("protocol", f"{PROTOCOL}; rows of others are left out"),
+        ("report by", f"evenroad {__version__}"),
+    ]
+    if sessions:
+        facts += [
+            ("runs by", "; ".join(dict.fromkeys(_versions(session) for session in sessions))),
+            ("machines", "; ".join(dict.fromkeys(session.platform for session in sessions))),
+            ("started", f"{sessions[0].started}, last resumed {sessions[-1].started}"),
+        ]
+    return facts
+
+
+def _versions(session: Session) -> str:
+    parts = (f"evenroad {session.evenroad}", f"Python {session.python}", f"numpy {session.numpy}")
+    return ", ".join((*parts, f"scipy {session.scipy}", f"numba {session.numba}"))

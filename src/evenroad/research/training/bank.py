@@ -1,7 +1,7 @@
 """Build the bank, or finish it: ``python -m evenroad.research.training.bank``.
 
-Every set is written to a work folder as soon as it is made, and every cell enters the index in one atomic step when all
-its sets are there: a stop at any moment loses at most the sets that were being made, and the bank stays whole.
+A set is written to a work folder as soon as it is made, and a cell enters the index in one atomic step when all its
+sets are there.  A build that is stopped loses at most the sets that were being made, and the bank stays whole.
 """
 
 from __future__ import annotations
@@ -24,6 +24,40 @@ from evenroad.points.measures import MEASURES, separation
 from evenroad.points.pointset import BELOW_ONE, PointSet
 from evenroad.research.training import anneal_many
 
+COUNTS = (16, 32, 64, 128, 256, 512, 1024, 2048)
+"""Numbers of points."""
+HICKERNELL_DIMENSIONS = tuple(range(1, 15))
+MPMC_CELLS = tuple((2, n) for n in COUNTS[1:-1]) + tuple(
+    (d, n) for n in (128, 256, 512, 1024) for d in (3, 5, 10)
+)
+
+LOCK = ".lock"
+"""Lock file for changes of the index: several builds may work on one bank, on different cells."""
+
+NETWORK_WIDTH = 64
+"""Half the usual width: a step takes a third of the time, and in equal time on a CPU the sets are better."""
+
+NETWORK_RATE = 3e-3
+"""First learning rate, three times the usual one, which suits a network that makes one set only."""
+
+POINTS_OF_A_NETWORK = 256
+"""Points of all sets of a network together.  In d = 10 a network of sixteen sets of 128 points is a sixth worse than a
+network of one (mean D_H .241 and .208); but a network of one set of 32 points often ends in a poor minimum (d = 2:
+.026 and .023)."""
+
+MEAN_NEIGHBOURS = 4.0
+LARGEST_RADIUS = 0.35
+"""The radius within which points send each other messages holds so many neighbours on average, but is at most the
+paper's 0.35.  In d = 10 hardly any point is so near, and the network moves each point by itself."""
+
+MEASURED: dict[str, Callable[[npt.NDArray[np.float64]], float]] = {
+    "hickernell_rooted": MEASURES["hickernell"].rooted,
+    "star_rooted": MEASURES["star"].rooted,
+    "average_squared_rooted": MEASURES["average_squared"].rooted,
+    "separation_periodic": lambda points: separation(points, periodic=True),
+}
+"""Measures that the index holds of every set."""
+
 
 @dataclass(frozen=True)
 class Recipe:
@@ -38,7 +72,7 @@ class Recipe:
     sets : int
         Size of the pool.
     objective : str
-        What is made small; see :func:`evenroad.points.optimise.parse_objective`.
+        It is made small; see :func:`evenroad.points.optimise.parse_objective`.
     steps : int
         Steps of the optimiser.
     method : str
@@ -54,13 +88,6 @@ class Recipe:
     method: str = "annealed"
 
 
-COUNTS = (16, 32, 64, 128, 256, 512, 1024, 2048)
-HICKERNELL_DIMENSIONS = tuple(range(1, 15))
-MPMC_CELLS = tuple((2, n) for n in COUNTS[1:-1]) + tuple(
-    (d, n) for n in (128, 256, 512, 1024) for d in (3, 5, 10)
-)
-
-
 def recipes() -> list[Recipe]:
     """Return every cell of the bank, in the order in which they are built: most wanted first."""
     first = (2, 10, 3, 5)
@@ -73,14 +100,14 @@ def _hickernell(d: int, n: int) -> Recipe:
 
 
 def _sets(d: int, n: int) -> int:
-    """Success depends on which set is drawn, most in low dimensions: larger pools there, smaller for slow cells."""
+    """Return the size of a pool: large in low dimensions, where success depends most on the set; small if slow."""
     if n == 2048:
         return 4 if d <= 3 else 2
     return {1: 32, 2: 64, 3: 32}.get(d, 8)
 
 
 def _steps(d: int, n: int) -> int:
-    """5000 steps are the standard; four times as many, for the paper's d = 2 and 10, gain about 2 %."""
+    """Return the number of steps: 5000, more where a step is quick and for the paper's d = 2 and 10 (gain: 2 %)."""
     if d == 10 and n <= 1024:
         return 20_000 if n <= 512 else 10_000
     if d == 2 and n <= 512:
@@ -91,39 +118,12 @@ def _steps(d: int, n: int) -> int:
 
 
 def _mpmc(d: int, n: int) -> Recipe:
-    # On a CPU a set of 1024 points takes a minute: smaller pools there.
+    # Pools of large sets are small: on a CPU a set of 1024 points takes a minute.
     return Recipe("mpmc", d, n, 16 if n <= 256 else 4, "hickernell", steps=2_000, method="network")
 
 
-LOCK = ".lock"
-"""Held while the index changes: several builds may work on one bank, on different cells."""
-
-NETWORK_WIDTH = 64
-"""Half the usual width takes a third of the time a step; in equal time on a CPU its sets are better."""
-
-NETWORK_RATE = 3e-3
-"""First learning rate; three times the usual one suits a network that makes one set only."""
-
-POINTS_OF_A_NETWORK = 256
-"""Sets of one network have about so many points together.  Sixteen sets of 128 points are a sixth worse than one in
-d = 10 (mean D_H .241 and .208), but one set of 32 points alone often ends in a poor minimum (d = 2: .026 and .023)."""
-
-MEAN_NEIGHBOURS = 4.0
-LARGEST_RADIUS = 0.35
-"""A point hears of the others within the radius that holds so many on average, or within the paper's 0.35 if that is
-less.  In d = 10 hardly anybody is that near, and the network moves each point by itself."""
-
-MEASURED: dict[str, Callable[[npt.NDArray[np.float64]], float]] = {
-    "hickernell_rooted": MEASURES["hickernell"].rooted,
-    "star_rooted": MEASURES["star"].rooted,
-    "average_squared_rooted": MEASURES["average_squared"].rooted,
-    "separation_periodic": lambda points: separation(points, periodic=True),
-}
-"""What the index tells of every set."""
-
-
 def build(recipe: Recipe, folder: Path, work: Path, jobs: int, report: Callable[[str], object]) -> None:
-    """Make the sets of one cell that are not in the work folder yet, then put the cell into the bank."""
+    """Make the sets of a cell that are missing in the work folder, then put the cell into the bank."""
     own_work = work / f"{recipe.family}-d{recipe.d:02d}-n{recipe.n:04d}"
     own_work.mkdir(parents=True, exist_ok=True)
     progress = LineProgress(f"{recipe.family} d={recipe.d} n={recipe.n}, {recipe.sets} sets", report)
@@ -147,7 +147,7 @@ def _anneal(recipe: Recipe, work: Path, jobs: int, progress: LineProgress) -> tu
 
 
 def _train(recipe: Recipe, work: Path, jobs: int, progress: LineProgress) -> tuple[PointSet, ...]:
-    """Train networks of few sets each, so that each set gets enough of its network's weights."""
+    """Train several networks of few sets each: a network serves few sets better."""
     # Here, because only these cells need torch.
     from evenroad.research.network import NetworkConfig, train
 
@@ -183,7 +183,7 @@ def _radius(n: int, d: int) -> float:
 
 
 def store(recipe: Recipe, sets: Sequence[PointSet], folder: Path) -> None:
-    """Write the sets of a cell as float32, then its record in the index; measures are those of the stored values."""
+    """Write the sets of a cell as float32, then its record in the index, with measures of the stored values."""
     rounded = np.minimum(np.stack([each.points for each in sets]).astype(np.float32), np.float32(BELOW_ONE))
     path = folder / recipe.family / cell_name(recipe.n, recipe.d)
     path.parent.mkdir(parents=True, exist_ok=True)
