@@ -24,7 +24,7 @@ from evenroad.research.report.cells import cells_of
 from evenroad.research.report.expected import load_expected
 from evenroad.research.report.runs import runs_of
 from evenroad.research.report.verdicts import Verdict, verdicts_of
-from evenroad.research.suites.paper import SEED, paper_suite
+from evenroad.research.suites import SEED, paper_suite
 from evenroad.research.workers import processes
 
 PINNED = load_expected("pinned")

@@ -7,13 +7,22 @@ import numpy as np
 import pytest
 
 from evenroad.research.problems import PROBLEMS
-from evenroad.research.problems.fair import FAIR_PROBLEMS
-from evenroad.research.problems.fair.cubes import BALLS, BOXES, draw_balls, draw_boxes
-from evenroad.research.problems.fair.mazes import far_in_map
-from evenroad.research.problems.fair.query import draw_query, far_on_torus
-from evenroad.research.problems.fair.rigid import BODY, BODY_REACH, draw_clutter
-from evenroad.research.problems.fair.sizes import CALIBRATED_AT, DIFFICULTIES, SIZES
-from evenroad.research.problems.fair.streams import Family, Stream, instance_rng
+from evenroad.research.problems.fair import CALIBRATED_AT, DIFFICULTIES, FAIR_PROBLEMS, SIZES
+from evenroad.research.problems.fair_worlds import (
+    BALLS,
+    BODY,
+    BODY_REACH,
+    BOXES,
+    Family,
+    Stream,
+    draw_balls,
+    draw_boxes,
+    draw_clutter,
+    draw_query,
+    far_in_map,
+    far_on_torus,
+    instance_rng,
+)
 from evenroad.research.worlds import Corridor
 
 CALIBRATION = Path(__file__).parents[3] / "docs" / "data" / "fair_calibration.csv"

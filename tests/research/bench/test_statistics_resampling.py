@@ -12,7 +12,6 @@ from evenroad.research.statistics import (
     Interval,
     SamplesNeeded,
     clustered_difference,
-    clusters,
     mcnemar_exact,
     percentile_interval,
     resampled_ratios,
@@ -20,9 +19,9 @@ from evenroad.research.statistics import (
     sign_flip_test,
     student_interval,
     student_test,
+    units,
 )
-from evenroad.research.statistics.bootstrap import _ratios, _weights
-from evenroad.research.statistics.samples_needed import _isotonic
+from evenroad.research.statistics.resampling import _isotonic, _ratios, _weights
 
 
 def test_a_bootstrap_resamples_whole_units():
@@ -67,10 +66,10 @@ def _flip_by_counting(sums):
     return np.mean(np.array(flips) >= abs(sum(sums)))
 
 
-@given(st.lists(st.integers(-5, 5), max_size=9), st.sampled_from((0, clusters.SHORT)))
+@given(st.lists(st.integers(-5, 5), max_size=9), st.sampled_from((0, units.SHORT)))
 def test_sign_flips_are_counted_exactly(sums, short):
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(clusters, "SHORT", short)
+        patch.setattr(units, "SHORT", short)
         assert sign_flip_test(sums) == pytest.approx(_flip_by_counting(sums))
 
 

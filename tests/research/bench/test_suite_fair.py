@@ -7,7 +7,7 @@ import pytest
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.research.bench.execute import run_task
 from evenroad.research.bench.samplers import why_not
-from evenroad.research.suites.fair import COUNTS, DIMENSIONS, RULES, fair_suite
+from evenroad.research.suites import COUNTS, DIMENSIONS, FAIR_RULES, fair_suite
 
 
 def test_the_suite_reports_on_fresh_problems_of_every_family():
@@ -45,7 +45,7 @@ def test_n_varies_and_lazy_search_runs_at_the_middle_difficulty_only():
     hard = [task for task in tasks if task.problem == "fair-boxes-7d-25"]
     assert {task.n for task in middle} == set(COUNTS)
     assert {task.n for task in hard} == {512}
-    assert {task.rule for task in hard} == set(RULES)
+    assert {task.rule for task in hard} == set(FAIR_RULES)
     assert {(task.n, task.rule) for task in middle if task.search == "lazy"} == {(512, "k=20 symmetrised")}
     assert {task.run for task in middle if task.search == "lazy"} == {0}
     assert {task.search for task in hard} == {"connect"}

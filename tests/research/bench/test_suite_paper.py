@@ -10,8 +10,7 @@ from evenroad.research.bench.samplers import SAMPLERS, why_not
 from evenroad.research.bench.searches import search_named
 from evenroad.research.mazes import LEVELS, load_maze
 from evenroad.research.problems import PROBLEMS
-from evenroad.research.suites import SUITES
-from evenroad.research.suites.paper import EXPERIMENTS, paper_suite
+from evenroad.research.suites import EXPERIMENTS, SUITES, paper_suite
 from evenroad.roadmap import prm_star_gamma, rule_named
 
 

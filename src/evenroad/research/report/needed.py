@@ -11,7 +11,7 @@ from evenroad._rng import generator
 from evenroad.research.report.cells import Cell
 from evenroad.research.report.runs import Question
 from evenroad.research.statistics import FEW_UNITS, SamplesNeeded, resampled_ratios, samples_needed
-from evenroad.research.statistics.bootstrap import DRAWS
+from evenroad.research.statistics.resampling import DRAWS
 
 TARGET = 0.9
 

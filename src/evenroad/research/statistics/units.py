@@ -7,18 +7,24 @@ gives much the same answer every time.  What is independent are the sets; in a s
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.special import gammaln
+from scipy.special import gammaln, ndtri, stdtrit
 
 from evenroad.errors import InvalidValue
-from evenroad.research.statistics._counts import as_counts, as_successes
-from evenroad.research.statistics.bootstrap import DRAWS, percentile_interval, resampled_ratios
-from evenroad.research.statistics.interval import LEVEL, Interval, wilson
-from evenroad.research.statistics.paired import bonett_price
-from evenroad.research.statistics.sets import effective_runs
-from evenroad.research.statistics.student import student_interval
+from evenroad.research.statistics.paired import bonett_price, student_interval
+from evenroad.research.statistics.rates import (
+    LEVEL,
+    Interval,
+    as_counts,
+    as_successes,
+    fisher_exact,
+    require_share,
+    wilson,
+)
+from evenroad.research.statistics.resampling import DRAWS, percentile_interval, resampled_ratios
 
 FEW_UNITS = 10
 """With fewer units than this a bootstrap is too narrow."""
@@ -154,3 +160,138 @@ def _as_if_one_pair_a_unit(shares: npt.NDArray[np.float64], unit: str, level: fl
     rounded = bonett_price(round(wins), min(round(losses), units - round(wins)), units, level=level)
     seen = (wins - losses) / units
     return Interval(min(rounded.low, seen), max(rounded.high, seen), f"bonett-price over {unit}")
+
+
+def effective_runs(solved: npt.ArrayLike, runs: npt.ArrayLike, *, level: float = LEVEL) -> int:
+    """Return how many independent runs the runs of some units are worth.
+
+    A rate p of variance v, estimated from the units, is as sure as p (1 - p) / v runs make it, at most all runs; fewer
+    by the ratio of the normal and Student's quantile, squared.  At least as many as units, which is what units with one
+    outcome each are worth; and as many as units where p is 0 or 1, as nothing is known of v: there the number jumps.
+
+    Parameters
+    ----------
+    solved, runs : array_like of int, shape (units,)
+        Successes and runs per unit; every unit has a run.
+    level : float
+        Confidence of what is made of it, in (0, 1).
+
+    Raises
+    ------
+    InvalidValue
+        If there is no unit, or the counts are impossible.
+
+    References
+    ----------
+    E. L. Korn and B. I. Graubard (1998), Confidence intervals for proportions with small expected number of positive
+    counts estimated from survey data, Survey Methodology 24, 193-201.
+    """
+    successes, trials = as_successes(solved, runs)
+    if successes.ndim != 1 or len(successes) == 0:
+        raise InvalidValue(f"counts per unit must be a list, got shape {successes.shape}")
+    units, total = len(successes), int(trials.sum())
+    rate = float(successes.sum()) / total
+    if units == 1 or rate in (0.0, 1.0):
+        return units
+    variance = float(((successes - rate * trials) ** 2).sum()) * units / (units - 1) / total**2
+    end = 0.5 + 0.5 * require_share("level", level)
+    shrink = float(ndtri(end) / stdtrit(units - 1, end)) ** 2
+    worth = min(rate * (1.0 - rate) / variance, total) if variance > 0.0 else total
+    return max(math.floor(worth * shrink), units)
+
+
+def sets_difference(over_sets: Interval, rate: float, solved: int, runs: int) -> Interval:
+    """Return the interval of a pool's success rate minus that of independent runs.
+
+    Parameters
+    ----------
+    over_sets : Interval
+        Of the pool's rate.
+    rate : float
+        The pool's success rate.
+    solved, runs : int
+        Successes among independent runs.
+
+    References
+    ----------
+    R. G. Newcombe (1998), Interval estimation for the difference between independent proportions, Statistics in
+    Medicine 17, 873-890, method 10.
+    """
+    low, high = (float(end) for end in wilson(solved, runs))
+    other = solved / runs
+    below = math.hypot(rate - over_sets.low, high - other)
+    above = math.hypot(over_sets.high - rate, other - low)
+    difference = rate - other
+    return Interval(max(-1.0, difference - below), min(1.0, difference + above), "newcombe over sets")
+
+
+def sets_test(solved: npt.ArrayLike, runs: npt.ArrayLike, other_solved: int, other_runs: int) -> float:
+    """Return the p-value that a pool solves as often as independent runs of another sampler do.
+
+    Fisher's exact test, with one outcome a set: the pool's rate times its sets, rounded.  Less would be claimed where
+    runs of a set are nearly independent, but how nearly is not known well enough from a few sets.  No sign flips: one
+    outcome a set against the other's rate is skewed, and flips reject too often.
+
+    Parameters
+    ----------
+    solved, runs : array_like of int, shape (sets,)
+        As :func:`effective_runs`.
+    other_solved, other_runs : int
+        Of the independent runs.
+    """
+    successes, trials = as_successes(solved, runs)
+    rate = float(successes.sum() / trials.sum())
+    return fisher_exact((round(rate * len(trials)), len(trials)), (other_solved, other_runs))
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Success rates of single sets of a pool.
+
+    Attributes
+    ----------
+    sets : int
+        Sets that were drawn at least once.
+    mean, lowest, highest : float
+        Of the sets' own success rates; the mean gives every set the same weight.
+    sd : float
+        Standard deviation over sets (n - 1 below; 0 for one set).
+    sd_by_chance : float
+        What it would be if all sets were alike, by the binomial noise of so few runs a set: an `sd` well above
+        says that some sets are better than others on this problem.
+    """
+
+    sets: int
+    mean: float
+    sd: float
+    lowest: float
+    highest: float
+    sd_by_chance: float
+
+
+def spread_over_sets(solved: npt.ArrayLike, runs: npt.ArrayLike) -> Spread:
+    """Return the spread of success rates over the sets of a pool.
+
+    Parameters
+    ----------
+    solved, runs : array_like of int, shape (sets,)
+        Successes and runs per set, runs >= 1.
+
+    Raises
+    ------
+    InvalidValue
+        If there is no set, or the counts are impossible.
+    """
+    successes, trials = as_successes(solved, runs)
+    if successes.ndim != 1 or len(successes) == 0:
+        raise InvalidValue(f"counts per set must be a list, got shape {successes.shape}")
+    rates = successes / trials
+    overall = successes.sum() / trials.sum()
+    return Spread(
+        sets=len(rates),
+        mean=float(rates.mean()),
+        sd=float(rates.std(ddof=1)) if len(rates) > 1 else 0.0,
+        lowest=float(rates.min()),
+        highest=float(rates.max()),
+        sd_by_chance=float(np.sqrt(overall * (1.0 - overall) * np.mean(1.0 / trials))),
+    )
