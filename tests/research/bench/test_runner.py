@@ -12,10 +12,10 @@ import pytest
 
 from evenroad.errors import BrokenFile, InvalidValue, WorkerLost
 from evenroad.research.bench import runner
+from evenroad.research.bench.execute import LONGEST_LIMIT
 from evenroad.research.bench.runner import Chunker, Done, run_chunk, run_tasks
 from evenroad.research.bench.store import open_store, read_rows
 from evenroad.research.bench.task import Outcome, Task
-from evenroad.research.bench.time_limit import LONGEST_LIMIT
 from evenroad.research.workers import ProcessPool, SerialExecutor, Workers, in_process, processes
 from tests.research.bench.tables import table_of
 

@@ -11,11 +11,10 @@ from concurrent.futures import BrokenExecutor, Executor, Future, wait
 from dataclasses import dataclass
 
 from evenroad.errors import WorkerLost
-from evenroad.research.bench.execute import run_task
+from evenroad.research.bench.execute import DEFAULT_LIMIT, require_limit, run_task
 from evenroad.research.bench.rows import FAILURES
 from evenroad.research.bench.store import Store
 from evenroad.research.bench.task import Outcome, Task
-from evenroad.research.bench.time_limit import DEFAULT_LIMIT, require_limit
 from evenroad.research.workers import Workers
 
 POLL_SECONDS = 0.2
