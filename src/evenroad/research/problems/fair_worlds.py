@@ -71,11 +71,16 @@ def make_instance(
     instance : int
         Number, >= 0.
     """
-    if family in (Family.BALLS, Family.BOXES):
-        return cube_problem(stream, family, d, difficulty, size, instance)
-    if family is Family.MAZE:
-        return maze_problem(stream, difficulty, size, instance)
-    return rigid_problem(stream, family, difficulty, size, instance)
+    draw, far_apart = {
+        Family.BALLS: (partial(draw_balls, d), far_on_torus),
+        Family.BOXES: (partial(draw_boxes, d), far_on_torus),
+        Family.MAZE: (draw_disk_world, far_in_map),
+        Family.SE2: (partial(draw_clutter, 2), partial(places_far_apart, 2)),
+        Family.SE3: (partial(draw_clutter, 3), partial(places_far_apart, 3)),
+    }[family]
+    rng = instance_rng(stream, family, d, difficulty, instance)
+    world, start, goal = draw_query(partial(draw, size), far_apart, rng)
+    return Problem(world, start, goal, set_dim=d)
 
 
 Array = npt.NDArray[np.float64]
@@ -162,40 +167,17 @@ def draw_boxes(d: int, half_extent: float, rng: np.random.Generator) -> Periodic
     return PeriodicBoxes(d, axes, centres, np.minimum(half_extents, 0.5))
 
 
-DRAW: Mapping[Family, Callable[[int, float, np.random.Generator], World]] = {
-    Family.BALLS: draw_balls,
-    Family.BOXES: draw_boxes,
-}
-"""Family -> how a world is drawn from dimension, size and generator."""
-
-
-def cube_problem(
-    stream: Stream, family: Family, d: int, difficulty: int, size: float, instance: int
-) -> Problem:
-    """Return one instance in d dimensions with obstacles of this size: world, start and goal are drawn afresh."""
-    rng = instance_rng(stream, family, d, difficulty, instance)
-    world, start, goal = draw_query(partial(DRAW[family], d, size), far_on_torus, rng)
-    return Problem(world, start, goal, set_dim=d)
-
-
 ROBOT_RADIUS = 6.0
 """In pixels, as in the shipped mazes."""
 
 
-def maze_problem(stream: Stream, difficulty: int, door: float, instance: int) -> Problem:
-    """Return one maze of 640 x 480 pixels with doors of `door` pixels, and start and goal 320 pixels apart or more."""
-    rng = instance_rng(stream, Family.MAZE, 2, difficulty, instance)
-    world, start, goal = draw_query(partial(draw_disk_world, door), far_in_map, rng)
-    return Problem(world, start, goal, set_dim=2)
-
-
 def draw_disk_world(door: float, rng: np.random.Generator) -> World:
-    """Return a maze of 8 x 6 rooms, a tenth of whose other walls have doors too."""
+    """Return a maze of 8 x 6 rooms in 640 x 480 pixels, with doors of `door` pixels, also in a tenth of other walls."""
     design = MazeDesign(cols=8, rows=6, wall=8, door=round(door), loops=0.1)
     return draw_maze(design, rng=rng).map.world(ROBOT_RADIUS)
 
 
-def far_in_map(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+def far_in_map(a: Array, b: Array) -> npt.NDArray[np.bool_]:
     """Return which rows of the unit square are half the map's width, 320 pixels, apart in the map: (m,)."""
     return np.asarray(np.hypot(640.0 * (b[:, 0] - a[:, 0]), 480.0 * (b[:, 1] - a[:, 1])) >= 320.0)
 
@@ -226,15 +208,6 @@ TURN_WEIGHT = {2: 0.15, 3: 0.3}
 """What a radian of the space's metric counts: about the way that it moves the far end of the body."""
 
 
-def rigid_problem(stream: Stream, family: Family, difficulty: int, size: float, instance: int) -> Problem:
-    """Return one instance among boxes with half extents about `size`; sets have all 3 or 6 coordinates."""
-    dim = 2 if family is Family.SE2 else 3
-    cube_dim = 3 if dim == 2 else 6
-    rng = instance_rng(stream, family, cube_dim, difficulty, instance)
-    world, start, goal = draw_query(partial(draw_clutter, dim, size), partial(places_far_apart, dim), rng)
-    return Problem(world, start, goal, set_dim=cube_dim)
-
-
 def draw_clutter(dim: int, size: float, rng: np.random.Generator) -> SolidWorld:
     """Return a body in the unit square or cube among boxes turned at random, half extents in [.4, 1.6] times `size`."""
     margin = BODY_REACH[dim] + 1.6 * size * np.sqrt(dim)
@@ -253,9 +226,7 @@ def draw_clutter(dim: int, size: float, rng: np.random.Generator) -> SolidWorld:
     return SolidWorld(space, BODY[dim], obstacles, RESOLUTION[dim])
 
 
-def places_far_apart(
-    dim: int, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]
-) -> npt.NDArray[np.bool_]:
+def places_far_apart(dim: int, a: Array, b: Array) -> npt.NDArray[np.bool_]:
     """Return which rows of the unit cube have places as far apart as :func:`far_on_torus` asks; turns are free."""
     return far_on_torus(a[:, :dim], b[:, :dim])
 

@@ -30,8 +30,8 @@ def resampled_ratios(
 ) -> npt.NDArray[np.float64]:
     """Return the bootstrap distribution of ``sum(numerators) / sum(denominators)`` over units.
 
-    Units are what is independent: runs, sets or instances.  With solved and runs per unit the ratio is a success
-    rate; with the differences of two samplers' solved runs and the pairs it is the paired difference of their
+    Units are runs, sets or instances that are independent of each other.  With solved and runs per unit the ratio is a
+    success rate; with the differences of two samplers' solved runs and the pairs it is the paired difference of their
     rates (both samplers keep the same units in a resample: that is the pairing).
 
     Parameters

@@ -1,7 +1,8 @@
 """Runs that are not independent: those of one trained set, or of one random world.
 
 A pool of 64 sets that is drawn from 400 times does not give 400 independent runs: on a fixed problem the same set
-gives much the same answer every time.  What is independent are the sets; in a suite of random worlds, the worlds.
+gives much the same answer every time.  Only the 64 sets are independent of each other.  In a suite of random worlds,
+runs in one world resemble each other, and only the worlds are independent.  Such sets and worlds are called units here.
 """
 
 from __future__ import annotations
