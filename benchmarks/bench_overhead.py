@@ -15,8 +15,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from evenroad.research.bench.chunks import Done
-from evenroad.research.bench.runner import run_tasks
+from evenroad.research.bench.runner import Done, run_tasks
 from evenroad.research.bench.store import open_store, read_rows
 from evenroad.research.bench.task import Outcome, Task
 from evenroad.research.workers import ProcessPool, SerialExecutor, Workers

@@ -26,10 +26,8 @@ import numpy as np
 
 from benchmarks.nested_k import NEVER, smallest_k
 from evenroad.research.bench.task import Problem
-from evenroad.research.problems.fair.cubes import BALLS, BOUNDED_AXES, BOXES
-from evenroad.research.problems.fair.instance import make_instance
-from evenroad.research.problems.fair.sizes import CALIBRATED_AT
-from evenroad.research.problems.fair.streams import Family, Stream
+from evenroad.research.problems.fair import CALIBRATED_AT
+from evenroad.research.problems.fair_worlds import BALLS, BOUNDED_AXES, BOXES, Family, Stream, make_instance
 
 DENSE_WORLDS = {Family.SE3: 10}
 """Family -> worlds for the dense roadmap, where neighbours take seconds; 100 elsewhere."""

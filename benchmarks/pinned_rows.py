@@ -23,7 +23,7 @@ from evenroad.research.bench.task import Task
 from evenroad.research.report.cells import cells_of
 from evenroad.research.report.runs import runs_of
 from evenroad.research.report.verdicts import Verdict, load_expected, verdicts_of
-from evenroad.research.suites.paper import SEED, paper_suite
+from evenroad.research.suites import SEED, paper_suite
 from evenroad.research.workers import processes
 
 PINNED = load_expected("pinned")

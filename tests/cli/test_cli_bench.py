@@ -169,6 +169,20 @@ def test_a_file_that_is_no_store_is_refused_before_anything_runs(run, tmp_path):
     assert "not a store of benchmark results" in err
 
 
+def test_a_damaged_store_is_one_line_and_exit_code_2_for_every_verb_that_reads_it(run, tmp_path):
+    run(*SMALL)
+    store = tmp_path / "results.db"
+    connection = sqlite3.connect(store)
+    connection.execute("UPDATE rows SET valid = valid + 1 WHERE run = 1")
+    connection.commit()
+    connection.close()
+    for verb in (SMALL, ("report", "results.db", "-o", "out"), ("export", "results.db", "-o", "arena.db")):
+        code, _, err = run(*verb)
+        assert code == 2
+        assert err.startswith("evenroad: error: results.db is damaged: the row with the key ")
+        assert len(err.splitlines()) == 1
+
+
 @pytest.mark.parametrize("address", ["foo", "foo://host:8786", "tcp://127.0.0.1", "tcp://host:port"])
 def test_an_address_that_is_none_is_one_line_at_once(address, tmp_path):
     pytest.importorskip("distributed")

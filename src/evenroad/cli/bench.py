@@ -69,9 +69,9 @@ class Bench:
     def _run(self, suite: Suite) -> Report:
         from evenroad.cli.interrupt import interrupt_between_steps
         from evenroad.cli.progress import progress_bar
+        from evenroad.research.bench.execute import DEFAULT_LIMIT, require_limit
         from evenroad.research.bench.runner import run_tasks
         from evenroad.research.bench.store import open_store
-        from evenroad.research.bench.time_limit import DEFAULT_LIMIT, require_limit
 
         # Tasks in threads, as Dask's are, cannot be stopped.
         limit = None if self.scheduler is not None else DEFAULT_LIMIT if self.limit is None else self.limit

@@ -6,8 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evenroad.errors import UnknownName
-from evenroad.research.bench.connect import is_connected, milestones_until_connected
-from evenroad.research.bench.searches import SEARCHES, search_named
+from evenroad.research.bench.searches import SEARCHES, is_connected, milestones_until_connected, search_named
 from evenroad.research.worlds import Corridor
 from evenroad.roadmap import rule_named
 from evenroad.roadmap.search import FREE, Ledger

@@ -9,10 +9,9 @@ import pytest
 
 from evenroad.points import PointSet
 from evenroad.research.bench import execute
-from evenroad.research.bench.execute import run_task
+from evenroad.research.bench.execute import OverTime, run_task, time_limit
 from evenroad.research.bench.samplers import SAMPLERS, draw_set
 from evenroad.research.bench.task import Problem, ProblemSource, Task
-from evenroad.research.bench.time_limit import OverTime, time_limit
 from evenroad.research.mazes import load_maze
 from evenroad.research.problems import PROBLEMS, source_named
 from evenroad.research.worlds import Corridor

@@ -11,12 +11,11 @@ import numpy as np
 import pytest
 
 from evenroad.errors import BrokenFile, InvalidValue, WorkerLost
-from evenroad.research.bench import chunks
-from evenroad.research.bench.chunks import Chunker, Done, run_chunk
-from evenroad.research.bench.runner import run_tasks
+from evenroad.research.bench import runner
+from evenroad.research.bench.execute import LONGEST_LIMIT
+from evenroad.research.bench.runner import Chunker, Done, run_chunk, run_tasks
 from evenroad.research.bench.store import open_store, read_rows
 from evenroad.research.bench.task import Outcome, Task
-from evenroad.research.bench.time_limit import LONGEST_LIMIT
 from evenroad.research.workers import ProcessPool, SerialExecutor, Workers, in_process, processes
 from tests.research.bench.tables import table_of
 
@@ -331,10 +330,10 @@ def test_chunks_hold_all_tasks_in_order_each_of_one_problem():
 def test_chunks_of_fast_tasks_grow_and_those_of_slow_ones_are_single():
     task = TASKS[0]
     many = [replace(task, run=run) for run in range(5000)]
-    for seconds, expected in ((0.001, 490), (1e-7, chunks.LARGEST_CHUNK), (10.0, 1)):
+    for seconds, expected in ((0.001, 490), (1e-7, runner.LARGEST_CHUNK), (10.0, 1)):
         chunker = Chunker(many)
         first = chunker.next()
-        assert len(first) == chunks.FIRST_CHUNK
+        assert len(first) == runner.FIRST_CHUNK
         chunker.learn(first, [seconds] * len(first))
         assert len(chunker.next()) >= expected or expected == 1
         assert len(chunker.next()) <= max(1.5 * expected, 1)

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
-from evenroad.research.worlds.chain import ChainWorld
-from evenroad.research.worlds.chain.horn import horn
+from evenroad.research.worlds.chain import ChainWorld, horn
 from evenroad.testing import WorldContract
 from evenroad.world import FunctionWorld
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
-from evenroad.research.worlds.periodic import PeriodicBalls, PeriodicBoxes
+from evenroad.research.worlds import PeriodicBalls, PeriodicBoxes
 from evenroad.testing import WorldContract
 
 

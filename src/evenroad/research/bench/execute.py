@@ -1,18 +1,30 @@
-"""Running one task in this process: the same task gives the same outcome, in any process and any order."""
+"""Running one task in this process, within a limit on its time.
+
+The same task gives the same outcome, in any process and in any order, on one kind of processor: elsewhere the last bits
+of computed sets may differ, as those of Riesz energies do by 2e-16.
+
+The roadmap and its search are those of :func:`evenroad.roadmap.plan`, without what a benchmark does not measure: a
+shorter path afterwards, and the strict check of that path.
+"""
 
 from __future__ import annotations
 
+import signal
+import threading
 import time
 import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._checks import require_positive
+from evenroad.errors import InvalidValue
 from evenroad.research.bench.samplers import draw_set
 from evenroad.research.bench.searches import Finding, search_named
 from evenroad.research.bench.task import Outcome, Problem, Task
-from evenroad.research.bench.time_limit import OverTime, time_limit
 from evenroad.research.problems import source_named
 from evenroad.roadmap import rule_named
 from evenroad.roadmap.search import FREE, Ledger
@@ -122,3 +134,44 @@ def _warm_up(name: str, rule: str, search: str, problem: Problem) -> None:
     problem.world.valid(configurations)
     _search(problem, configurations, rule, search)
     _warm.add((name, rule, search))
+
+
+DEFAULT_LIMIT = 600.0
+"""Seconds for a task; the slowest of the suites take less than one."""
+
+LONGEST_LIMIT = 1e6
+"""Seconds; the clocks of some platforms take no much larger number."""
+
+
+class OverTime(BaseException):
+    """The time is over.  No Exception, so that code in the block that catches those does not swallow it."""
+
+
+def require_limit(seconds: float | None) -> None:
+    """Raise InvalidValue unless this is a limit in (0, 10^6] s, or None for no limit."""
+    if seconds is not None and require_positive("limit", seconds) > LONGEST_LIMIT:
+        raise InvalidValue(f"limit must be at most {LONGEST_LIMIT:g} s, got {seconds!r}")
+
+
+@contextmanager
+def time_limit(seconds: float | None) -> Iterator[None]:
+    """Raise OverTime in the block after so many seconds; None means no limit.
+
+    It takes a SIGALRM, so nothing is limited on platforms without it, nor outside of the main thread.  Compiled code
+    is not interrupted: the error comes when it returns.
+    """
+    here = threading.current_thread() is threading.main_thread()
+    if seconds is None or not here or not hasattr(signal, "SIGALRM"):
+        yield
+        return
+
+    def ring(number: int, frame: object) -> None:
+        raise OverTime
+
+    before = signal.signal(signal.SIGALRM, ring)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)

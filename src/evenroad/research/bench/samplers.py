@@ -15,7 +15,8 @@ from evenroad.points.randomise import permute_coordinates
 from evenroad.points.samplers.lattice import MAX_D
 
 PERMUTED_FROM = 5
-"""From this dimension on a set with permuted coordinates plans like a fresh one; below, there are too few orders."""
+"""From this dimension on, a set whose coordinates are permuted anew counts as another set; below, there are too few
+orders of the coordinates."""
 
 STRETCH = 32
 """Runs of a block protocol whose points are generated together."""

@@ -2,16 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from functools import partial
 
 from evenroad.errors import UnknownName
-from evenroad.research.bench.task import ProblemSource
-from evenroad.research.problems.chain import CHAINS
-from evenroad.research.problems.corridors import CORRIDORS
+from evenroad.research.bench.task import Problem, ProblemSource
+from evenroad.research.problems.cubicles import cubicles
 from evenroad.research.problems.fair import FAIR
-from evenroad.research.problems.mazes import MAZES
-from evenroad.research.problems.puzzles import PUZZLES
-from evenroad.research.problems.ur5 import UR5
+from evenroad.research.problems.paper import CHAINS, CORRIDORS, MAZES, UR5
+from evenroad.research.problems.puzzles import Puzzle, problem_of, twistycool
+
+
+def _problem(make: Callable[[], Puzzle], set_dim: int, instance: int) -> Problem:
+    return problem_of(make(), set_dim)
+
+
+def _sources(name: str, make: Callable[[], Puzzle], about: str) -> tuple[ProblemSource, ProblemSource]:
+    """Return the puzzle with sets that give the translation, as published, and with sets that give the turn, too."""
+    return (
+        ProblemSource(
+            name,
+            3,
+            partial(_problem, make, 3),
+            about=f"{about}; the sets give translations, turns are uniform",
+        ),
+        ProblemSource(
+            f"{name}-6d",
+            6,
+            partial(_problem, make, 6),
+            about=f"{about}; the sets give translations and turns",
+        ),
+    )
+
+
+PUZZLES = (
+    *_sources(
+        "cubicles", cubicles, "an L-shaped body changes rooms through the basement (OMPL.app's, of boxes)"
+    ),
+    *_sources("twistycool", twistycool, "a hooked body goes through a window (OMPL.app's, of boxes)"),
+)
 
 
 def _by_name(*families: Iterable[ProblemSource]) -> dict[str, ProblemSource]:

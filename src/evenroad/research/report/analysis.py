@@ -17,7 +17,7 @@ from evenroad.research.report.fair import LazyChecks, Pooled, lazy_checks, poole
 from evenroad.research.report.runs import Question, Runs, runs_of
 from evenroad.research.report.verdicts import SOURCES, ExpectedTable, Verdict, load_expected, verdicts_of
 from evenroad.research.statistics import FEW_UNITS, SamplesNeeded, resampled_ratios, samples_needed
-from evenroad.research.statistics.bootstrap import DRAWS
+from evenroad.research.statistics.resampling import DRAWS
 
 TARGET = 0.9
 """Success rate that the samples needed are asked for."""

@@ -1,0 +1,237 @@
+"""Random worlds, starts and goals of the fair suite: from the number of an instance to a problem."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from enum import IntEnum
+from functools import partial
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.research.bench.task import Problem
+from evenroad.research.mazes import MazeDesign, draw_maze
+from evenroad.research.worlds import PeriodicBalls, PeriodicBoxes
+from evenroad.space import SE2, SE3
+from evenroad.world import World
+from evenroad.world.solids import OrientedBox, SolidWorld, heading_turn, quaternion_turn
+
+ENTROPY = 20_261_121
+"""Root of every instance of the fair suite; the seed of a suite draws sets, never worlds."""
+
+
+class Stream(IntEnum):
+    """What instances are for; part of their seed, so that two streams share none."""
+
+    CALIBRATION = 0
+    TUNING = 1
+    REPORTING = 2
+
+
+PREFIX = {Stream.TUNING: "tune", Stream.REPORTING: "fair"}
+"""Stream -> how the names of its problems begin; the calibration's instances are no problems."""
+
+
+class Family(IntEnum):
+    """Kinds of random worlds; the number is part of the seed."""
+
+    BALLS = 0
+    BOXES = 1
+    MAZE = 2
+    SE2 = 3
+    SE3 = 4
+
+
+def instance_rng(
+    stream: Stream, family: Family, d: int, difficulty: int, instance: int
+) -> np.random.Generator:
+    """Return the generator of one instance: the same numbers in every process, others for every other instance."""
+    key = (int(stream), int(family), d, difficulty, instance)
+    return np.random.default_rng(np.random.SeedSequence(ENTROPY, spawn_key=key))
+
+
+def make_instance(
+    stream: Stream, family: Family, d: int, difficulty: int, size: float, instance: int
+) -> Problem:
+    """Return the problem of this number; the same arguments give the same one, in every process.
+
+    Parameters
+    ----------
+    stream : Stream
+        What it is for.
+    family : Family
+        Kind of world.
+    d : int
+        Dimension of the point sets: any with a number of obstacles for balls and boxes, 2 for mazes, 3 for SE(2) and
+        6 for SE(3).
+    difficulty : int
+        Success of uniform points in % that `size` is meant to give; part of the seed.
+    size : float
+        Of the obstacles: radius, half extent; width of the doors in mazes.
+    instance : int
+        Number, >= 0.
+    """
+    draw, far_apart = {
+        Family.BALLS: (partial(draw_balls, d), far_on_torus),
+        Family.BOXES: (partial(draw_boxes, d), far_on_torus),
+        Family.MAZE: (draw_disk_world, far_in_map),
+        Family.SE2: (partial(draw_clutter, 2), partial(places_far_apart, 2)),
+        Family.SE3: (partial(draw_clutter, 3), partial(places_far_apart, 3)),
+    }[family]
+    rng = instance_rng(stream, family, d, difficulty, instance)
+    world, start, goal = draw_query(partial(draw, size), far_apart, rng)
+    return Problem(world, start, goal, set_dim=d)
+
+
+Array = npt.NDArray[np.float64]
+
+PAIRS = 512
+"""Pairs of configurations that are tried in one world."""
+
+BATCH = 32
+"""Pairs whose validity is asked about together: few, since most worlds need no more."""
+
+
+def draw_query(
+    draw_world: Callable[[np.random.Generator], World],
+    far_apart: Callable[[Array, Array], npt.NDArray[np.bool_]],
+    rng: np.random.Generator,
+) -> tuple[World, Array, Array]:
+    """Draw a world, a start and a goal.
+
+    Start and goal are two uniform configurations: the first pair of which both are free, that is far apart, and
+    between which the straight motion is blocked.  A world in which none of 512 pairs will do is replaced by the next.
+
+    Parameters
+    ----------
+    draw_world : callable
+        From a generator to a world.
+    far_apart : callable
+        From the rows of two (m, cube_dim) arrays of the space's unit cube to which are far enough apart: (m,).
+    rng : Generator
+        Is consumed.
+
+    Returns
+    -------
+    world : World
+    start, goal : ndarray, shape (dim,)
+    """
+    while True:
+        world = draw_world(rng)
+        cube = rng.random((2, PAIRS, world.space.cube_dim))
+        rows = np.flatnonzero(far_apart(cube[0], cube[1]))
+        for begin in range(0, len(rows), BATCH):
+            some = rows[begin : begin + BATCH]
+            first, second = (world.space.from_cube(each[some]) for each in cube)
+            both_free = world.valid(first) & world.valid(second)
+            for start, goal in zip(first[both_free], second[both_free], strict=True):
+                # One by one: the first pair nearly always does.
+                if not world.motion_valid(start[np.newaxis], goal[np.newaxis])[0]:
+                    return world, start, goal
+
+
+def far_on_torus(a: Array, b: Array) -> npt.NDArray[np.bool_]:
+    """Return which rows of two (m, d) arrays in the unit cube are at least sqrt(d / 12) apart on the torus: (m,).
+
+    That is the root of the mean square for two uniform points.  Measured in the cube instead, far ends would be
+    ends near its faces; on the torus each end alone stays uniform.
+    """
+    step = np.abs(b - a)
+    step = np.minimum(step, 1.0 - step)
+    return np.asarray((step**2).sum(axis=1) >= a.shape[1] / 12.0)
+
+
+BALLS: Mapping[int, int] = {2: 20, 3: 60, 4: 100, 5: 150, 6: 200, 7: 200, 10: 200}
+BOXES: Mapping[int, int] = {2: 20, 3: 40, 4: 60, 5: 60, 6: 60, 7: 60, 10: 60}
+"""Dimension -> number of obstacles; how large they are is calibrated.
+
+Many rather than few: few large obstacles must leave so little of the cube free, to be as hard, that what is left of
+any set looks random.
+"""
+
+BOUNDED_AXES = 3
+"""Coordinates that a box bounds, like an obstacle in space; both of them in the plane."""
+
+
+def draw_balls(d: int, radius: float, rng: np.random.Generator) -> PeriodicBalls:
+    """Return balls of one radius with uniform centres."""
+    return PeriodicBalls(rng.random((BALLS[d], d)), radius)
+
+
+def draw_boxes(d: int, half_extent: float, rng: np.random.Generator) -> PeriodicBoxes:
+    """Return boxes with uniform centres, in random axes, with half extents uniform in [.5, 1.5] times the given one."""
+    count, bounded = BOXES[d], min(BOUNDED_AXES, d)
+    axes = np.argsort(rng.random((count, d)), axis=1)[:, :bounded]
+    centres = rng.random((count, bounded))
+    half_extents = half_extent * (0.5 + rng.random((count, bounded)))
+    return PeriodicBoxes(d, axes, centres, np.minimum(half_extents, 0.5))
+
+
+ROBOT_RADIUS = 6.0
+"""In pixels, as in the shipped mazes."""
+
+
+def draw_disk_world(door: float, rng: np.random.Generator) -> World:
+    """Return a maze of 8 x 6 rooms in 640 x 480 pixels, with doors of `door` pixels, also in a tenth of other walls."""
+    design = MazeDesign(cols=8, rows=6, wall=8, door=round(door), loops=0.1)
+    return draw_maze(design, rng=rng).map.world(ROBOT_RADIUS)
+
+
+def far_in_map(a: Array, b: Array) -> npt.NDArray[np.bool_]:
+    """Return which rows of the unit square are half the map's width, 320 pixels, apart in the map: (m,)."""
+    return np.asarray(np.hypot(640.0 * (b[:, 0] - a[:, 0]), 480.0 * (b[:, 1] - a[:, 1])) >= 320.0)
+
+
+# Rigid bodies among random boxes.  Obstacles are scattered over more than the body can reach, so that their density is
+# the same everywhere that it can: the bounds of the space are as free as its middle.
+
+DENSITY = {2: 25.0, 3: 60.0}
+"""Dimension of the place -> boxes in a unit of area or volume."""
+
+BODY = {
+    2: (OrientedBox((0.0, -0.04), (0.10, 0.02)), OrientedBox((-0.08, 0.04), (0.02, 0.06))),
+    3: (
+        OrientedBox((0.0, -0.06, 0.0), (0.14, 0.03, 0.03)),
+        OrientedBox((-0.11, 0.05, 0.0), (0.03, 0.08, 0.03)),
+        OrientedBox((0.11, -0.06, 0.08), (0.03, 0.03, 0.05)),
+    ),
+}
+"""An L in the plane, and in space one with a foot: each side of them can be in the way."""
+
+BODY_REACH = {2: 0.15, 3: 0.22}
+"""How far the body reaches from its reference point, at most."""
+
+RESOLUTION = {2: (0.01, 0.05), 3: (0.02, 0.08)}
+"""Way, and turn [rad] as the space measures it, between states that are tested on a motion."""
+
+TURN_WEIGHT = {2: 0.15, 3: 0.3}
+"""What a radian of the space's metric counts: about the way that it moves the far end of the body."""
+
+
+def draw_clutter(dim: int, size: float, rng: np.random.Generator) -> SolidWorld:
+    """Return a body in the unit square or cube among boxes turned at random, half extents in [.4, 1.6] times `size`."""
+    margin = BODY_REACH[dim] + 1.6 * size * np.sqrt(dim)
+    count = rng.poisson(DENSITY[dim] * (1.0 + 2.0 * margin) ** dim)
+    centres = -margin + (1.0 + 2.0 * margin) * rng.random((count, dim))
+    half_extents = size * (0.4 + 1.2 * rng.random((count, dim)))
+    turns = [_random_turn(dim, rng) for _ in range(count)]
+    obstacles = [
+        OrientedBox(centre, extents, turn)
+        for centre, extents, turn in zip(centres.tolist(), half_extents.tolist(), turns, strict=True)
+    ]
+    weights = (1.0, TURN_WEIGHT[dim])
+    space = (
+        SE2([0.0] * 2, [1.0] * 2, weights=weights) if dim == 2 else SE3([0.0] * 3, [1.0] * 3, weights=weights)
+    )
+    return SolidWorld(space, BODY[dim], obstacles, RESOLUTION[dim])
+
+
+def places_far_apart(dim: int, a: Array, b: Array) -> npt.NDArray[np.bool_]:
+    """Return which rows of the unit cube have places as far apart as :func:`far_on_torus` asks; turns are free."""
+    return far_on_torus(a[:, :dim], b[:, :dim])
+
+
+def _random_turn(dim: int, rng: np.random.Generator) -> tuple[float, ...]:
+    if dim == 2:
+        return heading_turn(float(rng.uniform(-np.pi, np.pi)))
+    return quaternion_turn(rng.standard_normal(4).tolist())

@@ -1,0 +1,298 @@
+"""Runs that are not independent: those of one trained set, or of one random world.
+
+A pool of 64 sets that is drawn from 400 times does not give 400 independent runs: on a fixed problem the same set
+gives much the same answer every time.  Only the 64 sets are independent of each other.  In a suite of random worlds,
+runs in one world resemble each other, and only the worlds are independent.  Such sets and worlds are called units here.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.special import gammaln, ndtri, stdtrit
+
+from evenroad.errors import InvalidValue
+from evenroad.research.statistics.paired import bonett_price, student_interval
+from evenroad.research.statistics.rates import (
+    LEVEL,
+    Interval,
+    as_counts,
+    as_successes,
+    fisher_exact,
+    require_share,
+    wilson,
+)
+from evenroad.research.statistics.resampling import DRAWS, percentile_interval, resampled_ratios
+
+FEW_UNITS = 10
+"""With fewer units than this a bootstrap is too narrow."""
+MANY_UNITS = 1000
+"""With more units than this a bootstrap of a difference says what Student's interval says."""
+
+SHORT = 4000
+"""Below this, adding zeros up takes less time than leaving them out one by one."""
+
+
+def clustered_rate(
+    solved: npt.ArrayLike, runs: npt.ArrayLike, unit: str, *, level: float = LEVEL
+) -> Interval:
+    """Return the interval of a success rate whose runs come in units that are independent of each other.
+
+    Wilson's interval for as many runs as theirs are worth (:func:`effective_runs`).  A bootstrap over so few units as a
+    pool has sets would be too narrow, most where few of them solve.
+
+    Parameters
+    ----------
+    solved, runs : array_like of int, shape (units,)
+        Successes and runs per unit; every unit has a run.
+    unit : str
+        What a unit is, in the plural, for `Interval.kind`: ``sets``, ``blocks`` or ``instances``.
+
+    Raises
+    ------
+    InvalidValue
+        If there is no unit, or the counts are impossible.
+    """
+    successes, trials = as_successes(solved, runs)
+    worth = effective_runs(successes, trials, level=level)
+    rate = float(successes.sum() / trials.sum())
+    # Between two counts the wider ends of both are taken.
+    low, _ = wilson(math.floor(rate * worth), worth, level=level)
+    _, high = wilson(math.ceil(rate * worth), worth, level=level)
+    return Interval(float(low), float(high), f"wilson over {unit}")
+
+
+def clustered_difference(
+    sums: npt.ArrayLike,
+    pairs: npt.ArrayLike,
+    unit: str,
+    *,
+    level: float = LEVEL,
+    draws: int = DRAWS,
+    seed: int = 0,
+) -> Interval:
+    """Return the interval of a paired difference of success rates, by a bootstrap over units.
+
+    With more than 1000 units, where a bootstrap takes long and says the same, :func:`student_interval`; with fewer
+    than 10, or where all units say the same, the interval of Bonett and Price for as many pairs as there are units.
+
+    Parameters
+    ----------
+    sums : array_like of int, shape (units,)
+        Runs of a unit that only the first solved, minus those that only the second solved.
+    pairs : array_like of int, shape (units,)
+        Pairs of runs in the unit, >= 1.
+    unit : str
+        As for :func:`clustered_rate`.
+
+    Raises
+    ------
+    InvalidValue
+        If there is no unit, or a sum is larger than its unit's pairs.
+    """
+    differences, totals = np.asarray(sums), as_counts("pairs", pairs)
+    if differences.ndim != 1 or differences.shape != totals.shape or len(totals) == 0:
+        raise InvalidValue(
+            f"sums and pairs must be lists of one length, got {differences.shape}, {totals.shape}"
+        )
+    if np.any(totals < 1) or np.any(np.abs(differences) > totals):
+        raise InvalidValue("a unit has at least one pair, and as many pairs as its sum")
+    ratios = differences / totals
+    if len(ratios) < FEW_UNITS or np.all(ratios == ratios[0]):
+        return _as_if_one_pair_a_unit(differences / totals.sum(), unit, level)
+    if len(ratios) > MANY_UNITS:
+        return student_interval(differences, totals, unit, level=level)
+    values = resampled_ratios(differences, totals, draws=draws, seed=seed)
+    return Interval(*percentile_interval(values, level=level), f"paired bootstrap over {unit}")
+
+
+def sign_flip_test(sums: npt.ArrayLike) -> float:
+    """Return the two-sided p-value that units' differences are as likely to have either sign.
+
+    The exact distribution of ``|sum of +-s_u|`` over all choices of signs.  With one pair a unit (all s_u are
+    -1, 0 or 1) this is McNemar's exact test; with more it keeps the pairs of a unit together.  Exact where the two
+    samplers are exchangeable inside a unit, which holds for draws in one random world; for runs of a pool's
+    sets it is the usual large-sample test of a mean.
+
+    Parameters
+    ----------
+    sums : array_like of int, shape (units,)
+        As for :func:`clustered_difference`.
+
+    References
+    ----------
+    R. A. Fisher (1935), The Design of Experiments, section 21.
+    """
+    values = np.asarray(sums)
+    if values.ndim != 1 or np.any(values != np.trunc(values)):
+        raise InvalidValue(f"sums per unit must be a list of whole numbers, got {sums!r}")
+    observed = abs(int(values.sum()))
+    sizes, units_of_size = np.unique(np.abs(values[values != 0]).astype(np.int64), return_counts=True)
+    # chance[i] is the probability that the signed sum is i - (len(chance) - 1) / 2; the largest groups come first, as
+    # each one's shares are added up one by one.
+    chance = np.ones(1)
+    for place in np.argsort(-units_of_size, kind="stable"):
+        count, stride = int(units_of_size[place]), 2 * int(sizes[place])
+        heads = np.arange(count + 1)
+        log_ways = gammaln(count + 1) - gammaln(heads + 1) - gammaln(count - heads + 1)
+        shares = np.exp(log_ways - count * np.log(2.0))
+        if len(chance) * stride < SHORT:
+            spread = np.zeros(stride * count + 1)
+            spread[::stride] = shares
+            chance = np.convolve(chance, spread)
+        else:
+            together = np.zeros(len(chance) + stride * count)
+            for head, share in enumerate(shares):
+                together[head * stride : head * stride + len(chance)] += share * chance
+            chance = together
+    reach = (len(chance) - 1) // 2
+    total = np.abs(np.arange(-reach, reach + 1)) >= observed
+    return float(min(1.0, chance[total].sum()))
+
+
+def _as_if_one_pair_a_unit(shares: npt.NDArray[np.float64], unit: str, level: float) -> Interval:
+    """Return Bonett and Price's interval for as many pairs as units; `shares` add up to the difference."""
+    units = len(shares)
+    wins, losses = (units * float(np.maximum(sign * shares, 0.0).sum()) for sign in (1, -1))
+    # Rounded to whole units; the difference that was seen is always inside.
+    rounded = bonett_price(round(wins), min(round(losses), units - round(wins)), units, level=level)
+    seen = (wins - losses) / units
+    return Interval(min(rounded.low, seen), max(rounded.high, seen), f"bonett-price over {unit}")
+
+
+def effective_runs(solved: npt.ArrayLike, runs: npt.ArrayLike, *, level: float = LEVEL) -> int:
+    """Return how many independent runs the runs of some units are worth.
+
+    A rate p of variance v, estimated from the units, is as sure as p (1 - p) / v runs make it, at most all runs; fewer
+    by the ratio of the normal and Student's quantile, squared.  At least as many as units, which is what units with one
+    outcome each are worth; and as many as units where p is 0 or 1, as nothing is known of v: there the number jumps.
+
+    Parameters
+    ----------
+    solved, runs : array_like of int, shape (units,)
+        Successes and runs per unit; every unit has a run.
+    level : float
+        Confidence of what is made of it, in (0, 1).
+
+    Raises
+    ------
+    InvalidValue
+        If there is no unit, or the counts are impossible.
+
+    References
+    ----------
+    E. L. Korn and B. I. Graubard (1998), Confidence intervals for proportions with small expected number of positive
+    counts estimated from survey data, Survey Methodology 24, 193-201.
+    """
+    successes, trials = as_successes(solved, runs)
+    if successes.ndim != 1 or len(successes) == 0:
+        raise InvalidValue(f"counts per unit must be a list, got shape {successes.shape}")
+    units, total = len(successes), int(trials.sum())
+    rate = float(successes.sum()) / total
+    if units == 1 or rate in (0.0, 1.0):
+        return units
+    variance = float(((successes - rate * trials) ** 2).sum()) * units / (units - 1) / total**2
+    end = 0.5 + 0.5 * require_share("level", level)
+    shrink = float(ndtri(end) / stdtrit(units - 1, end)) ** 2
+    worth = min(rate * (1.0 - rate) / variance, total) if variance > 0.0 else total
+    return max(math.floor(worth * shrink), units)
+
+
+def sets_difference(over_sets: Interval, rate: float, solved: int, runs: int) -> Interval:
+    """Return the interval of a pool's success rate minus that of independent runs.
+
+    Parameters
+    ----------
+    over_sets : Interval
+        Of the pool's rate.
+    rate : float
+        The pool's success rate.
+    solved, runs : int
+        Successes among independent runs.
+
+    References
+    ----------
+    R. G. Newcombe (1998), Interval estimation for the difference between independent proportions, Statistics in
+    Medicine 17, 873-890, method 10.
+    """
+    low, high = (float(end) for end in wilson(solved, runs))
+    other = solved / runs
+    below = math.hypot(rate - over_sets.low, high - other)
+    above = math.hypot(over_sets.high - rate, other - low)
+    difference = rate - other
+    return Interval(max(-1.0, difference - below), min(1.0, difference + above), "newcombe over sets")
+
+
+def sets_test(solved: npt.ArrayLike, runs: npt.ArrayLike, other_solved: int, other_runs: int) -> float:
+    """Return the p-value that a pool solves as often as independent runs of another sampler do.
+
+    Fisher's exact test, with one outcome a set: the pool's rate times its sets, rounded.  Less would be claimed where
+    runs of a set are nearly independent, but how nearly is not known well enough from a few sets.  No sign flips: one
+    outcome a set against the other's rate is skewed, and flips reject too often.
+
+    Parameters
+    ----------
+    solved, runs : array_like of int, shape (sets,)
+        As :func:`effective_runs`.
+    other_solved, other_runs : int
+        Of the independent runs.
+    """
+    successes, trials = as_successes(solved, runs)
+    rate = float(successes.sum() / trials.sum())
+    return fisher_exact((round(rate * len(trials)), len(trials)), (other_solved, other_runs))
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Success rates of single sets of a pool.
+
+    Attributes
+    ----------
+    sets : int
+        Sets that were drawn at least once.
+    mean, lowest, highest : float
+        Of the sets' own success rates; the mean gives every set the same weight.
+    sd : float
+        Standard deviation over sets (n - 1 below; 0 for one set).
+    sd_by_chance : float
+        What it would be if all sets were alike, by the binomial noise of so few runs a set: an `sd` well above
+        says that some sets are better than others on this problem.
+    """
+
+    sets: int
+    mean: float
+    sd: float
+    lowest: float
+    highest: float
+    sd_by_chance: float
+
+
+def spread_over_sets(solved: npt.ArrayLike, runs: npt.ArrayLike) -> Spread:
+    """Return the spread of success rates over the sets of a pool.
+
+    Parameters
+    ----------
+    solved, runs : array_like of int, shape (sets,)
+        Successes and runs per set, runs >= 1.
+
+    Raises
+    ------
+    InvalidValue
+        If there is no set, or the counts are impossible.
+    """
+    successes, trials = as_successes(solved, runs)
+    if successes.ndim != 1 or len(successes) == 0:
+        raise InvalidValue(f"counts per set must be a list, got shape {successes.shape}")
+    rates = successes / trials
+    overall = successes.sum() / trials.sum()
+    return Spread(
+        sets=len(rates),
+        mean=float(rates.mean()),
+        sd=float(rates.std(ddof=1)) if len(rates) > 1 else 0.0,
+        lowest=float(rates.min()),
+        highest=float(rates.max()),
+        sd_by_chance=float(np.sqrt(overall * (1.0 - overall) * np.mean(1.0 / trials))),
+    )

@@ -1,0 +1,247 @@
+"""ChainWorld: a planar chain of links in a horn, the kinematic chain benchmark."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from evenroad._checks import require_count
+from evenroad.errors import InvalidValue
+from evenroad.space.batch import as_batch, as_batch_pair
+from evenroad.space.chain import ChainSpace, chain_distance
+from evenroad.world.bisection_kernel import next_between
+
+_END_PIECE = 0.001
+"""Length by which the last link is longer than the others, as one more segment."""
+
+FREE, SELF, WALL = 0, 1, 2
+"""Verdicts: nothing is crossed; two links cross; a link crosses a wall."""
+
+_REASONS = {SELF: "two links of the chain cross", WALL: "a link crosses the horn"}
+
+
+@dataclass(frozen=True)
+class ChainWorld:
+    """A planar chain of equal links that must cross neither itself nor the walls of :func:`horn`.
+
+    OMPL's kinematic chain benchmark.  A configuration is free if no two of the segments (the links, and a piece of
+    .001 that goes on after the last) and no segment and wall cross.  Segments that are parallel or only touch do
+    not cross.  A motion turns all joints the short way; it is divided into ``ceil(distance / resolution)`` segments,
+    whose ends are tested in bisection order.
+
+    Parameters
+    ----------
+    links : int
+        Number of links, >= 2.
+
+    Raises
+    ------
+    InvalidValue
+        If `links` is not such a number.
+    """
+
+    links: int = 10
+    _space: ChainSpace = field(init=False, repr=False, compare=False)
+    _walls: npt.NDArray[np.float64] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        links = require_count("links", self.links, at_least=2)
+        if links > 1000:
+            raise InvalidValue(f"links must be at most 1000, got {self.links!r}")
+        walls = horn(links)
+        walls.setflags(write=False)
+        for name, value in (("links", links), ("_space", ChainSpace(links)), ("_walls", walls)):
+            object.__setattr__(self, name, value)
+
+    @property
+    def space(self) -> ChainSpace:
+        """The joint angles, measured in the plane."""
+        return self._space
+
+    @property
+    def walls(self) -> npt.NDArray[np.float64]:
+        """The walls, (4, 2 (links - 1)): a column x, y, dx, dy for each segment; read-only."""
+        return self._walls
+
+    @property
+    def resolution(self) -> float:
+        """Largest distance between tested states, ``.01 sqrt(links) 2 pi``: a hundredth of the angles' range."""
+        return 0.01 * math.sqrt(self.links) * 2.0 * math.pi
+
+    @property
+    def start(self) -> npt.NDArray[np.float64]:
+        """The chain bent to a half circle inside the horn: (0, pi / links, .., pi / links)."""
+        return np.array([0.0] + [math.pi / self.links] * (self.links - 1))
+
+    @property
+    def goal(self) -> npt.NDArray[np.float64]:
+        """The chain stretched out to the other side: (pi - .001, 0, .., 0)."""
+        return np.array([math.pi - 0.001] + [0.0] * (self.links - 1))
+
+    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Return which configurations, (n, links), are free: (n,).
+
+        Raises
+        ------
+        InvalidValue
+            If `q` has another shape or an entry that is not finite.
+        """
+        return verdicts(as_batch("q", q, self.links), self._walls, _END_PIECE) == FREE
+
+    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Return which motions from each row of `a` to that of `b`, two (m, links) arrays, are free: (m,).
+
+        Raises
+        ------
+        InvalidValue
+            If the two differ in length, or as `valid`.
+        """
+        first, second = as_batch_pair(a, b, self.links)
+        return motions_are_free(
+            self._space.wrapped(first), self._space.wrapped(second), self.resolution, self._walls, _END_PIECE
+        )
+
+    def explain(self, q: npt.NDArray[np.float64]) -> str:
+        """Return in words why the configuration `q`, (links,), is not free."""
+        batch = as_batch("q", np.asarray(q, dtype=np.float64)[np.newaxis], self.links)
+        return _REASONS[int(verdicts(batch, self._walls, _END_PIECE)[0])]
+
+
+def horn(links: int) -> npt.NDArray[np.float64]:
+    """Return the walls for a chain of so many links, (4, 2 (links - 1)): a column x, y, dx, dy for each segment.
+
+    The scene "horn" of OMPL's kinematic chain benchmark.  With ``eps = ln(10) / links`` and s = 1, then -1: a chain of
+    segments from ``(1 / links, -s eps)``, of length ``(1 / links) (1 + s pi eps)`` and headings ``i pi / links``,
+    i = 1 .. links - 1.
+    """
+    eps = math.log(10.0) / links
+    segments = []
+    for side in (1.0, -1.0):
+        x, y = 1.0 / links, -side * eps
+        length = (1.0 + side * math.pi * eps) / links
+        for i in range(1, links):
+            heading = i * math.pi / links
+            along_x, along_y = length * math.cos(heading), length * math.sin(heading)
+            segments.append((x, y, along_x, along_y))
+            x, y = x + along_x, y + along_y
+    return np.ascontiguousarray(np.array(segments).T)
+
+
+_TOUCHING = float(np.finfo(np.float32).eps)
+"""How far, as a cross product, an end must be beyond the other segment for the two to cross: chain only touch."""
+
+
+@njit(cache=True, nogil=True)
+def verdicts(
+    q: npt.NDArray[np.float64], walls: npt.NDArray[np.float64], end_piece: float
+) -> npt.NDArray[np.int64]:
+    """Return the verdict on each configuration, (n, links)."""
+    found = np.empty(len(q), dtype=np.int64)
+    chain = np.empty((4, q.shape[1] + 1))
+    for row in range(len(q)):
+        found[row] = _verdict(q[row], walls, end_piece, chain)
+    return found
+
+
+@njit(cache=True, nogil=True)
+def motions_are_free(
+    a: npt.NDArray[np.float64],
+    b: npt.NDArray[np.float64],
+    resolution: float,
+    walls: npt.NDArray[np.float64],
+    end_piece: float,
+) -> npt.NDArray[np.bool_]:
+    """Return which motions are free at both ends and at states between them, in bisection order.
+
+    Both (m, links), angles in [-pi, pi).  The number of segments is the distance of the ends over `resolution`,
+    rounded up; every joint turns the short way.
+    """
+    free = np.empty(len(a), dtype=np.bool_)
+    links = a.shape[1]
+    chain, state, difference = np.empty((4, links + 1)), np.empty(links), np.empty(links)
+    for row in range(len(a)):
+        first, second = a[row], b[row]
+        if _comes_after(first, second):
+            # States are rounded: in one fixed order a motion and its reverse have the same.
+            first, second = second, first
+        for k in range(links):
+            turn = second[k] - first[k]
+            # rint takes one half to zero: of two opposite ways the one that does not cross -pi is taken.
+            difference[k] = turn - 2.0 * math.pi * np.rint(turn / (2.0 * math.pi))
+        free[row] = (
+            _verdict(first, walls, end_piece, chain) == FREE
+            and _verdict(second, walls, end_piece, chain) == FREE
+            and _way_is_free(
+                first,
+                difference,
+                math.ceil(chain_distance(first, second) / resolution),
+                walls,
+                end_piece,
+                chain,
+                state,
+            )
+        )
+    return free
+
+
+@njit(cache=True, nogil=True)
+def _way_is_free(start, difference, segments, walls, end_piece, chain, state):  # type: ignore[no-untyped-def]
+    level, multiple, number = next_between(1, -1, segments)
+    while number > 0:
+        for k in range(len(start)):
+            state[k] = start[k] + number / segments * difference[k]
+        if _verdict(state, walls, end_piece, chain) != FREE:
+            return False
+        level, multiple, number = next_between(level, multiple, segments)
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _comes_after(a, b):  # type: ignore[no-untyped-def]
+    """Return whether a comes after b in dictionary order."""
+    for k in range(len(a)):
+        if a[k] != b[k]:
+            return a[k] > b[k]
+    return False
+
+
+@njit(cache=True, nogil=True)
+def _verdict(q, walls, end_piece, chain):  # type: ignore[no-untyped-def]
+    links = len(q)
+    heading, x, y = 0.0, 0.0, 0.0
+    for k in range(links + 1):
+        if k < links:
+            heading += q[k]
+            along_x, along_y = math.cos(heading) / links, math.sin(heading) / links
+        else:
+            along_x, along_y = along_x * links * end_piece, along_y * links * end_piece
+        chain[0, k], chain[1, k], chain[2, k], chain[3, k] = x, y, along_x, along_y
+        # The link before has a joint in common with this one, and no more.
+        if _crosses_any(x, y, along_x, along_y, chain, k - 1):
+            return SELF
+        if _crosses_any(x, y, along_x, along_y, walls, walls.shape[1]):
+            return WALL
+        x, y = x + along_x, y + along_y
+    return FREE
+
+
+@njit(cache=True, nogil=True)
+def _crosses_any(x, y, along_x, along_y, others, count):  # type: ignore[no-untyped-def]
+    """Return whether the segment from (x, y) by `along` crosses one of the first `count` others inside of both."""
+    crossings = 0
+    # Without branches, so that compilers can take several segments at a time.
+    for j in range(count):
+        apart_x, apart_y = others[0, j] - x, others[1, j] - y
+        other_x, other_y = others[2, j], others[3, j]
+        cross = along_x * other_y - other_x * along_y
+        # The lines meet at the shares s / cross and t / cross of the two; a positive cross product is compared.
+        size = abs(cross)
+        s = math.copysign(1.0, cross) * (apart_x * other_y - apart_y * other_x)
+        t = math.copysign(1.0, cross) * (apart_x * along_y - apart_y * along_x)
+        # Never so where the two are parallel, for then the size is about zero.
+        crossings += (s >= _TOUCHING) & (s < size - _TOUCHING) & (t >= _TOUCHING) & (t < size - _TOUCHING)
+    return crossings > 0

@@ -1,0 +1,233 @@
+"""PeriodicBoxes: a point in the unit cube among boxes that bound only some of its coordinates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from evenroad._checks import require_count
+from evenroad.errors import InvalidValue
+from evenroad.research.worlds.corridor import is_in_cube
+from evenroad.research.worlds.periodic_balls import ROUNDING, comes_first
+from evenroad.research.worlds.periodic_balls import PeriodicBalls as PeriodicBalls
+from evenroad.space import Box
+from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicBoxes:
+    """A point robot in [0, 1]^d among open boxes in some of the coordinates, with period 1 along every axis.
+
+    A configuration is in a box if each of the box's own m coordinates is closer to the centre than the half extent;
+    its other coordinates are free, as an obstacle in the workspace of an arm leaves the joints free that do not move
+    the link it stands by.  With centres drawn uniformly the free set is stationary: no place of the cube is freer than
+    another.  Only the obstacles are periodic: the space is the cube, whose faces stop the robot, and motions are
+    straight.  They are tested exactly, without any step length, up to float rounding.
+
+    Parameters
+    ----------
+    d : int
+        Dimension, >= 1.
+    axes : array_like of int, shape (n, m)
+        The coordinates that each box bounds, all different, in 0 .. d - 1.
+    centres : array_like, shape (n, m)
+        Of the boxes along these axes, in [0, 1].
+    half_extents : array_like, shape (n, m)
+        Along these axes, in (0, 0.5].
+
+    Raises
+    ------
+    InvalidValue
+        If an argument is no such number or array.
+    """
+
+    d: int
+    axes: npt.NDArray[np.int64]
+    centres: npt.NDArray[np.float64]
+    half_extents: npt.NDArray[np.float64]
+    _space: Box = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        d = require_count("d", self.d)
+        axes = _as_axes(self.axes, d)
+        object.__setattr__(self, "d", d)
+        object.__setattr__(self, "axes", axes)
+        for name in ("centres", "half_extents"):
+            if np.shape(getattr(self, name)) != axes.shape:
+                raise InvalidValue(
+                    f"{name} must have the shape of axes, {axes.shape}, got {np.shape(getattr(self, name))}"
+                )
+            array = np.array(getattr(self, name), dtype=np.float64, order="C")
+            object.__setattr__(self, name, as_cube_batch(array, axes.shape[1]))
+        outside = (self.half_extents <= 0.0) | (self.half_extents > 0.5)
+        if outside.any():
+            raise InvalidValue(
+                f"half_extents must be in (0, 0.5], got {float(self.half_extents[outside][0])!r}"
+            )
+        object.__setattr__(self, "_space", Box([0.0] * d, [1.0] * d))
+
+    @property
+    def space(self) -> Box:
+        """The unit cube with the Euclidean metric."""
+        return self._space
+
+    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Return which configurations, (n, d), are in the cube and in no box: (n,).
+
+        Raises
+        ------
+        InvalidValue
+            If `q` has another shape or an entry that is not finite.
+        """
+        return points_are_free(as_batch("q", q, self.d), self.axes, self.centres, self.half_extents)
+
+    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Return which straight motions from a row of `a` to that of `b`, two (m, d) arrays, are free: (m,).
+
+        Raises
+        ------
+        InvalidValue
+            If the two differ in length, or as `valid`.
+        """
+        return motions_are_free(*as_batch_pair(a, b, self.d), self.axes, self.centres, self.half_extents)
+
+
+def _as_axes(values: npt.ArrayLike, d: int) -> npt.NDArray[np.int64]:
+    """Return the axes as a read-only (n, m) array, or raise InvalidValue."""
+    axes = np.asarray(values)
+    if axes.ndim != 2 or axes.shape[1] == 0 or not np.issubdtype(axes.dtype, np.integer):
+        raise InvalidValue(
+            f"axes must be integers of shape (n, m) with m >= 1, got {axes.dtype} of shape {axes.shape}"
+        )
+    outside = (axes < 0) | (axes >= d)
+    if outside.any():
+        raise InvalidValue(f"axes must be in 0 .. {d - 1}, got {int(axes[outside][0])}")
+    in_order = np.sort(axes, axis=1)
+    twice = (in_order[:, 1:] == in_order[:, :-1]).any(axis=1)
+    if twice.any():
+        raise InvalidValue(f"the axes of a box must be different, got {axes[twice][0].tolist()}")
+    axes = np.array(axes, dtype=np.int64, order="C")
+    axes.setflags(write=False)
+    return axes
+
+
+@njit(cache=True, nogil=True)
+def points_are_free(
+    q: npt.NDArray[np.float64],
+    axes: npt.NDArray[np.int64],
+    centres: npt.NDArray[np.float64],
+    half_extents: npt.NDArray[np.float64],
+) -> npt.NDArray[np.bool_]:
+    """Return which rows of `q`, (n, d), lie in the unit cube and in no box."""
+    free = np.empty(len(q), dtype=np.bool_)
+    for row in range(len(q)):
+        free[row] = is_in_cube(q[row]) and _is_outside_all(q[row], axes, centres, half_extents)
+    return free
+
+
+@njit(cache=True, nogil=True)
+def motions_are_free(
+    a: npt.NDArray[np.float64],
+    b: npt.NDArray[np.float64],
+    axes: npt.NDArray[np.int64],
+    centres: npt.NDArray[np.float64],
+    half_extents: npt.NDArray[np.float64],
+) -> npt.NDArray[np.bool_]:
+    """Return which straight motions stay in the unit cube and meet no box."""
+    free = np.empty(len(a), dtype=np.bool_)
+    # Each axis can be within the box in three spans of time, and an intersection has fewer spans than both together.
+    room = 3 * axes.shape[1] + 1
+    spans, narrowed, on_axis = np.empty((room, 2)), np.empty((room, 2)), np.empty((3, 2))
+    for row in range(len(a)):
+        first, last = (a[row], b[row]) if comes_first(a[row], b[row]) else (b[row], a[row])
+        free[row] = (
+            is_in_cube(first)
+            and is_in_cube(last)
+            and _is_outside_all(first, axes, centres, half_extents)
+            and _is_outside_all(last, axes, centres, half_extents)
+        )
+        box = 0
+        while free[row] and box < len(axes):
+            free[row] = _misses(
+                first, last, axes[box], centres[box], half_extents[box], spans, narrowed, on_axis
+            )
+            box += 1
+    return free
+
+
+@njit(cache=True, nogil=True)
+def _is_outside_all(
+    q: npt.NDArray[np.float64],
+    axes: npt.NDArray[np.int64],
+    centres: npt.NDArray[np.float64],
+    half_extents: npt.NDArray[np.float64],
+) -> bool:
+    for box in range(len(axes)):
+        inside = True
+        for j in range(axes.shape[1]):
+            offset = q[axes[box, j]] - centres[box, j]
+            inside &= abs(offset - np.rint(offset)) < half_extents[box, j]
+        if inside:
+            return False
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _misses(
+    a: npt.NDArray[np.float64],
+    b: npt.NDArray[np.float64],
+    axes: npt.NDArray[np.int64],
+    centre: npt.NDArray[np.float64],
+    half_extent: npt.NDArray[np.float64],
+    spans: npt.NDArray[np.float64],
+    narrowed: npt.NDArray[np.float64],
+    on_axis: npt.NDArray[np.float64],
+) -> bool:
+    """Return whether ``a + t (b - a)``, 0 <= t <= 1, is never within one box; the last three are room to work in."""
+    for j in range(len(axes)):
+        # Most boxes are out of reach along some axis: the middle of the motion says so.
+        step = b[axes[j]] - a[axes[j]]
+        middle = a[axes[j]] + 0.5 * step - centre[j]
+        if abs(middle - np.rint(middle)) > half_extent[j] + 0.5 * abs(step) + ROUNDING:
+            return True
+    spans[0, 0], spans[0, 1] = 0.0, 1.0
+    count = 1
+    for j in range(len(axes)):
+        begin = a[axes[j]] - centre[j]
+        found = _times_within(begin, b[axes[j]] - a[axes[j]], half_extent[j], on_axis)
+        kept = 0
+        for s in range(count):
+            for t in range(found):
+                low, high = max(spans[s, 0], on_axis[t, 0]), min(spans[s, 1], on_axis[t, 1])
+                if low < high:
+                    narrowed[kept, 0], narrowed[kept, 1] = low, high
+                    kept += 1
+        if kept == 0:
+            return True
+        spans, narrowed, count = narrowed, spans, kept
+    return False
+
+
+@njit(cache=True, nogil=True)
+def _times_within(begin: float, step: float, half_extent: float, spans: npt.NDArray[np.float64]) -> int:
+    """Write the spans of time in which ``begin + t step`` is closer than `half_extent` to an integer; return how many.
+
+    `begin` and ``begin + step`` lie in [-1, 1], so that only -1, 0 and 1 can be near.
+    """
+    count = 0
+    for copy in range(-1, 2):
+        low, high = copy - half_extent - begin, copy + half_extent - begin
+        if step == 0.0:
+            low, high = (0.0, 1.0) if low < 0.0 < high else (1.0, 0.0)
+        elif step > 0.0:
+            low, high = low / step, high / step
+        else:
+            low, high = high / step, low / step
+        low, high = max(low, 0.0), min(high, 1.0)
+        if low < high:
+            spans[count, 0], spans[count, 1] = low, high
+            count += 1
+    return count
