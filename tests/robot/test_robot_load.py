@@ -9,7 +9,7 @@ import trimesh
 
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
 from evenroad.robot import load_model, load_robot, with_group, with_limits
-from evenroad.robot.alter import in_scene
+from evenroad.robot.robot import in_scene
 from evenroad.robot.scene import Scene
 from tests.robot.urdf_texts import joint, link, two_joints, urdf, write
 

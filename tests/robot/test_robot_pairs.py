@@ -4,8 +4,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from evenroad.geometry.distance import segment_distance
 from evenroad.robot import load_model
-from evenroad.robot.segments import segment_distance
 from tests.robot.urdf_texts import LIMIT, joint, link, urdf, write
 
 ends = arrays(np.float64, (2, 3), elements=st.floats(-1, 1, width=16))

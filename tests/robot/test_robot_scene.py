@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
+from evenroad.geometry.pose import rotation_from_rpy
 from evenroad.robot import ArmWorld, Obstacle, Scene, load_robot, load_scene
-from evenroad.robot.rotation import rotation_from_rpy
 from evenroad.robot.scene_file import SCENES, is_scene
 from tests.robot.urdf_texts import write
 
@@ -64,7 +64,7 @@ BROKEN = {
     "an unknown key of an obstacle": (
         "obstacles: {a: {shape: sphere, radius: 1, size: 2}}",
         UnknownName,
-        "key of obstacle 'a' in .*'size'; known: cell, radius, rpy, shape, xyz",
+        "key of obstacle 'a' in .*'size'; known: cell, quaternion, radius, rpy, shape, xyz",
     ),
     "an unknown shape": (
         "obstacles: {a: {shape: cone}}",
@@ -186,7 +186,7 @@ def test_what_is_merged_into_an_obstacle_may_be_said_again(tmp_path):
 
 
 def test_two_obstacles_of_one_name_are_no_scene():
-    balls = [Obstacle(name, "sphere", (0.1,), (0, 0, 0)) for name in ("a", "b", "a")]
+    balls = [Obstacle.of(name, "sphere", (0.1,), (0, 0, 0)) for name in ("a", "b", "a")]
     with pytest.raises(InvalidValue, match=r"scene 's' must have names of their own, twice: \['a'\]"):
         Scene("s", tuple(balls))
 

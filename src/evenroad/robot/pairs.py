@@ -9,10 +9,10 @@ from itertools import combinations
 import numpy as np
 
 from evenroad._rng import generator
+from evenroad.geometry.distance import segment_distance
 from evenroad.robot.joint import Joint
 from evenroad.robot.kinematics import capsule_ends
 from evenroad.robot.robot import Robot
-from evenroad.robot.segments import segment_distance
 
 SAMPLES = 1000
 """Random configurations that tell pairs that are always in contact."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -13,15 +14,12 @@ from xml.etree import ElementTree
 import numpy as np
 
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
-from evenroad.robot.geometry import Geometry
-from evenroad.robot.joint import Joint, Mimic
-from evenroad.robot.meshes import find_mesh
-from evenroad.robot.mimic import with_direct_mimics, within_limits_of_mimics
-from evenroad.robot.tree import in_tree_order
-from evenroad.robot.urdf_xml import drawn_only, read_urdf_xml
+from evenroad.geometry.pose import IDENTITY, Pose
+from evenroad.geometry.shapes import Mesh, Shape, shape_of
+from evenroad.robot.joint import Joint, Mimic, with_direct_mimics, within_limits_of_mimics
+from evenroad.robot.urdf_xml import drawn_only, find_mesh, read_urdf_xml
 
 _KINDS = ("revolute", "continuous", "prismatic", "fixed")
-_NO_ROTATION = tuple(np.eye(3).ravel().tolist())
 
 
 @dataclass(frozen=True)
@@ -39,8 +37,8 @@ class Urdf:
         limits are narrow enough for it.
     order : tuple of str
         Names of the joints as the file lists them: the order of configurations.
-    geometries : tuple of Geometry
-        The collision geometry.
+    shapes : tuple of Shape
+        The collision geometry, each shape in its link's frame.
     drawn_only : tuple of str
         Links that have a ``<visual>`` but no ``<collision>``.
     """
@@ -49,7 +47,7 @@ class Urdf:
     links: tuple[str, ...]
     joints: tuple[Joint, ...]
     order: tuple[str, ...]
-    geometries: tuple[Geometry, ...]
+    shapes: tuple[Shape, ...]
     drawn_only: tuple[str, ...] = ()
 
     @property
@@ -89,8 +87,8 @@ def read_urdf(path: Path) -> Urdf:
         links=(first, *(joint.child for joint in ordered)),
         joints=tuple(within_limits_of_mimics(with_direct_mimics(ordered, path))),
         order=tuple(joint.name for joint in joints),
-        geometries=tuple(
-            _geometry(link.name, collision, path) for link in parsed.links for collision in link.collisions
+        shapes=tuple(
+            _shape(link.name, collision, path) for link in parsed.links for collision in link.collisions
         ),
         drawn_only=drawn,
     )
@@ -122,7 +120,7 @@ def _joint(joint: Any, path: Path) -> Joint:
     where = f"joint {joint.name!r} in {path}"
     if joint.type not in _KINDS:
         raise UnknownName.among(f"type of {where}:", joint.type, _KINDS)
-    xyz, rotation = _pose(joint.origin)
+    origin = _pose(joint.origin)
     lower, upper, velocity = _limits(joint, where)
     mimic = None
     if joint.mimic is not None and joint.type != "fixed":
@@ -132,8 +130,8 @@ def _joint(joint: Any, path: Path) -> Joint:
         kind=joint.type,
         parent=joint.parent,
         child=joint.child,
-        xyz=xyz,
-        rotation=rotation,
+        xyz=origin.xyz,
+        rotation=origin.rotation,
         axis=(0.0, 0.0, 1.0) if joint.type == "fixed" else _axis(joint, where),
         lower=lower,
         upper=upper,
@@ -173,23 +171,83 @@ def _limits(joint: Any, where: str) -> tuple[float, float, float]:
     return float(limit.lower), float(limit.upper), velocity
 
 
-def _geometry(link: str, collision: Any, path: Path) -> Geometry:
-    xyz, rotation = _pose(collision.origin)
-    shape = collision.geometry
-    if shape.mesh is not None:
-        scale = np.broadcast_to(1.0 if shape.mesh.scale is None else shape.mesh.scale, 3)
-        file = find_mesh(shape.mesh.filename, path, link)
-        return Geometry(link, "mesh", tuple(scale.tolist()), xyz, rotation, file)
-    if shape.box is not None:
-        return Geometry(link, "box", tuple(shape.box.size.tolist()), xyz, rotation)
-    if shape.sphere is not None:
-        return Geometry(link, "sphere", (float(shape.sphere.radius),), xyz, rotation)
-    size = (float(shape.cylinder.radius), float(shape.cylinder.length))
-    return Geometry(link, "capsule" if collision.name == "capsule" else "cylinder", size, xyz, rotation)
+def _shape(link: str, collision: Any, path: Path) -> Shape:
+    pose, given = _pose(collision.origin), collision.geometry
+    if given.mesh is not None:
+        x, y, z = np.broadcast_to(1.0 if given.mesh.scale is None else given.mesh.scale, 3).tolist()
+        return Mesh(find_mesh(given.mesh.filename, path, link), (x, y, z), pose=pose, link=link)
+    if given.box is not None:
+        return shape_of("box", given.box.size.tolist(), pose, link)
+    if given.sphere is not None:
+        return shape_of("sphere", (float(given.sphere.radius),), pose, link)
+    size = (float(given.cylinder.radius), float(given.cylinder.length))
+    return shape_of("capsule" if collision.name == "capsule" else "cylinder", size, pose, link)
 
 
-def _pose(origin: Any) -> tuple[tuple[float, float, float], tuple[float, ...]]:
+def _pose(origin: Any) -> Pose:
     if origin is None:
-        return (0.0, 0.0, 0.0), _NO_ROTATION
+        return IDENTITY
     x, y, z = origin[:3, 3].tolist()
-    return (x, y, z), tuple(origin[:3, :3].ravel().tolist())
+    return Pose((x, y, z), tuple(origin[:3, :3].ravel().tolist()))
+
+
+def in_tree_order(links: Sequence[str], joints: Sequence[Joint], where: str) -> list[Joint]:
+    """Return the joints so that every joint's parent is the root or the child of an earlier one.
+
+    Depth first, children in the order given.  `where` names the file in errors.
+
+    Raises
+    ------
+    BrokenFile
+        If links or joints share a name, a joint joins links that there are not, a link has two parents, there
+        is more than one root, or the joints form a cycle; the text names them.
+    """
+    _require_distinct("link", list(links), where)
+    _require_distinct("joint", [joint.name for joint in joints], where)
+    parent_joint: dict[str, Joint] = {}
+    for joint in joints:
+        for role, link in (("parent", joint.parent), ("child", joint.child)):
+            if link not in links:
+                raise BrokenFile(
+                    f"joint {joint.name!r} in {where} has the {role} {link!r}, which is no link; "
+                    f"links: {', '.join(links)}"
+                )
+        if joint.child in parent_joint:
+            raise BrokenFile(
+                f"link {joint.child!r} in {where} hangs on two joints,"
+                f" {parent_joint[joint.child].name!r} and {joint.name!r}: the links must form a tree"
+            )
+        parent_joint[joint.child] = joint
+    roots = [link for link in links if link not in parent_joint]
+    if len(roots) > 1:
+        raise BrokenFile(f"{where} has more than one root: no joint leads to {', '.join(map(repr, roots))}")
+    children: dict[str, list[Joint]] = {link: [] for link in links}
+    for joint in joints:
+        children[joint.parent].append(joint)
+    ordered: list[Joint] = []
+    pending = list(reversed(children[roots[0]])) if roots else []
+    while pending:
+        joint = pending.pop()
+        ordered.append(joint)
+        pending.extend(reversed(children[joint.child]))
+    if len(ordered) < len(joints):
+        reached = {joint.name for joint in ordered}
+        start = next(joint for joint in joints if joint.name not in reached)
+        raise BrokenFile(f"the joints of {where} form a cycle: {' -> '.join(_cycle(start, parent_joint))}")
+    return ordered
+
+
+def _cycle(joint: Joint, parent_joint: dict[str, Joint]) -> list[str]:
+    """Return the names along the cycle that one comes to by going up from `joint`."""
+    above = [joint]
+    while parent_joint[above[-1].parent] not in above:
+        above.append(parent_joint[above[-1].parent])
+    closing = parent_joint[above[-1].parent]
+    names = [each.name for each in above[above.index(closing) :]]
+    return [closing.name, *reversed(names)]
+
+
+def _require_distinct(what: str, names: list[str], where: str) -> None:
+    for name in names:
+        if names.count(name) > 1:
+            raise BrokenFile(f"{where} has more than one {what} named {name!r}")

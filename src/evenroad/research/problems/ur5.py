@@ -7,9 +7,9 @@ from functools import partial
 import numpy as np
 
 from evenroad.research.bench.problem import Problem, ProblemSource
-from evenroad.robot.alter import in_scene, with_group
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.load import load_robot
+from evenroad.robot.robot import in_scene, with_group
 from evenroad.robot.scene_file import load_scene
 
 SCENES = {"ur5-c": "box-reach", "ur5-a": "box-reach-narrow"}

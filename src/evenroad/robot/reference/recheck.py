@@ -13,10 +13,9 @@ import numpy.typing as npt
 
 from evenroad.errors import NotAvailable
 from evenroad.robot.arm_world import joint_space
-from evenroad.robot.model import RobotModel
-from evenroad.robot.reference.bodies import original_geometries
 from evenroad.robot.reference.coal_world import CoalWorld
-from evenroad.robot.robot import Robot
+from evenroad.robot.reference.engine_world import original_shapes
+from evenroad.robot.robot import Robot, RobotModel
 from evenroad.robot.scene import Scene
 from evenroad.space import JointSpace
 
@@ -89,7 +88,7 @@ def recheck(
         If the URDF or a mesh is missing, broken or empty by now.
     """
     try:
-        world = CoalWorld(robot, scene, original_geometries(source, robot), resolution)
+        world = CoalWorld(robot, scene, original_shapes(source, robot), resolution)
     except NotAvailable:
         return MeshCheck("not checked", message="needs evenroad[mesh]")
     states, motions = states_along(joint_space(robot), path, resolution)

@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.errors import InvalidValue
+from evenroad.geometry.mesh import TriangleMesh, merged
 from evenroad.space.batch import as_batch
 from evenroad.world.function import FunctionWorld
-from evenroad.world.mesh.collider import Collider
-from evenroad.world.mesh.triangle_mesh import TriangleMesh, merged
+from evenroad.world.mesh.coal import Collider
 from evenroad.world.solids.poses import RigidSpace, as_poses, body_dimension
 
 

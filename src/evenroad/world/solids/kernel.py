@@ -9,8 +9,8 @@ import numpy.typing as npt
 from numba import njit
 
 from evenroad.world.bisection_kernel import next_between
+from evenroad.world.solids.oriented_box import BoxTable
 from evenroad.world.solids.overlap import first_contact
-from evenroad.world.solids.tables import BoxTable
 
 _SMALL_ANGLE = 1e-8
 """Below it a chord and its arc agree to the last bit, and sin(angle) is too small to divide by safely."""

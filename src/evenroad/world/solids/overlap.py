@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from evenroad.world.solids.tables import BoxTable
+from evenroad.world.solids.oriented_box import BoxTable
 
 _PARALLEL = 1e-14
 """Squared sine below which two edges count as parallel: an axis across both would be rounding alone, and the

@@ -16,9 +16,8 @@ from evenroad.space.axes import as_row
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.bisection import require_few_segments
 from evenroad.world.solids.kernel import contacts, motions_are_free
-from evenroad.world.solids.oriented_box import OrientedBox
+from evenroad.world.solids.oriented_box import BoxTable, OrientedBox, box_table, reach_of
 from evenroad.world.solids.poses import RigidSpace, as_pose_pair, as_poses, body_dimension
-from evenroad.world.solids.tables import BoxTable, box_table, reach_of
 
 
 @dataclass(frozen=True, eq=False)

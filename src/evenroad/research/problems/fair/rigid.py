@@ -11,11 +11,12 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
+from evenroad.geometry import rotation_from_heading, rotation_from_quaternion
 from evenroad.research.bench.problem import Problem
 from evenroad.research.problems.fair.query import draw_query, far_on_torus
 from evenroad.research.problems.fair.streams import Family, Stream, instance_rng
 from evenroad.space import SE2, SE3
-from evenroad.world.solids import OrientedBox, SolidWorld, heading_turn, quaternion_turn
+from evenroad.world.solids import OrientedBox, SolidWorld
 
 DENSITY = {2: 25.0, 3: 60.0}
 """Dimension of the place -> boxes in a unit of area or volume."""
@@ -76,5 +77,5 @@ def places_far_apart(
 
 def _random_turn(dim: int, rng: np.random.Generator) -> tuple[float, ...]:
     if dim == 2:
-        return heading_turn(float(rng.uniform(-np.pi, np.pi)))
-    return quaternion_turn(rng.standard_normal(4).tolist())
+        return rotation_from_heading(float(rng.uniform(-np.pi, np.pi)))
+    return rotation_from_quaternion(rng.standard_normal(4).tolist())

@@ -11,11 +11,12 @@ from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
+from evenroad.geometry import rotation_from_quaternion
 from evenroad.research.bench.problem import Problem
 from evenroad.research.report.figures.canvas import new_figure
 from evenroad.research.report.figures.found_path import find_path, poses_along
 from evenroad.viz import style
-from evenroad.world.solids import OrientedBox, SolidWorld, quaternion_turn
+from evenroad.world.solids import OrientedBox, SolidWorld
 
 POSES = 13
 _FACES = ((0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5))
@@ -52,7 +53,7 @@ def _draw_body(axes: Axes3D, body: Iterable[OrientedBox], poses: npt.NDArray[np.
         colour = ends.get(number, shade)
         turn, place = np.eye(3), pose[:3]
         if len(pose) == 7:
-            turn = np.array(quaternion_turn(pose[3:].tolist())).reshape(3, 3)
+            turn = np.array(rotation_from_quaternion(pose[3:].tolist())).reshape(3, 3)
         faces = np.concatenate([_faces(box.corners @ turn.T + place) for box in boxes])
         strong = number in ends
         axes.add_collection3d(
