@@ -183,7 +183,7 @@ class Mesh(Shape):
 
     kind: ClassVar[str] = "mesh"
 
-    source: Path | TriangleMesh
+    source: str | Path | TriangleMesh
     scale: Vector = (1.0, 1.0, 1.0)
 
     def __post_init__(self) -> None:
@@ -191,11 +191,13 @@ class Mesh(Shape):
         if 0.0 in scale:
             raise InvalidValue(f"the scale of {self} must not be 0, got {scale}: it would be flat")
         object.__setattr__(self, "scale", scale)
+        if not isinstance(self.source, TriangleMesh):
+            object.__setattr__(self, "source", Path(self.source))
 
     @property
     def triangles(self) -> TriangleMesh:
         """Its triangles with their scale, in the shape's frame; errors as :func:`evenroad.geometry.load_mesh`."""
-        mesh = load_mesh(self.source) if isinstance(self.source, Path) else self.source
+        mesh = self.source if isinstance(self.source, TriangleMesh) else load_mesh(self.source)
         return scaled(mesh, self.scale)
 
     @property
@@ -204,7 +206,7 @@ class Mesh(Shape):
         return volume_of(self.triangles)
 
     def __str__(self) -> str:
-        return f"mesh {self.source.name}"
+        return f"mesh {self.source if isinstance(self.source, str) else self.source.name}"
 
 
 @dataclass(frozen=True, eq=False)
