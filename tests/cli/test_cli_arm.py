@@ -315,3 +315,12 @@ def test_robot_measures_in_a_scene(run):
     code, out, _ = run("robot", "ur5", "--scene", "box-reach.yaml")
     assert code == 0
     assert "in box-reach" in " ".join(out.split())
+
+
+def test_robot_measures_motions_of_a_joint_with_a_million_radians_in_bounded_time(run, desk):
+    wide = "<limit lower='-999999' upper='999999' velocity='1' effort='1'/>"
+    text = urdf(link("base"), link("tip"), joint("a", "base", "tip", inside=wide))
+    (desk / "wide.urdf").write_text(text)
+    code, out, err = run("robot", "wide.urdf")
+    assert (code, err) == (0, "")
+    assert "motions/s from free ones, cut off after 1,024 states" in " ".join(out.split())
