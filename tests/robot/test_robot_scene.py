@@ -299,7 +299,7 @@ def test_a_capsule_as_an_obstacle_is_along_z_whatever_its_ends():
         (lambda: Obstacle("x", PointCloud(np.zeros((1, 3)))), InvalidValue, "capsule, got a point cloud"),
         (lambda: Obstacle("x", Mesh("part.stl")), InvalidValue, "capsule, got a mesh part.stl"),
         (lambda: Obstacle("x", "box"), InvalidValue, "one of box, sphere, cylinder, capsule, got a box"),
-        (lambda: Obstacle("x", Sphere(1.0, link="hand")), InvalidValue, "in the world, got 'hand'"),
+        (lambda: Obstacle("x", Sphere(1.0, link="hand")), InvalidValue, "not to a link, got 'hand'"),
     ],
 )
 def test_an_obstacle_that_is_not_sound_is_refused(make, error, says):

@@ -21,7 +21,7 @@ from evenroad.geometry.mesh import TriangleMesh, load_mesh, scaled, volume_of
 from evenroad.geometry.pose import IDENTITY, Pose, Vector, rotation_from_z
 
 WORLD = ""
-"""What stands in the place of a link's name where a shape is fixed to none."""
+"""The `link` of a shape that is fixed to no link."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

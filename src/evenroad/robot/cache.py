@@ -28,7 +28,7 @@ def key_of(urdf: Path, srdf: Path | None, bodies: Path | None, group: str | Sequ
     Raises
     ------
     BrokenFile, InvalidValue
-        If a file is missing, or the URDF broken: what is kept never stands for files that are gone.
+        If a file is missing, or the URDF broken: a cached robot is never returned for files that are gone.
     """
     digest = hashlib.sha256(f"{_FORMAT}|{__version__}|{urdf.name}|{group!r}".encode())
     for part in _parts(urdf, srdf, bodies):

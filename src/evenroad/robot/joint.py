@@ -90,7 +90,7 @@ def require_within(joint: Joint, value: float, what: str) -> None:
 
 
 def with_direct_mimics(joints: Sequence[Joint], path: Path) -> list[Joint]:
-    """Return the joints with every mimic following, directly, a joint that follows none.
+    """Return the joints with every mimic following a joint that is no mimic itself.
 
     Raises
     ------
@@ -121,14 +121,14 @@ def with_direct_mimics(joints: Sequence[Joint], path: Path) -> list[Joint]:
 def within_limits_of_mimics(joints: Sequence[Joint]) -> list[Joint]:
     """Return the joints with the leaders' limits narrowed to where all of their mimics stay within their own.
 
-    A continuous joint whose mimic has limits becomes a revolute one: it cannot turn on.  Limits of a mimic that would
-    leave its leader no way to go are taken for a slip and not heeded: a gripper's mirrored finger often has
+    A continuous joint whose mimic has limits becomes a revolute one: it cannot rotate for ever.  Limits of a mimic
+    that would leave its leader no range are taken for a mistake and ignored: a gripper's mirrored finger often has
     those of the other finger, without the sign.
 
     Parameters
     ----------
     joints : sequence of Joint
-        Mimics follow joints that follow none (see :func:`with_direct_mimics`).
+        Mimics follow joints that are no mimics (see :func:`with_direct_mimics`).
     """
     narrowed = {joint.name: joint for joint in joints}
     for follower in joints:

@@ -44,8 +44,8 @@ def pairs_without(robot: Robot, disabled: Collection[frozenset[str]]) -> SelfPai
 def computed_pairs(robot: Robot) -> SelfPairs:
     """Return the pairs of links with bodies without those that touch by construction.
 
-    Dropped are neighbours in the tree (links without bodies between them are looked through where only one joint on
-    the way moves), pairs that no joint moves on each other, and pairs that touch in every one of 1000 configurations
+    Dropped are neighbours in the tree (links without bodies between them do not count where only one joint
+    between them moves), pairs that no joint moves on each other, and pairs that touch in every one of 1000 configurations
     drawn uniformly within the limits of all joints.  Pairs that never touch are kept: a sample cannot prove that.
     """
     reasons = {pair: "neighbours" for pair in _bodied(robot) if _are_neighbours(robot, *pair)}
@@ -77,7 +77,7 @@ def _path_to_root(robot: Robot, link: str) -> list[Joint]:
 
 
 def _between(robot: Robot, first: str, second: str) -> list[Joint]:
-    """Return the joints on the way from one link to the other."""
+    """Return the joints between two links."""
     up, down = _path_to_root(robot, first), _path_to_root(robot, second)
     return [joint for joint in up if joint not in down] + [joint for joint in down if joint not in up]
 
@@ -89,12 +89,12 @@ def _can_move(robot: Robot, first: str, second: str) -> bool:
 def _are_neighbours(robot: Robot, first: str, second: str) -> bool:
     if first not in {joint.parent for joint in _path_to_root(robot, second)}:
         return False
-    way = _between(robot, first, second)
+    joints = _between(robot, first, second)
     # Two joints with a length between them fold, and bring together what does not touch by construction.
-    if sum(joint.kind != "fixed" for joint in way) > 1:
+    if sum(joint.kind != "fixed" for joint in joints) > 1:
         return False
-    on_the_way = {link for joint in way for link in (joint.parent, joint.child)} - {first, second}
-    return not on_the_way & {capsule.link for capsule in robot.capsules}
+    passed = {link for joint in joints for link in (joint.parent, joint.child)} - {first, second}
+    return not passed & {capsule.link for capsule in robot.capsules}
 
 
 def _always_in_contact(robot: Robot) -> list[tuple[str, str]]:

@@ -1,4 +1,4 @@
-"""Scene: what stands around a robot."""
+"""Scene: the obstacles around a robot."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Obstacle:
             raise InvalidValue(f"obstacle {self.name!r} must be one of {', '.join(PRIMITIVES)}, got a {body}")
         if body.link:
             raise InvalidValue(
-                f"obstacle {self.name!r} must not be fixed to a link: it stands in the world, got {body.link!r}"
+                f"obstacle {self.name!r} must be fixed to the world, not to a link, got {body.link!r}"
             )
         object.__setattr__(self, "body", body)
 
@@ -101,9 +101,9 @@ class Scene:
     name : str
         Name of the scene.
     obstacles : tuple of Obstacle
-        What stands around.
+        The obstacles.
     allowed : frozenset of (link, obstacle) pairs of str
-        Contacts that are not tested, e.g. of the base with the table that it stands on.
+        Contacts that are not tested, e.g. of the base with its table.
     states : mapping of str to mapping of str to float
         Named configurations: joint -> value; joints that are not planned for are held there.
     limits : mapping of str to (float, float)

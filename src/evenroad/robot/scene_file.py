@@ -1,4 +1,4 @@
-"""Reading a scene: a YAML file of what stands around a robot."""
+"""Reading a scene: a YAML file of the obstacles around a robot."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ def at_states(robot: Robot, texts: Iterable[str], scene: Scene | None = None) ->
     robot : Robot
         A robot.
     texts : iterable of str
-        Start and goal of a plan, as :func:`configuration` takes them; what is no name of a state holds nothing.
+        Start and goal of a plan, as :func:`configuration` takes them; other texts hold no joint.
     scene : Scene, optional
         Whose named states are known, too.
 
@@ -63,7 +63,7 @@ def at_states(robot: Robot, texts: Iterable[str], scene: Scene | None = None) ->
 
 
 def state_values(robot: Robot, name: str, scene: Scene | None = None) -> npt.NDArray[np.float64]:
-    """Return the configuration, (dim,), that a named state of robot or scene stands for [rad or m].
+    """Return the configuration, (dim,), of a named state of robot or scene [rad or m].
 
     Raises
     ------
@@ -95,7 +95,7 @@ def _within_limits(joint: Joint, value: float, state: str) -> float:
 
 
 def _outside_group(robot: Robot, name: str, values: Mapping[str, float]) -> dict[str, float]:
-    """Return what a state says of joints that are not planned for; of what is fixed or follows, it says nothing."""
+    """Return a state's values of movable joints outside of the group, without those of fixed joints and mimics."""
     known = [joint.name for joint in robot.joints]
     for joint in values:
         if joint not in known:
@@ -106,7 +106,7 @@ def _outside_group(robot: Robot, name: str, values: Mapping[str, float]) -> dict
 def configuration(
     robot: Robot, text: str, scene: Scene | None = None, *, degrees: bool = False
 ) -> npt.NDArray[np.float64]:
-    """Return the configuration that a text stands for, (dim,) [rad or m].
+    """Return the configuration that a text describes, (dim,) [rad or m].
 
     Parameters
     ----------

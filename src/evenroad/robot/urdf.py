@@ -33,8 +33,8 @@ class Urdf:
     links : tuple of str
         All links; the root first, every parent before its children.
     joints : tuple of Joint
-        ``joints[i]`` is the joint whose child is ``links[i + 1]``; a mimic follows a joint that is none, whose
-        limits are narrow enough for it.
+        ``joints[i]`` is the joint whose child is ``links[i + 1]``; a mimic follows a joint that is no mimic,
+        with limits that keep the mimic within its own.
     order : tuple of str
         Names of the joints as the file lists them: the order of configurations.
     shapes : tuple of Shape
@@ -162,7 +162,7 @@ def _limits(joint: Any, where: str) -> tuple[float, float, float]:
     if missing:
         raise BrokenFile(
             f"{where} has no limits: a {joint.type} joint needs <limit lower=... upper=...>"
-            f" (missing: {', '.join(missing)}); one that turns on and on is of type continuous"
+            f" (missing: {', '.join(missing)}); one that rotates without limits is of type continuous"
         )
     if limit.lower > limit.upper:
         raise InvalidValue(

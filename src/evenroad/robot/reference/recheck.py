@@ -1,4 +1,4 @@
-"""A path that was found among capsules, checked again with the meshes that the capsules stand for."""
+"""A path that was planned with capsules, checked again with the meshes that they were fitted to."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class MeshCheck:
     Attributes
     ----------
     verdict : {"free", "in collision", "not checked"}
-        Of all states, ends included, at most the resolution apart.
+        Of all states from start to goal, at most the resolution apart.
     states : int
         How many states were asked for; 0 where nothing was checked.
     message : str

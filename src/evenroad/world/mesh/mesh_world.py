@@ -28,13 +28,13 @@ class MeshWorld:
     Parameters
     ----------
     space : ``SE3(..)``, or a Box of 3 axes
-        Poses of the body's frame; in a Box the body does not turn.
+        Poses of the body's frame; in a Box the body does not rotate.
     body : TriangleMesh
         In the body's frame.
     obstacles : sequence of TriangleMesh
         In the frame of the space, at least one.
     resolution : float, or a pair of floats for SE3
-        Largest distance between neighbouring states, or largest way and largest turn (``arccos |q . q'|``).
+        Largest distance between neighbouring states, or largest distance and largest rotation (``arccos |q . q'|``).
 
     Raises
     ------
