@@ -29,13 +29,18 @@ def print_robot(model: RobotModel, world: ArmWorld) -> None:
 
 
 def bodiless_rows(model: RobotModel) -> list[tuple[str, str]]:
-    """Return what is to be said of links that nothing is ever found to touch: name and text of each row."""
+    """Return rows, name and text, about links that nothing is found to touch and pairs that always touch."""
     rows = []
     if model.bodiless:
         rows.append(("no body", ", ".join(model.bodiless)))
     if model.drawn_only:
         text = "drawn, but without collision geometry, so that nothing is found to touch: "
         rows.append(("WARNING", text + ", ".join(model.drawn_only)))
+    if model.always_touching:
+        pairs = ", ".join(f"{first} and {second}" for first, second in model.always_touching)
+        rows.append(
+            ("WARNING", f"in collision in every sampled configuration, so that none is free: {pairs}")
+        )
     return rows
 
 
@@ -128,7 +133,11 @@ def _speed(world: ArmWorld) -> str:
         a, b = a[: min(len(a), len(b))], b[: min(len(a), len(b))]
         states = world.space.distance(a, b) / world.resolution
         cut = bool((states > _MOST_STATES).any())
-        b = world.space.interpolate(a, b, np.minimum(1.0, _MOST_STATES / np.maximum(states, 1.0))) if cut else b
+        b = (
+            world.space.interpolate(a, b, np.minimum(1.0, _MOST_STATES / np.maximum(states, 1.0)))
+            if cut
+            else b
+        )
         passed = float(np.mean(world.motion_valid(a, b)))
         motions = _per_second(lambda: world.motion_valid(a, b), len(a))
         which = f"from free ones, cut off after {_MOST_STATES:,} states" if cut else "between free ones"

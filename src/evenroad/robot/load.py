@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -14,7 +15,7 @@ from evenroad.geometry.fit import fit_capsules
 from evenroad.geometry.fit_points import union_volume
 from evenroad.geometry.shapes import Capsule
 from evenroad.robot.cache import cached, keep, key_of
-from evenroad.robot.pairs import computed_pairs, pairs_without
+from evenroad.robot.pairs import always_touching, computed_pairs, pairs_without
 from evenroad.robot.robot import LinkBody, Robot, RobotModel
 from evenroad.robot.srdf import Srdf, choose_group, read_srdf
 from evenroad.robot.urdf import Urdf, read_urdf
@@ -33,8 +34,19 @@ def load_robot(
     group: str | Sequence[str] | None = None,
     bodies: PathLike | None = None,
 ) -> Robot:
-    """Return a robot; see :func:`load_model`, which also tells how it was made."""
-    return load_model(source, srdf=srdf, group=group, bodies=bodies).robot
+    """Return a robot; see :func:`load_model`, which also tells how it was made.
+
+    Warns of pairs of links that touch in every sampled configuration though they are tested.
+    """
+    model = load_model(source, srdf=srdf, group=group, bodies=bodies)
+    if model.always_touching:
+        pairs = ", ".join(f"{first} and {second}" for first, second in model.always_touching)
+        warnings.warn(
+            f"{model.robot.name!r} is in collision in every sampled configuration: {pairs}; disable these pairs in the"
+            " SRDF, or give smaller bodies",
+            stacklevel=2,
+        )
+    return model.robot
 
 
 def load_model(
@@ -130,11 +142,14 @@ def _build(
     )
     if srdf is not None and srdf.disabled:
         pairs, pairs_from = pairs_without(robot, srdf.disabled), "SRDF"
+        touching = tuple(always_touching(robot, pairs.tested))
     else:
-        pairs, pairs_from = computed_pairs(robot), "computed"
+        pairs, pairs_from, touching = computed_pairs(robot), "computed", ()
     links = tuple(_link_body(urdf, link, capsules[link], link in given) for link in capsules)
     drawn_only = tuple(link for link in urdf.drawn_only if link not in capsules)
-    return RobotModel(replace(robot, pairs=pairs.tested), links, pairs_from, pairs.dropped, drawn_only)
+    return RobotModel(
+        replace(robot, pairs=pairs.tested), links, pairs_from, pairs.dropped, drawn_only, touching
+    )
 
 
 def _capsules(urdf: Urdf, given: dict[str, tuple[Capsule, ...]]) -> dict[str, tuple[Capsule, ...]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -45,11 +45,16 @@ def computed_pairs(robot: Robot) -> SelfPairs:
     """Return the pairs of links with bodies without those that touch by construction.
 
     Dropped are neighbours in the tree (links without bodies between them do not count where only one joint
-    between them moves), pairs that no joint moves on each other, and pairs that touch in every one of 1000 configurations
-    drawn uniformly within the limits of all joints.  Pairs that never touch are kept: a sample cannot prove that.
+    between them moves), pairs that no joint moves on each other, and pairs that touch in every one of 1000
+    configurations drawn uniformly within the limits of all joints.  Pairs that never touch are kept: a sample
+    cannot prove that.
     """
     reasons = {pair: "neighbours" for pair in _bodied(robot) if _are_neighbours(robot, *pair)}
-    reasons |= {pair: "touch in every sample" for pair in _always_in_contact(robot) if pair not in reasons}
+    reasons |= {
+        pair: "touch in every sample"
+        for pair in always_touching(robot, _bodied(robot))
+        if pair not in reasons
+    }
     return _sorted_out(robot, reasons)
 
 
@@ -97,7 +102,8 @@ def _are_neighbours(robot: Robot, first: str, second: str) -> bool:
     return not passed & {capsule.link for capsule in robot.capsules}
 
 
-def _always_in_contact(robot: Robot) -> list[tuple[str, str]]:
+def always_touching(robot: Robot, pairs: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Return those pairs of links that touch in every one of 1000 random configurations within the limits."""
     movable = [joint for joint in robot.joints if joint.kind != "fixed" and joint.mimic is None]
     free = Robot(
         robot.name, robot.links, robot.joints, robot.capsules, (), tuple(joint.name for joint in movable)
@@ -114,7 +120,7 @@ def _always_in_contact(robot: Robot) -> list[tuple[str, str]]:
     for i, capsule in enumerate(robot.capsules):
         number.setdefault(capsule.link, []).append(i)
     always = []
-    for first, second in _bodied(robot):
+    for first, second in pairs:
         touching = np.zeros(SAMPLES, dtype=np.bool_)
         for i in number[first]:
             for j in number[second]:

@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from evenroad.errors import InvalidValue, UnknownName
-from evenroad.geometry.shapes import Capsule, without_pose
+from evenroad.geometry.pose import IDENTITY, Pose
+from evenroad.geometry.shapes import Capsule, Shape, without_pose
 from evenroad.robot.joint import Joint, require_within, within_limits_of_mimics
 from evenroad.robot.scene import Scene
 
@@ -48,6 +49,15 @@ class Robot:
     def __post_init__(self) -> None:
         # The kernel takes the ends as they are: a capsule with a pose of its own gets them in its link's frame.
         object.__setattr__(self, "capsules", tuple(map(without_pose, self.capsules)))
+
+    def with_tool(
+        self, tool: Robot | Sequence[Shape], at: str, *, pose: Pose = IDENTITY, prefix: str = ""
+    ) -> Robot:
+        """Return the robot with a tool fixed to one of its links; see :func:`evenroad.robot.tool.with_tool`."""
+        # Here, since working out its pairs needs robots.
+        from evenroad.robot.tool import with_tool
+
+        return with_tool(self, tool, at, pose=pose, prefix=prefix)
 
 
 @dataclass(frozen=True)
@@ -99,6 +109,9 @@ class RobotModel:
         Pairs of links with bodies that are not tested, each with the reason.
     drawn_only : tuple of str
         Links that the URDF draws (``<visual>``) and that have no body: nothing is ever found to touch them.
+    always_touching : tuple of pairs of str
+        Pairs that are tested, since the SRDF does not disable them, and that touch in every sampled configuration: with
+        one of these no configuration is free.
     """
 
     robot: Robot
@@ -106,6 +119,7 @@ class RobotModel:
     pairs_from: str
     dropped: tuple[tuple[str, str, str], ...]
     drawn_only: tuple[str, ...] = ()
+    always_touching: tuple[tuple[str, str], ...] = ()
 
     @property
     def bodiless(self) -> tuple[str, ...]:

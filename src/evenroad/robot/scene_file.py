@@ -12,6 +12,7 @@ from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import PRIMITIVES, shape_of
 from evenroad.robot.load import DATA
+from evenroad.robot.moveit_scene import read_planning_scene, read_scene_text
 from evenroad.robot.scene import Obstacle, Scene
 
 SCENES = ("box-reach", "box-reach-narrow")
@@ -22,9 +23,11 @@ _OPTIONAL = ("xyz", "rpy", "quaternion", "cell")
 
 
 def is_scene(path: str | os.PathLike[str]) -> bool:
-    """Return whether a YAML file that can be read has the key ``obstacles``: a scene, no map."""
+    """Return whether a file is a scene and no map: a ``.scene``, or YAML with the key ``obstacles`` or ``world``."""
+    if Path(path).suffix == ".scene":
+        return True
     try:
-        return "obstacles" in read_mapping(find_scene(path), "scene")
+        return not {"obstacles", "world"}.isdisjoint(read_mapping(find_scene(path), "scene"))
     except BrokenFile:
         return False
 
@@ -56,6 +59,9 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
     The length of a capsule is without its caps.  In place of ``rpy`` an obstacle may
     have a ``quaternion: [w, x, y, z]``.  ``cell: true`` marks what belongs to the fixed cell.
 
+    MoveIt's scenes are read, too: text files ``.scene``, and planning scenes in YAML with the key ``world`` (see
+    :mod:`evenroad.robot.moveit_scene`).
+
     Raises
     ------
     BrokenFile
@@ -70,7 +76,11 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
         raise BrokenFile(
             f"there is no scene file {path}; shipped: {', '.join(f'{name}.yaml' for name in SCENES)}"
         )
+    if path.suffix == ".scene":
+        return read_scene_text(path)
     document = read_mapping(path, "scene")
+    if "obstacles" not in document and "world" in document:
+        return read_planning_scene(document, path)
     require_keys(document, ("obstacles",), _SECTIONS, f"the scene {path}")
     entries = _mapping(document["obstacles"], f"obstacles in {path}")
     obstacles = tuple(

@@ -163,7 +163,8 @@ def choose_group(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | No
         The robot.
     wanted : str, sequence of str, or None
         A group of the SRDF, or names of joints (as a text: with commas between them).  None: the SRDF's group where
-        it has one, else every joint that moves, is no mimic and, by the SRDF, not passive.
+        it has one, else every joint that moves, is no mimic and, by the SRDF, not passive.  None of
+        a rigid body: another robot may carry it as a tool.
 
     Raises
     ------
@@ -187,6 +188,8 @@ def choose_group(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | No
     if groups:
         ((name, joints),) = groups.items()
         return _not_empty(joints, f"group {name!r}")
+    if all(joint.kind == "fixed" for joint in urdf.joints):
+        return ()
     free = urdf.free - (frozenset() if srdf is None else srdf.passive)
     return _not_empty(tuple(name for name in urdf.order if name in free), f"robot {urdf.name!r}")
 

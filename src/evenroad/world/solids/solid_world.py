@@ -28,8 +28,8 @@ class SolidWorld:
     tests are exact up to rounding, about 1e-7 of the boxes' sizes.  Boxes are solid.  For obstacles that are
     surfaces, with room inside, use rectangles: boxes with a half extent of zero, or :func:`shell`.
 
-    A motion is divided into ``n = max(ceil(distance / step), ceil(rotation / rotation_step))`` segments and free if all n + 1
-    ends of segments are; they are tested in bisection order, the ends first.
+    A motion is divided into ``n = max(ceil(distance / step), ceil(rotation / rotation_step))`` segments and free if
+    all n + 1 ends of segments are; they are tested in bisection order, the ends first.
 
     Parameters
     ----------
