@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-import logging
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from io import BytesIO
 from pathlib import Path
-from typing import Any
-from xml.etree import ElementTree
+from typing import cast
+from xml.etree.ElementTree import Element
 
 import numpy as np
 
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
-from evenroad.geometry.pose import IDENTITY, Pose
-from evenroad.geometry.shapes import Mesh, Shape, shape_of
-from evenroad.robot.joint import Joint, Mimic, with_direct_mimics, within_limits_of_mimics
+from evenroad.geometry.pose import Pose
+from evenroad.geometry.shapes import PRIMITIVES, Mesh, Shape, shape_of
+from evenroad.robot.joint import Joint, Kind, Mimic, with_direct_mimics, within_limits_of_mimics
 from evenroad.robot.urdf_xml import drawn_only, find_mesh, read_urdf_xml
 
 _KINDS = ("revolute", "continuous", "prismatic", "fixed")
+_LIMITS = ("lower", "upper", "velocity")
 
 
 @dataclass(frozen=True)
@@ -77,62 +76,44 @@ def read_urdf(path: Path) -> Urdf:
         If a joint is of a type that is not supported (floating, planar).
     """
     root = read_urdf_xml(path)
-    drawn = drawn_only(root)
-    parsed = _parse(root, path)
-    joints = [_joint(joint, path) for joint in parsed.joints]
-    ordered = in_tree_order([link.name for link in parsed.links], joints, str(path))
-    first = ordered[0].parent if ordered else parsed.links[0].name
+    links = [link.attrib["name"] for link in root.findall("link")]
+    joints = [_joint(joint, path) for joint in root.findall("joint")]
+    ordered = in_tree_order(links, joints, str(path))
+    first = ordered[0].parent if ordered else links[0]
     return Urdf(
-        name=parsed.name,
+        name=root.get("name", path.stem),
         links=(first, *(joint.child for joint in ordered)),
         joints=tuple(within_limits_of_mimics(with_direct_mimics(ordered, path))),
         order=tuple(joint.name for joint in joints),
         shapes=tuple(
-            _shape(link.name, collision, path) for link in parsed.links for collision in link.collisions
+            _shape(link.attrib["name"], collision, path)
+            for link in root.findall("link")
+            for collision in link.findall("collision")
         ),
-        drawn_only=drawn,
+        drawn_only=drawn_only(root),
     )
 
 
-def _parse(root: ElementTree.Element, path: Path) -> Any:
-    """Return what yourdfpy reads from a checked tree; its kind of capsule is a cylinder named as such."""
-    root.set("name", root.get("name", path.stem))
-    for link in root.findall("link"):
-        for visual in link.findall("visual"):
-            link.remove(visual)
-    for collision in root.iterfind("link/collision"):
-        capsule = collision.find("geometry/capsule")
-        collision.set("name", "cylinder" if capsule is None else "capsule")
-        if capsule is not None:
-            capsule.tag = "cylinder"
-    # Here, since it costs a third of a second, which maps and cached robots do not need to wait for.
-    from yourdfpy import URDF
-
-    logging.getLogger("yourdfpy").addHandler(logging.NullHandler())
-    source = BytesIO(ElementTree.tostring(root))
-    try:
-        return URDF.load(source, build_scene_graph=False, load_meshes=False).robot
-    except (ValueError, KeyError, TypeError, IndexError, AttributeError) as error:
-        raise BrokenFile(f"{path} cannot be read as a URDF: {error}") from error
-
-
-def _joint(joint: Any, path: Path) -> Joint:
-    where = f"joint {joint.name!r} in {path}"
-    if joint.type not in _KINDS:
-        raise UnknownName.among(f"type of {where}:", joint.type, _KINDS)
-    origin = _pose(joint.origin)
-    lower, upper, velocity = _limits(joint, where)
+def _joint(element: Element, path: Path) -> Joint:
+    name, kind = element.attrib["name"], element.attrib["type"]
+    where = f"joint {name!r} in {path}"
+    if kind not in _KINDS:
+        raise UnknownName.among(f"type of {where}:", kind, _KINDS)
+    origin, follows = _pose(element), element.find("mimic")
+    lower, upper, velocity = _limits(element.find("limit"), kind, where)
     mimic = None
-    if joint.mimic is not None and joint.type != "fixed":
-        mimic = Mimic(joint.mimic.joint, float(joint.mimic.multiplier), float(joint.mimic.offset))
+    if follows is not None and kind != "fixed":
+        mimic = Mimic(
+            follows.attrib["joint"], float(follows.get("multiplier", 1.0)), float(follows.get("offset", 0.0))
+        )
     return Joint(
-        name=joint.name,
-        kind=joint.type,
-        parent=joint.parent,
-        child=joint.child,
+        name=name,
+        kind=cast(Kind, kind),
+        parent=_link(element, "parent"),
+        child=_link(element, "child"),
         xyz=origin.xyz,
         rotation=origin.rotation,
-        axis=(0.0, 0.0, 1.0) if joint.type == "fixed" else _axis(joint, where),
+        axis=(0.0, 0.0, 1.0) if kind == "fixed" else _axis(element, where),
         lower=lower,
         upper=upper,
         velocity=velocity,
@@ -140,55 +121,74 @@ def _joint(joint: Any, path: Path) -> Joint:
     )
 
 
-def _axis(joint: Any, where: str) -> tuple[float, float, float]:
-    length = float(np.linalg.norm(joint.axis))
+def _link(joint: Element, end: str) -> str:
+    element = joint.find(end)
+    assert element is not None, "as read_urdf_xml has seen to"
+    return element.attrib["link"]
+
+
+def _axis(joint: Element, where: str) -> tuple[float, float, float]:
+    axis = np.array(_numbers(joint.find("axis"), "xyz", (1.0, 0.0, 0.0)))
+    length = float(np.linalg.norm(axis))
     if length < 1e-9:
-        raise InvalidValue(f"the axis of {where} must not be zero, got {joint.axis.tolist()}")
-    x, y, z = (joint.axis / length).tolist()
+        raise InvalidValue(f"the axis of {where} must not be zero, got {axis.tolist()}")
+    x, y, z = (axis / length).tolist()
     return (x, y, z)
 
 
-def _limits(joint: Any, where: str) -> tuple[float, float, float]:
+def _limits(limit: Element | None, kind: str, where: str) -> tuple[float, float, float]:
     """Return lower, upper and velocity; a velocity of 0 in a URDF means that nobody knew it."""
-    limit = joint.limit
-    velocity = math.inf if limit is None or not limit.velocity else float(limit.velocity)
+    given = {} if limit is None else {end: float(limit.attrib[end]) for end in _LIMITS if end in limit.attrib}
+    velocity = given.get("velocity") or math.inf
     if velocity < 0.0:
         raise InvalidValue(f"the velocity limit of {where} must be >= 0, got {velocity:g}")
-    if joint.type == "fixed":
+    if kind == "fixed":
         return 0.0, 0.0, velocity
-    if joint.type == "continuous":
+    if kind == "continuous":
         return -math.inf, math.inf, velocity
-    missing = [end for end in ("lower", "upper") if limit is None or getattr(limit, end) is None]
+    missing = [end for end in ("lower", "upper") if end not in given]
     if missing:
         raise BrokenFile(
-            f"{where} has no limits: a {joint.type} joint needs <limit lower=... upper=...>"
+            f"{where} has no limits: a {kind} joint needs <limit lower=... upper=...>"
             f" (missing: {', '.join(missing)}); one that rotates without limits is of type continuous"
         )
-    if limit.lower > limit.upper:
+    if given["lower"] > given["upper"]:
         raise InvalidValue(
-            f"the limits of {where} must satisfy lower <= upper, got {limit.lower:g}, {limit.upper:g}"
+            f"the limits of {where} must satisfy lower <= upper, got {given['lower']:g}, {given['upper']:g}"
         )
-    return float(limit.lower), float(limit.upper), velocity
+    return given["lower"], given["upper"], velocity
 
 
-def _shape(link: str, collision: Any, path: Path) -> Shape:
-    pose, given = _pose(collision.origin), collision.geometry
-    if given.mesh is not None:
-        x, y, z = np.broadcast_to(1.0 if given.mesh.scale is None else given.mesh.scale, 3).tolist()
-        return Mesh(find_mesh(given.mesh.filename, path, link), (x, y, z), pose=pose, link=link)
-    if given.box is not None:
-        return shape_of("box", given.box.size.tolist(), pose, link)
-    if given.sphere is not None:
-        return shape_of("sphere", (float(given.sphere.radius),), pose, link)
-    size = (float(given.cylinder.radius), float(given.cylinder.length))
-    return shape_of("capsule" if collision.name == "capsule" else "cylinder", size, pose, link)
+def _shape(link: str, collision: Element, path: Path) -> Shape:
+    pose, (shape,) = _pose(collision), collision.iterfind("geometry/*")
+    if shape.tag == "mesh":
+        x, y, z = np.broadcast_to(_numbers(shape, "scale", (1.0,)), 3).tolist()
+        return Mesh(find_mesh(shape.attrib["filename"], path, link), (x, y, z), pose=pose, link=link)
+    size = [
+        number for name, _ in PRIMITIVES[shape.tag].dimensions for number in _numbers(shape, name, (0.0,))
+    ]
+    return shape_of(shape.tag, size, pose, link)
 
 
-def _pose(origin: Any) -> Pose:
-    if origin is None:
-        return IDENTITY
-    x, y, z = origin[:3, 3].tolist()
-    return Pose((x, y, z), tuple(origin[:3, :3].ravel().tolist()))
+def _pose(owner: Element) -> Pose:
+    origin = owner.find("origin")
+    x, y, z = _numbers(origin, "xyz", (0.0, 0.0, 0.0))
+    roll, pitch, yaw = _numbers(origin, "rpy", (0.0, 0.0, 0.0))
+    # rotation_from_rpy in another order of operations, in which robots were always read: their capsules, and what was
+    # computed with these, keep their last bits.
+    (si, sj, sk), (ci, cj, ck) = np.sin([roll, pitch, yaw]).tolist(), np.cos([roll, pitch, yaw]).tolist()
+    cc, cs, sc, ss = ci * ck, ci * sk, si * ck, si * sk
+    rotation = (
+        *(cj * ck, sj * sc - cs, sj * cc + ss),
+        *(cj * sk, sj * ss + cc, sj * cs - sc),
+        *(-sj, cj * si, cj * ci),
+    )
+    return Pose((x, y, z), tuple(number + 0.0 for number in rotation))
+
+
+def _numbers(element: Element | None, attribute: str, default: tuple[float, ...]) -> tuple[float, ...]:
+    text = None if element is None else element.get(attribute)
+    return default if text is None else tuple(map(float, text.split()))
 
 
 def in_tree_order(links: Sequence[str], joints: Sequence[Joint], where: str) -> list[Joint]:
