@@ -9,7 +9,7 @@ import pytest
 from scipy.optimize import linprog
 
 from evenroad.errors import InvalidValue
-from evenroad.geometry import rotation_from_heading, rotation_from_quaternion
+from evenroad.geometry import Pose, rotation_from_heading, rotation_from_quaternion, shapes
 from evenroad.space import SE2, SE3, SO3, Box, Circle, JointSpace, Product
 from evenroad.testing import WorldContract
 from evenroad.world import FunctionWorld
@@ -242,3 +242,10 @@ def test_parameters_that_make_no_world_are_refused():
             SolidWorld(space, ELL, [], wrong)
     with pytest.raises(InvalidValue, match="resolution"):
         SolidWorld(Box([0, 0], [1, 1]), FLAT_ELL, [], (0.1, 0.1))
+
+
+def test_a_box_of_geometry_is_the_same_box_with_its_pose():
+    place = Pose.from_rpy((1, 2, 3), (0.3, -0.2, 1.0))
+    box = OrientedBox.of(shapes.Box((0.2, 0.4, 0.6), pose=place))
+    signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    np.testing.assert_allclose(box.corners, place.apply(signs * (0.1, 0.2, 0.3)), atol=1e-15)

@@ -13,6 +13,7 @@ from evenroad._checks import as_row
 from evenroad.errors import InvalidValue
 from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.pose import as_rotation
+from evenroad.geometry.shapes import Box
 
 _FACES_OF_A_BOX = np.array(
     [
@@ -81,6 +82,11 @@ class OrientedBox:
         centre = [(least + most) / 2.0 for least, most in zip(lows, highs, strict=True)]
         half_extents = [(most - least) / 2.0 for least, most in zip(lows, highs, strict=True)]
         return cls(centre, half_extents, name=name)
+
+    @classmethod
+    def of(cls, box: Box) -> OrientedBox:
+        """Return a box of :mod:`evenroad.geometry`, which is one in space, with its pose."""
+        return cls(box.pose.xyz, [0.5 * extent for extent in box.extents], box.pose.rotation)
 
     @property
     def dim(self) -> int:
