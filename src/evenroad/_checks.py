@@ -46,7 +46,7 @@ def as_row(name: str, values: Sequence[float], length: int | None = None) -> tup
     """
     wanted = "one finite number or more" if length is None else f"{length} finite number(s)"
     try:
-        row = tuple(float(value) for value in values)
+        row = tuple(map(float, values))
     except (TypeError, ValueError):
         raise InvalidValue(f"{name} must be {wanted}, got {values!r}") from None
     if len(row) == 0 or (length is not None and len(row) != length) or not all(map(math.isfinite, row)):

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from operator import mul
 
 import numpy as np
 import numpy.typing as npt
@@ -122,10 +123,9 @@ def as_rotation(rotation: Sequence[float] | None, dim: int = 3) -> tuple[float, 
         return tuple(1.0 if i == j else 0.0 for i in range(dim) for j in range(dim))
     numbers = as_row("rotation", rotation, dim * dim)
     rows = [numbers[i * dim : (i + 1) * dim] for i in range(dim)]
-    for i in range(dim):
+    for i, row in enumerate(rows):
         for j in range(i, dim):
-            product = sum(a * b for a, b in zip(rows[i], rows[j], strict=True))
-            if abs(product - (i == j)) > _ORTHONORMAL:
+            if abs(sum(map(mul, row, rows[j])) - (i == j)) > _ORTHONORMAL:
                 raise InvalidValue(f"rotation must have perpendicular rows of length 1, got {rotation!r}")
     if _determinant(rows) < 0.0:
         raise InvalidValue(f"rotation must not be a reflection, got {rotation!r}")
@@ -170,12 +170,12 @@ class Pose:
     def from_rpy(cls, xyz: Sequence[float], rpy: Sequence[float]) -> Pose:
         """Return the pose of an origin [m], and roll, pitch and yaw [rad] as URDF has them."""
         roll, pitch, yaw = as_row("rpy", rpy, 3)
-        return cls(_three(xyz), rotation_from_rpy(roll, pitch, yaw))
+        return cls._made(_three(xyz), rotation_from_rpy(roll, pitch, yaw))
 
     @classmethod
     def from_quaternion(cls, xyz: Sequence[float], quaternion: Sequence[float]) -> Pose:
         """Return the pose of an origin [m] and a quaternion (w, x, y, z) of any norm > 0."""
-        return cls(_three(xyz), rotation_from_quaternion(quaternion))
+        return cls._made(_three(xyz), rotation_from_quaternion(quaternion))
 
     @classmethod
     def from_matrix(cls, matrix: npt.ArrayLike) -> Pose:
@@ -187,6 +187,14 @@ class Pose:
         if array.shape != (4, 4) or not np.array_equal(array[3], [0.0, 0.0, 0.0, 1.0]):
             raise InvalidValue(f"a pose must be a 4x4 matrix with the last row 0, 0, 0, 1, got {matrix!r}")
         return cls(_three(array[:3, 3].tolist()), tuple(array[:3, :3].ravel().tolist()))
+
+    @classmethod
+    def _made(cls, xyz: Vector, rotation: tuple[float, ...]) -> Pose:
+        """Return a pose without checks: they take longest, and a rotation of angles or a quaternion is one."""
+        pose = object.__new__(cls)
+        object.__setattr__(pose, "xyz", xyz)
+        object.__setattr__(pose, "rotation", rotation)
+        return pose
 
     @property
     def rotation_matrix(self) -> Matrix:
