@@ -17,6 +17,9 @@ from evenroad.robot.robot import Robot
 SAMPLES = 1000
 """Random configurations that tell pairs that are always in contact."""
 
+TOUCHING = "touch in every sample"
+"""Why a pair is not tested whose capsules are in contact in all of them; the shapes inside may well come apart."""
+
 
 @dataclass(frozen=True)
 class SelfPairs:
@@ -51,7 +54,7 @@ def computed_pairs(robot: Robot) -> SelfPairs:
     """
     reasons = {pair: "neighbours" for pair in _bodied(robot) if _are_neighbours(robot, *pair)}
     reasons |= {
-        pair: "touch in every sample"
+        pair: TOUCHING
         for pair in always_touching(robot, _bodied(robot))
         if pair not in reasons
     }
