@@ -39,7 +39,9 @@ def bodiless_rows(model: RobotModel) -> list[tuple[str, str]]:
         rows.append(("WARNING", text + ", ".join(model.drawn_only)))
     if model.always_touching:
         pairs = ", ".join(f"{first} and {second}" for first, second in model.always_touching)
-        rows.append(("WARNING", f"in collision in every sampled configuration, so that none is free: {pairs}"))
+        rows.append(
+            ("WARNING", f"in collision in every sampled configuration, so that none is free: {pairs}")
+        )
     return rows
 
 

@@ -53,11 +53,7 @@ def computed_pairs(robot: Robot) -> SelfPairs:
     cannot prove that.
     """
     reasons = {pair: "neighbours" for pair in _bodied(robot) if _are_neighbours(robot, *pair)}
-    reasons |= {
-        pair: TOUCHING
-        for pair in always_touching(robot, _bodied(robot))
-        if pair not in reasons
-    }
+    reasons |= {pair: TOUCHING for pair in always_touching(robot, _bodied(robot)) if pair not in reasons}
     return _sorted_out(robot, reasons)
 
 
