@@ -19,18 +19,17 @@ from functools import partial
 
 import numpy as np
 import numpy.typing as npt
+from tests_peers.engines.klampt_world import KlamptWorld
+from tests_peers.engines.pinocchio_world import PinocchioWorld
 
 from evenroad.errors import NotAvailable
-from evenroad.robot.alter import in_scene, with_group
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.robot.kernel import batch
 from evenroad.robot.load import load_robot
 from evenroad.robot.reference.coal_world import CoalWorld
 from evenroad.robot.reference.engine_world import EngineWorld
-from evenroad.robot.reference.klampt_world import KlamptWorld
-from evenroad.robot.reference.pinocchio_world import PinocchioWorld
-from evenroad.robot.robot import Robot
+from evenroad.robot.robot import Robot, in_scene, with_group
 from evenroad.robot.scene import Obstacle, Scene
 from evenroad.robot.scene_file import load_scene
 from evenroad.world import World
@@ -67,7 +66,7 @@ def random_boxes(count: int = 100) -> Scene:
     while len(boxes) < count:
         place, size = rng.uniform(-1.0, 1.0, 3), rng.uniform(0.05, 0.2, 3)
         if np.linalg.norm(place) > 0.35:
-            boxes.append(Obstacle(f"box {len(boxes)}", "box", tuple(size), tuple(place)))
+            boxes.append(Obstacle.of(f"box {len(boxes)}", "box", tuple(size), tuple(place)))
     return Scene(f"{count} boxes", tuple(boxes))
 
 

@@ -16,11 +16,11 @@ from functools import partial
 import numpy as np
 
 from evenroad.errors import NotAvailable
+from evenroad.geometry.mesh import merged
 from evenroad.research.problems import source_named
 from evenroad.roadmap import KNearest
 from evenroad.world import MeshWorld, SolidWorld, World
 from evenroad.world.mesh import surface_of
-from evenroad.world.mesh.triangle_mesh import merged
 
 REPEATS = 7
 

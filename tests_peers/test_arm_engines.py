@@ -10,16 +10,15 @@ from tests.robot.mesh_arms import FORK, LONG, write_fork_arm
 from tests.robot.oracle import clearance, obstacle_distance
 
 from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.geometry import Mesh
 from evenroad.robot import link_poses, load_robot
 from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.geometry import Geometry
-from evenroad.robot.reference.bodies import original_geometries
-from evenroad.robot.reference.coal_shapes import placement
 from evenroad.robot.reference.coal_world import CoalWorld
-from evenroad.robot.reference.klampt_world import KlamptWorld
-from evenroad.robot.reference.pinocchio_world import PinocchioWorld
+from evenroad.robot.reference.engine_world import original_shapes
 from evenroad.robot.scene import Obstacle, Scene
 from evenroad.testing import WorldContract
+from tests_peers.engines.klampt_world import KlamptWorld
+from tests_peers.engines.pinocchio_world import PinocchioWorld
 
 for extra in ("klampt", "coal", "pinocchio"):
     pytest.importorskip(extra)
@@ -87,7 +86,7 @@ def test_pinocchio_and_coal_say_the_same_of_every_configuration(robot, scene):
 def test_no_shapes_are_no_free_pass(engine):
     robot, scene = CASES["ur5"]
     with pytest.raises(InvalidValue, match="one or more"):
-        engine(robot, scene, geometries=())
+        engine(robot, scene, shapes=())
 
 
 def test_coal_names_what_touches():
@@ -100,7 +99,7 @@ def fork_arm(tmp_path):
     """An arm that ends in a mesh, with its own shapes."""
     path = write_fork_arm(tmp_path)
     robot = load_robot(path)
-    return robot, original_geometries(path, robot)
+    return robot, original_shapes(path, robot)
 
 
 def balls(count=8, radius=0.06):
@@ -112,7 +111,7 @@ def balls(count=8, radius=0.06):
     )
     places[:, 2] += 0.4
     return Scene(
-        "balls", tuple(Obstacle(f"ball {i}", "sphere", (radius,), tuple(p)) for i, p in enumerate(places))
+        "balls", tuple(Obstacle.of(f"ball {i}", "sphere", (radius,), tuple(p)) for i, p in enumerate(places))
     )
 
 
@@ -121,10 +120,11 @@ def clearance_of_shapes(robot, shapes, scene, q):
     poses = link_poses(robot, q)
     least = np.full(len(q), np.inf)
     for shape in shapes:
-        solids = [Obstacle("", shape.shape, shape.size, (0.0, 0.0, 0.0))]
-        if shape.shape == "mesh":
-            solids = [Obstacle("", "box", size, centre) for size, centre in FORK]
-        frames = np.linalg.inv(poses[:, robot.links.index(shape.link)] @ placement(shape))
+        if not isinstance(shape, Mesh):
+            solids = [Obstacle.of("", shape.kind, shape.size)]
+        else:
+            solids = [Obstacle.of("", "box", size, centre) for size, centre in FORK]
+        frames = np.linalg.inv(poses[:, robot.links.index(shape.link)] @ shape.pose.matrix)
         for ball in scene.obstacles:
             centres = frames[:, :3, :3] @ np.array(ball.xyz) + frames[:, :3, 3]
             for solid in solids:
@@ -160,12 +160,12 @@ def test_a_mesh_is_not_made_convex_and_no_prong_is_lost(engine, fork_arm):
     """A ball in the gap of the fork is free; where a prong is, it is not."""
     robot, shapes = fork_arm
     q = np.array([[0.4, 0.3, 0.1]])
-    mesh = next(shape for shape in shapes if shape.shape == "mesh")
-    frame = link_poses(robot, q)[0, robot.links.index("fork")] @ placement(mesh)
+    mesh = next(shape for shape in shapes if isinstance(shape, Mesh))
+    frame = link_poses(robot, q)[0, robot.links.index("fork")] @ mesh.pose.matrix
 
     def verdict(y):
         place = frame[:3, :3] @ (0.0, y, 0.6 * LONG) + frame[:3, 3]
-        scene = Scene("ball", (Obstacle("ball", "sphere", (0.05,), tuple(place)),))
+        scene = Scene("ball", (Obstacle.of("ball", "sphere", (0.05,), tuple(place)),))
         return engine(replace(robot, pairs=()), scene, shapes).valid(q)[0]
 
     assert verdict(0.0)
@@ -202,7 +202,7 @@ def test_self_collisions_of_meshes_are_found_by_all(fork_arm):
 @pytest.mark.parametrize("content", [b"", b"solid fork\nendsolid fork\n"])
 def test_a_mesh_that_has_become_empty_is_an_error(engine, fork_arm, content):
     robot, shapes = fork_arm
-    next(shape for shape in shapes if shape.shape == "mesh").file.write_bytes(content)
+    next(shape for shape in shapes if isinstance(shape, Mesh)).source.write_bytes(content)
     with pytest.raises(BrokenFile, match=r"fork\.stl"):
         engine(robot, balls(), shapes)
 
@@ -211,8 +211,7 @@ def test_a_mesh_that_has_become_empty_is_an_error(engine, fork_arm, content):
 def test_a_mesh_that_is_gone_is_an_error(engine, fork_arm, tmp_path):
     robot, shapes = fork_arm
     gone = [
-        Geometry(s.link, s.shape, s.size, s.xyz, s.rotation, tmp_path / "gone.stl") if s.file else s
-        for s in shapes
+        replace(shape, source=tmp_path / "gone.stl") if isinstance(shape, Mesh) else shape for shape in shapes
     ]
     with pytest.raises(BrokenFile, match=r"gone\.stl is missing"):
         engine(robot, balls(), gone)

@@ -6,14 +6,15 @@ import coal
 import numpy as np
 import pytest
 
+from evenroad.geometry.mesh import merged
+from evenroad.geometry.pose import rotation_from_quaternion, rotations_from_quaternions
 from evenroad.research.problems import source_named
 from evenroad.space import SE3, Box
 from evenroad.testing import WorldContract
 from evenroad.world import OrientedBox, SolidWorld
 from evenroad.world.mesh import MeshWorld, TriangleMesh, load_mesh, surface_of
-from evenroad.world.mesh.collider import Collider, turn_matrices
-from evenroad.world.mesh.triangle_mesh import merged
-from evenroad.world.solids import quaternion_turn, shell
+from evenroad.world.mesh.coal import Collider
+from evenroad.world.solids import shell
 from evenroad.world.solids.poses import as_poses
 
 NEAR = 1e-5
@@ -29,7 +30,7 @@ def solid_boxes_meet(world, q):
     poses = as_poses(q, world.space)
     met = np.zeros(len(q), dtype=bool)
     obstacles = [(coal.Box(*(2 * np.array(box.half_extents))), transform(box)) for box in world.obstacles]
-    for row, (pose, turn) in enumerate(zip(poses, turn_matrices(poses), strict=True)):
+    for row, (pose, turn) in enumerate(zip(poses, rotations_from_quaternions(poses[:, 3:]), strict=True)):
         here = coal.Transform3s.Identity()
         here.setRotation(turn)
         here.setTranslation(pose[:3])
@@ -89,7 +90,9 @@ def test_coal_agrees_on_random_boxes_and_rectangles(seed):
         half = random.uniform(0.1, 1.0, 3)
         if random.random() < 0.4:
             half[random.integers(3)] = 0.0
-        return OrientedBox(random.uniform(-reach, reach, 3), half, quaternion_turn(random.normal(size=4)))
+        return OrientedBox(
+            random.uniform(-reach, reach, 3), half, rotation_from_quaternion(random.normal(size=4))
+        )
 
     body, obstacles = [some_box(1.0) for _ in range(3)], [some_box(6.0) for _ in range(40)]
     world = SolidWorld(SE3([-7] * 3, [7] * 3), body, obstacles, (0.1, 0.1))
@@ -102,7 +105,7 @@ ELL = [
     OrientedBox.spanning((0.6, 0, -0.2), (1, 1, 0.2)),
 ]
 CRATES = [
-    OrientedBox(centre, half, quaternion_turn(turn), name=f"crate {i}")
+    OrientedBox(centre, half, rotation_from_quaternion(turn), name=f"crate {i}")
     for i, (centre, half, turn) in enumerate(
         zip(
             np.random.default_rng(1).uniform(0, 10, (25, 3)),

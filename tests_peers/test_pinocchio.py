@@ -11,9 +11,9 @@ from tests.robot.urdf_texts import LIMIT, joint, link, urdf, write
 from evenroad.robot import Scene, link_poses, load_robot
 from evenroad.robot.kinematics import joint_values
 from evenroad.robot.load import find_robot
-from evenroad.robot.reference.bodies import original_geometries
 from evenroad.robot.reference.coal_world import CoalWorld
-from evenroad.robot.reference.pinocchio_world import PinocchioWorld, placements
+from evenroad.robot.reference.engine_world import original_shapes
+from tests_peers.engines.pinocchio_world import PinocchioWorld, placements
 
 pinocchio = pytest.importorskip("pinocchio")
 
@@ -106,7 +106,7 @@ def test_pinocchio_reads_the_same_bodies_out_of_the_urdf_as_we_do(tmp_path, scal
     for first, second in robot.pairs:
         bodies.addCollisionPair(pinocchio.CollisionPair(of_link[first], of_link[second]))
     data, shapes = model.createData(), bodies.createData()
-    world = CoalWorld(robot, Scene("nothing", ()), original_geometries(path, robot))
+    world = CoalWorld(robot, Scene("nothing", ()), original_shapes(path, robot))
     q = world.space.from_cube(np.random.default_rng(8).random((1_000, 3)))
     theirs = [
         not pinocchio.computeCollisions(

@@ -64,7 +64,7 @@ def test_a_path_that_is_free_for_the_capsules_is_free_for_the_meshes(arm):
 
 def test_a_contact_is_named_with_its_motion_and_its_state(arm):
     robot = load_robot(arm)
-    scene = Scene("wall", (Obstacle("wall", "box", (1.0, 0.02, 1.0), (0.3, 0.15, 0.6)),))
+    scene = Scene("wall", (Obstacle.of("wall", "box", (1.0, 0.02, 1.0), (0.3, 0.15, 0.6)),))
     path = np.array([[-0.4, 0.0, 0.0], [-0.2, 0.0, 0.0], [1.5, 0.0, 0.0]])
     check = recheck(arm, robot, scene, path)
     assert check.verdict == "in collision"
@@ -148,7 +148,7 @@ def test_a_mesh_between_whose_triangles_there_is_room_is_not_filled(arm, tmp_pat
     q = np.array([[0.0, 0.0, 0.1]])
     frame = link_poses(robot, q)[0, robot.links.index("fork")]
     middle = frame[:3, :3] @ (0.05, 0.0, 0.12) + frame[:3, 3]
-    scene = Scene("ball", (Obstacle("ball", "sphere", (0.04,), tuple(middle)),))
+    scene = Scene("ball", (Obstacle.of("ball", "sphere", (0.04,), tuple(middle)),))
     assert recheck(arm, robot, scene, q).verdict == "free"
     hull.export(tmp_path / "meshes" / "fork.stl")
     assert recheck(arm, robot, scene, q).verdict == "in collision"

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from evenroad.errors import InvalidValue, shown
 
@@ -35,3 +37,55 @@ def require_positive(name: str, value: object, *, or_zero: bool = False) -> floa
     if not math.isfinite(number) or number < 0 or (number == 0 and not or_zero):
         raise InvalidValue(f"{name} must be {allowed}, got {shown(value)}")
     return number
+
+
+def as_row(name: str, values: Sequence[float], length: int | None = None) -> tuple[float, ...]:
+    """Return `values` as a tuple of finite floats, `length` of them or else at least one.
+
+    Raises
+    ------
+    InvalidValue
+        Naming `values` and what is allowed.
+    """
+    wanted = "one finite number or more" if length is None else f"{length} finite number(s)"
+    try:
+        row = tuple(map(float, values))
+    except (TypeError, ValueError):
+        raise InvalidValue(f"{name} must be {wanted}, got {values!r}") from None
+    if len(row) == 0 or (length is not None and len(row) != length) or not all(map(math.isfinite, row)):
+        raise InvalidValue(f"{name} must be {wanted}, got {values!r}")
+    return row
+
+
+def as_batch(name: str, values: object, dim: int) -> npt.NDArray[np.float64]:
+    """Return `values` as a read-only C-contiguous float64 array of shape (n, dim) with finite entries.
+
+    Read-only whatever `values` is: compiled code is compiled anew for each mix of read-only and other arrays.
+
+    Parameters
+    ----------
+    name : str
+        What the caller calls the argument, for the error text.
+    values : array_like, shape (n, dim)
+        Copied only when it is not such an array; never written to.
+    dim : int
+        Number of columns wanted.
+
+    Raises
+    ------
+    InvalidValue
+        Naming the shape, or the first entry that is NaN or infinite and its place.
+    """
+    try:
+        array = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InvalidValue(f"{name} must be an (n, {dim}) array of numbers: {error}") from None
+    if array.ndim != 2 or array.shape[1] != dim:
+        raise InvalidValue(f"{name} must have shape (n, {dim}), got {array.shape}")
+    batch = np.ascontiguousarray(array).view()
+    batch.setflags(write=False)
+    finite = np.isfinite(batch)
+    if not finite.all():
+        i, k = np.argwhere(~finite)[0]
+        raise InvalidValue(f"{name} must be finite: entry [{i}, {k}] is {float(batch[i, k])!r}")
+    return batch

@@ -49,7 +49,7 @@ def test_a_robot_without_meshes_pays_nothing_for_those_of_others(run, tmp_path, 
     def refuse(*_):
         raise AssertionError("nothing is to be read again")
 
-    for name in ("CoalWorld", "original_geometries"):
+    for name in ("CoalWorld", "original_shapes"):
         monkeypatch.setattr(recheck, name, refuse)
     zeros = ", ".join(f"{joint}: 0.0" for joint in load_robot(robot).group)
     away = zeros.replace("0.0", "0.2")

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from evenroad.robot.capsule import Capsule
+from evenroad.geometry.shapes import Capsule
 from evenroad.robot.joint import Joint, Mimic
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle, Scene
@@ -48,7 +48,7 @@ def ur5(limits=math.tau, joints=6):
         Joint(name, "revolute", LINKS[i], LINKS[i + 1], xyz, rotation, axis, *ends, speed)
         for i, (name, xyz, rotation, axis, ends, speed) in enumerate(rows)
     )
-    capsules = tuple(Capsule(LINKS[i], (0.0, *a), (0.0, *b), radius) for i, a, b, radius in CAPSULES)
+    capsules = tuple(Capsule((0.0, *a), (0.0, *b), radius, link=LINKS[i]) for i, a, b, radius in CAPSULES)
     pairs = tuple((LINKS[int(a)], LINKS[int(b)]) for a, b in PAIRS)
     return Robot("ur5", LINKS, chain, capsules, pairs, tuple(row[0] for row in rows[:joints]))
 
@@ -58,12 +58,12 @@ def box_scene(inner=0.36):
     wall, depth, x, z = 0.01, 0.40, 0.70, 0.191
     half = inner / 2 + wall / 2
     obstacles = (
-        Obstacle("table", "box", (1.0, 1.2, 0.05), (0.25, 0.0, -0.025), cell=True),
-        Obstacle("left", "box", (depth, wall, inner + 2 * wall), (x, half, z)),
-        Obstacle("right", "box", (depth, wall, inner + 2 * wall), (x, -half, z)),
-        Obstacle("floor", "box", (depth, inner, wall), (x, 0.0, z - half)),
-        Obstacle("roof", "box", (depth, inner, wall), (x, 0.0, z + half)),
-        Obstacle(
+        Obstacle.of("table", "box", (1.0, 1.2, 0.05), (0.25, 0.0, -0.025), cell=True),
+        Obstacle.of("left", "box", (depth, wall, inner + 2 * wall), (x, half, z)),
+        Obstacle.of("right", "box", (depth, wall, inner + 2 * wall), (x, -half, z)),
+        Obstacle.of("floor", "box", (depth, inner, wall), (x, 0.0, z - half)),
+        Obstacle.of("roof", "box", (depth, inner, wall), (x, 0.0, z + half)),
+        Obstacle.of(
             "back", "box", (wall, inner + 2 * wall, inner + 2 * wall), (x + depth / 2 + wall / 2, 0.0, z)
         ),
     )
@@ -94,13 +94,13 @@ def seven_joint_arm():
         for i in range(7)
     )  # fmt: skip
     above = (*lengths[1:], 0.08)
-    capsules = [Capsule("base", (0.0, 0.0, 0.06), (0.0, 0.0, 0.16), 0.09)]
+    capsules = [Capsule((0.0, 0.0, 0.06), (0.0, 0.0, 0.16), 0.09, link="base")]
     for i, link in enumerate(links[1:]):
         radius = 0.085 - 0.006 * i
-        capsules.append(Capsule(link, (0.0, 0.0, 0.0), (0.0, 0.0, 0.55 * above[i]), radius))
+        capsules.append(Capsule((0.0, 0.0, 0.0), (0.0, 0.0, 0.55 * above[i]), radius, link=link))
         if above[i] > 0.1:
             capsules.append(
-                Capsule(link, (0.0, 0.0, 0.55 * above[i]), (0.0, 0.0, 0.8 * above[i]), 0.9 * radius)
+                Capsule((0.0, 0.0, 0.55 * above[i]), (0.0, 0.0, 0.8 * above[i]), 0.9 * radius, link=link)
             )
     pairs = tuple((links[a], links[b]) for a in range(8) for b in range(a + 3, 8))
     return Robot("seven", links, joints, tuple(capsules), pairs, tuple(joint.name for joint in joints))
@@ -139,7 +139,7 @@ def random_tree(seed):
         for _ in range(int(rng.integers(0, 3)) or int(link == links[-1])):
             a = rng.uniform(-0.05, 0.05, 3)
             b = a if rng.random() < 0.25 else a + rng.uniform(-0.15, 0.15, 3)
-            capsules.append(Capsule(link, tuple(a), tuple(b), rng.uniform(0.015, 0.04)))
+            capsules.append(Capsule(tuple(a), tuple(b), rng.uniform(0.015, 0.04), link=link))
     # Far enough apart along the tree that a movable joint is in between: others would always or never touch.
     apart = [(a, b) for a in range(count + 1) for b in range(a + 1, count + 1) if b - a >= 3]
     carried = {joint.child: joint for joint in joints}
@@ -163,7 +163,7 @@ def random_scene(seed, count=12, spread=0.8, sizes=(0.05, 0.2), clear=0.3):
         rotation = STRAIGHT if rng.random() < 0.4 else random_rotation(rng)
         place = rng.uniform(-spread, spread, 3)
         if np.linalg.norm(place) > clear:
-            obstacles.append(Obstacle(f"obstacle{len(obstacles)}", shape, size, tuple(place), rotation))
+            obstacles.append(Obstacle.of(f"obstacle{len(obstacles)}", shape, size, tuple(place), rotation))
     return Scene(f"random{seed}", tuple(obstacles))
 
 

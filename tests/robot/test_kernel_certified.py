@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
+from evenroad.geometry.shapes import Capsule
 from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.capsule import Capsule
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.robot.joint import Joint
 from evenroad.robot.robot import Robot
@@ -63,10 +63,10 @@ def test_few_free_motions_are_not_certified(world):
 def needle(gap, half_width=1e-3):
     """A wheel's rim, a ball of 1 mm, and a post of 1 mm in its way or `gap` beside it."""
     turn = Joint("turn", "revolute", "base", "wheel", (0.0, 0.0, 0.0), STRAIGHT, Z, 0.0, 2.0)
-    rim = Capsule("wheel", (1.0, 0.0, 0.0), (1.0, 0.0, 0.0), 1e-3)
+    rim = Capsule((1.0, 0.0, 0.0), (1.0, 0.0, 0.0), 1e-3, link="wheel")
     robot = Robot("wheel", ("base", "wheel"), (turn,), (rim,), (), ("turn",))
     reach = 1.0 - 1e-3 - half_width - gap
-    post = Obstacle("post", "sphere", (half_width,), (reach * math.cos(0.97), reach * math.sin(0.97), 0.0))
+    post = Obstacle.of("post", "sphere", (half_width,), (reach * math.cos(0.97), reach * math.sin(0.97), 0.0))
     return ArmWorld(robot, Scene("post", (post,)), resolution=0.05)
 
 

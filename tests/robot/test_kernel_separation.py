@@ -23,13 +23,13 @@ def test_the_distance_of_points_from_obstacles_is_the_oracles():
 @pytest.mark.parametrize(
     ("obstacle", "point", "distance"),
     [
-        (Obstacle("b", "box", (2.0, 4.0, 6.0), (0, 0, 0)), (4.0, 6.0, 3.0), 5.0),
-        (Obstacle("b", "box", (2.0, 4.0, 6.0), (0, 0, 0), QUARTER), (4.0, 0.0, 0.0), 2.0),
-        (Obstacle("b", "box", (2.0, 4.0, 6.0), (0, 0, 0)), (0.5, 1.0, -2.0), 0.0),
-        (Obstacle("s", "sphere", (1.0,), (1.0, 0, 0)), (4.0, 0.0, 0.0), 2.0),
-        (Obstacle("c", "capsule", (1.0, 2.0), (0, 0, 0)), (0.0, 0.0, 3.0), 1.0),
-        (Obstacle("c", "cylinder", (1.0, 2.0), (0, 0, 0)), (0.0, 0.0, 3.0), 2.0),
-        (Obstacle("c", "cylinder", (1.0, 2.0), (0, 0, 0)), (4.0, 0.0, 5.0), 5.0),
+        (Obstacle.of("b", "box", (2.0, 4.0, 6.0), (0, 0, 0)), (4.0, 6.0, 3.0), 5.0),
+        (Obstacle.of("b", "box", (2.0, 4.0, 6.0), (0, 0, 0), QUARTER), (4.0, 0.0, 0.0), 2.0),
+        (Obstacle.of("b", "box", (2.0, 4.0, 6.0), (0, 0, 0)), (0.5, 1.0, -2.0), 0.0),
+        (Obstacle.of("s", "sphere", (1.0,), (1.0, 0, 0)), (4.0, 0.0, 0.0), 2.0),
+        (Obstacle.of("c", "capsule", (1.0, 2.0), (0, 0, 0)), (0.0, 0.0, 3.0), 1.0),
+        (Obstacle.of("c", "cylinder", (1.0, 2.0), (0, 0, 0)), (0.0, 0.0, 3.0), 2.0),
+        (Obstacle.of("c", "cylinder", (1.0, 2.0), (0, 0, 0)), (4.0, 0.0, 5.0), 5.0),
     ],
 )
 def test_distances_that_can_be_worked_out_by_hand(obstacle, point, distance):

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from evenroad.geometry.shapes import Capsule
 from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.capsule import Capsule
 from evenroad.robot.joint import Joint, Mimic
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle, Scene
@@ -94,7 +94,7 @@ def test_large_angles_cost_no_digits(robot):
 def test_a_turned_floor_of_kilometres_is_never_called_farther_than_it_is():
     tilt = (0.8, 0.0, 0.6, 0.0, 1.0, 0.0, -0.6, 0.0, 0.8)
     # Its middle lies 850 m down the hill; its face passes 0.4 m below the robot.
-    scene = Scene("hill", (Obstacle("floor", "box", (2000.0, 2000.0, 1.0), (679.7, 0.0, -510.9), tilt),))
+    scene = Scene("hill", (Obstacle.of("floor", "box", (2000.0, 2000.0, 1.0), (679.7, 0.0, -510.9), tilt),))
     q = ArmWorld(ur5(), scene).space.from_cube(np.random.default_rng(6).random((4_000, 6)))
     assert (clearance(ur5(), scene, free_edge(ur5(), scene, q)) > 0.0).all()
 
@@ -115,7 +115,7 @@ def test_thin_and_nearly_parallel_rods_are_never_called_free_where_they_touch(tu
         Joint(name, kind, parent, child, (0.0, 0.0, 0.0), rotation, axis, -most, most)
         for name, kind, parent, child, rotation, axis, most in ways
     )
-    rods = tuple(Capsule(link, (-1.0, 0.0, 0.0), (1.0, 0.0, 0.0), radius) for link in ("base", "rod"))
+    rods = tuple(Capsule((-1.0, 0.0, 0.0), (1.0, 0.0, 0.0), radius, link=link) for link in ("base", "rod"))
     links, group = ("root", *(way[3] for way in ways)), tuple(way[0] for way in ways)
     robot, scene = Robot("rods", links, joints, rods, (("base", "rod"),), group), Scene("empty", ())
     space = ArmWorld(robot, scene).space
@@ -151,8 +151,8 @@ def test_one_joint_brings_two_parallel_capsules_together_within_the_padding():
     """Where contact happens is known: a slide that closes the gap between capsules side by side."""
     slide = Joint("slide", "prismatic", "base", "hand", (0.0, 0.0, 0.0), STRAIGHT, X, 0.1, 1.0)
     capsules = (
-        Capsule("base", (0.0, -0.3, 0.0), (0.0, 0.3, 0.0), 0.1),
-        Capsule("hand", (0.0, 0.1, 0.0), (0.0, 0.9, 0.0), 0.15),
+        Capsule((0.0, -0.3, 0.0), (0.0, 0.3, 0.0), 0.1, link="base"),
+        Capsule((0.0, 0.1, 0.0), (0.0, 0.9, 0.0), 0.15, link="hand"),
     )
     robot = Robot("slider", ("base", "hand"), (slide,), capsules, (("base", "hand"),), ("slide",))
     q = np.array([[0.2], [0.2499], [0.25001], [0.3], [0.9]])

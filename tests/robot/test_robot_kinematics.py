@@ -4,8 +4,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue
+from evenroad.geometry.pose import rotation_from_rpy
 from evenroad.robot import capsule_ends, joint_values, link_poses, load_robot, with_group
-from evenroad.robot.rotation import rotation_from_rpy
 from evenroad.robot.urdf import read_urdf
 from tests.robot.urdf_texts import LIMIT, joint, link, urdf, write
 

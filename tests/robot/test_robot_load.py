@@ -9,7 +9,7 @@ import trimesh
 
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
 from evenroad.robot import load_model, load_robot, with_group, with_limits
-from evenroad.robot.alter import in_scene
+from evenroad.robot.robot import in_scene
 from evenroad.robot.scene import Scene
 from tests.robot.urdf_texts import joint, link, two_joints, urdf, write
 
@@ -264,10 +264,10 @@ def test_a_cache_that_cannot_be_written_only_costs_time(tmp_path, monkeypatch):
     assert load_robot(write(tmp_path, two_joints())).group == ("a", "b")
 
 
-def test_a_cached_robot_waits_for_no_urdf_library(tmp_path):
+def test_a_cached_robot_waits_for_no_library_of_meshes_or_fits(tmp_path):
     code = (
         "import sys; from evenroad.robot.load import load_robot; load_robot('ur5');"
-        "print([name for name in ('yourdfpy', 'trimesh', 'scipy.optimize') if name in sys.modules])"
+        "print([name for name in ('trimesh', 'scipy.optimize') if name in sys.modules])"
     )
     load_robot("ur5")
     done = subprocess.run(

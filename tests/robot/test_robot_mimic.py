@@ -7,12 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from evenroad.robot.alter import with_limits
 from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.joint import Joint, Mimic
+from evenroad.robot.joint import Joint, Mimic, within_limits_of_mimics
 from evenroad.robot.kinematics import joint_values
 from evenroad.robot.load import load_robot
-from evenroad.robot.mimic import within_limits_of_mimics
+from evenroad.robot.robot import with_limits
 from evenroad.robot.scene import Scene
 from tests.robot.urdf_texts import joint, link, urdf, write
 

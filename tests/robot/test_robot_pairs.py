@@ -1,63 +1,9 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from hypothesis.extra.numpy import arrays
 
-from evenroad.robot import load_model
-from evenroad.robot.segments import segment_distance
+from evenroad.geometry.distance import segment_distance
+from evenroad.robot import load_model, load_robot
 from tests.robot.urdf_texts import LIMIT, joint, link, urdf, write
-
-ends = arrays(np.float64, (2, 3), elements=st.floats(-1, 1, width=16))
-
-
-def _by_grid(first, second):
-    """The distance of two segments by many points on both: a slow upper bound, close to it."""
-    t = np.linspace(0, 1, 101)[:, np.newaxis]
-    on_first, on_second = (pair[0] + t * (pair[1] - pair[0]) for pair in (first, second))
-    return np.linalg.norm(on_first[:, np.newaxis] - on_second, axis=2).min()
-
-
-@settings(max_examples=100, deadline=None)
-@given(first=ends, second=ends)
-def test_the_distance_of_segments_is_that_of_their_closest_points(first, second):
-    found = segment_distance(first[np.newaxis], second[np.newaxis])[0]
-    by_grid = _by_grid(first, second)
-    assert found <= by_grid + 1e-9
-    step = max(np.linalg.norm(first[1] - first[0]), np.linalg.norm(second[1] - second[0])) / 100
-    assert found >= by_grid - step - 1e-9
-
-
-@settings(max_examples=50, deadline=None)
-@given(first=ends, second=ends)
-def test_the_distance_of_segments_does_not_depend_on_names(first, second):
-    found = [
-        segment_distance(a[np.newaxis], b[np.newaxis])[0]
-        for a, b in ((first, second), (second, first), (first[::-1], second), (first, second[::-1]))
-    ]
-    assert found == pytest.approx([found[0]] * 4, abs=1e-7)
-
-
-@given(
-    st.integers(0, 2**32 - 1), st.sampled_from(["skew", "parallel", "points", "crossing", "nearly parallel"])
-)
-def test_the_distance_of_segments_is_the_least_between_sampled_points(seed, case):
-    rng = np.random.default_rng(seed)
-    a, b, c, d = rng.uniform(-1.0, 1.0, (4, 3))
-    if case == "parallel":
-        d = c + rng.uniform(-2.0, 2.0) * (b - a)
-    elif case == "nearly parallel":
-        d = c + rng.uniform(-2.0, 2.0) * (b - a) + 10.0 ** rng.uniform(-12.0, -3.0) * rng.normal(size=3)
-    elif case == "points":
-        b, d = a, (d if seed % 2 else c)
-    elif case == "crossing":
-        d = 2.0 * (a + 0.3 * (b - a)) - c
-    shares = np.linspace(0.0, 1.0, 201)[:, None]
-    first, second = a + shares * (b - a), c + shares * (d - c)
-    sampled = np.linalg.norm(first[:, None] - second, axis=2).min()
-    exact = segment_distance(np.array([[a, b]]), np.array([[c, d]]))[0]
-    step = 0.005 * (np.linalg.norm(b - a) + np.linalg.norm(d - c)) / 2.0
-    assert sampled - step - 1e-12 <= exact <= sampled + 1e-12
 
 
 def test_points_and_parallel_segments_are_segments_too():
@@ -172,3 +118,21 @@ def test_an_srdf_that_disables_nothing_leaves_the_pairs_to_be_computed(tmp_path)
     assert model.pairs_from == "computed"
     assert model.robot.pairs == (("a", "c"),)
     assert model.robot.group == ("k",)
+
+
+SHORT_NECK = urdf(
+    link("base", _ball(0.05)), link("neck", _ball(0.05)), link("head", _ball(0.05)),
+    joint("pan", "base", "neck", xyz="0 0 0.08"), joint("tilt", "neck", "head", xyz="0 0 0.3"),
+)  # fmt: skip
+
+
+def test_a_pair_that_an_srdf_leaves_and_that_always_touches_is_named_when_the_robot_is_loaded(tmp_path):
+    path = write(tmp_path, SHORT_NECK)
+    disabled = "<disable_collisions link1='neck' link2='head' reason='Adjacent'/>"
+    srdf = write(tmp_path, f"<robot name='arm'>{disabled}</robot>", "arm.srdf")
+    model = load_model(path, srdf=srdf)
+    assert model.always_touching == (("base", "neck"),)
+    assert load_model(path, srdf=srdf) == model, "as it comes out of the cache"
+    with pytest.warns(UserWarning, match="every sampled configuration: base and neck; disable these pairs"):
+        load_robot(path, srdf=srdf)
+    assert load_model(path).always_touching == ()

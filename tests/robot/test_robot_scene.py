@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
+from evenroad.geometry.pose import Pose, rotation_from_rpy
+from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, PointCloud, Sphere
 from evenroad.robot import ArmWorld, Obstacle, Scene, load_robot, load_scene
-from evenroad.robot.rotation import rotation_from_rpy
 from evenroad.robot.scene_file import SCENES, is_scene
 from tests.robot.urdf_texts import write
 
@@ -64,7 +65,7 @@ BROKEN = {
     "an unknown key of an obstacle": (
         "obstacles: {a: {shape: sphere, radius: 1, size: 2}}",
         UnknownName,
-        "key of obstacle 'a' in .*'size'; known: cell, radius, rpy, shape, xyz",
+        "key of obstacle 'a' in .*'size'; known: cell, quaternion, radius, rpy, shape, xyz",
     ),
     "an unknown shape": (
         "obstacles: {a: {shape: cone}}",
@@ -186,7 +187,7 @@ def test_what_is_merged_into_an_obstacle_may_be_said_again(tmp_path):
 
 
 def test_two_obstacles_of_one_name_are_no_scene():
-    balls = [Obstacle(name, "sphere", (0.1,), (0, 0, 0)) for name in ("a", "b", "a")]
+    balls = [Obstacle.of(name, "sphere", (0.1,), (0, 0, 0)) for name in ("a", "b", "a")]
     with pytest.raises(InvalidValue, match=r"scene 's' must have names of their own, twice: \['a'\]"):
         Scene("s", tuple(balls))
 
@@ -237,3 +238,71 @@ def test_start_and_goal_of_the_shipped_scenes_are_free_and_the_way_between_is_no
     home, inside = ([[scene.states[state][joint] for joint in robot.group]] for state in ("home", "inside"))
     assert world.valid(np.array(home + inside)).all()
     assert not world.motion_valid(np.array(home), np.array(inside))[0]
+
+
+BALL = Obstacle("ball", Sphere(0.1))
+QUARTER = [[0, -1, 0, 1], [1, 0, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]]
+
+
+def test_a_scene_with_and_without_an_obstacle_is_another_scene():
+    scene = Scene("s", (BALL,), frozenset({("base", "ball")}), {"home": {"a": 1.0}})
+    wall = Obstacle("wall", Box((1, 1, 0.1)), cell=True)
+    both = scene.with_(wall, allowed=[("base", "wall")])
+    assert both.obstacles == (BALL, wall)
+    assert both.allowed == {("base", "ball"), ("base", "wall")}
+    assert both.without("wall") == scene
+    assert both.without("wall", "ball") == Scene("s", states=scene.states)
+    with pytest.raises(InvalidValue, match=r"twice: \['ball'\]"):
+        scene.with_(BALL)
+    with pytest.raises(UnknownName, match="obstacle of scene 's' 'table'; known: ball"):
+        scene.without("table")
+
+
+@pytest.mark.parametrize(
+    "pose",
+    [
+        Pose.from_matrix(QUARTER),
+        Pose.from_quaternion((1, 2, 3), (1, 0, 0, 1)),
+        Pose.from_rpy((1, 2, 3), (0, 0, np.pi / 2)),
+    ],
+    ids=["matrix", "quaternion", "rpy"],
+)
+def test_an_obstacle_takes_its_pose_as_people_have_it(pose):
+    post = Obstacle("post", Cylinder(0.1, 2.0)).at(pose)
+    assert post.xyz == (1, 2, 3)
+    np.testing.assert_allclose(np.reshape(post.rotation, (3, 3)), np.array(QUARTER)[:3, :3], atol=1e-15)
+
+
+def test_a_quaternion_in_a_file_has_w_first_and_stands_in_the_place_of_rpy(tmp_path):
+    text = "obstacles: {a: {shape: box, size: [1, 2, 3], quaternion: [1, 0, 0, 1]%s}}"
+    (a,) = load_scene(write(tmp_path, text % "", "a.yaml")).obstacles
+    np.testing.assert_allclose(a.rotation, rotation_from_rpy(0, 0, np.pi / 2), atol=1e-15)
+    with pytest.raises(InvalidValue, match="obstacle 'a' in .* must have one of rpy and quaternion"):
+        load_scene(write(tmp_path, text % ", rpy: [0, 0, 1]", "a.yaml"))
+
+
+def test_a_capsule_as_an_obstacle_is_along_z_whatever_its_ends():
+    pipe = Obstacle("pipe", Capsule((1, 0, 0), (3, 0, 0), 0.1))
+    assert (pipe.shape, pipe.size, pipe.xyz) == ("capsule", (0.1, 2.0), (2, 0, 0))
+    np.testing.assert_allclose(np.reshape(pipe.rotation, (3, 3))[:, 2], (1, 0, 0), atol=1e-15)
+    assert Obstacle("ball", Capsule((1, 0, 0), (1, 0, 0), 0.1)).shape == "sphere"
+
+
+@pytest.mark.parametrize(
+    ("make", "error", "says"),
+    [
+        (lambda: Obstacle.of("x", "cone", (1.0,)), UnknownName, "box, capsule, cylinder, sphere"),
+        (lambda: Obstacle.of("x", "box", (1.0, 1.0)), InvalidValue, "obstacle 'x': a box must have 3"),
+        (lambda: Obstacle.of("x", "sphere", (-1.0,)), InvalidValue, "obstacle 'x': .* > 0, got -1"),
+        (lambda: Obstacle.of("x", "sphere", (1.0,), (0, np.inf, 0)), InvalidValue, "'x': xyz .*inf"),
+        (lambda: Obstacle.of("x", "sphere", (1.0,), (0, 0, 0), (2.0,) * 9), InvalidValue, "'x': rotation"),
+        (lambda: Obstacle("x", PointCloud(np.zeros((1, 3)))), InvalidValue, "capsule, got a point cloud"),
+        (lambda: Obstacle("x", Mesh("part.stl")), InvalidValue, "capsule, got a mesh part.stl"),
+        (lambda: Obstacle("x", "box"), InvalidValue, "one of box, sphere, cylinder, capsule, got a box"),
+        (lambda: Obstacle("x", Sphere(1.0, link="hand")), InvalidValue, "not to a link, got 'hand'"),
+    ],
+)
+def test_an_obstacle_that_is_not_sound_is_refused(make, error, says):
+    with pytest.raises(error, match=says) as caught:
+        make()
+    assert "\n" not in str(caught.value)

@@ -2,8 +2,7 @@ import pytest
 
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
 from evenroad.robot import ArmWorld, Scene, held_values, load_robot
-from evenroad.robot.group import choose_group
-from evenroad.robot.srdf import read_srdf
+from evenroad.robot.srdf import choose_group, read_srdf
 from evenroad.robot.urdf import read_urdf
 from tests.robot.urdf_texts import LIMIT, joint, link, urdf, write
 

@@ -6,6 +6,7 @@ import pytest
 
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
 from evenroad.robot.urdf import read_urdf
+from evenroad.robot.urdf_xml import find_mesh
 from tests.robot.urdf_texts import LIMIT, SPHERE, joint, link, two_joints, urdf, write
 
 
@@ -77,8 +78,8 @@ def test_every_shape_is_read_and_the_capsule_is_not_taken_for_a_cylinder(tmp_pat
         "<capsule radius='0.2' length='4'/>",
     )
     body = "".join(f"<collision><geometry>{shape}</geometry></collision>" for shape in shapes)
-    geometries = read_urdf(write(tmp_path, urdf(link("base", body)))).geometries
-    assert [(each.shape, each.size) for each in geometries] == [
+    shapes = read_urdf(write(tmp_path, urdf(link("base", body)))).shapes
+    assert [(each.kind, each.size) for each in shapes] == [
         ("box", (1.0, 2.0, 3.0)),
         ("sphere", (0.5,)),
         ("cylinder", (0.1, 2.0)),
@@ -89,7 +90,7 @@ def test_every_shape_is_read_and_the_capsule_is_not_taken_for_a_cylinder(tmp_pat
 def test_what_is_not_for_collision_is_not_looked_at(tmp_path):
     body = SPHERE + "<visual><geometry><teapot/></geometry></visual><inertial><mass value='much'/></inertial>"
     text = urdf(link("base", body), "<transmission name='t'/>", "<gazebo><mesh/></gazebo>")
-    assert len(read_urdf(write(tmp_path, text)).geometries) == 1
+    assert len(read_urdf(write(tmp_path, text)).shapes) == 1
 
 
 def test_reading_gives_no_warnings(tmp_path):
@@ -102,7 +103,7 @@ def test_commas_between_numbers_are_blanks(tmp_path):
     body = "<collision><origin xyz='1,2, 3'/><geometry><box size='1, 2,3'/></geometry></collision>"
     text = urdf(link("x", body), link("y"), joint("a", "x", "y", xyz="0.1,0.2,0.3", axis="0,1,0"))
     arm = read_urdf(write(tmp_path, text))
-    assert (arm.geometries[0].size, arm.geometries[0].xyz) == ((1.0, 2.0, 3.0), (1.0, 2.0, 3.0))
+    assert (arm.shapes[0].size, arm.shapes[0].pose.xyz) == ((1.0, 2.0, 3.0), (1.0, 2.0, 3.0))
     assert (arm.joints[0].xyz, arm.joints[0].axis) == ((0.1, 0.2, 0.3), (0.0, 1.0, 0.0))
 
 
@@ -339,3 +340,31 @@ def test_what_is_broken_is_named_in_one_line(case, tmp_path):
 def test_a_file_that_is_missing_is_named(tmp_path):
     with pytest.raises(BrokenFile, match="cannot read the robot .*nowhere.urdf: No such file"):
         read_urdf(tmp_path / "nowhere.urdf")
+
+
+@pytest.mark.parametrize(
+    ("name", "place"),
+    [
+        ("part.stl", "my_robot/urdf/part.stl"),
+        ("../meshes/part.stl", "my_robot/meshes/part.stl"),
+        ("package://my_robot/meshes/part.stl", "my_robot/meshes/part.stl"),
+        ("package://other/part.stl", "other/part.stl"),
+        ("package://in_ros/part.stl", "ros/in_ros/part.stl"),
+        ("package://my%20own/part.stl", "my own/part.stl"),
+    ],
+)
+def test_meshes_are_found_where_urdfs_and_ros_put_them(tmp_path, monkeypatch, name, place):
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path / "ros"))
+    (tmp_path / "my_robot" / "urdf").mkdir(parents=True)
+    (tmp_path / "my_robot" / "meshes").mkdir()
+    (tmp_path / place).parent.mkdir(parents=True, exist_ok=True)
+    (tmp_path / place).write_bytes(b"")
+    found = find_mesh(name, tmp_path / "my_robot" / "urdf" / "arm.urdf", "x")
+    assert found.resolve() == (tmp_path / place).resolve()
+
+
+def test_a_file_url_is_absolute(tmp_path):
+    (tmp_path / "part.stl").write_bytes(b"")
+    assert (
+        find_mesh(f"file://{tmp_path}/part.stl", tmp_path / "far" / "arm.urdf", "x") == tmp_path / "part.stl"
+    )

@@ -7,6 +7,7 @@ from matplotlib.path import Path as Outline
 from PIL import Image
 
 from evenroad.errors import BrokenFile
+from evenroad.geometry.pose import rotation_from_rpy
 from evenroad.points import draw
 from evenroad.roadmap import plan
 from evenroad.robot import (
@@ -19,17 +20,16 @@ from evenroad.robot import (
     load_robot,
     load_scene,
 )
-from evenroad.robot.rotation import rotation_from_rpy
 from evenroad.viz import style
 from evenroad.viz.arm import VIEWS, draw_arm_view, save_arm_picture
 from evenroad.viz.outline import obstacle_bounds, obstacle_outline, stadium
 
 TURNED = rotation_from_rpy(0.5, -0.8, 1.9)
 OBSTACLES = (
-    Obstacle("box", "box", (0.2, 0.3, 0.6), (0.1, 0.2, 0.3), TURNED),
-    Obstacle("ball", "sphere", (0.2,), (0.1, 0.2, 0.3)),
-    Obstacle("post", "cylinder", (0.1, 0.7), (0.1, 0.2, 0.3), TURNED),
-    Obstacle("pipe", "capsule", (0.1, 0.7), (0.1, 0.2, 0.3), TURNED),
+    Obstacle.of("box", "box", (0.2, 0.3, 0.6), (0.1, 0.2, 0.3), TURNED),
+    Obstacle.of("ball", "sphere", (0.2,), (0.1, 0.2, 0.3)),
+    Obstacle.of("post", "cylinder", (0.1, 0.7), (0.1, 0.2, 0.3), TURNED),
+    Obstacle.of("pipe", "capsule", (0.1, 0.7), (0.1, 0.2, 0.3), TURNED),
 )
 
 
@@ -145,8 +145,8 @@ def test_dollars_in_names_are_dollars(tmp_path):
         ),
         pairs=tuple((a if a != tip else "$tip_{$", b if b != tip else "$tip_{$") for a, b in robot.pairs),
     )
-    ball = Obstacle("$\\frac{$", "sphere", (0.5,), (0, 0, 0.5))
-    far = Obstacle("$\\frac{$", "sphere", (0.05,), (9, 9, 9))
+    ball = Obstacle.of("$\\frac{$", "sphere", (0.5,), (0, 0, 0.5))
+    far = Obstacle.of("$\\frac{$", "sphere", (0.05,), (9, 9, 9))
     for obstacle, status in ((ball, "start_invalid"), (far, "solved")):
         world = ArmWorld(named, Scene("$\\sqrt{$", (obstacle,)))
         result = plan(world, np.zeros(7), np.full(7, 0.05), draw("halton", 8, 7))
@@ -156,7 +156,7 @@ def test_dollars_in_names_are_dollars(tmp_path):
 
 def test_an_empty_scene_and_a_huge_floor_are_drawn_too(tmp_path):
     robot = load_robot("arm7")
-    floor = Obstacle("floor", "box", (100.0, 100.0, 0.1), (0, 0, -0.05), cell=True)
+    floor = Obstacle.of("floor", "box", (100.0, 100.0, 0.1), (0, 0, -0.05), cell=True)
     for scene in (Scene("empty", ()), Scene("floor", (floor,), frozenset({("base_link", "floor")}))):
         world = ArmWorld(robot, scene)
         goal = np.full(7, 0.5)

@@ -34,7 +34,7 @@ def corners(obstacle: Obstacle) -> np.ndarray:
 @pytest.mark.parametrize("turn", ROTATIONS)
 @pytest.mark.parametrize(("shape", "size"), [("box", (0.5, 0.2, 0.3)), ("cylinder", (0.2, 0.7))])
 def test_an_outline_is_the_hull_of_the_corners_as_seen(shape, size, turn, axes):
-    obstacle = Obstacle("it", shape, size, (1.0, -2.0, 0.5), tuple(ROTATIONS[turn].ravel()))
+    obstacle = Obstacle.of("it", shape, size, (1.0, -2.0, 0.5), tuple(ROTATIONS[turn].ravel()))
     outline = obstacle_outline(obstacle, axes)
     hull, ours = ConvexHull(corners(obstacle)[:, axes]), ConvexHull(outline)
     assert ours.volume == pytest.approx(hull.volume, rel=1e-9)
@@ -47,7 +47,7 @@ def test_an_outline_is_the_hull_of_the_corners_as_seen(shape, size, turn, axes):
 
 @pytest.mark.parametrize("turn", ROTATIONS)
 def test_bounds_hold_all_corners_tightly(turn):
-    obstacle = Obstacle("it", "box", (0.5, 0.2, 0.3), (1.0, -2.0, 0.5), tuple(ROTATIONS[turn].ravel()))
+    obstacle = Obstacle.of("it", "box", (0.5, 0.2, 0.3), (1.0, -2.0, 0.5), tuple(ROTATIONS[turn].ravel()))
     low, high = obstacle_bounds(obstacle)
     np.testing.assert_allclose(low, corners(obstacle).min(axis=0))
     np.testing.assert_allclose(high, corners(obstacle).max(axis=0))

@@ -9,14 +9,15 @@ import pytest
 from scipy.optimize import linprog
 
 from evenroad.errors import InvalidValue
+from evenroad.geometry import Pose, rotation_from_heading, rotation_from_quaternion, shapes
 from evenroad.space import SE2, SE3, SO3, Box, Circle, JointSpace, Product
 from evenroad.testing import WorldContract
 from evenroad.world import FunctionWorld
-from evenroad.world.solids import OrientedBox, SolidWorld, heading_turn, quaternion_turn, shell
+from evenroad.world.solids import OrientedBox, SolidWorld, shell
 
 
 def a_turn(random):
-    return quaternion_turn(random.normal(size=4))
+    return rotation_from_quaternion(random.normal(size=4))
 
 
 def some_boxes(random, m, dim, flat=()):
@@ -26,7 +27,7 @@ def some_boxes(random, m, dim, flat=()):
         half = random.uniform(0.3, 1.5, dim)
         if i in flat:
             half[random.integers(dim)] = 0.0
-        turn = a_turn(random) if dim == 3 else heading_turn(random.uniform(0, 7))
+        turn = a_turn(random) if dim == 3 else rotation_from_heading(random.uniform(0, 7))
         boxes.append(OrientedBox(random.uniform(0, 10, dim), half, turn, name=f"crate {i}"))
     return boxes
 
@@ -70,7 +71,7 @@ def pose_of(q, dim):
     """Translation and matrix of a configuration."""
     if len(q) == dim:
         return q, np.eye(dim)
-    turn = heading_turn(q[2]) if dim == 2 else quaternion_turn(q[3:])
+    turn = rotation_from_heading(q[2]) if dim == 2 else rotation_from_quaternion(q[3:])
     return q[:dim], np.array(turn).reshape(dim, dim)
 
 
@@ -213,7 +214,7 @@ def test_boxes_that_are_none_are_refused():
     with pytest.raises(InvalidValue, match="low must not exceed high"):
         OrientedBox.spanning((0, 0), (1, -1))
     with pytest.raises(InvalidValue, match="norm"):
-        quaternion_turn([0, 0, 0, 0])
+        rotation_from_quaternion([0, 0, 0, 0])
     with pytest.raises(InvalidValue, match="shell"):
         shell(FLAT_ELL[0])
 
@@ -241,3 +242,10 @@ def test_parameters_that_make_no_world_are_refused():
             SolidWorld(space, ELL, [], wrong)
     with pytest.raises(InvalidValue, match="resolution"):
         SolidWorld(Box([0, 0], [1, 1]), FLAT_ELL, [], (0.1, 0.1))
+
+
+def test_a_box_of_geometry_is_the_same_box_with_its_pose():
+    place = Pose.from_rpy((1, 2, 3), (0.3, -0.2, 1.0))
+    box = OrientedBox.of(shapes.Box((0.2, 0.4, 0.6), pose=place))
+    signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    np.testing.assert_allclose(box.corners, place.apply(signs * (0.1, 0.2, 0.3)), atol=1e-15)

@@ -13,14 +13,12 @@ from typing import Any
 from evenroad import __version__
 from evenroad._files import atomic_write, cache_folder
 from evenroad.errors import BrokenFile
-from evenroad.robot.capsule import Capsule
+from evenroad.geometry.shapes import Capsule
 from evenroad.robot.joint import Joint, Mimic
-from evenroad.robot.meshes import find_mesh
-from evenroad.robot.model import LinkBody, RobotModel
-from evenroad.robot.robot import Robot
-from evenroad.robot.urdf_xml import mesh_names, read_urdf_xml
+from evenroad.robot.robot import LinkBody, Robot, RobotModel
+from evenroad.robot.urdf_xml import find_mesh, mesh_names, read_urdf_xml
 
-_FORMAT = 5
+_FORMAT = 6
 """Counted up when the same files would give another robot, or the files of this cache look different."""
 
 
@@ -30,7 +28,7 @@ def key_of(urdf: Path, srdf: Path | None, bodies: Path | None, group: str | Sequ
     Raises
     ------
     BrokenFile, InvalidValue
-        If a file is missing, or the URDF broken: what is kept never stands for files that are gone.
+        If a file is missing, or the URDF broken: a cached robot is never returned for files that are gone.
     """
     digest = hashlib.sha256(f"{_FORMAT}|{__version__}|{urdf.name}|{group!r}".encode())
     for part in _parts(urdf, srdf, bodies):
@@ -77,6 +75,7 @@ def _model(record: dict[str, Any]) -> RobotModel:
         pairs_from=record["pairs_from"],
         dropped=tuple((first, second, reason) for first, second, reason in record["dropped"]),
         drawn_only=tuple(record["drawn_only"]),
+        always_touching=tuple((first, second) for first, second in record["always_touching"]),
     )
 
 
@@ -85,7 +84,10 @@ def _robot(record: dict[str, Any]) -> Robot:
         name=record["name"],
         links=tuple(record["links"]),
         joints=tuple(_joint(joint) for joint in record["joints"]),
-        capsules=tuple(Capsule(**_with_tuples(capsule)) for capsule in record["capsules"]),
+        capsules=tuple(
+            Capsule(capsule["a"], capsule["b"], capsule["radius"], link=capsule["link"])
+            for capsule in record["capsules"]
+        ),
         pairs=tuple((first, second) for first, second in record["pairs"]),
         group=tuple(record["group"]),
         held=record["held"],

@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from evenroad.errors import BrokenFile, UnknownName
-from evenroad.robot.body_file import read_bodies
+from evenroad._checks import require_positive
+from evenroad._yaml import numbers, read_mapping, require_keys
+from evenroad.errors import BrokenFile, InvalidValue, UnknownName
+from evenroad.geometry.fit import fit_capsules
+from evenroad.geometry.fit_points import union_volume
+from evenroad.geometry.shapes import Capsule
 from evenroad.robot.cache import cached, keep, key_of
-from evenroad.robot.capsule import Capsule
-from evenroad.robot.fit import fit_capsules
-from evenroad.robot.group import choose_group
-from evenroad.robot.model import LinkBody, RobotModel
-from evenroad.robot.pairs import computed_pairs, pairs_without
-from evenroad.robot.robot import Robot
-from evenroad.robot.srdf import Srdf, read_srdf
+from evenroad.robot.pairs import always_touching, computed_pairs, pairs_without
+from evenroad.robot.robot import LinkBody, Robot, RobotModel
+from evenroad.robot.srdf import Srdf, choose_group, read_srdf
 from evenroad.robot.urdf import Urdf, read_urdf
-from evenroad.robot.volume import shape_volume, union_volume
 
 DATA = Path(__file__).parent / "data"
 ROBOTS = ("arm7", "ur5")
@@ -34,8 +34,19 @@ def load_robot(
     group: str | Sequence[str] | None = None,
     bodies: PathLike | None = None,
 ) -> Robot:
-    """Return a robot; see :func:`load_model`, which also tells how it was made."""
-    return load_model(source, srdf=srdf, group=group, bodies=bodies).robot
+    """Return a robot; see :func:`load_model`, which also tells how it was made.
+
+    Warns of pairs of links that touch in every sampled configuration though they are tested.
+    """
+    model = load_model(source, srdf=srdf, group=group, bodies=bodies)
+    if model.always_touching:
+        pairs = ", ".join(f"{first} and {second}" for first, second in model.always_touching)
+        warnings.warn(
+            f"{model.robot.name!r} is in collision in every sampled configuration: {pairs}; disable these pairs in the"
+            " SRDF, or give smaller bodies",
+            stacklevel=2,
+        )
+    return model.robot
 
 
 def load_model(
@@ -131,28 +142,31 @@ def _build(
     )
     if srdf is not None and srdf.disabled:
         pairs, pairs_from = pairs_without(robot, srdf.disabled), "SRDF"
+        touching = tuple(always_touching(robot, pairs.tested))
     else:
-        pairs, pairs_from = computed_pairs(robot), "computed"
+        pairs, pairs_from, touching = computed_pairs(robot), "computed", ()
     links = tuple(_link_body(urdf, link, capsules[link], link in given) for link in capsules)
     drawn_only = tuple(link for link in urdf.drawn_only if link not in capsules)
-    return RobotModel(replace(robot, pairs=pairs.tested), links, pairs_from, pairs.dropped, drawn_only)
+    return RobotModel(
+        replace(robot, pairs=pairs.tested), links, pairs_from, pairs.dropped, drawn_only, touching
+    )
 
 
 def _capsules(urdf: Urdf, given: dict[str, tuple[Capsule, ...]]) -> dict[str, tuple[Capsule, ...]]:
     found: dict[str, tuple[Capsule, ...]] = {}
-    for geometry in urdf.geometries:
-        if geometry.link not in given:
-            found[geometry.link] = found.get(geometry.link, ()) + fit_capsules(geometry)
+    for shape in urdf.shapes:
+        if shape.link not in given:
+            found[shape.link] = found.get(shape.link, ()) + fit_capsules(shape)
     found |= given
     return {link: found[link] for link in urdf.links if link in found}
 
 
 def _link_body(urdf: Urdf, link: str, capsules: tuple[Capsule, ...], given: bool) -> LinkBody:
-    shapes = [geometry for geometry in urdf.geometries if geometry.link == link]
+    shapes = [shape for shape in urdf.shapes if shape.link == link]
     return LinkBody(
         link=link,
         shapes=tuple(map(str, shapes)),
-        shape_volume=sum(map(shape_volume, shapes)),
+        shape_volume=sum(shape.volume for shape in shapes),
         capsules=len(capsules),
         capsule_volume=union_volume(capsules),
         given=given,
@@ -174,3 +188,43 @@ def _states(
         if set(chosen) <= set(values):
             found.setdefault(name, dict(values))
     return found
+
+
+def read_bodies(path: Path, links: Sequence[str]) -> dict[str, tuple[Capsule, ...]]:
+    """Return link -> its capsules, for the links that the file names.
+
+    The file has a list for each link, ``forearm: [{a: [0, 0, 0], b: [0, 0, 0.3], radius: 0.05}, {centre: [0, 0, 0.4],
+    radius: 0.06}]``: capsules by their end points, spheres by their centres, in the link's frame [m].
+
+    Raises
+    ------
+    BrokenFile
+        If the file is missing, not YAML, not of that form, or has a link or a key twice.
+    UnknownName
+        If it names a link that there is not, or another key.
+    InvalidValue
+        If a number is not one, a radius is not > 0, or a link has no body.
+    """
+    bodies = {}
+    for link, entries in read_mapping(path, "file of bodies").items():
+        if link not in links:
+            raise UnknownName.among(f"link in {path}:", link, links)
+        if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
+            raise BrokenFile(f"link {link!r} in {path} must have a list of capsules and spheres")
+        if not entries:
+            raise InvalidValue(f"link {link!r} in {path} has no body; leave it out to keep those of the URDF")
+        bodies[link] = tuple(_given_capsule(link, entry, path) for entry in entries)
+    return bodies
+
+
+def _given_capsule(link: str, entry: dict[str, object], path: Path) -> Capsule:
+    where = f"a body of link {link!r} in {path}"
+    if "centre" in entry:
+        require_keys(entry, ("centre", "radius"), (), where)
+        a = b = numbers(entry["centre"], 3, f"centre of {where}")
+    else:
+        require_keys(entry, ("a", "b", "radius"), ("centre",), where)
+        a, b = (numbers(entry[end], 3, f"{end} of {where}") for end in ("a", "b"))
+    (radius,) = numbers([entry["radius"]], 1, f"radius of {where}")
+    require_positive(f"radius of {where}", radius)
+    return Capsule((a[0], a[1], a[2]), (b[0], b[1], b[2]), radius, link=link)

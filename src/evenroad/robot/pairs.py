@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
 
 from evenroad._rng import generator
+from evenroad.geometry.distance import segment_distance
 from evenroad.robot.joint import Joint
 from evenroad.robot.kinematics import capsule_ends
 from evenroad.robot.robot import Robot
-from evenroad.robot.segments import segment_distance
 
 SAMPLES = 1000
 """Random configurations that tell pairs that are always in contact."""
+
+TOUCHING = "touch in every sample"
+"""Why a pair is not tested whose capsules are in contact in all of them; the shapes inside may well come apart."""
 
 
 @dataclass(frozen=True)
@@ -44,12 +47,13 @@ def pairs_without(robot: Robot, disabled: Collection[frozenset[str]]) -> SelfPai
 def computed_pairs(robot: Robot) -> SelfPairs:
     """Return the pairs of links with bodies without those that touch by construction.
 
-    Dropped are neighbours in the tree (links without bodies between them are looked through where only one joint on
-    the way moves), pairs that no joint moves on each other, and pairs that touch in every one of 1000 configurations
-    drawn uniformly within the limits of all joints.  Pairs that never touch are kept: a sample cannot prove that.
+    Dropped are neighbours in the tree (links without bodies between them do not count where only one joint
+    between them moves), pairs that no joint moves on each other, and pairs that touch in every one of 1000
+    configurations drawn uniformly within the limits of all joints.  Pairs that never touch are kept: a sample
+    cannot prove that.
     """
     reasons = {pair: "neighbours" for pair in _bodied(robot) if _are_neighbours(robot, *pair)}
-    reasons |= {pair: "touch in every sample" for pair in _always_in_contact(robot) if pair not in reasons}
+    reasons |= {pair: TOUCHING for pair in always_touching(robot, _bodied(robot)) if pair not in reasons}
     return _sorted_out(robot, reasons)
 
 
@@ -77,7 +81,7 @@ def _path_to_root(robot: Robot, link: str) -> list[Joint]:
 
 
 def _between(robot: Robot, first: str, second: str) -> list[Joint]:
-    """Return the joints on the way from one link to the other."""
+    """Return the joints between two links."""
     up, down = _path_to_root(robot, first), _path_to_root(robot, second)
     return [joint for joint in up if joint not in down] + [joint for joint in down if joint not in up]
 
@@ -89,15 +93,16 @@ def _can_move(robot: Robot, first: str, second: str) -> bool:
 def _are_neighbours(robot: Robot, first: str, second: str) -> bool:
     if first not in {joint.parent for joint in _path_to_root(robot, second)}:
         return False
-    way = _between(robot, first, second)
+    joints = _between(robot, first, second)
     # Two joints with a length between them fold, and bring together what does not touch by construction.
-    if sum(joint.kind != "fixed" for joint in way) > 1:
+    if sum(joint.kind != "fixed" for joint in joints) > 1:
         return False
-    on_the_way = {link for joint in way for link in (joint.parent, joint.child)} - {first, second}
-    return not on_the_way & {capsule.link for capsule in robot.capsules}
+    passed = {link for joint in joints for link in (joint.parent, joint.child)} - {first, second}
+    return not passed & {capsule.link for capsule in robot.capsules}
 
 
-def _always_in_contact(robot: Robot) -> list[tuple[str, str]]:
+def always_touching(robot: Robot, pairs: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Return those pairs of links that touch in every one of 1000 random configurations within the limits."""
     movable = [joint for joint in robot.joints if joint.kind != "fixed" and joint.mimic is None]
     free = Robot(
         robot.name, robot.links, robot.joints, robot.capsules, (), tuple(joint.name for joint in movable)
@@ -114,7 +119,7 @@ def _always_in_contact(robot: Robot) -> list[tuple[str, str]]:
     for i, capsule in enumerate(robot.capsules):
         number.setdefault(capsule.link, []).append(i)
     always = []
-    for first, second in _bodied(robot):
+    for first, second in pairs:
         touching = np.zeros(SAMPLES, dtype=np.bool_)
         for i in number[first]:
             for j in number[second]:

@@ -1,12 +1,15 @@
-"""Robot: a kinematic tree, its bodies as capsules, and the joints that are planned for."""
+"""Robot: a kinematic tree, its bodies as capsules, and the joints that are planned for; and robots made from others."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
-from evenroad.robot.capsule import Capsule
-from evenroad.robot.joint import Joint
+from evenroad.errors import InvalidValue, UnknownName
+from evenroad.geometry.pose import IDENTITY, Pose
+from evenroad.geometry.shapes import Capsule, Shape, without_pose
+from evenroad.robot.joint import Joint, require_within, within_limits_of_mimics
+from evenroad.robot.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -42,3 +45,165 @@ class Robot:
     group: tuple[str, ...]
     held: Mapping[str, float] = field(default_factory=dict)
     states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        # The kernel takes the ends as they are: a capsule with a pose of its own gets them in its link's frame.
+        object.__setattr__(self, "capsules", tuple(map(without_pose, self.capsules)))
+
+    def with_tool(
+        self, tool: Robot | Sequence[Shape], at: str, *, pose: Pose = IDENTITY, prefix: str = ""
+    ) -> Robot:
+        """Return the robot with a tool fixed to one of its links; see :func:`evenroad.robot.tool.with_tool`."""
+        # Here, since working out its pairs needs robots.
+        from evenroad.robot.tool import with_tool
+
+        return with_tool(self, tool, at, pose=pose, prefix=prefix)
+
+
+@dataclass(frozen=True)
+class LinkBody:
+    """What became of the collision geometry of a link.
+
+    Attributes
+    ----------
+    link : str
+        Name of the link.
+    shapes : tuple of str
+        What the URDF gives, e.g. ``box``, ``mesh forearm.stl``.
+    shape_volume : float
+        Sum of the volumes of those shapes [m^3].
+    capsules : int
+        How many capsules stand for them.
+    capsule_volume : float
+        Volume of the union of the capsules [m^3].
+    given : bool
+        Whether the user gave the capsules; else they were fitted, or the URDF has capsules and spheres itself.
+    """
+
+    link: str
+    shapes: tuple[str, ...]
+    shape_volume: float
+    capsules: int
+    capsule_volume: float
+    given: bool = False
+
+    @property
+    def added(self) -> float:
+        """Volume that the capsules add, as a share of the shapes'; 0 where there is nothing to compare with."""
+        return max(self.capsule_volume / self.shape_volume - 1.0, 0.0) if self.shape_volume > 0.0 else 0.0
+
+
+@dataclass(frozen=True)
+class RobotModel:
+    """A robot and how it was made.
+
+    Attributes
+    ----------
+    robot : Robot
+        The robot.
+    bodies : tuple of LinkBody
+        One for each link that has a body.
+    pairs_from : str
+        ``SRDF`` or ``computed``: where the self pairs come from.
+    dropped : tuple of (str, str, str)
+        Pairs of links with bodies that are not tested, each with the reason.
+    drawn_only : tuple of str
+        Links that the URDF draws (``<visual>``) and that have no body: nothing is ever found to touch them.
+    always_touching : tuple of pairs of str
+        Pairs that are tested, since the SRDF does not disable them, and that touch in every sampled configuration: with
+        one of these no configuration is free.
+    """
+
+    robot: Robot
+    bodies: tuple[LinkBody, ...]
+    pairs_from: str
+    dropped: tuple[tuple[str, str, str], ...]
+    drawn_only: tuple[str, ...] = ()
+    always_touching: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def bodiless(self) -> tuple[str, ...]:
+        """Links without a body, those that are drawn among them."""
+        bodied = {body.link for body in self.bodies}
+        return tuple(link for link in self.robot.links if link not in bodied)
+
+
+def with_group(robot: Robot, group: Sequence[str], held: Mapping[str, float] | None = None) -> Robot:
+    """Return the robot with another group; the other movable joints are held at `held`, else at 0.
+
+    Where 0 is outside of a joint's limits, it is held at the limit that is nearest.
+
+    Raises
+    ------
+    UnknownName
+        If a joint is not one that moves freely.
+    InvalidValue
+        If a joint is held that is in the group, or at a value that is outside its limits.
+    """
+    free = {joint.name: joint for joint in robot.joints if joint.kind != "fixed" and joint.mimic is None}
+    held = dict(held or {})
+    for name in (*group, *held):
+        if name not in free:
+            raise UnknownName.among("joint", name, free)
+    for name, value in held.items():
+        if name in group:
+            raise InvalidValue(f"joint {name!r} is in the group: it is planned for and cannot be held")
+        require_within(free[name], value, f"holding {robot.name!r}")
+    return replace(robot, group=tuple(group), held=held)
+
+
+def in_scene(robot: Robot, scene: Scene) -> Robot:
+    """Return the robot with the scene's ranges to plan in, where they are narrower than its own limits.
+
+    Half of what a joint of four pi can do is the other half once more: a narrower range makes every point of a
+    set count for more.
+
+    Raises
+    ------
+    UnknownName
+        If the scene names a joint that the robot does not have.
+    InvalidValue
+        If no value is within both ranges.
+    """
+    joints = {joint.name: joint for joint in robot.joints}
+    limits = {}
+    for name, (lower, upper) in scene.limits.items():
+        if name not in joints:
+            raise UnknownName.among(f"joint in the limits of scene {scene.name!r}:", name, joints)
+        limits[name] = (max(lower, joints[name].lower), min(upper, joints[name].upper))
+    return with_limits(robot, limits)
+
+
+def with_limits(robot: Robot, limits: Mapping[str, tuple[float, float]]) -> Robot:
+    """Return the robot with other limits, joint -> (lower, upper) [rad or m].
+
+    A continuous joint that gets limits becomes a revolute one; limits of a mimic narrow those of its leader.
+
+    Raises
+    ------
+    UnknownName
+        If a joint is not there.
+    InvalidValue
+        If lower is not below upper.
+    """
+    names = [joint.name for joint in robot.joints]
+    for name, (lower, upper) in limits.items():
+        if name not in names:
+            raise UnknownName.among("joint", name, names)
+        if not lower < upper:
+            raise InvalidValue(
+                f"limits of joint {name!r} must satisfy lower < upper, got {lower!r}, {upper!r}"
+            )
+    joints = tuple(
+        replace(
+            joint,
+            kind="revolute" if joint.kind == "continuous" else joint.kind,
+            lower=float(limits[joint.name][0]),
+            upper=float(limits[joint.name][1]),
+        )
+        if joint.name in limits
+        else joint
+        for joint in robot.joints
+    )
+    # A leader goes no further than its mimics may.
+    return replace(robot, joints=tuple(within_limits_of_mimics(joints)))

@@ -1,42 +1,95 @@
-"""Scene: what stands around a robot."""
+"""Scene: the obstacles around a robot."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Literal
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
-from evenroad.errors import InvalidValue
-
-Shape = Literal["box", "sphere", "cylinder", "capsule"]
+from evenroad.errors import InvalidValue, UnknownName
+from evenroad.geometry.pose import NO_ROTATION, Pose, Vector
+from evenroad.geometry.shapes import PRIMITIVES, Capsule, Shape, along_z, shape_of
 
 
 @dataclass(frozen=True)
 class Obstacle:
-    """A convex body that does not move.
+    """A body that does not move.
 
-    Attributes
+    Parameters
     ----------
     name : str
         Unique in its scene.
-    shape : {"box", "sphere", "cylinder", "capsule"}
-        Cylinders and capsules stand along their own z axis.
-    size : tuple of floats
-        Box: full extents (x, y, z); sphere: (radius,); cylinder and capsule: (radius, length), without the caps [m].
-    xyz : tuple of 3 floats
-        Centre in the frame of the robot's root link [m].
-    rotation : tuple of 9 floats
-        From the body's frame to that of the robot's root link, row by row.
+    body : Shape
+        A box, sphere, cylinder or capsule, with its pose in the frame of the robot's root link.
     cell : bool
         Part of the fixed cell (a mount plane, a fence), the same for every task of this installation.
+
+    Raises
+    ------
+    InvalidValue
+        If the body is a mesh or a point cloud, which scenes do not take yet, or fixed to a link.
     """
 
     name: str
-    shape: Shape
-    size: tuple[float, ...]
-    xyz: tuple[float, float, float]
-    rotation: tuple[float, ...] = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+    body: Shape
     cell: bool = False
+
+    def __post_init__(self) -> None:
+        body = along_z(self.body) if isinstance(self.body, Capsule) else self.body
+        if getattr(body, "kind", None) not in PRIMITIVES:
+            raise InvalidValue(f"obstacle {self.name!r} must be one of {', '.join(PRIMITIVES)}, got a {body}")
+        if body.link:
+            raise InvalidValue(
+                f"obstacle {self.name!r} must be fixed to the world, not to a link, got {body.link!r}"
+            )
+        object.__setattr__(self, "body", body)
+
+    @classmethod
+    def of(
+        cls,
+        name: str,
+        kind: str,
+        size: Sequence[float],
+        xyz: Sequence[float] = (0.0, 0.0, 0.0),
+        rotation: Sequence[float] = NO_ROTATION,
+        cell: bool = False,
+    ) -> Obstacle:
+        """Return an obstacle by its dimensions (:func:`evenroad.geometry.shape_of`), origin [m] and rotation (9,).
+
+        Raises
+        ------
+        UnknownName
+            If there is no such shape.
+        InvalidValue
+            If a dimension is not a finite number > 0, or the rotation is none; the text names the obstacle.
+        """
+        try:
+            return cls(name, shape_of(kind, size, Pose(xyz, rotation)), cell)  # type: ignore[arg-type]
+        except InvalidValue as error:
+            raise InvalidValue(f"obstacle {name!r}: {error}") from None
+
+    def at(self, pose: Pose) -> Obstacle:
+        """Return the obstacle in another pose."""
+        return replace(self, body=replace(self.body, pose=pose))
+
+    @property
+    def shape(self) -> str:
+        """Kind of its body: ``box``, ``sphere``, ``cylinder`` or ``capsule``."""
+        return self.body.kind
+
+    @property
+    def size(self) -> tuple[float, ...]:
+        """Dimensions of its body, as :func:`evenroad.geometry.shape_of` takes them [m]."""
+        return self.body.size
+
+    @property
+    def xyz(self) -> Vector:
+        """Its middle in the frame of the robot's root link [m]."""
+        return self.body.pose.xyz
+
+    @property
+    def rotation(self) -> tuple[float, ...]:
+        """From the body's frame to that of the robot's root link, (9,) row by row."""
+        return self.body.pose.rotation
 
 
 @dataclass(frozen=True)
@@ -48,14 +101,14 @@ class Scene:
     name : str
         Name of the scene.
     obstacles : tuple of Obstacle
-        What stands around.
+        The obstacles.
     allowed : frozenset of (link, obstacle) pairs of str
-        Contacts that are not tested, e.g. of the base with the table that it stands on.
+        Contacts that are not tested, e.g. of the base with its table.
     states : mapping of str to mapping of str to float
         Named configurations: joint -> value; joints that are not planned for are held there.
     limits : mapping of str to (float, float)
         Ranges to plan in, joint -> (lower, upper), within the robot's own [rad or m]; a planner takes them
-        over with :func:`evenroad.robot.alter.in_scene`.
+        over with :func:`evenroad.robot.in_scene`.
 
     Raises
     ------
@@ -64,15 +117,45 @@ class Scene:
     """
 
     name: str
-    obstacles: tuple[Obstacle, ...]
+    obstacles: tuple[Obstacle, ...] = ()
     allowed: frozenset[tuple[str, str]] = frozenset()
     states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         names = [obstacle.name for obstacle in self.obstacles]
-        twice = sorted({name for name in names if names.count(name) > 1})
-        if twice:
+        if len(set(names)) < len(names):
+            twice = sorted({name for name in names if names.count(name) > 1})
             raise InvalidValue(
                 f"obstacles of scene {self.name!r} must have names of their own, twice: {twice}"
             )
+
+    def with_(self, *obstacles: Obstacle, allowed: Sequence[tuple[str, str]] = ()) -> Scene:
+        """Return the scene with more obstacles, and more (link, obstacle) contacts that are not tested.
+
+        Raises
+        ------
+        InvalidValue
+            If the scene has an obstacle of such a name already.
+        """
+        return replace(
+            self, obstacles=(*self.obstacles, *obstacles), allowed=self.allowed | frozenset(allowed)
+        )
+
+    def without(self, *names: str) -> Scene:
+        """Return the scene without the obstacles of these names, and without what was allowed to touch them.
+
+        Raises
+        ------
+        UnknownName
+            If there is no such obstacle.
+        """
+        known = [obstacle.name for obstacle in self.obstacles]
+        for name in names:
+            if name not in known:
+                raise UnknownName.among(f"obstacle of scene {self.name!r}", name, known)
+        return replace(
+            self,
+            obstacles=tuple(obstacle for obstacle in self.obstacles if obstacle.name not in names),
+            allowed=frozenset((link, name) for link, name in self.allowed if name not in names),
+        )

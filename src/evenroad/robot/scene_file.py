@@ -1,36 +1,33 @@
-"""Reading a scene: a YAML file of what stands around a robot."""
+"""Reading a scene: a YAML file of the obstacles around a robot."""
 
 from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from evenroad._checks import require_positive
-from evenroad._yaml import read_mapping
+from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
+from evenroad.geometry.pose import Pose
+from evenroad.geometry.shapes import PRIMITIVES, shape_of
 from evenroad.robot.load import DATA
-from evenroad.robot.rotation import rotation_from_rpy
-from evenroad.robot.scene import Obstacle, Scene, Shape
-from evenroad.robot.yaml_file import numbers, require_keys
+from evenroad.robot.moveit_scene import read_planning_scene, read_scene_text
+from evenroad.robot.scene import Obstacle, Scene
 
 SCENES = ("box-reach", "box-reach-narrow")
 """Names of the shipped scenes."""
 
 _SECTIONS = ("name", "allowed", "states", "limits")
-_SIZES: dict[str, tuple[tuple[str, int], ...]] = {
-    "box": (("size", 3),),
-    "sphere": (("radius", 1),),
-    "cylinder": (("radius", 1), ("length", 1)),
-    "capsule": (("radius", 1), ("length", 1)),
-}
-_OPTIONAL = ("xyz", "rpy", "cell")
+_OPTIONAL = ("xyz", "rpy", "quaternion", "cell")
 
 
 def is_scene(path: str | os.PathLike[str]) -> bool:
-    """Return whether a YAML file that can be read has the key ``obstacles``: a scene, no map."""
+    """Return whether a file is a scene and no map: a ``.scene``, or YAML with the key ``obstacles`` or ``world``."""
+    if Path(path).suffix == ".scene":
+        return True
     try:
-        return "obstacles" in read_mapping(find_scene(path), "scene")
+        return not {"obstacles", "world"}.isdisjoint(read_mapping(find_scene(path), "scene"))
     except BrokenFile:
         return False
 
@@ -59,7 +56,11 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
         limits:                                   # ranges to plan in, within the robot's own
           joint_1: [-3.14, 3.14]
 
-    The length of a capsule is without its caps.  ``cell: true`` marks what belongs to the fixed cell.
+    The length of a capsule is without its caps.  In place of ``rpy`` an obstacle may
+    have a ``quaternion: [w, x, y, z]``.  ``cell: true`` marks what belongs to the fixed cell.
+
+    MoveIt's scenes are read, too: text files ``.scene``, and planning scenes in YAML with the key ``world`` (see
+    :mod:`evenroad.robot.moveit_scene`).
 
     Raises
     ------
@@ -75,7 +76,11 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
         raise BrokenFile(
             f"there is no scene file {path}; shipped: {', '.join(f'{name}.yaml' for name in SCENES)}"
         )
+    if path.suffix == ".scene":
+        return read_scene_text(path)
     document = read_mapping(path, "scene")
+    if "obstacles" not in document and "world" in document:
+        return read_planning_scene(document, path)
     require_keys(document, ("obstacles",), _SECTIONS, f"the scene {path}")
     entries = _mapping(document["obstacles"], f"obstacles in {path}")
     obstacles = tuple(
@@ -108,20 +113,26 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
 def _obstacle(name: str, entry: dict[str, Any], path: Path) -> Obstacle:
     where = f"obstacle {name!r} in {path}"
     shape = entry.get("shape")
-    if not isinstance(shape, str) or shape not in _SIZES:
-        raise UnknownName.among(f"shape of {where}:", shape, _SIZES)
-    require_keys(entry, ("shape", *(key for key, _ in _SIZES[shape])), _OPTIONAL, where)
+    if not isinstance(shape, str) or shape not in PRIMITIVES:
+        raise UnknownName.among(f"shape of {where}:", shape, PRIMITIVES)
+    dimensions = PRIMITIVES[shape].dimensions
+    require_keys(entry, ("shape", *(key for key, _ in dimensions)), _OPTIONAL, where)
     size: tuple[float, ...] = ()
-    for key, count in _SIZES[shape]:
+    for key, count in dimensions:
         size += numbers(entry[key], count, f"{key} of {where}")
     for value in size:
         require_positive(f"the size of {where}", value)
-    x, y, z = numbers(entry.get("xyz", [0, 0, 0]), 3, f"xyz of {where}")
-    roll, pitch, yaw = numbers(entry.get("rpy", [0, 0, 0]), 3, f"rpy of {where}")
+    xyz = numbers(entry.get("xyz", [0, 0, 0]), 3, f"xyz of {where}")
+    if "rpy" in entry and "quaternion" in entry:
+        raise InvalidValue(f"{where} must have one of rpy and quaternion, got both")
+    if "quaternion" in entry:
+        pose = Pose.from_quaternion(xyz, numbers(entry["quaternion"], 4, f"quaternion of {where}"))
+    else:
+        pose = Pose.from_rpy(xyz, numbers(entry.get("rpy", [0, 0, 0]), 3, f"rpy of {where}"))
     cell = entry.get("cell", False)
     if not isinstance(cell, bool):
         raise InvalidValue(f"cell of {where} must be true or false, got {cell!r}")
-    return Obstacle(name, cast(Shape, shape), size, (x, y, z), rotation_from_rpy(roll, pitch, yaw), cell)
+    return Obstacle(name, shape_of(shape, size, pose), cell)
 
 
 def _range(value: object, what: str) -> tuple[float, float]:

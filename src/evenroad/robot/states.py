@@ -1,20 +1,22 @@
-"""Named states: configurations with a name, and where the joints are that are not planned for."""
+"""Named states, and configurations as people write them: a list, joint by joint, or a name."""
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Iterable, Mapping
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad.errors import InvalidValue, UnknownName
-from evenroad.robot.alter import with_group
-from evenroad.robot.joint import Joint
+from evenroad.robot.joint import Joint, require_within
 from evenroad.robot.kinematics import held_values
-from evenroad.robot.limits import require_within
-from evenroad.robot.robot import Robot
+from evenroad.robot.robot import Robot, with_group
 from evenroad.robot.scene import Scene
 
+_PAIR = re.compile(r"[\s,]*([^=,]*?)\s*=\s*([^\s,=]*)")
+"""``name=value``, the name with whatever blanks it has."""
 _SLACK = 1e-6
 """Values that files write differ by rounding [rad or m]."""
 
@@ -33,7 +35,7 @@ def at_states(robot: Robot, texts: Iterable[str], scene: Scene | None = None) ->
     robot : Robot
         A robot.
     texts : iterable of str
-        Start and goal of a plan, as :func:`configuration` takes them; what is no name of a state holds nothing.
+        Start and goal of a plan, as :func:`configuration` takes them; other texts hold no joint.
     scene : Scene, optional
         Whose named states are known, too.
 
@@ -61,7 +63,7 @@ def at_states(robot: Robot, texts: Iterable[str], scene: Scene | None = None) ->
 
 
 def state_values(robot: Robot, name: str, scene: Scene | None = None) -> npt.NDArray[np.float64]:
-    """Return the configuration, (dim,), that a named state of robot or scene stands for [rad or m].
+    """Return the configuration, (dim,), of a named state of robot or scene [rad or m].
 
     Raises
     ------
@@ -93,9 +95,108 @@ def _within_limits(joint: Joint, value: float, state: str) -> float:
 
 
 def _outside_group(robot: Robot, name: str, values: Mapping[str, float]) -> dict[str, float]:
-    """Return what a state says of joints that are not planned for; of what is fixed or follows, it says nothing."""
+    """Return a state's values of movable joints outside of the group, without those of fixed joints and mimics."""
     known = [joint.name for joint in robot.joints]
     for joint in values:
         if joint not in known:
             raise UnknownName.among(f"joint of the state {name!r}:", joint, known)
     return {joint: values[joint] for joint in held_values(robot) if joint in values}
+
+
+def configuration(
+    robot: Robot, text: str, scene: Scene | None = None, *, degrees: bool = False
+) -> npt.NDArray[np.float64]:
+    """Return the configuration that a text describes, (dim,) [rad or m].
+
+    Parameters
+    ----------
+    robot : Robot
+        Its group gives the order.
+    text : str
+        One number a joint of the group, with commas (or blanks) between them: ``0,-1.57,0,-1.57,0,0``; or
+        ``name=value`` for some joints of the group, the others at 0, or at the nearest to it within limits; or the
+        name of a state.
+    scene : Scene, optional
+        Whose named states are known, too.
+    degrees : bool
+        Angles in `text` are degrees; lengths stay metres, and named states what they are.
+
+    Raises
+    ------
+    InvalidValue
+        If a number is not one, there are too many or too few, a joint is given twice, or a value is outside the
+        joint's limits: the text says which joint, and by how much.  If a state has a joint outside of the group
+        elsewhere than where the robot holds it, which would be another posture: see :func:`at_states`.
+    UnknownName
+        If there is no such state, or no such joint in the group.
+    """
+    if not text.replace(",", " ").split():
+        raise InvalidValue(f"a configuration of {robot.name!r} must not be empty")
+    states = named_states(robot, scene)
+    name = text.strip()
+    if name in states:
+        q = state_values(robot, name, scene)
+    elif "=" in text:
+        q = _from_pairs(robot, text, degrees)
+    else:
+        q = _from_list(robot, text, states, degrees)
+    require_within_limits(robot, q, text)
+    return q
+
+
+def require_within_limits(robot: Robot, q: npt.NDArray[np.float64], text: str) -> None:
+    """Raise InvalidValue unless a configuration, (dim,), is within the limits of its joints."""
+    joints = {joint.name: joint for joint in robot.joints}
+    for name, value in zip(robot.group, q.tolist(), strict=True):
+        require_within(joints[name], value, repr(text))
+
+
+def _from_pairs(robot: Robot, text: str, degrees: bool) -> npt.NDArray[np.float64]:
+    joints = {joint.name: joint for joint in robot.joints}
+    values: dict[str, float] = {}
+    place = 0
+    while pair := _PAIR.match(text, place):
+        place = pair.end()
+        name, number = pair.groups()
+        if name not in robot.group:
+            raise UnknownName.among(f"joint of {robot.name!r}", name, robot.group)
+        if name in values:
+            raise InvalidValue(f"joint {name!r} is given twice")
+        values[name] = _value(robot, name, number, degrees)
+    rest = text[place:].strip(", \t\n")
+    if rest:
+        raise InvalidValue(f"{rest!r} is not of the form name=value")
+    neutral = {name: joints[name].neutral for name in robot.group}
+    return np.array([values.get(name, neutral[name]) for name in robot.group])
+
+
+def _from_list(
+    robot: Robot, text: str, states: Mapping[str, object], degrees: bool
+) -> npt.NDArray[np.float64]:
+    words = text.replace(",", " ").split()
+    if len(words) == 1 and not _is_number(words[0]):
+        raise UnknownName(
+            f"unknown state {text.strip()!r}; known: {', '.join(sorted(states)) or 'none'}; or give"
+            f" {len(robot.group)} numbers: {','.join(robot.group)}"
+        )
+    if len(words) != len(robot.group):
+        raise InvalidValue(
+            f"a configuration of {robot.name!r} has {len(robot.group)} numbers, {','.join(robot.group)};"
+            f" got {len(words)} in {text!r}"
+        )
+    pairs = zip(robot.group, words, strict=True)
+    return np.array([_value(robot, name, word, degrees) for name, word in pairs])
+
+
+def _value(robot: Robot, name: str, word: str, degrees: bool) -> float:
+    if not _is_number(word):
+        raise InvalidValue(f"joint {name!r} must be a finite number, got {word!r}")
+    turns = next(joint.kind for joint in robot.joints if joint.name == name) != "prismatic"
+    return math.radians(float(word)) if degrees and turns else float(word)
+
+
+def _is_number(word: str) -> bool:
+    try:
+        return math.isfinite(float(word))
+    except ValueError:
+        return False

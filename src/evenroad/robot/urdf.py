@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-import logging
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from io import BytesIO
 from pathlib import Path
-from typing import Any
-from xml.etree import ElementTree
+from typing import cast
+from xml.etree.ElementTree import Element
 
 import numpy as np
 
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
-from evenroad.robot.geometry import Geometry
-from evenroad.robot.joint import Joint, Mimic
-from evenroad.robot.meshes import find_mesh
-from evenroad.robot.mimic import with_direct_mimics, within_limits_of_mimics
-from evenroad.robot.tree import in_tree_order
-from evenroad.robot.urdf_xml import drawn_only, read_urdf_xml
+from evenroad.geometry.pose import Pose
+from evenroad.geometry.shapes import PRIMITIVES, Mesh, Shape, shape_of
+from evenroad.robot.joint import Joint, Kind, Mimic, with_direct_mimics, within_limits_of_mimics
+from evenroad.robot.urdf_xml import drawn_only, find_mesh, read_urdf_xml
 
 _KINDS = ("revolute", "continuous", "prismatic", "fixed")
-_NO_ROTATION = tuple(np.eye(3).ravel().tolist())
+_LIMITS = ("lower", "upper", "velocity")
 
 
 @dataclass(frozen=True)
@@ -35,12 +32,12 @@ class Urdf:
     links : tuple of str
         All links; the root first, every parent before its children.
     joints : tuple of Joint
-        ``joints[i]`` is the joint whose child is ``links[i + 1]``; a mimic follows a joint that is none, whose
-        limits are narrow enough for it.
+        ``joints[i]`` is the joint whose child is ``links[i + 1]``; a mimic follows a joint that is no mimic,
+        with limits that keep the mimic within its own.
     order : tuple of str
         Names of the joints as the file lists them: the order of configurations.
-    geometries : tuple of Geometry
-        The collision geometry.
+    shapes : tuple of Shape
+        The collision geometry, each shape in its link's frame.
     drawn_only : tuple of str
         Links that have a ``<visual>`` but no ``<collision>``.
     """
@@ -49,7 +46,7 @@ class Urdf:
     links: tuple[str, ...]
     joints: tuple[Joint, ...]
     order: tuple[str, ...]
-    geometries: tuple[Geometry, ...]
+    shapes: tuple[Shape, ...]
     drawn_only: tuple[str, ...] = ()
 
     @property
@@ -79,62 +76,44 @@ def read_urdf(path: Path) -> Urdf:
         If a joint is of a type that is not supported (floating, planar).
     """
     root = read_urdf_xml(path)
-    drawn = drawn_only(root)
-    parsed = _parse(root, path)
-    joints = [_joint(joint, path) for joint in parsed.joints]
-    ordered = in_tree_order([link.name for link in parsed.links], joints, str(path))
-    first = ordered[0].parent if ordered else parsed.links[0].name
+    links = [link.attrib["name"] for link in root.findall("link")]
+    joints = [_joint(joint, path) for joint in root.findall("joint")]
+    ordered = in_tree_order(links, joints, str(path))
+    first = ordered[0].parent if ordered else links[0]
     return Urdf(
-        name=parsed.name,
+        name=root.get("name", path.stem),
         links=(first, *(joint.child for joint in ordered)),
         joints=tuple(within_limits_of_mimics(with_direct_mimics(ordered, path))),
         order=tuple(joint.name for joint in joints),
-        geometries=tuple(
-            _geometry(link.name, collision, path) for link in parsed.links for collision in link.collisions
+        shapes=tuple(
+            _shape(link.attrib["name"], collision, path)
+            for link in root.findall("link")
+            for collision in link.findall("collision")
         ),
-        drawn_only=drawn,
+        drawn_only=drawn_only(root),
     )
 
 
-def _parse(root: ElementTree.Element, path: Path) -> Any:
-    """Return what yourdfpy reads from a checked tree; its kind of capsule is a cylinder named as such."""
-    root.set("name", root.get("name", path.stem))
-    for link in root.findall("link"):
-        for visual in link.findall("visual"):
-            link.remove(visual)
-    for collision in root.iterfind("link/collision"):
-        capsule = collision.find("geometry/capsule")
-        collision.set("name", "cylinder" if capsule is None else "capsule")
-        if capsule is not None:
-            capsule.tag = "cylinder"
-    # Here, since it costs a third of a second, which maps and cached robots do not need to wait for.
-    from yourdfpy import URDF
-
-    logging.getLogger("yourdfpy").addHandler(logging.NullHandler())
-    source = BytesIO(ElementTree.tostring(root))
-    try:
-        return URDF.load(source, build_scene_graph=False, load_meshes=False).robot
-    except (ValueError, KeyError, TypeError, IndexError, AttributeError) as error:
-        raise BrokenFile(f"{path} cannot be read as a URDF: {error}") from error
-
-
-def _joint(joint: Any, path: Path) -> Joint:
-    where = f"joint {joint.name!r} in {path}"
-    if joint.type not in _KINDS:
-        raise UnknownName.among(f"type of {where}:", joint.type, _KINDS)
-    xyz, rotation = _pose(joint.origin)
-    lower, upper, velocity = _limits(joint, where)
+def _joint(element: Element, path: Path) -> Joint:
+    name, kind = element.attrib["name"], element.attrib["type"]
+    where = f"joint {name!r} in {path}"
+    if kind not in _KINDS:
+        raise UnknownName.among(f"type of {where}:", kind, _KINDS)
+    origin, follows = _pose(element), element.find("mimic")
+    lower, upper, velocity = _limits(element.find("limit"), kind, where)
     mimic = None
-    if joint.mimic is not None and joint.type != "fixed":
-        mimic = Mimic(joint.mimic.joint, float(joint.mimic.multiplier), float(joint.mimic.offset))
+    if follows is not None and kind != "fixed":
+        mimic = Mimic(
+            follows.attrib["joint"], float(follows.get("multiplier", 1.0)), float(follows.get("offset", 0.0))
+        )
     return Joint(
-        name=joint.name,
-        kind=joint.type,
-        parent=joint.parent,
-        child=joint.child,
-        xyz=xyz,
-        rotation=rotation,
-        axis=(0.0, 0.0, 1.0) if joint.type == "fixed" else _axis(joint, where),
+        name=name,
+        kind=cast(Kind, kind),
+        parent=_link(element, "parent"),
+        child=_link(element, "child"),
+        xyz=origin.xyz,
+        rotation=origin.rotation,
+        axis=(0.0, 0.0, 1.0) if kind == "fixed" else _axis(element, where),
         lower=lower,
         upper=upper,
         velocity=velocity,
@@ -142,54 +121,133 @@ def _joint(joint: Any, path: Path) -> Joint:
     )
 
 
-def _axis(joint: Any, where: str) -> tuple[float, float, float]:
-    length = float(np.linalg.norm(joint.axis))
+def _link(joint: Element, end: str) -> str:
+    element = joint.find(end)
+    assert element is not None, "as read_urdf_xml has seen to"
+    return element.attrib["link"]
+
+
+def _axis(joint: Element, where: str) -> tuple[float, float, float]:
+    axis = np.array(_numbers(joint.find("axis"), "xyz", (1.0, 0.0, 0.0)))
+    length = float(np.linalg.norm(axis))
     if length < 1e-9:
-        raise InvalidValue(f"the axis of {where} must not be zero, got {joint.axis.tolist()}")
-    x, y, z = (joint.axis / length).tolist()
+        raise InvalidValue(f"the axis of {where} must not be zero, got {axis.tolist()}")
+    x, y, z = (axis / length).tolist()
     return (x, y, z)
 
 
-def _limits(joint: Any, where: str) -> tuple[float, float, float]:
+def _limits(limit: Element | None, kind: str, where: str) -> tuple[float, float, float]:
     """Return lower, upper and velocity; a velocity of 0 in a URDF means that nobody knew it."""
-    limit = joint.limit
-    velocity = math.inf if limit is None or not limit.velocity else float(limit.velocity)
+    given = {} if limit is None else {end: float(limit.attrib[end]) for end in _LIMITS if end in limit.attrib}
+    velocity = given.get("velocity") or math.inf
     if velocity < 0.0:
         raise InvalidValue(f"the velocity limit of {where} must be >= 0, got {velocity:g}")
-    if joint.type == "fixed":
+    if kind == "fixed":
         return 0.0, 0.0, velocity
-    if joint.type == "continuous":
+    if kind == "continuous":
         return -math.inf, math.inf, velocity
-    missing = [end for end in ("lower", "upper") if limit is None or getattr(limit, end) is None]
+    missing = [end for end in ("lower", "upper") if end not in given]
     if missing:
         raise BrokenFile(
-            f"{where} has no limits: a {joint.type} joint needs <limit lower=... upper=...>"
-            f" (missing: {', '.join(missing)}); one that turns on and on is of type continuous"
+            f"{where} has no limits: a {kind} joint needs <limit lower=... upper=...>"
+            f" (missing: {', '.join(missing)}); one that rotates without limits is of type continuous"
         )
-    if limit.lower > limit.upper:
+    if given["lower"] > given["upper"]:
         raise InvalidValue(
-            f"the limits of {where} must satisfy lower <= upper, got {limit.lower:g}, {limit.upper:g}"
+            f"the limits of {where} must satisfy lower <= upper, got {given['lower']:g}, {given['upper']:g}"
         )
-    return float(limit.lower), float(limit.upper), velocity
+    return given["lower"], given["upper"], velocity
 
 
-def _geometry(link: str, collision: Any, path: Path) -> Geometry:
-    xyz, rotation = _pose(collision.origin)
-    shape = collision.geometry
-    if shape.mesh is not None:
-        scale = np.broadcast_to(1.0 if shape.mesh.scale is None else shape.mesh.scale, 3)
-        file = find_mesh(shape.mesh.filename, path, link)
-        return Geometry(link, "mesh", tuple(scale.tolist()), xyz, rotation, file)
-    if shape.box is not None:
-        return Geometry(link, "box", tuple(shape.box.size.tolist()), xyz, rotation)
-    if shape.sphere is not None:
-        return Geometry(link, "sphere", (float(shape.sphere.radius),), xyz, rotation)
-    size = (float(shape.cylinder.radius), float(shape.cylinder.length))
-    return Geometry(link, "capsule" if collision.name == "capsule" else "cylinder", size, xyz, rotation)
+def _shape(link: str, collision: Element, path: Path) -> Shape:
+    pose, (shape,) = _pose(collision), collision.iterfind("geometry/*")
+    if shape.tag == "mesh":
+        x, y, z = np.broadcast_to(_numbers(shape, "scale", (1.0,)), 3).tolist()
+        return Mesh(find_mesh(shape.attrib["filename"], path, link), (x, y, z), pose=pose, link=link)
+    size = [
+        number for name, _ in PRIMITIVES[shape.tag].dimensions for number in _numbers(shape, name, (0.0,))
+    ]
+    return shape_of(shape.tag, size, pose, link)
 
 
-def _pose(origin: Any) -> tuple[tuple[float, float, float], tuple[float, ...]]:
-    if origin is None:
-        return (0.0, 0.0, 0.0), _NO_ROTATION
-    x, y, z = origin[:3, 3].tolist()
-    return (x, y, z), tuple(origin[:3, :3].ravel().tolist())
+def _pose(owner: Element) -> Pose:
+    origin = owner.find("origin")
+    x, y, z = _numbers(origin, "xyz", (0.0, 0.0, 0.0))
+    roll, pitch, yaw = _numbers(origin, "rpy", (0.0, 0.0, 0.0))
+    # rotation_from_rpy in another order of operations, in which robots were always read: their capsules, and what was
+    # computed with these, keep their last bits.
+    (si, sj, sk), (ci, cj, ck) = np.sin([roll, pitch, yaw]).tolist(), np.cos([roll, pitch, yaw]).tolist()
+    cc, cs, sc, ss = ci * ck, ci * sk, si * ck, si * sk
+    rotation = (
+        *(cj * ck, sj * sc - cs, sj * cc + ss),
+        *(cj * sk, sj * ss + cc, sj * cs - sc),
+        *(-sj, cj * si, cj * ci),
+    )
+    return Pose((x, y, z), tuple(number + 0.0 for number in rotation))
+
+
+def _numbers(element: Element | None, attribute: str, default: tuple[float, ...]) -> tuple[float, ...]:
+    text = None if element is None else element.get(attribute)
+    return default if text is None else tuple(map(float, text.split()))
+
+
+def in_tree_order(links: Sequence[str], joints: Sequence[Joint], where: str) -> list[Joint]:
+    """Return the joints so that every joint's parent is the root or the child of an earlier one.
+
+    Depth first, children in the order given.  `where` names the file in errors.
+
+    Raises
+    ------
+    BrokenFile
+        If links or joints share a name, a joint joins links that there are not, a link has two parents, there
+        is more than one root, or the joints form a cycle; the text names them.
+    """
+    _require_distinct("link", list(links), where)
+    _require_distinct("joint", [joint.name for joint in joints], where)
+    parent_joint: dict[str, Joint] = {}
+    for joint in joints:
+        for role, link in (("parent", joint.parent), ("child", joint.child)):
+            if link not in links:
+                raise BrokenFile(
+                    f"joint {joint.name!r} in {where} has the {role} {link!r}, which is no link; "
+                    f"links: {', '.join(links)}"
+                )
+        if joint.child in parent_joint:
+            raise BrokenFile(
+                f"link {joint.child!r} in {where} hangs on two joints,"
+                f" {parent_joint[joint.child].name!r} and {joint.name!r}: the links must form a tree"
+            )
+        parent_joint[joint.child] = joint
+    roots = [link for link in links if link not in parent_joint]
+    if len(roots) > 1:
+        raise BrokenFile(f"{where} has more than one root: no joint leads to {', '.join(map(repr, roots))}")
+    children: dict[str, list[Joint]] = {link: [] for link in links}
+    for joint in joints:
+        children[joint.parent].append(joint)
+    ordered: list[Joint] = []
+    pending = list(reversed(children[roots[0]])) if roots else []
+    while pending:
+        joint = pending.pop()
+        ordered.append(joint)
+        pending.extend(reversed(children[joint.child]))
+    if len(ordered) < len(joints):
+        reached = {joint.name for joint in ordered}
+        start = next(joint for joint in joints if joint.name not in reached)
+        raise BrokenFile(f"the joints of {where} form a cycle: {' -> '.join(_cycle(start, parent_joint))}")
+    return ordered
+
+
+def _cycle(joint: Joint, parent_joint: dict[str, Joint]) -> list[str]:
+    """Return the names along the cycle that one comes to by going up from `joint`."""
+    above = [joint]
+    while parent_joint[above[-1].parent] not in above:
+        above.append(parent_joint[above[-1].parent])
+    closing = parent_joint[above[-1].parent]
+    names = [each.name for each in above[above.index(closing) :]]
+    return [closing.name, *reversed(names)]
+
+
+def _require_distinct(what: str, names: list[str], where: str) -> None:
+    for name in names:
+        if names.count(name) > 1:
+            raise BrokenFile(f"{where} has more than one {what} named {name!r}")

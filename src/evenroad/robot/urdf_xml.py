@@ -7,8 +7,10 @@ robot free of collisions has not been given its bodies.
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterator
 from pathlib import Path
+from urllib.parse import unquote
 from xml.etree import ElementTree
 
 from evenroad.errors import BrokenFile, InvalidValue
@@ -165,3 +167,47 @@ def _numbers(what: str, attribute: str, text: str, count: int) -> list[float]:
             f"{what} must not be 0, got {text!r}: a mesh without volume would hardly ever collide"
         )
     return numbers
+
+
+def find_mesh(name: str, urdf: Path, link: str) -> Path:
+    """Return the file that a URDF means by `name`.
+
+    ``package://PACKAGE/FILE`` is looked for in the folder of the URDF and those above it, either inside of a folder
+    PACKAGE or in one, and where ROS keeps packages (``ROS_PACKAGE_PATH``, ``AMENT_PREFIX_PATH``); ``file://`` is
+    absolute; all else is relative to the URDF.
+
+    Raises
+    ------
+    BrokenFile
+        If there is none; the text says where it was looked for.
+    """
+    places = list(_candidates(name, urdf.absolute().parent))
+    for place in places:
+        if place.is_file():
+            return place
+    looked = ", ".join(str(place) for place in places[:4]) + (", ..." if len(places) > 4 else "")
+    raise BrokenFile(f"the mesh {name!r} of link {link!r} in {urdf} is missing; looked for {looked}")
+
+
+def _candidates(name: str, folder: Path) -> Iterator[Path]:
+    scheme, separator, rest = name.partition("://")
+    if not separator:
+        yield folder / name
+        return
+    rest = unquote(rest)
+    if scheme == "file":
+        yield Path(rest)
+        return
+    package, _, inside = rest.partition("/")
+    for above in (folder, *folder.parents):
+        if above.name == package:
+            yield above / inside
+        yield above / package / inside
+    for root in _paths("ROS_PACKAGE_PATH"):
+        yield (root if root.name == package else root / package) / inside
+    for root in _paths("AMENT_PREFIX_PATH"):
+        yield root / "share" / package / inside
+
+
+def _paths(variable: str) -> list[Path]:
+    return [Path(entry) for entry in os.environ.get(variable, "").split(os.pathsep) if entry]

@@ -5,25 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from evenroad._checks import as_row as as_row
 from evenroad.errors import InvalidValue
-
-
-def as_row(name: str, values: Sequence[float], length: int | None = None) -> tuple[float, ...]:
-    """Return `values` as a tuple of finite floats, `length` of them or else at least one.
-
-    Raises
-    ------
-    InvalidValue
-        Naming `values` and what is allowed.
-    """
-    wanted = "one finite number or more" if length is None else f"{length} finite number(s)"
-    try:
-        row = tuple(float(value) for value in values)
-    except (TypeError, ValueError):
-        raise InvalidValue(f"{name} must be {wanted}, got {values!r}") from None
-    if len(row) == 0 or (length is not None and len(row) != length) or not all(map(math.isfinite, row)):
-        raise InvalidValue(f"{name} must be {wanted}, got {values!r}")
-    return row
 
 
 def as_bounds(low: Sequence[float], high: Sequence[float]) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -5,41 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._checks import as_batch as as_batch
 from evenroad.errors import InvalidValue
-
-
-def as_batch(name: str, values: object, dim: int) -> npt.NDArray[np.float64]:
-    """Return `values` as a read-only C-contiguous float64 array of shape (n, dim) with finite entries.
-
-    Read-only whatever `values` is: compiled code is compiled anew for each mix of read-only and other arrays.
-
-    Parameters
-    ----------
-    name : str
-        What the caller calls the argument, for the error text.
-    values : array_like, shape (n, dim)
-        Copied only when it is not such an array; never written to.
-    dim : int
-        Number of columns wanted.
-
-    Raises
-    ------
-    InvalidValue
-        Naming the shape, or the first entry that is NaN or infinite and its place.
-    """
-    try:
-        array = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InvalidValue(f"{name} must be an (n, {dim}) array of numbers: {error}") from None
-    if array.ndim != 2 or array.shape[1] != dim:
-        raise InvalidValue(f"{name} must have shape (n, {dim}), got {array.shape}")
-    batch = np.ascontiguousarray(array).view()
-    batch.setflags(write=False)
-    finite = np.isfinite(batch)
-    if not finite.all():
-        i, k = np.argwhere(~finite)[0]
-        raise InvalidValue(f"{name} must be finite: entry [{i}, {k}] is {float(batch[i, k])!r}")
-    return batch
 
 
 def as_batch_pair(a: object, b: object, dim: int) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:

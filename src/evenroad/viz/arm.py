@@ -44,7 +44,7 @@ def save_arm_picture(path: str | os.PathLike[str], result: PlanResult, world: Ar
 def draw_arm_plan(result: PlanResult, world: ArmWorld) -> Figure:
     """Return a figure of a plan of an arm: from above, from the side and from the front.
 
-    The start is green, the goal blue, with the arm along the path between them and the way of its tip in red.  Without
+    The start is green, the goal blue, with the arm along the path between them and the path of its tip in red.  Without
     a path start and goal are shown; a body in collision is red.
     """
     figure = Figure(figsize=(16.0, 6.2), dpi=DPI)
@@ -212,7 +212,7 @@ def _legend(result: PlanResult, world: ArmWorld) -> list[Patch | Line2D]:
     if result.path is not None:
         tip = style.without_math(world.robot.links[_tip(world.robot)])
         handles.append(Patch(facecolor=_tint(0.5, 0.25), edgecolor=_tint(0.5, 0.45), label="along the path"))
-        handles.append(Line2D([], [], color=style.PATH, linewidth=1.8, label=f"way of {tip}"))
+        handles.append(Line2D([], [], color=style.PATH, linewidth=1.8, label=f"path of {tip}"))
     elif result.status is not Status.NOT_CONNECTED:
         handles.append(Patch(facecolor=style.COLLISION, alpha=0.35, label="in collision"))
     if world.scene.obstacles:

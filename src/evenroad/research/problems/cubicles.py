@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 
+from evenroad.geometry import rotation_from_heading
 from evenroad.research.problems.puzzles import Puzzle
-from evenroad.world.solids import OrientedBox, heading_turn
+from evenroad.world.solids import OrientedBox
 
 Range = tuple[float, float]
 
@@ -168,7 +169,7 @@ def pillar(x: Range, y: Range, z: Range) -> tuple[OrientedBox, ...]:
     half = [side * math.sqrt(3.0) / 2.0, side / 2.0, (z[1] - z[0]) / 2.0]
     boxes = []
     for k in range(3):
-        a, b, c, d = heading_turn(heading + (k + 0.5) * math.pi / 3.0)
+        a, b, c, d = rotation_from_heading(heading + (k + 0.5) * math.pi / 3.0)
         boxes.append(OrientedBox(middle, half, (a, b, 0.0, c, d, 0.0, 0.0, 0.0, 1.0), name="pillar"))
     return tuple(boxes)
 

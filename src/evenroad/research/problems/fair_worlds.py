@@ -9,12 +9,13 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
+from evenroad.geometry import rotation_from_heading, rotation_from_quaternion
 from evenroad.research.bench.task import Problem
 from evenroad.research.mazes import MazeDesign, draw_maze
 from evenroad.research.worlds import PeriodicBalls, PeriodicBoxes
 from evenroad.space import SE2, SE3
 from evenroad.world import World
-from evenroad.world.solids import OrientedBox, SolidWorld, heading_turn, quaternion_turn
+from evenroad.world.solids import OrientedBox, SolidWorld
 
 ENTROPY = 20_261_121
 """Root of every instance of the fair suite; the seed of a suite draws sets, never worlds."""
@@ -233,5 +234,5 @@ def places_far_apart(dim: int, a: Array, b: Array) -> npt.NDArray[np.bool_]:
 
 def _random_turn(dim: int, rng: np.random.Generator) -> tuple[float, ...]:
     if dim == 2:
-        return heading_turn(float(rng.uniform(-np.pi, np.pi)))
-    return quaternion_turn(rng.standard_normal(4).tolist())
+        return rotation_from_heading(float(rng.uniform(-np.pi, np.pi)))
+    return rotation_from_quaternion(rng.standard_normal(4).tolist())

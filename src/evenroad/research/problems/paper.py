@@ -10,9 +10,9 @@ from evenroad.research.bench.task import Problem, ProblemSource
 from evenroad.research.mazes import LEVELS, load_maze
 from evenroad.research.worlds.chain import ChainWorld
 from evenroad.research.worlds.corridor import Corridor, hypercube_legacy6
-from evenroad.robot.alter import in_scene, with_group
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.load import load_robot
+from evenroad.robot.robot import in_scene, with_group
 from evenroad.robot.scene_file import load_scene
 
 WIDTHS: dict[int, tuple[float, ...]] = {2: (0.1, 0.0225), 3: (0.2, 0.1), 10: (0.37, 0.495)}

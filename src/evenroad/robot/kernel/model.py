@@ -9,14 +9,15 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.errors import InvalidValue, UnknownName
-from evenroad.robot.capsule import Capsule
+from evenroad.geometry.distance import segment_distance
+from evenroad.geometry.pose import Pose
+from evenroad.geometry.shapes import Box, Capsule
 from evenroad.robot.kernel.cover import Cover, cover_capsule
 from evenroad.robot.kernel.reach import farthest, largest_value
 from evenroad.robot.kernel.separation import point_to_obstacle
 from evenroad.robot.kernel.tree import MovingTree, Placement, moving_tree
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle, Scene
-from evenroad.robot.segments import segment_distance
 
 Vector = npt.NDArray[np.float64]
 
@@ -182,21 +183,7 @@ def _placed(capsule: Capsule, tree: MovingTree) -> PlacedCapsule:
 
 
 def _require_sound(obstacle: Obstacle) -> None:
-    wanted = {"box": 3, "sphere": 1, "cylinder": 2, "capsule": 2}
-    if obstacle.shape not in wanted:
-        raise UnknownName.among("shape of an obstacle", obstacle.shape, wanted)
-    size = np.array(obstacle.size, dtype=np.float64)
-    if size.shape != (wanted[obstacle.shape],) or not (np.isfinite(size).all() and (size > 0.0).all()):
-        raise InvalidValue(
-            f"obstacle {obstacle.name!r}, a {obstacle.shape}, must have {wanted[obstacle.shape]}"
-            f" finite size(s) > 0, got {obstacle.size!r}"
-        )
-    rotation = np.array(obstacle.rotation, dtype=np.float64)
-    if rotation.shape != (9,) or not np.isfinite([*rotation, *obstacle.xyz]).all():
-        raise InvalidValue(f"obstacle {obstacle.name!r} must have a finite place, got {obstacle!r}")
-    turn = rotation.reshape(3, 3)
-    if np.abs(turn @ turn.T - np.eye(3)).max() > 1e-6:
-        raise InvalidValue(f"obstacle {obstacle.name!r} must have a rotation, got {obstacle.rotation!r}")
+    turn = np.reshape(obstacle.rotation, (3, 3))
     # A box along the axes is cut off where the robot never comes.
     cut = obstacle.shape == "box" and is_straight(turn)
     if not cut and max(map(abs, (*obstacle.size, *obstacle.xyz))) > _FARTHEST:
@@ -272,5 +259,4 @@ def clipped(obstacle: Obstacle, reach: float) -> Obstacle:
         return obstacle
     centre, half = np.array(obstacle.xyz), np.abs(np.rint(rotation)) @ (0.5 * np.array(obstacle.size))
     low, high = np.maximum(centre - half, -2.0 * reach), np.minimum(centre + half, 2.0 * reach)
-    straight = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-    return replace(obstacle, xyz=tuple(0.5 * (low + high)), size=tuple(high - low), rotation=straight)
+    return replace(obstacle, body=Box(tuple(high - low), pose=Pose(tuple(0.5 * (low + high)))))

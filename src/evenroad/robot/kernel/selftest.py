@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.robot.capsule import Capsule
+from evenroad.geometry.shapes import Capsule
 from evenroad.robot.joint import Joint
 from evenroad.robot.kernel.model import ArmModel, arm_model
 from evenroad.robot.robot import Robot
@@ -61,20 +61,20 @@ def small_model() -> ArmModel:
         Joint("slide", "prismatic", "lower", "tool", (0.3, 0.0, 0.0), _STRAIGHT, (1.0, 0.0, 0.0), 0.0, 0.3),
     )
     capsules = (
-        Capsule("base", (0.0, 0.0, -0.1), (0.0, 0.0, 0.2), 0.1),
-        Capsule("upper", (0.1, 0.0, 0.0), (0.4, 0.0, 0.0), 0.05),
-        Capsule("lower", (0.0, 0.0, 0.0), (0.3, 0.0, 0.0), 0.04),
-        Capsule("tool", (0.0, 0.0, 0.0), (0.1, 0.0, 0.0), 0.03),
+        Capsule((0.0, 0.0, -0.1), (0.0, 0.0, 0.2), 0.1, link="base"),
+        Capsule((0.1, 0.0, 0.0), (0.4, 0.0, 0.0), 0.05, link="upper"),
+        Capsule((0.0, 0.0, 0.0), (0.3, 0.0, 0.0), 0.04, link="lower"),
+        Capsule((0.0, 0.0, 0.0), (0.1, 0.0, 0.0), 0.03, link="tool"),
     )
     pairs = (("base", "lower"), ("base", "tool"), ("upper", "tool"))
     links = ("base", "upper", "lower", "tool")
     robot = Robot("small", links, chain, capsules, pairs, ("turn", "bend", "slide"))
     obstacles = (
-        Obstacle("table", "box", (3.0, 3.0, 0.1), (0.0, 0.0, -0.4)),
-        Obstacle("block", "box", (0.2, 0.2, 0.5), (0.5, 0.4, 0.0), _TURNED),
-        Obstacle("ball", "sphere", (0.15,), (-0.4, 0.4, 0.1)),
-        Obstacle("post", "cylinder", (0.08, 0.6), (-0.45, -0.2, 0.1), _TURNED),
-        Obstacle("pipe", "capsule", (0.05, 0.4), (0.4, -0.4, 0.2), _STRAIGHT),
+        Obstacle.of("table", "box", (3.0, 3.0, 0.1), (0.0, 0.0, -0.4)),
+        Obstacle.of("block", "box", (0.2, 0.2, 0.5), (0.5, 0.4, 0.0), _TURNED),
+        Obstacle.of("ball", "sphere", (0.15,), (-0.4, 0.4, 0.1)),
+        Obstacle.of("post", "cylinder", (0.08, 0.6), (-0.45, -0.2, 0.1), _TURNED),
+        Obstacle.of("pipe", "capsule", (0.05, 0.4), (0.4, -0.4, 0.2), _STRAIGHT),
     )
     return arm_model(robot, Scene("small", obstacles))
 

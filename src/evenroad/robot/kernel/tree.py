@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.errors import InvalidValue, UnknownName
+from evenroad.geometry.pose import rotation_from_z
 from evenroad.robot.joint import Joint
 from evenroad.robot.kinematics import held_values
 from evenroad.robot.robot import Robot
@@ -107,27 +108,6 @@ def moving_tree(robot: Robot) -> MovingTree:
         )
         links[joint.child] = Placement(len(frames), to_z.T, np.zeros(3))
     return MovingTree(tuple(frames), links)
-
-
-def rotation_from_z(axis: tuple[float, float, float]) -> Matrix:
-    """Return a rotation (3, 3) that takes the z axis to the direction `axis`.
-
-    Raises
-    ------
-    InvalidValue
-        If `axis` has no direction.
-    """
-    z = np.array(axis, dtype=np.float64)
-    length = float(np.linalg.norm(z))
-    if not (math.isfinite(length) and length > 0.0):
-        raise InvalidValue(f"the axis of a joint must be a direction, got {axis!r}")
-    z /= length
-    if z[0] == 0.0 and z[1] == 0.0 and z[2] > 0.0:
-        return np.eye(3)
-    # The coordinate axis farthest from z: never near parallel to it.
-    x = np.cross(np.eye(3)[np.abs(z).argmin()], z)
-    x /= np.linalg.norm(x)
-    return np.column_stack([x, np.cross(z, x), z])
 
 
 def _value(joint: Joint, joints: dict[str, Joint], robot: Robot) -> tuple[int, float, float]:

@@ -10,13 +10,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.robot.geometry import Geometry
+from evenroad.geometry.shapes import Mesh, Shape
 from evenroad.robot.kinematics import link_poses
-from evenroad.robot.reference.coal_shapes import asking_for_contacts, coal_shape, placement
 from evenroad.robot.reference.engine_world import EngineWorld
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
-from evenroad.world.mesh.trees import require_coal
+from evenroad.world.mesh.coal import require_coal, tree_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,11 +35,11 @@ class CoalWorld(EngineWorld):
     def __post_init__(self) -> None:
         coal = require_coal()
         super().__post_init__()
-        standing = self.scene.obstacles
+        bodies = [obstacle.body for obstacle in self.scene.obstacles]
         for name, value in (
             ("_coal", coal),
             ("_solids", [coal_shape(coal, shape) for shape in self._shapes]),
-            ("_obstacles", [(coal_shape(coal, o), _transform(coal, placement(o))) for o in standing]),
+            ("_obstacles", [(coal_shape(coal, body), _transform(coal, body.pose.matrix)) for body in bodies]),
             ("_tests", tests_of(self.robot, self.scene, self._shapes)),
         ):
             object.__setattr__(self, name, value)
@@ -61,7 +60,7 @@ class CoalWorld(EngineWorld):
         """Return the pose of every shape of the robot, (shapes, n, 4, 4)."""
         links = link_poses(self.robot, q)
         number = {link: i for i, link in enumerate(self.robot.links)}
-        return np.stack([links[:, number[shape.link]] @ placement(shape) for shape in self._shapes])
+        return np.stack([links[:, number[shape.link]] @ shape.pose.matrix for shape in self._shapes])
 
     def _first_contact(self, poses: npt.NDArray[np.float64]) -> tuple[str, str] | None:
         """Return the first two bodies that touch, for the poses of all shapes, (shapes, 4, 4)."""
@@ -77,14 +76,14 @@ class CoalWorld(EngineWorld):
         return None
 
 
-def tests_of(robot: Robot, scene: Scene, geometries: Sequence[Geometry]) -> list[tuple[int, int, bool]]:
+def tests_of(robot: Robot, scene: Scene, shapes: Sequence[Shape]) -> list[tuple[int, int, bool]]:
     """Return what is tested: a shape of the robot, and the number of an obstacle (True) or of another shape."""
     of_link: dict[str, list[int]] = {}
     tests = []
-    for i, geometry in enumerate(geometries):
-        of_link.setdefault(geometry.link, []).append(i)
+    for i, shape in enumerate(shapes):
+        of_link.setdefault(shape.link, []).append(i)
         for j, obstacle in enumerate(scene.obstacles):
-            if (geometry.link, obstacle.name) not in scene.allowed:
+            if (shape.link, obstacle.name) not in scene.allowed:
                 tests.append((i, j, True))
     for a, b in robot.pairs:
         tests += [(i, j, False) for i, j in product(of_link.get(a, ()), of_link.get(b, ()))]
@@ -93,3 +92,25 @@ def tests_of(robot: Robot, scene: Scene, geometries: Sequence[Geometry]) -> list
 
 def _transform(coal: Any, pose: npt.NDArray[np.float64]) -> Any:
     return coal.Transform3s(np.ascontiguousarray(pose[:3, :3]), pose[:3, 3].copy())
+
+
+def coal_shape(coal: Any, shape: Shape) -> Any:
+    """Return a shape in its own frame: round ones and boxes exactly, meshes triangle by triangle.
+
+    A mesh stays what it is: where it is not convex, what coal builds with ``buildConvexRepresentation`` lets
+    collisions pass.
+    """
+    if isinstance(shape, Mesh):
+        return tree_of(coal, shape.triangles)
+    kinds = {"box": coal.Box, "sphere": coal.Sphere, "cylinder": coal.Cylinder, "capsule": coal.Capsule}
+    return kinds[shape.kind](*shape.size)
+
+
+def asking_for_contacts(request: Any) -> Any:
+    """Return a request of coal's, set so that round shapes are not missed.
+
+    Without contacts coal 3.0.3 leaves out the step that finds how deep two shapes are in each other, and with it about
+    one of 10 000 collisions of cylinders with boxes and capsules, some of them centimetres deep.
+    """
+    request.enable_contact = True
+    return request

@@ -1,4 +1,4 @@
-"""A path that was found among capsules, checked again with the meshes that the capsules stand for."""
+"""A path that was planned with capsules, checked again with the meshes that they were fitted to."""
 
 from __future__ import annotations
 
@@ -13,10 +13,9 @@ import numpy.typing as npt
 
 from evenroad.errors import NotAvailable
 from evenroad.robot.arm_world import joint_space
-from evenroad.robot.model import RobotModel
-from evenroad.robot.reference.bodies import original_geometries
 from evenroad.robot.reference.coal_world import CoalWorld
-from evenroad.robot.robot import Robot
+from evenroad.robot.reference.engine_world import original_shapes
+from evenroad.robot.robot import Robot, RobotModel
 from evenroad.robot.scene import Scene
 from evenroad.space import JointSpace
 
@@ -30,7 +29,7 @@ class MeshCheck:
     Attributes
     ----------
     verdict : {"free", "in collision", "not checked"}
-        Of all states, ends included, at most the resolution apart.
+        Of all states from start to goal, at most the resolution apart.
     states : int
         How many states were asked for; 0 where nothing was checked.
     message : str
@@ -89,7 +88,7 @@ def recheck(
         If the URDF or a mesh is missing, broken or empty by now.
     """
     try:
-        world = CoalWorld(robot, scene, original_geometries(source, robot), resolution)
+        world = CoalWorld(robot, scene, original_shapes(source, robot), resolution)
     except NotAvailable:
         return MeshCheck("not checked", message="needs evenroad[mesh]")
     states, motions = states_along(joint_space(robot), path, resolution)

@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.errors import InvalidValue
+from evenroad.geometry.mesh import TriangleMesh, merged
 from evenroad.space.batch import as_batch
 from evenroad.world.function import FunctionWorld
-from evenroad.world.mesh.collider import Collider
-from evenroad.world.mesh.triangle_mesh import TriangleMesh, merged
+from evenroad.world.mesh.coal import Collider
 from evenroad.world.solids.poses import RigidSpace, as_poses, body_dimension
 
 
@@ -28,13 +28,13 @@ class MeshWorld:
     Parameters
     ----------
     space : ``SE3(..)``, or a Box of 3 axes
-        Poses of the body's frame; in a Box the body does not turn.
+        Poses of the body's frame; in a Box the body does not rotate.
     body : TriangleMesh
         In the body's frame.
     obstacles : sequence of TriangleMesh
         In the frame of the space, at least one.
     resolution : float, or a pair of floats for SE3
-        Largest distance between neighbouring states, or largest way and largest turn (``arccos |q . q'|``).
+        Largest distance between neighbouring states, or largest distance and largest rotation (``arccos |q . q'|``).
 
     Raises
     ------

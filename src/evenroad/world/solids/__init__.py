@@ -3,5 +3,3 @@
 from evenroad.world.solids.oriented_box import OrientedBox as OrientedBox
 from evenroad.world.solids.oriented_box import shell as shell
 from evenroad.world.solids.solid_world import SolidWorld as SolidWorld
-from evenroad.world.solids.turns import heading_turn as heading_turn
-from evenroad.world.solids.turns import quaternion_turn as quaternion_turn

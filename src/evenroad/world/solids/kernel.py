@@ -9,8 +9,8 @@ import numpy.typing as npt
 from numba import njit
 
 from evenroad.world.bisection_kernel import next_between
+from evenroad.world.solids.oriented_box import BoxTable
 from evenroad.world.solids.overlap import first_contact
-from evenroad.world.solids.tables import BoxTable
 
 _SMALL_ANGLE = 1e-8
 """Below it a chord and its arc agree to the last bit, and sin(angle) is too small to divide by safely."""
@@ -39,7 +39,7 @@ def motions_are_free(
     a: npt.NDArray[np.float64],
     b: npt.NDArray[np.float64],
     step: float,
-    turn_step: float,
+    rotation_step: float,
     body: BoxTable,
     reach: float,
     obstacles: BoxTable,
@@ -47,7 +47,7 @@ def motions_are_free(
 ) -> npt.NDArray[np.bool_]:
     """Return which motions between poses, (m, 7), are free at both ends and at states between, in bisection order.
 
-    Neighbouring states are at most `step` and, as quaternions, `turn_step` radians apart.
+    Neighbouring states are at most `step` and, as quaternions, `rotation_step` radians apart.
     """
     free = np.empty(len(a), dtype=np.bool_)
     near = np.empty(len(obstacles.centre), dtype=np.int64)
@@ -58,18 +58,18 @@ def motions_are_free(
         free[row] = count == 0 or (
             first_contact(a[row], body, obstacles, near[:count], planar, work) < 0
             and first_contact(b[row], body, obstacles, near[:count], planar, work) < 0
-            and _way_is_free(
-                a[row], b[row], step, turn_step, body, obstacles, near[:count], planar, state, work
+            and _motion_is_free(
+                a[row], b[row], step, rotation_step, body, obstacles, near[:count], planar, state, work
             )
         )
     return free
 
 
 @njit(cache=True, nogil=True)
-def _way_is_free(a, b, step, turn_step, body, obstacles, near, planar, state, work):  # type: ignore[no-untyped-def]
+def _motion_is_free(a, b, step, rotation_step, body, obstacles, near, planar, state, work):  # type: ignore[no-untyped-def]
     length = math.sqrt((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2 + (b[2] - a[2]) ** 2)
     angle = _angle(a, b)
-    segments = max(math.ceil(length / step), math.ceil(angle / turn_step))
+    segments = max(math.ceil(length / step), math.ceil(angle / rotation_step))
     level, multiple, number = next_between(1, -1, segments)
     while number > 0:
         # Two weights, not one fraction: a motion and its reverse then have the same states.
@@ -95,11 +95,11 @@ def _put_between(a, b, from_a, from_b, angle, state):  # type: ignore[no-untyped
 @njit(cache=True, nogil=True)
 def _angle(a, b):  # type: ignore[no-untyped-def]
     """Return the angle between the quaternions; unlike arccos it keeps all digits of small angles (Kahan)."""
-    apart, together = 0.0, 0.0
+    difference, together = 0.0, 0.0
     for k in range(3, 7):
-        apart += (a[k] - b[k]) ** 2
+        difference += (a[k] - b[k]) ** 2
         together += (a[k] + b[k]) ** 2
-    return 2.0 * math.atan2(math.sqrt(apart), math.sqrt(together))
+    return 2.0 * math.atan2(math.sqrt(difference), math.sqrt(together))
 
 
 @njit(cache=True, nogil=True)

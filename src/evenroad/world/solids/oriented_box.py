@@ -1,16 +1,28 @@
-"""OrientedBox: a box or rectangle, turned as one likes, in the plane or in space."""
+"""OrientedBox: a box or rectangle with any rotation, in the plane or in space; and tables of them for compiled code."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._checks import as_row
 from evenroad.errors import InvalidValue
-from evenroad.space.axes import as_row
-from evenroad.world.solids.turns import as_turn
+from evenroad.geometry.mesh import TriangleMesh
+from evenroad.geometry.pose import as_rotation
+from evenroad.geometry.shapes import Box
+
+_FACES_OF_A_BOX = np.array(
+    [
+        (0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5),
+        (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6),
+        (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3),
+    ]
+)  # fmt: skip
+"""Triangles of a box, two a face, whose corner number 4 i + 2 j + k is on the upper side of the axes with a 1."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +39,8 @@ class OrientedBox:
         Half of its lengths along its own axes, >= 0.
     rotation : sequence of 4 or 9 floats, optional
         From the box's own axes to those of the frame that `centre` is in, the rows of the matrix one after the
-        other (:func:`heading_turn` and :func:`quaternion_turn` make them); default: not turned.
+        other (:func:`evenroad.geometry.rotation_from_heading` and
+        :func:`evenroad.geometry.rotation_from_quaternion` make them); default: not turned.
     name : str
         What explanations call it.
 
@@ -49,7 +62,7 @@ class OrientedBox:
         half_extents = as_row("half_extents", self.half_extents, len(centre))
         if min(half_extents) < 0.0:
             raise InvalidValue(f"half_extents must be >= 0, got {self.half_extents!r}")
-        rotation = as_turn(self.rotation, len(centre))
+        rotation = as_rotation(self.rotation, len(centre))
         for field, value in (("centre", centre), ("half_extents", half_extents), ("rotation", rotation)):
             object.__setattr__(self, field, value)
 
@@ -69,6 +82,11 @@ class OrientedBox:
         centre = [(least + most) / 2.0 for least, most in zip(lows, highs, strict=True)]
         half_extents = [(most - least) / 2.0 for least, most in zip(lows, highs, strict=True)]
         return cls(centre, half_extents, name=name)
+
+    @classmethod
+    def of(cls, box: Box) -> OrientedBox:
+        """Return a box of :mod:`evenroad.geometry`, which is one in space, with its pose."""
+        return cls(box.pose.xyz, [0.5 * extent for extent in box.extents], box.pose.rotation)
 
     @property
     def dim(self) -> int:
@@ -104,3 +122,57 @@ def shell(box: OrientedBox) -> tuple[OrientedBox, ...]:
             half_extents = [0.0 if k == axis else extent for k, extent in enumerate(box.half_extents)]
             rectangles.append(OrientedBox(centre.tolist(), half_extents, box.rotation, box.name))
     return tuple(rectangles)
+
+
+def surface_of(box: OrientedBox) -> TriangleMesh:
+    """Return the surface of a box in space as 12 triangles.
+
+    Raises
+    ------
+    InvalidValue
+        If the box lies in the plane.
+    """
+    if box.dim != 3:
+        raise InvalidValue("only boxes in space have a surface of triangles")
+    return TriangleMesh(box.corners, _FACES_OF_A_BOX, box.name)
+
+
+class BoxTable(NamedTuple):
+    """Boxes in space, one a row; read-only.
+
+    Attributes
+    ----------
+    centre : float64 array, shape (m, 3)
+    half : float64 array, shape (m, 3)
+        Half extents.
+    axes : float64 array, shape (m, 3, 3)
+        ``axes[i, :, k]`` is the direction of the k-th own axis of box i.
+    low, high : float64 array, shape (m, 3)
+        Corners of the smallest boxes that are not turned and hold them.
+    """
+
+    centre: npt.NDArray[np.float64]
+    half: npt.NDArray[np.float64]
+    axes: npt.NDArray[np.float64]
+    low: npt.NDArray[np.float64]
+    high: npt.NDArray[np.float64]
+
+
+def box_table(boxes: Sequence[OrientedBox]) -> BoxTable:
+    """Return the table of `boxes`, of one dimension; those of the plane become slabs of z from -1 to 1."""
+    m = len(boxes)
+    centre, half, axes = np.zeros((m, 3)), np.ones((m, 3)), np.tile(np.eye(3), (m, 1, 1))
+    for row, box in enumerate(boxes):
+        centre[row, : box.dim] = box.centre
+        half[row, : box.dim] = box.half_extents
+        axes[row, : box.dim, : box.dim] = box.matrix
+    reach = (np.abs(axes) * half[:, np.newaxis, :]).sum(axis=2)
+    table = BoxTable(centre, half, axes, centre - reach, centre + reach)
+    for array in table:
+        array.setflags(write=False)
+    return table
+
+
+def reach_of(boxes: Sequence[OrientedBox]) -> float:
+    """Return how far points of `boxes` are at most from the origin of their frame, with room for rounding."""
+    return (1.0 + 1e-12) * max(float(np.linalg.norm(box.corners, axis=1).max()) for box in boxes)

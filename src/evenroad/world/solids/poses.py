@@ -11,7 +11,7 @@ from evenroad.errors import InvalidValue
 from evenroad.space import SO3, Box, Circle, Product, Space
 
 RigidSpace: TypeAlias = Product | Box
-"""``SE2(..)``, ``SE3(..)``, or a `Box` of 2 or 3 axes for a body that does not turn."""
+"""``SE2(..)``, ``SE3(..)``, or a `Box` of 2 or 3 axes for a body that does not rotate."""
 
 
 def body_dimension(space: Space) -> int:
@@ -25,15 +25,15 @@ def body_dimension(space: Space) -> int:
     if isinstance(space, Box) and space.dim in (2, 3):
         return space.dim
     if isinstance(space, Product) and len(space.parts) == 2 and isinstance(space.parts[0], Box):
-        position, turn = space.parts
+        position, rotation = space.parts
         for dim, kind in ((2, Circle), (3, SO3)):
-            if position.dim == dim and isinstance(turn, kind):
+            if position.dim == dim and isinstance(rotation, kind):
                 return dim
     raise InvalidValue(f"space must be SE2(..), SE3(..) or a Box of 2 or 3 axes, got {space!r}")
 
 
-def turns(space: Space) -> bool:
-    """Return whether bodies turn in this one of the spaces above."""
+def rotates(space: Space) -> bool:
+    """Return whether bodies rotate in such a space."""
     return isinstance(space, Product)
 
 
@@ -46,9 +46,9 @@ def as_poses(q: npt.NDArray[np.float64], space: Space) -> npt.NDArray[np.float64
     poses = np.zeros((len(q), 7))
     poses[:, :dim] = q[:, :dim]
     poses[:, 3] = 1.0
-    if turns(space) and dim == 3:
+    if rotates(space) and dim == 3:
         poses[:, 3:] = q[:, 3:]
-    elif turns(space):
+    elif rotates(space):
         half = _heading(q) / 2.0
         poses[:, 3], poses[:, 6] = np.cos(half), np.sin(half)
     return poses
@@ -57,12 +57,12 @@ def as_poses(q: npt.NDArray[np.float64], space: Space) -> npt.NDArray[np.float64
 def as_pose_pair(
     a: npt.NDArray[np.float64], b: npt.NDArray[np.float64], space: Space
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """Return the ends of motions as poses such that the shorter arc between their quaternions is the space's way."""
+    """Return start and end poses whose quaternions have signs such that the shorter arc is the space's path."""
     first, second = as_poses(a, space), as_poses(b, space)
-    if turns(space) and body_dimension(space) == 3:
+    if rotates(space) and body_dimension(space) == 3:
         p, q = first[:, 3:].T, second[:, 3:].T
         other_sign = p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3] < 0.0
-    elif turns(space):
+    elif rotates(space):
         # Exactly opposite headings: their quaternions' product is zero up to rounding and decides nothing.
         other_sign = np.abs(_heading(b) - _heading(a)) > np.pi
     else:

@@ -16,9 +16,8 @@ from evenroad.space.axes import as_row
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.bisection import require_few_segments
 from evenroad.world.solids.kernel import contacts, motions_are_free
-from evenroad.world.solids.oriented_box import OrientedBox
+from evenroad.world.solids.oriented_box import BoxTable, OrientedBox, box_table, reach_of
 from evenroad.world.solids.poses import RigidSpace, as_pose_pair, as_poses, body_dimension
-from evenroad.world.solids.tables import BoxTable, box_table, reach_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,20 +28,20 @@ class SolidWorld:
     tests are exact up to rounding, about 1e-7 of the boxes' sizes.  Boxes are solid.  For obstacles that are
     surfaces, with room inside, use rectangles: boxes with a half extent of zero, or :func:`shell`.
 
-    A motion is divided into ``n = max(ceil(way / step), ceil(turn / turn_step))`` segments and free if all n + 1
-    ends of segments are; they are tested in bisection order, the ends first.
+    A motion is divided into ``n = max(ceil(distance / step), ceil(rotation / rotation_step))`` segments and free if
+    all n + 1 ends of segments are; they are tested in bisection order, the ends first.
 
     Parameters
     ----------
     space : ``SE2(..)``, ``SE3(..)``, or a Box of 2 or 3 axes
-        Poses of the body's frame; in a Box the body does not turn.
+        Poses of the body's frame; in a Box the body does not rotate.
     body : sequence of OrientedBox
         In the body's frame; at least one.
     obstacles : sequence of OrientedBox
         In the frame of the space.  All boxes are of the plane for SE2 and a Box of 2 axes, else of space.
     resolution : float, or a pair of floats for SE2 and SE3
-        `step` and `turn_step`: the largest way and turn between neighbouring states, > 0.  Turns are measured as the
-        space does: headings in radians, quaternions by ``arccos |q . q'|``.
+        `step` and `rotation_step`: the largest distance and rotation between neighbouring states, > 0.  Rotations are
+        measured as the space does: headings in radians, quaternions by ``arccos |q . q'|``.
 
     Raises
     ------
@@ -135,17 +134,19 @@ def _as_boxes(name: str, boxes: Sequence[OrientedBox], dim: int) -> tuple[Orient
 def _as_steps(
     resolution: float | Sequence[float], space: RigidSpace
 ) -> tuple[float | tuple[float, ...], tuple[float, float]]:
-    """Return the resolution as a value, and the steps of way and quaternion that it asks for."""
+    """Return the resolution as a value, and the steps of position and quaternion that follow from it."""
     position = space.parts[0] if isinstance(space, Product) else space
     assert isinstance(position, Box)  # as body_dimension has seen to
     value: float | tuple[float, ...]
     if isinstance(space, Product):
         if not isinstance(resolution, Sequence | np.ndarray) or isinstance(resolution, str):
-            raise InvalidValue(f"resolution must be a way and a turn for SE2 and SE3, got {resolution!r}")
+            raise InvalidValue(
+                f"resolution must be a distance and a rotation for SE2 and SE3, got {resolution!r}"
+            )
         value = as_row("resolution", resolution, 2)
-        way, turn = (require_positive("resolution", number) for number in value)
-        # A heading turns twice as far as its quaternion.
-        steps = (way, turn if position.dim == 3 else turn / 2.0)
+        distance, rotation = (require_positive("resolution", number) for number in value)
+        # A heading changes twice as much as its quaternion.
+        steps = (distance, rotation if position.dim == 3 else rotation / 2.0)
     else:
         value = require_positive("resolution", resolution)
         steps = (value, 1.0)

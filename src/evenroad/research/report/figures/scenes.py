@@ -13,6 +13,7 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from evenroad.errors import NotAvailable
+from evenroad.geometry import rotation_from_quaternion
 from evenroad.points import draw
 from evenroad.research.bench.task import Problem
 from evenroad.research.problems import PROBLEMS
@@ -24,7 +25,7 @@ from evenroad.space import Space
 from evenroad.viz import draw_plan, style
 from evenroad.viz.arm import draw_arm_plan
 from evenroad.world.gridmap.disk import DiskWorld
-from evenroad.world.solids import OrientedBox, SolidWorld, quaternion_turn
+from evenroad.world.solids import OrientedBox, SolidWorld
 
 SCENES = ("maze-1", "maze-2", "maze-3", "chain-10d", "cubicles", "twistycool", "ur5-c", "ur5-a")
 """Problems that have a picture."""
@@ -171,7 +172,7 @@ def _draw_body(axes: Axes3D, body: Iterable[OrientedBox], poses: npt.NDArray[np.
         colour = ends.get(number, shade)
         turn, place = np.eye(3), pose[:3]
         if len(pose) == 7:
-            turn = np.array(quaternion_turn(pose[3:].tolist())).reshape(3, 3)
+            turn = np.array(rotation_from_quaternion(pose[3:].tolist())).reshape(3, 3)
         faces = np.concatenate([_faces(box.corners @ turn.T + place) for box in boxes])
         strong = number in ends
         axes.add_collection3d(

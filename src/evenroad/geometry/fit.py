@@ -1,4 +1,4 @@
-"""Few capsules around a mesh: every triangle lies within one of them."""
+"""From shapes to capsules that contain them."""
 
 from __future__ import annotations
 
@@ -9,8 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.robot.fit_points import Fitted, capsule_around, rough_capsule_around, volume
+from evenroad.errors import InvalidValue
+from evenroad.geometry.fit_points import Fitted, capsule_around, rough_capsule_around, volume
+from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
 
+MOST_SIDE_BY_SIDE = 4
+"""Most capsules that a box is covered with."""
 MOST_CAPSULES = 4
 """Most capsules of a mesh."""
 WORTHWHILE = 0.9
@@ -20,6 +24,76 @@ _LONGEST_EDGE = 1.0 / 6.0
 """Longer edges, in parts of the mesh's extent, are divided, so that large triangles can be shared out, too."""
 _LOOKED_AT = 300
 """Triangles by which splits are compared."""
+
+
+def fit_capsules(shape: Shape) -> tuple[Capsule, ...]:
+    """Return capsules, in the frame of the shape's link, whose union contains a shape.
+
+    A sphere and a capsule are kept.  A cylinder gets the smallest capsule around it on its axis.  A box gets capsules
+    along its longest edge, side by side along the next: as many as make their cross-sections near square, at most
+    4.  A mesh gets up to 4 capsules, each around some of its triangles (see :func:`capsules_around_mesh`).
+
+    Raises
+    ------
+    NotAvailable, BrokenFile
+        As :func:`evenroad.geometry.load_mesh`, for a mesh.
+    InvalidValue
+        If the shape is a point cloud.
+    """
+    rotation, xyz = shape.pose.rotation_matrix, np.array(shape.pose.xyz)
+    # Rotating and shifting round in the last digits, which must not cost a vertex its cover.
+    exact = isinstance(shape, Sphere | Capsule)
+
+    def placed(fitted: Fitted) -> Capsule:
+        (ax, ay, az), (bx, by, bz) = ((rotation @ end + xyz).tolist() for end in fitted[:2])
+        radius = fitted[2]
+        slack = 0.0 if exact else 1e-9 * (radius + np.abs(xyz).max())
+        return Capsule((ax, ay, az), (bx, by, bz), float(radius + slack), link=shape.link)
+
+    return tuple(map(placed, _fitted(shape)))
+
+
+def _fitted(shape: Shape) -> list[Fitted]:
+    """Return the capsules in the shape's own frame."""
+    if isinstance(shape, Mesh):
+        mesh = shape.triangles
+        return capsules_around_mesh(mesh.vertices, mesh.triangles)
+    if isinstance(shape, Box):
+        return _around_box(np.array(shape.size))
+    if isinstance(shape, Sphere):
+        return [(np.zeros(3), np.zeros(3), shape.radius)]
+    if isinstance(shape, Capsule):
+        return [(np.array(shape.a), np.array(shape.b), shape.radius)]
+    if isinstance(shape, Cylinder):
+        radius, half = smallest_around_prism(shape.radius, 0.5 * shape.length)
+        end = np.array([0.0, 0.0, half])
+        return [(-end, end, radius)]
+    raise InvalidValue(f"no capsules are fitted to a {shape}")
+
+
+def smallest_around_prism(reach: float, half: float) -> tuple[float, float]:
+    """Return radius and half length of the smallest capsule around a prism on its axis.
+
+    The prism reaches `reach` from its axis and `half` along it to either side.  A segment of half length h needs the
+    radius ``sqrt(reach^2 + (half - h)^2)``; of h in [0, half] the one of least volume is taken, to 1 %.
+    """
+    h = np.linspace(0.0, half, 101)
+    radius = np.hypot(reach, half - h)
+    volume = math.pi * radius**2 * (2.0 * h + 4.0 / 3.0 * radius)
+    best = int(volume.argmin())
+    return float(radius[best]), float(h[best])
+
+
+def _around_box(
+    size: npt.NDArray[np.float64],
+) -> list[tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], float]]:
+    thin, middle, long = np.argsort(size, kind="stable")
+    count = int(np.clip(round(size[middle] / size[thin]), 1, MOST_SIDE_BY_SIDE))
+    width = size[middle] / count
+    radius, half = smallest_around_prism(0.5 * math.hypot(size[thin], width), 0.5 * size[long])
+    along = half * np.eye(3)[long]
+    centres = [(i - 0.5 * (count - 1)) * width * np.eye(3)[middle] for i in range(count)]
+    return [(centre - along, centre + along, radius) for centre in centres]
 
 
 @dataclass(frozen=True, eq=False)

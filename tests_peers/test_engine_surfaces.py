@@ -2,22 +2,22 @@
 
 import numpy as np
 import pytest
-
-from evenroad.robot.capsule import Capsule
-from evenroad.robot.reference.bodies import capsule_geometries
-from evenroad.robot.reference.surface import link_surfaces, shape_surface
-from evenroad.robot.robot import Robot
-from evenroad.robot.scene import Obstacle
 from tests.robot.kernel_arms import random_rotation, ur5
 from tests.robot.oracle import obstacle_distance, point_segment_distance
 
+from evenroad.geometry.shapes import Capsule
+from evenroad.robot.reference.engine_world import capsule_shapes
+from evenroad.robot.robot import Robot
+from evenroad.robot.scene import Obstacle
+from tests_peers.engines.surface import link_surfaces, shape_surface
+
 TURN = random_rotation(np.random.default_rng(4))
 SHAPES = {
-    "box": (Obstacle("b", "box", (0.2, 0.3, 0.5), (1.0, 2.0, 3.0), TURN), 0.03),
-    "sphere": (Obstacle("s", "sphere", (0.2,), (1.0, 2.0, 3.0), TURN), 4 / 3 * np.pi * 0.2**3),
-    "cylinder": (Obstacle("c", "cylinder", (0.2, 0.5), (1.0, 2.0, 3.0), TURN), np.pi * 0.2**2 * 0.5),
+    "box": (Obstacle.of("b", "box", (0.2, 0.3, 0.5), (1.0, 2.0, 3.0), TURN), 0.03),
+    "sphere": (Obstacle.of("s", "sphere", (0.2,), (1.0, 2.0, 3.0), TURN), 4 / 3 * np.pi * 0.2**3),
+    "cylinder": (Obstacle.of("c", "cylinder", (0.2, 0.5), (1.0, 2.0, 3.0), TURN), np.pi * 0.2**2 * 0.5),
     "capsule": (
-        Obstacle("c", "capsule", (0.2, 0.5), (1.0, 2.0, 3.0), TURN),
+        Obstacle.of("c", "capsule", (0.2, 0.5), (1.0, 2.0, 3.0), TURN),
         np.pi * 0.2**2 * 0.5 + 4 / 3 * np.pi * 0.2**3,
     ),
 }
@@ -37,7 +37,7 @@ def edges(surface):
 
 @pytest.mark.parametrize(("obstacle", "exact"), SHAPES.values(), ids=SHAPES)
 def test_the_surface_of_a_shape_is_closed_and_holds_nearly_its_volume(obstacle, exact):
-    surface = shape_surface(obstacle)
+    surface = shape_surface(obstacle.body)
     pairs, counts = edges(surface)
     assert (counts == 1).all(), "each edge once in each direction"
     assert {(b, a) for a, b in pairs.tolist()} == set(map(tuple, pairs.tolist()))
@@ -46,7 +46,7 @@ def test_the_surface_of_a_shape_is_closed_and_holds_nearly_its_volume(obstacle, 
 
 @pytest.mark.parametrize(("obstacle", "exact"), SHAPES.values(), ids=SHAPES)
 def test_corners_lie_on_the_shape(obstacle, exact):
-    corners = shape_surface(obstacle).vertices
+    corners = shape_surface(obstacle.body).vertices
     outwards = corners + 1e-6 * (corners - np.array(obstacle.xyz)) / np.linalg.norm(
         corners - np.array(obstacle.xyz), axis=1, keepdims=True
     )
@@ -56,16 +56,16 @@ def test_corners_lie_on_the_shape(obstacle, exact):
 
 @pytest.mark.parametrize("b", [(0.4, -0.1, 0.2), (0.1, 0.2, 0.3), (0.1, 0.2, -1.0)])
 def test_corners_of_a_capsules_surface_are_at_its_radius(b):
-    capsule = Capsule("link", (0.1, 0.2, 0.3), b, 0.05)
+    capsule = Capsule((0.1, 0.2, 0.3), b, 0.05, link="link")
     robot = Robot("one", ("link",), (), (capsule,), (), ())
-    corners = link_surfaces(capsule_geometries(robot))["link"].vertices
+    corners = link_surfaces(capsule_shapes(robot))["link"].vertices
     a, b = (np.broadcast_to(np.array(end), corners.shape) for end in (capsule.a, capsule.b))
     np.testing.assert_allclose(point_segment_distance(corners, a, b), 0.05, atol=1e-12)
 
 
 def test_the_shapes_of_a_link_are_one_surface():
     robot = ur5()
-    shapes = capsule_geometries(robot)
+    shapes = capsule_shapes(robot)
     surfaces = link_surfaces(shapes)
     assert set(surfaces) == set(robot.links)
     parts = [shape_surface(shape) for shape in shapes if shape.link == "forearm"]

@@ -10,15 +10,14 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._extras import require_extra
-from evenroad.robot.geometry import Geometry
+from evenroad.geometry.shapes import Shape
 from evenroad.robot.kinematics import joint_values
-from evenroad.robot.reference.coal_shapes import asking_for_contacts, coal_shape, placement
-from evenroad.robot.reference.coal_world import tests_of
+from evenroad.robot.reference.coal_world import asking_for_contacts, coal_shape, tests_of
 from evenroad.robot.reference.engine_world import EngineWorld
-from evenroad.robot.reference.urdf_text import as_urdf
 from evenroad.robot.robot import Robot
-from evenroad.robot.scene import Obstacle, Scene
-from evenroad.world.mesh.trees import require_coal
+from evenroad.robot.scene import Scene
+from evenroad.world.mesh.coal import require_coal
+from tests_peers.engines.urdf_text import as_urdf
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,23 +83,23 @@ def _coordinates(model: Any, robot: Robot, q: npt.ArrayLike) -> npt.NDArray[np.f
     return coordinates
 
 
-def _bodies(pinocchio: Any, model: Any, robot: Robot, scene: Scene, geometries: Sequence[Geometry]) -> Any:
+def _bodies(pinocchio: Any, model: Any, robot: Robot, scene: Scene, shapes: Sequence[Shape]) -> Any:
     """Return pinocchio's shapes, the robot's first, then the obstacles, with the pairs to be tested."""
     coal = require_coal()
     bodies = pinocchio.GeometryModel()
 
-    def add(name: str, shape: Geometry | Obstacle, link: str) -> None:
+    def add(name: str, shape: Shape, link: str) -> None:
         frame = model.getFrameId(link, pinocchio.FrameType.BODY)
-        place = model.frames[frame].placement * pinocchio.SE3(placement(shape))
+        place = model.frames[frame].placement * pinocchio.SE3(shape.pose.matrix)
         joint = model.frames[frame].parentJoint
         solid = coal_shape(coal, shape)
         bodies.addGeometryObject(pinocchio.GeometryObject(name, joint, frame, place, solid))
 
-    for i, geometry in enumerate(geometries):
-        add(f"shape {i}", geometry, geometry.link)
+    for i, shape in enumerate(shapes):
+        add(f"shape {i}", shape, shape.link)
     for i, obstacle in enumerate(scene.obstacles):
-        add(f"obstacle {i}", obstacle, robot.links[0])
-    for i, other, is_obstacle in tests_of(robot, scene, geometries):
-        second = len(geometries) + other if is_obstacle else other
+        add(f"obstacle {i}", obstacle.body, robot.links[0])
+    for i, other, is_obstacle in tests_of(robot, scene, shapes):
+        second = len(shapes) + other if is_obstacle else other
         bodies.addCollisionPair(pinocchio.CollisionPair(i, second))
     return bodies

@@ -9,17 +9,14 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from evenroad.errors import BrokenFile, NotAvailable
-from evenroad.robot.capsule import Capsule
-from evenroad.robot.fit import fit_capsules, smallest_around_prism
-from evenroad.robot.fit_mesh import MOST_CAPSULES, capsules_around_mesh
-from evenroad.robot.fit_points import capsule_around, volume
-from evenroad.robot.geometry import Geometry
-from evenroad.robot.meshes import find_mesh, load_triangles
-from evenroad.robot.rotation import rotation_from_rpy
-from evenroad.robot.volume import shape_volume, union_volume
+from evenroad.geometry.fit import MOST_CAPSULES, capsules_around_mesh, fit_capsules, smallest_around_prism
+from evenroad.geometry.fit_points import capsule_around, union_volume, volume
+from evenroad.geometry.mesh import load_mesh
+from evenroad.geometry.pose import Pose, rotation_from_rpy
+from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Sphere
 
 XYZ = (0.3, -0.2, 0.5)
-TURNED = rotation_from_rpy(0.4, -1.1, 2.0)
+PLACE = Pose(XYZ, rotation_from_rpy(0.4, -1.1, 2.0))
 lengths = st.floats(0.005, 2.0)
 
 
@@ -36,45 +33,45 @@ def _outside(points, capsules):
     return np.array(worst)
 
 
-def _in_link(points, geometry):
-    return points @ np.reshape(geometry.rotation, (3, 3)).T + geometry.xyz
+def _in_link(points, shape):
+    return points @ np.reshape(shape.pose.rotation, (3, 3)).T + shape.pose.xyz
 
 
 @settings(max_examples=40, deadline=None)
 @given(size=st.tuples(lengths, lengths, lengths))
 def test_capsules_contain_every_corner_and_face_of_a_box(size):
-    geometry = Geometry("x", "box", size, XYZ, TURNED)
+    shape = Box(size, pose=PLACE, link="x")
     steps = np.linspace(-0.5, 0.5, 7)
     grid = np.array([[x, y, z] for x in steps for y in steps for z in steps]) * size
-    assert (_outside(_in_link(grid, geometry), fit_capsules(geometry)) <= 0).all()
+    assert (_outside(_in_link(grid, shape), fit_capsules(shape)) <= 0).all()
 
 
 @settings(max_examples=40, deadline=None)
 @given(radius=lengths, length=lengths)
 def test_a_capsule_contains_the_rims_of_a_cylinder(radius, length):
-    geometry = Geometry("x", "cylinder", (radius, length), XYZ, TURNED)
+    shape = Cylinder(radius, length, pose=PLACE, link="x")
     angle = np.linspace(0, 2 * np.pi, 24)
     rims = [
         np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(24, z)])
         for z in (-length / 2, length / 2)
     ]
-    capsules = fit_capsules(geometry)
+    capsules = fit_capsules(shape)
     assert len(capsules) == 1
-    assert (_outside(_in_link(np.concatenate(rims), geometry), capsules) <= 0).all()
+    assert (_outside(_in_link(np.concatenate(rims), shape), capsules) <= 0).all()
 
 
 def test_a_sphere_and_a_capsule_are_kept():
-    (ball,) = fit_capsules(Geometry("x", "sphere", (0.1,), XYZ, TURNED))
-    assert ball == Capsule("x", XYZ, XYZ, 0.1)
-    (capsule,) = fit_capsules(Geometry("x", "capsule", (0.1, 0.4), XYZ, TURNED))
+    (ball,) = fit_capsules(Sphere(0.1, pose=PLACE, link="x"))
+    assert ball == Capsule(XYZ, XYZ, 0.1, link="x")
+    (capsule,) = fit_capsules(Capsule.along_z(0.1, 0.4, PLACE, "x"))
     assert capsule.radius == 0.1
     assert math.dist(capsule.a, capsule.b) == pytest.approx(0.4)
 
 
 def test_a_flat_box_gets_capsules_side_by_side_and_they_add_less_than_one():
-    flat = Geometry("x", "box", (0.1, 0.3, 0.8), (0, 0, 0), rotation_from_rpy(0, 0, 0))
+    flat = Box((0.1, 0.3, 0.8), link="x")
     radius, half = smallest_around_prism(0.5 * math.hypot(0.1, 0.3), 0.4)
-    one = Capsule("x", (0, 0, -half), (0, 0, half), radius)
+    one = Capsule((0, 0, -half), (0, 0, half), radius, link="x")
     capsules = fit_capsules(flat)
     assert len(capsules) == 3
     assert union_volume(capsules) < 0.7 * union_volume([one])
@@ -86,7 +83,7 @@ def test_a_flat_box_gets_capsules_side_by_side_and_they_add_less_than_one():
 )
 def test_a_capsule_around_points_contains_every_one(points):
     a, b, radius = capsule_around(points)
-    assert (_outside(points, [Capsule("x", tuple(a), tuple(b), radius)]) <= 1e-9).all()
+    assert (_outside(points, [Capsule(tuple(a), tuple(b), radius, link="x")]) <= 1e-9).all()
 
 
 @settings(max_examples=25, deadline=None)
@@ -99,7 +96,8 @@ def test_every_triangle_of_a_mesh_lies_within_one_of_its_capsules_union(vertices
     rng = np.random.default_rng(seed)
     triangles = rng.integers(0, 12, (10, 3))
     capsules = [
-        Capsule("x", tuple(a), tuple(b), radius) for a, b, radius in capsules_around_mesh(vertices, triangles)
+        Capsule(tuple(a), tuple(b), radius, link="x")
+        for a, b, radius in capsules_around_mesh(vertices, triangles)
     ]
     assert 1 <= len(capsules) <= MOST_CAPSULES
     weights = rng.dirichlet(np.ones(3), (10, 20))
@@ -142,9 +140,9 @@ def test_the_same_mesh_gives_the_same_capsules():
 def test_a_mesh_file_is_contained_with_its_scale_and_place(tmp_path, suffix):
     file = tmp_path / f"part.{suffix}"
     trimesh.creation.capsule(0.5, 0.1).export(file)
-    geometry = Geometry("x", "mesh", (1.0, 2.0, -1.0), XYZ, TURNED, file)
-    vertices, _ = load_triangles(file)
-    assert (_outside(_in_link(vertices * geometry.size, geometry), fit_capsules(geometry)) <= 0).all()
+    shape = Mesh(file, (1.0, 2.0, -1.0), pose=PLACE, link="x")
+    vertices = load_mesh(file).vertices
+    assert (_outside(_in_link(vertices * shape.scale, shape), fit_capsules(shape)) <= 0).all()
 
 
 @pytest.mark.parametrize(
@@ -160,66 +158,37 @@ def test_a_mesh_file_is_contained_with_its_scale_and_place(tmp_path, suffix):
 def test_a_mesh_that_is_broken_or_empty_is_an_error_and_never_a_free_pass(tmp_path, name, content, says):
     (tmp_path / name).write_bytes(content)
     with pytest.raises(BrokenFile, match=says):
-        load_triangles(tmp_path / name)
+        load_mesh(tmp_path / name)
 
 
 def test_without_what_reads_a_mesh_the_extra_is_named(tmp_path, monkeypatch):
     trimesh.creation.box((1, 2, 3)).export(tmp_path / "part.stl")
-    geometry = Geometry("x", "mesh", (1.0, 1.0, 1.0), XYZ, TURNED, tmp_path / "part.stl")
+    shape = Mesh(tmp_path / "part.stl", pose=PLACE, link="x")
     monkeypatch.setitem(sys.modules, "trimesh", None)
     with pytest.raises(NotAvailable, match=r"part\.stl needs the extra: pip install 'evenroad\[mesh\]'"):
-        fit_capsules(geometry)
-
-
-@pytest.mark.parametrize(
-    ("name", "place"),
-    [
-        ("part.stl", "my_robot/urdf/part.stl"),
-        ("../meshes/part.stl", "my_robot/meshes/part.stl"),
-        ("package://my_robot/meshes/part.stl", "my_robot/meshes/part.stl"),
-        ("package://other/part.stl", "other/part.stl"),
-        ("package://in_ros/part.stl", "ros/in_ros/part.stl"),
-        ("package://my%20own/part.stl", "my own/part.stl"),
-    ],
-)
-def test_meshes_are_found_where_urdfs_and_ros_put_them(tmp_path, monkeypatch, name, place):
-    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path / "ros"))
-    (tmp_path / "my_robot" / "urdf").mkdir(parents=True)
-    (tmp_path / "my_robot" / "meshes").mkdir()
-    (tmp_path / place).parent.mkdir(parents=True, exist_ok=True)
-    (tmp_path / place).write_bytes(b"")
-    found = find_mesh(name, tmp_path / "my_robot" / "urdf" / "arm.urdf", "x")
-    assert found.resolve() == (tmp_path / place).resolve()
-
-
-def test_a_file_url_is_absolute(tmp_path):
-    (tmp_path / "part.stl").write_bytes(b"")
-    assert (
-        find_mesh(f"file://{tmp_path}/part.stl", tmp_path / "far" / "arm.urdf", "x") == tmp_path / "part.stl"
-    )
+        fit_capsules(shape)
 
 
 def test_volumes_are_those_of_the_shapes(tmp_path):
-    identity = rotation_from_rpy(0, 0, 0)
     mesh, soup = tmp_path / "a.stl", tmp_path / "b.stl"
     box = trimesh.creation.box((1, 2, 3))
     box.export(mesh)
     trimesh.Trimesh(box.vertices, box.faces[:-1], process=False).export(soup)
-    for geometry, expected in (
-        (Geometry("x", "box", (1, 2, 3), XYZ, identity), 6.0),
-        (Geometry("x", "mesh", (1, 1, -2), XYZ, identity, mesh), 12.0),
-        (Geometry("x", "mesh", (1, 1, 1), XYZ, identity, soup), 6.0),
-        (Geometry("x", "sphere", (1,), XYZ, identity), 4 / 3 * math.pi),
-        (Geometry("x", "cylinder", (1, 2), XYZ, identity), 2 * math.pi),
-        (Geometry("x", "capsule", (1, 2), XYZ, identity), 2 * math.pi + 4 / 3 * math.pi),
+    for shape, expected in (
+        (Box((1, 2, 3)), 6.0),
+        (Mesh(mesh, (1, 1, -2)), 12.0),
+        (Mesh(soup), 6.0),
+        (Sphere(1), 4 / 3 * math.pi),
+        (Cylinder(1, 2), 2 * math.pi),
+        (Capsule((0, 0, 0), (2, 0, 0), 1), 2 * math.pi + 4 / 3 * math.pi),
     ):
-        assert shape_volume(geometry) == pytest.approx(expected)
+        assert shape.volume == pytest.approx(expected)
 
 
 def test_the_volume_of_a_union_counts_what_overlaps_once():
-    capsule = Capsule("x", (0, 0, 0), (0, 0, 1), 0.2)
+    capsule = Capsule((0, 0, 0), (0, 0, 1), 0.2, link="x")
     expected = math.pi * 0.04 * (1 + 4 / 3 * 0.2)
     assert union_volume([capsule]) == pytest.approx(expected, rel=0.03)
     assert union_volume([capsule, capsule]) == union_volume([capsule])
-    away = Capsule("x", (1, 0, 0), (1, 0, 1), 0.2)
+    away = Capsule((1, 0, 0), (1, 0, 1), 0.2, link="x")
     assert union_volume([capsule, away]) == pytest.approx(2 * expected, rel=0.03)

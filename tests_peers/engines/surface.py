@@ -7,41 +7,39 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from evenroad.robot.geometry import Geometry
-from evenroad.robot.reference.bodies import scaled_mesh
-from evenroad.robot.scene import Obstacle
+from evenroad.geometry.mesh import merged
+from evenroad.geometry.shapes import Mesh, Shape
 from evenroad.world import OrientedBox
 from evenroad.world.mesh import TriangleMesh, surface_of
-from evenroad.world.mesh.triangle_mesh import merged
 
 AROUND = 24
 """Corners of a circle; a round body loses less than 0.9 % of its radius, which stays inside of the true one."""
 
 
-def link_surfaces(geometries: Sequence[Geometry]) -> dict[str, TriangleMesh]:
+def link_surfaces(shapes: Sequence[Shape]) -> dict[str, TriangleMesh]:
     """Return the shapes of every link as one surface in the link's frame: link -> surface."""
-    links = dict.fromkeys(geometry.link for geometry in geometries)
-    return {link: merged(tuple(shape_surface(g) for g in geometries if g.link == link)) for link in links}
+    links = dict.fromkeys(shape.link for shape in shapes)
+    return {
+        link: merged(tuple(shape_surface(shape) for shape in shapes if shape.link == link)) for link in links
+    }
 
 
-def shape_surface(shape: Geometry | Obstacle) -> TriangleMesh:
+def shape_surface(shape: Shape) -> TriangleMesh:
     """Return the surface of a shape, in the frame that it is placed in.
 
     Of meshes and boxes it is exact; of round shapes it lies within them.
     """
-    if shape.shape == "mesh":
-        assert isinstance(shape, Geometry)
-        local = scaled_mesh(shape)
-    elif shape.shape == "box":
+    if isinstance(shape, Mesh):
+        local = shape.triangles
+    elif shape.kind == "box":
         local = surface_of(OrientedBox((0.0, 0.0, 0.0), tuple(0.5 * side for side in shape.size)))
-    elif shape.shape == "cylinder":
+    elif shape.kind == "cylinder":
         radius, length = shape.size
         local = _lathe([(-0.5 * length, radius), (0.5 * length, radius)])
     else:
         radius, length = (*shape.size, 0.0)[:2]
         local = _lathe(_round_profile(radius, length))
-    turn = np.array(shape.rotation).reshape(3, 3)
-    return TriangleMesh(local.vertices @ turn.T + np.array(shape.xyz), local.triangles)
+    return TriangleMesh(shape.pose.apply(local.vertices), local.triangles)
 
 
 def _round_profile(radius: float, length: float) -> list[tuple[float, float]]:

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from xml.sax.saxutils import quoteattr
 
-import numpy as np
-
-from evenroad.robot.joint import Joint
+from evenroad.geometry.pose import rpy_from_rotation
 from evenroad.robot.robot import Robot
-from evenroad.robot.rotation import rotation_from_rpy
 
 
 def as_urdf(robot: Robot, meshes: Mapping[str, str] | None = None) -> str:
     """Return a URDF of a robot's tree of links and joints.
 
-    Mimics are joints of their own there, and nothing has limits worth the name: who sets the joints decides.
+    Mimics are written as independent joints, and every joint gets limits of +-1000: the caller sets all values.
 
     Parameters
     ----------
@@ -38,7 +34,7 @@ def as_urdf(robot: Robot, meshes: Mapping[str, str] | None = None) -> str:
         lines += [
             f"<joint name={quoteattr(joint.name)} type={quoteattr(kind)}>",
             f"<parent link={quoteattr(joint.parent)}/><child link={quoteattr(joint.child)}/>",
-            f'<origin xyz="{_numbers(joint.xyz)}" rpy="{_numbers(_rpy(joint))}"/>',
+            f'<origin xyz="{_numbers(joint.xyz)}" rpy="{_numbers(rpy_from_rotation(joint.rotation))}"/>',
             f'<axis xyz="{_numbers(joint.axis)}"/><limit lower="-1e3" upper="1e3" velocity="1" effort="1"/>',
             "</joint>",
         ]
@@ -47,13 +43,3 @@ def as_urdf(robot: Robot, meshes: Mapping[str, str] | None = None) -> str:
 
 def _numbers(row: tuple[float, ...]) -> str:
     return " ".join(repr(float(number)) for number in row)
-
-
-def _rpy(joint: Joint) -> tuple[float, float, float]:
-    """Return roll, pitch and yaw of a joint's rotation."""
-    r = np.array(joint.rotation).reshape(3, 3)
-    pitch, yaw = math.atan2(-r[2, 0], math.hypot(r[0, 0], r[1, 0])), math.atan2(r[1, 0], r[0, 0])
-    # Out of what is left, and not out of the last row: near straight up or down yaw is known badly, and roll
-    # then makes up for it.
-    left = np.reshape(rotation_from_rpy(0.0, pitch, yaw), (3, 3)).T @ r
-    return math.atan2(left[2, 1], left[1, 1]), pitch, yaw

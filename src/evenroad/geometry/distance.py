@@ -1,9 +1,12 @@
-"""Distances between segments in double precision."""
+"""Distances of points and segments, in double precision and plain numpy."""
 
 from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
+
+from evenroad.errors import InvalidValue
+from evenroad.geometry.shapes import Shape
 
 
 def segment_distance(
@@ -42,3 +45,26 @@ def _clamped(
     """Return numerator / denominator within [0, 1]; 0 where the denominator is."""
     safe = np.where(denominator > 0.0, denominator, 1.0)
     return np.where(denominator > 0.0, np.clip(numerator / safe, 0.0, 1.0), 0.0)
+
+
+def point_distance(point: npt.NDArray[np.float64], shape: Shape) -> float:
+    """Return the distance of a point (3,) from a box, sphere, cylinder or capsule along z; 0 inside [m].
+
+    Raises
+    ------
+    InvalidValue
+        If the shape is a mesh or a point cloud.
+    """
+    local = shape.pose.local(point)
+    if shape.kind == "box":
+        return float(np.linalg.norm(np.maximum(np.abs(local) - 0.5 * np.array(shape.size), 0.0)))
+    if shape.kind == "sphere":
+        return max(float(np.linalg.norm(local)) - shape.size[0], 0.0)
+    if shape.kind not in ("cylinder", "capsule"):
+        raise InvalidValue(f"distances from a {shape.kind} are not known")
+    radius, length = shape.size
+    above = max(abs(local[2]) - 0.5 * length, 0.0)
+    aside = float(np.hypot(local[0], local[1]))
+    if shape.kind == "capsule":
+        return max(float(np.hypot(aside, above)) - radius, 0.0)
+    return float(np.hypot(max(aside - radius, 0.0), above))

@@ -13,14 +13,14 @@ import numpy.typing as npt
 
 from evenroad._extras import require_extra
 from evenroad.errors import BrokenFile
+from evenroad.geometry.mesh import merged
 from evenroad.robot.kinematics import joint_values
 from evenroad.robot.reference.engine_world import EngineWorld
-from evenroad.robot.reference.surface import link_surfaces, shape_surface
-from evenroad.robot.reference.urdf_text import as_urdf
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
 from evenroad.world.mesh import TriangleMesh
-from evenroad.world.mesh.triangle_mesh import merged
+from tests_peers.engines.surface import link_surfaces, shape_surface
+from tests_peers.engines.urdf_text import as_urdf
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +92,7 @@ def _merged_obstacles(
     groups: dict[frozenset[str], list[TriangleMesh]] = {}
     for obstacle in scene.obstacles:
         links = frozenset(link for link in surfaces if (link, obstacle.name) not in scene.allowed)
-        groups.setdefault(links, []).append(shape_surface(obstacle))
+        groups.setdefault(links, []).append(shape_surface(obstacle.body))
     return {links: merged(tuple(group)) for links, group in groups.items()}
 
 

@@ -1,16 +1,22 @@
-"""A small capsule around points."""
+"""A small capsule around points, and the volume of capsules."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._rng import generator
+from evenroad.geometry.shapes import Capsule
+
 Fitted = tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], float]
 """End points a and b, each (3,), and radius of a capsule."""
 
+SAMPLES = 1 << 15
+"""Points that estimate the volume of a union: a standard error of about half a per cent."""
 _LEAST_RADIUS = 1e-6
 """Radius around points in a line [m]."""
 
@@ -103,3 +109,18 @@ def _extreme(points: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     except QhullError:
         # All in one plane, or fewer than four.
         return np.unique(points, axis=0)
+
+
+def union_volume(capsules: Sequence[Capsule]) -> float:
+    """Return the volume of the union of capsules in one frame [m^3], by 32768 fixed random points."""
+    a, b = (np.array([getattr(capsule, end) for capsule in capsules]) for end in ("a", "b"))
+    radius = np.array([capsule.radius for capsule in capsules])
+    low = (np.minimum(a, b) - radius[:, np.newaxis]).min(axis=0)
+    high = (np.maximum(a, b) + radius[:, np.newaxis]).max(axis=0)
+    points = low + generator(0).random((SAMPLES, 3)) * (high - low)
+    inside = np.zeros(SAMPLES, dtype=np.bool_)
+    for start, end, reach in zip(a, b, radius, strict=True):
+        axis = end - start
+        along = np.clip((points - start) @ axis / max(float(axis @ axis), 1e-300), 0.0, 1.0)
+        inside |= ((points - start - along[:, np.newaxis] * axis) ** 2).sum(axis=1) <= reach**2
+    return float(inside.mean() * np.prod(high - low))

@@ -1,0 +1,146 @@
+"""Meshes: surfaces of triangles, as values and from files."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._checks import as_batch, require_positive
+from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
+
+
+@dataclass(frozen=True, eq=False)
+class TriangleMesh:
+    """Triangles between vertices; a surface, with nothing inside.
+
+    Parameters
+    ----------
+    vertices : array_like, shape (v, 3)
+        Finite coordinates, stored as read-only float64.
+    triangles : array_like of int, shape (t, 3)
+        Rows of `vertices`, at least one triangle; stored as read-only int64.
+    name : str
+        What explanations call it.
+
+    Raises
+    ------
+    InvalidValue
+        If the two are not such arrays, or a triangle names a vertex that there is not.
+    """
+
+    vertices: npt.NDArray[np.float64]
+    triangles: npt.NDArray[np.int64]
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        vertices = np.array(as_batch("vertices", self.vertices, 3))
+        try:
+            triangles = np.array(self.triangles)
+        except ValueError as error:
+            raise InvalidValue(f"triangles must be a (t, 3) array of integers: {error}") from None
+        if triangles.ndim != 2 or triangles.shape[1] != 3 or not np.issubdtype(triangles.dtype, np.integer):
+            raise InvalidValue(
+                f"triangles must be a (t, 3) array of integers, got {triangles.dtype} of shape {triangles.shape}"
+            )
+        if len(triangles) == 0:
+            raise InvalidValue("a mesh must have one triangle or more: one without would never collide")
+        if triangles.min() < 0 or triangles.max() >= len(vertices):
+            raise InvalidValue(
+                f"triangles must name rows of the {len(vertices)} vertices, got {triangles.min()} .. {triangles.max()}"
+            )
+        triangles = triangles.astype(np.int64)
+        for field, array in (("vertices", vertices), ("triangles", triangles)):
+            array.setflags(write=False)
+            object.__setattr__(self, field, array)
+
+
+def merged(meshes: tuple[TriangleMesh, ...]) -> TriangleMesh:
+    """Return several meshes, at least one, as one."""
+    firsts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes[:-1])])
+    return TriangleMesh(
+        np.concatenate([mesh.vertices for mesh in meshes]),
+        np.concatenate([mesh.triangles + first for mesh, first in zip(meshes, firsts, strict=True)]),
+    )
+
+
+def scaled(mesh: TriangleMesh, factors: Sequence[float]) -> TriangleMesh:
+    """Return a mesh with its coordinates multiplied by one factor an axis, (3,)."""
+    return TriangleMesh(mesh.vertices * np.array(factors), mesh.triangles, mesh.name)
+
+
+def volume_of(mesh: TriangleMesh) -> float:
+    """Return the volume of a mesh; where it is not closed, that of its convex hull."""
+    _, number = np.unique(mesh.vertices, axis=0, return_inverse=True)
+    sides = np.sort(number.reshape(-1)[mesh.triangles][:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    _, times = np.unique(sides, axis=0, return_counts=True)
+    corners = mesh.vertices[mesh.triangles]
+    if (times == 2).all():
+        # Of a closed surface: tetrahedra from the origin to every triangle, with signs.
+        return abs(float(np.linalg.det(corners).sum())) / 6.0
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        return float(ConvexHull(corners.reshape(-1, 3)).volume)
+    except QhullError:
+        return 0.0
+
+
+def load_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> TriangleMesh:
+    """Read a mesh from a file: .stl, .obj, .dae, .ply and whatever else trimesh reads.
+
+    Coordinates are in metres where the file says what its unit is (COLLADA and 3MF do), else in whatever it has.
+
+    Parameters
+    ----------
+    path : str or path
+        The file.  A scene of several meshes becomes one, each part where the scene has it.
+    scale : float
+        What the coordinates are multiplied by, > 0: 0.001 for an .stl in millimetres.
+
+    Returns
+    -------
+    TriangleMesh
+        Named like the file.
+
+    Raises
+    ------
+    NotAvailable
+        If a package that reads such files is not installed.
+    BrokenFile
+        If the file is missing, is no mesh, has no triangles, or is in a unit that has no length.
+    InvalidValue
+        If `scale` is not such a number.
+    """
+    factor = require_positive("scale", scale)
+    file = Path(path)
+    if not file.is_file():
+        raise BrokenFile(f"the mesh {file} is missing")
+    try:
+        import trimesh
+
+        mesh = trimesh.load_mesh(file, process=False)
+        unit = 1.0 if mesh.units is None else trimesh.units.unit_conversion(mesh.units, "meters")
+        if isinstance(mesh, trimesh.Scene):
+            mesh = mesh.to_mesh()
+        vertices, triangles = np.array(mesh.vertices, dtype=float), np.array(mesh.faces, dtype=np.int64)
+    except ImportError as error:
+        raise NotAvailable(
+            f"reading {file} needs the extra: pip install 'evenroad[mesh]' ({error})"
+        ) from error
+    # trimesh's readers raise whatever their parsers do, down to struct.error and KeyError.
+    except Exception as error:
+        raise BrokenFile(f"cannot read the mesh {file}: {error}") from error
+    if len(triangles) == 0:
+        raise BrokenFile(f"the mesh {file} is empty: a body without triangles would never collide")
+    if not (math.isfinite(unit) and unit > 0.0):
+        raise BrokenFile(f"the mesh {file} must have a unit of a finite length > 0, got {unit:g} m")
+    try:
+        return TriangleMesh(factor * unit * vertices, triangles, file.name)
+    except InvalidValue as error:
+        raise BrokenFile(f"the mesh {file} is broken: {error}") from error

@@ -1,0 +1,237 @@
+"""Rotations and poses: one convention for the whole package.
+
+A rotation is the nine numbers of its matrix, row by row (four in the plane).  Quaternions are (w, x, y, z), angles
+radians, lengths metres.  A pose takes points of its own frame to the frame that it is given in.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from operator import mul
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._checks import as_row
+from evenroad.errors import InvalidValue
+
+Vector = tuple[float, float, float]
+Matrix = npt.NDArray[np.float64]
+
+NO_ROTATION = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+
+_ORTHONORMAL = 1e-6
+"""How far products of rows may be from those of a rotation: room for matrices read from text."""
+
+
+def rotation_from_rpy(roll: float, pitch: float, yaw: float) -> tuple[float, ...]:
+    """Return ``Rz(yaw) Ry(pitch) Rx(roll)``, the convention of URDF, for angles in radians."""
+    (sr, cr), (sp, cp), (sy, cy) = ((math.sin(angle), math.cos(angle)) for angle in (roll, pitch, yaw))
+    return (
+        *(cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),
+        *(sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr),
+        *(-sp, cp * sr, cp * cr),
+    )
+
+
+def rpy_from_rotation(rotation: Sequence[float]) -> Vector:
+    """Return roll, pitch and yaw of a rotation, (9,): the inverse of :func:`rotation_from_rpy`."""
+    r = np.reshape(rotation, (3, 3))
+    pitch, yaw = math.atan2(-r[2, 0], math.hypot(r[0, 0], r[1, 0])), math.atan2(r[1, 0], r[0, 0])
+    # From the remaining rotation, not from the last row: near pitch = +-90 degrees yaw is ill-conditioned, and
+    # roll then compensates for it.
+    remaining = np.reshape(rotation_from_rpy(0.0, pitch, yaw), (3, 3)).T @ r
+    return math.atan2(remaining[2, 1], remaining[1, 1]), pitch, yaw
+
+
+def rotation_from_heading(heading: float) -> tuple[float, ...]:
+    """Return the rotation of the plane by `heading` radians, counter-clockwise, as (4,) rows.
+
+    Raises
+    ------
+    InvalidValue
+        If `heading` is not a finite number.
+    """
+    (angle,) = as_row("heading", [heading])
+    return (math.cos(angle), -math.sin(angle), math.sin(angle), math.cos(angle))
+
+
+def rotation_from_quaternion(quaternion: Sequence[float]) -> tuple[float, ...]:
+    """Return the rotation of a quaternion (w, x, y, z), which need not be of norm 1, as (9,) rows.
+
+    Raises
+    ------
+    InvalidValue
+        If it is not four finite numbers, or its norm is 0.
+    """
+    row = as_row("quaternion", quaternion, 4)
+    norm = math.hypot(*row)
+    if norm == 0.0:
+        raise InvalidValue("quaternion must have a norm > 0, got zeros")
+    w, x, y, z = (number / norm for number in row)
+    return (
+        1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y),
+        2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x),
+        2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y),
+    )  # fmt: skip
+
+
+def rotations_from_quaternions(quaternions: Matrix) -> Matrix:
+    """Return the matrices, (n, 3, 3), of quaternions (n, 4), w first and of any norm > 0."""
+    w, x, y, z = (quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)).T
+    rows = [
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+        [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
+        [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), 2, 0).copy()
+
+
+def rotation_from_z(axis: Sequence[float]) -> Matrix:
+    """Return a rotation (3, 3) that takes the z axis to the direction `axis`.
+
+    Raises
+    ------
+    InvalidValue
+        If `axis` has no direction.
+    """
+    z = np.array(axis, dtype=np.float64)
+    length = float(np.linalg.norm(z))
+    if not (math.isfinite(length) and length > 0.0):
+        raise InvalidValue(f"an axis must be a direction, got {axis!r}")
+    z /= length
+    if z[0] == 0.0 and z[1] == 0.0 and z[2] > 0.0:
+        return np.eye(3)
+    # The coordinate axis farthest from z: never near parallel to it.
+    x = np.cross(np.eye(3)[np.abs(z).argmin()], z)
+    x /= np.linalg.norm(x)
+    return np.column_stack([x, np.cross(z, x), z])
+
+
+def as_rotation(rotation: Sequence[float] | None, dim: int = 3) -> tuple[float, ...]:
+    """Return `rotation` as the (dim * dim,) rows of a rotation matrix; None is the identity.
+
+    Raises
+    ------
+    InvalidValue
+        If it is not so many finite numbers, its rows are not perpendicular and of length 1 up to 1e-6, or it
+        is a reflection.
+    """
+    if rotation is None:
+        return tuple(1.0 if i == j else 0.0 for i in range(dim) for j in range(dim))
+    numbers = as_row("rotation", rotation, dim * dim)
+    rows = [numbers[i * dim : (i + 1) * dim] for i in range(dim)]
+    for i, row in enumerate(rows):
+        for j in range(i, dim):
+            if abs(sum(map(mul, row, rows[j])) - (i == j)) > _ORTHONORMAL:
+                raise InvalidValue(f"rotation must have perpendicular rows of length 1, got {rotation!r}")
+    if _determinant(rows) < 0.0:
+        raise InvalidValue(f"rotation must not be a reflection, got {rotation!r}")
+    return numbers
+
+
+def _determinant(rows: list[tuple[float, ...]]) -> float:
+    if len(rows) == 2:
+        return rows[0][0] * rows[1][1] - rows[0][1] * rows[1][0]
+    (a, b, c), (d, e, f), (g, h, i) = rows
+    return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
+
+
+@dataclass(frozen=True)
+class Pose:
+    """A rotation, then a translation: ``p -> R p + xyz``.
+
+    Parameters
+    ----------
+    xyz : sequence of 3 floats
+        Origin of the pose's own frame [m].
+    rotation : sequence of 9 floats
+        From the pose's own frame, row by row; a 3x3 array will do.
+
+    Raises
+    ------
+    InvalidValue
+        If these are not finite numbers, or the rotation is none.
+    """
+
+    xyz: Vector = (0.0, 0.0, 0.0)
+    rotation: tuple[float, ...] = NO_ROTATION
+
+    def __post_init__(self) -> None:
+        x, y, z = as_row("xyz", self.xyz, 3)
+        object.__setattr__(self, "xyz", (x, y, z))
+        if self.rotation is not NO_ROTATION:
+            rotation = self.rotation.ravel() if isinstance(self.rotation, np.ndarray) else self.rotation
+            object.__setattr__(self, "rotation", as_rotation(rotation))
+
+    @classmethod
+    def from_rpy(cls, xyz: Sequence[float], rpy: Sequence[float]) -> Pose:
+        """Return the pose of an origin [m], and roll, pitch and yaw [rad] as URDF has them."""
+        roll, pitch, yaw = as_row("rpy", rpy, 3)
+        return cls._made(_three(xyz), rotation_from_rpy(roll, pitch, yaw))
+
+    @classmethod
+    def from_quaternion(cls, xyz: Sequence[float], quaternion: Sequence[float]) -> Pose:
+        """Return the pose of an origin [m] and a quaternion (w, x, y, z) of any norm > 0."""
+        return cls._made(_three(xyz), rotation_from_quaternion(quaternion))
+
+    @classmethod
+    def from_matrix(cls, matrix: npt.ArrayLike) -> Pose:
+        """Return the pose of a 4x4 matrix, whose last row must be 0, 0, 0, 1."""
+        try:
+            array = np.asarray(matrix, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise InvalidValue(f"a pose must be a 4x4 matrix of numbers, got {matrix!r}") from None
+        if array.shape != (4, 4) or not np.array_equal(array[3], [0.0, 0.0, 0.0, 1.0]):
+            raise InvalidValue(f"a pose must be a 4x4 matrix with the last row 0, 0, 0, 1, got {matrix!r}")
+        return cls(_three(array[:3, 3].tolist()), tuple(array[:3, :3].ravel().tolist()))
+
+    @classmethod
+    def _made(cls, xyz: Vector, rotation: tuple[float, ...]) -> Pose:
+        """Return a pose without checks: they take longest, and a rotation of angles or a quaternion is one."""
+        pose = object.__new__(cls)
+        object.__setattr__(pose, "xyz", xyz)
+        object.__setattr__(pose, "rotation", rotation)
+        return pose
+
+    @property
+    def rotation_matrix(self) -> Matrix:
+        """The rotation as a matrix, (3, 3)."""
+        return np.array(self.rotation).reshape(3, 3)
+
+    @property
+    def matrix(self) -> Matrix:
+        """The pose as a matrix, (4, 4)."""
+        matrix = np.eye(4)
+        matrix[:3, :3], matrix[:3, 3] = self.rotation_matrix, self.xyz
+        return matrix
+
+    def apply(self, points: npt.ArrayLike) -> Matrix:
+        """Return points of the own frame, (3,) or (n, 3), in the frame that the pose is given in."""
+        p = np.asarray(points, dtype=np.float64)
+        return (self.rotation_matrix @ p if p.ndim == 1 else p @ self.rotation_matrix.T) + np.array(self.xyz)
+
+    def local(self, points: npt.ArrayLike) -> Matrix:
+        """Return points, (3,) or (n, 3), in the pose's own frame: what undoes :meth:`apply`."""
+        p = np.asarray(points, dtype=np.float64) - np.array(self.xyz)
+        return self.rotation_matrix.T @ p if p.ndim == 1 else p @ self.rotation_matrix
+
+    def inverse(self) -> Pose:
+        """Return the pose that undoes this one."""
+        rotation = self.rotation_matrix.T
+        return Pose(_three((-rotation @ np.array(self.xyz)).tolist()), tuple(rotation.ravel().tolist()))
+
+    def __matmul__(self, other: Pose) -> Pose:
+        """Return the pose that applies `other` first, then this one."""
+        rotation = self.rotation_matrix @ other.rotation_matrix
+        return Pose(_three(self.apply(other.xyz).tolist()), tuple(rotation.ravel().tolist()))
+
+
+IDENTITY = Pose()
+
+
+def _three(xyz: Sequence[float]) -> Vector:
+    x, y, z = as_row("xyz", xyz, 3)
+    return x, y, z

@@ -1,0 +1,298 @@
+"""Shapes: what links, obstacles and rigid bodies are made of.
+
+A shape is a frozen value with its dimensions, the pose that it has, and the link that it is fixed to (or the
+world).  A new one is a class here, with its distance (``distance.py``) and its capsules (``fit.py``).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._checks import as_row, require_positive
+from evenroad.errors import InvalidValue, UnknownName
+from evenroad.geometry.mesh import TriangleMesh, load_mesh, scaled, volume_of
+from evenroad.geometry.pose import IDENTITY, Pose, Vector, rotation_from_z
+
+WORLD = ""
+"""The `link` of a shape that is fixed to no link."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Shape:
+    """What all shapes have.
+
+    Parameters
+    ----------
+    pose : Pose
+        From the shape's own frame to that of its link, or of the world.
+    link : str
+        Name of the link that it is fixed to; `WORLD`, an empty text, for the world.
+    """
+
+    kind: ClassVar[str]
+    """What files call it."""
+    dimensions: ClassVar[tuple[tuple[str, int], ...]] = ()
+    """Names of its dimensions in files, and how many numbers each has."""
+
+    pose: Pose = IDENTITY
+    link: str = WORLD
+
+    @property
+    def size(self) -> tuple[float, ...]:
+        """Its dimensions in a row, in the order of `dimensions` [m]."""
+        raise NotImplementedError
+
+    @property
+    def volume(self) -> float:
+        """Volume [m^3]."""
+        raise NotImplementedError
+
+    def __str__(self) -> str:
+        return self.kind
+
+
+@dataclass(frozen=True)
+class Box(Shape):
+    """A box around the origin of its frame: full extents (x, y, z), > 0 [m]."""
+
+    kind: ClassVar[str] = "box"
+    dimensions: ClassVar[tuple[tuple[str, int], ...]] = (("size", 3),)
+
+    extents: Vector
+
+    def __post_init__(self) -> None:
+        extents = as_row("the size of a box", self.extents, 3)
+        for extent in extents:
+            require_positive("the size of a box", extent)
+        object.__setattr__(self, "extents", extents)
+
+    @property
+    def size(self) -> tuple[float, ...]:
+        """The extents [m]."""
+        return self.extents
+
+    @property
+    def volume(self) -> float:
+        """Volume [m^3]."""
+        return math.prod(self.extents)
+
+
+@dataclass(frozen=True)
+class Sphere(Shape):
+    """All points within `radius`, > 0 [m], of the origin of its frame."""
+
+    kind: ClassVar[str] = "sphere"
+    dimensions: ClassVar[tuple[tuple[str, int], ...]] = (("radius", 1),)
+
+    radius: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "radius", require_positive("the radius of a sphere", self.radius))
+
+    @property
+    def size(self) -> tuple[float, ...]:
+        """The radius [m]."""
+        return (self.radius,)
+
+    @property
+    def volume(self) -> float:
+        """Volume [m^3]."""
+        return _ball(self.radius)
+
+
+@dataclass(frozen=True)
+class Cylinder(Shape):
+    """A cylinder along the z axis of its frame, its middle in the origin: `radius` and `length`, > 0 [m]."""
+
+    kind: ClassVar[str] = "cylinder"
+    dimensions: ClassVar[tuple[tuple[str, int], ...]] = (("radius", 1), ("length", 1))
+
+    radius: float
+    length: float
+
+    def __post_init__(self) -> None:
+        for name in ("radius", "length"):
+            number = require_positive(f"the {name} of a cylinder", getattr(self, name))
+            object.__setattr__(self, name, number)
+
+    @property
+    def size(self) -> tuple[float, ...]:
+        """Radius and length [m]."""
+        return (self.radius, self.length)
+
+    @property
+    def volume(self) -> float:
+        """Volume [m^3]."""
+        return math.pi * self.radius**2 * self.length
+
+
+@dataclass(frozen=True)
+class Capsule(Shape):
+    """All points within `radius`, > 0 [m], of the segment from `a` to `b`; a ball where the two are one point.
+
+    A robot's bodies are capsules with `a` and `b` in their link's frame, in no pose of their own.
+    """
+
+    kind: ClassVar[str] = "capsule"
+    dimensions: ClassVar[tuple[tuple[str, int], ...]] = (("radius", 1), ("length", 1))
+
+    a: Vector
+    b: Vector
+    radius: float
+
+    def __post_init__(self) -> None:
+        for name in ("a", "b"):
+            object.__setattr__(self, name, as_row(f"the end {name} of a capsule", getattr(self, name), 3))
+        object.__setattr__(self, "radius", require_positive("the radius of a capsule", self.radius))
+
+    @classmethod
+    def along_z(cls, radius: float, length: float, pose: Pose = IDENTITY, link: str = WORLD) -> Capsule:
+        """Return the capsule along the z axis of its frame: a cylinder of `length` [m] and half balls on its ends."""
+        half = 0.5 * require_positive("the length of a capsule", length)
+        return cls((0.0, 0.0, -half), (0.0, 0.0, half), radius, pose=pose, link=link)
+
+    @property
+    def length(self) -> float:
+        """Length of the segment, without the caps [m]."""
+        return math.dist(self.a, self.b)
+
+    @property
+    def size(self) -> tuple[float, ...]:
+        """Radius and length [m]."""
+        return (self.radius, self.length)
+
+    @property
+    def volume(self) -> float:
+        """Volume [m^3]."""
+        return math.pi * self.radius**2 * self.length + _ball(self.radius)
+
+
+@dataclass(frozen=True)
+class Mesh(Shape):
+    """A surface of triangles: a file, which is opened when it is needed, or the triangles themselves.
+
+    `scale` are the factors that its coordinates are multiplied with, none of them 0; in files often one number.
+    """
+
+    kind: ClassVar[str] = "mesh"
+
+    source: str | Path | TriangleMesh
+    scale: Vector = (1.0, 1.0, 1.0)
+
+    def __post_init__(self) -> None:
+        scale = as_row("the scale of a mesh", self.scale, 3)
+        if 0.0 in scale:
+            raise InvalidValue(f"the scale of {self} must not be 0, got {scale}: it would be flat")
+        object.__setattr__(self, "scale", scale)
+        if not isinstance(self.source, TriangleMesh):
+            object.__setattr__(self, "source", Path(self.source))
+
+    @property
+    def triangles(self) -> TriangleMesh:
+        """Its triangles with their scale, in the shape's frame; errors as :func:`evenroad.geometry.load_mesh`."""
+        mesh = self.source if isinstance(self.source, TriangleMesh) else load_mesh(self.source)
+        return scaled(mesh, self.scale)
+
+    @property
+    def volume(self) -> float:
+        """Volume [m^3]; of a mesh that is not closed, that of its convex hull."""
+        return volume_of(self.triangles)
+
+    def __str__(self) -> str:
+        return f"mesh {self.source if isinstance(self.source, str) else self.source.name}"
+
+
+@dataclass(frozen=True, eq=False)
+class PointCloud(Shape):
+    """Balls of one radius around points, (n, 3) [m], as a depth camera sees them; of radius 0: the points alone."""
+
+    kind: ClassVar[str] = "point cloud"
+
+    points: npt.NDArray[np.float64]
+    radius: float = 0.0
+
+    def __post_init__(self) -> None:
+        points = np.array(self.points, dtype=np.float64)
+        if points.ndim != 2 or points.shape[1] != 3 or len(points) == 0 or not np.isfinite(points).all():
+            raise InvalidValue(
+                f"a point cloud must be an (n, 3) array of finite numbers, n >= 1, got shape {points.shape}"
+            )
+        points.setflags(write=False)
+        object.__setattr__(self, "points", points)
+        radius = require_positive("the radius of a point cloud", self.radius, or_zero=True)
+        object.__setattr__(self, "radius", radius)
+
+
+PRIMITIVES: dict[str, type[Shape]] = {shape.kind: shape for shape in (Box, Sphere, Cylinder, Capsule)}
+"""Shapes that files describe by their dimensions alone."""
+
+
+def shape_of(kind: str, size: Sequence[float], pose: Pose = IDENTITY, link: str = WORLD) -> Shape:
+    """Return the box, sphere, cylinder or capsule that files describe by its dimensions.
+
+    Parameters
+    ----------
+    kind : {"box", "sphere", "cylinder", "capsule"}
+        Cylinders and capsules are along their own z axis.
+    size : sequence of floats
+        Box: full extents (x, y, z); sphere: (radius,); cylinder and capsule: (radius, length), without the caps [m].
+    pose, link : Pose, str
+        As for every :class:`Shape`.
+
+    Raises
+    ------
+    UnknownName
+        If there is no such shape.
+    InvalidValue
+        If it has other dimensions, or one that is not a finite number > 0.
+    """
+    if kind not in PRIMITIVES:
+        raise UnknownName.among("shape", kind, PRIMITIVES)
+    shape = PRIMITIVES[kind]
+    count = sum(count for _, count in shape.dimensions)
+    if len(size) != count:
+        raise InvalidValue(f"a {kind} must have {count} size(s), got {size!r}")
+    if shape is Box:
+        return Box((size[0], size[1], size[2]), pose=pose, link=link)
+    if shape is Sphere:
+        return Sphere(size[0], pose=pose, link=link)
+    if shape is Cylinder:
+        return Cylinder(size[0], size[1], pose=pose, link=link)
+    return Capsule.along_z(size[0], size[1], pose, link)
+
+
+def along_z(capsule: Capsule) -> Capsule | Sphere:
+    """Return the same body as a capsule along the z axis of its frame; a sphere where it has no length."""
+    if capsule.a[:2] == capsule.b[:2] == (0.0, 0.0) and capsule.b[2] == -capsule.a[2] > 0.0:
+        return capsule
+    a, b = np.array(capsule.a), np.array(capsule.b)
+    x, y, z = (0.5 * (a + b)).tolist()
+    length = float(np.linalg.norm(b - a))
+    if length == 0.0:
+        return Sphere(capsule.radius, pose=_within(capsule.pose, Pose((x, y, z))), link=capsule.link)
+    rotation = rotation_from_z(((b - a) / length).tolist())
+    pose = _within(capsule.pose, Pose((x, y, z), tuple(rotation.ravel().tolist())))
+    return Capsule.along_z(capsule.radius, length, pose, capsule.link)
+
+
+def without_pose(capsule: Capsule) -> Capsule:
+    """Return the same body with its ends in the frame that its pose is given in."""
+    if capsule.pose is IDENTITY or capsule.pose == IDENTITY:
+        return capsule
+    (ax, ay, az), (bx, by, bz) = (capsule.pose.apply(end).tolist() for end in (capsule.a, capsule.b))
+    return replace(capsule, a=(ax, ay, az), b=(bx, by, bz), pose=IDENTITY)
+
+
+def _within(outer: Pose, inner: Pose) -> Pose:
+    return inner if outer == IDENTITY else outer @ inner
+
+
+def _ball(radius: float) -> float:
+    return 4.0 / 3.0 * math.pi * radius**3

@@ -1,0 +1,181 @@
+"""Reading MoveIt's scenes: text files ``.scene``, and planning scenes in YAML, as MotionBenchMaker has them.
+
+Only the objects of the world are read: boxes, spheres and cylinders, in a planning frame that must be the robot's root
+link.  Quaternions are (x, y, z, w) there.  An object of several shapes becomes obstacles ``NAME/0``, ``NAME/1``, ...
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from evenroad._yaml import numbers
+from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
+from evenroad.geometry.pose import IDENTITY, Pose
+from evenroad.geometry.shapes import Shape, shape_of
+from evenroad.robot.scene import Obstacle, Scene
+
+_SIZES = {"box": 3, "sphere": 1, "cylinder": 2}
+_TYPES = {1: "box", 2: "sphere", 3: "cylinder", 4: "cone"}
+"""Numbers of shape_msgs/SolidPrimitive."""
+
+
+def read_scene_text(path: Path) -> Scene:
+    """Read a ``.scene`` file: a name, then objects that begin with ``*``, and a full stop.
+
+    An object has a name, in newer files a pose, the number of its shapes, and each shape with its dimensions, pose and
+    colour; in newer files subframes follow, which are skipped.
+
+    Raises
+    ------
+    BrokenFile
+        If the file is missing or ends too early, or a number is none.
+    UnknownName
+        If a shape is none of box, sphere and cylinder.
+    InvalidValue
+        If a dimension is not > 0, a quaternion has no direction, or two objects share a name.
+    """
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, ValueError) as error:
+        raise BrokenFile(
+            f"cannot read the scene {path}: {getattr(error, 'strerror', None) or error}"
+        ) from error
+    first = next((i for i, line in enumerate(lines) if line.lstrip().startswith("*")), len(lines))
+    # Newer files have the object's position, three numbers, where older ones have the number of its shapes.
+    posed = first + 1 < len(lines) and len(lines[first + 1].split()) > 1
+    words = _Words(path, lines[1:])
+    obstacles: list[Obstacle] = []
+    while (marker := words.next("'*' or '.'")) != ".":
+        if marker != "*":
+            raise BrokenFile(f"{path} must have '*' before every object and '.' at its end, got {marker!r}")
+        name = words.rest_of_line()
+        frame = words.pose() if posed else IDENTITY
+        shapes = []
+        for _ in range(words.count("shapes")):
+            kind = words.next("a shape")
+            size = words.numbers(_SIZES[_known(kind, name, path)])
+            shapes.append((kind, size, frame @ words.pose()))
+            words.numbers(4)
+        if posed:
+            for _ in range(words.count("subframes")):
+                words.next("a subframe")
+                words.pose()
+        obstacles += _obstacles(name, shapes, path)
+    return Scene(lines[0].strip() or path.stem, tuple(obstacles))
+
+
+def read_planning_scene(document: Mapping[str, Any], path: Path) -> Scene:
+    """Return the scene of a planning scene that was read from YAML: objects in ``world: collision_objects``.
+
+    Raises
+    ------
+    BrokenFile
+        If a piece is missing.
+    UnknownName, InvalidValue
+        As :func:`read_scene_text`; and if an object has a mesh, which scenes do not take yet.
+    """
+    objects = _entry(document, "world", path).get("collision_objects") or []
+    obstacles: list[Obstacle] = []
+    for each in objects:
+        if not isinstance(each, dict) or "id" not in each:
+            raise BrokenFile(f"every entry of collision_objects in {path} must have an 'id', got {each!r}")
+        name = str(each["id"])
+        if each.get("meshes") or each.get("planes"):
+            raise InvalidValue(
+                f"object {name!r} in {path} must consist of {', '.join(_SIZES)}: it has a mesh or plane"
+            )
+        frame = _pose(each["pose"], name, path) if "pose" in each else IDENTITY
+        primitives, poses = each.get("primitives") or [], each.get("primitive_poses") or []
+        if len(primitives) != len(poses):
+            raise BrokenFile(
+                f"object {name!r} in {path} must have a pose for each primitive, got {len(primitives)} and {len(poses)}"
+            )
+        shapes = []
+        for primitive, pose in zip(primitives, poses, strict=True):
+            given = primitive.get("type") if isinstance(primitive, dict) else None
+            kind = _known(str(_TYPES.get(given, given)).lower(), name, path)  # type: ignore[arg-type]
+            size = numbers(primitive.get("dimensions"), _SIZES[kind], f"dimensions of {name!r} in {path}")
+            # Height and radius in messages, radius and length everywhere else.
+            shapes.append((kind, size[::-1] if kind == "cylinder" else size, frame @ _pose(pose, name, path)))
+        obstacles += _obstacles(name, shapes, path)
+    return Scene(str(document.get("name") or path.stem), tuple(obstacles))
+
+
+def _obstacles(
+    name: str, shapes: list[tuple[str, tuple[float, ...], Pose]], path: Path
+) -> Iterator[Obstacle]:
+    for i, (kind, size, pose) in enumerate(shapes):
+        try:
+            body: Shape = shape_of(kind, size, pose)
+        except InvalidValue as error:
+            raise InvalidValue(f"object {name!r} in {path}: {error}") from None
+        yield Obstacle(name if len(shapes) == 1 else f"{name}/{i}", body)
+
+
+def _known(kind: str, name: str, path: Path) -> str:
+    if kind not in _SIZES:
+        raise UnknownName.among(f"shape of object {name!r} in {path}:", kind, _SIZES)
+    return kind
+
+
+def _entry(document: Mapping[str, Any], key: str, path: Path) -> dict[str, Any]:
+    entry = document.get(key)
+    if not isinstance(entry, dict):
+        raise BrokenFile(f"{key!r} in {path} must consist of 'key: value' entries, got {entry!r}")
+    return entry
+
+
+def _pose(entry: object, name: str, path: Path) -> Pose:
+    """Return a pose of a message: position and orientation, as lists or by their letters."""
+    rows = []
+    for key, letters in (("position", "xyz"), ("orientation", "xyzw")):
+        row = entry.get(key) if isinstance(entry, dict) else None
+        if isinstance(row, dict):
+            row = [row.get(letter, 0.0) for letter in letters]
+        rows.append(numbers(row, len(letters), f"{key} of object {name!r} in {path}"))
+    return _from_xyzw(rows[0], rows[1], f"object {name!r} in {path}")
+
+
+def _from_xyzw(xyz: tuple[float, ...], quaternion: tuple[float, ...], where: str) -> Pose:
+    x, y, z, w = quaternion
+    try:
+        return Pose.from_quaternion(xyz, (w, x, y, z))
+    except EvenroadError as error:
+        raise InvalidValue(f"{where}: {error}") from None
+
+
+class _Words:
+    """The words of a text, one after the other, with errors that name the file."""
+
+    def __init__(self, path: Path, lines: list[str]) -> None:
+        self._path = path
+        self._lines = [line.split() for line in lines][::-1]
+
+    def next(self, what: str) -> str:
+        while self._lines and not self._lines[-1]:
+            self._lines.pop()
+        if not self._lines:
+            raise BrokenFile(f"{self._path} ends where {what} must be")
+        return self._lines[-1].pop(0)
+
+    def rest_of_line(self) -> str:
+        return " ".join(self._lines.pop())
+
+    def numbers(self, count: int) -> tuple[float, ...]:
+        words = [self.next("a number") for _ in range(count)]
+        try:
+            return tuple(map(float, words))
+        except ValueError:
+            raise BrokenFile(f"{self._path} must have {count} number(s), got {' '.join(words)!r}") from None
+
+    def count(self, what: str) -> int:
+        word = self.next(f"the number of {what}")
+        if not word.isdecimal() or len(word) > 6:
+            raise BrokenFile(f"{self._path} must have a number of {what}, got {word!r}")
+        return int(word)
+
+    def pose(self) -> Pose:
+        xyz = self.numbers(3)
+        return _from_xyzw(xyz, self.numbers(4), str(self._path))

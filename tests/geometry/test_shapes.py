@@ -1,0 +1,107 @@
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from evenroad.errors import InvalidValue, UnknownName
+from evenroad.geometry import (
+    Box,
+    Capsule,
+    Cylinder,
+    Mesh,
+    PointCloud,
+    Pose,
+    Sphere,
+    TriangleMesh,
+    fit_capsules,
+    point_distance,
+    rotation_from_rpy,
+    shape_of,
+)
+from evenroad.geometry.shapes import along_z, without_pose
+
+PLACE = Pose((1.0, -2.0, 0.5), rotation_from_rpy(0.3, 1.2, -2.0))
+FLAT = TriangleMesh(np.eye(3), [[0, 1, 2]], "flat")
+
+
+@pytest.mark.parametrize(
+    ("make", "says"),
+    [
+        (lambda: Box((1, 1)), "3 finite"),
+        (lambda: Box((1, 1, 0)), "> 0, got 0"),
+        (lambda: Sphere(-1), "radius of a sphere .* got -1"),
+        (lambda: Sphere(math.nan), "radius of a sphere"),
+        (lambda: Cylinder(1, 0), "length of a cylinder"),
+        (lambda: Capsule((0, 0, math.nan), (0, 0, 1), 1), "end a of a capsule .*nan"),
+        (lambda: Capsule((0, 0, 0), (0, 0, 1), 0.0), "radius of a capsule .* > 0, got 0.0"),
+        (lambda: Capsule.along_z(1, 0), "length of a capsule"),
+        (lambda: Mesh(FLAT, (1, 0, 1)), "scale of mesh flat must not be 0"),
+        (lambda: PointCloud(np.zeros((3, 2))), "point cloud .*3, 2"),
+        (lambda: PointCloud(np.full((1, 3), np.inf)), "finite"),
+        (lambda: PointCloud(np.zeros((1, 3)), -1.0), "radius of a point cloud"),
+        (lambda: shape_of("box", (1.0, 1.0)), "a box must have 3"),
+    ],
+)
+def test_a_shape_with_dimensions_that_are_none_is_refused(make, says):
+    with pytest.raises(InvalidValue, match=says):
+        make()
+
+
+def test_an_unknown_shape_is_named_with_those_there_are():
+    with pytest.raises(UnknownName, match="'cone'; known: box, capsule, cylinder, sphere"):
+        shape_of("cone", (1.0,))
+
+
+@pytest.mark.parametrize(
+    "shape", [Box((1, 2, 3)), Sphere(0.5), Cylinder(0.5, 2), Capsule.along_z(0.5, 2)], ids=str
+)
+def test_a_shape_is_made_again_from_its_kind_and_size(shape):
+    placed = replace(shape, pose=PLACE, link="arm")
+    assert shape_of(placed.kind, placed.size, placed.pose, placed.link) == placed
+
+
+def test_point_clouds_are_read_only_copies_and_equal_only_to_themselves():
+    points = np.zeros((2, 3))
+    cloud = PointCloud(points)
+    points[0] = 1.0
+    assert (cloud.points == 0.0).all()
+    with pytest.raises(ValueError, match="read-only"):
+        cloud.points[0] = 1.0
+    assert cloud != PointCloud(np.zeros((2, 3)))
+
+
+@pytest.mark.parametrize("shape", [PointCloud(np.zeros((1, 3))), Mesh(FLAT)], ids=str)
+def test_distances_from_shapes_without_a_formula_are_refused(shape):
+    with pytest.raises(InvalidValue, match="are not known"):
+        point_distance(np.zeros(3), shape)
+
+
+def test_no_capsules_are_fitted_to_a_point_cloud():
+    with pytest.raises(InvalidValue, match="point cloud"):
+        fit_capsules(PointCloud(np.zeros((1, 3))))
+
+
+@pytest.mark.parametrize("pose", [Pose(), PLACE])
+def test_a_capsule_along_z_has_its_ends_where_they_were(pose):
+    capsule = Capsule((0.1, 0.2, 0.3), (-0.4, 0.9, 0.2), 0.05, pose=pose, link="arm")
+    turned = along_z(capsule)
+    assert (turned.a[:2], turned.b[:2], turned.link) == ((0, 0), (0, 0), "arm")
+    for end in ("a", "b"):
+        np.testing.assert_allclose(
+            turned.pose.apply(getattr(turned, end)), pose.apply(getattr(capsule, end)), atol=1e-15
+        )
+    assert along_z(turned) is turned
+
+
+def test_a_capsule_without_a_length_is_a_sphere():
+    ball = along_z(Capsule((1, 0, 0), (1, 0, 0), 0.5, pose=PLACE))
+    assert ball == Sphere(0.5, pose=PLACE @ Pose((1, 0, 0)))
+
+
+def test_a_capsule_without_its_pose_has_its_ends_in_the_outer_frame():
+    capsule = Capsule.along_z(0.1, 2.0, PLACE, "arm")
+    moved = without_pose(capsule)
+    np.testing.assert_allclose(moved.a, PLACE.apply((0, 0, -1)))
+    np.testing.assert_allclose(moved.b, PLACE.apply((0, 0, 1)))
+    assert without_pose(moved) is moved

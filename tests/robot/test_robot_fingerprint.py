@@ -1,0 +1,64 @@
+import os
+import subprocess
+import sys
+from dataclasses import replace
+
+import pytest
+
+from evenroad.geometry import Box, Pose, Sphere
+from evenroad.robot import Obstacle, Scene, fingerprint, load_robot, load_scene, with_group, with_limits
+
+UR5 = load_robot("ur5")
+CELL = load_scene("box-reach")
+HASH = "from evenroad.robot import fingerprint, load_robot, load_scene; print({0})"
+
+
+def test_robots_and_scenes_of_one_content_have_one_fingerprint_in_every_process():
+    code = HASH.format("fingerprint(load_robot('ur5')), fingerprint(load_scene('box-reach'))")
+    environment = os.environ | {"PYTHONHASHSEED": "7"}
+    said = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment
+    )
+    assert said.stdout.split() == [fingerprint(UR5), fingerprint(CELL)]
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        with_group(UR5, UR5.group[:5]),
+        with_group(UR5, UR5.group[:5], {"wrist_3_joint": 0.1}),
+        with_limits(UR5, {"elbow_joint": (-1.0, 1.0)}),
+        replace(UR5, pairs=UR5.pairs[1:]),
+        replace(UR5, capsules=(replace(UR5.capsules[0], radius=0.0601), *UR5.capsules[1:])),
+    ],
+    ids=["group", "held", "limits", "pairs", "capsule"],
+)
+def test_what_decides_verdicts_changes_a_robots_fingerprint(other):
+    assert fingerprint(other) != fingerprint(UR5)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        CELL.with_(Obstacle("ball", Sphere(0.1))),
+        CELL.without("table"),
+        replace(CELL, allowed=frozenset()),
+        replace(CELL, obstacles=(CELL.obstacles[0].at(Pose((0, 0, 1e-9))), *CELL.obstacles[1:])),
+    ],
+    ids=["more", "less", "allowed", "moved"],
+)
+def test_what_decides_verdicts_changes_a_scenes_fingerprint(other):
+    assert fingerprint(other) != fingerprint(CELL)
+
+
+def test_names_and_orders_do_not_count():
+    assert fingerprint(replace(UR5, name="it", states={"home": {}})) == fingerprint(UR5)
+    backwards = Scene("another", CELL.obstacles[::-1], CELL.allowed)
+    assert fingerprint(backwards) == fingerprint(CELL)
+
+
+def test_zeros_of_both_signs_are_one_number():
+    plus, minus = (
+        Scene("s", (Obstacle("a", Box((1, 1, 1), pose=Pose((zero, 0, 0)))),)) for zero in (0.0, -0.0)
+    )
+    assert fingerprint(plus) == fingerprint(minus)

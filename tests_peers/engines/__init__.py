@@ -1,0 +1,1 @@
+"""Other people's engines behind our protocol, to compare with: Klamp't and pinocchio."""
