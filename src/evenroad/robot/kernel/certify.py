@@ -20,6 +20,9 @@ _ROUNDING = 1e-9
 _DEEPEST = 60
 """Intervals are halved at most this often; the tolerance ends it long before."""
 
+_MOST_INTERVALS = 1 << 15
+"""A motion that needs more of them is not proved: some hundred milliseconds, where usual ones need some dozen."""
+
 
 @njit(cache=True, nogil=True)
 def motions_certified(
@@ -39,7 +42,8 @@ def motions_certified(
     a, b : float64 arrays, shape (m, dim)
         Ends of the motions.
     tolerance : float
-        An interval in which nothing moves by more than this is not halved again [m].
+        An interval in which nothing moves by more than this is not halved again [m].  Nor is any, once a motion
+        took 2^15 of them: it then counts as not proved.
     bounds, ints, floats : arrays
         As for ``scalar_batch.motions_free``.
     arms, pair_arms : float64 arrays, shapes (capsules, dim) and (capsule pairs, dim)
@@ -59,9 +63,10 @@ def motions_certified(
         span(start, end, bounds, 1.0, way)
         fastest = max(_largest_speed(arms, way, speeds), _largest_speed(pair_arms, way, pair_speeds))
         # Intervals still to be proved, each by its centre and half its length; the deepest one comes first.
-        centres[0], halves[0], waiting = 0.5, 0.5, 1
+        centres[0], halves[0], waiting, intervals = 0.5, 0.5, 1, 0
         while waiting > 0:
             waiting -= 1
+            intervals += 1
             centre, half = centres[waiting], halves[waiting]
             for k in range(dim):
                 state[k] = start[k] + centre * way[k]
@@ -76,7 +81,8 @@ def motions_certified(
             touches = (
                 first_contact(state, ints, floats, margins, pair_margins, frames, capsules)[0] != SEPARATE
             )
-            if touches or half * fastest < tolerance or waiting == _DEEPEST:
+            ended = half * fastest < tolerance or waiting == _DEEPEST or intervals >= _MOST_INTERVALS
+            if touches or ended:
                 waiting = -1
                 break
             for side in (1.0, -1.0):

@@ -62,6 +62,43 @@ def joint_arms(tree: MovingTree, segments: Sequence[Segment], robot: Robot) -> n
     return arms
 
 
+def speed_bounds(
+    tree: MovingTree, segments: Sequence[Segment], pairs: Sequence[tuple[int, int]], robot: Robot
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Return how fast each coordinate moves segments, and those of a pair against each other, at most [m/rad].
+
+    Parameters
+    ----------
+    tree, segments, robot : MovingTree, sequence of Segment, Robot
+        As for `joint_arms`.
+    pairs : sequence of (int, int)
+        Numbers of two segments.  Frames that carry both move them as one body.
+
+    Returns
+    -------
+    speeds, pair_speeds : float64 arrays, shapes (segments, dim) and (pairs, dim)
+    """
+    by_frame = joint_arms(tree, segments, robot)
+    first, second = (by_frame[[pair[end] for pair in pairs]].reshape(-1, by_frame.shape[1]) for end in (0, 1))
+    carriers = [_carriers(tree, segment.frame) for segment in segments]
+    common = np.zeros(first.shape, dtype=np.bool_)
+    for row, (i, k) in zip(common, pairs, strict=True):
+        row[[number - 1 for number in carriers[i] & carriers[k]]] = True
+    to_coordinate = np.zeros((by_frame.shape[1], len(robot.group)))
+    for column, frame in enumerate(tree.frames):
+        to_coordinate[column, frame.coordinate] = 1.0
+    return by_frame @ to_coordinate, np.where(common, 0.0, first + second) @ to_coordinate
+
+
+def _carriers(tree: MovingTree, number: int) -> set[int]:
+    """Return the numbers of the frames that carry what is fixed to a frame, itself included."""
+    carriers = set()
+    while number > 0:
+        carriers.add(number)
+        number = tree.frames[number - 1].parent
+    return carriers
+
+
 def farthest(tree: MovingTree, segments: Sequence[Segment], robot: Robot) -> float:
     """Return a distance from the root's origin beyond which no capsule ever reaches [m]."""
     most = 0.0
