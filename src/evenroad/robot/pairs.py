@@ -17,6 +17,9 @@ from evenroad.robot.segments import segment_distance
 SAMPLES = 1000
 """Random configurations that tell pairs that are always in contact."""
 
+TOUCHING = "touch in every sample"
+"""Why a pair is not tested whose capsules are in contact in all of them; the shapes inside may well come apart."""
+
 
 @dataclass(frozen=True)
 class SelfPairs:
@@ -49,7 +52,7 @@ def computed_pairs(robot: Robot) -> SelfPairs:
     drawn uniformly within the limits of all joints.  Pairs that never touch are kept: a sample cannot prove that.
     """
     reasons = {pair: "neighbours" for pair in _bodied(robot) if _are_neighbours(robot, *pair)}
-    reasons |= {pair: "touch in every sample" for pair in _always_in_contact(robot) if pair not in reasons}
+    reasons |= {pair: TOUCHING for pair in _always_in_contact(robot) if pair not in reasons}
     return _sorted_out(robot, reasons)
 
 
