@@ -1,5 +1,6 @@
 import json
 import re
+import time
 
 import numpy as np
 import pytest
@@ -315,3 +316,17 @@ def test_robot_measures_in_a_scene(run):
     code, out, _ = run("robot", "ur5", "--scene", "box-reach.yaml")
     assert code == 0
     assert "in box-reach" in " ".join(out.split())
+
+
+def test_robot_measures_in_bounded_time_between_limits_of_a_million_radians(run, desk):
+    """Nothing is in the way, and one motion from end to end would have forty million states."""
+    wide = "<limit lower='-999999' upper='999999' velocity='2' effort='1'/>"
+    (desk / "arm.urdf").write_text(
+        urdf(link("base"), link("upper"), joint("a", "base", "upper", inside=wide))
+    )
+    begin = time.process_time()
+    code, out, err = run("robot", "arm.urdf")
+    assert (code, err) == (0, "")
+    assert "±1e+06 rad" in out
+    assert "motions/s" in out
+    assert time.process_time() - begin < 20.0
