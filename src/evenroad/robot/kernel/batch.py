@@ -8,9 +8,9 @@ from numba import njit
 
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.contact import blocked_lanes
-from evenroad.robot.kernel.inner import inner
+from evenroad.robot.kernel.forward_kinematics import scratch_memory, unpacked, write_values
+from evenroad.robot.kernel.layout import inner
 from evenroad.robot.kernel.motion import enter, span
-from evenroad.robot.kernel.place import scratch_memory, unpacked, write_values
 
 LANES = at.LANES
 Floats = npt.NDArray[np.float64]

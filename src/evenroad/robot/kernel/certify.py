@@ -7,7 +7,7 @@ import numpy.typing as npt
 from numba import njit
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.inner import inner
+from evenroad.robot.kernel.layout import inner
 from evenroad.robot.kernel.motion import enter, span
 from evenroad.robot.kernel.scalar import SEPARATE, first_contact
 

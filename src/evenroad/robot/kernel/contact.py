@@ -13,7 +13,14 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.inner import inlined, inner
+from evenroad.robot.kernel.forward_kinematics import (
+    BODY,
+    CAPSULE,
+    place_frames,
+    place_moving_bodies,
+    place_moving_capsules,
+    scratch_places,
+)
 from evenroad.robot.kernel.lanes import (
     ONE,
     ZERO,
@@ -27,14 +34,7 @@ from evenroad.robot.kernel.lanes import (
     smallest_lane,
     square_root,
 )
-from evenroad.robot.kernel.place import (
-    BODY,
-    CAPSULE,
-    place_frames,
-    place_moving_bodies,
-    place_moving_capsules,
-    scratch_places,
-)
+from evenroad.robot.kernel.layout import inlined, inner
 
 LANES = at.LANES
 ALL = (1 << LANES) - 1
@@ -52,7 +52,7 @@ def blocked_lanes(scratch: Singles, ints: Ints, table: Singles, enough: int) -> 
     Parameters
     ----------
     scratch : float32 array
-        As ``place.scratch_memory`` makes it, with the values of the frames in sixteen configurations.
+        As ``forward_kinematics.scratch_memory`` makes it, with the values of the frames in sixteen configurations.
     ints, table : arrays
         The tables.
     enough : int
@@ -73,7 +73,7 @@ def _meeting_obstacles(scratch: Singles, capsules: int, ints: Ints, table: Singl
     blocks = ints[at.BLOCKS]
     blocked = 0
     # From the outermost capsules inwards: those meet obstacles most often.
-    for i in range(ints[at.CAPSULES] - 1, ints[at.STANDING] - 1, -1):
+    for i in range(ints[at.CAPSULES] - 1, ints[at.FIXED_CAPSULES] - 1, -1):
         here = capsules + CAPSULE * i
         cx, cy, cz = load(scratch, here), load(scratch, here + LANES), load(scratch, here + 2 * LANES)
         ux = load(scratch, here + 6 * LANES)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.robot.kernel.inner import inner
+from evenroad.robot.kernel.layout import inner
 
 Floats = npt.NDArray[np.float64]
 

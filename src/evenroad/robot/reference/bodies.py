@@ -10,7 +10,7 @@ import numpy as np
 from evenroad.errors import InvalidValue
 from evenroad.robot.capsule import Capsule
 from evenroad.robot.geometry import Geometry
-from evenroad.robot.kernel.tree import rotation_from_z
+from evenroad.robot.kernel.moving_tree import rotation_from_z
 from evenroad.robot.load import find_robot
 from evenroad.robot.meshes import load_triangles
 from evenroad.robot.robot import Robot
