@@ -9,20 +9,19 @@ from numba import njit
 
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.kernel import layout, scene_tables
+from evenroad.robot.kernel.obstacles import distance_to_obstacle, obstacle_arrays
 from evenroad.robot.scene import Obstacle, Scene
 from tests.robot.kernel_arms import STRAIGHT, random_rotation, random_scene, random_tree, seven_joint_arm, ur5
 from tests.robot.oracle import obstacle_distance
 
-_distance = scene_tables._distance
-
 
 @njit(cache=True)
 def distance(point, kind, size, rotation, translation):
-    return _distance(point, kind, size, rotation, translation)
+    return distance_to_obstacle(point, kind, size, rotation, translation)
 
 
 def point_to_obstacle(point, obstacle):
-    arrays = scene_tables.obstacle_arrays(Scene("one", (obstacle,)))
+    arrays = obstacle_arrays(Scene("one", (obstacle,)))
     return distance(point, arrays.kinds[0], arrays.sizes[0], arrays.rotations[0], arrays.translations[0])
 
 

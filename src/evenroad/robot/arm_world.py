@@ -13,8 +13,9 @@ from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue, NotAvailable, UnknownName
 from evenroad.robot.kernel import scalar
 from evenroad.robot.kernel.certify import motions_certified
+from evenroad.robot.kernel.obstacles import obstacle_arrays, tested_contacts
 from evenroad.robot.kernel.robot_tables import RobotTables, robot_tables
-from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables, obstacle_arrays, tested_contacts
+from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
 from evenroad.robot.kernel.selftest import lanes_failure
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
@@ -90,7 +91,7 @@ class ArmWorld:
         object.__setattr__(self, "resolution", require_positive("resolution", self.resolution))
         space, bounds, longest, of_robot = _prepared(self.robot)
         require_few_segments(self.resolution, longest / self.resolution)
-        tested = tested_contacts(of_robot, self.robot.links, self.scene)
+        tested = tested_contacts(of_robot.capsules, self.robot.links, self.scene)
         object.__setattr__(self, "_space", space)
         object.__setattr__(self, "bounds", bounds)
         object.__setattr__(self, "robot_tables", of_robot)

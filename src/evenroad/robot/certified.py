@@ -2,7 +2,7 @@
 
 A joint that turns by dq moves a point of the robot by at most |dq| times the point's distance from its axis,
 one that slides by |dq|.  Let ``arm_cj`` bound that distance, over all configurations, for the segment inside
-capsule c (``evenroad.robot.kernel.reach``).  While a motion goes from share t to share u of its way dq,
+capsule c (``evenroad.robot.kernel.placed_capsules``).  While a motion, by dq in all, goes from share t to u,
 straight in the joints, the segment's points then move by at most
 
     |u - t| D_c,    D_c = sum_j arm_cj |dq_j|,

@@ -50,7 +50,7 @@ def motions_certified(
         How fast each coordinate moves a capsule, and the two of a pair against each other, at most [m/rad].
     """
     dim = a.shape[1]
-    start, end, way, state = np.empty(dim), np.empty(dim), np.empty(dim), np.empty(dim)
+    start, end, direction, state = np.empty(dim), np.empty(dim), np.empty(dim), np.empty(dim)
     speeds, pair_speeds = np.empty(len(arms)), np.empty(len(pair_arms))
     margins, pair_margins = np.empty(len(arms)), np.empty(len(pair_arms))
     frames, capsules = np.empty((ints[at.FRAMES] + 1, 12)), np.empty((ints[at.CAPSULES], 6))
@@ -60,8 +60,10 @@ def motions_certified(
         proved[row] = False
         if not (enter(a[row], bounds, start) and enter(b[row], bounds, end)):
             continue
-        span(start, end, bounds, 1.0, way)
-        fastest = max(_largest_speed(arms, way, speeds), _largest_speed(pair_arms, way, pair_speeds))
+        span(start, end, bounds, 1.0, direction)
+        fastest = max(
+            _largest_speed(arms, direction, speeds), _largest_speed(pair_arms, direction, pair_speeds)
+        )
         # Intervals still to be proved, each by its centre and half its length; the deepest one comes first.
         centres[0], halves[0], waiting, intervals = 0.5, 0.5, 1, 0
         while waiting > 0:
@@ -69,7 +71,7 @@ def motions_certified(
             intervals += 1
             centre, half = centres[waiting], halves[waiting]
             for k in range(dim):
-                state[k] = start[k] + centre * way[k]
+                state[k] = start[k] + centre * direction[k]
             for i in range(len(margins)):
                 margins[i] = half * speeds[i] + _ROUNDING
             for i in range(len(pair_margins)):
@@ -93,12 +95,12 @@ def motions_certified(
 
 
 @inner
-def _largest_speed(arms: Floats, way: Floats, speeds: Floats) -> float:
+def _largest_speed(arms: Floats, direction: Floats, speeds: Floats) -> float:
     """Write how far each body can move during the whole motion, and return the largest [m]."""
     largest = 0.0
     for i in range(len(arms)):
         speeds[i] = 0.0
-        for k in range(len(way)):
-            speeds[i] += arms[i, k] * abs(way[k])
+        for k in range(len(direction)):
+            speeds[i] += arms[i, k] * abs(direction[k])
         largest = max(largest, speeds[i])
     return largest

@@ -117,8 +117,8 @@ def _meeting_one(scratch: Singles, here: int, capsule: int, obstacle: int, ints:
     ex, ey = load(scratch, here + 3 * LANES), load(scratch, here + 4 * LANES)
     ez = load(scratch, here + 5 * LANES)
     if kind != at.ALIGNED:
-        cx, cy, cz = _turned(cx, cy, cz, data + 6, table)
-        ex, ey, ez = _turned(ex, ey, ez, data + 6, table)
+        cx, cy, cz = _in_frame_of(cx, cy, cz, data + 6, table)
+        ex, ey, ez = _in_frame_of(ex, ey, ez, data + 6, table)
     width_x, width_y, width_z = table[data + 3], table[data + 4], table[data + 5]
     reach = table[ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * capsule + 6] + table[data + 15]
     square_reach = reach * reach
@@ -140,7 +140,7 @@ def _meeting_one(scratch: Singles, here: int, capsule: int, obstacle: int, ints:
 
 
 @inlined
-def _turned(x: Any, y: Any, z: Any, data: int, table: Singles) -> Any:
+def _in_frame_of(x: Any, y: Any, z: Any, data: int, table: Singles) -> Any:
     """Return a vector in the frame whose rotation to the root's is at `data` of the table."""
     return (
         x * table[data] + y * table[data + 3] + z * table[data + 6],

@@ -112,12 +112,12 @@ def _meets_obstacle(ints: Ints, floats: Floats, margins: Floats, capsules: Float
             if not (ints[ints[at.TESTED] + i * blocks + block] >> lane) & 1:
                 continue
             box = ints[at.BLOCK_FLOATS] + block * at.BLOCK_FLOAT_ROW + lane
-            apart = -np.inf
+            gap = -np.inf
             for axis in range(3):
                 away = abs(capsules[i, axis] - floats[box + axis * at.LANES])
                 widths = abs(capsules[i, 3 + axis]) + floats[box + (3 + axis) * at.LANES]
-                apart = max(apart, away - widths)
-            if apart >= radius + margins[i]:
+                gap = max(gap, away - widths)
+            if gap >= radius + margins[i]:
                 continue
             reach = radius + margins[i] + floats[ints[at.OBSTACLE_FLOATS] + at.OBSTACLE_FLOAT_ROW * k + 15]
             for sample in range(ints[row + 1], ints[row + 2]):
@@ -249,13 +249,13 @@ def motions_free(
     no_margins = np.zeros(1 + ints[at.CAPSULES] ** 2)
     frames, capsules = np.empty((ints[at.FRAMES] + 1, 12)), np.empty((ints[at.CAPSULES], 6))
     dim = a.shape[1]
-    start, end, way, state = np.empty(dim), np.empty(dim), np.empty(dim), np.empty(dim)
+    start, end, direction, state = np.empty(dim), np.empty(dim), np.empty(dim), np.empty(dim)
     free = np.empty(len(a), dtype=np.bool_)
     for row in range(len(a)):
         free[row] = False
         if not (enter(a[row], bounds, start) and enter(b[row], bounds, end)):
             continue
-        segments = span(start, end, bounds, resolution, way)
+        segments = span(start, end, bounds, resolution, direction)
         if first_contact(start, ints, floats, no_margins, no_margins, frames, capsules)[0] != SEPARATE:
             continue
         if first_contact(end, ints, floats, no_margins, no_margins, frames, capsules)[0] != SEPARATE:
@@ -263,7 +263,7 @@ def motions_free(
         level, multiple, number = next_between(1, -1, segments)
         while number > 0:
             for k in range(dim):
-                state[k] = start[k] + number / segments * way[k]
+                state[k] = start[k] + number / segments * direction[k]
             if first_contact(state, ints, floats, no_margins, no_margins, frames, capsules)[0] != SEPARATE:
                 break
             level, multiple, number = next_between(level, multiple, segments)

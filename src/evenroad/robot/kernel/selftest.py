@@ -9,8 +9,9 @@ import numpy.typing as npt
 
 from evenroad.robot.capsule import Capsule
 from evenroad.robot.joint import Joint
+from evenroad.robot.kernel.obstacles import obstacle_arrays, tested_contacts
 from evenroad.robot.kernel.robot_tables import robot_tables
-from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables, obstacle_arrays, tested_contacts
+from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle, Scene
 
@@ -76,7 +77,7 @@ def small_tables() -> ArmTables:
         Obstacle("pipe", "capsule", (0.05, 0.4), (0.4, -0.4, 0.2), _STRAIGHT),
     )
     tables, scene = robot_tables(robot), Scene("small", obstacles)
-    return arm_tables(tables, obstacle_arrays(scene), tested_contacts(tables, links, scene))
+    return arm_tables(tables, obstacle_arrays(scene), tested_contacts(tables.capsules, links, scene))
 
 
 def _read_only(array: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
