@@ -5,13 +5,15 @@ import json
 import numpy as np
 import pytest
 import trimesh
-from tests.robot.mesh_arms import write_fork_arm
+from evenroad.robot.reference.bodies import original_geometries
+from tests.robot.mesh_arms import write_fork_arm, write_plate_arm
 
 from evenroad.cli import main
 from evenroad.errors import BrokenFile
 from evenroad.robot import ArmWorld, Obstacle, Scene, link_poses, load_robot
 from evenroad.robot.load import load_model
-from evenroad.robot.reference.recheck import has_meshes, recheck, states_along
+from evenroad.robot.reference.coal_world import CoalWorld
+from evenroad.robot.reference.recheck import has_meshes, recheck, states_along, unseen_pairs
 
 pytest.importorskip("coal")
 
@@ -80,6 +82,65 @@ def test_a_mesh_that_is_gone_by_then_is_an_error(arm, tmp_path):
     (tmp_path / "meshes" / "fork.stl").unlink()
     with pytest.raises(BrokenFile, match=r"fork\.stl"):
         recheck(arm, robot, NOTHING, np.zeros((2, 3)))
+
+
+# ---- pairs whose capsules say nothing
+
+PLATE_WAY = np.array([[0.0, -1.0, 0.0], [0.5, 0.5, 0.1], [1.0, 1.6, 0.0]])
+"""The tip of the plate arm comes from above and ends in the plate."""
+
+
+def test_a_pair_whose_capsules_always_touch_is_tested_with_its_shapes(arm, tmp_path):
+    file = write_plate_arm(tmp_path)
+    model = load_model(file)
+    unseen = unseen_pairs(model)
+    assert ("plate", "tip") in unseen
+    assert ("plate", "tip") not in model.robot.pairs
+    assert not has_meshes(model), "it is not for meshes alone"
+    assert ArmWorld(model.robot, NOTHING).recheck(PLATE_WAY).all(), "nobody else sees it"
+    check = recheck(file, model.robot, NOTHING, PLATE_WAY, unseen=unseen)
+    assert check.verdict == "in collision"
+    assert "in motion 1 of the path: 'plate' touches 'tip'" in check.message
+    assert recheck(file, model.robot, NOTHING, PLATE_WAY[:2], unseen=unseen).verdict == "free"
+
+
+def test_a_pair_whose_shapes_always_touch_is_left_out_and_named(arm, tmp_path):
+    file = write_plate_arm(tmp_path)
+    model = load_model(file)
+    check = recheck(file, model.robot, NOTHING, PLATE_WAY[:2], unseen=unseen_pairs(model))
+    assert ("plate", "collar") in check.always_touching
+    assert ("plate", "tip") not in check.always_touching
+    assert "left out, for they always touch: " in str(check)
+    assert "'plate' with 'collar'" in str(check)
+
+
+def test_a_graze_between_the_states_of_the_planner_is_found(arm):
+    """A thin post beside the way of the fork: a tenth of the resolution sees what the resolution itself passes over."""
+    robot = load_robot(arm)
+    path = np.array([[-0.4, 0.0, 0.0], [1.5, 0.0, 0.0]])
+    coarse = states_along(ArmWorld(robot, NOTHING).space, path, 0.951)[0]
+    between = 0.5 * (coarse[0] + coarse[1])
+    corner = link_poses(robot, between[np.newaxis])[0, robot.links.index("fork")]
+    place = corner[:3, :3] @ (0.05, 0.0, 0.02) + corner[:3, 3]
+    scene = Scene("needle", (Obstacle.of("needle", "sphere", (1e-3,), tuple(place)),))
+    assert CoalWorld(robot, scene, original_geometries(arm, robot)).valid(coarse).all()
+    check = recheck(arm, robot, scene, path, resolution=0.951)
+    assert check.verdict == "in collision"
+    assert "'fork' touches 'needle'" in check.message
+
+
+def test_a_plan_into_what_only_the_shapes_see_is_not_handed_out(arm, tmp_path, capsys):
+    write_plate_arm(tmp_path)
+    (tmp_path / "empty.yaml").write_text("obstacles: {}\n")
+    words = ["plan", "empty.yaml", "--robot", "plate.urdf", "-n", "64", "--out", "b"]
+    assert main([*words, "--start", "0", "-1", "0", "--goal", "1", "0.2", "0"]) == 0
+    assert json.loads((tmp_path / "b.json").read_text())["meshes"]["verdict"] == "free"
+    assert main([*words, "--start", "0", "-1", "0", "--goal", "1", "1.6", "0"]) == 1
+    record = json.loads((tmp_path / "b.json").read_text())
+    assert record["status"] == "mesh_collision"
+    assert "'plate' touches 'tip'" in record["message"]
+    assert not (tmp_path / "b.csv").exists()
+    assert "left out" in " ".join(capsys.readouterr().out.split())
 
 
 SCENE = """

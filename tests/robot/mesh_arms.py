@@ -56,3 +56,24 @@ def write_fork_arm(
     path = folder / "arm.urdf"
     path.write_text(text)
     return path
+
+
+def write_plate_arm(folder):
+    """Write plate.urdf, of boxes and balls: a wide plate, whose capsules hold all that is near it; return the file.
+
+    The tip, a ball on the second joint, goes up and down beside the plate: it touches where that joint is near pi/2.
+    The collar around that joint is in the plate all the time.
+    """
+    text = urdf(
+        link("plate", "<collision><geometry><box size='0.4 0.4 0.01'/></geometry></collision>"),
+        link("post", "<collision><geometry><cylinder radius='0.005' length='0.02'/></geometry></collision>"),
+        link("tip", "<collision><origin xyz='0.02 0 0'/><geometry><sphere radius='0.012'/></geometry></collision>"),
+        link("collar", "<collision><geometry><sphere radius='0.05'/></geometry></collision>"),
+        joint("turn", "plate", "post", "revolute", WIDE, "0.05 0 0.025", "0 0 1"),
+        joint("bend", "post", "tip", "revolute", WIDE, "0 0 0.01", "0 1 0"),
+        joint("spin", "tip", "collar", "revolute", WIDE, "0 0 0", "0 1 0"),
+        name="plate arm",
+    )  # fmt: skip
+    path = folder / "plate.urdf"
+    path.write_text(text)
+    return path

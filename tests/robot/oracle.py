@@ -6,7 +6,7 @@ joint by joint, with Rodrigues' formula, and every capsule is tested against eve
 
 import numpy as np
 
-from evenroad.robot.kernel.cover import cover_capsule
+from evenroad.robot.kernel.placed_capsules import cover_capsule
 
 
 def joint_values(robot, q):

@@ -13,8 +13,7 @@ from evenroad.geometry.shapes import Capsule
 from evenroad.robot import arm_world
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.joint import Joint, Mimic
-from evenroad.robot.kernel import batch, scalar_batch, selftest
-from evenroad.robot.kernel.tables import pack
+from evenroad.robot.kernel import batch, scalar, selftest
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle, Scene
 from evenroad.testing import WorldContract
@@ -168,7 +167,7 @@ def test_an_obstacle_out_of_reach_changes_nothing():
     scene = box_scene()
     far = Obstacle.of("far", "box", (1.0, 1.0, 1.0), (50.0, 0.0, 0.0))
     world, more = ArmWorld(ur5(), scene), ArmWorld(ur5(), replace(scene, obstacles=(*scene.obstacles, far)))
-    assert len(more.model.obstacles) == len(world.model.obstacles)
+    assert len(more.tables.kept) == len(world.tables.kept) == len(scene.obstacles)
     q = world.space.from_cube(np.random.default_rng(9).random((1_000, 6)))
     np.testing.assert_array_equal(world.valid(q), more.valid(q))
 
@@ -198,8 +197,8 @@ def test_a_robot_that_no_joint_moves_about_obstacles_only_has_limits():
 
 
 def test_the_small_robot_of_the_self_test_has_its_verdicts_in_double_precision():
-    tables = pack(selftest.small_model())
-    free = scalar_batch.configurations_free(
+    tables = selftest.small_tables()
+    free = scalar.configurations_free(
         selftest.small_batch(), selftest.small_bounds(), tables.ints, tables.floats
     )
     np.testing.assert_array_equal(free, selftest.expected_verdicts())

@@ -10,13 +10,13 @@ from evenroad.robot.kernel.lanes import (
     largest_lane,
     load,
     lowest_bit,
+    sine_and_cosine,
     smaller,
     smallest_lane,
     square_root,
     store,
     with_sign_of,
 )
-from evenroad.robot.kernel.sine import sine_and_cosine
 
 
 @njit(cache=True)

@@ -9,9 +9,9 @@ import pytest
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.joint import Joint, Mimic
-from evenroad.robot.kernel.model import arm_model
-from evenroad.robot.kernel.reach import farthest, joint_arms
-from evenroad.robot.kernel.tree import moving_tree, rotation_from_z
+from evenroad.robot.kernel.moving_tree import moving_tree, rotation_from_z
+from evenroad.robot.kernel.placed_capsules import farthest, joint_arms
+from evenroad.robot.kernel.robot_tables import robot_tables
 from evenroad.robot.scene import Scene
 from tests.robot.kernel_arms import STRAIGHT, Y, Z, random_tree, seven_joint_arm, ur5
 from tests.robot.oracle import link_poses
@@ -107,12 +107,12 @@ def test_the_z_axis_is_turned_to_the_axis(axis):
 # ---- bounds
 
 
-def points_of(robot, model, q):
+def points_of(robot, tables, q):
     """Ends of every placed capsule's segment, (capsules, n, 2, 3); and the frames' numbers."""
     poses = link_poses(robot, q)
     places = moving_tree(robot).links
     ends = []
-    for capsule in model.capsules:
+    for capsule in tables.capsules:
         rotation, origin = poses[capsule.link]
         back = places[capsule.link]
         local = [
@@ -124,25 +124,27 @@ def points_of(robot, model, q):
 
 @pytest.mark.parametrize("robot", ROBOTS.values(), ids=ROBOTS)
 def test_no_joint_moves_a_capsule_faster_than_its_arm(robot):
-    model, space = arm_model(robot, EMPTY), ArmWorld(robot, EMPTY).space
+    tables, space = robot_tables(robot), ArmWorld(robot, EMPTY).space
     frames = moving_tree(robot).frames
-    arms = joint_arms(model.tree, model.capsules, robot)
+    arms = joint_arms(tables.tree, tables.capsules, robot)
     q = space.from_cube(np.random.default_rng(2).random((300, space.dim)))
     for coordinate in range(space.dim):
         step = np.zeros(space.dim)
         step[coordinate] = 1e-6
-        moved = np.linalg.norm(points_of(robot, model, q + step) - points_of(robot, model, q), axis=-1) / 1e-6
+        moved = (
+            np.linalg.norm(points_of(robot, tables, q + step) - points_of(robot, tables, q), axis=-1) / 1e-6
+        )
         allowed = sum(arms[:, f] for f, frame in enumerate(frames) if frame.coordinate == coordinate)
         assert (moved.max(axis=(1, 2)) <= allowed + 1e-6).all()
 
 
 @pytest.mark.parametrize("robot", ROBOTS.values(), ids=ROBOTS)
 def test_nothing_is_farther_than_the_reach(robot):
-    model, space = arm_model(robot, EMPTY), ArmWorld(robot, EMPTY).space
+    tables, space = robot_tables(robot), ArmWorld(robot, EMPTY).space
     q = space.from_cube(np.random.default_rng(3).random((300, space.dim)))
-    radii = np.array([capsule.cover.radius for capsule in model.capsules])
-    farthest_seen = (np.linalg.norm(points_of(robot, model, q), axis=-1).max(axis=(1, 2)) + radii).max()
-    assert farthest_seen <= farthest(model.tree, model.capsules, robot)
+    radii = np.array([capsule.cover.radius for capsule in tables.capsules])
+    farthest_seen = (np.linalg.norm(points_of(robot, tables, q), axis=-1).max(axis=(1, 2)) + radii).max()
+    assert farthest_seen <= farthest(tables.tree, tables.capsules, robot)
 
 
 def test_the_reach_of_a_stretched_arm_is_not_far_off():
@@ -151,7 +153,7 @@ def test_the_reach_of_a_stretched_arm_is_not_far_off():
 
 
 def model_reach(robot):
-    return arm_model(robot, EMPTY).reach
+    return robot_tables(robot).reach
 
 
 def test_a_slide_counts_in_the_reach_by_its_farther_end():

@@ -30,7 +30,7 @@ from evenroad.robot import (
     load_model,
     load_scene,
 )
-from evenroad.robot.reference.recheck import MeshCheck, has_meshes, recheck
+from evenroad.robot.reference.recheck import MeshCheck, has_meshes, recheck, unseen_pairs
 
 if TYPE_CHECKING:
     from evenroad.cli.plan import Plan
@@ -61,8 +61,9 @@ def plan_arm(plan: Plan) -> int:
     load_compiled_code(world, start, goal, points, rule, SEARCH)
     result = roadmap.plan(world, start, goal, points, rule=rule, search=SEARCH, shorten=not plan.raw)
     meshes = None
-    if result.path is not None and has_meshes(model):
-        meshes = recheck(plan.robot, robot, scene, result.path, world.resolution)
+    unseen = unseen_pairs(model)
+    if result.path is not None and (has_meshes(model) or unseen):
+        meshes = recheck(plan.robot, robot, scene, result.path, world.resolution, unseen)
         result = _judged(result, meshes)
     query = {
         "scene": str(plan.world),
@@ -107,7 +108,8 @@ def _judged(result: PlanResult, meshes: MeshCheck) -> PlanResult:
     if meshes.verdict != "in collision":
         return result
     message = (
-        f"the path is free for the robot's capsules, but not for its meshes: in collision {meshes.message}"
+        "the path is free for the robot's capsules, but not for the shapes that they stand for: in collision"
+        f" {meshes.message}"
     )
     return replace(result, status=Status.MESH_COLLISION, message=message)
 

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue, NotAvailable, UnknownName
-from evenroad.robot.kernel import scalar, scalar_batch
-from evenroad.robot.kernel.model import ArmModel, arm_model
+from evenroad.robot.kernel import scalar
+from evenroad.robot.kernel.certify import motions_certified
+from evenroad.robot.kernel.obstacles import obstacle_arrays, tested_contacts
+from evenroad.robot.kernel.robot_tables import RobotTables, robot_tables
+from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
 from evenroad.robot.kernel.selftest import lanes_failure
-from evenroad.robot.kernel.tables import ArmTables, pack
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
 from evenroad.space import JointSpace
@@ -21,6 +24,11 @@ from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.bisection import require_few_segments
 
 _BACKENDS = ("auto", "lanes", "scalar")
+
+RECHECK_TOLERANCE = 1e-6
+"""How near to contact `ArmWorld.recheck` still proves a motion free [m]; verdicts of single precision keep about
+twice that clear of contact, so that it refuses hardly a motion that touches nothing.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,8 +41,8 @@ class ArmWorld:
     capsule touches (`excess` says how much larger they are).
 
     A motion is divided into ``n = ceil(distance / resolution)`` segments and free if all n + 1 ends of
-    segments are.  What lies between two states is not seen: for a proof without gaps see
-    :class:`evenroad.robot.certified.CertifiedWorld`.
+    segments are.  What lies between two states is not seen: `recheck` proves the motions of a path with no gap,
+    and in a :class:`evenroad.robot.certified.CertifiedWorld` every motion is proved.
 
     Parameters
     ----------
@@ -54,10 +62,10 @@ class ArmWorld:
     ----------
     bounds : float64 ndarray, shape (3, dim)
         Low, high and period of each joint; a period of inf where it does not wrap.
-    model : ArmModel
-        What is tested against what.
+    robot_tables : RobotTables
+        What compiled code knows of the robot alone; made once a robot, however many scenes it is put into.
     tables : ArmTables
-        The model as compiled code takes it.
+        What it reads of the robot in this scene.
 
     Raises
     ------
@@ -76,21 +84,18 @@ class ArmWorld:
     backend: str = "auto"
     _space: JointSpace = field(init=False, repr=False)
     bounds: npt.NDArray[np.float64] = field(init=False, repr=False)
-    model: ArmModel = field(init=False, repr=False)
+    robot_tables: RobotTables = field(init=False, repr=False)
     tables: ArmTables = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "resolution", require_positive("resolution", self.resolution))
-        space = joint_space(self.robot)
-        low, high = np.array(space.low), np.array(space.high)
-        require_few_segments(self.resolution, float(np.linalg.norm(high - low)) / self.resolution)
-        bounds = np.stack([low, high, space.flat.period])
-        bounds.setflags(write=False)
-        model = arm_model(self.robot, self.scene)
+        space, bounds, longest, of_robot = _prepared(self.robot)
+        require_few_segments(self.resolution, longest / self.resolution)
+        tested = tested_contacts(of_robot.capsules, self.robot.links, self.scene)
         object.__setattr__(self, "_space", space)
         object.__setattr__(self, "bounds", bounds)
-        object.__setattr__(self, "model", model)
-        object.__setattr__(self, "tables", pack(model))
+        object.__setattr__(self, "robot_tables", of_robot)
+        object.__setattr__(self, "tables", arm_tables(of_robot, obstacle_arrays(self.scene), tested))
         object.__setattr__(self, "backend", _chosen(self.backend))
 
     @property
@@ -107,12 +112,12 @@ class ArmWorld:
     @property
     def excess(self) -> float:
         """By how much the spheres that obstacles are tested with exceed their capsules at most [m]."""
-        return max(capsule.cover.radius - capsule.radius for capsule in self.model.capsules)
+        return max(capsule.cover.radius - capsule.radius for capsule in self.robot_tables.capsules)
 
     @property
     def spheres(self) -> int:
         """How many spheres stand for the capsules where obstacles are concerned."""
-        return sum(len(capsule.cover.places) for capsule in self.model.capsules)
+        return sum(len(capsule.cover.places) for capsule in self.robot_tables.capsules)
 
     def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
         """Return which configurations, (n, dim), are within the limits and touch nothing: (n,).
@@ -123,11 +128,11 @@ class ArmWorld:
             If `q` has another shape or an entry that is not finite.
         """
         configurations = as_batch("q", q, self._space.dim)
-        if self.model.standing_contact:
+        if self._fixed_contact is not None:
             return np.zeros(len(configurations), dtype=np.bool_)
         tables = self.tables
         if self.backend == "scalar":
-            return scalar_batch.configurations_free(configurations, self.bounds, tables.ints, tables.floats)
+            return scalar.configurations_free(configurations, self.bounds, tables.ints, tables.floats)
         # Imported late: where the vector type cannot even be defined, all else still works.
         from evenroad.robot.kernel import batch as lanes_batch
 
@@ -142,14 +147,68 @@ class ArmWorld:
             As `valid`, or if the two differ in length.
         """
         first, second = as_batch_pair(a, b, self._space.dim)
-        if self.model.standing_contact:
+        if self._fixed_contact is not None:
             return np.zeros(len(first), dtype=np.bool_)
         resolution, bounds, tables = self.resolution, self.bounds, self.tables
         if self.backend == "scalar":
-            return scalar_batch.motions_free(first, second, resolution, bounds, tables.ints, tables.floats)
+            return scalar.motions_free(first, second, resolution, bounds, tables.ints, tables.floats)
         from evenroad.robot.kernel import batch as lanes_batch
 
         return lanes_batch.motions_free(first, second, resolution, bounds, tables.lanes)
+
+    @property
+    def proof(self) -> str:
+        """``certified``: what `recheck` calls free is proved to be, everywhere between its ends."""
+        return "certified"
+
+    def recheck(self, path: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Return which motions of a path, (p, dim), are proved free: (p - 1,).
+
+        The method is that of :mod:`evenroad.robot.certified`.  Stricter than testing states, however many: no stretch
+        of a motion is left open.  A motion is refused, too, that comes within some micrometres of contact, or for which
+        2^15 intervals are not enough.
+
+        Raises
+        ------
+        InvalidValue
+            As `valid`.
+        """
+        waypoints = as_batch("path", path, self._space.dim)
+        return self.motion_certified(waypoints[:-1], waypoints[1:], RECHECK_TOLERANCE)
+
+    def motion_certified(
+        self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64], tolerance: float
+    ) -> npt.NDArray[np.bool_]:
+        """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are proved free: (m,).
+
+        Motions are tested at their states first, which finds most of the blocked ones fast.
+
+        Parameters
+        ----------
+        a, b : ndarrays, shape (m, dim)
+            Ends [rad or m].
+        tolerance : float
+            Where a motion comes nearer than about this to contact it is not called free, > 0 [m].
+
+        Raises
+        ------
+        InvalidValue
+            As `motion_valid`.
+        """
+        first, second = as_batch_pair(a, b, self._space.dim)
+        proved = self.motion_valid(first, second)
+        rows, tables = np.flatnonzero(proved), self.tables
+        proved[rows] = motions_certified(
+            _read_only(first[rows]),
+            _read_only(second[rows]),
+            tolerance,
+            self.bounds,
+            tables.ints,
+            tables.floats,
+            self.robot_tables.speeds,
+            self.robot_tables.pair_speeds,
+        )
+        return proved
 
     def explain(self, q: npt.NDArray[np.float64]) -> str:
         """Return in words why one configuration, (dim,), is not free: the joint outside its limits and by
@@ -162,24 +221,66 @@ class ArmWorld:
             if math.isinf(period) and not low <= value <= high:
                 beyond = max(low - value, value - high)
                 return f"joint {name!r} is at {value:g}, {beyond:.3g} outside its limits [{low:g}, {high:g}]"
-        bodies = self.model.standing_contact or self._touching(row)
+        bodies = self._fixed_contact or self._touching(row)
         return "it is free" if bodies is None else f"{bodies[0]!r} touches {bodies[1]!r}"
+
+    @property
+    def _fixed_contact(self) -> tuple[str, str] | None:
+        """Two bodies that touch whatever the joints do, or None."""
+        if self.tables.fixed_contact is None:
+            return self.robot_tables.fixed_contact
+        capsule, obstacle = self.tables.fixed_contact
+        return self.robot_tables.capsules[capsule].link, self.scene.obstacles[obstacle].name
 
     def _touching(self, q: npt.NDArray[np.float64]) -> tuple[str, str] | None:
         """Return two bodies that touch, or come as near as what single precision may call touching."""
-        model, tables = self.model, self.tables
+        of_robot, tables, of_capsules = self.robot_tables, self.tables, self.robot_tables.capsules
         # A copy: code would be compiled anew for an array that cannot be written to.
-        margins, pair_margins = np.full(len(model.capsules), tables.margin), tables.pair_margins.copy()
-        frames, capsules = np.empty((len(model.tree.frames) + 1, 12)), np.empty((len(model.capsules), 6))
+        margins, pair_margins = np.full(len(of_capsules), tables.margin), of_robot.pair_margins.copy()
+        frames, capsules = np.empty((len(of_robot.tree.frames) + 1, 12)), np.empty((len(of_capsules), 6))
         kind, capsule, other = scalar.first_contact(
             q, tables.ints, tables.floats, margins, pair_margins, frames, capsules
         )
         if kind == scalar.MEETS_OBSTACLE:
-            return model.capsules[capsule].link, model.obstacles[other].name
+            return of_capsules[capsule].link, self.scene.obstacles[tables.kept[other]].name
         if kind == scalar.MEETS_ITSELF:
-            first, second = tables.capsule_pairs[other]
-            return model.capsules[first].link, model.capsules[second].link
+            first, second = of_robot.capsule_pairs[other]
+            return of_capsules[first].link, of_capsules[second].link
         return None
+
+
+@dataclass(frozen=True, eq=False)
+class _Known:
+    """A robot as a key: by the values that its space and its tables are made of."""
+
+    robot: Robot
+    key: tuple[object, ...]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Known) and self.key == other.key
+
+    def __hash__(self) -> int:
+        return hash(self.key)
+
+
+def _prepared(robot: Robot) -> tuple[JointSpace, npt.NDArray[np.float64], float, RobotTables]:
+    """Return what is a robot's in every scene: its space, bounds, the longest motion and its tables; kept."""
+    values = (robot.name, robot.links, robot.joints, robot.capsules, robot.pairs, robot.group)
+    known = _Known(robot, (*values, tuple(sorted(robot.held.items()))))
+    try:
+        return _kept(known)
+    except TypeError:
+        # Of lists in place of tuples: no key.
+        return _kept.__wrapped__(known)
+
+
+@lru_cache(maxsize=32)
+def _kept(known: _Known) -> tuple[JointSpace, npt.NDArray[np.float64], float, RobotTables]:
+    space = joint_space(known.robot)
+    low, high = np.array(space.low), np.array(space.high)
+    bounds = np.stack([low, high, space.flat.period])
+    bounds.setflags(write=False)
+    return space, bounds, float(np.linalg.norm(high - low)), robot_tables(known.robot)
 
 
 def _chosen(backend: str) -> str:
@@ -224,3 +325,10 @@ def joint_space(robot: Robot) -> JointSpace:
         high.append(bounds[1])
         wrapping.append(turns_on)
     return JointSpace(low, high, wrapping)
+
+
+def _read_only(array: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Return a contiguous array that cannot be written to: compiled code is made anew for each mix of the two."""
+    array = np.ascontiguousarray(array)
+    array.setflags(write=False)
+    return array

@@ -17,6 +17,11 @@ from evenroad.space import SE2, SE3
 from evenroad.world import World
 from evenroad.world.solids import OrientedBox, SolidWorld
 
+Array = npt.NDArray[np.float64]
+
+FarApart = Callable[[Array, Array], npt.NDArray[np.bool_]]
+"""Which pairs of rows of two (m, d) arrays of the cube may be a start and a goal, (m,)."""
+
 ENTROPY = 20_261_121
 """Root of every instance of the fair suite; the seed of a suite draws sets, never worlds."""
 
@@ -72,19 +77,18 @@ def make_instance(
     instance : int
         Number, >= 0.
     """
-    draw, far_apart = {
+    ways: dict[Family, tuple[Callable[..., World], FarApart]] = {
         Family.BALLS: (partial(draw_balls, d), far_on_torus),
         Family.BOXES: (partial(draw_boxes, d), far_on_torus),
         Family.MAZE: (draw_disk_world, far_in_map),
         Family.SE2: (partial(draw_clutter, 2), partial(places_far_apart, 2)),
         Family.SE3: (partial(draw_clutter, 3), partial(places_far_apart, 3)),
-    }[family]
+    }
+    draw, far_apart = ways[family]
     rng = instance_rng(stream, family, d, difficulty, instance)
     world, start, goal = draw_query(partial(draw, size), far_apart, rng)
     return Problem(world, start, goal, set_dim=d)
 
-
-Array = npt.NDArray[np.float64]
 
 PAIRS = 512
 """Pairs of configurations that are tried in one world."""
@@ -95,7 +99,7 @@ BATCH = 32
 
 def draw_query(
     draw_world: Callable[[np.random.Generator], World],
-    far_apart: Callable[[Array, Array], npt.NDArray[np.bool_]],
+    far_apart: FarApart,
     rng: np.random.Generator,
 ) -> tuple[World, Array, Array]:
     """Draw a world, a start and a goal.

@@ -8,9 +8,9 @@ from numba import njit
 
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.contact import blocked_lanes
-from evenroad.robot.kernel.inner import inner
+from evenroad.robot.kernel.forward_kinematics import scratch_memory, unpacked, write_values
+from evenroad.robot.kernel.layout import inner
 from evenroad.robot.kernel.motion import enter, span
-from evenroad.robot.kernel.place import scratch_memory, unpacked, write_values
 
 LANES = at.LANES
 Floats = npt.NDArray[np.float64]
@@ -54,24 +54,24 @@ def motions_free(
     m, dim = a.shape
     ints, table = unpacked(tables)
     states, start, scratch = scratch_memory(dim, ints, table)
-    end, way, share = np.empty(dim), np.empty(dim), np.empty(LANES)
+    end, direction, share = np.empty(dim), np.empty(dim), np.empty(LANES)
     free = np.empty(m, dtype=np.bool_)
     for row in range(m):
         free[row] = False
         if not (enter(a[row], bounds, start) and enter(b[row], bounds, end)):
             continue
-        segments = span(start, end, bounds, resolution, way)
+        segments = span(start, end, bounds, resolution, direction)
         for lane in range(LANES):
             state = min(lane, segments) if segments < LANES else lane * segments // (LANES - 1)
             share[lane] = state / max(segments, 1)
-        _write_states(states, start, way, share)
+        _write_states(states, start, direction, share)
         for k in range(dim):
             # Exactly the end, so that a motion is free only where its end is.
             states[k * LANES + LANES - 1] = end[k]
         write_values(scratch, states, ints, table)
         if blocked_lanes(scratch, ints, table, np.int64(1)) == 0:
             free[row] = segments < LANES or _rest_is_free(
-                scratch, states, start, way, share, segments, ints, table
+                scratch, states, start, direction, share, segments, ints, table
             )
     return free
 
@@ -81,7 +81,7 @@ def _rest_is_free(
     scratch: Singles,
     states: Floats,
     start: Floats,
-    way: Floats,
+    direction: Floats,
     share: Floats,
     segments: int,
     ints: Ints,
@@ -106,7 +106,7 @@ def _rest_is_free(
             while (gap + 1) * segments // (LANES - 1) - (gap + 1) <= rank:
                 gap += 1
             share[lane] = (rank + 1 + gap) / segments
-        _write_states(states, start, way, share)
+        _write_states(states, start, direction, share)
         write_values(scratch, states, ints, table)
         if blocked_lanes(scratch, ints, table, np.int64(1)) != 0:
             return False
@@ -114,8 +114,8 @@ def _rest_is_free(
 
 
 @inner
-def _write_states(states: Floats, start: Floats, way: Floats, share: Floats) -> None:
+def _write_states(states: Floats, start: Floats, direction: Floats, share: Floats) -> None:
     """Write the configurations at sixteen shares of a motion."""
     for k in range(len(start)):
         for lane in range(LANES):
-            states[k * LANES + lane] = start[k] + share[lane] * way[k]
+            states[k * LANES + lane] = start[k] + share[lane] * direction[k]

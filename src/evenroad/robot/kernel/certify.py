@@ -7,7 +7,7 @@ import numpy.typing as npt
 from numba import njit
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.inner import inner
+from evenroad.robot.kernel.layout import inner
 from evenroad.robot.kernel.motion import enter, span
 from evenroad.robot.kernel.scalar import SEPARATE, first_contact
 
@@ -19,6 +19,9 @@ _ROUNDING = 1e-9
 
 _DEEPEST = 60
 """Intervals are halved at most this often; the tolerance ends it long before."""
+
+_MOST_INTERVALS = 1 << 15
+"""A motion that needs more of them is not proved: some hundred milliseconds, where usual ones need some dozen."""
 
 
 @njit(cache=True, nogil=True)
@@ -39,14 +42,15 @@ def motions_certified(
     a, b : float64 arrays, shape (m, dim)
         Ends of the motions.
     tolerance : float
-        An interval in which nothing moves by more than this is not halved again [m].
+        An interval in which nothing moves by more than this is not halved again [m].  Nor is any, once a motion
+        took 2^15 of them: it then counts as not proved.
     bounds, ints, floats : arrays
         As for ``scalar_batch.motions_free``.
     arms, pair_arms : float64 arrays, shapes (capsules, dim) and (capsule pairs, dim)
         How fast each coordinate moves a capsule, and the two of a pair against each other, at most [m/rad].
     """
     dim = a.shape[1]
-    start, end, way, state = np.empty(dim), np.empty(dim), np.empty(dim), np.empty(dim)
+    start, end, direction, state = np.empty(dim), np.empty(dim), np.empty(dim), np.empty(dim)
     speeds, pair_speeds = np.empty(len(arms)), np.empty(len(pair_arms))
     margins, pair_margins = np.empty(len(arms)), np.empty(len(pair_arms))
     frames, capsules = np.empty((ints[at.FRAMES] + 1, 12)), np.empty((ints[at.CAPSULES], 6))
@@ -56,15 +60,18 @@ def motions_certified(
         proved[row] = False
         if not (enter(a[row], bounds, start) and enter(b[row], bounds, end)):
             continue
-        span(start, end, bounds, 1.0, way)
-        fastest = max(_largest_speed(arms, way, speeds), _largest_speed(pair_arms, way, pair_speeds))
+        span(start, end, bounds, 1.0, direction)
+        fastest = max(
+            _largest_speed(arms, direction, speeds), _largest_speed(pair_arms, direction, pair_speeds)
+        )
         # Intervals still to be proved, each by its centre and half its length; the deepest one comes first.
-        centres[0], halves[0], waiting = 0.5, 0.5, 1
+        centres[0], halves[0], waiting, intervals = 0.5, 0.5, 1, 0
         while waiting > 0:
             waiting -= 1
+            intervals += 1
             centre, half = centres[waiting], halves[waiting]
             for k in range(dim):
-                state[k] = start[k] + centre * way[k]
+                state[k] = start[k] + centre * direction[k]
             for i in range(len(margins)):
                 margins[i] = half * speeds[i] + _ROUNDING
             for i in range(len(pair_margins)):
@@ -76,7 +83,8 @@ def motions_certified(
             touches = (
                 first_contact(state, ints, floats, margins, pair_margins, frames, capsules)[0] != SEPARATE
             )
-            if touches or half * fastest < tolerance or waiting == _DEEPEST:
+            ended = half * fastest < tolerance or waiting == _DEEPEST or intervals >= _MOST_INTERVALS
+            if touches or ended:
                 waiting = -1
                 break
             for side in (1.0, -1.0):
@@ -87,12 +95,12 @@ def motions_certified(
 
 
 @inner
-def _largest_speed(arms: Floats, way: Floats, speeds: Floats) -> float:
+def _largest_speed(arms: Floats, direction: Floats, speeds: Floats) -> float:
     """Write how far each body can move during the whole motion, and return the largest [m]."""
     largest = 0.0
     for i in range(len(arms)):
         speeds[i] = 0.0
-        for k in range(len(way)):
-            speeds[i] += arms[i, k] * abs(way[k])
+        for k in range(len(direction)):
+            speeds[i] += arms[i, k] * abs(direction[k])
         largest = max(largest, speeds[i])
     return largest

@@ -13,7 +13,14 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.inner import inlined, inner
+from evenroad.robot.kernel.forward_kinematics import (
+    BODY,
+    CAPSULE,
+    place_frames,
+    place_moving_bodies,
+    place_moving_capsules,
+    scratch_places,
+)
 from evenroad.robot.kernel.lanes import (
     ONE,
     ZERO,
@@ -27,14 +34,7 @@ from evenroad.robot.kernel.lanes import (
     smallest_lane,
     square_root,
 )
-from evenroad.robot.kernel.place import (
-    BODY,
-    CAPSULE,
-    place_frames,
-    place_moving_bodies,
-    place_moving_capsules,
-    scratch_places,
-)
+from evenroad.robot.kernel.layout import inlined, inner
 
 LANES = at.LANES
 ALL = (1 << LANES) - 1
@@ -52,7 +52,7 @@ def blocked_lanes(scratch: Singles, ints: Ints, table: Singles, enough: int) -> 
     Parameters
     ----------
     scratch : float32 array
-        As ``place.scratch_memory`` makes it, with the values of the frames in sixteen configurations.
+        As ``forward_kinematics.scratch_memory`` makes it, with the values of the frames in sixteen configurations.
     ints, table : arrays
         The tables.
     enough : int
@@ -73,7 +73,7 @@ def _meeting_obstacles(scratch: Singles, capsules: int, ints: Ints, table: Singl
     blocks = ints[at.BLOCKS]
     blocked = 0
     # From the outermost capsules inwards: those meet obstacles most often.
-    for i in range(ints[at.CAPSULES] - 1, ints[at.STANDING] - 1, -1):
+    for i in range(ints[at.CAPSULES] - 1, ints[at.FIXED_CAPSULES] - 1, -1):
         here = capsules + CAPSULE * i
         cx, cy, cz = load(scratch, here), load(scratch, here + LANES), load(scratch, here + 2 * LANES)
         ux = load(scratch, here + 6 * LANES)
@@ -117,8 +117,8 @@ def _meeting_one(scratch: Singles, here: int, capsule: int, obstacle: int, ints:
     ex, ey = load(scratch, here + 3 * LANES), load(scratch, here + 4 * LANES)
     ez = load(scratch, here + 5 * LANES)
     if kind != at.ALIGNED:
-        cx, cy, cz = _turned(cx, cy, cz, data + 6, table)
-        ex, ey, ez = _turned(ex, ey, ez, data + 6, table)
+        cx, cy, cz = _in_frame_of(cx, cy, cz, data + 6, table)
+        ex, ey, ez = _in_frame_of(ex, ey, ez, data + 6, table)
     width_x, width_y, width_z = table[data + 3], table[data + 4], table[data + 5]
     reach = table[ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * capsule + 6] + table[data + 15]
     square_reach = reach * reach
@@ -140,7 +140,7 @@ def _meeting_one(scratch: Singles, here: int, capsule: int, obstacle: int, ints:
 
 
 @inlined
-def _turned(x: Any, y: Any, z: Any, data: int, table: Singles) -> Any:
+def _in_frame_of(x: Any, y: Any, z: Any, data: int, table: Singles) -> Any:
     """Return a vector in the frame whose rotation to the root's is at `data` of the table."""
     return (
         x * table[data] + y * table[data + 3] + z * table[data + 6],

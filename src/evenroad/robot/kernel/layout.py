@@ -1,20 +1,23 @@
 """Where things lie in the packed tables: floats, and integers with a header of offsets.
 
 A compiled function takes some 0.1 microseconds an array to be called with: one or two arrays instead of twenty
-keep a call for one configuration cheap.  The constants below are compiled in; ``tables.py`` writes what
-they say and the kernels read it.  Numba looks for changes in a function's own file only: who changes
-a number here removes what is kept in ``__pycache__`` of this folder.
+keep a call for one configuration cheap.  The constants below are compiled in; ``robot_tables.py`` and
+``scene_tables.py`` write what they say, the obstacles' rows last, and the kernels read it.  Numba looks for changes
+in a function's own file only: who changes a number here removes what is kept in ``__pycache__`` of this folder.
 
 Header of the integers: how many of each thing, and where its rows begin in either array.
 """
 
 from __future__ import annotations
 
+from numba import njit
+
 LANES = 16
 """How many configurations, or how many obstacles, are looked at together."""
 
-FRAMES, CAPSULES, STANDING, BODIES, STANDING_BODIES, BODY_PAIRS, OBSTACLES, BLOCKS = range(8)
-"""Header: counts.  Frames without the root's; bodies are links with capsules; blocks hold 16 obstacles each."""
+FRAMES, CAPSULES, FIXED_CAPSULES, BODIES, FIXED_BODIES, BODY_PAIRS, OBSTACLES, BLOCKS = range(8)
+"""Header: counts.  Frames without the root's; what is fixed moves with no joint; bodies are links of pairs; blocks hold
+16 obstacles each."""
 
 FRAME_INTS, CAPSULE_INTS, BODY_INTS, BODY_PAIR_INTS, PAIR_INTS, OBSTACLE_INTS, TESTED = range(8, 15)
 """Header: where rows of integers begin."""
@@ -49,7 +52,7 @@ PAIR_INT_ROW = 2
 OBSTACLE_INT_ROW = 1
 """Kind, one of the following."""
 
-ALIGNED, TURNED, CYLINDER = range(3)
+ALIGNED, ROTATED, CYLINDER = range(3)
 """Kinds: a box along the axes with its edges rounded (also a sphere), the same turned, a cylinder."""
 
 FRAME_FLOAT_ROW = 16
@@ -76,3 +79,9 @@ A cylinder has its radius in the first two half extents."""
 
 BLOCK_FLOAT_ROW = 6 * LANES
 """Bounding boxes of 16 obstacles: centres x, y, z, half extents x, y, z, 16 numbers each."""
+
+inner = njit(cache=True, nogil=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+"""Decorator of a function that only compiled code calls: compiled sooner, without what Python would call."""
+
+inlined = njit(cache=True, nogil=True, no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=True)
+"""Decorator of such a function that is put where it is called."""

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.robot.kernel.inner import inner
+from evenroad.robot.kernel.layout import inner
 
 Floats = npt.NDArray[np.float64]
 
@@ -39,7 +39,7 @@ def enter(q: Floats, bounds: Floats, into: Floats) -> bool:
 
 
 @inner
-def span(start: Floats, end: Floats, bounds: Floats, resolution: float, way: Floats) -> int:
+def span(start: Floats, end: Floats, bounds: Floats, resolution: float, direction: Floats) -> int:
     """Put the ends in dictionary order, write the short way between them and return its number of segments.
 
     States are rounded: without a fixed order a motion and its reverse could be judged differently.
@@ -52,7 +52,7 @@ def span(start: Floats, end: Floats, bounds: Floats, resolution: float, way: Flo
         As above.
     resolution : float
         The longest segment, in the Euclidean metric.
-    way : float64 array, shape (dim,)
+    direction : float64 array, shape (dim,)
         Written to: end - start, the short way round where it wraps.
     """
     exchange = False
@@ -64,10 +64,10 @@ def span(start: Floats, end: Floats, bounds: Floats, resolution: float, way: Flo
     for k in range(len(start)):
         if exchange:
             start[k], end[k] = end[k], start[k]
-        way[k] = end[k] - start[k]
+        direction[k] = end[k] - start[k]
         period = bounds[2, k]
         if period != np.inf:
             # As FlatMetric: one half is rounded to zero, so that opposite places keep the sign.
-            way[k] -= period * np.rint(way[k] / period)
-        squared += way[k] * way[k]
+            direction[k] -= period * np.rint(direction[k] / period)
+        squared += direction[k] * direction[k]
     return math.ceil(math.sqrt(squared) / resolution)

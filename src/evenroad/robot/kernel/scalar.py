@@ -13,7 +13,9 @@ import numpy.typing as npt
 from numba import njit
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.inner import inner
+from evenroad.robot.kernel.layout import inner
+from evenroad.robot.kernel.motion import enter, span
+from evenroad.world.bisection_kernel import next_between
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -102,7 +104,7 @@ def _place_capsules(ints: Ints, floats: Floats, frames: Floats, capsules: Floats
 def _meets_obstacle(ints: Ints, floats: Floats, margins: Floats, capsules: Floats) -> tuple[int, int]:
     """Return a moving capsule and an obstacle nearer than the margin, or -1, -1; outer capsules come first."""
     blocks = ints[at.BLOCKS]
-    for i in range(ints[at.CAPSULES] - 1, ints[at.STANDING] - 1, -1):
+    for i in range(ints[at.CAPSULES] - 1, ints[at.FIXED_CAPSULES] - 1, -1):
         row = ints[at.CAPSULE_INTS] + at.CAPSULE_INT_ROW * i
         radius = floats[ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i + 6]
         for k in range(ints[at.OBSTACLES]):
@@ -110,12 +112,12 @@ def _meets_obstacle(ints: Ints, floats: Floats, margins: Floats, capsules: Float
             if not (ints[ints[at.TESTED] + i * blocks + block] >> lane) & 1:
                 continue
             box = ints[at.BLOCK_FLOATS] + block * at.BLOCK_FLOAT_ROW + lane
-            apart = -np.inf
+            gap = -np.inf
             for axis in range(3):
                 away = abs(capsules[i, axis] - floats[box + axis * at.LANES])
                 widths = abs(capsules[i, 3 + axis]) + floats[box + (3 + axis) * at.LANES]
-                apart = max(apart, away - widths)
-            if apart >= radius + margins[i]:
+                gap = max(gap, away - widths)
+            if gap >= radius + margins[i]:
                 continue
             reach = radius + margins[i] + floats[ints[at.OBSTACLE_FLOATS] + at.OBSTACLE_FLOAT_ROW * k + 15]
             for sample in range(ints[row + 1], ints[row + 2]):
@@ -218,3 +220,52 @@ def _squared_distance_of_pair(pair: int, ints: Ints, floats: Floats, capsules: F
         gap = capsules[i, axis] - capsules[k, axis] + s * capsules[i, 3 + axis] - t * capsules[k, 3 + axis]
         squared += gap * gap
     return squared
+
+
+@njit(cache=True, nogil=True)
+def configurations_free(q: Floats, bounds: Floats, ints: Ints, floats: Floats) -> npt.NDArray[np.bool_]:
+    """Return which rows of `q`, (n, dim), are within `bounds`, (3, dim), and free: (n,)."""
+    no_margins = np.zeros(1 + ints[at.CAPSULES] ** 2)
+    frames, capsules = np.empty((ints[at.FRAMES] + 1, 12)), np.empty((ints[at.CAPSULES], 6))
+    state = np.empty(q.shape[1])
+    free = np.empty(len(q), dtype=np.bool_)
+    for row in range(len(q)):
+        free[row] = (
+            enter(q[row], bounds, state)
+            and first_contact(state, ints, floats, no_margins, no_margins, frames, capsules)[0] == SEPARATE
+        )
+    return free
+
+
+@njit(cache=True, nogil=True)
+def motions_free(
+    a: Floats, b: Floats, resolution: float, bounds: Floats, ints: Ints, floats: Floats
+) -> npt.NDArray[np.bool_]:
+    """Return which motions, from rows of `a` to those of `b`, are free at both ends and at states between.
+
+    The states are ``k / n`` of the way, n the number of segments of at most `resolution`, in the order of
+    ``evenroad.world.bisection``.
+    """
+    no_margins = np.zeros(1 + ints[at.CAPSULES] ** 2)
+    frames, capsules = np.empty((ints[at.FRAMES] + 1, 12)), np.empty((ints[at.CAPSULES], 6))
+    dim = a.shape[1]
+    start, end, direction, state = np.empty(dim), np.empty(dim), np.empty(dim), np.empty(dim)
+    free = np.empty(len(a), dtype=np.bool_)
+    for row in range(len(a)):
+        free[row] = False
+        if not (enter(a[row], bounds, start) and enter(b[row], bounds, end)):
+            continue
+        segments = span(start, end, bounds, resolution, direction)
+        if first_contact(start, ints, floats, no_margins, no_margins, frames, capsules)[0] != SEPARATE:
+            continue
+        if first_contact(end, ints, floats, no_margins, no_margins, frames, capsules)[0] != SEPARATE:
+            continue
+        level, multiple, number = next_between(1, -1, segments)
+        while number > 0:
+            for k in range(dim):
+                state[k] = start[k] + number / segments * direction[k]
+            if first_contact(state, ints, floats, no_margins, no_margins, frames, capsules)[0] != SEPARATE:
+                break
+            level, multiple, number = next_between(level, multiple, segments)
+        free[row] = number == 0
+    return free

@@ -9,12 +9,14 @@ import numpy.typing as npt
 
 from evenroad.geometry.shapes import Capsule
 from evenroad.robot.joint import Joint
-from evenroad.robot.kernel.model import ArmModel, arm_model
+from evenroad.robot.kernel.obstacles import obstacle_arrays, tested_contacts
+from evenroad.robot.kernel.robot_tables import robot_tables
+from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle, Scene
 
 _STRAIGHT = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-_TURNED = (0.8, -0.6, 0.0, 0.6, 0.8, 0.0, 0.0, 0.0, 1.0)
+_ROTATED = (0.8, -0.6, 0.0, 0.6, 0.8, 0.0, 0.0, 0.0, 1.0)
 
 _FREE = 0b1001101111100001001101101101101111001101001101101011101100110100
 """Bit i: whether configuration i is free, in double precision; a test keeps it so."""
@@ -25,10 +27,8 @@ def lanes_failure() -> str | None:
     """Return why the lanes are of no use here; None where they compile and give the verdicts that they should."""
     try:
         from evenroad.robot.kernel.batch import configurations_free
-        from evenroad.robot.kernel.tables import pack
 
-        tables = pack(small_model())
-        free = configurations_free(small_batch(), small_bounds(), tables.lanes)
+        free = configurations_free(small_batch(), small_bounds(), small_tables().lanes)
     except Exception as error:
         # Whatever goes wrong in compiling for a machine we have not seen, there is the other way.
         first_line = next(iter(str(error).strip().splitlines()), "")
@@ -53,10 +53,10 @@ def small_bounds() -> npt.NDArray[np.float64]:
     return _read_only(np.array([[-4.0, -2.8, 0.0], [4.0, 2.8, 0.3], [np.inf, np.inf, np.inf]]))
 
 
-def small_model() -> ArmModel:
-    """Return a model that has a case of everything: joints, shapes of obstacles, a pair of links."""
+def small_tables() -> ArmTables:
+    """Return tables that have a case of everything: joints, shapes of obstacles, a pair of links."""
     chain = (
-        Joint("turn", "revolute", "base", "upper", (0.0, 0.0, 0.1), _TURNED, (0.0, 0.0, 1.0), -4.0, 4.0),
+        Joint("turn", "revolute", "base", "upper", (0.0, 0.0, 0.1), _ROTATED, (0.0, 0.0, 1.0), -4.0, 4.0),
         Joint("bend", "revolute", "upper", "lower", (0.4, 0.0, 0.0), _STRAIGHT, (0.0, 1.0, 0.0), -2.8, 2.8),
         Joint("slide", "prismatic", "lower", "tool", (0.3, 0.0, 0.0), _STRAIGHT, (1.0, 0.0, 0.0), 0.0, 0.3),
     )
@@ -71,12 +71,13 @@ def small_model() -> ArmModel:
     robot = Robot("small", links, chain, capsules, pairs, ("turn", "bend", "slide"))
     obstacles = (
         Obstacle.of("table", "box", (3.0, 3.0, 0.1), (0.0, 0.0, -0.4)),
-        Obstacle.of("block", "box", (0.2, 0.2, 0.5), (0.5, 0.4, 0.0), _TURNED),
+        Obstacle.of("block", "box", (0.2, 0.2, 0.5), (0.5, 0.4, 0.0), _ROTATED),
         Obstacle.of("ball", "sphere", (0.15,), (-0.4, 0.4, 0.1)),
-        Obstacle.of("post", "cylinder", (0.08, 0.6), (-0.45, -0.2, 0.1), _TURNED),
+        Obstacle.of("post", "cylinder", (0.08, 0.6), (-0.45, -0.2, 0.1), _ROTATED),
         Obstacle.of("pipe", "capsule", (0.05, 0.4), (0.4, -0.4, 0.2), _STRAIGHT),
     )
-    return arm_model(robot, Scene("small", obstacles))
+    tables, scene = robot_tables(robot), Scene("small", obstacles)
+    return arm_tables(tables, obstacle_arrays(scene), tested_contacts(tables.capsules, links, scene))
 
 
 def _read_only(array: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import product
 from typing import Any
@@ -49,12 +49,17 @@ class CoalWorld(EngineWorld):
         batch = np.asarray(q, dtype=np.float64)[np.newaxis]
         if not self.space.contains(batch)[0]:
             return self._states.explain(batch[0])
-        bodies = self._first_contact(self._poses(batch)[:, 0])
+        bodies = next(self._contacts(self._poses(batch)[:, 0]), None)
         return "it is free" if bodies is None else f"{bodies[0]!r} touches {bodies[1]!r}"
 
     def _free(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
         poses = self._poses(q)
-        return np.array([self._first_contact(poses[:, row]) is None for row in range(len(q))], dtype=np.bool_)
+        contacts = (next(self._contacts(poses[:, row]), None) for row in range(len(q)))
+        return np.array([contact is None for contact in contacts], dtype=np.bool_)
+
+    def contacts(self, q: npt.NDArray[np.float64]) -> set[tuple[str, str]]:
+        """Return all that touches in one configuration, (dim,): a link and an obstacle, or a pair of links."""
+        return set(self._contacts(self._poses(np.asarray(q, dtype=np.float64)[np.newaxis])[:, 0]))
 
     def _poses(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """Return the pose of every shape of the robot, (shapes, n, 4, 4)."""
@@ -62,8 +67,8 @@ class CoalWorld(EngineWorld):
         number = {link: i for i, link in enumerate(self.robot.links)}
         return np.stack([links[:, number[shape.link]] @ shape.pose.matrix for shape in self._shapes])
 
-    def _first_contact(self, poses: npt.NDArray[np.float64]) -> tuple[str, str] | None:
-        """Return the first two bodies that touch, for the poses of all shapes, (shapes, 4, 4)."""
+    def _contacts(self, poses: npt.NDArray[np.float64]) -> Iterator[tuple[str, str]]:
+        """Yield two bodies that touch after the other two, for the poses of all shapes, (shapes, 4, 4)."""
         coal, solids = self._coal, self._solids
         places = [_transform(coal, pose) for pose in poses]
         request, result = asking_for_contacts(coal.CollisionRequest()), coal.CollisionResult()
@@ -72,8 +77,7 @@ class CoalWorld(EngineWorld):
             result.clear()
             if coal.collide(solids[shape], places[shape], *second, request, result):
                 name = self.scene.obstacles[other].name if is_obstacle else self._shapes[other].link
-                return self._shapes[shape].link, name
-        return None
+                yield self._shapes[shape].link, name
 
 
 def tests_of(robot: Robot, scene: Scene, shapes: Sequence[Shape]) -> list[tuple[int, int, bool]]:

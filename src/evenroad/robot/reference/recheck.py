@@ -1,18 +1,19 @@
-"""A path that was planned with capsules, checked again with the meshes that they were fitted to."""
+"""A path that was found among capsules, checked again with the shapes that the capsules stand for."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._rng import generator
 from evenroad.errors import NotAvailable
-from evenroad.robot.arm_world import joint_space
+from evenroad.robot.pairs import TOUCHING
 from evenroad.robot.reference.coal_world import CoalWorld
 from evenroad.robot.reference.engine_world import original_shapes
 from evenroad.robot.robot import Robot, RobotModel
@@ -20,6 +21,12 @@ from evenroad.robot.scene import Scene
 from evenroad.space import JointSpace
 
 Verdict = Literal["free", "in collision", "not checked"]
+
+FINER = 10
+"""States are this many times as dense as those that a motion was planned with."""
+
+SAMPLES = 100
+"""Random configurations that tell pairs whose shapes are always in contact."""
 
 
 @dataclass(frozen=True)
@@ -29,33 +36,40 @@ class MeshCheck:
     Attributes
     ----------
     verdict : {"free", "in collision", "not checked"}
-        Of all states from start to goal, at most the resolution apart.
+        Of all states, ends included, at most a tenth of the resolution apart.
     states : int
         How many states were asked for; 0 where nothing was checked.
     message : str
         Why it was not checked; or which motion of the path is in collision where, and which bodies touch.
     configuration : tuple of floats, or None
         The first state in collision [rad or m].
+    always_touching : tuple of pairs of str
+        Pairs of links that were left out: their shapes touch in each of 100 random configurations.
     """
 
     verdict: Verdict
     states: int = 0
     message: str = ""
     configuration: tuple[float, ...] | None = None
+    always_touching: tuple[tuple[str, str], ...] = ()
 
     def __str__(self) -> str:
-        if self.verdict == "free":
-            return f"free ({self.states} states)"
-        return (
-            f"{self.verdict} {self.message}"
-            if self.verdict == "in collision"
-            else f"not checked ({self.message})"
-        )
+        if self.verdict == "not checked":
+            return f"not checked ({self.message})"
+        text = f"free ({self.states} states)" if self.verdict == "free" else f"in collision {self.message}"
+        if self.always_touching:
+            text += f"; left out, for they always touch: {_named(self.always_touching)}"
+        return text
 
 
 def has_meshes(model: RobotModel) -> bool:
     """Return whether a robot's URDF gives a mesh for any link; nothing is read for it."""
     return any(shape.startswith("mesh ") for body in model.bodies for shape in body.shapes)
+
+
+def unseen_pairs(model: RobotModel) -> tuple[tuple[str, str], ...]:
+    """Return the pairs of links that are no neighbours and that no planner tests: their capsules touch all the time."""
+    return tuple((first, second) for first, second, why in model.dropped if why == TOUCHING)
 
 
 def recheck(
@@ -64,12 +78,13 @@ def recheck(
     scene: Scene,
     path: npt.NDArray[np.float64],
     resolution: float = 0.05,
+    unseen: Sequence[tuple[str, str]] = (),
 ) -> MeshCheck:
     """Check a path with the shapes of the robot's URDF, meshes triangle by triangle, in coal.
 
-    Capsules contain the shapes that they were fitted to, so what is free for them is free here.  Where it is not,
-    the capsules were given by the user and leave out a piece of a shape, or something is wrong with one of the two
-    checkers: either way the path is not to be driven.
+    Capsules contain the shapes that they were fitted to, so what is free for them is free here.  Where it is not, two
+    links touch whose capsules say nothing about them (`unseen`), or the capsules were given by the user and leave out
+    a piece of a shape, or something is wrong with one of the two checkers: the path is not to be driven.
 
     Parameters
     ----------
@@ -78,30 +93,52 @@ def recheck(
     robot, scene : Robot, Scene
         What was planned with.
     path : ndarray, shape (p, dim)
-        Waypoints [rad or m]; each motion is divided as ArmWorld divides it.
+        Waypoints [rad or m]; each motion is divided as ArmWorld divides it, ten times as finely.
     resolution : float
         As for :class:`evenroad.robot.arm_world.ArmWorld`.
+    unseen : sequence of pairs of str
+        Pairs of links that are tested here beside the robot's own, as of `unseen_pairs`.  Left out are those whose
+        shapes touch whatever the joints do.
 
     Raises
     ------
     BrokenFile, InvalidValue
         If the URDF or a mesh is missing, broken or empty by now.
     """
+    every = replace(robot, pairs=(*robot.pairs, *unseen))
     try:
-        world = CoalWorld(robot, scene, original_shapes(source, robot), resolution)
+        shapes = original_shapes(source, robot)
+        world = CoalWorld(every, scene, shapes, resolution)
     except NotAvailable:
-        return MeshCheck("not checked", message="needs evenroad[mesh]")
-    states, motions = states_along(joint_space(robot), path, resolution)
+        of_these = f": {_named(unseen)} are never tested without it" if unseen else ""
+        return MeshCheck("not checked", message=f"needs evenroad[mesh]{of_these}")
+    always = _always_touching(world, unseen)
+    if always:
+        kept = tuple(pair for pair in every.pairs if pair not in always)
+        world = CoalWorld(replace(robot, pairs=kept), scene, shapes, resolution)
+    states, motions = states_along(world.space, path, resolution / FINER)
     blocked = np.flatnonzero(~world.valid(states))
     if len(blocked) == 0:
-        return MeshCheck("free", len(states))
+        return MeshCheck("free", len(states), always_touching=always)
     first = states[blocked[0]]
     return MeshCheck(
         "in collision",
         len(states),
         f"at {_numbers(first)} in motion {motions[blocked[0]]} of the path: {world.explain(first)}",
         tuple(first.tolist()),
+        always,
     )
+
+
+def _always_touching(world: CoalWorld, pairs: Sequence[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
+    """Return those of some pairs of links that touch in every one of random configurations."""
+    left = set(pairs)
+    cube = generator(0).random((SAMPLES, world.space.cube_dim))
+    for q in world.space.from_cube(cube):
+        if not left:
+            break
+        left &= world.contacts(q)
+    return tuple(pair for pair in pairs if pair in left)
 
 
 def states_along(
@@ -118,6 +155,10 @@ def states_along(
         states.append(space.interpolate(starts, ends, np.arange(1, segments + 1) / segments))
         motions.append(np.full(segments, i))
     return np.concatenate(states), np.concatenate(motions)
+
+
+def _named(pairs: Sequence[tuple[str, str]]) -> str:
+    return ", ".join(f"{first!r} with {second!r}" for first, second in pairs)
 
 
 def _numbers(row: Sequence[float] | npt.NDArray[np.float64]) -> str:

@@ -8,9 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.inner import inlined, inner
-from evenroad.robot.kernel.lanes import ONE, ZERO, absolute, load, spread, store
-from evenroad.robot.kernel.sine import sine_and_cosine
+from evenroad.robot.kernel.lanes import ONE, ZERO, absolute, load, sine_and_cosine, spread, store
+from evenroad.robot.kernel.layout import inlined, inner
 
 LANES = at.LANES
 Floats = npt.NDArray[np.float64]
@@ -68,8 +67,8 @@ def scratch_memory(dim: int, ints: Ints, table: Singles) -> tuple[Floats, Floats
         store(scratch, frames + entry * LANES, spread(ONE if entry in (0, 4, 8) else ZERO))
     # Not a plain 0: numba compiles a function once more for a literal.
     first = np.int64(0)
-    _place_capsules(scratch, frames, capsules, first, ints[at.STANDING], ints, table)
-    _place_bodies(scratch, frames, bodies, first, ints[at.STANDING_BODIES], ints, table)
+    _place_capsules(scratch, frames, capsules, first, ints[at.FIXED_CAPSULES], ints, table)
+    _place_bodies(scratch, frames, bodies, first, ints[at.FIXED_BODIES], ints, table)
     return states, state, scratch
 
 
@@ -131,13 +130,13 @@ def place_frames(scratch: Singles, frames: int, ints: Ints, table: Singles) -> N
 @inner
 def place_moving_capsules(scratch: Singles, frames: int, capsules: int, ints: Ints, table: Singles) -> None:
     """Write the capsules that move."""
-    _place_capsules(scratch, frames, capsules, ints[at.STANDING], ints[at.CAPSULES], ints, table)
+    _place_capsules(scratch, frames, capsules, ints[at.FIXED_CAPSULES], ints[at.CAPSULES], ints, table)
 
 
 @inner
 def place_moving_bodies(scratch: Singles, frames: int, bodies: int, ints: Ints, table: Singles) -> None:
     """Write the bodies that move."""
-    _place_bodies(scratch, frames, bodies, ints[at.STANDING_BODIES], ints[at.BODIES], ints, table)
+    _place_bodies(scratch, frames, bodies, ints[at.FIXED_BODIES], ints[at.BODIES], ints, table)
 
 
 @inner

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from evenroad.robot.kernel.cover import LARGEST_EXCESS, cover_capsule
+from evenroad.robot.kernel.placed_capsules import LARGEST_EXCESS, cover_capsule
 
 
 @given(st.floats(0.0, 2.0), st.floats(0.005, 0.5), st.integers(0, 2**32 - 1))

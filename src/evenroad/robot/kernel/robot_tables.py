@@ -1,0 +1,261 @@
+"""RobotTables: what compiled code knows of a robot whatever stands around it, made once a robot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.errors import InvalidValue, UnknownName
+from evenroad.geometry.distance import segment_distance
+from evenroad.robot.kernel import layout
+from evenroad.robot.kernel.moving_tree import MovingTree, moving_tree
+from evenroad.robot.kernel.placed_capsules import (
+    FARTHEST,
+    PlacedCapsule,
+    farthest,
+    largest_value,
+    place_capsule,
+    speed_bounds,
+)
+from evenroad.robot.robot import Robot
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+PADDING = 2e-6
+"""Single precision makes places uncertain by less than this share of the robot's reach (of 1 m at least)."""
+
+_MOST_TURNED = 1e9
+"""No angle may be larger [rad]: it would leave double precision too few digits."""
+
+
+@dataclass(frozen=True, eq=False)
+class RobotTables:
+    """A robot as compiled code reads it, in the order of ``layout.py``, and what its rows stand for.
+
+    Attributes
+    ----------
+    tree : MovingTree
+        The frames.
+    capsules : tuple of PlacedCapsule
+        Those that do not move come first.
+    reach : float
+        No point of the robot is ever farther than this from the root's origin [m].
+    ints : int64 ndarray
+        Header, without what it says of obstacles, and integers.
+    floats : float64 ndarray
+        The robot as it is.
+    singles : float32 ndarray
+        The robot with larger radii, so that rounding never makes a verdict optimistic.
+    capsule_pairs : tuple of pairs of int
+        Capsules that are tested against each other.
+    pair_margins : float64 ndarray, shape (capsule pairs,)
+        Capsules of a pair nearer to each other than this may touch by `singles` [m].
+    speeds, pair_speeds : float64 ndarrays, shapes (capsules, dim) and (capsule pairs, dim)
+        How fast each coordinate moves a capsule, and the two of a pair against each other, at most [m/rad].
+    fixed_contact : tuple of 2 str, or None
+        Two links that no joint moves on each other and that touch, though they are to be tested.
+    """
+
+    tree: MovingTree
+    capsules: tuple[PlacedCapsule, ...]
+    reach: float
+    ints: Ints
+    floats: Floats
+    singles: npt.NDArray[np.float32]
+    capsule_pairs: tuple[tuple[int, int], ...]
+    pair_margins: Floats
+    speeds: Floats
+    pair_speeds: Floats
+    fixed_contact: tuple[str, str] | None
+
+
+def robot_tables(robot: Robot) -> RobotTables:
+    """Return the tables of a robot.
+
+    Raises
+    ------
+    InvalidValue
+        If a capsule has a size that is not a finite number > 0, the robot has no capsules, a length is larger than
+        1e6 m, or an angle, or what a mimic multiplies by or adds, larger than 1e9.
+    UnknownName
+        If capsules or pairs name a link that is not there.
+    """
+    tree = moving_tree(robot)
+    _require_few_turns(robot, tree)
+    if not robot.capsules:
+        raise InvalidValue(f"robot {robot.name!r} has no capsules: every configuration would be free")
+    placed = [place_capsule(capsule, tree) for capsule in robot.capsules]
+    # By frame, then by link: bodies lie together, those that are fixed come first.
+    order = sorted(range(len(placed)), key=lambda i: (placed[i].frame, robot.links.index(placed[i].link)))
+    capsules = tuple(placed[i] for i in order)
+    reach = farthest(tree, capsules, robot)
+    if reach > FARTHEST:
+        raise InvalidValue(
+            f"robot {robot.name!r} reaches {reach:.3g} m: more than {FARTHEST:g} leaves no digits"
+        )
+    moving, fixed = _split_pairs(robot, tree)
+    bodied = {capsule.link for capsule in capsules}
+    pairs = [pair for pair in moving if bodied.issuperset(pair)]
+    capsule_pairs = tuple(
+        (i, k) for a, b in pairs for i in _of_link(capsules, a) for k in _of_link(capsules, b)
+    )
+    padding = PADDING * max(1.0, reach)
+    ints, floats = _pack(tree, capsules, pairs, 0.0)
+    padded = _pack(tree, capsules, pairs, padding)[1]
+    radii = layout.PAIR_FLOAT_ROW * np.arange(len(capsule_pairs)) + ints[layout.PAIR_FLOATS] + 1
+    speeds, pair_speeds = speed_bounds(tree, capsules, capsule_pairs, robot)
+    # Margins: once for what is added, once more for what rounding may add to that.
+    tables = RobotTables(
+        tree,
+        capsules,
+        reach,
+        ints,
+        floats,
+        padded.astype(np.float32),
+        capsule_pairs,
+        2.0 * (padded[radii] - floats[radii]),
+        np.ascontiguousarray(speeds),
+        np.ascontiguousarray(pair_speeds),
+        _fixed_contact(capsules, fixed),
+    )
+    for array in (ints, floats, tables.singles, tables.pair_margins, tables.speeds, tables.pair_speeds):
+        array.setflags(write=False)
+    return tables
+
+
+def _require_few_turns(robot: Robot, tree: MovingTree) -> None:
+    for frame in tree.frames:
+        if max(abs(frame.multiplier), abs(frame.offset)) > _MOST_TURNED:
+            raise InvalidValue(
+                f"what follows joint {robot.group[frame.coordinate]!r} must do so with a multiplier and an offset of"
+                f" at most {_MOST_TURNED:g}, got {frame.multiplier:g} and {frame.offset:g}"
+            )
+        if not frame.slides and largest_value(frame, robot) > _MOST_TURNED:
+            raise InvalidValue(
+                f"what joint {robot.group[frame.coordinate]!r} moves turns by up to"
+                f" {largest_value(frame, robot):.3g} rad: more than {_MOST_TURNED:g} leaves no digits"
+            )
+
+
+def _split_pairs(robot: Robot, tree: MovingTree) -> tuple[list[tuple[str, str]], list[tuple[str, str]]]:
+    """Return the pairs of links, each once, that move against each other, and those that do not."""
+    moving: list[tuple[str, str]] = []
+    fixed: list[tuple[str, str]] = []
+    seen = set()
+    for a, b in robot.pairs:
+        for link in (a, b):
+            if link not in tree.links:
+                raise UnknownName.among("link", link, tree.links)
+        if a == b or frozenset((a, b)) in seen:
+            continue
+        seen.add(frozenset((a, b)))
+        (fixed if tree.links[a].frame == tree.links[b].frame else moving).append((a, b))
+    return moving, fixed
+
+
+def _of_link(capsules: Sequence[PlacedCapsule], link: str) -> list[int]:
+    return [i for i, capsule in enumerate(capsules) if capsule.link == link]
+
+
+def _fixed_contact(
+    capsules: Sequence[PlacedCapsule], fixed: Sequence[tuple[str, str]]
+) -> tuple[str, str] | None:
+    """Return the first pair of links, fixed to each other, whose capsules touch, or None."""
+    for a, b in fixed:
+        for i in _of_link(capsules, a):
+            for k in _of_link(capsules, b):
+                ends = [np.stack([c.centre - c.half, c.centre + c.half]) for c in (capsules[i], capsules[k])]
+                distance = segment_distance(ends[0][np.newaxis], ends[1][np.newaxis])[0]
+                if distance < capsules[i].radius + capsules[k].radius:
+                    return a, b
+    return None
+
+
+class _Rows:
+    """Integers and floats as they are appended, section by section."""
+
+    def __init__(self) -> None:
+        self.header = [0] * layout.HEADER
+        self.ints: list[int] = []
+        self.floats: list[float] = []
+
+    def begin(self, int_section: int | None, float_section: int | None) -> None:
+        if int_section is not None:
+            self.header[int_section] = layout.HEADER + len(self.ints)
+        if float_section is not None:
+            self.header[float_section] = len(self.floats)
+
+
+def _pack(
+    tree: MovingTree, capsules: Sequence[PlacedCapsule], pairs: Sequence[tuple[str, str]], padding: float
+) -> tuple[Ints, Floats]:
+    """Return integers and floats, radii larger by `padding` [m]."""
+    rows = _Rows()
+    rows.header[layout.FRAMES] = len(tree.frames)
+    rows.header[layout.CAPSULES] = len(capsules)
+    rows.header[layout.FIXED_CAPSULES] = sum(capsule.frame == 0 for capsule in capsules)
+    rows.begin(layout.FRAME_INTS, layout.FRAME_FLOATS)
+    for frame in tree.frames:
+        rows.ints += [frame.parent, frame.coordinate, int(frame.slides)]
+        rows.floats += [*frame.rotation.ravel(), *frame.translation, frame.multiplier, frame.offset]
+        rows.floats += [number - float(np.float32(number)) for number in (frame.multiplier, frame.offset)]
+    rows.begin(layout.CAPSULE_INTS, layout.CAPSULE_FLOATS)
+    first = 0
+    for capsule in capsules:
+        end = first + len(capsule.cover.places)
+        rows.ints += [capsule.frame, first, end]
+        rows.floats += [*capsule.centre, *capsule.half, capsule.cover.radius + padding]
+        first = end
+    rows.begin(None, layout.SAMPLES)
+    for capsule in capsules:
+        rows.floats += capsule.cover.places
+    _pack_pairs(rows, tree, capsules, pairs, padding)
+    return np.array([*rows.header, *rows.ints], dtype=np.int64), np.array(rows.floats, dtype=np.float64)
+
+
+def _pack_pairs(
+    rows: _Rows,
+    tree: MovingTree,
+    capsules: Sequence[PlacedCapsule],
+    pairs: Sequence[tuple[str, str]],
+    padding: float,
+) -> None:
+    """Append bodies, which are links of pairs, pairs of bodies and pairs of capsules."""
+    links = dict.fromkeys(capsule.link for capsule in capsules)
+    bodies = [link for link in links if any(link in pair for pair in pairs)]
+    balls = [_ball([capsule for capsule in capsules if capsule.link == link]) for link in bodies]
+    frames = [tree.links[link].frame for link in bodies]
+    rows.header[layout.BODIES] = len(bodies)
+    rows.header[layout.FIXED_BODIES] = frames.count(0)
+    rows.begin(layout.BODY_INTS, layout.BODY_FLOATS)
+    for frame, (centre, radius) in zip(frames, balls, strict=True):
+        rows.ints.append(frame)
+        rows.floats += [*centre, radius + padding]
+    rows.header[layout.BODY_PAIRS] = len(pairs)
+    rows.begin(layout.BODY_PAIR_INTS, layout.BODY_PAIR_FLOATS)
+    capsule_pairs: list[tuple[int, int]] = []
+    for a, b in pairs:
+        first = len(capsule_pairs)
+        capsule_pairs += [(i, k) for i in _of_link(capsules, a) for k in _of_link(capsules, b)]
+        rows.ints += [bodies.index(a), bodies.index(b), first, len(capsule_pairs)]
+        rows.floats.append(balls[bodies.index(a)][1] + balls[bodies.index(b)][1] + 2.0 * padding)
+    rows.begin(layout.PAIR_INTS, layout.PAIR_FLOATS)
+    for i, k in capsule_pairs:
+        rows.ints += [i, k]
+        a_half, b_half = (float(np.linalg.norm(capsules[number].half)) for number in (i, k))
+        radii = capsules[i].radius + capsules[k].radius + 2.0 * padding
+        squares = (a_half**2, b_half**2)
+        rows.floats += [radii + a_half + b_half, radii, *(1.0 / s if s > 0.0 else 0.0 for s in squares)]
+
+
+def _ball(capsules: Sequence[PlacedCapsule]) -> tuple[Floats, float]:
+    """Return centre and radius of a ball that holds capsules of one frame: around the middle of their box."""
+    ends = [(end, c.radius) for c in capsules for end in (c.centre - c.half, c.centre + c.half)]
+    low = np.min([end - radius for end, radius in ends], axis=0)
+    high = np.max([end + radius for end, radius in ends], axis=0)
+    centre = 0.5 * (low + high)
+    return centre, max(float(np.linalg.norm(end - centre)) + radius for end, radius in ends)

@@ -1,0 +1,253 @@
+"""ArmTables: a robot's tables with the rows of a scene's obstacles behind them; compiled, since scenes change often."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel.layout import inner
+from evenroad.robot.kernel.obstacles import (
+    BOX,
+    CYLINDER,
+    SPHERE,
+    ObstacleArrays,
+    distance_to_obstacle,
+    is_straight,
+)
+from evenroad.robot.kernel.robot_tables import PADDING, RobotTables
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+Bools = npt.NDArray[np.bool_]
+
+OBSTACLE_PADDING = 2.5e-7
+"""Single precision makes an obstacle uncertain by less than this share of its farthest point's distance from the
+origin."""
+
+_NEVER_HIT = -1e30
+"""Half extent that fills unused places of a block of obstacles."""
+
+
+@dataclass(frozen=True, eq=False)
+class ArmTables:
+    """What the compiled code reads of a robot in a scene; the order is that of ``layout.py``.
+
+    Attributes
+    ----------
+    ints : int64 ndarray
+        Header and integers.
+    floats : float64 ndarray
+        Robot and obstacles as they are.
+    lanes : int64 ndarray
+        For the lanes, in one piece: the integers, and behind them, as float32, robot and obstacles with larger radii,
+        so that rounding never makes a verdict optimistic.
+    margin : float
+        A capsule and an obstacle nearer to each other than this may touch by `lanes` [m].
+    kept : int64 ndarray
+        Numbers of the obstacles that the robot can reach, in the order of the tables.
+    fixed_contact : tuple of 2 int, or None
+        A capsule that does not move and an obstacle, of all, that it touches.
+    """
+
+    ints: Ints
+    floats: Floats
+    lanes: Ints
+    margin: float
+    kept: Ints
+    fixed_contact: tuple[int, int] | None
+
+
+def arm_tables(robot: RobotTables, obstacles: ObstacleArrays, tested: Bools) -> ArmTables:
+    """Return a robot's tables with those of obstacles behind them.
+
+    Parameters
+    ----------
+    robot : RobotTables
+        Of the robot.
+    obstacles : ObstacleArrays
+        Sound ones, as `obstacle_arrays` makes them.
+    tested : bool ndarray, shape (capsules, n)
+        Which capsules are tested against which obstacles.
+    """
+    ints, floats, lanes, added, kept, capsule, obstacle = _pack(
+        robot.ints,
+        robot.floats,
+        robot.singles,
+        robot.reach,
+        obstacles.kinds,
+        obstacles.sizes,
+        obstacles.rotations,
+        obstacles.translations,
+        tested,
+    )
+    for array in (ints, floats, lanes, kept):
+        array.setflags(write=False)
+    # Once for what is added, once more for what rounding may add to that.
+    margin = 2.0 * (PADDING * max(1.0, robot.reach) + added)
+    return ArmTables(ints, floats, lanes, margin, kept, None if capsule < 0 else (capsule, obstacle))
+
+
+@njit(cache=True, nogil=True)
+def _pack(
+    robot_ints: Ints,
+    robot_floats: Floats,
+    robot_singles: npt.NDArray[np.float32],
+    reach: float,
+    kinds: Ints,
+    sizes: Floats,
+    rotations: Floats,
+    translations: Floats,
+    tested: Bools,
+) -> tuple[Ints, Floats, Ints, float, Ints, int, int]:
+    """Return what `ArmTables` holds, and by how much the lanes' obstacles are larger at most [m]."""
+    origin = np.zeros(3)
+    kept = np.empty(len(kinds), dtype=np.int64)
+    count = 0
+    for k in range(len(kinds)):
+        if distance_to_obstacle(origin, kinds[k], sizes[k], rotations[k], translations[k]) <= reach:
+            kept[count] = k
+            count += 1
+    kept = kept[:count].copy()
+    blocks = (count + at.LANES - 1) // at.LANES
+    capsules = robot_ints[at.CAPSULES]
+    first_int, first_float = len(robot_ints), len(robot_floats)
+    block_floats = first_float + at.OBSTACLE_FLOAT_ROW * count
+    length = first_int + count + capsules * blocks
+    floats = np.empty(block_floats + at.BLOCK_FLOAT_ROW * blocks)
+    floats[:first_float] = robot_floats
+    lanes = np.zeros(length + (len(floats) + 1) // 2, dtype=np.int64)
+    ints, singles = lanes[:length], lanes[length:].view(np.float32)
+    ints[:first_int] = robot_ints
+    singles[:first_float] = robot_singles
+    ints[at.OBSTACLES], ints[at.BLOCKS] = count, blocks
+    ints[at.OBSTACLE_INTS], ints[at.TESTED] = first_int, first_int + count
+    ints[at.OBSTACLE_FLOATS], ints[at.BLOCK_FLOATS] = first_float, block_floats
+    ints[at.INTEGERS] = length
+    added = 0.0
+    for row in range(count):
+        k = kept[row]
+        data = first_float + at.OBSTACLE_FLOAT_ROW * row
+        ints[first_int + row] = _write_obstacle(
+            floats[data : data + at.OBSTACLE_FLOAT_ROW],
+            kinds[k],
+            sizes[k],
+            rotations[k],
+            translations[k],
+            reach,
+        )
+        box = block_floats + row // at.LANES * at.BLOCK_FLOAT_ROW + row % at.LANES
+        padding = _write_bounds(floats, data, box, ints[first_int + row])
+        for entry in range(at.OBSTACLE_FLOAT_ROW):
+            singles[data + entry] = floats[data + entry]
+        singles[data + 15] = floats[data + 15] + padding
+        added = max(added, (floats[data + 15] + padding) - floats[data + 15])
+        for axis in range(3):
+            centre, half = box + axis * at.LANES, box + (3 + axis) * at.LANES
+            singles[centre], singles[half] = floats[centre], floats[half] + padding
+    for row in range(count, blocks * at.LANES):
+        box = block_floats + row // at.LANES * at.BLOCK_FLOAT_ROW + row % at.LANES
+        for axis in range(3):
+            centre, half = box + axis * at.LANES, box + (3 + axis) * at.LANES
+            floats[centre], floats[half] = 0.0, _NEVER_HIT
+            singles[centre], singles[half] = 0.0, _NEVER_HIT
+    for i in range(capsules):
+        for row in range(count):
+            if tested[i, kept[row]]:
+                ints[first_int + count + i * blocks + row // at.LANES] |= 1 << (row % at.LANES)
+    capsule, obstacle = _fixed_contact(
+        robot_ints, robot_floats, kept, kinds, sizes, rotations, translations, tested
+    )
+    return ints.copy(), floats, lanes, added, kept, capsule, obstacle
+
+
+@inner
+def _write_obstacle(
+    row: Floats, kind: int, size: Floats, rotation: Floats, translation: Floats, reach: float
+) -> int:
+    """Write all points within a rounding of a box, or a cylinder, and return the kind that the kernels know.
+
+    A box along the axes loses what lies far beyond `reach`, where the robot never comes: a floor of a hundred metres
+    would else cost digits, of which single precision has seven.
+    """
+    half = np.zeros(3)
+    row[15] = 0.0
+    if kind == BOX:
+        half[:] = 0.5 * size
+    elif kind == CYLINDER:
+        half[:] = size[0], size[0], 0.5 * size[1]
+    else:
+        half[2] = 0.5 * size[1]
+        row[15] = size[0]
+    aligned = kind == SPHERE or (kind != CYLINDER and is_straight(rotation))
+    for axis in range(3):
+        row[axis], row[3 + axis] = translation[axis], half[axis]
+        for entry in range(3):
+            row[6 + 3 * axis + entry] = rotation[3 * axis + entry]
+    if not aligned:
+        return at.CYLINDER if kind == CYLINDER else at.ROTATED
+    for axis in range(3):
+        extent = 0.0
+        for entry in range(3):
+            row[6 + 3 * axis + entry] = 1.0 if axis == entry else 0.0
+            extent += abs(np.rint(rotation[3 * axis + entry])) * half[entry]
+        row[3 + axis] = extent if kind != SPHERE else 0.0
+        if kind == BOX:
+            low = max(translation[axis] - extent, -2.0 * reach)
+            high = min(translation[axis] + extent, 2.0 * reach)
+            row[axis], row[3 + axis] = 0.5 * (low + high), 0.5 * (high - low)
+    return at.ALIGNED
+
+
+@inner
+def _write_bounds(floats: Floats, data: int, box: int, kind: int) -> float:
+    """Write the box around an obstacle whose row is at `data`, and return its padding in single precision [m]."""
+    squared = 0.0
+    for axis in range(3):
+        extent = 0.0
+        if kind == at.CYLINDER:
+            upright = abs(floats[data + 6 + 3 * axis + 2])
+            extent = upright * floats[data + 5] + math.sqrt(max(1.0 - upright**2, 0.0)) * floats[data + 3]
+        else:
+            for entry in range(3):
+                extent += abs(floats[data + 6 + 3 * axis + entry]) * floats[data + 3 + entry]
+            extent += floats[data + 15]
+        floats[box + axis * at.LANES] = floats[data + axis]
+        floats[box + (3 + axis) * at.LANES] = extent
+        squared += (abs(floats[data + axis]) + extent) ** 2
+    return OBSTACLE_PADDING * math.sqrt(squared)
+
+
+@inner
+def _fixed_contact(
+    ints: Ints,
+    floats: Floats,
+    kept: Ints,
+    kinds: Ints,
+    sizes: Floats,
+    rotations: Floats,
+    translations: Floats,
+    tested: Bools,
+) -> tuple[int, int]:
+    """Return a capsule that does not move and an obstacle that a sphere of it touches, or -1, -1."""
+    centre = np.empty(3)
+    for i in range(ints[at.FIXED_CAPSULES]):
+        row = ints[at.CAPSULE_INTS] + at.CAPSULE_INT_ROW * i
+        data = ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i
+        for k in kept:
+            if not tested[i, k]:
+                continue
+            for sample in range(ints[row + 1], ints[row + 2]):
+                along = floats[ints[at.SAMPLES] + sample]
+                for axis in range(3):
+                    centre[axis] = floats[data + axis] + along * floats[data + 3 + axis]
+                if (
+                    distance_to_obstacle(centre, kinds[k], sizes[k], rotations[k], translations[k])
+                    < floats[data + 6]
+                ):
+                    return i, k
+    return -1, -1

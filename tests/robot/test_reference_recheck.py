@@ -1,0 +1,31 @@
+"""The last check of a path where coal is not there: what stays unchecked is said."""
+
+import numpy as np
+
+from evenroad.errors import NotAvailable
+from evenroad.robot.load import load_model
+from evenroad.robot.reference import coal_world
+from evenroad.robot.reference.recheck import recheck, unseen_pairs
+from evenroad.robot.scene import Scene
+from tests.robot.mesh_arms import write_plate_arm
+
+
+def missing():
+    raise NotAvailable("coal is not here")
+
+
+def test_pairs_that_nobody_tests_without_coal_are_named(tmp_path, monkeypatch):
+    monkeypatch.setenv("EVENROAD_CACHE", str(tmp_path))
+    monkeypatch.setattr(coal_world, "require_coal", missing)
+    file = write_plate_arm(tmp_path)
+    model = load_model(file)
+    unseen = unseen_pairs(model)
+    assert ("plate", "tip") in unseen
+    check = recheck(file, model.robot, Scene("nothing", ()), np.zeros((2, 3)), unseen=unseen)
+    assert check.verdict == "not checked"
+    assert "'plate' with 'tip'" in str(check)
+    assert "needs evenroad[mesh]" in str(check)
+
+
+def test_neighbours_and_what_an_srdf_disables_are_no_unseen_pairs():
+    assert unseen_pairs(load_model("ur5")) == ()
