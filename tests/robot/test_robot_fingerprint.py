@@ -40,7 +40,7 @@ def test_what_decides_verdicts_changes_a_robots_fingerprint(other):
 @pytest.mark.parametrize(
     "other",
     [
-        CELL.with_(Obstacle.of("ball", Sphere(0.1))),
+        CELL.with_(Obstacle("ball", Sphere(0.1))),
         CELL.without("table"),
         replace(CELL, allowed=frozenset()),
         replace(CELL, obstacles=(CELL.obstacles[0].at(Pose((0, 0, 1e-9))), *CELL.obstacles[1:])),
@@ -59,6 +59,6 @@ def test_names_and_orders_do_not_count():
 
 def test_zeros_of_both_signs_are_one_number():
     plus, minus = (
-        Scene("s", (Obstacle.of("a", Box((1, 1, 1), pose=Pose((zero, 0, 0)))),)) for zero in (0.0, -0.0)
+        Scene("s", (Obstacle("a", Box((1, 1, 1), pose=Pose((zero, 0, 0)))),)) for zero in (0.0, -0.0)
     )
     assert fingerprint(plus) == fingerprint(minus)

@@ -240,13 +240,13 @@ def test_start_and_goal_of_the_shipped_scenes_are_free_and_the_way_between_is_no
     assert not world.motion_valid(np.array(home), np.array(inside))[0]
 
 
-BALL = Obstacle.of("ball", Sphere(0.1))
+BALL = Obstacle("ball", Sphere(0.1))
 QUARTER = [[0, -1, 0, 1], [1, 0, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]]
 
 
 def test_a_scene_with_and_without_an_obstacle_is_another_scene():
     scene = Scene("s", (BALL,), frozenset({("base", "ball")}), {"home": {"a": 1.0}})
-    wall = Obstacle.of("wall", Box((1, 1, 0.1)), cell=True)
+    wall = Obstacle("wall", Box((1, 1, 0.1)), cell=True)
     both = scene.with_(wall, allowed=[("base", "wall")])
     assert both.obstacles == (BALL, wall)
     assert both.allowed == {("base", "ball"), ("base", "wall")}
@@ -268,7 +268,7 @@ def test_a_scene_with_and_without_an_obstacle_is_another_scene():
     ids=["matrix", "quaternion", "rpy"],
 )
 def test_an_obstacle_takes_its_pose_as_people_have_it(pose):
-    post = Obstacle.of("post", Cylinder(0.1, 2.0)).at(pose)
+    post = Obstacle("post", Cylinder(0.1, 2.0)).at(pose)
     assert post.xyz == (1, 2, 3)
     np.testing.assert_allclose(np.reshape(post.rotation, (3, 3)), np.array(QUARTER)[:3, :3], atol=1e-15)
 
@@ -282,10 +282,10 @@ def test_a_quaternion_in_a_file_has_w_first_and_stands_in_the_place_of_rpy(tmp_p
 
 
 def test_a_capsule_as_an_obstacle_is_along_z_whatever_its_ends():
-    pipe = Obstacle.of("pipe", Capsule((1, 0, 0), (3, 0, 0), 0.1))
+    pipe = Obstacle("pipe", Capsule((1, 0, 0), (3, 0, 0), 0.1))
     assert (pipe.shape, pipe.size, pipe.xyz) == ("capsule", (0.1, 2.0), (2, 0, 0))
     np.testing.assert_allclose(np.reshape(pipe.rotation, (3, 3))[:, 2], (1, 0, 0), atol=1e-15)
-    assert Obstacle.of("ball", Capsule((1, 0, 0), (1, 0, 0), 0.1)).shape == "sphere"
+    assert Obstacle("ball", Capsule((1, 0, 0), (1, 0, 0), 0.1)).shape == "sphere"
 
 
 @pytest.mark.parametrize(
@@ -296,10 +296,10 @@ def test_a_capsule_as_an_obstacle_is_along_z_whatever_its_ends():
         (lambda: Obstacle.of("x", "sphere", (-1.0,)), InvalidValue, "obstacle 'x': .* > 0, got -1"),
         (lambda: Obstacle.of("x", "sphere", (1.0,), (0, np.inf, 0)), InvalidValue, "'x': xyz .*inf"),
         (lambda: Obstacle.of("x", "sphere", (1.0,), (0, 0, 0), (2.0,) * 9), InvalidValue, "'x': rotation"),
-        (lambda: Obstacle.of("x", PointCloud(np.zeros((1, 3)))), InvalidValue, "capsule, got a point cloud"),
-        (lambda: Obstacle.of("x", Mesh("part.stl")), InvalidValue, "capsule, got a mesh part.stl"),
-        (lambda: Obstacle.of("x", "box"), InvalidValue, "one of box, sphere, cylinder, capsule, got a box"),
-        (lambda: Obstacle.of("x", Sphere(1.0, link="hand")), InvalidValue, "not to a link, got 'hand'"),
+        (lambda: Obstacle("x", PointCloud(np.zeros((1, 3)))), InvalidValue, "capsule, got a point cloud"),
+        (lambda: Obstacle("x", Mesh("part.stl")), InvalidValue, "capsule, got a mesh part.stl"),
+        (lambda: Obstacle("x", "box"), InvalidValue, "one of box, sphere, cylinder, capsule, got a box"),
+        (lambda: Obstacle("x", Sphere(1.0, link="hand")), InvalidValue, "not to a link, got 'hand'"),
     ],
 )
 def test_an_obstacle_that_is_not_sound_is_refused(make, error, says):
