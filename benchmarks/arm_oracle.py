@@ -11,7 +11,7 @@ from __future__ import annotations
 import argparse
 
 import numpy as np
-from tests.robot.kernel_arms import random_scene, random_tree, seven_joint_arm, ur5
+from tests.robot.kernel_arms import as_balls, random_scene, random_tree, seven_joint_arm, ur5
 from tests.robot.oracle import clearance
 
 from evenroad.robot.arm_world import ArmWorld
@@ -57,6 +57,7 @@ def main() -> None:
     options = parser.parse_args()
     compare("UR5 among every shape", [(ur5(), random_scene(5))], options.count)
     compare("seven joints among every shape", [(seven_joint_arm(), random_scene(3))], options.count)
+    compare("UR5 of 42 balls among every shape", [(as_balls(ur5()), random_scene(5))], options.count)
     trees = [(random_tree(seed), random_scene(100 + seed, spread=0.7, clear=0.45)) for seed in range(TREES)]
     compare(f"{TREES} random trees", trees, options.count)
 

@@ -1,6 +1,7 @@
 """Robots and scenes to test with: a UR5 written down by hand, a 7-joint arm, random trees."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -104,6 +105,16 @@ def seven_joint_arm():
             )
     pairs = tuple((links[a], links[b]) for a in range(8) for b in range(a + 3, 8))
     return Robot("seven", links, joints, tuple(capsules), pairs, tuple(joint.name for joint in joints))
+
+
+def as_balls(robot, of_each=3):
+    """The robot with balls in place of its capsules: a link then has many, which the kernel looks at together."""
+    balls = []
+    for capsule in robot.capsules:
+        a, b = np.array(capsule.a), np.array(capsule.b)
+        places = [tuple((a + (i + 0.5) / of_each * (b - a)).tolist()) for i in range(of_each)]
+        balls += [Capsule(capsule.link, place, place, capsule.radius) for place in places]
+    return replace(robot, capsules=tuple(balls))
 
 
 def random_tree(seed):

@@ -16,6 +16,7 @@ from tests.robot.kernel_arms import (
     X,
     Y,
     Z,
+    as_balls,
     box_scene,
     edge,
     random_rotation,
@@ -42,6 +43,12 @@ ARMS = {
     "ur5 among every shape": (ur5(), random_scene(5), 20_000),
     "seven joints among every shape": (seven_joint_arm(), random_scene(3), 20_000),
     "ur5 among forty small ones": (ur5(), random_scene(6, count=40, sizes=(0.02, 0.08)), 5_000),
+    "ur5 of balls among every shape": (as_balls(ur5()), random_scene(5), 5_000),
+    "ur5 of balls that may touch some of forty": (
+        as_balls(ur5()),
+        some_allowed(ur5(), random_scene(7, count=40, sizes=(0.05, 0.1))),
+        5_000,
+    ),
     "ur5 that may touch some of forty": (
         ur5(),
         some_allowed(ur5(), random_scene(7, count=40, sizes=(0.05, 0.1))),

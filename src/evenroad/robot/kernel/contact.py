@@ -16,6 +16,7 @@ from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.forward_kinematics import (
     BODY,
     CAPSULE,
+    FEW,
     place_frames,
     place_moving_bodies,
     place_moving_capsules,
@@ -61,51 +62,98 @@ def blocked_lanes(scratch: Singles, ints: Ints, table: Singles, enough: int) -> 
     frames, capsules, bodies, _ = scratch_places(ints)
     place_frames(scratch, frames, ints, table)
     place_moving_capsules(scratch, frames, capsules, ints, table)
-    blocked = _meeting_obstacles(scratch, capsules, ints, table, enough)
+    place_moving_bodies(scratch, frames, bodies, ints, table)
+    blocked = _meeting_obstacles(scratch, capsules, bodies, ints, table, enough)
     if blocked == ALL or (blocked != 0 and enough == 1):
         return blocked
-    place_moving_bodies(scratch, frames, bodies, ints, table)
     return _meeting_themselves(scratch, capsules, bodies, ints, table, blocked, enough)
 
 
 @inner
-def _meeting_obstacles(scratch: Singles, capsules: int, ints: Ints, table: Singles, enough: int) -> int:
+def _meeting_obstacles(
+    scratch: Singles, capsules: int, bodies: int, ints: Ints, table: Singles, enough: int
+) -> int:
+    """Return the mask of lanes in which a capsule meets an obstacle.
+
+    Sixteen obstacles at once are tested against the box around all lanes of a body, if it has many capsules, and then
+    of a capsule; those that are near one by one.
+    """
     blocks = ints[at.BLOCKS]
     blocked = 0
-    # From the outermost capsules inwards: those meet obstacles most often.
-    for i in range(ints[at.CAPSULES] - 1, ints[at.FIXED_CAPSULES] - 1, -1):
-        here = capsules + CAPSULE * i
-        cx, cy, cz = load(scratch, here), load(scratch, here + LANES), load(scratch, here + 2 * LANES)
-        ux = load(scratch, here + 6 * LANES)
-        uy = load(scratch, here + 7 * LANES)
-        uz = load(scratch, here + 8 * LANES)
-        # The box around all sixteen, against sixteen obstacles at once.
-        low_x, high_x = smallest_lane(cx - ux), largest_lane(cx + ux)
-        low_y, high_y = smallest_lane(cy - uy), largest_lane(cy + uy)
-        low_z, high_z = smallest_lane(cz - uz), largest_lane(cz + uz)
-        hx, hy, hz = _HALF * (high_x - low_x), _HALF * (high_y - low_y), _HALF * (high_z - low_z)
-        mx, my, mz = _HALF * (high_x + low_x), _HALF * (high_y + low_y), _HALF * (high_z + low_z)
-        for block in range(blocks):
-            box = ints[at.BLOCK_FLOATS] + at.BLOCK_FLOAT_ROW * block
-            gap_x = absolute(load(table, box) - mx) - load(table, box + 3 * LANES) - hx
-            gap_y = absolute(load(table, box + LANES) - my) - load(table, box + 4 * LANES) - hy
-            gap_z = absolute(load(table, box + 2 * LANES) - mz) - load(table, box + 5 * LANES) - hz
-            near = below_zero(larger(larger(gap_x, gap_y), gap_z))
-            near &= ints[ints[at.TESTED] + i * blocks + block]
-            while near != 0:
-                lane = lowest_bit(near)
-                near &= near - 1
-                gap_x = absolute(cx - table[box + lane]) - ux - table[box + 3 * LANES + lane]
-                gap_y = absolute(cy - table[box + LANES + lane]) - uy - table[box + 4 * LANES + lane]
-                gap_z = absolute(cz - table[box + 2 * LANES + lane]) - uz - table[box + 5 * LANES + lane]
-                if below_zero(larger(larger(gap_x, gap_y), gap_z)) & ~blocked != 0:
-                    blocked |= _meeting_one(scratch, here, i, block * LANES + lane, ints, table)
-                    if blocked == ALL or (blocked != 0 and enough == 1):
-                        return blocked
+    # From the outermost bodies inwards: those meet obstacles most often.
+    for body in range(ints[at.BODIES] - 1, ints[at.FIXED_BODIES] - 1, -1):
+        row = ints[at.BODY_INTS] + at.BODY_INT_ROW * body
+        many = ints[row + 2] - ints[row + 1] > FEW
+        around = ZERO, ZERO, ZERO, ZERO, ZERO, ZERO
+        if many:
+            around = _box_around(scratch, bodies + BODY * body, 3 * LANES)
+            near = 0
+            for block in range(blocks):
+                near |= _near_obstacles(around, block, ints, table)
+            if near == 0:
+                continue
+        for i in range(ints[row + 2] - 1, ints[row + 1] - 1, -1):
+            here = capsules + CAPSULE * i
+            if not many:
+                around = _box_around(scratch, here, 6 * LANES)
+            for block in range(blocks):
+                near = ints[ints[at.TESTED] + i * blocks + block]
+                near &= _near_obstacles(around, block, ints, table)
+                if many and _more_than_two(near):
+                    near &= _near_obstacles(_box_around(scratch, here, 6 * LANES), block, ints, table)
+                if near == 0:
+                    continue
+                cx, cy, cz = load(scratch, here), load(scratch, here + LANES), load(scratch, here + 2 * LANES)
+                ux = load(scratch, here + 6 * LANES)
+                uy = load(scratch, here + 7 * LANES)
+                uz = load(scratch, here + 8 * LANES)
+                box = ints[at.BLOCK_FLOATS] + at.BLOCK_FLOAT_ROW * block
+                while near != 0:
+                    lane = lowest_bit(near)
+                    near &= near - 1
+                    gap_x = absolute(cx - table[box + lane]) - ux - table[box + 3 * LANES + lane]
+                    gap_y = absolute(cy - table[box + LANES + lane]) - uy - table[box + 4 * LANES + lane]
+                    gap_z = absolute(cz - table[box + 2 * LANES + lane]) - uz - table[box + 5 * LANES + lane]
+                    if below_zero(larger(larger(gap_x, gap_y), gap_z)) & ~blocked != 0:
+                        blocked |= _meeting_one(scratch, here, i, block * LANES + lane, ints, table)
+                        if blocked == ALL or (blocked != 0 and enough == 1):
+                            return blocked
     return blocked
 
 
-@inner
+@inlined
+def _more_than_two(bits: int) -> bool:
+    """Return whether more than two bits are set."""
+    bits &= bits - 1
+    return bits & (bits - 1) != 0
+
+
+@inlined
+def _box_around(scratch: Singles, here: int, extents: int) -> Any:
+    """Return centre and half extents, six numbers, of the box around a body or a capsule in all lanes."""
+    cx, cy, cz = load(scratch, here), load(scratch, here + LANES), load(scratch, here + 2 * LANES)
+    ux = load(scratch, here + extents)
+    uy = load(scratch, here + extents + LANES)
+    uz = load(scratch, here + extents + 2 * LANES)
+    low_x, high_x = smallest_lane(cx - ux), largest_lane(cx + ux)
+    low_y, high_y = smallest_lane(cy - uy), largest_lane(cy + uy)
+    low_z, high_z = smallest_lane(cz - uz), largest_lane(cz + uz)
+    hx, hy, hz = _HALF * (high_x - low_x), _HALF * (high_y - low_y), _HALF * (high_z - low_z)
+    return _HALF * (high_x + low_x), _HALF * (high_y + low_y), _HALF * (high_z + low_z), hx, hy, hz
+
+
+@inlined
+def _near_obstacles(around: Any, block: int, ints: Ints, table: Singles) -> int:
+    """Return which of the sixteen obstacles of a block are near a box of `_box_around`."""
+    mx, my, mz, hx, hy, hz = around
+    box = ints[at.BLOCK_FLOATS] + at.BLOCK_FLOAT_ROW * block
+    gap_x = absolute(load(table, box) - mx) - load(table, box + 3 * LANES) - hx
+    gap_y = absolute(load(table, box + LANES) - my) - load(table, box + 4 * LANES) - hy
+    gap_z = absolute(load(table, box + 2 * LANES) - mz) - load(table, box + 5 * LANES) - hz
+    return below_zero(larger(larger(gap_x, gap_y), gap_z))
+
+
+@inlined
 def _meeting_one(scratch: Singles, here: int, capsule: int, obstacle: int, ints: Ints, table: Singles) -> int:
     """Return the mask of lanes in which a sphere along a capsule reaches into an obstacle."""
     data = ints[at.OBSTACLE_FLOATS] + at.OBSTACLE_FLOAT_ROW * obstacle
@@ -164,33 +212,42 @@ def _meeting_themselves(
         if below_zero(x * x + y * y + z * z - near * near) & ~blocked == 0:
             continue
         for pair in range(ints[row + 2], ints[row + 3]):
-            blocked |= _touching(scratch, capsules, pair, ints, table, blocked)
+            # Here, and not in a function: of most pairs this is all.
+            place = ints[at.PAIR_INTS] + at.PAIR_INT_ROW * pair
+            data = ints[at.PAIR_FLOATS] + at.PAIR_FLOAT_ROW * pair
+            a, b = capsules + CAPSULE * ints[place], capsules + CAPSULE * ints[place + 1]
+            near = table[data]
+            x = load(scratch, a) - load(scratch, b)
+            y = load(scratch, a + LANES) - load(scratch, b + LANES)
+            z = load(scratch, a + 2 * LANES) - load(scratch, b + 2 * LANES)
+            touching = below_zero(x * x + y * y + z * z - near * near)
+            if touching & ~blocked == 0:
+                continue
+            if table[data + 2] + table[data + 3] > ZERO:
+                # Not both are balls.
+                touching = _touching(scratch, a, b, data, table)
+            blocked |= touching
             if blocked == ALL or (blocked != 0 and enough == 1):
                 return blocked
     return blocked
 
 
-@inner
-def _touching(scratch: Singles, capsules: int, pair: int, ints: Ints, table: Singles, blocked: int) -> int:
-    """Return the mask of lanes, not `blocked` ones, in which the capsules of a pair touch.
+@inlined
+def _touching(scratch: Singles, a: int, b: int, data: int, table: Singles) -> int:
+    """Return the mask of lanes in which two capsules touch, whose pair's row is at `data`.
 
     The steps are those of the double-precision ``scalar._squared_distance_of_pair``.
     """
-    row, data = ints[at.PAIR_INTS] + at.PAIR_INT_ROW * pair, ints[at.PAIR_FLOATS] + at.PAIR_FLOAT_ROW * pair
-    a, b = capsules + CAPSULE * ints[row], capsules + CAPSULE * ints[row + 1]
-    near, reach = table[data], table[data + 1]
     rx = load(scratch, a) - load(scratch, b)
     ry = load(scratch, a + LANES) - load(scratch, b + LANES)
     rz = load(scratch, a + 2 * LANES) - load(scratch, b + 2 * LANES)
-    if below_zero(rx * rx + ry * ry + rz * rz - near * near) & ~blocked == 0:
-        return 0
     ex, fx = load(scratch, a + 3 * LANES), load(scratch, b + 3 * LANES)
     ey, fy = load(scratch, a + 4 * LANES), load(scratch, b + 4 * LANES)
     ez, fz = load(scratch, a + 5 * LANES), load(scratch, b + 5 * LANES)
     ef = ex * fx + ey * fy + ez * fz
     er = ex * rx + ey * ry + ez * rz
     fr = fx * rx + fy * ry + fz * rz
-    one_by_ee, one_by_ff = table[data + 2], table[data + 3]
+    reach, one_by_ee, one_by_ff = table[data + 1], table[data + 2], table[data + 3]
     along_f, along_r = ef * one_by_ee, er * one_by_ee
     # What of f and r is across e.
     gx, gy, gz = fx - ex * along_f, fy - ey * along_f, fz - ez * along_f

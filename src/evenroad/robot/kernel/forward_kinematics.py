@@ -22,8 +22,11 @@ FRAME = 12 * LANES
 CAPSULE = 9 * LANES
 """Numbers of a capsule: centre, half segment, half extents of the box around its spheres."""
 
-BODY = 3 * LANES
-"""Numbers of a body: centre of its ball."""
+BODY = 6 * LANES
+"""Numbers of a body: its centre, half extents of the box around it where it has more than `FEW` capsules."""
+
+FEW = 3
+"""Of bodies with at most so many capsules no box is tested before those of the capsules: it would cost more."""
 
 _FULL_TURN = 2.0 * np.pi
 _TURNS = 0.5 / np.pi
@@ -162,17 +165,20 @@ def _place_bodies(
     scratch: Singles, frames: int, bodies: int, first: int, end: int, ints: Ints, table: Singles
 ) -> None:
     for i in range(first, end):
-        frame = frames + FRAME * ints[ints[at.BODY_INTS] + at.BODY_INT_ROW * i]
+        row = ints[at.BODY_INTS] + at.BODY_INT_ROW * i
+        frame = frames + FRAME * ints[row]
         data = ints[at.BODY_FLOATS] + at.BODY_FLOAT_ROW * i
+        here = bodies + BODY * i
+        boxed = ints[row + 2] - ints[row + 1] > FEW
         for axis in range(3):
             p0 = load(scratch, frame + 3 * axis * LANES)
             p1 = load(scratch, frame + (3 * axis + 1) * LANES)
             p2 = load(scratch, frame + (3 * axis + 2) * LANES)
-            store(
-                scratch,
-                bodies + BODY * i + axis * LANES,
-                _moved(scratch, frame, axis, p0, p1, p2, data, table),
-            )
+            store(scratch, here + axis * LANES, _moved(scratch, frame, axis, p0, p1, p2, data, table))
+            if boxed:
+                x, y, z = absolute(p0), absolute(p1), absolute(p2)
+                half = x * table[data + 4] + y * table[data + 5] + z * table[data + 6]
+                store(scratch, here + (3 + axis) * LANES, half)
 
 
 @inlined

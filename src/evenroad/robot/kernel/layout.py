@@ -16,8 +16,8 @@ LANES = 16
 """How many configurations, or how many obstacles, are looked at together."""
 
 FRAMES, CAPSULES, FIXED_CAPSULES, BODIES, FIXED_BODIES, BODY_PAIRS, OBSTACLES, BLOCKS = range(8)
-"""Header: counts.  Frames without the root's; what is fixed moves with no joint; bodies are links of pairs; blocks hold
-16 obstacles each."""
+"""Header: counts.  Frames without the root's; what is fixed moves with no joint; bodies are links with capsules; blocks
+hold 16 obstacles each."""
 
 FRAME_INTS, CAPSULE_INTS, BODY_INTS, BODY_PAIR_INTS, PAIR_INTS, OBSTACLE_INTS, TESTED = range(8, 15)
 """Header: where rows of integers begin."""
@@ -40,8 +40,8 @@ FRAME_INT_ROW = 3
 CAPSULE_INT_ROW = 3
 """Frame, first sample, end of samples."""
 
-BODY_INT_ROW = 1
-"""Frame."""
+BODY_INT_ROW = 3
+"""Frame, first capsule, end of capsules."""
 
 BODY_PAIR_INT_ROW = 4
 """Two bodies, first capsule pair, end of capsule pairs."""
@@ -62,8 +62,9 @@ these two."""
 CAPSULE_FLOAT_ROW = 7
 """Centre (3), half of the segment (3), radius of the covering spheres."""
 
-BODY_FLOAT_ROW = 4
-"""Centre (3) and radius of a ball around the capsules."""
+BODY_FLOAT_ROW = 7
+"""Centre (3) and radius of a ball around the capsules; half extents (3), in the frame, of a box about the same centre
+around their covering spheres."""
 
 PAIR_FLOAT_ROW = 4
 """Distance of centres from which on they cannot touch; sum of radii; one over the squared half lengths (0 for

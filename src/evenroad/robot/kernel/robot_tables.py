@@ -224,17 +224,19 @@ def _pack_pairs(
     pairs: Sequence[tuple[str, str]],
     padding: float,
 ) -> None:
-    """Append bodies, which are links of pairs, pairs of bodies and pairs of capsules."""
-    links = dict.fromkeys(capsule.link for capsule in capsules)
-    bodies = [link for link in links if any(link in pair for pair in pairs)]
-    balls = [_ball([capsule for capsule in capsules if capsule.link == link]) for link in bodies]
+    """Append bodies, which are links with capsules, pairs of bodies and pairs of capsules."""
+    bodies = list(dict.fromkeys(capsule.link for capsule in capsules))
+    groups = [_of_link(capsules, link) for link in bodies]
+    balls = [_ball([capsules[i] for i in group]) for group in groups]
     frames = [tree.links[link].frame for link in bodies]
     rows.header[layout.BODIES] = len(bodies)
     rows.header[layout.FIXED_BODIES] = frames.count(0)
     rows.begin(layout.BODY_INTS, layout.BODY_FLOATS)
-    for frame, (centre, radius) in zip(frames, balls, strict=True):
-        rows.ints.append(frame)
-        rows.floats += [*centre, radius + padding]
+    for frame, group, (centre, radius) in zip(frames, groups, balls, strict=True):
+        rows.ints += [frame, group[0], group[-1] + 1]
+        # Boxes are wider by twice the padding: they must not miss what the spheres, wider by one, would find.
+        box = _half_extents([capsules[i] for i in group], centre) + 2.0 * padding
+        rows.floats += [*centre, radius + padding, *box]
     rows.header[layout.BODY_PAIRS] = len(pairs)
     rows.begin(layout.BODY_PAIR_INTS, layout.BODY_PAIR_FLOATS)
     capsule_pairs: list[tuple[int, int]] = []
@@ -259,3 +261,15 @@ def _ball(capsules: Sequence[PlacedCapsule]) -> tuple[Floats, float]:
     high = np.max([end + radius for end, radius in ends], axis=0)
     centre = 0.5 * (low + high)
     return centre, max(float(np.linalg.norm(end - centre)) + radius for end, radius in ends)
+
+
+def _half_extents(capsules: Sequence[PlacedCapsule], centre: Floats) -> Floats:
+    """Return the half extents of a box about `centre` that holds the spheres that cover capsules of one frame."""
+    return np.max(
+        [
+            np.abs(c.centre + place * c.half - centre) + c.cover.radius
+            for c in capsules
+            for place in c.cover.places
+        ],
+        axis=0,
+    )

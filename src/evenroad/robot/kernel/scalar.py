@@ -171,7 +171,8 @@ def _meets_itself(ints: Ints, floats: Floats, pair_margins: Floats, frames: Floa
 @inner
 def _squared_distance_of_bodies(a: int, b: int, ints: Ints, floats: Floats, frames: Floats) -> float:
     """Return the squared distance between the middles of two bodies' balls [m^2]."""
-    first, second = ints[ints[at.BODY_INTS] + a], ints[ints[at.BODY_INTS] + b]
+    first = ints[ints[at.BODY_INTS] + at.BODY_INT_ROW * a]
+    second = ints[ints[at.BODY_INTS] + at.BODY_INT_ROW * b]
     data = ints[at.BODY_FLOATS] + at.BODY_FLOAT_ROW * a
     other = ints[at.BODY_FLOATS] + at.BODY_FLOAT_ROW * b
     squared = 0.0
