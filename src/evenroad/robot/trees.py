@@ -208,9 +208,7 @@ def _room(capacity: int, dim: int) -> tuple[Floats, npt.NDArray[np.float32], npt
     )
 
 
-def _fill_columns(
-    columns: npt.NDArray[np.float32], nodes: Floats, sizes: npt.NDArray[np.int64]
-) -> None:
+def _fill_columns(columns: npt.NDArray[np.float32], nodes: Floats, sizes: npt.NDArray[np.int64]) -> None:
     """Write the nodes by coordinate; the places up to the next multiple of 16 are far from everything."""
     by_tree = columns.reshape(2, nodes.shape[2], nodes.shape[1])
     for tree, size in enumerate(sizes):
