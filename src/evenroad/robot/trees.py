@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
-from weakref import WeakKeyDictionary
+from weakref import ref
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +12,7 @@ from evenroad._checks import require_count, require_positive
 from evenroad.errors import InvalidValue
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
+from evenroad.robot.robot import Robot
 from evenroad.robot.tree_sequences import ball_points, cube_points, share_pairs
 from evenroad.space.batch import as_batch
 from evenroad.world.protocol import Connection
@@ -27,16 +27,6 @@ _CAPACITY = 2048
 
 _SLICE = 1000
 """Batches of sixteen checks between two looks at the clock: about 10 ms."""
-
-
-@dataclass(frozen=True, eq=False)
-class _Proofs:
-    """What proofs need beside a world's tables: how fast joints move bodies, and tables to write radii to."""
-
-    arms: Floats
-    pair_arms: Floats
-    enlarged: npt.NDArray[np.int64]
-    enlarged_view: npt.NDArray[np.int64]
 
 
 def connect(
@@ -84,23 +74,13 @@ def connect(
     most = require_count("most_motions", most_motions)
     ends = as_batch("start and goals", _stacked(start, goals, dim), dim)
     samples = cube_points(dim) if sequence is None else _as_sequence(sequence, dim)
-    free = world.valid(ends)
-    if not (free[0] and free[1:].any()):
-        return Connection(np.empty((0, dim)), -1, 0, len(ends), 0)
-    numbers = np.flatnonzero(free[1:])
-    if len(numbers) > 1:
-        # The nearest goal is tried first.
-        to_goals = world.space.distance(np.broadcast_to(ends[0], (len(numbers), dim)), ends[1 + numbers])
-        numbers = numbers[np.argsort(to_goals, kind="stable")]
-    roots = world.space.interpolate(ends, ends, 0.0)
+    if world.model.standing_contact:
+        return Connection(np.empty((0, dim)), -1, 0, 0, 0)
     if world.backend == "scalar":
         from evenroad.robot import plain_trees
 
-        found = plain_trees.grown(world, roots[0], roots[1 + numbers], samples, most, deadline)
-    else:
-        found = _grown(world, roots[0], roots[1 + numbers], samples, most, deadline)
-    goal = int(numbers[found.goal]) if found.goal >= 0 else -1
-    return Connection(found.path, goal, found.nodes, found.configurations + len(ends), found.motions)
+        return plain_trees.grown(world, ends, samples, most, deadline)
+    return _grown(world, ends, samples, most, deadline)
 
 
 def shorten(world: ArmWorld, path: npt.ArrayLike, *, proved: bool = False) -> tuple[Floats, int]:
@@ -132,72 +112,36 @@ def shorten(world: ArmWorld, path: npt.ArrayLike, *, proved: bool = False) -> tu
         return plain_trees.shortened(world, waypoints)
     from evenroad.robot.kernel import shorten as kernel
 
-    proofs, counts = _proofs(world), np.zeros(3, dtype=np.int64)
-    shorter, _ = kernel.shorten_path(
-        world.space.interpolate(waypoints, waypoints, 0.0),
-        proved,
-        share_pairs(),
-        counts,
-        world.resolution,
-        world.bounds,
-        world.tables.lanes,
-        proofs.enlarged,
-        proofs.enlarged_view,
-        proofs.arms,
-        proofs.pair_arms,
-    )
+    counts = np.zeros(3, dtype=np.int64)
+    shorter, _ = kernel.shorten_path(waypoints, proved, share_pairs(), counts, *_world_arguments(world))
     return shorter, int(counts[0])
 
 
-def _grown(
-    world: ArmWorld, start: Floats, goals: Floats, samples: Floats, most: int, deadline: float
-) -> Connection:
+def _grown(world: ArmWorld, ends: Floats, samples: Floats, most: int, deadline: float) -> Connection:
     # Imported late: where the vector type cannot even be defined, all else still works.
     from evenroad.robot.kernel import trees as kernel
 
-    dim, proofs = len(start), _proofs(world)
-    capacity = -(-max(_CAPACITY, 2 * len(goals) + kernel.ROOM) // 16) * 16
+    dim, ball, arguments = ends.shape[1], ball_points(ends.shape[1]), _world_arguments(world)
+    capacity = -(-max(_CAPACITY, 2 * len(ends) + kernel.ROOM) // 16) * 16
     nodes, columns, links = _room(capacity, dim)
-    sizes, state = np.array([1, len(goals)]), np.zeros(kernel.STATE, dtype=np.int64)
-    periods = np.minimum(world.bounds[2], 1e30).astype(np.float32)
-    nodes[0, 0], nodes[1, : len(goals)] = start, goals
-    _fill_columns(columns, nodes, sizes)
-    links[:, 0, :1] = links[:, 1, : len(goals)] = [[-1], [0], [0]]
+    sizes, state = np.zeros(2, dtype=np.int64), np.zeros(kernel.STATE, dtype=np.int64)
     while True:
         ended = kernel.grow(
-            nodes,
-            columns,
-            links,
-            sizes,
-            periods,
-            state,
-            samples,
-            ball_points(dim),
-            most,
-            _SLICE,
-            world.resolution,
-            world.bounds,
-            world.tables.lanes,
-            proofs.enlarged,
-            proofs.enlarged_view,
-            proofs.arms,
-            proofs.pair_arms,
+            ends, nodes, columns, links, sizes, state, samples, ball, most, _SLICE, *arguments
         )
         if ended == kernel.FULL:
-            wider, _, more = _room(2 * nodes.shape[1], dim)
-            wider[:, : nodes.shape[1]], more[:, :, : nodes.shape[1]] = nodes, links
-            nodes, links = wider, more
-            columns = np.empty(2 * dim * nodes.shape[1], dtype=np.float32)
+            more = _room(2 * nodes.shape[1], dim)
+            more[0][:, : nodes.shape[1]], more[2][:, :, : nodes.shape[1]] = nodes, links
+            nodes, columns, links = more
             _fill_columns(columns, nodes, sizes)
         elif ended != kernel.PAUSED or time.perf_counter() >= deadline:
             break
-    motions, configurations = int(state[0]), int(state[1])
     path, goal = np.empty((0, dim)), -1
     if ended == kernel.SOLVED:
-        to_root = [_to_root(links[0, tree], state[kernel.START_NODE + tree]) for tree in (0, 1)]
-        path = np.concatenate([nodes[0, to_root[0][::-1]], nodes[1, to_root[1]]])
-        goal = to_root[1][-1]
-    return Connection(path, goal, int(sizes.sum()), configurations, motions)
+        path = kernel.path_of(nodes, links, state)
+        goal = kernel.goal_of(links, state)
+    motions, configurations, _ = state[:3].tolist()
+    return Connection(path, goal, int(sizes[0] + sizes[1]), configurations, motions)
 
 
 def _room(capacity: int, dim: int) -> tuple[Floats, npt.NDArray[np.float32], npt.NDArray[np.int64]]:
@@ -216,27 +160,26 @@ def _fill_columns(columns: npt.NDArray[np.float32], nodes: Floats, sizes: npt.ND
         by_tree[tree, :, :size] = nodes[tree, :size].T
 
 
-def _to_root(parents: npt.NDArray[np.int64], node: int) -> list[int]:
-    """Return the numbers of a node and its ancestors, the root last."""
-    way = [int(node)]
-    while parents[way[-1]] >= 0:
-        way.append(int(parents[way[-1]]))
-    return way
+_KEPT: dict[int, tuple[ref[Robot], Floats, Floats]] = {}
+"""How fast joints move bodies, by the robot's identity: nothing of it depends on the scene."""
 
 
-_KEPT: WeakKeyDictionary[ArmWorld, _Proofs] = WeakKeyDictionary()
-
-
-def _proofs(world: ArmWorld) -> _Proofs:
-    """Return what proofs in `world` need, kept as long as it."""
-    kept = _KEPT.get(world)
-    if kept is None:
+def _arms(world: ArmWorld) -> tuple[Floats, Floats]:
+    """Return how fast each coordinate moves capsules and pairs of them at most."""
+    robot, number = world.robot, id(world.robot)
+    kept = _KEPT.get(number)
+    if kept is None or kept[0]() is not robot:
         certified = CertifiedWorld(world)
-        enlarged = world.tables.lanes.copy()
-        view = enlarged.view()
-        view.setflags(write=False)
-        kept = _KEPT[world] = _Proofs(certified._arms, certified._pair_arms, enlarged, view)
-    return kept
+        kept = ref(robot, lambda _: _KEPT.pop(number, None)), certified._arms, certified._pair_arms
+        _KEPT[number] = kept
+    return kept[1], kept[2]
+
+
+def _world_arguments(world: ArmWorld) -> tuple[int, float, Floats, npt.NDArray[np.int64], Floats, Floats]:
+    """Return what compiled planners take of a world."""
+    from evenroad.robot.kernel.lane_check import check_address
+
+    return check_address(), world.resolution, world.bounds, world.tables.lanes, *_arms(world)
 
 
 def _stacked(start: npt.ArrayLike, goals: npt.ArrayLike, dim: int) -> Floats:

@@ -7,6 +7,7 @@ import numpy.typing as npt
 from numba import njit
 
 from evenroad.robot.kernel.inner import inner
+from evenroad.robot.kernel.motion import enter
 from evenroad.robot.kernel.tree_checks import (
     Checks,
     canonical,
@@ -38,11 +39,10 @@ def shorten_path(
     given_proved: bool,
     pairs: Floats,
     counts: Ints,
+    address: int,
     resolution: float,
     bounds: Floats,
     tables: Ints,
-    enlarged: Ints,
-    enlarged_view: Ints,
     arms: Floats,
     pair_arms: Floats,
 ) -> tuple[Floats, Flags]:
@@ -51,25 +51,26 @@ def shorten_path(
     Parameters
     ----------
     path : float64 array, shape (p, dim), p >= 2
-        Waypoints within bounds, every motion free.
+        Waypoints, every motion free.
     given_proved : bool
         Whether these are proved already.
     pairs : float64 array, shape (n, 2)
         Shares of the path's length, from 0 to 1: between which places a straight motion is tried.
     counts : int64 array, shape (3,)
         Added to: motions asked for, configurations and batches tested.
-    resolution, bounds, tables, enlarged, enlarged_view, arms, pair_arms
+    address, resolution, bounds, tables, arms, pair_arms
         As ``tree_checks.checks_of`` takes them.
     """
-    checks = checks_of(resolution, bounds, tables, enlarged, enlarged_view, arms, pair_arms, counts)
+    checks = checks_of(address, resolution, bounds, tables, arms, pair_arms, counts)
     dim = path.shape[1]
     points = np.empty((len(path) + len(pairs) + 4, dim))
     proved = np.empty(len(points), dtype=np.bool_)
     places, way = np.empty(len(points)), np.empty(dim)
     ends = np.empty((2, dim))
     size = len(path)
-    points[:size] = path
-    proved[:size] = given_proved
+    for i in range(size):
+        enter(path[i], bounds, points[i])
+        proved[i] = given_proved
     size = _pass_by(points, proved, size, checks)
     _measure(points, places, size, way, checks)
     for row in range(len(pairs)):
@@ -89,7 +90,7 @@ def shorten_path(
             continue
         if not _is_shortcut(ends[0], ends[1], checks):
             continue
-        # What lies between goes, the two ends come in; where an end is a waypoint already, a motion of no length stays out.
+        # What lies between goes, the two ends come in.
         begin = first if places[first] >= low else first + 1
         end = last + 1
         if size - (end - begin) + 2 > len(points):

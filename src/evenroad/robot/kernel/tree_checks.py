@@ -12,10 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.contact import blocked_lanes
 from evenroad.robot.kernel.inner import inner
+from evenroad.robot.kernel.lane_check import blocked_states
 from evenroad.robot.kernel.motion import enter, span
-from evenroad.robot.kernel.place import scratch_memory, unpacked, write_values
+from evenroad.robot.kernel.place import scratch_memory, unpacked
 
 LANES = at.LANES
 Floats = npt.NDArray[np.float64]
@@ -37,14 +37,16 @@ class Checks(NamedTuple):
 
     Attributes
     ----------
+    address : int
+        Of the check of sixteen configurations.
     resolution : float
         Largest distance between neighbouring states of a motion.
     bounds : float64 array, shape (3, dim)
         Low, high and period of each coordinate.
     ints, table : arrays
         The tables of the lanes.
-    enlarged, enlarged_table : float32 arrays
-        A copy of `table` with radii for proofs: to write to, and the same memory to read from.
+    enlarged : float32 array
+        A copy of `table` with radii for proofs.
     arms, pair_arms : float64 arrays, shapes (capsules, dim) and (capsule pairs, dim)
         How fast each coordinate moves a capsule, and the two of a pair against each other, at most [m/rad].
     states, scratch : arrays
@@ -61,12 +63,12 @@ class Checks(NamedTuple):
         Motions asked for, configurations and batches tested.
     """
 
+    address: int
     resolution: float
     bounds: Floats
     ints: Ints
     table: Singles
     enlarged: Singles
-    enlarged_table: Singles
     arms: Floats
     pair_arms: Floats
     states: Floats
@@ -84,16 +86,15 @@ class Checks(NamedTuple):
 
 @inner
 def checks_of(
+    address: int,
     resolution: float,
     bounds: Floats,
     tables: Ints,
-    enlarged: Ints,
-    enlarged_view: Ints,
     arms: Floats,
     pair_arms: Floats,
     counts: Ints,
 ) -> Checks:
-    """Return the checks of a world; `enlarged` is a copy of its tables, `enlarged_view` the same, read-only."""
+    """Return the checks of a world, from what `Checks` says of it and ``ArmTables.lanes``."""
     dim = bounds.shape[1]
     ints, table = unpacked(tables)
     states, _, scratch = scratch_memory(dim, ints, table)
@@ -103,12 +104,12 @@ def checks_of(
     e = d + len(arms)
     f = e + len(pair_arms)
     return Checks(
+        address,
         resolution,
         bounds,
         ints,
         table,
-        enlarged[len(ints) :].view(np.float32),
-        enlarged_view[len(ints) :].view(np.float32),
+        table.copy(),
         arms,
         pair_arms,
         states,
@@ -126,11 +127,10 @@ def checks_of(
 
 
 @inner
-def blocked_states(c: Checks, table: Singles, enough: int) -> int:
+def blocked(c: Checks, table: Singles, enough: int) -> int:
     """Return the mask of the sixteen configurations in ``c.states`` that touch something."""
     c.counts[BATCHES] += 1
-    write_values(c.scratch, c.states, c.ints, table)
-    return blocked_lanes(c.scratch, c.ints, table, np.int64(enough))
+    return blocked_states(c.address, c.scratch, c.states, c.ints, table, enough)
 
 
 @inner
@@ -164,7 +164,7 @@ def motion_free(a: Floats, b: Floats, end_is_free: bool, c: Checks) -> bool:
     level = 0
     while (1 << level) < stretches:
         level += 1
-    # Sixteen states spread over the motion, then stretches of sixteen neighbours: halves before quarters before eighths.
+    # Sixteen spread over the motion, then stretches of sixteen neighbours: halves before quarters before eighths.
     place = -1
     while True:
         if place < 0:
@@ -195,7 +195,7 @@ def motion_free(a: Floats, b: Floats, end_is_free: bool, c: Checks) -> bool:
                 c.share[lane] = (first + rank + 1 + gap) / segments
             write_states(c)
             c.counts[CONFIGURATIONS] += min(LANES, rest - stretch * LANES)
-        if blocked_states(c, c.table, 1) != 0:
+        if blocked(c, c.table, 1) != 0:
             return False
         if place < 0:
             place = 0
@@ -244,12 +244,12 @@ def motion_proved(a: Floats, b: Floats, tolerance: float, most_batches: int, c: 
             c.share[lane] = c.share[count - 1]
         write_states(c)
         c.counts[CONFIGURATIONS] += count
-        blocked = blocked_states(c, c.enlarged_table, LANES) & ((1 << count) - 1)
+        near = blocked(c, c.enlarged, LANES) & ((1 << count) - 1)
         waiting -= count
-        if blocked != 0 and (half * fastest < tolerance or waiting + 2 * LANES > _STACK):
+        if near != 0 and (half * fastest < tolerance or waiting + 2 * LANES > _STACK):
             return False
         for lane in range(count - 1, -1, -1):
-            if (blocked >> lane) & 1:
+            if (near >> lane) & 1:
                 for side in range(2):
                     c.centres[waiting] = c.share[lane] + (0.5 - side) * half
                     c.levels[waiting] = level + 1

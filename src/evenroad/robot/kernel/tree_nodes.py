@@ -50,7 +50,7 @@ PARENT, TRIED, PROVED = range(3)
 @inner
 def add_node(trees: Trees, tree: int, q: Floats, parent: int) -> int:
     """Add a configuration and return its number."""
-    _, capacity, dim = trees.nodes.shape
+    dim = trees.nodes.shape[2]
     number = trees.sizes[tree]
     for k in range(dim):
         trees.nodes[tree, number, k] = q[k]

@@ -16,12 +16,14 @@ from numba import njit
 
 from evenroad.robot.kernel.inner import inner
 from evenroad.robot.kernel.layout import LANES
+from evenroad.robot.kernel.motion import enter
 from evenroad.robot.kernel.tree_checks import (
     BATCHES,
     CONFIGURATIONS,
+    COUNTS,
     MOTIONS,
     Checks,
-    blocked_states,
+    blocked,
     canonical,
     checks_of,
     distance_and_way,
@@ -43,12 +45,13 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 Singles = npt.NDArray[np.float32]
 
-PAUSED, FULL, SPENT, SOLVED = range(4)
-"""What a call of `grow` ends with: its slice used up, the trees out of room, the budget spent, a path found."""
+PAUSED, FULL, SPENT, NOT_FREE, SOLVED = range(5)
+"""What a call of `grow` ends with: its slice used up, no room in the trees, the budget spent, start or goals not free,
+a path found."""
 
-NEXT_SAMPLE, NEXT_STEP, GROWING, STRAIGHT, START_NODE, GOAL_NODE, MEETS, STATE = range(3, 11)
+NEXT_SAMPLE, NEXT_STEP, GROWING, STRAIGHT, START_NODE, GOAL_NODE, BEGUN, STATE = range(COUNTS, COUNTS + 8)
 """What is kept from call to call, behind the counts: places in the two sequences, the tree that grows, how many goals
-were tried straight on, and where the trees met."""
+were tried straight on, where the trees met, and whether they have roots."""
 
 STEPS_AT_ONCE = LANES // 2
 EXTENSIONS = 3
@@ -132,21 +135,20 @@ def _memory(bounds: Floats) -> Memory:
 
 @njit(cache=True, nogil=True)
 def grow(
+    ends: Floats,
     nodes: Floats,
     columns: Singles,
     links: Ints,
     sizes: Ints,
-    periods: Singles,
     state: Ints,
     sequence: Floats,
     ball: Floats,
     most_motions: int,
     slice_batches: int,
+    address: int,
     resolution: float,
     bounds: Floats,
     tables: Ints,
-    enlarged: Ints,
-    enlarged_view: Ints,
     arms: Floats,
     pair_arms: Floats,
 ) -> int:
@@ -154,8 +156,10 @@ def grow(
 
     Parameters
     ----------
-    nodes, columns, links, sizes, periods : arrays
-        The fields of ``Trees``: the start in tree 0 and the goals in tree 1, free and within bounds.
+    ends : float64 array, shape (1 + g, dim)
+        The start, and the goals; in the order of their distance they become the roots of the second tree.
+    nodes, columns, links, sizes : arrays
+        The fields of ``Trees``; sizes are 0 at first.  Room for 2 g + ROOM nodes at least.
     state : int64 array, shape (STATE,)
         Zeros at first; counts, and what is kept from call to call.
     sequence : float64 array, shape (n, dim)
@@ -166,12 +170,19 @@ def grow(
         After so many motions the budget is spent.
     slice_batches : int
         After about so many batches of sixteen checks the call returns, for the caller to look at the clock.
-    resolution, bounds, tables, enlarged, enlarged_view, arms, pair_arms
+    address, resolution, bounds, tables, arms, pair_arms
         As ``tree_checks.checks_of`` takes them.
     """
-    trees = Trees(nodes, columns, links, sizes, periods)
-    checks = checks_of(resolution, bounds, tables, enlarged, enlarged_view, arms, pair_arms, state[:3])
+    trees = Trees(nodes, columns, links, sizes, np.empty(bounds.shape[1], dtype=np.float32))
+    for k in range(bounds.shape[1]):
+        trees.periods[k] = min(bounds[2, k], 1e30)
+    checks = checks_of(address, resolution, bounds, tables, arms, pair_arms, state[:COUNTS])
     memory = _memory(bounds)
+    if state[BEGUN] == 0:
+        _begin(ends, trees, checks, memory)
+        state[BEGUN] = 1
+    if sizes[0] == 0 or sizes[1] == 0:
+        return NOT_FREE
     pause = state[BATCHES] + slice_batches
     goals = 0
     while goals < sizes[1] and links[PARENT, 1, goals] < 0:
@@ -205,10 +216,69 @@ def grow(
             if met >= 0:
                 state[START_NODE + tree], state[GOAL_NODE - tree] = met, other
                 if _is_proved(trees, state, checks):
-                    state[MEETS] = 1
                     return SOLVED
                 # Nodes may have been removed: the other candidates know old numbers.
                 break
+
+
+@njit(cache=True, nogil=True)
+def path_of(nodes: Floats, links: Ints, state: Ints) -> Floats:
+    """Return the path that `grow` found, shape (p, dim)."""
+    counts = np.zeros(2, dtype=np.int64)
+    for tree in range(2):
+        node = state[START_NODE + tree]
+        while node >= 0:
+            counts[tree] += 1
+            node = links[PARENT, tree, node]
+    path = np.empty((counts[0] + counts[1], nodes.shape[2]))
+    for tree in range(2):
+        node, row, step = state[START_NODE + tree], counts[0] - 1 + tree, 2 * tree - 1
+        while node >= 0:
+            path[row] = nodes[tree, node]
+            row += step
+            node = links[PARENT, tree, node]
+    return path
+
+
+@njit(cache=True, nogil=True)
+def goal_of(links: Ints, state: Ints) -> int:
+    """Return which of the goals the path leads to."""
+    node = state[GOAL_NODE]
+    while links[PARENT, 1, node] >= 0:
+        node = links[PARENT, 1, node]
+    return links[PROVED, 1, node]
+
+
+@inner
+def _begin(ends: Floats, trees: Trees, checks: Checks, memory: Memory) -> None:
+    """Plant the trees: the start, and the goals, the nearest first; leave out what is not free."""
+    count, dim = ends.shape
+    q, distances = np.empty((count, dim)), np.empty(count)
+    for first in range(0, count, LANES):
+        inside = 0
+        for lane in range(LANES):
+            row = min(first + lane, count - 1)
+            if enter(ends[row], checks.bounds, q[row]):
+                inside |= 1 << lane
+            else:
+                canonical(q[row], checks.bounds)
+            for k in range(dim):
+                checks.states[k * LANES + lane] = q[row, k]
+        free = inside & ~blocked(checks, checks.table, LANES)
+        checks.counts[CONFIGURATIONS] += min(LANES, count - first)
+        for lane in range(min(LANES, count - first)):
+            row = first + lane
+            distances[row] = np.inf
+            if (free >> lane) & 1:
+                distances[row] = distance_and_way(q[0], q[row], checks.bounds, memory.way)
+    if distances[0] == np.inf:
+        return
+    add_node(trees, 0, q[0], -1)
+    for row in np.argsort(distances[1:], kind="mergesort"):
+        if distances[1 + row] < np.inf:
+            goal = add_node(trees, 1, q[1 + row], -1)
+            # While it is a root, nothing is proved of a motion that leads to it: here is which of the goals it is.
+            trees.links[PROVED, 1, goal] = row
 
 
 @inner
@@ -251,11 +321,11 @@ def _candidates(
         for k in range(dim):
             checks.states[k * LANES + 2 * candidate] = here[k] + 0.5 * memory.way[k]
             checks.states[k * LANES + 2 * candidate + 1] = target[k]
-    blocked = blocked_states(checks, checks.table, LANES)
+    touching = blocked(checks, checks.table, LANES)
     state[CONFIGURATIONS] += LANES
     kept = 0
     for candidate in range(STEPS_AT_ONCE):
-        if (blocked >> (2 * candidate)) & 3:
+        if (touching >> (2 * candidate)) & 3:
             # A motion that was asked for, and is blocked.
             state[MOTIONS] += 1
             continue
