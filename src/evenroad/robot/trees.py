@@ -70,7 +70,7 @@ def connect(
         If an argument is no such array or number.
     """
     dim = world.space.dim
-    deadline = time.perf_counter() + require_positive("seconds", seconds)
+    limit = require_positive("seconds", seconds)
     most = require_count("most_motions", most_motions)
     ends = as_batch("start and goals", _stacked(start, goals, dim), dim)
     samples = cube_points(dim) if sequence is None else _as_sequence(sequence, dim)
@@ -79,8 +79,8 @@ def connect(
     if world.backend == "scalar":
         from evenroad.robot import plain_trees
 
-        return plain_trees.grown(world, ends, samples, most, deadline)
-    return _grown(world, ends, samples, most, deadline)
+        return plain_trees.grown(world, ends, samples, most, limit)
+    return _grown(world, ends, samples, most, limit)
 
 
 def shorten(world: ArmWorld, path: npt.ArrayLike, *, proved: bool = False) -> tuple[Floats, int]:
@@ -117,7 +117,7 @@ def shorten(world: ArmWorld, path: npt.ArrayLike, *, proved: bool = False) -> tu
     return shorter, int(counts[0])
 
 
-def _grown(world: ArmWorld, ends: Floats, samples: Floats, most: int, deadline: float) -> Connection:
+def _grown(world: ArmWorld, ends: Floats, samples: Floats, most: int, seconds: float) -> Connection:
     # Imported late: where the vector type cannot even be defined, all else still works.
     from evenroad.robot.kernel import trees as kernel
 
@@ -125,6 +125,10 @@ def _grown(world: ArmWorld, ends: Floats, samples: Floats, most: int, deadline: 
     capacity = -(-max(_CAPACITY, 2 * len(ends) + kernel.ROOM) // 16) * 16
     nodes, columns, links = _room(capacity, dim)
     sizes, state = np.zeros(2, dtype=np.int64), np.zeros(kernel.STATE, dtype=np.int64)
+    if not kernel.grow.signatures:
+        # Compiled, or loaded, before the clock runs; no motion is looked at.
+        kernel.grow(ends, nodes, columns, links, sizes, state, samples, ball, 0, _SLICE, *arguments)
+    deadline = time.perf_counter() + seconds
     while True:
         ended = kernel.grow(
             ends, nodes, columns, links, sizes, state, samples, ball, most, _SLICE, *arguments
