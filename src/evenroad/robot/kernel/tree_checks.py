@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.inner import inner
+from evenroad.robot.kernel.inner import quick
 from evenroad.robot.kernel.lane_check import blocked_states
 from evenroad.robot.kernel.motion import enter, span
 from evenroad.robot.kernel.place import scratch_memory, unpacked
@@ -84,7 +84,7 @@ class Checks(NamedTuple):
     counts: Ints
 
 
-@inner
+@quick
 def checks_of(
     address: int,
     resolution: float,
@@ -126,14 +126,14 @@ def checks_of(
     )
 
 
-@inner
+@quick
 def blocked(c: Checks, table: Singles, enough: int) -> int:
     """Return the mask of the sixteen configurations in ``c.states`` that touch something."""
     c.counts[BATCHES] += 1
     return blocked_states(c.address, c.scratch, c.states, c.ints, table, enough)
 
 
-@inner
+@quick
 def write_states(c: Checks) -> None:
     """Write the configurations at the sixteen shares of the motion at hand."""
     for k in range(len(c.start)):
@@ -141,11 +141,12 @@ def write_states(c: Checks) -> None:
             c.states[k * LANES + lane] = c.start[k] + c.share[lane] * c.way[k]
 
 
-@inner
-def motion_free(a: Floats, b: Floats, end_is_free: bool, c: Checks) -> bool:
+@quick
+def motion_free(a: Floats, b: Floats, end_is_free: bool, sixteen_do: bool, c: Checks) -> bool:
     """Return whether the motion from `a`, which is free, to `b`, both within bounds, is free.
 
-    The verdict is that of ``batch.motions_free``; an end that is known to be free is not tested again.
+    The verdict is that of ``batch.motions_free``; an end that is known to be free is not tested again.  Where
+    `sixteen_do`, no more than sixteen states, spread over the motion, are looked at: before a proof that is enough.
     """
     for k in range(len(a)):
         c.start[k], c.end[k] = a[k], b[k]
@@ -199,13 +200,13 @@ def motion_free(a: Floats, b: Floats, end_is_free: bool, c: Checks) -> bool:
             return False
         if place < 0:
             place = 0
-            if rest == 0:
+            if rest == 0 or sixteen_do:
                 return True
         elif place == 1 << level:
             return True
 
 
-@inner
+@quick
 def motion_proved(a: Floats, b: Floats, tolerance: float, most_batches: int, c: Checks) -> bool:
     """Return whether the motion from `a` to `b`, within bounds, is proved free: throughout, not at states alone.
 
@@ -259,7 +260,7 @@ def motion_proved(a: Floats, b: Floats, tolerance: float, most_batches: int, c: 
     return False
 
 
-@inner
+@quick
 def _write_speeds(arms: Floats, way: Floats, speeds: Floats) -> float:
     """Write how far each body can move during the whole motion, and return the largest [m]."""
     largest = 0.0
@@ -272,7 +273,7 @@ def _write_speeds(arms: Floats, way: Floats, speeds: Floats) -> float:
     return largest
 
 
-@inner
+@quick
 def _enlarge(half: float, c: Checks) -> None:
     """Write radii that are larger by what `half` of the motion at hand can move the bodies."""
     ints, wide = c.ints, c.enlarged
@@ -292,7 +293,7 @@ def _enlarge(half: float, c: Checks) -> None:
         wide[place] = c.table[place] + np.float32(most)
 
 
-@inner
+@quick
 def canonical(q: Floats, bounds: Floats) -> None:
     """Bring `q` into bounds: wrapping coordinates into their ranges, the others cut."""
     enter(q, bounds, q)
@@ -301,7 +302,7 @@ def canonical(q: Floats, bounds: Floats) -> None:
             q[k] = min(max(q[k], bounds[0, k]), bounds[1, k])
 
 
-@inner
+@quick
 def distance_and_way(a: Floats, b: Floats, bounds: Floats, way: Floats) -> float:
     """Write the short way from `a` to `b` and return its length."""
     squared = 0.0

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.robot.kernel.inner import inner
+from evenroad.robot.kernel.inner import quick
 from evenroad.robot.kernel.lanes import ZERO, absolute, load, smaller, smallest_lane, spread, store
 from evenroad.robot.kernel.layout import LANES
 
@@ -47,7 +47,7 @@ PARENT, TRIED, PROVED = range(3)
 """Rows of ``Trees.links``."""
 
 
-@inner
+@quick
 def add_node(trees: Trees, tree: int, q: Floats, parent: int) -> int:
     """Add a configuration and return its number."""
     dim = trees.nodes.shape[2]
@@ -62,7 +62,7 @@ def add_node(trees: Trees, tree: int, q: Floats, parent: int) -> int:
     return number
 
 
-@inner
+@quick
 def _write_column(trees: Trees, tree: int, number: int) -> None:
     _, capacity, dim = trees.nodes.shape
     for k in range(dim):
@@ -73,7 +73,7 @@ def _write_column(trees: Trees, tree: int, number: int) -> None:
         trees.columns[place] = trees.nodes[tree, number, k]
 
 
-@inner
+@quick
 def nearest(trees: Trees, tree: int, q: Floats, room: Singles) -> int:
     """Return the number of a tree's node nearest to `q`, the first of equals, in single precision.
 
@@ -99,7 +99,7 @@ def nearest(trees: Trees, tree: int, q: Floats, room: Singles) -> int:
     return number
 
 
-@inner
+@quick
 def least_tried(trees: Trees, tree: int) -> int:
     """Return the number of the tree's node that was tried least often, the first of equals."""
     best, number = np.int64(1 << 60), 0
@@ -111,7 +111,7 @@ def least_tried(trees: Trees, tree: int) -> int:
     return number
 
 
-@inner
+@quick
 def remove_branch(trees: Trees, tree: int, number: int) -> None:
     """Remove a node and all that descend from it; the others move up and keep their order."""
     size = trees.sizes[tree]

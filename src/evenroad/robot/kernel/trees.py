@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from evenroad.robot.kernel.inner import inner
+from evenroad.robot.kernel.inner import quick
 from evenroad.robot.kernel.layout import LANES
 from evenroad.robot.kernel.motion import enter
 from evenroad.robot.kernel.tree_checks import (
@@ -109,7 +109,7 @@ class Memory(NamedTuple):
     lanes: Singles
 
 
-@inner
+@quick
 def _memory(bounds: Floats) -> Memory:
     dim = bounds.shape[1]
     squares = 0.0
@@ -133,7 +133,7 @@ def _memory(bounds: Floats) -> Memory:
     )
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def grow(
     ends: Floats,
     nodes: Floats,
@@ -249,7 +249,7 @@ def goal_of(links: Ints, state: Ints) -> int:
     return links[PROVED, 1, node]
 
 
-@inner
+@quick
 def _begin(ends: Floats, trees: Trees, checks: Checks, memory: Memory) -> None:
     """Plant the trees: the start, and the goals, the nearest first; leave out what is not free."""
     count, dim = ends.shape
@@ -281,7 +281,7 @@ def _begin(ends: Floats, trees: Trees, checks: Checks, memory: Memory) -> None:
             trees.links[PROVED, 1, goal] = row
 
 
-@inner
+@quick
 def _candidates(
     trees: Trees, tree: int, state: Ints, sequence: Floats, ball: Floats, memory: Memory, checks: Checks
 ) -> int:
@@ -336,15 +336,15 @@ def _candidates(
     return kept
 
 
-@inner
+@quick
 def _extended(trees: Trees, tree: int, origin: int, target: Floats, checks: Checks) -> int:
     """Return the number of a new node at `target`, or -1 where the motion there from `origin` is blocked."""
-    if not motion_free(trees.nodes[tree, origin], target, False, checks):
+    if not motion_free(trees.nodes[tree, origin], target, False, False, checks):
         return -1
     return add_node(trees, tree, target, origin)
 
 
-@inner
+@quick
 def _reach(trees: Trees, tree: int, found: int, other: int, memory: Memory, checks: Checks) -> int:
     """Go from a node towards one of the other tree in equal steps, each a new node, until one is blocked.
 
@@ -358,7 +358,7 @@ def _reach(trees: Trees, tree: int, found: int, other: int, memory: Memory, chec
         for k in range(len(here)):
             target[k] = there[k] if step == steps else here[k] + step / steps * way[k]
         canonical(target, checks.bounds)
-        if not motion_free(trees.nodes[tree, found], target, step == steps, checks):
+        if not motion_free(trees.nodes[tree, found], target, step == steps, False, checks):
             return -1
         if step == steps:
             return found
@@ -366,7 +366,7 @@ def _reach(trees: Trees, tree: int, found: int, other: int, memory: Memory, chec
     return -1
 
 
-@inner
+@quick
 def _is_proved(trees: Trees, state: Ints, checks: Checks) -> bool:
     """Return whether every motion of the path that was found is proved free; remove from the trees those that are not.
 
