@@ -128,7 +128,7 @@ class ArmWorld:
             If `q` has another shape or an entry that is not finite.
         """
         configurations = as_batch("q", q, self._space.dim)
-        if self._fixed_contact is not None:
+        if self.fixed_contact is not None:
             return np.zeros(len(configurations), dtype=np.bool_)
         tables = self.tables
         if self.backend == "scalar":
@@ -147,7 +147,7 @@ class ArmWorld:
             As `valid`, or if the two differ in length.
         """
         first, second = as_batch_pair(a, b, self._space.dim)
-        if self._fixed_contact is not None:
+        if self.fixed_contact is not None:
             return np.zeros(len(first), dtype=np.bool_)
         resolution, bounds, tables = self.resolution, self.bounds, self.tables
         if self.backend == "scalar":
@@ -221,11 +221,11 @@ class ArmWorld:
             if math.isinf(period) and not low <= value <= high:
                 beyond = max(low - value, value - high)
                 return f"joint {name!r} is at {value:g}, {beyond:.3g} outside its limits [{low:g}, {high:g}]"
-        bodies = self._fixed_contact or self._touching(row)
+        bodies = self.fixed_contact or self._touching(row)
         return "it is free" if bodies is None else f"{bodies[0]!r} touches {bodies[1]!r}"
 
     @property
-    def _fixed_contact(self) -> tuple[str, str] | None:
+    def fixed_contact(self) -> tuple[str, str] | None:
         """Two bodies that touch whatever the joints do, or None."""
         if self.tables.fixed_contact is None:
             return self.robot_tables.fixed_contact

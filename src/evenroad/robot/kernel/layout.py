@@ -86,3 +86,6 @@ inner = njit(cache=True, nogil=True, no_cpython_wrapper=True, no_cfunc_wrapper=T
 
 inlined = njit(cache=True, nogil=True, no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=True)
 """Decorator of such a function that is put where it is called."""
+
+quick = njit(cache=True, nogil=True, no_cpython_wrapper=True, no_cfunc_wrapper=True, error_model="numpy")
+"""Decorator of a function that is called, and whose divisors are known not to be zero: it does not look."""

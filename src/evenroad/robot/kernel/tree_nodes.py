@@ -1,0 +1,133 @@
+"""Two trees of configurations, from the start and from the goals, as compiled planners keep them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.robot.kernel.lanes import ZERO, absolute, load, smaller, smallest_lane, spread, store
+from evenroad.robot.kernel.layout import LANES, quick
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+Singles = npt.NDArray[np.float32]
+
+_FAR = np.float32(1e15)
+"""Where places that hold no node are."""
+
+
+class Trees(NamedTuple):
+    """Nodes of two trees; the first index says which tree.
+
+    Attributes
+    ----------
+    nodes : float64 array, shape (2, capacity, dim)
+        Configurations within bounds; the roots come first.
+    columns : float32 array, shape (2 * dim * capacity,)
+        The same by coordinate, for the search of the nearest; the capacity is a multiple of 16.
+    links : int64 array, shape (3, 2, capacity)
+        Each node's parent (-1 for a root), how often it was tried, and 1 where the motion from the parent is proved.
+    sizes : int64 array, shape (2,)
+        How many nodes each tree has.
+    periods : float32 array, shape (dim,)
+        After how much each coordinate repeats, 1e30 where it does not.
+    """
+
+    nodes: Floats
+    columns: Singles
+    links: Ints
+    sizes: Ints
+    periods: Singles
+
+
+PARENT, TRIED, PROVED = range(3)
+"""Rows of ``Trees.links``."""
+
+
+@quick
+def add_node(trees: Trees, tree: int, q: Floats, parent: int) -> int:
+    """Add a configuration and return its number."""
+    dim = trees.nodes.shape[2]
+    number = trees.sizes[tree]
+    for k in range(dim):
+        trees.nodes[tree, number, k] = q[k]
+    trees.links[PARENT, tree, number] = parent
+    trees.links[TRIED, tree, number] = 0
+    trees.links[PROVED, tree, number] = 0
+    _write_column(trees, tree, number)
+    trees.sizes[tree] = number + 1
+    return number
+
+
+@quick
+def _write_column(trees: Trees, tree: int, number: int) -> None:
+    _, capacity, dim = trees.nodes.shape
+    for k in range(dim):
+        place = (tree * dim + k) * capacity + number
+        if number % LANES == 0:
+            for lane in range(1, LANES):
+                trees.columns[place + lane] = _FAR
+        trees.columns[place] = trees.nodes[tree, number, k]
+
+
+@quick
+def nearest(trees: Trees, tree: int, q: Floats, room: Singles) -> int:
+    """Return the number of a tree's node nearest to `q`, the first of equals, in single precision.
+
+    `room` is memory for sixteen numbers and one a coordinate.
+    """
+    _, capacity, dim = trees.nodes.shape
+    for k in range(dim):
+        room[LANES + k] = q[k]
+    best, number = np.float32(3e38), 0
+    for first in range(0, trees.sizes[tree], LANES):
+        squared = spread(ZERO)
+        for k in range(dim):
+            apart = absolute(load(trees.columns, (tree * dim + k) * capacity + first) - room[LANES + k])
+            apart = smaller(apart, spread(trees.periods[k]) - apart)
+            squared = squared + apart * apart
+        least = smallest_lane(squared)
+        if least < best:
+            store(room, 0, squared)
+            lane = 0
+            while room[lane] > least:
+                lane += 1
+            best, number = least, first + lane
+    return number
+
+
+@quick
+def least_tried(trees: Trees, tree: int) -> int:
+    """Return the number of the tree's node that was tried least often, the first of equals."""
+    best, number = np.int64(1 << 60), 0
+    for i in range(trees.sizes[tree]):
+        if trees.links[TRIED, tree, i] < best:
+            best, number = trees.links[TRIED, tree, i], i
+            if best == 0:
+                break
+    return number
+
+
+@quick
+def remove_branch(trees: Trees, tree: int, number: int) -> None:
+    """Remove a node and all that descend from it; the others move up and keep their order."""
+    size = trees.sizes[tree]
+    moved = np.empty(size, dtype=np.int64)
+    kept = 0
+    for i in range(size):
+        parent = trees.links[PARENT, tree, i]
+        # Parents come before their children.
+        if i == number or (parent >= 0 and moved[parent] < 0):
+            moved[i] = -1
+            continue
+        moved[i] = kept
+        for k in range(trees.nodes.shape[2]):
+            trees.nodes[tree, kept, k] = trees.nodes[tree, i, k]
+        trees.links[PARENT, tree, kept] = moved[parent] if parent >= 0 else -1
+        trees.links[TRIED, tree, kept] = trees.links[TRIED, tree, i]
+        trees.links[PROVED, tree, kept] = trees.links[PROVED, tree, i]
+        _write_column(trees, tree, kept)
+        kept += 1
+    trees.sizes[tree] = kept

@@ -1,0 +1,72 @@
+"""Even sequences that drive an arm's trees and its shortening: reversed Halton points, of no random numbers."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
+
+_PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89, 97)
+_SAMPLES = 2048
+_STEPS = 2048
+_PAIRS = 64
+
+
+@cache
+def cube_points(dim: int) -> Floats:
+    """Return the points, (2048, dim) in the unit cube, that trees grow towards."""
+    return _read_only(reversed_halton(_SAMPLES, dim))
+
+
+@cache
+def ball_points(dim: int) -> Floats:
+    """Return 2048 points spread evenly in the unit ball, (2048, dim)."""
+    even = reversed_halton(_STEPS, 2 * (-(-dim // 2)) + 1)
+    radius, others = even[:, :1], even[:, 1:]
+    # Two normal numbers of two even ones (Box and Muller); their direction is even on the sphere.
+    size = np.sqrt(-2.0 * np.log(1.0 - others[:, 0::2]))
+    angle = 2.0 * np.pi * others[:, 1::2]
+    normal = np.concatenate([size * np.cos(angle), size * np.sin(angle)], axis=1)[:, :dim]
+    direction = normal / np.linalg.norm(normal, axis=1, keepdims=True)
+    return _read_only(np.ascontiguousarray(direction * radius ** (1.0 / dim)))
+
+
+@cache
+def share_pairs() -> Floats:
+    """Return the pairs of places, shares of a path's length, that shortening joins, (64, 2)."""
+    return _read_only(reversed_halton(_PAIRS, 2))
+
+
+def reversed_halton(count: int, dim: int) -> Floats:
+    """Return points 1 .. count of Halton's sequence with its digits reversed, (count, dim), in [0, 1).
+
+    Digit i of base b is replaced by b - i, and 0 by 0 (B. Vandewoestyne and R. Cools, 2006): without this,
+    coordinates of large bases move in step.
+    """
+    points = np.zeros((count, dim))
+    for k, base in enumerate(_primes(dim)):
+        number, weight = np.arange(1, count + 1), 1.0 / base
+        while number.any():
+            digit = number % base
+            points[:, k] += np.where(digit > 0, base - digit, 0) * weight
+            number, weight = number // base, weight / base
+    return points
+
+
+def _primes(count: int) -> list[int]:
+    """Return the first `count` primes."""
+    primes = list(_PRIMES[:count])
+    candidate = _PRIMES[-1]
+    while len(primes) < count:
+        candidate += 2
+        if all(candidate % prime for prime in primes):
+            primes.append(candidate)
+    return primes
+
+
+def _read_only(array: Floats) -> Floats:
+    array.setflags(write=False)
+    return array

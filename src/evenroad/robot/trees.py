@@ -1,0 +1,195 @@
+"""Planning with trees for an arm: join a start to a goal, and shorten what was found, every motion proved free."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._checks import require_count, require_positive
+from evenroad.errors import InvalidValue
+from evenroad.robot.arm_world import ArmWorld
+from evenroad.robot.tree_sequences import ball_points, cube_points, share_pairs
+from evenroad.space.batch import as_batch
+from evenroad.world.protocol import Connection
+
+Floats = npt.NDArray[np.float64]
+
+MOST_MOTIONS = 1_000_000
+SECONDS = 5.0
+
+_CAPACITY = 2048
+"""Nodes of a tree there is room for at first; doubled when it is full."""
+
+_SLICE = 1000
+"""Batches of sixteen checks between two looks at the clock: about 10 ms."""
+
+
+def connect(
+    world: ArmWorld,
+    start: npt.ArrayLike,
+    goals: npt.ArrayLike,
+    *,
+    most_motions: int = MOST_MOTIONS,
+    seconds: float = SECONDS,
+    sequence: npt.ArrayLike | None = None,
+) -> Connection:
+    """Join a start to one of several goals, by two trees that grow until they meet.
+
+    Every motion of the path is proved free throughout, as by ``CertifiedWorld``.  The same arguments give the same
+    path; the time only decides whether there is one.
+
+    Parameters
+    ----------
+    world : ArmWorld
+        The robot in its scene.
+    start : array_like, shape (dim,)
+        Where to begin.
+    goals : array_like, shape (g, dim)
+        Configurations of which one is to be reached; those that are not free are left out.
+    most_motions : int
+        Give up after so many motions were looked at, >= 1.
+    seconds : float
+        Give up after so long, > 0 [s].
+    sequence : array_like, shape (n, dim), optional
+        Points of the unit cube that the trees grow towards, the more evenly spread the better; after the last one they
+        come again, shifted.  Default: 2048 of Halton's.
+
+    Returns
+    -------
+    Connection
+        With an empty path where there is none within the budget, or start or goals are not free.
+
+    Raises
+    ------
+    InvalidValue
+        If an argument is no such array or number.
+    """
+    dim = world.space.dim
+    limit = require_positive("seconds", seconds)
+    most = require_count("most_motions", most_motions)
+    ends = as_batch("start and goals", _stacked(start, goals, dim), dim)
+    samples = cube_points(dim) if sequence is None else _as_sequence(sequence, dim)
+    if world.fixed_contact is not None:
+        return Connection(np.empty((0, dim)), -1, 0, 0, 0)
+    if world.backend == "scalar":
+        from evenroad.robot import plain_trees
+
+        return plain_trees.grown(world, ends, samples, most, limit)
+    return _grown(world, ends, samples, most, limit)
+
+
+def shorten(world: ArmWorld, path: npt.ArrayLike, *, proved: bool = False) -> tuple[Floats, int]:
+    """Return a path that is not longer, and how many motions were looked at.
+
+    A motion is put in only where it is proved free throughout.  Motions of the path as it was given stay where
+    nothing shorter was found, proved or not: :meth:`CertifiedWorld.motion_valid` tells.
+
+    Parameters
+    ----------
+    world : ArmWorld
+        The robot in its scene.
+    path : array_like, shape (p, dim), p >= 2
+        Waypoints; every motion is free in the world.
+    proved : bool
+        Whether its motions are known to be proved free, as those of :func:`connect` are.
+
+    Raises
+    ------
+    InvalidValue
+        If `path` is no such array.
+    """
+    waypoints = as_batch("path", path, world.space.dim)
+    if len(waypoints) < 2:
+        raise InvalidValue(f"a path must have 2 waypoints or more, got {len(waypoints)}")
+    if world.backend == "scalar":
+        from evenroad.robot import plain_trees
+
+        return plain_trees.shortened(world, waypoints)
+    from evenroad.robot.kernel import shorten as kernel
+
+    counts = np.zeros(3, dtype=np.int64)
+    shorter, _ = kernel.shorten_path(waypoints, proved, share_pairs(), counts, *_world_arguments(world))
+    return shorter, int(counts[0])
+
+
+def _grown(world: ArmWorld, ends: Floats, samples: Floats, most: int, seconds: float) -> Connection:
+    # Imported late: where the vector type cannot even be defined, all else still works.
+    from evenroad.robot.kernel import trees as kernel
+
+    dim, ball, arguments = ends.shape[1], ball_points(ends.shape[1]), _world_arguments(world)
+    capacity = -(-max(_CAPACITY, 2 * len(ends) + kernel.ROOM) // 16) * 16
+    nodes, columns, links = _room(capacity, dim)
+    sizes, state = np.zeros(2, dtype=np.int64), np.zeros(kernel.STATE, dtype=np.int64)
+    if not kernel.grow.signatures:
+        # Compiled, or loaded, before the clock runs; no motion is looked at.
+        kernel.grow(ends, nodes, columns, links, sizes, state, samples, ball, 0, _SLICE, *arguments)
+    deadline = time.perf_counter() + seconds
+    while True:
+        ended = kernel.grow(
+            ends, nodes, columns, links, sizes, state, samples, ball, most, _SLICE, *arguments
+        )
+        if ended == kernel.FULL:
+            more = _room(2 * nodes.shape[1], dim)
+            more[0][:, : nodes.shape[1]], more[2][:, :, : nodes.shape[1]] = nodes, links
+            nodes, columns, links = more
+            _fill_columns(columns, nodes, sizes)
+        elif ended != kernel.PAUSED or time.perf_counter() >= deadline:
+            break
+    path, goal = np.empty((0, dim)), -1
+    if ended == kernel.SOLVED:
+        path = kernel.path_of(nodes, links, state)
+        goal = kernel.goal_of(links, state)
+    motions, configurations, _ = state[:3].tolist()
+    return Connection(path, goal, int(sizes[0] + sizes[1]), configurations, motions)
+
+
+def _room(capacity: int, dim: int) -> tuple[Floats, npt.NDArray[np.float32], npt.NDArray[np.int64]]:
+    return (
+        np.empty((2, capacity, dim)),
+        np.empty(2 * dim * capacity, dtype=np.float32),
+        np.empty((3, 2, capacity), dtype=np.int64),
+    )
+
+
+def _fill_columns(columns: npt.NDArray[np.float32], nodes: Floats, sizes: npt.NDArray[np.int64]) -> None:
+    """Write the nodes by coordinate; the places up to the next multiple of 16 are far from everything."""
+    by_tree = columns.reshape(2, nodes.shape[2], nodes.shape[1])
+    for tree, size in enumerate(sizes):
+        by_tree[tree, :, size : size + 16] = 1e15
+        by_tree[tree, :, :size] = nodes[tree, :size].T
+
+
+def _world_arguments(world: ArmWorld) -> tuple[int, float, Floats, npt.NDArray[np.int64], Floats, Floats]:
+    """Return what compiled planners take of a world."""
+    from evenroad.robot.kernel.lane_check import check_address
+
+    of_robot = world.robot_tables
+    return (
+        check_address(),
+        world.resolution,
+        world.bounds,
+        world.tables.lanes,
+        of_robot.speeds,
+        of_robot.pair_speeds,
+    )
+
+
+def _stacked(start: npt.ArrayLike, goals: npt.ArrayLike, dim: int) -> Floats:
+    try:
+        first, others = np.asarray(start, dtype=np.float64), np.asarray(goals, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InvalidValue(f"start and goals must be arrays of numbers: {error}") from None
+    if first.shape != (dim,):
+        raise InvalidValue(f"start must have shape ({dim},), got {first.shape}")
+    if others.ndim != 2 or others.shape[1] != dim or len(others) == 0:
+        raise InvalidValue(f"goals must have shape (g, {dim}), g >= 1, got {others.shape}")
+    return np.concatenate([first[np.newaxis], others])
+
+
+def _as_sequence(sequence: npt.ArrayLike, dim: int) -> Floats:
+    points = as_batch("sequence", sequence, dim)
+    if len(points) == 0 or points.min() < 0.0 or points.max() > 1.0:
+        raise InvalidValue(f"sequence must be points of the unit cube, one or more, got {sequence!r}")
+    return points

@@ -1,0 +1,255 @@
+"""The trees of arms: joined where there is a way, the same each time, every motion proved, the budget kept."""
+
+import time
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from evenroad.errors import InvalidValue
+from evenroad.robot.arm_world import ArmWorld
+from evenroad.robot.certified import CertifiedWorld
+from evenroad.robot.joint import Joint
+from evenroad.robot.robot import with_limits
+from evenroad.robot.scene import Obstacle, Scene
+from evenroad.robot.tree_sequences import ball_points, cube_points, reversed_halton
+from evenroad.robot.trees import connect
+from tests.robot.kernel_arms import STRAIGHT, box_scene, random_scene, random_tree, seven_joint_arm, ur5
+from tests.robot.oracle import clearance
+
+START = np.array([0.0, -np.pi / 2, 0.0, -np.pi / 2, 0.0])
+GOAL = np.array([-0.1216, -0.6993, 1.2160, -2.1070, 2.3023])
+"""Of scene "c": the flange 25 cm deep in the box."""
+
+
+def box_world(backend="auto", inner=0.36):
+    pi = np.pi
+    bounds = [(-pi, pi), (-1.3 * pi, 0.3 * pi), (-pi, pi), (-pi, pi), (-pi, pi)]
+    robot = ur5(joints=5)
+    return ArmWorld(
+        with_limits(robot, dict(zip(robot.group, bounds, strict=True))), box_scene(inner), backend=backend
+    )
+
+
+@pytest.fixture(scope="module")
+def world():
+    return box_world()
+
+
+@pytest.fixture(scope="module")
+def found(world):
+    return connect(world, START, [GOAL])
+
+
+def dense_states(world, path, share=20):
+    """States of a path at a share of the world's resolution, (n, dim)."""
+    pieces = []
+    for a, b in pairwise(path):
+        count = int(np.ceil(world.space.distance(a[None], b[None])[0] / (world.resolution / share))) + 1
+        t = np.linspace(0.0, 1.0, count)
+        ends = np.broadcast_to(a, (count, len(a))), np.broadcast_to(b, (count, len(b)))
+        pieces.append(world.space.interpolate(*ends, t))
+    return np.concatenate(pieces)
+
+
+@pytest.mark.parametrize("backend", ["lanes", "scalar"])
+def test_a_goal_deep_in_a_box_is_reached(backend):
+    world = box_world(backend)
+    connection = connect(world, START, [GOAL], seconds=60)
+    assert connection.goal == 0
+    np.testing.assert_array_equal(connection.path[[0, -1]], [START, GOAL])
+    assert CertifiedWorld(world, 1e-6).motion_valid(connection.path[:-1], connection.path[1:]).all()
+    assert clearance(world.robot, world.scene, dense_states(world, connection.path)).min() > 0.0
+    assert connection.nodes >= len(connection.path)
+    assert connection.configurations > connection.motions > len(connection.path) - 1
+
+
+def test_the_same_arguments_give_the_same_path_however_long_there_is(world, found):
+    for seconds in (0.5, 500.0):
+        again = connect(world, START, [GOAL], seconds=seconds)
+        np.testing.assert_array_equal(again.path, found.path)
+        assert counts_of(again) == counts_of(found)
+
+
+ABOVE, BELOW = np.array([[0.0, -1.5, 0.0, 0.0, 0.0, 0.0], [0.0, 4.78, 0.0, 0.0, 0.0, 0.0]])
+
+
+@pytest.fixture(scope="module")
+def split():
+    """A UR5 on a large plate, which keeps `ABOVE` from `BELOW`; there is room to move at both."""
+    plate = Obstacle.of("plate", "box", (4.0, 4.0, 0.05), (0.0, 0.0, -0.25))
+    return ArmWorld(ur5(), Scene("plate", (plate,), frozenset({("base", "plate")})))
+
+
+def test_slices_change_nothing(split, monkeypatch):
+    from evenroad.robot import trees
+
+    whole = connect(split, ABOVE, [BELOW], most_motions=2_000, seconds=60)
+    monkeypatch.setattr(trees, "_SLICE", 1)
+    sliced = connect(split, ABOVE, [BELOW], most_motions=2_000, seconds=60)
+    assert whole.goal == -1
+    assert counts_of(sliced) == counts_of(whole)
+
+
+def test_trees_that_outgrow_their_room_get_more(split, monkeypatch):
+    from evenroad.robot import trees
+
+    many = connect(split, ABOVE, [BELOW], most_motions=20_000, seconds=60)
+    assert many.goal == -1
+    assert many.nodes > 2 * 2048
+    monkeypatch.setattr(trees, "_CAPACITY", 65536)
+    assert counts_of(connect(split, ABOVE, [BELOW], most_motions=20_000, seconds=60)) == counts_of(many)
+
+
+def counts_of(connection):
+    return connection.nodes, connection.motions, connection.configurations
+
+
+def test_a_budget_of_motions_is_kept(world):
+    few = connect(world, START, [GOAL], most_motions=3)
+    assert few.goal == -1
+    assert few.path.shape == (0, 5)
+    # The round that was begun is ended.
+    assert 3 <= few.motions < 200
+
+
+def test_a_budget_of_time_is_kept(split):
+    begin = time.perf_counter()
+    some = connect(split, ABOVE, [BELOW], seconds=0.3)
+    assert some.goal == -1
+    assert some.motions > 0
+    assert 0.3 <= time.perf_counter() - begin < 2.0
+
+
+def test_of_several_goals_one_that_can_be_reached_is_named(world, found):
+    blocked = np.array([0.0, 0.9, 0.0, 0.0, 0.0])
+    assert not world.valid(blocked[None])[0]
+    several = connect(world, START, [blocked, GOAL])
+    assert several.goal == 1
+    np.testing.assert_array_equal(several.path[-1], GOAL)
+    near = START + 0.05
+    assert connect(world, START, [GOAL, blocked, near]).goal == 2
+
+
+def test_more_goals_than_fit_a_batch(world):
+    rng = np.random.default_rng(3)
+    goals = world.space.from_cube(rng.random((500, 5)))
+    free = world.valid(goals)
+    several = connect(world, START, goals)
+    assert free[several.goal]
+    np.testing.assert_array_equal(several.path[-1], goals[several.goal])
+
+
+@pytest.mark.parametrize("backend", ["lanes", "scalar"])
+def test_ends_that_are_not_free_give_no_path(backend):
+    world = box_world(backend)
+    blocked = np.array([0.0, 0.9, 0.0, 0.0, 0.0])
+    beyond = START + np.array([0.0, 9.0, 0.0, 0.0, 0.0])
+    for start, goal in ((blocked, GOAL), (START, blocked), (beyond, GOAL), (START, beyond)):
+        none = connect(world, start, [goal])
+        assert (none.goal, len(none.path), none.motions) == (-1, 0, 0)
+
+
+def test_start_and_goal_may_be_one(world):
+    same = connect(world, START, [START])
+    assert same.goal == 0
+    np.testing.assert_array_equal(same.path, [START, START])
+
+
+@pytest.mark.parametrize("backend", ["lanes", "scalar"])
+@pytest.mark.parametrize("seed", [0, 3, 4, 5, 8, 13])
+def test_any_robot_gets_from_place_to_place(seed, backend):
+    robot, scene = random_tree(seed), random_scene(100 + seed, spread=0.7, clear=0.45)
+    world = ArmWorld(robot, scene, backend=backend)
+    q = world.space.from_cube(np.random.default_rng(seed).random((2000, world.space.dim)))
+    q = q[world.valid(q)][:4]
+    solved = 0
+    for start, goal in pairwise(q):
+        connection = connect(world, start, [goal], most_motions=3_000, seconds=20)
+        if connection.goal < 0:
+            continue
+        solved += 1
+        np.testing.assert_allclose(connection.path[[0, -1]], [start, goal], rtol=0, atol=1e-12)
+        assert world.space.contains(connection.path).all()
+        assert clearance(robot, scene, dense_states(world, connection.path)).min() > 0.0
+    assert solved > 0
+
+
+def test_joints_that_wrap_go_the_short_way_round():
+    robot = ur5()
+    pan = replace(robot.joints[0], kind="continuous", lower=-np.inf, upper=np.inf)
+    world = ArmWorld(replace(robot, joints=(pan, *robot.joints[1:])), Scene("nothing", ()))
+    start, goal = np.array([3.0, -1.5, 0.5, 0.0, 0.0, 0.0]), np.array([-3.0, -1.5, 0.5, 0.0, 0.0, 0.0])
+    path = connect(world, start, [goal]).path
+    assert world.space.distance(path[:-1], path[1:]).sum() == pytest.approx(2 * np.pi - 6.0)
+
+
+def test_one_joint_is_enough():
+    robot = ur5(joints=1)
+    world = ArmWorld(robot, Scene("nothing", ()))
+    assert connect(world, [0.3], [[2.0]]).goal == 0
+
+
+def test_fourteen_joints_are_not_too_many():
+    seven = seven_joint_arm()
+    chain, links = list(seven.joints), list(seven.links)
+    for i in range(7):
+        links.append(f"more{i}")
+        axis = (0.0, 1.0, 0.0) if i % 2 else (0.0, 0.0, 1.0)
+        chain.append(
+            Joint(f"more joint{i}", "revolute", *links[-2:], (0.0, 0.0, 0.05), STRAIGHT, axis, -2.0, 2.0)
+        )
+    long = replace(seven, links=tuple(links), joints=tuple(chain), group=tuple(joint.name for joint in chain))
+    world = ArmWorld(long, random_scene(3))
+    q = world.space.from_cube(np.random.default_rng(0).random((500, 14)))
+    q = q[world.valid(q)]
+    connection = connect(world, q[0], q[1:2], seconds=30)
+    assert connection.goal == 0
+    assert clearance(long, world.scene, dense_states(world, connection.path)).min() > 0.0
+
+
+def test_a_sequence_of_the_callers_leads_elsewhere_and_goes_on_behind_its_end(split):
+    three = np.random.default_rng(0).random((3, 6))
+    counts = {
+        counts_of(connect(split, ABOVE, [BELOW], most_motions=500, seconds=60, sequence=sequence))
+        for sequence in (None, three[:1], three)
+    }
+    assert len(counts) == 3
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        ({"start": START[:4]}, "start must have shape"),
+        ({"goals": GOAL}, "goals must have shape"),
+        ({"goals": np.empty((0, 5))}, "goals must have shape"),
+        ({"goals": [GOAL * np.nan]}, "must be finite"),
+        ({"most_motions": 0}, "most_motions"),
+        ({"seconds": 0.0}, "seconds"),
+        ({"seconds": float("nan")}, "seconds"),
+        ({"sequence": np.full((3, 5), 2.0)}, "unit cube"),
+    ],
+)
+def test_arguments_that_make_no_sense_are_refused(world, change, text):
+    arguments = {"start": START, "goals": [GOAL]} | change
+    with pytest.raises(InvalidValue, match=text):
+        connect(world, arguments.pop("start"), arguments.pop("goals"), **arguments)
+
+
+def test_points_in_the_ball_are_spread_evenly():
+    for dim in (1, 2, 6, 14):
+        points = ball_points(dim)
+        radii = np.linalg.norm(points, axis=1)
+        assert radii.max() <= 1.0 + 1e-12
+        np.testing.assert_allclose(points.mean(axis=0), 0.0, atol=0.02)
+        # The r-th part of the volume holds the r-th part of the points.
+        assert np.mean(radii**dim < 0.5) == pytest.approx(0.5, abs=0.01)
+        np.testing.assert_allclose((points**2).mean(axis=0), 1.0 / (dim + 2), rtol=0.1)
+
+
+def test_halton_points_are_those_of_the_definition():
+    np.testing.assert_allclose(reversed_halton(5, 1)[:, 0], [0.5, 0.25, 0.75, 0.125, 0.625])
+    # Base 3: 1 -> 2/3, 2 -> 1/3, 3 = 10 -> 2/9, 4 = 11 -> 2/3 + 2/9.
+    np.testing.assert_allclose(reversed_halton(4, 2)[:, 1], [2 / 3, 1 / 3, 2 / 9, 8 / 9])
+    assert cube_points(30).shape == (2048, 30)
