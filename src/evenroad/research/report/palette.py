@@ -30,6 +30,7 @@ LOOKS: dict[str, Look] = {
     "mpmc": Look("#e05fa8", "D"),
     "hickernell": Look("#8e5bd0", "p"),
     "even": Look("#d1343b", "*", width=2.4, size=9.0),
+    "korobov": Look("#7a4a21", "P", size=6.0),
 }
 OTHER = Look("#000000", ".", ":")
 """For a sampler that this version does not know."""
