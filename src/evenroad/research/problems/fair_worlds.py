@@ -71,21 +71,19 @@ def make_instance(
     instance : int
         Number, >= 0.
     """
-    kinds: dict[Family, tuple[Callable[[float, np.random.Generator], World], FarApart]] = {
+    draw, far_apart = {
         Family.BALLS: (partial(draw_balls, d), far_on_torus),
         Family.BOXES: (partial(draw_boxes, d), far_on_torus),
         Family.MAZE: (draw_disk_world, far_in_map),
         Family.SE2: (partial(draw_clutter, 2), partial(places_far_apart, 2)),
         Family.SE3: (partial(draw_clutter, 3), partial(places_far_apart, 3)),
-    }
-    draw, far_apart = kinds[family]
+    }[family]
     rng = instance_rng(stream, family, d, difficulty, instance)
     world, start, goal = draw_query(partial(draw, size), far_apart, rng)
     return Problem(world, start, goal, set_dim=d)
 
 
 Array = npt.NDArray[np.float64]
-FarApart = Callable[[Array, Array], npt.NDArray[np.bool_]]
 
 PAIRS = 512
 """Pairs of configurations that are tried in one world."""
@@ -96,7 +94,7 @@ BATCH = 32
 
 def draw_query(
     draw_world: Callable[[np.random.Generator], World],
-    far_apart: FarApart,
+    far_apart: Callable[[Array, Array], npt.NDArray[np.bool_]],
     rng: np.random.Generator,
 ) -> tuple[World, Array, Array]:
     """Draw a world, a start and a goal.
