@@ -54,6 +54,15 @@ def test_everything_comes_back_as_it_was_written(path):
     np.testing.assert_array_equal(rows.answered, [True, True, False, False])
 
 
+def test_numbers_of_numpy_are_numbers(path):
+    task = replace(TASK, n=np.int64(128), run=np.int32(3))
+    _write(path, [(task, replace(SOLVED, valid=np.int64(20), length=np.float64(2.0)))])
+    rows = read_rows(path)
+    assert (rows.n[0], rows.run[0], rows.valid[0], rows.length[0]) == (128, 3, 20, 2.0)
+    with open_store(path) as store:
+        assert store.finished() == {replace(TASK, run=3).key: True}
+
+
 def test_rows_are_in_the_order_of_the_tasks_whatever_the_order_of_arrival(path, tmp_path):
     tasks = [
         Task(problem, instance, sampler, n, rule, "connect", run, seed)
