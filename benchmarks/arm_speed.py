@@ -19,6 +19,7 @@ from functools import partial
 
 import numpy as np
 import numpy.typing as npt
+from tests.robot.kernel_arms import as_balls
 from tests_peers.engines.klampt_world import KlamptWorld
 from tests_peers.engines.pinocchio_world import PinocchioWorld
 
@@ -184,6 +185,7 @@ def main() -> None:
     seven = load_robot("arm7")
     measure("arm of 7 joints, boxes of scene a", ArmWorld(seven, box_for(seven, narrow.scene)))
     measure("UR5, 100 random boxes", ArmWorld(wide.robot, random_boxes()))
+    measure("UR5 of 42 balls, scene c", ArmWorld(as_balls(wide.robot), wide.scene))
     measure_certified(wide)
     measure_call(wide)
     for engine in (KlamptWorld, CoalWorld, PinocchioWorld):

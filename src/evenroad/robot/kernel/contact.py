@@ -211,25 +211,54 @@ def _meeting_themselves(
         z = load(scratch, a + 2 * LANES) - load(scratch, b + 2 * LANES)
         if below_zero(x * x + y * y + z * z - near * near) & ~blocked == 0:
             continue
-        for pair in range(ints[row + 2], ints[row + 3]):
-            # Here, and not in a function: of most pairs this is all.
-            place = ints[at.PAIR_INTS] + at.PAIR_INT_ROW * pair
-            data = ints[at.PAIR_FLOATS] + at.PAIR_FLOAT_ROW * pair
-            a, b = capsules + CAPSULE * ints[place], capsules + CAPSULE * ints[place + 1]
-            near = table[data]
-            x = load(scratch, a) - load(scratch, b)
-            y = load(scratch, a + LANES) - load(scratch, b + LANES)
-            z = load(scratch, a + 2 * LANES) - load(scratch, b + 2 * LANES)
-            touching = below_zero(x * x + y * y + z * z - near * near)
-            if touching & ~blocked == 0:
-                continue
-            if table[data + 2] + table[data + 3] > ZERO:
-                # Not both are balls.
-                touching = _touching(scratch, a, b, data, table)
-            blocked |= touching
-            if blocked == ALL or (blocked != 0 and enough == 1):
-                return blocked
+        others = ints[at.BODY_INTS] + at.BODY_INT_ROW * ints[row + 1]
+        count = ints[others + 2] - ints[others + 1]
+        # Pairs of one capsule of the first body with all of the other body follow each other.
+        for first in range(ints[row + 2], ints[row + 3], count):
+            if count > FEW:
+                i = ints[ints[at.PAIR_INTS] + at.PAIR_INT_ROW * first]
+                if not _ball_near(scratch, capsules, i, bodies, ints[row + 1], ints, table, blocked):
+                    continue
+            for pair in range(first, first + count):
+                # Here, and not in a function: of most pairs this is all.
+                place = ints[at.PAIR_INTS] + at.PAIR_INT_ROW * pair
+                data = ints[at.PAIR_FLOATS] + at.PAIR_FLOAT_ROW * pair
+                a, b = capsules + CAPSULE * ints[place], capsules + CAPSULE * ints[place + 1]
+                near = table[data]
+                x = load(scratch, a) - load(scratch, b)
+                y = load(scratch, a + LANES) - load(scratch, b + LANES)
+                z = load(scratch, a + 2 * LANES) - load(scratch, b + 2 * LANES)
+                touching = below_zero(x * x + y * y + z * z - near * near)
+                if touching & ~blocked == 0:
+                    continue
+                if table[data + 2] + table[data + 3] > ZERO:
+                    # Not both are balls.
+                    touching = _touching(scratch, a, b, data, table)
+                blocked |= touching
+                if blocked == ALL or (blocked != 0 and enough == 1):
+                    return blocked
     return blocked
+
+
+@inlined
+def _ball_near(
+    scratch: Singles, capsules: int, i: int, bodies: int, other: int, ints: Ints, table: Singles, blocked: int
+) -> bool:
+    """Return whether a capsule, if it is a ball, is near the ball around a body in a lane that is not blocked."""
+    data = ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i
+    if (
+        table[data + 3] * table[data + 3]
+        + table[data + 4] * table[data + 4]
+        + table[data + 5] * table[data + 5]
+        > ZERO
+    ):
+        return True
+    a, b = capsules + CAPSULE * i, bodies + BODY * other
+    near = table[data + 6] + table[ints[at.BODY_FLOATS] + at.BODY_FLOAT_ROW * other + 3]
+    x = load(scratch, a) - load(scratch, b)
+    y = load(scratch, a + LANES) - load(scratch, b + LANES)
+    z = load(scratch, a + 2 * LANES) - load(scratch, b + 2 * LANES)
+    return below_zero(x * x + y * y + z * z - near * near) & ~blocked != 0
 
 
 @inlined

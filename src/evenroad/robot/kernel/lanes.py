@@ -2,7 +2,8 @@
 
 Loops over lanes are left to a compiler's guess; a vector type is not, and runs several times faster here.
 Additions and multiplications may be fused, and no operation expects NaN or infinities: callers refuse
-them.  Results do not depend on the other lanes, nor are sums ever reordered.
+them.  Results do not depend on the other lanes, nor are sums ever reordered.  They are the same bits on one kind of
+processor: another may fuse other operations.
 """
 
 from __future__ import annotations

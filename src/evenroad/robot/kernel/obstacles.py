@@ -133,8 +133,9 @@ def _first_unsound(kinds: Ints, sizes: Floats, rotations: Floats, translations: 
             if not 0.0 < sizes[k, entry] < np.inf:
                 return k, _BAD_SIZE
             largest = max(largest, sizes[k, entry])
-        if not (np.isfinite(rotations[k]).all() and np.isfinite(translations[k]).all()):
-            return k, _BAD_PLACE
+        for entry in range(9):
+            if not (math.isfinite(rotations[k, entry]) and math.isfinite(translations[k, entry % 3])):
+                return k, _BAD_PLACE
         for row in range(3):
             largest = max(largest, abs(translations[k, row]))
             for other in range(3):
@@ -158,7 +159,11 @@ def _size_count(kind: int) -> int:
 @inner
 def is_straight(rotation: Floats) -> bool:
     """Return whether a rotation (9,) takes axes to axes, up to the rounding of sines of right angles."""
-    return np.abs(rotation - np.rint(rotation)).max() < 1e-14
+    # Loops here and elsewhere in place of array expressions: those take seconds to compile.
+    farthest = 0.0
+    for entry in range(9):
+        farthest = max(farthest, abs(rotation[entry] - np.rint(rotation[entry])))
+    return farthest < 1e-14
 
 
 @inner

@@ -85,6 +85,7 @@ def arm_tables(robot: RobotTables, obstacles: ObstacleArrays, tested: Bools) -> 
         obstacles.translations,
         tested,
     )
+    kept = kept[: ints[at.OBSTACLES]]
     for array in (ints, floats, lanes, kept):
         array.setflags(write=False)
     # Once for what is added, once more for what rounding may add to that.
@@ -112,18 +113,18 @@ def _pack(
         if distance_to_obstacle(origin, kinds[k], sizes[k], rotations[k], translations[k]) <= reach:
             kept[count] = k
             count += 1
-    kept = kept[:count].copy()
     blocks = (count + at.LANES - 1) // at.LANES
     capsules = robot_ints[at.CAPSULES]
     first_int, first_float = len(robot_ints), len(robot_floats)
     block_floats = first_float + at.OBSTACLE_FLOAT_ROW * count
     length = first_int + count + capsules * blocks
     floats = np.empty(block_floats + at.BLOCK_FLOAT_ROW * blocks)
-    floats[:first_float] = robot_floats
     lanes = np.zeros(length + (len(floats) + 1) // 2, dtype=np.int64)
     ints, singles = lanes[:length], lanes[length:].view(np.float32)
-    ints[:first_int] = robot_ints
-    singles[:first_float] = robot_singles
+    for place in range(first_int):
+        ints[place] = robot_ints[place]
+    for place in range(first_float):
+        floats[place], singles[place] = robot_floats[place], robot_singles[place]
     ints[at.OBSTACLES], ints[at.BLOCKS] = count, blocks
     ints[at.OBSTACLE_INTS], ints[at.TESTED] = first_int, first_int + count
     ints[at.OBSTACLE_FLOATS], ints[at.BLOCK_FLOATS] = first_float, block_floats
@@ -160,9 +161,9 @@ def _pack(
             if tested[i, kept[row]]:
                 ints[first_int + count + i * blocks + row // at.LANES] |= 1 << (row % at.LANES)
     capsule, obstacle = _fixed_contact(
-        robot_ints, robot_floats, kept, kinds, sizes, rotations, translations, tested
+        ints, robot_floats, kept, kinds, sizes, rotations, translations, tested
     )
-    return ints.copy(), floats, lanes, added, kept, capsule, obstacle
+    return ints, floats, lanes, added, kept, capsule, obstacle
 
 
 @inner
@@ -177,9 +178,10 @@ def _write_obstacle(
     half = np.zeros(3)
     row[15] = 0.0
     if kind == BOX:
-        half[:] = 0.5 * size
+        for axis in range(3):
+            half[axis] = 0.5 * size[axis]
     elif kind == CYLINDER:
-        half[:] = size[0], size[0], 0.5 * size[1]
+        half[0], half[1], half[2] = size[0], size[0], 0.5 * size[1]
     else:
         half[2] = 0.5 * size[1]
         row[15] = size[0]
@@ -238,7 +240,7 @@ def _fixed_contact(
     for i in range(ints[at.FIXED_CAPSULES]):
         row = ints[at.CAPSULE_INTS] + at.CAPSULE_INT_ROW * i
         data = ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i
-        for k in kept:
+        for k in kept[: ints[at.OBSTACLES]]:
             if not tested[i, k]:
                 continue
             for sample in range(ints[row + 1], ints[row + 2]):
