@@ -8,7 +8,11 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from evenroad import _compiled
+
 __version__ = "0.1.0"
+
+_compiled.provide_cache()
 
 if TYPE_CHECKING:
     from evenroad.errors import EvenroadError as EvenroadError

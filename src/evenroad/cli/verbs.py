@@ -23,7 +23,9 @@ from evenroad.errors import EvenroadError
 
 DONE = 0
 BAD_INPUT = 2
-INTERRUPTED = 130
+
+LONGEST = 600
+"""Most characters of an error: input that was pasted by mistake is not shown in full."""
 
 Verb = (
     Annotated[Plan, tyro.conf.subcommand("plan", prefix_name=False)]
@@ -60,18 +62,23 @@ def run(arguments: Sequence[str]) -> int:
         sys.stdout.flush()
         return code
     except EvenroadError as error:
-        print(f"evenroad: error: {' '.join(str(error).split())}", file=sys.stderr)
+        print(f"evenroad: error: {_in_one_line(str(error))}", file=sys.stderr)
         return BAD_INPUT
     except MemoryError as error:
-        print(f"evenroad: error: not enough memory: {error}", file=sys.stderr)
+        print(f"evenroad: error: not enough memory: {_in_one_line(str(error))}", file=sys.stderr)
         return BAD_INPUT
     except BrokenPipeError:
         # The reader of our output has gone, as `head` does; what is left of the output goes nowhere.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return DONE
     except OSError as error:
-        print(f"evenroad: error: {error}", file=sys.stderr)
+        print(f"evenroad: error: {_in_one_line(str(error))}", file=sys.stderr)
         return BAD_INPUT
-    except KeyboardInterrupt:
-        print("evenroad: interrupted; what was finished is kept", file=sys.stderr)
-        return INTERRUPTED
+
+
+def _in_one_line(text: str) -> str:
+    """Return a text in one line, without its middle where it is too long: what is wrong, and what is allowed, stay."""
+    line = " ".join(text.split())
+    if len(line) <= LONGEST:
+        return line
+    return f"{line[: LONGEST // 2]} ... {line[-LONGEST // 2 :]}"
