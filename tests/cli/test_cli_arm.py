@@ -315,3 +315,12 @@ def test_robot_measures_in_a_scene(run):
     code, out, _ = run("robot", "ur5", "--scene", "box-reach.yaml")
     assert code == 0
     assert "in box-reach" in " ".join(out.split())
+
+
+def test_robot_ends_where_a_joint_has_limits_that_are_as_good_as_none(run, desk):
+    text = two_joints().replace("lower='-1' upper='1'", "lower='-999999' upper='999999'", 1)
+    assert "999999" in text
+    (desk / "arm.urdf").write_text(text)
+    code, out, _ = run("robot", "arm.urdf")
+    assert code == 0
+    assert "±1e+06 rad" in out

@@ -17,6 +17,8 @@ from evenroad.robot import ArmWorld, Joint, Robot, RobotModel, held_values
 _CONFIGURATIONS = 4096
 _MOTIONS = 256
 _SECONDS = 0.2
+_LONGEST = 100.0
+"""Motions are cut to this length [rad or m]: limits may be as good as none, and checks go from state to state."""
 
 
 def print_robot(model: RobotModel, world: ArmWorld) -> None:
@@ -124,6 +126,7 @@ def _speed(world: ArmWorld) -> str:
     if len(free) > 1:
         a, b = free[: len(free) // 2][:_MOTIONS], free[len(free) // 2 :][:_MOTIONS]
         a, b = a[: min(len(a), len(b))], b[: min(len(a), len(b))]
+        b = world.space.interpolate(a, b, np.minimum(1.0, _LONGEST / world.space.distance(a, b)))
         passed = float(np.mean(world.motion_valid(a, b)))
         motions = _per_second(lambda: world.motion_valid(a, b), len(a))
         text += f", {motions:,.0f} motions/s between free ones ({100.0 * passed:.0f} % free)"
