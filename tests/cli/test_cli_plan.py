@@ -83,6 +83,29 @@ def test_the_same_command_gives_the_same_path_and_another_seed_another(run, tmp_
     assert a != c
 
 
+def test_without_a_picture_nothing_is_drawn_and_matplotlib_is_not_even_loaded(tmp_path):
+    code = "import sys; from evenroad.cli import main; main(sys.argv[1:]); print('matplotlib' in sys.modules)"
+    line = [sys.executable, "-c", code, *map(str, plan_arguments(out="a")), "--no-picture"]
+    done = subprocess.run(line, capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "False"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.json"]
+    assert "png" not in done.stdout
+
+
+def test_the_answer_is_there_before_the_picture_is_drawn(run, tmp_path, monkeypatch):
+    import evenroad.viz
+
+    def fail(*_):
+        assert (tmp_path / "a.json").exists()
+        raise MemoryError("no room for a picture")
+
+    monkeypatch.setattr(evenroad.viz, "save_plan_picture", fail)
+    code, out, err = run(*plan_arguments(out="a"))
+    assert code == 2
+    assert "solved" in out
+    assert "no room for a picture" in err
+
+
 def test_csv_has_one_waypoint_a_row(run, tmp_path):
     run(*plan_arguments(out="a"), "--csv")
     rows = (tmp_path / "a.csv").read_text().splitlines()
@@ -254,7 +277,12 @@ def test_an_interrupt_exits_with_130_and_leaves_no_half_file(run, tmp_path, monk
 
 
 @pytest.mark.parametrize(
-    "arguments", [["--help"], *([verb, "--help"] for verb in ("plan", "points", "measure", "train", "demo"))]
+    "arguments",
+    [
+        ["--help"],
+        *([verb, "--help"] for verb in ("plan", "points", "measure", "train", "demo")),
+        ["plan", "-h"],
+    ],
 )
 def test_help_is_there_for_every_verb(run, arguments):
     code, out, _ = run(*arguments)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import sys
+
 from rich.console import Console
 from rich.table import Table
 
@@ -16,6 +19,11 @@ class _Output(Console):
 
 
 def print_table(table: Table) -> None:
-    """Print a table on standard output, within the terminal and 100 columns."""
+    """Print a table on standard output now, within the terminal and 100 columns."""
     console = _Output(highlight=False)
-    console.print(table, width=min(WIDTH, console.width))
+    try:
+        console.print(table, width=min(WIDTH, console.width))
+        sys.stdout.flush()
+    except BrokenPipeError:
+        # The reader has gone, as `head` does: the rest of the output goes nowhere, and the work goes on.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

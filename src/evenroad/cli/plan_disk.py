@@ -3,43 +3,34 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from evenroad import roadmap
+from evenroad.cli.plan_options import DiskOptions
 from evenroad.cli.plan_parts import (
     chosen_rule,
     common_query,
     draw_points,
     load_compiled_code,
     output_files,
-    refuse_options,
 )
 from evenroad.cli.plan_table import print_plan
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record, save_json, save_path_csv
 from evenroad.robot.scene_file import is_scene
-from evenroad.viz import save_plan_picture
 from evenroad.world import GridMap, load_map
 from evenroad.world.gridmap.load import map_files
 
-if TYPE_CHECKING:
-    from evenroad.cli.plan import Plan
 
-_ARM_ONLY = ("srdf", "group", "bodies", "deg", "resolution")
-
-
-def plan_disk(plan: Plan) -> int:
+def plan_disk(plan: DiskOptions) -> int:
     """Plan, write, report; return 0 when solved, else 1."""
-    assert plan.robot_radius is not None
-    refuse_options(plan, _ARM_ONLY, "--robot")
     rule = chosen_rule(plan, default_k=10)
     start, goal = (_position(name, getattr(plan, name)) for name in ("start", "goal"))
     if plan.world.suffix in (".yaml", ".yml") and is_scene(plan.world):
         raise InvalidValue(f"{plan.world} is a scene, no map: give the arm that moves in it with --robot")
     gridmap = load_map(plan.world, unknown_is_free=plan.unknown_is_free)
-    suffixes = ("json", "png", "csv") if plan.csv else ("json", "png")
+    suffixes = ("json", "csv") if plan.csv else ("json",)
     files = output_files(plan, map_files(plan.world), suffixes, "map")
     world = gridmap.world(plan.robot_radius, clearance=plan.clearance)
     for name, value in (("start", start), ("goal", goal)):
@@ -62,8 +53,12 @@ def plan_disk(plan: Plan) -> int:
             del files["csv"]
         else:
             save_path_csv(files["csv"], result.path, ("x", "y"))
-    save_plan_picture(files["png"], result, world)
     print_plan(result, note, list(files.values()))
+    if "png" in files:
+        # Last, and loaded only now: nobody waits for the picture.
+        from evenroad.viz import save_plan_picture
+
+        save_plan_picture(files["png"], result, world)
     return 0 if result.solved else 1
 
 

@@ -12,6 +12,7 @@ from evenroad import roadmap
 from evenroad._checks import require_count
 from evenroad._files import require_writable_folder
 from evenroad._rng import generator
+from evenroad.cli.plan_options import PlanOptions
 from evenroad.errors import InvalidValue
 from evenroad.points import PointSet, make_sampler
 from evenroad.points.bank import open_bank
@@ -19,7 +20,6 @@ from evenroad.points.even import KOROBOV, even_choice
 from evenroad.roadmap import KNearest, Radius, Rule
 
 if TYPE_CHECKING:
-    from evenroad.cli.plan import Plan
     from evenroad.world import World
 
 DEFAULT_FAMILY = "even"
@@ -28,14 +28,7 @@ _FEW = 16
 """Points of a plan that only loads compiled code."""
 
 
-def refuse_options(plan: Plan, names: Iterable[str], belongs_to: str) -> None:
-    """Raise InvalidValue for an option that was given and would be ignored."""
-    for name in names:
-        if getattr(plan, name) not in (None, False, 0.0):
-            raise InvalidValue(f"--{name.replace('_', '-')} goes with {belongs_to} only")
-
-
-def chosen_rule(plan: Plan, default_k: int) -> Rule:
+def chosen_rule(plan: PlanOptions, default_k: int) -> Rule:
     """Return the connection rule that was asked for."""
     if plan.connect_radius is None:
         return KNearest(default_k if plan.k is None else plan.k)
@@ -44,7 +37,7 @@ def chosen_rule(plan: Plan, default_k: int) -> Rule:
     return Radius(plan.connect_radius)
 
 
-def draw_points(plan: Plan, d: int) -> tuple[PointSet, str]:
+def draw_points(plan: PlanOptions, d: int) -> tuple[PointSet, str]:
     """Draw the set, and say in words why it is not of the default family."""
     require_count("n", plan.n)
     generator(plan.seed)
@@ -68,10 +61,13 @@ def load_compiled_code(
     roadmap.plan(world, start, goal, PointSet(points.points[:_FEW]), rule=rule, search=search)
 
 
-def output_files(plan: Plan, inputs: Iterable[Path], suffixes: Sequence[str], what: str) -> dict[str, Path]:
+def output_files(
+    plan: PlanOptions, inputs: Iterable[Path], suffixes: Sequence[str], what: str
+) -> dict[str, Path]:
     """Return where results go, suffix -> file, refusing what cannot be written or would overwrite an input."""
     if plan.out is not None and not plan.out.name:
         raise InvalidValue(f"--out must end with a file name, got {str(plan.out)!r}")
+    suffixes = [*suffixes, *(() if plan.no_picture else ("png",))]
     taken = {source.resolve() for source in inputs}
     stem = plan.out if plan.out is not None else Path(plan.world.stem)
     if plan.out is None and any(path.resolve() in taken for path in _named(stem, suffixes).values()):
@@ -84,7 +80,7 @@ def output_files(plan: Plan, inputs: Iterable[Path], suffixes: Sequence[str], wh
     return files
 
 
-def common_query(plan: Plan) -> dict[str, Any]:
+def common_query(plan: PlanOptions) -> dict[str, Any]:
     """Return the options that every plan has, for the record."""
     names = ("n", "sampler", "plain", "skip", "allow_fewer", "seed", "raw")
     return {name: getattr(plan, name) for name in names}
@@ -94,7 +90,7 @@ def _named(stem: Path, suffixes: Sequence[str]) -> dict[str, Path]:
     return {suffix: stem.with_name(f"{stem.name}.{suffix}") for suffix in suffixes}
 
 
-def _sampler_options(plan: Plan, name: str) -> dict[str, Any]:
+def _sampler_options(plan: PlanOptions, name: str) -> dict[str, Any]:
     """Return the sampler's options, refusing those that this sampler would silently ignore."""
     takes = {"halton": {"plain", "skip"}, "sobol": {"plain", "skip"}, "sukharev": {"allow_fewer"}}.get(
         name, set()

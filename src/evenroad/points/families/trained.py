@@ -21,7 +21,7 @@ ON_DEMAND_SETS = 8
 
 ON_DEMAND_STEPS = 5000
 
-TRAINED_FAMILIES = ("even", "hickernell", "mpmc")
+TRAINED_FAMILIES: tuple[str, ...] = ("even", "hickernell", "mpmc")
 
 Callback = Callable[[int, int, float], object]
 
