@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import hashlib
+import math
+import time
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +18,14 @@ from evenroad.world.gridmap.cells import DiskTables, classify, vertical_runs
 from evenroad.world.gridmap.gridmap import GridMap
 from evenroad.world.gridmap.kernel import motions_are_free, points_are_free
 from evenroad.world.gridmap.nearest import nearest_obstacle_points
+from evenroad.world.gridmap.search import find_way, label_components, nearest_free_point, straighten
+from evenroad.world.protocol import Connection
+
+_LATTICES = ((1.0, 0.5), (0.5, 0.0))
+"""Step and first point of the lattices to look for a way on: cell centres, and half cells where those do not do."""
+
+_SPREADS = (32, 96)
+"""Points that a way is offered to be straightened with, in the coarse rounds and in the fine ones."""
 
 _SMALLEST_RADIUS = 1e-150
 """In pixels: its square is still above 0, so that a disk of any size touches what its centre lies on."""
@@ -98,6 +109,79 @@ class DiskWorld:
         nearest[away] = self.grid.frame.to_map(pixels[away])
         return nearest
 
+    def may_connect(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> bool:
+        """Return False where it is proved that no way leads from map point `a`, (2,), to `b`, (2,).
+
+        Cells none of whose points is free separate the others into components, in one of which every way stays.  Where
+        both ends are in the same one there may be a way: at passages about as wide as the disk it is not certain.
+        """
+        first, second = self.component(a), self.component(b)
+        return first == second and first != 0
+
+    def component(self, q: npt.NDArray[np.float64]) -> int:
+        """Return the component of the cells that a map point, (2,), lies in, from 1 on; 0 where no disk is free."""
+        column, row = self.grid.frame.to_pixels(as_batch("q", np.reshape(q, (1, -1)), 2))[0]
+        if not (0.0 <= column <= self.grid.frame.cols and 0.0 <= row <= self.grid.frame.rows):
+            return 0
+        return int(self._components[int(row) + 1, int(column) + 1])
+
+    @property
+    def components(self) -> npt.NDArray[np.int32]:
+        """The component of every cell of the map, (rows, cols); 0 where no point of it is free."""
+        return self._components[1:-1, 1:-1]
+
+    @cached_property
+    def _components(self) -> npt.NDArray[np.int32]:
+        return label_components(self._tables.cells)
+
+    def nearest_free(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64] | None:
+        """Return a free map point, (2,), near the map point `q`, (2,), or None if there is none.
+
+        It is the nearest of the surely free cells, and of corners and middles of the cells that are partly free.
+        """
+        pixels = self.grid.frame.to_pixels(as_batch("q", np.reshape(q, (1, -1)), 2))[0]
+        x, y = nearest_free_point(pixels[0] + 1.0, pixels[1] + 1.0, self._tables)
+        return None if math.isnan(x) else self.grid.frame.to_map(np.array([[x - 1.0, y - 1.0]]))[0]
+
+    def connect(
+        self,
+        start: npt.NDArray[np.float64],
+        goals: npt.NDArray[np.float64],
+        *,
+        most_motions: int = 2**31 - 1,
+        seconds: float = math.inf,
+    ) -> Connection:
+        """Find a way from a free map point, (2,), to one of several, (g, 2): over cell centres, else over half cells.
+
+        Parameters
+        ----------
+        start, goals : ndarray
+            Free map points.
+        most_motions : int
+            Motions to test at most.
+        seconds : float
+            Wall time after which no finer lattice is tried.
+        """
+        began = time.perf_counter()
+        first = as_batch("start", np.reshape(start, (1, -1)), 2)[0]
+        last = as_batch("goals", goals, 2)
+        possible = np.flatnonzero([self.may_connect(first, goal) for goal in last])
+        way, goal, nodes, motions = np.empty((0, 2)), -1, 0, 0
+        for step, origin in _LATTICES if possible.size else ():
+            if time.perf_counter() - began > seconds or motions >= most_motions:
+                break
+            left = most_motions - motions
+            way, goal, expanded, tested = find_way(first, last[possible], self._tables, step, origin, left)
+            nodes, motions = nodes + expanded, motions + tested
+            if goal >= 0:
+                break
+        return Connection(way, int(possible[goal]) if goal >= 0 else -1, nodes, 0, motions)
+
+    def shorten(self, path: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], int]:
+        """Return a path of free motions, (q, 2), that is not longer than `path`, (p, 2), and how many were tested."""
+        points = as_batch("path", path, 2)
+        return straighten(points, self._tables, _SPREADS) if len(points) > 1 else (points.copy(), 0)
+
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of map, frame and radius: equal for two worlds that give the same verdicts."""
         digest = hashlib.sha256(f"disk {self.radius!r} {self.grid.frame!r}".encode())
@@ -109,9 +193,16 @@ class DiskWorld:
         centre = np.asarray(q, dtype=np.float64)[np.newaxis]
         distance = float(self.clearance(centre)[0])
         if distance == 0.0:
-            return "its centre lies in an obstacle or outside the map"
-        x, y = self.nearest_obstacle(centre)[0]
-        return f"the obstacle at ({x:.6g}, {y:.6g}) is {distance:.6g} away, the disk needs {self.radius:.6g}"
+            reason = "its centre lies in an obstacle or outside the map"
+        else:
+            x, y = self.nearest_obstacle(centre)[0]
+            reason = (
+                f"the obstacle at ({x:.6g}, {y:.6g}) is {distance:.6g} away, the disk needs {self.radius:.6g}"
+            )
+        free = self.nearest_free(centre)
+        if free is None:
+            return f"{reason}; no place of the map is free"
+        return f"{reason}; the nearest free place is ({free[0]:.6g}, {free[1]:.6g})"
 
 
 def _tables_of(grid: GridMap, radius: float) -> DiskTables:

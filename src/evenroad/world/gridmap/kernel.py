@@ -27,7 +27,7 @@ def points_are_free(q: npt.NDArray[np.float64], disk: DiskTables) -> npt.NDArray
     free = np.empty(len(q), np.bool_)
     for i in range(len(q)):
         x, y = to_padded(q[i, 0], q[i, 1], disk.frame)
-        free[i] = _point_is_free(x, y, disk)
+        free[i] = point_is_free(x, y, disk)
     return free
 
 
@@ -40,13 +40,13 @@ def motions_are_free(
     for i in range(len(a)):
         ax, ay = to_padded(a[i, 0], a[i, 1], disk.frame)
         bx, by = to_padded(b[i, 0], b[i, 1], disk.frame)
-        if not _point_is_free(ax, ay, disk) or not _point_is_free(bx, by, disk):
+        if not point_is_free(ax, ay, disk) or not point_is_free(bx, by, disk):
             free[i] = False
         elif bx < ax or (bx == ax and by < ay):
             # One direction for both orders: a motion and its reverse round alike.
-            free[i] = _way_is_free(bx, by, ax, ay, disk)
+            free[i] = way_is_free(bx, by, ax, ay, disk)
         else:
-            free[i] = _way_is_free(ax, ay, bx, by, disk)
+            free[i] = way_is_free(ax, ay, bx, by, disk)
     return free
 
 
@@ -61,7 +61,8 @@ def to_padded(x: float, y: float, frame: Any) -> tuple[float, float]:
 
 
 @njit(cache=True, nogil=True)
-def _point_is_free(x: float, y: float, disk: DiskTables) -> bool:
+def point_is_free(x: float, y: float, disk: DiskTables) -> bool:
+    """Say whether the disk is free at padded pixel coordinates."""
     rows, cols = disk.cells.shape
     # On the border the distance to the outside is 0, so it is no place for a disk either.
     if not (1.0 < x < cols - 1.0 and 1.0 < y < rows - 1.0):
@@ -83,7 +84,7 @@ def _point_is_free(x: float, y: float, disk: DiskTables) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def _way_is_free(ax: float, ay: float, bx: float, by: float, disk: DiskTables) -> bool:
+def way_is_free(ax: float, ay: float, bx: float, by: float, disk: DiskTables) -> bool:
     """Follow the segment from a to b (ax <= bx), both free, cell by cell; parameter t runs from 0 to 1.
 
     Every piece of the segment from one t to the next lies in the closed cell that is looked at and the pieces
