@@ -27,8 +27,8 @@ def find_path(
 ) -> PlanResult:
     """Plan until there is a path, it is proved that there is none, or the budget is spent.
 
-    A world that separates components is asked first whether there can be a path at all; one that connects itself then
-    plans; with any other, and where that one finds nothing, points are added until they suffice.
+    A world that connects itself plans; where it finds nothing, one that separates components is asked whether there can
+    be a path at all; then, and with any other world, points are added until they suffice.
 
     Parameters
     ----------
@@ -73,14 +73,6 @@ def find_path(
         if not is_free:
             reason = f": {world.explain(place)}" if isinstance(world, Explains) else ""
             return result(status, f"the {name} is in collision{reason}")
-    if isinstance(world, Separates):
-        with watch("components"):
-            possible = world.may_connect(first, last)
-        if not possible:
-            return result(
-                Status.NOT_CONNECTED,
-                "proved: there is no path; start and goal lie in two components of the free space",
-            )
     if isinstance(world, ConnectsItself):
         most = 2**31 - 1 if budget.checks is None else budget.checks
         seconds = np.inf if budget.seconds is None else budget.seconds
@@ -106,6 +98,14 @@ def find_path(
                 cost=length,
                 milestone_cost=raw,
                 counts=counts,
+            )
+    if isinstance(world, Separates):
+        with watch("components"):
+            possible = world.may_connect(first, last)
+        if not possible:
+            return result(
+                Status.NOT_CONNECTED,
+                "proved: there is no path; start and goal lie in two components of the free space",
             )
     return plan_anytime(world, first, last, budget=budget, shorten=shorten)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import math
-import time
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -18,11 +17,15 @@ from evenroad.world.gridmap.cells import DiskTables, classify, vertical_runs
 from evenroad.world.gridmap.gridmap import GridMap
 from evenroad.world.gridmap.kernel import motions_are_free, points_are_free
 from evenroad.world.gridmap.nearest import nearest_obstacle_points
-from evenroad.world.gridmap.search import find_way, label_components, nearest_free_point, straighten
+from evenroad.world.gridmap.search import (
+    PARTS,
+    find_gates,
+    find_way,
+    label_components,
+    nearest_free_point,
+    straighten,
+)
 from evenroad.world.protocol import Connection
-
-_LATTICES = ((1.0, 0.5), (0.5, 0.0))
-"""Step and first point of the lattices to look for a way on: cell centres, and half cells where those do not do."""
 
 _SPREADS = (32, 96)
 """Points that a way is offered to be straightened with, in the coarse rounds and in the fine ones."""
@@ -112,27 +115,44 @@ class DiskWorld:
     def may_connect(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> bool:
         """Return False where it is proved that no way leads from map point `a`, (2,), to `b`, (2,).
 
-        Cells none of whose points is free separate the others into components, in one of which every way stays.  Where
-        both ends are in the same one there may be a way: at passages about as wide as the disk it is not certain.
+        Places none of whose points is free separate the others into components, in one of which every way stays.
+        Where both ends are in the same one, there is a way unless it leads through a passage that is narrower than
+        the disk by less than about a tenth of a pixel.
         """
         first, second = self.component(a), self.component(b)
         return first == second and first != 0
 
     def component(self, q: npt.NDArray[np.float64]) -> int:
-        """Return the component of the cells that a map point, (2,), lies in, from 1 on; 0 where no disk is free."""
+        """Return the number, from 1 on, of the component that a map point, (2,), lies in; 0 where no disk is free."""
         column, row = self.grid.frame.to_pixels(as_batch("q", np.reshape(q, (1, -1)), 2))[0]
-        if not (0.0 <= column <= self.grid.frame.cols and 0.0 <= row <= self.grid.frame.rows):
+        rows, cols = self.grid.occupied.shape
+        if not (0.0 < column < cols and 0.0 < row < rows):
             return 0
-        return int(self._components[int(row) + 1, int(column) + 1])
+        cell = int(row) + 1, int(column) + 1
+        labels, parts = self._components
+        if parts[cell] < 0:
+            return int(labels[cell[0] * (cols + 2) + cell[1]])
+        part = int(PARTS * (row % 1.0)) * PARTS + int(PARTS * (column % 1.0))
+        return int(labels[(rows + 2) * (cols + 2) + parts[cell] * PARTS**2 + part])
 
-    @property
-    def components(self) -> npt.NDArray[np.int32]:
-        """The component of every cell of the map, (rows, cols); 0 where no point of it is free."""
-        return self._components[1:-1, 1:-1]
+    def cells_of(self, component: int) -> npt.NDArray[np.bool_]:
+        """Return the cells of the map, (rows, cols), that have a part in a component."""
+        labels, parts = self._components
+        inside = (labels[: parts.size] == component).reshape(parts.shape)
+        at_gates = (labels[parts.size :].reshape(-1, PARTS**2) == component).any(axis=1)
+        inside[parts >= 0] = at_gates
+        return inside[1:-1, 1:-1]
 
     @cached_property
-    def _components(self) -> npt.NDArray[np.int32]:
-        return label_components(self._tables.cells)
+    def _gates(self) -> npt.NDArray[np.bool_]:
+        return find_gates(self._tables.cells)
+
+    @cached_property
+    def _components(self) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int64]]:
+        """Labels as `label_components` returns them, and the number of each cell among those at gates, or -1."""
+        parts = np.full(self._gates.shape, -1)
+        parts[self._gates] = np.arange(np.count_nonzero(self._gates))
+        return label_components(self._tables, self._gates), parts
 
     def nearest_free(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64] | None:
         """Return a free map point, (2,), near the map point `q`, (2,), or None if there is none.
@@ -151,31 +171,16 @@ class DiskWorld:
         most_motions: int = 2**31 - 1,
         seconds: float = math.inf,
     ) -> Connection:
-        """Find a way from a free map point, (2,), to one of several, (g, 2): over cell centres, else over half cells.
+        """Find a way from a free map point, (2,), to the one of several, (g, 2), that is nearest on the lattice.
 
-        Parameters
-        ----------
-        start, goals : ndarray
-            Free map points.
-        most_motions : int
-            Motions to test at most.
-        seconds : float
-            Wall time after which no finer lattice is tried.
+        It leads over cell centres, and over half cells where it is narrow; it is found wherever `may_connect` holds
+        but for passages hardly wider than the disk.  `most_motions` bounds the motions that are tested.  The time is
+        bounded by the size of the map; `seconds` is not looked at.
         """
-        began = time.perf_counter()
         first = as_batch("start", np.reshape(start, (1, -1)), 2)[0]
         last = as_batch("goals", goals, 2)
-        possible = np.flatnonzero([self.may_connect(first, goal) for goal in last])
-        way, goal, nodes, motions = np.empty((0, 2)), -1, 0, 0
-        for step, origin in _LATTICES if possible.size else ():
-            if time.perf_counter() - began > seconds or motions >= most_motions:
-                break
-            left = most_motions - motions
-            way, goal, expanded, tested = find_way(first, last[possible], self._tables, step, origin, left)
-            nodes, motions = nodes + expanded, motions + tested
-            if goal >= 0:
-                break
-        return Connection(way, int(possible[goal]) if goal >= 0 else -1, nodes, 0, motions)
+        way, goal, nodes, motions = find_way(first, last, self._tables, self._gates, most_motions)
+        return Connection(way, int(goal), nodes, 0, motions)
 
     def shorten(self, path: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], int]:
         """Return a path of free motions, (q, 2), that is not longer than `path`, (p, 2), and how many were tested."""

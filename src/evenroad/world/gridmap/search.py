@@ -1,8 +1,9 @@
 """The compiled planner of a disk on a grid: components, a way over a lattice of points, and straightening it.
 
-Ways are made of map points, so that what is tested is what is returned.  A *lattice* of step h has its points at
-``first + h * (column, row)`` of the padded pixel plane (see `cells`): cell centres for h = 1, and those, corners and
-middles of sides for h = 1/2.
+Ways are made of map points, so that what is tested is what is returned.  They lead over the *half lattice*, the points
+``(column / 2, row / 2)`` of the padded pixel plane (see `cells`): over the centres of surely free cells, and over all
+of its points at *gates*, where components of such cells come close to each other.  The narrowest place of a gate is
+the middle between two corners or sides of squares, which is a point of the half lattice.
 """
 
 from __future__ import annotations
@@ -14,56 +15,201 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from evenroad.world.gridmap.cells import BLOCKED, FREE, DiskTables
+from evenroad.world.gridmap.cells import BLOCKED, FREE, UNDECIDED, DiskTables
 from evenroad.world.gridmap.kernel import point_is_free, to_padded, way_is_free
-
-STRAIGHT, DIAGONAL, KNIGHT = 10, 14, 22
-"""Costs of the steps of a lattice, near 10 times their lengths and never above them by more than rounding."""
 
 _BUCKETS = 64
 """More than the largest step of the key of A*, twice the dearest step: a key names its bucket."""
 
+_AROUND = 3
+"""Cells around a place where two components come close that belong to the gate."""
+
+PARTS = 16
+"""A cell at a gate is looked at in so many by so many parts, to tell whether the gate is shut."""
+
 STEPS = np.array(
     [
+        (2, 0), (-2, 0), (0, 2), (0, -2), (2, 2), (2, -2), (-2, 2), (-2, -2),
         (1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1),
         (2, 1), (2, -1), (-2, 1), (-2, -1), (1, 2), (1, -2), (-1, 2), (-1, -2),
     ]
 )  # fmt: skip
-"""Column and row of each step; the first eight are those of a king."""
+"""Columns and rows of each step on the half lattice; the first eight lead from cell to cell."""
+
+COSTS = np.array([10] * 4 + [14] * 4 + [5] * 4 + [7] * 4 + [11] * 8)
+"""Of the steps: about ten times their lengths in pixels."""
 
 _LINKS = 24
 """Lattice points that an end is linked to."""
 
 
 @njit(cache=True, nogil=True)
-def label_components(cells: npt.NDArray[np.uint8]) -> npt.NDArray[np.int32]:
-    """Return the component of each cell that is not surely blocked, from 1 on, and 0 for those that are.
+def find_gates(cells: npt.NDArray[np.uint8]) -> npt.NDArray[np.bool_]:
+    """Return the cells around places where a way may lead through cells that are not surely free.
 
-    Cells hang together over their sides.  A disk whose centre goes over a corner from cell to cell touches all four
-    cells there, so none of them is surely blocked: two components are apart for certain.
+    From every component of surely free cells the undecided ones are visited outwards.  Along a wall they are a strip
+    of one or two.  Where they lie deeper, where two components meet, or where none comes to, there is a gate.
     """
     rows, cols = cells.shape
-    label = np.zeros((rows, cols), np.int32)
-    stack = np.empty(rows * cols, np.int64)
-    last = 0
+    flat = cells.ravel()
+    around = np.array([-cols - 1, -cols, -cols + 1, -1, 1, cols - 1, cols, cols + 1])
+    owner = np.zeros(rows * cols, np.int32)
+    depth = np.zeros(rows * cols, np.int32)
+    queue = np.empty(rows * cols, np.int32)
+    last, begin, end = 0, 0, 0
+    for cell in range(rows * cols):
+        if flat[cell] < FREE or owner[cell] != 0:
+            continue
+        last += 1
+        owner[cell] = last
+        queue[end] = cell
+        end += 1
+        while begin < end:
+            here = queue[begin]
+            begin += 1
+            # The ring of the padded grid is blocked: neighbours never leave the array.
+            for k in range(8):
+                to = here + around[k]
+                if flat[to] >= FREE and owner[to] == 0:
+                    owner[to] = last
+                    queue[end] = to
+                    end += 1
+    begin = 0
+    while begin < end:
+        here = queue[begin]
+        begin += 1
+        for k in range(8):
+            to = here + around[k]
+            if flat[to] != BLOCKED and owner[to] == 0:
+                owner[to], depth[to] = owner[here], depth[here] + 1
+                queue[end] = to
+                end += 1
+    gates = np.zeros((rows, cols), np.bool_)
+    for row in range(1, rows - 1):
+        for col in range(1, cols - 1):
+            if cells[row, col] != UNDECIDED:
+                continue
+            cell = row * cols + col
+            is_gate = owner[cell] == 0 or depth[cell] >= 3
+            for k in range(8):
+                to = cell + around[k]
+                is_gate |= flat[to] != BLOCKED and owner[to] != owner[cell]
+            if is_gate:
+                for r in range(max(row - _AROUND, 1), min(row + _AROUND, rows - 2) + 1):
+                    for c in range(max(col - _AROUND, 1), min(col + _AROUND, cols - 2) + 1):
+                        gates[r, c] |= cells[r, c] != BLOCKED
+    return gates
+
+
+@njit(cache=True, nogil=True)
+def label_components(disk: DiskTables, gates: npt.NDArray[np.bool_]) -> npt.NDArray[np.int32]:
+    """Return the component of each cell and, at gates, of each part of a cell; 0 where no disk is free.
+
+    Cells that are not surely blocked hang together over their sides, and so do the parts of a cell at a gate.  A disk
+    whose centre goes over a corner touches all four there, so none of them is blocked: two components are apart for
+    certain.  What is in one component need not hang together, where a gate is hardly wider or narrower than the disk.
+
+    Returns
+    -------
+    labels : (rows * PARTS, cols * PARTS) would be much memory, so two arrays in one: (rows * cols + gates * PARTS**2,)
+        First of the cells, row by row, those at gates with 0; then of the parts of each cell at a gate, row by row.
+    """
+    rows, cols = gates.shape
+    number = np.full((rows, cols), -1, np.int64)
+    count = 0
     for row in range(rows):
         for col in range(cols):
-            if cells[row, col] == BLOCKED or label[row, col] != 0:
-                continue
-            last += 1
-            label[row, col] = last
-            stack[0] = row * cols + col
-            size = 1
-            while size > 0:
-                size -= 1
-                r, c = divmod(stack[size], cols)
-                # The ring of the padded grid is blocked: neighbours never leave the array.
-                for dr, dc in ((1, 0), (-1, 0), (0, 1), (0, -1)):
-                    if cells[r + dr, c + dc] != BLOCKED and label[r + dr, c + dc] == 0:
-                        label[r + dr, c + dc] = last
-                        stack[size] = (r + dr) * cols + c + dc
-                        size += 1
-    return label
+            if gates[row, col]:
+                number[row, col] = count
+                count += 1
+    total = rows * cols + count * PARTS * PARTS
+    parent = np.full(total, -1, np.int32)
+    for row in range(rows):
+        for col in range(cols):
+            if number[row, col] >= 0:
+                _open_parts(row, col, rows * cols + number[row, col] * PARTS * PARTS, parent, disk)
+            elif disk.cells[row, col] != BLOCKED:
+                parent[row * cols + col] = row * cols + col
+    for row in range(1, rows - 1):
+        for col in range(1, cols - 1):
+            here = rows * cols + number[row, col] * PARTS * PARTS
+            for down in range(2):
+                to_row, to_col = row + down, col + 1 - down
+                there = rows * cols + number[to_row, to_col] * PARTS * PARTS
+                if number[row, col] < 0 and number[to_row, to_col] < 0:
+                    _unite(row * cols + col, to_row * cols + to_col, parent)
+                    continue
+                for k in range(PARTS):
+                    a, b = row * cols + col, to_row * cols + to_col
+                    if number[row, col] >= 0:
+                        a = here + ((PARTS - 1) * PARTS + k if down else k * PARTS + PARTS - 1)
+                    if number[to_row, to_col] >= 0:
+                        b = there + (k if down else k * PARTS)
+                    _unite(a, b, parent)
+            if number[row, col] >= 0:
+                for k in range(PARTS * PARTS):
+                    if k % PARTS < PARTS - 1:
+                        _unite(here + k, here + k + 1, parent)
+                    if k < PARTS * (PARTS - 1):
+                        _unite(here + k, here + k + PARTS, parent)
+    labels = np.zeros(total, np.int32)
+    for i in range(total):
+        if parent[i] >= 0:
+            labels[i] = _root(i, parent) + 1
+    return labels
+
+
+@njit(cache=True, nogil=True)
+def _open_parts(row: int, col: int, base: int, parent: Any, disk: DiskTables) -> None:
+    """Open the parts of a cell that may have a free point: all but those whose middle is too near by their size."""
+    coarse = PARTS // 4
+    for i in range(16):
+        top, left = (i // 4) * coarse, (i % 4) * coarse
+        x, y = col + (left + 0.5 * coarse) / PARTS, row + (top + 0.5 * coarse) / PARTS
+        distance = _distance(x, y, row, col, disk)
+        reach = math.sqrt(0.5) * coarse / PARTS
+        if distance + reach < disk.radius:
+            continue
+        for r in range(top, top + coarse):
+            for c in range(left, left + coarse):
+                if distance < disk.radius + reach:
+                    x, y = col + (c + 0.5) / PARTS, row + (r + 0.5) / PARTS
+                    if _distance(x, y, row, col, disk) + math.sqrt(0.5) / PARTS < disk.radius:
+                        continue
+                parent[base + r * PARTS + c] = base + r * PARTS + c
+
+
+@njit(cache=True, nogil=True)
+def _distance(x: float, y: float, row: int, col: int, disk: DiskTables) -> float:
+    """Return the distance of a point of a cell to the nearest obstacle; beyond the radius any that is larger."""
+    reach = math.ceil(disk.radius) + 1
+    least = np.inf
+    for other in range(max(col - reach, 0), min(col + reach, disk.cells.shape[1] - 1) + 1):
+        gap_x = max(other - x, x - (other + 1), 0.0)
+        gap_y = 0.0
+        if disk.above[row, other] > 0:
+            gap_y = min(y - (row + 1 - disk.above[row, other]), row + disk.below[row, other] - y)
+        least = min(least, gap_x * gap_x + gap_y * gap_y)
+    return math.sqrt(least)
+
+
+@njit(cache=True, nogil=True)
+def _root(i: int, parent: Any) -> int:
+    while parent[i] != i:
+        parent[i] = parent[parent[i]]
+        i = parent[i]
+    return i
+
+
+@njit(cache=True, nogil=True)
+def _unite(a: int, b: int, parent: Any) -> None:
+    if parent[a] < 0 or parent[b] < 0:
+        return
+    a, b = _root(a, parent), _root(b, parent)
+    if a < b:
+        parent[b] = a
+    elif b < a:
+        parent[a] = b
 
 
 @njit(cache=True, nogil=True)
@@ -97,9 +243,9 @@ def nearest_free_point(x: float, y: float, disk: DiskTables) -> tuple[float, flo
 
 @njit(cache=True, nogil=True)
 def find_way(
-    start: Any, goals: Any, disk: DiskTables, step: float, first: float, most: int
+    start: Any, goals: Any, disk: DiskTables, gates: npt.NDArray[np.bool_], most: int
 ) -> tuple[npt.NDArray[np.float64], int, int, int]:
-    """Find a way over a lattice from a free point, (2,), to the one of some free points, (g, 2), that is nearest on it.
+    """Find a way over the half lattice from a free point, (2,), to the nearest on it of others, (g, 2).
 
     A* over whole-number costs with buckets for the queue; a step between surely free cells that share a side or a
     corner needs no check, every other one is tested exactly.
@@ -114,8 +260,7 @@ def find_way(
         Lattice points looked at from, and motions tested; the search ends when `most` are.
     """
     rows, cols = disk.cells.shape
-    high, wide = int((rows - first) / step) + 1, int((cols - first) / step) + 1
-    steps = 8 if step == 1.0 else 16
+    high, wide = 2 * rows + 1, 2 * cols + 1
     reached = np.full(high * wide, -1, np.int32)
     came = np.zeros(high * wide, np.int8)
     closed = np.zeros(high * wide, np.bool_)
@@ -124,8 +269,8 @@ def find_way(
     motions = 0
     for g in range(len(goals)):
         x, y = to_padded(goals[g, 0], goals[g, 1], disk.frame)
-        targets[g, 0], targets[g, 1] = (x - first) / step, (y - first) / step
-        linked, tried = _links(goals[g, 0], goals[g, 1], disk, step, first, high, wide)
+        targets[g, 0], targets[g, 1] = 2.0 * x, 2.0 * y
+        linked, tried = _links(goals[g, 0], goals[g, 1], disk, gates)
         motions += tried
         for node in linked:
             if ends[node] < 0:
@@ -134,14 +279,14 @@ def find_way(
     entries = np.empty(4096, np.int64)
     links = np.empty(4096, np.int64)
     size, waiting, key = 0, 0, 2**60
-    linked, tried = _links(start[0], start[1], disk, step, first, high, wide)
+    linked, tried = _links(start[0], start[1], disk, gates)
     motions += tried
     seeds = np.empty(len(linked), np.int64)
     x, y = to_padded(start[0], start[1], disk.frame)
     for i in range(len(linked)):
         node = linked[i]
         r, c = divmod(node, wide)
-        away = math.hypot(first + step * c - x, first + step * r - y) / step
+        away = math.hypot(0.5 * c - x, 0.5 * r - y)
         reached[node] = int(10.0 * away)
         came[node] = -1
         seeds[i] = reached[node] + _left(c, r, targets)
@@ -168,31 +313,28 @@ def find_way(
         closed[node] = True
         expanded += 1
         if ends[node] >= 0:
-            way = _trace(node, came, wide, start, goals[ends[node]], step, first, disk)
+            way = _trace(node, came, wide, start, goals[ends[node]], disk)
             return way, ends[node], expanded, motions
         r, c = divmod(node, wide)
-        x, y = first + step * c, first + step * r
-        sure = disk.cells[int(y), int(x)] >= FREE
-        for s in range(steps):
+        x, y = 0.5 * c, 0.5 * r
+        sure = _is_centre(r, c, disk)
+        at_gate = _is_at_gate(r, c, gates)
+        for s in range(0 if sure else 8, len(STEPS) if at_gate else 8):
             to_c, to_r = c + STEPS[s, 0], r + STEPS[s, 1]
-            if to_c < 0 or to_r < 0 or to_c >= wide or to_r >= high:
-                continue
+            # Never out of the array: nothing is free on its ring.
             to = to_r * wide + to_c
-            cost = reached[node] + (STRAIGHT if s < 4 else DIAGONAL if s < 8 else KNIGHT)
+            cost = reached[node] + COSTS[s]
             if closed[to] or (0 <= reached[to] <= cost):
                 continue
-            to_x, to_y = first + step * to_c, first + step * to_r
-            if not (1.0 < to_x < cols - 1.0 and 1.0 < to_y < rows - 1.0):
-                continue
-            state = disk.cells[int(to_y), int(to_x)]
-            if step == 1.0 and sure and state >= FREE:
-                pass
-            elif state == BLOCKED:
-                continue
+            if s < 8:
+                if not _is_centre(to_r, to_c, disk):
+                    continue
             else:
+                if not _is_at_gate(to_r, to_c, gates) or disk.cells[to_r // 2, to_c // 2] == BLOCKED:
+                    continue
                 motions += 1
                 from_x, from_y = _to_map(x, y, disk.frame)
-                to_x, to_y = _to_map(to_x, to_y, disk.frame)
+                to_x, to_y = _to_map(0.5 * to_c, 0.5 * to_r, disk.frame)
                 if not _free_between(from_x, from_y, to_x, to_y, disk):
                     continue
             reached[to] = cost
@@ -231,24 +373,25 @@ def straighten(way: Any, disk: DiskTables, spreads: Any) -> tuple[npt.NDArray[np
 
 
 @njit(cache=True, nogil=True)
-def _links(
-    x: float, y: float, disk: DiskTables, step: float, first: float, high: int, wide: int
-) -> tuple[list[int], int]:
+def _links(x: float, y: float, disk: DiskTables, gates: npt.NDArray[np.bool_]) -> tuple[list[int], int]:
     """Return the lattice points near (x, y) that can be reached straight, and how many were tried."""
     px, py = to_padded(x, y, disk.frame)
-    near_c, near_r = round((px - first) / step), round((py - first) / step)
+    rows, cols = disk.cells.shape
+    near_c, near_r = round(2.0 * px), round(2.0 * py)
     linked = [np.int64(0)]
     linked.clear()
     tried = 0
-    for ring in range(7):
-        for r in range(max(near_r - ring, 0), min(near_r + ring, high - 1) + 1):
-            for c in range(max(near_c - ring, 0), min(near_c + ring, wide - 1) + 1):
+    for ring in range(13):
+        for r in range(max(near_r - ring, 0), min(near_r + ring, 2 * rows - 1) + 1):
+            for c in range(max(near_c - ring, 0), min(near_c + ring, 2 * cols - 1) + 1):
                 if max(abs(r - near_r), abs(c - near_c)) != ring:
                     continue
+                if not _is_centre(r, c, disk) and not _is_at_gate(r, c, gates):
+                    continue
                 tried += 1
-                to_x, to_y = _to_map(first + step * c, first + step * r, disk.frame)
+                to_x, to_y = _to_map(0.5 * c, 0.5 * r, disk.frame)
                 if _free_between(x, y, to_x, to_y, disk):
-                    linked.append(np.int64(r * wide + c))
+                    linked.append(np.int64(r * (2 * cols + 1) + c))
         if len(linked) >= _LINKS:
             break
     return linked, tried
@@ -256,18 +399,28 @@ def _links(
 
 @njit(cache=True, nogil=True)
 def _left(c: int, r: int, targets: Any) -> int:
-    """Return the least cost from a lattice point to the nearest target, all in steps."""
+    """Return the least cost from a lattice point to the nearest target, in half pixels as `c` and `r` are."""
     least = 1e18
     for g in range(len(targets)):
         along, across = abs(targets[g, 0] - c), abs(targets[g, 1] - r)
-        least = min(least, 10.0 * max(along, across) + 4.0 * min(along, across))
-    return int(0.98 * least)
+        least = min(least, 5.0 * max(along, across) + 2.0 * min(along, across))
+    return int(0.97 * least)
 
 
 @njit(cache=True, nogil=True)
-def _trace(
-    node: int, came: Any, wide: int, start: Any, goal: Any, step: float, first: float, disk: DiskTables
-) -> Any:
+def _is_centre(r: int, c: int, disk: DiskTables) -> bool:
+    """Say whether a point of the half lattice is the centre of a surely free cell."""
+    return r % 2 == 1 and c % 2 == 1 and disk.cells[r // 2, c // 2] >= FREE
+
+
+@njit(cache=True, nogil=True)
+def _is_at_gate(r: int, c: int, gates: npt.NDArray[np.bool_]) -> bool:
+    """Say whether a point of the half lattice lies in a cell of a gate, or between two."""
+    return gates[r // 2, c // 2] or gates[(r - 1) // 2, (c - 1) // 2]
+
+
+@njit(cache=True, nogil=True)
+def _trace(node: int, came: Any, wide: int, start: Any, goal: Any, disk: DiskTables) -> Any:
     count = 3
     at = node
     while came[at] >= 0:
@@ -277,7 +430,7 @@ def _trace(
     way[0, 0], way[0, 1], way[-1, 0], way[-1, 1] = start[0], start[1], goal[0], goal[1]
     at = node
     for i in range(count - 2, 0, -1):
-        way[i, 0], way[i, 1] = _to_map(first + step * (at % wide), first + step * (at // wide), disk.frame)
+        way[i, 0], way[i, 1] = _to_map(0.5 * (at % wide), 0.5 * (at // wide), disk.frame)
         if came[at] >= 0:
             at -= STEPS[came[at], 1] * wide + STEPS[came[at], 0]
     return way
