@@ -21,6 +21,7 @@ from evenroad.roadmap import Status as Status
 from evenroad.roadmap import load_roadmap as load_roadmap
 from evenroad.roadmap import plan_anytime as plan_anytime
 from evenroad.roadmap import save_roadmap as save_roadmap
+from evenroad.roadmap.find_path import find_path as find_path
 from evenroad.roadmap.plan import plan as plan
 from evenroad.robot import ArmWorld as ArmWorld
 from evenroad.robot import Robot as Robot

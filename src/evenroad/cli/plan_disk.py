@@ -7,6 +7,8 @@ import math
 import numpy as np
 
 from evenroad import roadmap
+from evenroad._checks import require_positive
+from evenroad._rng import generator
 from evenroad.cli.plan_options import DiskOptions
 from evenroad.cli.plan_parts import (
     chosen_rule,
@@ -14,10 +16,12 @@ from evenroad.cli.plan_parts import (
     draw_points,
     load_compiled_code,
     output_files,
+    wants_points,
 )
 from evenroad.cli.plan_table import print_plan
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record, save_json, save_path_csv
+from evenroad.roadmap import Budget, find_path
 from evenroad.robot.scene_file import is_scene
 from evenroad.world import GridMap, load_map
 from evenroad.world.gridmap.load import map_files
@@ -26,18 +30,30 @@ from evenroad.world.gridmap.load import map_files
 def plan_disk(plan: DiskOptions) -> int:
     """Plan, write, report; return 0 when solved, else 1."""
     rule = chosen_rule(plan, default_k=10)
+    generator(plan.seed)
     start, goal = (_position(name, getattr(plan, name)) for name in ("start", "goal"))
     if plan.world.suffix in (".yaml", ".yml") and is_scene(plan.world):
         raise InvalidValue(f"{plan.world} is a scene, no map: give the arm that moves in it with --robot")
     gridmap = load_map(plan.world, unknown_is_free=plan.unknown_is_free)
     suffixes = ("json", "csv") if plan.csv else ("json",)
     files = output_files(plan, map_files(plan.world), suffixes, "map")
-    world = gridmap.world(plan.robot_radius, clearance=plan.clearance)
+    budget = Budget(seconds=require_positive("time", plan.time))
     for name, value in (("start", start), ("goal", goal)):
         _require_on_map(gridmap, name, value)
-    points, note = draw_points(plan, 2)
-    load_compiled_code(world, start, goal, points, rule)
-    result = roadmap.plan(world, start, goal, points, rule=rule, shorten=not plan.raw)
+    note = ""
+    if wants_points(plan):
+        # Points are drawn over the rectangle: most of one that is mostly unknown is not worth any.
+        world = (gridmap.cropped() if gridmap.unknown.any() else gridmap).world(
+            plan.robot_radius, clearance=plan.clearance
+        )
+        points, note = draw_points(plan, 2)
+        load_compiled_code(world, start, goal, points, rule)
+        result = roadmap.plan(world, start, goal, points, rule=rule, shorten=not plan.raw)
+    else:
+        world = gridmap.world(plan.robot_radius, clearance=plan.clearance)
+        # Once for nothing: else the times would be those of loading compiled code.
+        find_path(world, start, start, budget=Budget(samples=1))
+        result = find_path(world, start, goal, budget=budget, shorten=not plan.raw)
     query = {
         "map": str(plan.world),
         "robot_radius": plan.robot_radius,

@@ -19,8 +19,11 @@ class PlanOptions:
     """Where to start."""
     goal: tuple[str, ...]
     """As start."""
-    n: Annotated[int, tyro.conf.arg(aliases=["-n"])] = 512
-    """How many points to draw."""
+    n: Annotated[int | None, tyro.conf.arg(aliases=["-n"])] = None
+    """Plan with exactly so many points.  Default: a disk is planned for without points, until there is a path or a
+    proof that there is none (with points where another option speaks of them: 512); an arm with 512."""
+    time: float = 5.0
+    """Disk without points: seconds to plan at most, > 0."""
     k: Annotated[int | None, tyro.conf.arg(aliases=["-k"])] = None
     """Connect each milestone with its k nearest, symmetrised (default 10; 20 from six joints on)."""
     connect_radius: float | None = None

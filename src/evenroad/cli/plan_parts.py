@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 DEFAULT_FAMILY = "even"
 
+DEFAULT_N = 512
+
 _FEW = 16
 """Points of a plan that only loads compiled code."""
 
@@ -37,16 +39,24 @@ def chosen_rule(plan: PlanOptions, default_k: int) -> Rule:
     return Radius(plan.connect_radius)
 
 
+def wants_points(plan: PlanOptions) -> bool:
+    """Return whether an option was given that speaks of points or of how they are joined."""
+    given = (plan.n, plan.k, plan.connect_radius)
+    return any(value is not None for value in given) or bool(
+        plan.sampler != "auto" or plan.plain or plan.skip or plan.allow_fewer
+    )
+
+
 def draw_points(plan: PlanOptions, d: int) -> tuple[PointSet, str]:
     """Draw the set, and say in words why it is not of the default family."""
-    require_count("n", plan.n)
+    n = require_count("n", DEFAULT_N if plan.n is None else plan.n)
     generator(plan.seed)
     name, note = plan.sampler, ""
     if name == "auto":
         name = DEFAULT_FAMILY
-        if even_choice(d) != KOROBOV and not open_bank().has(DEFAULT_FAMILY, plan.n, d):
-            name, note = "halton", f"the bank has no set of n={plan.n}" + ("" if d == 2 else f", d={d}")
-    return make_sampler(name, **_sampler_options(plan, name)).draw(plan.n, d, rng=plan.seed), note
+        if even_choice(d) != KOROBOV and not open_bank().has(DEFAULT_FAMILY, n, d):
+            name, note = "halton", f"the bank has no set of n={n}" + ("" if d == 2 else f", d={d}")
+    return make_sampler(name, **_sampler_options(plan, name)).draw(n, d, rng=plan.seed), note
 
 
 def load_compiled_code(

@@ -14,17 +14,11 @@ from evenroad._checks import require_positive
 from evenroad.space import Rectangle
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.gridmap.cells import DiskTables, classify, vertical_runs
+from evenroad.world.gridmap.components import PARTS, find_gates, label_components
 from evenroad.world.gridmap.gridmap import GridMap
 from evenroad.world.gridmap.kernel import motions_are_free, points_are_free
-from evenroad.world.gridmap.nearest import nearest_obstacle_points
-from evenroad.world.gridmap.search import (
-    PARTS,
-    find_gates,
-    find_way,
-    label_components,
-    nearest_free_point,
-    straighten,
-)
+from evenroad.world.gridmap.nearest import nearest_free_point, nearest_obstacle_points
+from evenroad.world.gridmap.search import find_way, straighten
 from evenroad.world.protocol import Connection
 
 _SPREADS = (32, 96)

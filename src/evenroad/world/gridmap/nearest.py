@@ -1,13 +1,15 @@
-"""The compiled search for the obstacle point nearest to a map point, at any distance."""
+"""The compiled searches for the obstacle point, and for the free point, that are nearest to a point."""
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from evenroad.world.gridmap.cells import DiskTables
-from evenroad.world.gridmap.kernel import to_padded
+from evenroad.world.gridmap.cells import BLOCKED, FREE, DiskTables
+from evenroad.world.gridmap.kernel import point_is_free, to_padded
 
 
 @njit(cache=True, nogil=True)
@@ -48,3 +50,32 @@ def nearest_obstacle_points(
                     nearest[i, 0], nearest[i, 1] = near_x - 1.0, near_y - 1.0
         distance[i] = np.sqrt(best)
     return nearest, distance
+
+
+@njit(cache=True, nogil=True)
+def nearest_free_point(x: float, y: float, disk: DiskTables) -> tuple[float, float]:
+    """Return the point of surely free cells, or of the half lattice elsewhere, that is nearest to (x, y); else nan."""
+    rows, cols = disk.cells.shape
+    col, row = min(max(int(x), 1), cols - 2), min(max(int(y), 1), rows - 2)
+    best, best_x, best_y = np.inf, np.nan, np.nan
+    for ring in range(max(rows, cols)):
+        if (ring - 1.0) > math.sqrt(best) and ring > 1:
+            break
+        for r in range(max(row - ring, 1), min(row + ring, rows - 2) + 1):
+            step = 1 if abs(r - row) == ring else 2 * ring
+            for c in range(col - ring, col + ring + 1, max(step, 1)):
+                if c < 1 or c > cols - 2 or disk.cells[r, c] == BLOCKED:
+                    continue
+                if disk.cells[r, c] >= FREE:
+                    # Not onto the sides of the cell, where rounding decides whose they are.
+                    near_x, near_y = min(max(x, c + 1e-6), c + 1 - 1e-6), min(max(y, r + 1e-6), r + 1 - 1e-6)
+                    squared = (near_x - x) ** 2 + (near_y - y) ** 2
+                    if squared < best:
+                        best, best_x, best_y = squared, near_x, near_y
+                    continue
+                for i in range(9):
+                    near_x, near_y = c + 0.5 * (i % 3), r + 0.5 * (i // 3)
+                    squared = (near_x - x) ** 2 + (near_y - y) ** 2
+                    if squared < best and point_is_free(near_x, near_y, disk):
+                        best, best_x, best_y = squared, near_x, near_y
+    return best_x, best_y

@@ -91,7 +91,7 @@ def load_ros_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False)
     rows, cols = obstacles.shape
     x, y, yaw = meta.origin
     frame = MapFrame(rows=rows, cols=cols, resolution=meta.resolution, origin=(x, y), yaw=yaw, y_up=True)
-    return GridMap(obstacles, frame)
+    return GridMap(obstacles, frame, unknown)
 
 
 def read_ros_meta(path: str | os.PathLike[str]) -> RosMapMeta:
