@@ -159,12 +159,9 @@ def _shown(result: PlanResult, world: DiskWorld) -> tuple[np.ndarray, np.ndarray
     corners = frame.to_map(
         np.array([[left, top], [right, top], [left, bottom], [right, bottom]], dtype=float)
     )
-    places = [
-        corners,
-        *((place + [[-1.0], [1.0]] * np.full(2, world.radius)) for place in (result.start, result.goal)),
-    ]
     if known.all():
         return corners.min(axis=0), corners.max(axis=0)
-    places = np.concatenate(places)
-    margin = 0.03 * (places.max(axis=0) - places.min(axis=0)).max()
-    return places.min(axis=0) - margin, places.max(axis=0) + margin
+    disks = [place + [[-world.radius], [world.radius]] for place in (result.start, result.goal)]
+    shown = np.concatenate([corners, *disks])
+    margin = 0.03 * (shown.max(axis=0) - shown.min(axis=0)).max()
+    return shown.min(axis=0) - margin, shown.max(axis=0) + margin

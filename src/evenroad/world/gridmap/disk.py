@@ -151,7 +151,7 @@ class DiskWorld:
     def nearest_free(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64] | None:
         """Return a free map point, (2,), near the map point `q`, (2,), or None if there is none.
 
-        It is the nearest of the surely free cells, and of corners and middles of the cells that are partly free.
+        It is the nearest of the surely free cells, and of a lattice of quarter pixels in those that are partly free.
         """
         pixels = self.grid.frame.to_pixels(as_batch("q", np.reshape(q, (1, -1)), 2))[0]
         x, y = nearest_free_point(pixels[0] + 1.0, pixels[1] + 1.0, self._tables)

@@ -54,7 +54,7 @@ def nearest_obstacle_points(
 
 @njit(cache=True, nogil=True)
 def nearest_free_point(x: float, y: float, disk: DiskTables) -> tuple[float, float]:
-    """Return the point of surely free cells, or of the half lattice elsewhere, that is nearest to (x, y); else nan."""
+    """Return the nearest point of surely free cells, or of a lattice of quarter pixels elsewhere; nan if none is free."""
     rows, cols = disk.cells.shape
     col, row = min(max(int(x), 1), cols - 2), min(max(int(y), 1), rows - 2)
     best, best_x, best_y = np.inf, np.nan, np.nan
@@ -73,8 +73,8 @@ def nearest_free_point(x: float, y: float, disk: DiskTables) -> tuple[float, flo
                     if squared < best:
                         best, best_x, best_y = squared, near_x, near_y
                     continue
-                for i in range(9):
-                    near_x, near_y = c + 0.5 * (i % 3), r + 0.5 * (i // 3)
+                for i in range(25):
+                    near_x, near_y = c + 0.25 * (i % 5), r + 0.25 * (i // 5)
                     squared = (near_x - x) ** 2 + (near_y - y) ** 2
                     if squared < best and point_is_free(near_x, near_y, disk):
                         best, best_x, best_y = squared, near_x, near_y

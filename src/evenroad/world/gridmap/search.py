@@ -2,8 +2,8 @@
 
 Ways are made of map points, so that what is tested is what is returned.  They lead over the *half lattice*, the points
 ``(column / 2, row / 2)`` of the padded pixel plane (see `cells`): over the centres of surely free cells, and over all
-of its points at *gates*, where components of such cells come close to each other (see `components`).  The narrowest place of a gate is
-the middle between two corners or sides of squares, which is a point of the half lattice.
+of its points at *gates*, where components of such cells come close to each other (see `components`).  The narrowest
+place of a gate is the middle between two corners or sides of squares, which is a point of the half lattice.
 """
 
 from __future__ import annotations
@@ -169,7 +169,7 @@ def straighten(way: Any, disk: DiskTables, spreads: Any) -> tuple[npt.NDArray[np
 
 
 @njit(cache=True, nogil=True)
-def _links(x: float, y: float, disk: DiskTables, gates: npt.NDArray[np.bool_]) -> tuple[list[int], int]:
+def _links(x: float, y: float, disk: DiskTables, gates: npt.NDArray[np.bool_]) -> tuple[Any, int]:
     """Return the lattice points near (x, y) that can be reached straight, and how many were tried."""
     px, py = to_padded(x, y, disk.frame)
     rows, cols = disk.cells.shape
