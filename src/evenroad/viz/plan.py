@@ -20,8 +20,7 @@ from evenroad.roadmap import PlanResult, Status
 from evenroad.viz import style
 
 if TYPE_CHECKING:
-    from evenroad.world import GridMap
-    from evenroad.world.gridmap.disk import DiskWorld
+    from evenroad.world.gridmap.disk import DiskWorld, Grid
 
 LONG_SIDE_INCHES = 10.0
 DPI = 130
@@ -82,7 +81,7 @@ def _cells_with_components(result: PlanResult, world: DiskWorld) -> np.ndarray:
 _MAP_COLOURS = (style.FREE, style.OBSTACLE, style.UNKNOWN, style.START_COMPONENT, style.GOAL_COMPONENT)
 
 
-def _draw_map(axes: Axes, gridmap: GridMap, kinds: np.ndarray) -> None:
+def _draw_map(axes: Axes, gridmap: Grid, kinds: np.ndarray) -> None:
     frame = gridmap.frame
     # imshow draws in pixel coordinates; the affine map takes those to map units, yaw included.
     corners = frame.to_map(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))
@@ -161,7 +160,7 @@ def _shown(result: PlanResult, world: DiskWorld) -> tuple[np.ndarray, np.ndarray
     )
     if known.all():
         return corners.min(axis=0), corners.max(axis=0)
-    disks = [place + [[-world.radius], [world.radius]] for place in (result.start, result.goal)]
+    disks = [place + world.radius * np.array([[-1.0], [1.0]]) for place in (result.start, result.goal)]
     shown = np.concatenate([corners, *disks])
     margin = 0.03 * (shown.max(axis=0) - shown.min(axis=0)).max()
     return shown.min(axis=0) - margin, shown.max(axis=0) + margin

@@ -6,6 +6,7 @@ import hashlib
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -15,9 +16,13 @@ from evenroad.space import Rectangle
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.gridmap.cells import DiskTables, classify, vertical_runs
 from evenroad.world.gridmap.components import PARTS, find_gates, label_components
-from evenroad.world.gridmap.gridmap import GridMap
-from evenroad.world.gridmap.kernel import motions_are_free, points_are_free
-from evenroad.world.gridmap.nearest import nearest_free_point, nearest_obstacle_points
+from evenroad.world.gridmap.frame import MapFrame
+from evenroad.world.gridmap.kernel import (
+    motions_are_free,
+    nearest_free_point,
+    nearest_obstacle_points,
+    points_are_free,
+)
 from evenroad.world.gridmap.search import find_way, straighten
 from evenroad.world.protocol import Connection
 
@@ -26,6 +31,30 @@ _SPREADS = (32, 96)
 
 _SMALLEST_RADIUS = 1e-150
 """In pixels: its square is still above 0, so that a disk of any size touches what its centre lies on."""
+
+
+class Grid(Protocol):
+    """What a disk needs to know of a map; a GridMap does."""
+
+    @property
+    def occupied(self) -> npt.NDArray[np.bool_]:
+        """Which cells are obstacles, (rows, cols)."""
+        ...
+
+    @property
+    def unknown(self) -> npt.NDArray[np.bool_]:
+        """Which cells the map says nothing of, (rows, cols): for pictures."""
+        ...
+
+    @property
+    def frame(self) -> MapFrame:
+        """Where the cells lie."""
+        ...
+
+    @property
+    def space(self) -> Rectangle:
+        """The map's rectangle, in map units."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,8 +68,8 @@ class DiskWorld:
 
     Parameters
     ----------
-    grid : GridMap
-        The map.
+    grid : Grid
+        The map: a GridMap.
     radius : float
         Of the disk with any clearance added, in map units, > 0.
 
@@ -50,7 +79,7 @@ class DiskWorld:
         If `radius` is not such a number.
     """
 
-    grid: GridMap
+    grid: Grid
     radius: float
     _tables: DiskTables = field(init=False, repr=False)
 
@@ -204,7 +233,7 @@ class DiskWorld:
         return f"{reason}; the nearest free place is ({free[0]:.6g}, {free[1]:.6g})"
 
 
-def _tables_of(grid: GridMap, radius: float) -> DiskTables:
+def _tables_of(grid: Grid, radius: float) -> DiskTables:
     radius_in_pixels = max(radius / grid.frame.resolution, _SMALLEST_RADIUS)
     # The ring of occupied cells stands for everything outside the map.
     above, below = vertical_runs(np.pad(grid.occupied, 1, constant_values=True))

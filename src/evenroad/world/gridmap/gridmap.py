@@ -99,7 +99,7 @@ class GridMap:
         InvalidValue
             If one of them is not such a number.
         """
-        # Here, so that reading a map needs no compiled code.
+        # Here, so that reading a map needs no compiled code; the disk's module knows nothing of this one.
         from evenroad.world.gridmap.disk import DiskWorld
 
         radius = require_positive("robot_radius", robot_radius)
