@@ -88,6 +88,19 @@ def test_every_public_name_can_be_loaded():
         assert getattr(evenroad, name) is not None
 
 
+def test_the_stub_says_where_every_public_name_is_and_nothing_else():
+    """What type checkers read is what is loaded: the package itself takes its names from the stub."""
+    stub = ast.parse((ROOT / "__init__.pyi").read_text())
+    imports = [node for node in stub.body if isinstance(node, ast.ImportFrom)]
+    for node in imports:
+        (alias,) = node.names
+        assert alias.name == alias.asname, "X as X is what makes a name public to a type checker"
+        if node.module != "evenroad":
+            assert getattr(evenroad, alias.name) is getattr(sys.modules[node.module], alias.name)
+    assert {"__version__", *(node.names[0].name for node in imports)} == set(evenroad.__all__)
+    assert len(stub.body) == len(imports) + 1
+
+
 def test_an_unknown_public_name_is_an_attribute_error():
     with pytest.raises(AttributeError, match="nonsense"):
         _ = evenroad.nonsense

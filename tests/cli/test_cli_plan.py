@@ -178,10 +178,11 @@ def test_without_a_number_of_points_the_hardest_maze_is_solved(run, tmp_path):
 def test_that_there_is_no_path_is_proved_where_it_can_be(run, room, tmp_path):
     # The gap is 10 wide.
     assert run(*plan_arguments(room, (12, 7), (12, 23), 5, out="a"))[0] == 0
-    code, out, _ = run(*plan_arguments(room, (12, 7), (12, 23), 5.05, out="a"))
-    assert code == 1
-    assert json.loads((tmp_path / "a.json").read_text())["status"] == "not_connected"
-    assert "proved: there is no path" in " ".join(out.split())
+    for options in ({}, {"n": 64}):
+        code, out, _ = run(*plan_arguments(room, (12, 7), (12, 23), 5.05, out="a", **options))
+        assert code == 1
+        assert json.loads((tmp_path / "a.json").read_text())["status"] == "not_connected"
+        assert "proved: there is no path" in " ".join(out.split())
 
 
 def test_an_invalid_start_names_the_nearest_free_place(run, room, tmp_path):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -21,8 +22,8 @@ from evenroad.cli.plan_parts import (
 from evenroad.cli.plan_table import print_plan
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record, save_json, save_path_csv
-from evenroad.roadmap import Budget, find_path
-from evenroad.robot.scene_file import is_scene
+from evenroad.roadmap import Budget, Status, find_path
+from evenroad.roadmap.find_path import PROVED
 from evenroad.world import GridMap, load_map
 from evenroad.world.gridmap.load import map_files
 
@@ -32,8 +33,12 @@ def plan_disk(plan: DiskOptions) -> int:
     rule = chosen_rule(plan, default_k=10)
     generator(plan.seed)
     start, goal = (_position(name, getattr(plan, name)) for name in ("start", "goal"))
-    if plan.world.suffix in (".yaml", ".yml") and is_scene(plan.world):
-        raise InvalidValue(f"{plan.world} is a scene, no map: give the arm that moves in it with --robot")
+    if plan.world.suffix in (".yaml", ".yml"):
+        # Here, so that whoever plans on an image does not wait for robots to load.
+        from evenroad.robot.scene_file import is_scene
+
+        if is_scene(plan.world):
+            raise InvalidValue(f"{plan.world} is a scene, no map: give the arm that moves in it with --robot")
     gridmap = load_map(plan.world, unknown_is_free=plan.unknown_is_free)
     suffixes = ("json", "csv") if plan.csv else ("json",)
     files = output_files(plan, map_files(plan.world), suffixes, "map")
@@ -49,6 +54,9 @@ def plan_disk(plan: DiskOptions) -> int:
         points, note = draw_points(plan, 2)
         load_compiled_code(world, start, goal, points, rule)
         result = roadmap.plan(world, start, goal, points, rule=rule, shorten=not plan.raw)
+        if result.status is Status.NOT_CONNECTED and not world.may_connect(np.array(start), np.array(goal)):
+            # No number of points would help.
+            result = replace(result, message=PROVED)
     else:
         world = gridmap.world(plan.robot_radius, clearance=plan.clearance)
         # Once for nothing: else the times would be those of loading compiled code.

@@ -16,6 +16,8 @@ from evenroad.world import ConnectsItself, Explains, Separates, World
 SECONDS = 5.0
 """Wall time of a budget that is not given."""
 
+PROVED = "proved: there is no path; start and goal lie in two components of the free space"
+
 
 def find_path(
     world: World,
@@ -105,7 +107,7 @@ def find_path(
         if not possible:
             return result(
                 Status.NOT_CONNECTED,
-                "proved: there is no path; start and goal lie in two components of the free space",
+                PROVED,
             )
     return plan_anytime(world, first, last, budget=budget, shorten=shorten)
 
