@@ -165,7 +165,9 @@ def straighten(way: Any, disk: DiskTables, spreads: Any) -> tuple[npt.NDArray[np
             points = shorter
             if before - after < 1e-3 * before:
                 break
-    return points, motions
+    # Points on the way, or nearly so, are not needed.
+    points, tried = _skip_ahead(points, disk)
+    return points, motions + tried
 
 
 @njit(cache=True, nogil=True)
