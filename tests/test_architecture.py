@@ -11,7 +11,7 @@ import evenroad
 
 ROOT = Path(evenroad.__file__).parent
 
-BASE = {"errors", "_checks", "_rng", "_files", "_progress", "_yaml", "_extras"}
+BASE = {"errors", "_checks", "_rng", "_files", "_progress", "_yaml", "_extras", "_compiled"}
 MAY_IMPORT = {
     "points": BASE,
     "space": BASE,
@@ -23,8 +23,10 @@ MAY_IMPORT = {
     "testing": BASE | {"space", "world"},
     "viz": BASE | {"points", "space", "world", "geometry", "robot", "roadmap"},
     "robot": BASE | {"space", "geometry", "world"},
+    "arms": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
     "research": BASE | {"points", "space", "world", "geometry", "robot", "roadmap", "io", "viz"},
-    "cli": BASE | {"points", "space", "world", "geometry", "robot", "roadmap", "research", "io", "viz"},
+    "cli": BASE
+    | {"points", "space", "world", "geometry", "robot", "roadmap", "arms", "research", "io", "viz"},
     **dict.fromkeys(BASE, BASE),
 }
 """Part -> the parts it may import: the arrows of docs/design.md."""
@@ -84,6 +86,19 @@ def test_importing_evenroad_loads_nothing_heavy():
 def test_every_public_name_can_be_loaded():
     for name in evenroad.__all__:
         assert getattr(evenroad, name) is not None
+
+
+def test_the_stub_says_where_every_public_name_is_and_nothing_else():
+    """What type checkers read is what is loaded: the package itself takes its names from the stub."""
+    stub = ast.parse((ROOT / "__init__.pyi").read_text())
+    imports = [node for node in stub.body if isinstance(node, ast.ImportFrom)]
+    for node in imports:
+        (alias,) = node.names
+        assert alias.name == alias.asname, "X as X is what makes a name public to a type checker"
+        if node.module != "evenroad":
+            assert getattr(evenroad, alias.name) is getattr(sys.modules[node.module], alias.name)
+    assert {"__version__", *(node.names[0].name for node in imports)} == set(evenroad.__all__)
+    assert len(stub.body) == len(imports) + 1
 
 
 def test_an_unknown_public_name_is_an_attribute_error():

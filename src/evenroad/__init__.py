@@ -1,65 +1,41 @@
 """evenroad: point sets that make sampling-based motion planners need fewer samples.
 
-The public names below are loaded on first use, so that ``import evenroad`` costs milliseconds.
+The public names are those of ``__init__.pyi``, which type checkers and editors read as it is.  Here they are loaded on
+first use, so that ``import evenroad`` costs milliseconds.
 """
 
 from __future__ import annotations
 
 import importlib
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
+
+from evenroad import _compiled
 
 __version__ = "0.1.0"
 
-if TYPE_CHECKING:
-    from evenroad.errors import EvenroadError as EvenroadError
-    from evenroad.points import Origin as Origin
-    from evenroad.points import PointSet as PointSet
-    from evenroad.points import draw as draw
-    from evenroad.points import load_points as load_points
-    from evenroad.points import save_points as save_points
-    from evenroad.roadmap import KNearest as KNearest
-    from evenroad.roadmap import PlanResult as PlanResult
-    from evenroad.roadmap import Radius as Radius
-    from evenroad.roadmap import Status as Status
-    from evenroad.roadmap.plan import plan as plan
-    from evenroad.robot import ArmWorld as ArmWorld
-    from evenroad.robot import load_robot as load_robot
-    from evenroad.robot import load_scene as load_scene
-    from evenroad.viz import save_plan_picture as save_plan_picture
-    from evenroad.viz.arm import save_arm_picture as save_arm_picture
-    from evenroad.world import GridMap as GridMap
-    from evenroad.world import load_map as load_map
+_compiled.provide_cache()
 
-_HOMES = {
-    "EvenroadError": "evenroad.errors",
-    "Origin": "evenroad.points",
-    "PointSet": "evenroad.points",
-    "draw": "evenroad.points",
-    "load_points": "evenroad.points",
-    "save_points": "evenroad.points",
-    "KNearest": "evenroad.roadmap",
-    "PlanResult": "evenroad.roadmap",
-    "Radius": "evenroad.roadmap",
-    "Status": "evenroad.roadmap",
-    "plan": "evenroad.roadmap",
-    "ArmWorld": "evenroad.robot",
-    "load_robot": "evenroad.robot",
-    "load_scene": "evenroad.robot",
-    "save_plan_picture": "evenroad.viz",
-    "save_arm_picture": "evenroad.viz.arm",
-    "GridMap": "evenroad.world",
-    "load_map": "evenroad.world",
-}
 
-__all__ = ["__version__", "qmc", *_HOMES]
+def _read_homes() -> dict[str, str]:
+    """Return the module of each public name: the lines ``from MODULE import NAME as NAME`` of the stub."""
+    lines = Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8").splitlines()
+    words = [line.split() for line in lines if line.startswith("from ")]
+    return {name: module for _, module, _, name, *_ in words}
+
+
+_HOMES = _read_homes()
+
+__all__ = ["__version__", *_HOMES]
 
 
 def __getattr__(name: str) -> Any:
-    if name in _HOMES:
-        return getattr(importlib.import_module(_HOMES[name]), name)
-    if name == "qmc":
-        return importlib.import_module("evenroad.qmc")
-    raise AttributeError(f"module 'evenroad' has no attribute {name!r}")
+    if name not in _HOMES:
+        raise AttributeError(f"module 'evenroad' has no attribute {name!r}")
+    home = _HOMES[name]
+    if home == "evenroad":
+        return importlib.import_module(f"evenroad.{name}")
+    return getattr(importlib.import_module(home), name)
 
 
 def __dir__() -> list[str]:

@@ -80,6 +80,29 @@ def test_the_same_command_gives_the_same_path_and_another_seed_another(run, tmp_
     assert a != c
 
 
+def test_without_a_picture_nothing_is_drawn_and_matplotlib_is_not_even_loaded(tmp_path):
+    code = "import sys; from evenroad.cli import main; main(sys.argv[1:]); print('matplotlib' in sys.modules)"
+    line = [sys.executable, "-c", code, *map(str, plan_arguments(out="a")), "--no-picture"]
+    done = subprocess.run(line, capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "False"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.json"]
+    assert "png" not in done.stdout
+
+
+def test_the_answer_is_there_before_the_picture_is_drawn(run, tmp_path, monkeypatch):
+    import evenroad.viz
+
+    def fail(*_):
+        assert (tmp_path / "a.json").exists()
+        raise MemoryError("no room for a picture")
+
+    monkeypatch.setattr(evenroad.viz, "save_plan_picture", fail)
+    code, out, err = run(*plan_arguments(out="a"))
+    assert code == 2
+    assert "solved" in out
+    assert "no room for a picture" in err
+
+
 def test_csv_has_one_waypoint_a_row(run, tmp_path):
     run(*plan_arguments(out="a"), "--csv")
     rows = (tmp_path / "a.csv").read_text().splitlines()
@@ -138,6 +161,44 @@ def test_an_end_that_touches_an_obstacle_is_a_result_with_a_picture(run, room, t
     assert status in out
 
 
+def test_without_a_number_of_points_the_hardest_maze_is_solved(run, tmp_path):
+    maze = load_maze(3)
+    code, out, err = run(*plan_arguments(maze.path, maze.start, maze.goal, maze.robot_radius, out="a"))
+    assert (code, err) == (0, "")
+    record = json.loads((tmp_path / "a.json").read_text())
+    path, world = np.array(record["path"]), maze.world()
+    assert world.motion_valid(path[:-1], path[1:]).all()
+    assert record["query"]["n"] is None
+    assert "milestones" not in out
+
+
+def test_that_there_is_no_path_is_proved_where_it_can_be(run, room, tmp_path):
+    # The gap is 10 wide.
+    assert run(*plan_arguments(room, (12, 7), (12, 23), 5, out="a"))[0] == 0
+    for options in ({}, {"n": 64}):
+        code, out, _ = run(*plan_arguments(room, (12, 7), (12, 23), 5.05, out="a", **options))
+        assert code == 1
+        assert json.loads((tmp_path / "a.json").read_text())["status"] == "not_connected"
+        assert "proved: there is no path" in " ".join(out.split())
+
+
+def test_an_invalid_start_names_the_nearest_free_place(run, room, tmp_path):
+    run(*plan_arguments(room, (20, 12), (20, 25), 4, out="a"))
+    assert "the nearest free place is (20, 10)" in json.loads((tmp_path / "a.json").read_text())["message"]
+
+
+def test_points_are_drawn_where_a_mostly_unknown_map_is_free(run, tmp_path):
+    pixels = np.full((400, 400), 205, dtype=np.uint8)
+    pixels[30:70, 300:360] = 254
+    Image.fromarray(pixels).save(tmp_path / "far.png")
+    (tmp_path / "far.yaml").write_text(
+        "image: far.png\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    )
+    code, _, _ = run(*plan_arguments("far.yaml", (31, 35), (35, 34), 0.2, out="a", n=128))
+    assert code == 0
+    assert json.loads((tmp_path / "a.json").read_text())["counts"]["valid"] > 100
+
+
 def test_clearance_adds_to_the_radius(run, room, tmp_path):
     assert run(*plan_arguments(room, (5, 5), (5, 25), 4, out="a"))[0] == 0
     code, _, _ = run(*plan_arguments(room, (5, 5), (5, 25), 4, out="a", clearance=1.5))
@@ -173,6 +234,7 @@ BAD = {
     "an output without a name": ({"out": "."}, "file name"),
     "a name that is too long": ({"out": "x" * 300}, "cannot write"),
     "more points than can be numbered": ({"n": 10**12}, "at most 2147483647"),
+    "no time": ({"time": 0}, "time must be a finite number > 0, got 0"),
     "a folder that is a file": ({"out": "map.txt/result"}, "map.txt"),
 }
 
@@ -244,14 +306,19 @@ def test_an_interrupt_exits_with_130_and_leaves_no_half_file(run, tmp_path, monk
         raise KeyboardInterrupt
 
     monkeypatch.setattr(evenroad.roadmap, "plan", interrupted)
-    code, _, err = run(*plan_arguments(out="a"))
+    code, _, err = run(*plan_arguments(out="a", n=64))
     assert code == 130
     assert "interrupted" in err
     assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize(
-    "arguments", [["--help"], *([verb, "--help"] for verb in ("plan", "points", "measure", "train", "demo"))]
+    "arguments",
+    [
+        ["--help"],
+        *([verb, "--help"] for verb in ("plan", "points", "measure", "train", "demo")),
+        ["plan", "-h"],
+    ],
 )
 def test_help_is_there_for_every_verb(run, arguments):
     code, out, _ = run(*arguments)
@@ -301,7 +368,7 @@ def test_too_little_memory_is_one_line(run, monkeypatch):
         raise MemoryError("Unable to allocate 3 EiB")
 
     monkeypatch.setattr(evenroad.roadmap, "plan", too_large)
-    code, _, err = run(*plan_arguments(out="a"))
+    code, _, err = run(*plan_arguments(out="a", n=64))
     assert code == 2
     assert err == "evenroad: error: not enough memory: Unable to allocate 3 EiB\n"
 

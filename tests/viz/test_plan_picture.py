@@ -8,7 +8,7 @@ from PIL import Image
 
 from evenroad.errors import BrokenFile
 from evenroad.points import draw
-from evenroad.roadmap import plan
+from evenroad.roadmap import find_path, plan
 from evenroad.viz import draw_plan, save_plan_picture, style
 from evenroad.world import GridMap, MapFrame
 
@@ -107,3 +107,27 @@ def test_a_picture_that_cannot_be_written_is_our_error(tmp_path):
     result = plan(world, (5, 5), (5, 25), draw("halton", 20, 2))
     with pytest.raises(BrokenFile, match="does not exist"):
         save_plan_picture(tmp_path / "no" / "a.png", result, world)
+
+
+def test_unknown_cells_do_not_look_like_walls_and_only_what_is_known_is_shown():
+    occupied = np.ones((200, 200), dtype=bool)
+    unknown = occupied.copy()
+    occupied[50:80, 60:100] = unknown[48:82, 58:102] = False
+    world = GridMap(occupied, unknown=unknown).world(1.0)
+    axes = _axes(find_path(world, (65, 55), (95, 75)), world)
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    assert 50 < left < 58 < 102 < right < 110
+    assert 40 < top < 48 < 82 < bottom < 90
+    kinds = axes.images[0].get_array()
+    assert kinds[10, 10] != kinds[49, 80] != kinds[60, 80]
+
+
+def test_two_components_have_a_colour_each():
+    occupied = np.zeros((30, 40), dtype=bool)
+    occupied[14:16] = True
+    world = GridMap(occupied).world(2.0)
+    kinds = _axes(find_path(world, (5, 5), (5, 25)), world).images[0].get_array()
+    assert len({kinds[0, 0], kinds[15, 5], kinds[5, 5], kinds[25, 5]}) == 4
+    connected = _room().world(2.0)
+    kinds = _axes(find_path(connected, (5, 5), (5, 25)), connected).images[0].get_array()
+    assert kinds[5, 5] == kinds[25, 5]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -247,3 +248,29 @@ def test_a_resolution_far_too_small_is_an_error_and_no_endless_wait():
 def test_what_is_no_function_is_refused():
     with pytest.raises(InvalidValue, match="is_valid"):
         FunctionWorld(SQUARE, np.ones(3), 0.1)
+
+
+def _ball(radius):
+    def outside_ball(q):
+        return np.hypot(q[:, 0] - 0.5, q[:, 1] - 0.5) > radius
+
+    return FunctionWorld(Box((0, 0), (1, 1)), outside_ball, 0.01)
+
+
+def test_equal_worlds_have_one_fingerprint_and_others_another():
+    first = _ball(0.2)
+    assert first.name == "outside_ball"
+    assert first.fingerprint() == _ball(0.2).fingerprint()
+    others = [
+        _ball(0.21),
+        replace(first, resolution=0.02),
+        replace(first, name="another cell"),
+        replace(first, space=Box((0, 0), (1, 2))),
+    ]
+    assert len({world.fingerprint() for world in (first, *others)}) == 5
+
+
+def test_a_single_place_makes_no_difference_to_how_a_fingerprint_is_computed():
+    one = FunctionWorld(Box((0, 0), (1, 1)), lambda q: bool(q[0] > 0.5), 0.1, vectorised=False, name="half")
+    many = FunctionWorld(Box((0, 0), (1, 1)), lambda q: q[:, 0] > 0.5, 0.1, name="half")
+    assert one.fingerprint() == many.fingerprint()

@@ -140,6 +140,26 @@ def test_a_slanted_way_that_just_touches_a_corner_is_free():
     assert not grid.world(np.nextafter(5.0, 6.0)).motion_valid(a, b)[0]
 
 
+@pytest.mark.parametrize("angle", [0.3, 0.6, 0.9, 1.2])
+@pytest.mark.parametrize("beyond", [0.02, 0.05, 0.1])
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_corner_that_is_passed_just_before_a_long_motion_ends_blocks_it(angle, beyond, mirrored):
+    radius, long = 1.0, 150.0
+    corner = np.array([200.0, 200.0])
+    away = -np.array([math.sin(angle), math.cos(angle)])
+    ahead = np.array([math.cos(angle), -math.sin(angle)])
+    occupied = with_cells(empty(400, 400), (200, 200))
+    world = GridMap(occupied[:, ::-1] if mirrored else occupied).world(radius)
+    # At its foot the way is a hair too near; at its end it is a hair farther than the radius again.
+    for hair, free in ((-0.25, False), (0.25, True)):
+        foot = corner + (radius + hair * beyond**2) * away
+        end, start = foot + beyond * ahead, foot - long * ahead
+        if mirrored:
+            start, end = ([400.0 - x, y] for x, y in (start, end))
+        assert world.valid([start, end]).all()
+        assert world.motion_valid([start, end], [end, start]).tolist() == [free, free]
+
+
 # ---- the map's extent
 
 

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import tyro
 
-from evenroad.cli.plan import Plan
+from evenroad.cli.plan import PlanDisk
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,7 +27,7 @@ class Demo:
         from evenroad.research.mazes import load_maze
 
         maze = load_maze(self.level)
-        return Plan(
+        return PlanDisk(
             world=maze.path,
             start=tuple(map(str, maze.start)),
             goal=tuple(map(str, maze.goal)),

@@ -2,86 +2,68 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Annotated
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 
-import tyro
+from evenroad.cli.plan_options import ArmOptions, DiskOptions
+from evenroad.errors import InvalidValue
 
 
 @dataclass(frozen=True, kw_only=True)
-class Plan:
-    """Plan a short path for a disk on a map or for an arm in a scene, write a picture and a JSON result.
+class PlanDisk(DiskOptions):
+    """Plan a short path for a disk on a map, write a JSON result and a picture.
 
     A disk (--robot-radius) moves on a bare image (.png, .pgm): unit = pixel, x right, y DOWN, origin in the top-left
     corner, dark = obstacle; or on a ROS map_server file (.yaml): unit = metre, map frame, y up.
-    An arm (--robot) moves in a scene file (.yaml): metres and radians, frame of the robot's root link.
-    """
 
-    world: Annotated[Path, tyro.conf.Positional]
-    """A map (.png or .pgm image, ROS map_server .yaml) or a scene (.yaml; shipped: box-reach.yaml,
-    box-reach-narrow.yaml)."""
-    start: tuple[str, ...]
-    """Disk: x y in map units.  Arm: one number a joint with commas between them, name=value,..., or a named state."""
-    goal: tuple[str, ...]
-    """As start."""
-    robot_radius: float | None = None
-    """Plan for a disk of this radius, > 0, in map units."""
-    robot: str | None = None
-    """Plan for this arm: a URDF file, or the name of a shipped one (ur5, arm7)."""
-    clearance: float = 0.0
-    """Disk: margin to keep from every obstacle, added to the radius, >= 0."""
-    unknown_is_free: bool = False
-    """Disk: may pass through unknown cells of a ROS map."""
-    srdf: Path | None = None
-    """Arm: its SRDF, with groups, named states and pairs of links that need no test."""
-    group: str | None = None
-    """Arm: a group of the SRDF, or joints with commas between them; the others are held where the named states of start
-    and goal have them, else at 0."""
-    bodies: Path | None = None
-    """Arm: a YAML file of capsules and spheres in place of the URDF's collision geometry."""
-    deg: bool = False
-    """Arm: angles of start and goal are in degrees."""
-    resolution: float | None = None
-    """Arm: largest step of a motion check, > 0, in radians (default 0.05)."""
-    n: Annotated[int, tyro.conf.arg(aliases=["-n"])] = 512
-    """How many points to draw."""
-    k: Annotated[int | None, tyro.conf.arg(aliases=["-k"])] = None
-    """Connect each milestone with its k nearest, symmetrised (default 10; 20 from six joints on)."""
-    connect_radius: float | None = None
-    """Connect milestones up to this distance instead, in map units or radians."""
-    sampler: str = "auto"
-    """even, hickernell, mpmc, korobov, lattice, halton, sobol, sukharev or uniform; auto, the default, is
-    even."""
-    plain: bool = False
-    """halton and sobol: the plain sequence instead of the scrambled one."""
-    skip: int = 0
-    """halton and sobol: index of the first point of the sequence."""
-    allow_fewer: bool = False
-    """sukharev: take the largest grid with at most n points."""
-    seed: int = 0
-    """Seed of everything random; the same command gives the same path."""
-    raw: bool = False
-    """Leave the path as it runs along the roadmap, without shortcutting it."""
-    out: Path | None = None
-    """Where results go: OUT.png, OUT.json and, for an arm, OUT.csv. Default: the world's stem in the current folder,
-    with -plan added where that would overwrite an input."""
-    csv: bool = False
-    """Disk: also write the path as OUT.csv."""
+    For an arm in a scene give --robot instead; its options: evenroad plan --robot ur5 --help
+    """
 
     def run(self) -> int:
         """Plan, write, report; return 0 when solved, else 1."""
-        from evenroad.errors import InvalidValue
+        from evenroad.cli.plan_disk import plan_disk
 
-        if (self.robot_radius is None) == (self.robot is None):
-            given = "neither" if self.robot is None else "both"
-            raise InvalidValue(
-                f"give --robot-radius (a disk) or --robot (an arm), exactly one of them, not {given}"
-            )
-        if self.robot is None:
-            from evenroad.cli.plan_disk import plan_disk
+        return plan_disk(self)
 
-            return plan_disk(self)
+
+@dataclass(frozen=True, kw_only=True)
+class PlanArm(ArmOptions):
+    """Plan a short path for an arm in a scene, write a JSON result, the path as CSV and a picture.
+
+    An arm (--robot) moves in a scene file (.yaml): metres and radians, frame of the robot's root link.
+
+    For a disk on a map give --robot-radius instead; its options: evenroad plan --help
+    """
+
+    def run(self) -> int:
+        """Plan, write, report; return 0 when solved, else 1."""
         from evenroad.cli.plan_arm import plan_arm
 
         return plan_arm(self)
+
+
+def plan_type(arguments: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
+    """Return which of the two a command line asks for, by the robot that is given.
+
+    Raises
+    ------
+    InvalidValue
+        If no robot or two are given, or an option that only the other kind has.
+    """
+    given = {word.partition("=")[0].replace("_", "-") for word in arguments if word.startswith("--")}
+    chosen: type[PlanDisk] | type[PlanArm] = PlanArm if "--robot" in given else PlanDisk
+    if "-h" in arguments or "--help" in given:
+        return chosen
+    if len(given & {"--robot", "--robot-radius"}) != 1:
+        many = "both" if "--robot" in given else "neither"
+        raise InvalidValue(
+            f"give --robot-radius (a disk) or --robot (an arm), exactly one of them, not {many}"
+        )
+    other, needs = (PlanDisk, "--robot-radius") if chosen is PlanArm else (PlanArm, "--robot")
+    for option in sorted(given & (_options(other) - _options(chosen))):
+        raise InvalidValue(f"{option} goes with {needs} only")
+    return chosen
+
+
+def _options(kind: type[PlanDisk] | type[PlanArm]) -> set[str]:
+    return {f"--{each.name.replace('_', '-')}" for each in fields(kind)}

@@ -3,50 +3,64 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from dataclasses import replace
 
 import numpy as np
 
 from evenroad import roadmap
+from evenroad._checks import require_positive
+from evenroad._rng import generator
+from evenroad.cli.plan_options import DiskOptions
 from evenroad.cli.plan_parts import (
     chosen_rule,
     common_query,
     draw_points,
     load_compiled_code,
     output_files,
-    refuse_options,
+    wants_points,
 )
 from evenroad.cli.plan_table import print_plan
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record, save_json, save_path_csv
-from evenroad.robot.scene_file import is_scene
-from evenroad.viz import save_plan_picture
+from evenroad.roadmap import Budget, Status, find_path
+from evenroad.roadmap.find_path import PROVED
 from evenroad.world import GridMap, load_map
 from evenroad.world.gridmap.load import map_files
 
-if TYPE_CHECKING:
-    from evenroad.cli.plan import Plan
 
-_ARM_ONLY = ("srdf", "group", "bodies", "deg", "resolution")
-
-
-def plan_disk(plan: Plan) -> int:
+def plan_disk(plan: DiskOptions) -> int:
     """Plan, write, report; return 0 when solved, else 1."""
-    assert plan.robot_radius is not None
-    refuse_options(plan, _ARM_ONLY, "--robot")
     rule = chosen_rule(plan, default_k=10)
+    generator(plan.seed)
     start, goal = (_position(name, getattr(plan, name)) for name in ("start", "goal"))
-    if plan.world.suffix in (".yaml", ".yml") and is_scene(plan.world):
-        raise InvalidValue(f"{plan.world} is a scene, no map: give the arm that moves in it with --robot")
+    if plan.world.suffix in (".yaml", ".yml"):
+        # Here, so that whoever plans on an image does not wait for robots to load.
+        from evenroad.robot.scene_file import is_scene
+
+        if is_scene(plan.world):
+            raise InvalidValue(f"{plan.world} is a scene, no map: give the arm that moves in it with --robot")
     gridmap = load_map(plan.world, unknown_is_free=plan.unknown_is_free)
-    suffixes = ("json", "png", "csv") if plan.csv else ("json", "png")
+    suffixes = ("json", "csv") if plan.csv else ("json",)
     files = output_files(plan, map_files(plan.world), suffixes, "map")
-    world = gridmap.world(plan.robot_radius, clearance=plan.clearance)
+    budget = Budget(seconds=require_positive("time", plan.time))
     for name, value in (("start", start), ("goal", goal)):
         _require_on_map(gridmap, name, value)
-    points = draw_points(plan, 2)
-    load_compiled_code(world, start, goal, points, rule)
-    result = roadmap.plan(world, start, goal, points, rule=rule, shorten=not plan.raw)
+    if wants_points(plan):
+        # Points are drawn over the rectangle: most of one that is mostly unknown is not worth any.
+        world = (gridmap.cropped() if gridmap.unknown.any() else gridmap).world(
+            plan.robot_radius, clearance=plan.clearance
+        )
+        points = draw_points(plan, 2)
+        load_compiled_code(world, start, goal, points, rule)
+        result = roadmap.plan(world, start, goal, points, rule=rule, shorten=not plan.raw)
+        if result.status is Status.NOT_CONNECTED and not world.may_connect(np.array(start), np.array(goal)):
+            # No number of points would help.
+            result = replace(result, message=PROVED)
+    else:
+        world = gridmap.world(plan.robot_radius, clearance=plan.clearance)
+        # Once for nothing: else the times would be those of loading compiled code.
+        find_path(world, start, start, budget=Budget(samples=1))
+        result = find_path(world, start, goal, budget=budget, shorten=not plan.raw)
     query = {
         "map": str(plan.world),
         "robot_radius": plan.robot_radius,
@@ -62,8 +76,12 @@ def plan_disk(plan: Plan) -> int:
             del files["csv"]
         else:
             save_path_csv(files["csv"], result.path, ("x", "y"))
-    save_plan_picture(files["png"], result, world)
     print_plan(result, list(files.values()))
+    if "png" in files:
+        # Last, and loaded only now: nobody waits for the picture.
+        from evenroad.viz import save_plan_picture
+
+        save_plan_picture(files["png"], result, world)
     return 0 if result.solved else 1
 
 

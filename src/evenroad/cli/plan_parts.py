@@ -12,28 +12,23 @@ from evenroad import roadmap
 from evenroad._checks import require_count
 from evenroad._files import require_writable_folder
 from evenroad._rng import generator
+from evenroad.cli.plan_options import PlanOptions
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points import SAMPLERS, PointSet, make_sampler
 from evenroad.roadmap import KNearest, Radius, Rule
 
 if TYPE_CHECKING:
-    from evenroad.cli.plan import Plan
     from evenroad.world import World
 
 DEFAULT_FAMILY = "even"
+
+DEFAULT_N = 512
 
 _FEW = 16
 """Points of a plan that only loads compiled code."""
 
 
-def refuse_options(plan: Plan, names: Iterable[str], belongs_to: str) -> None:
-    """Raise InvalidValue for an option that was given and would be ignored."""
-    for name in names:
-        if getattr(plan, name) not in (None, False, 0.0):
-            raise InvalidValue(f"--{name.replace('_', '-')} goes with {belongs_to} only")
-
-
-def chosen_rule(plan: Plan, default_k: int) -> Rule:
+def chosen_rule(plan: PlanOptions, default_k: int) -> Rule:
     """Return the connection rule that was asked for."""
     if plan.connect_radius is None:
         return KNearest(default_k if plan.k is None else plan.k)
@@ -42,14 +37,22 @@ def chosen_rule(plan: Plan, default_k: int) -> Rule:
     return Radius(plan.connect_radius)
 
 
-def draw_points(plan: Plan, d: int) -> PointSet:
+def wants_points(plan: PlanOptions) -> bool:
+    """Return whether an option was given that speaks of points or of how they are joined."""
+    given = (plan.n, plan.k, plan.connect_radius)
+    return any(value is not None for value in given) or bool(
+        plan.sampler != "auto" or plan.plain or plan.skip or plan.allow_fewer
+    )
+
+
+def draw_points(plan: PlanOptions, d: int) -> PointSet:
     """Draw the set of n points in d dimensions that was asked for."""
-    require_count("n", plan.n)
+    n = require_count("n", DEFAULT_N if plan.n is None else plan.n)
     generator(plan.seed)
     name = DEFAULT_FAMILY if plan.sampler == "auto" else plan.sampler
     if name not in SAMPLERS:
         raise UnknownName.among("sampler", name, [*SAMPLERS, "auto"])
-    return make_sampler(name, **_sampler_options(plan, name)).draw(plan.n, d, rng=plan.seed)
+    return make_sampler(name, **_sampler_options(plan, name)).draw(n, d, rng=plan.seed)
 
 
 def load_compiled_code(
@@ -64,10 +67,13 @@ def load_compiled_code(
     roadmap.plan(world, start, goal, PointSet(points.points[:_FEW]), rule=rule, search=search)
 
 
-def output_files(plan: Plan, inputs: Iterable[Path], suffixes: Sequence[str], what: str) -> dict[str, Path]:
+def output_files(
+    plan: PlanOptions, inputs: Iterable[Path], suffixes: Sequence[str], what: str
+) -> dict[str, Path]:
     """Return where results go, suffix -> file, refusing what cannot be written or would overwrite an input."""
     if plan.out is not None and not plan.out.name:
         raise InvalidValue(f"--out must end with a file name, got {str(plan.out)!r}")
+    suffixes = [*suffixes, *(() if plan.no_picture else ("png",))]
     taken = {source.resolve() for source in inputs}
     stem = plan.out if plan.out is not None else Path(plan.world.stem)
     if plan.out is None and any(path.resolve() in taken for path in _named(stem, suffixes).values()):
@@ -80,7 +86,7 @@ def output_files(plan: Plan, inputs: Iterable[Path], suffixes: Sequence[str], wh
     return files
 
 
-def common_query(plan: Plan) -> dict[str, Any]:
+def common_query(plan: PlanOptions) -> dict[str, Any]:
     """Return the options that every plan has, for the record."""
     names = ("n", "sampler", "plain", "skip", "allow_fewer", "seed", "raw")
     return {name: getattr(plan, name) for name in names}
@@ -90,7 +96,7 @@ def _named(stem: Path, suffixes: Sequence[str]) -> dict[str, Path]:
     return {suffix: stem.with_name(f"{stem.name}.{suffix}") for suffix in suffixes}
 
 
-def _sampler_options(plan: Plan, name: str) -> dict[str, Any]:
+def _sampler_options(plan: PlanOptions, name: str) -> dict[str, Any]:
     """Return the sampler's options, refusing those that this sampler would silently ignore."""
     takes = {"halton": {"plain", "skip"}, "sobol": {"plain", "skip"}, "sukharev": {"allow_fewer"}}.get(
         name, set()

@@ -19,7 +19,8 @@ def print_plan(result: PlanResult, files: Sequence[Path], more: Sequence[tuple[s
     table.add_column(overflow="fold")
     colour = "green" if result.solved else "red"
     table.add_row("status", Text.assemble((str(result.status), colour), f": {result.message}"))
-    table.add_row("points", Text(str(result.origin)))
+    if result.rule != "none":
+        table.add_row("points", Text(str(result.origin)))
     if result.roadmap is not None:
         counts = result.counts
         table.add_row("milestones", f"{counts['valid']} valid of {counts['points']}")
@@ -27,9 +28,10 @@ def print_plan(result: PlanResult, files: Sequence[Path], more: Sequence[tuple[s
             "edges", f"{counts['edges_free']} free of {counts['edges_checked']} checked ({result.rule})"
         )
     if result.cost is not None and result.milestone_cost is not None:
-        table.add_row("cost", f"{result.cost:.6g} (along the roadmap {result.milestone_cost:.6g})")
+        before = "before it was straightened" if result.roadmap is None else "along the roadmap"
+        table.add_row("cost", f"{result.cost:.6g} ({before} {result.milestone_cost:.6g})")
     phases = ", ".join(f"{phase} {1e3 * value:.1f}" for phase, value in result.seconds.items())
-    table.add_row("time [ms]", phases)
+    table.add_row(Text("time [ms]"), phases)
     for name, value in more:
         table.add_row(name, Text(value))
     # As Text: a file's name may hold brackets, which would be read as markup.

@@ -20,6 +20,8 @@ _MOST_SEGMENTS = 1000
 """Motions that are timed are cut off there: between limits of a million radians each would take ten seconds."""
 
 _SECONDS = 0.2
+_LONGEST = 100.0
+"""Motions are cut to this length [rad or m]: limits may be as good as none, and checks go from state to state."""
 
 
 def print_robot(model: RobotModel, world: ArmWorld) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
-from typing import Annotated
+from typing import Annotated, Any, Union
 
 import tyro
 
@@ -14,7 +14,7 @@ from evenroad.cli.bench import Bench
 from evenroad.cli.demo import Demo
 from evenroad.cli.export import Export
 from evenroad.cli.measure import Measure
-from evenroad.cli.plan import Plan
+from evenroad.cli.plan import PlanDisk, plan_type
 from evenroad.cli.points import Points
 from evenroad.cli.report import Report
 from evenroad.cli.robot import Robot
@@ -23,19 +23,21 @@ from evenroad.errors import EvenroadError
 
 DONE = 0
 BAD_INPUT = 2
-INTERRUPTED = 130
 
-Verb = (
-    Annotated[Plan, tyro.conf.subcommand("plan", prefix_name=False)]
-    | Annotated[Points, tyro.conf.subcommand("points", prefix_name=False)]
-    | Annotated[Measure, tyro.conf.subcommand("measure", prefix_name=False)]
-    | Annotated[Train, tyro.conf.subcommand("train", prefix_name=False)]
-    | Annotated[Bench, tyro.conf.subcommand("bench", prefix_name=False)]
-    | Annotated[Report, tyro.conf.subcommand("report", prefix_name=False)]
-    | Annotated[Robot, tyro.conf.subcommand("robot", prefix_name=False)]
-    | Annotated[Export, tyro.conf.subcommand("export", prefix_name=False)]
-    | Annotated[Demo, tyro.conf.subcommand("demo", prefix_name=False)]
-)
+LONGEST = 600
+"""Most characters of an error: input that was pasted by mistake is not shown in full."""
+
+VERBS = {
+    "plan": PlanDisk,
+    "points": Points,
+    "measure": Measure,
+    "train": Train,
+    "bench": Bench,
+    "report": Report,
+    "robot": Robot,
+    "export": Export,
+    "demo": Demo,
+}
 
 DESCRIPTION = f"""evenroad {__version__}: point sets that make sampling-based motion planners need fewer samples.
 
@@ -48,30 +50,46 @@ def run(arguments: Sequence[str]) -> int:
     if list(arguments) == ["--version"]:
         print(f"evenroad {__version__}")
         return 0
-    verb = tyro.cli(
-        Verb,
-        prog="evenroad",
-        description=DESCRIPTION,
-        args=list(arguments) or ["--help"],
-        config=(tyro.conf.OmitArgPrefixes, tyro.conf.FlagCreatePairsOff),
-    )
     try:
-        code = verb.run()
+        code: int = _parse(list(arguments)).run()
         sys.stdout.flush()
         return code
     except EvenroadError as error:
-        print(f"evenroad: error: {' '.join(str(error).split())}", file=sys.stderr)
+        print(f"evenroad: error: {_in_one_line(str(error))}", file=sys.stderr)
         return BAD_INPUT
     except MemoryError as error:
-        print(f"evenroad: error: not enough memory: {error}", file=sys.stderr)
+        print(f"evenroad: error: not enough memory: {_in_one_line(str(error))}", file=sys.stderr)
         return BAD_INPUT
     except BrokenPipeError:
         # The reader of our output has gone, as `head` does; what is left of the output goes nowhere.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return DONE
     except OSError as error:
-        print(f"evenroad: error: {error}", file=sys.stderr)
+        print(f"evenroad: error: {_in_one_line(str(error))}", file=sys.stderr)
         return BAD_INPUT
-    except KeyboardInterrupt:
-        print("evenroad: interrupted; what was finished is kept", file=sys.stderr)
-        return INTERRUPTED
+
+
+def _parse(arguments: list[str]) -> Any:
+    """Return the verb with its options; with none, or options that cannot be read, tyro says so and exits."""
+    verbs: dict[str, Any] = dict(VERBS)
+    if arguments[:1] == ["plan"]:
+        verbs["plan"] = plan_type(arguments)
+    kinds = tuple(
+        Annotated[kind, tyro.conf.subcommand(name, prefix_name=False)] for name, kind in verbs.items()
+    )
+    any_of: Any = Union[kinds]  # noqa: UP007
+    return tyro.cli(
+        any_of,
+        prog="evenroad",
+        description=DESCRIPTION,
+        args=arguments or ["--help"],
+        config=(tyro.conf.OmitArgPrefixes, tyro.conf.FlagCreatePairsOff),
+    )
+
+
+def _in_one_line(text: str) -> str:
+    """Return a text in one line, without its middle where it is too long: what is wrong, and what is allowed, stay."""
+    line = " ".join(text.split())
+    if len(line) <= LONGEST:
+        return line
+    return f"{line[: LONGEST // 2]} ... {line[-LONGEST // 2 :]}"

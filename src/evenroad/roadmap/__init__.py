@@ -4,6 +4,7 @@ from evenroad.roadmap.anytime import plan_anytime as plan_anytime
 from evenroad.roadmap.budget import Budget as Budget
 from evenroad.roadmap.build import Roadmap as Roadmap
 from evenroad.roadmap.cost import EdgeCost as EdgeCost
+from evenroad.roadmap.find_path import find_path as find_path
 from evenroad.roadmap.fmt import fmt as fmt
 from evenroad.roadmap.npz import load_roadmap as load_roadmap
 from evenroad.roadmap.npz import load_world_roadmap as load_world_roadmap

@@ -20,8 +20,7 @@ from evenroad.roadmap import PlanResult, Status
 from evenroad.viz import style
 
 if TYPE_CHECKING:
-    from evenroad.world import GridMap
-    from evenroad.world.gridmap.disk import DiskWorld
+    from evenroad.world.gridmap.disk import DiskWorld, Grid
 
 LONG_SIDE_INCHES = 10.0
 DPI = 130
@@ -29,7 +28,7 @@ DPI = 130
 
 def save_plan_picture(path: str | os.PathLike[str], result: PlanResult, world: DiskWorld) -> None:
     """Draw a plan as PNG, atomically; see :func:`draw_plan`."""
-    low, high = _outline(world.grid)
+    low, high = _shown(result, world)
     width, height = high - low
     scale = LONG_SIDE_INCHES / max(width, height)
     figure = Figure(
@@ -46,16 +45,15 @@ def draw_plan(axes: Axes, result: PlanResult, world: DiskWorld) -> None:
 
     An end whose disk is in collision gets a cross, with a line to the obstacle that is nearest.
     """
-    _draw_map(axes, world.grid)
+    _draw_map(axes, world.grid, _cells_with_components(result, world))
     if result.roadmap is not None:
         nodes, edges = result.roadmap.configurations, result.roadmap.edges
         axes.add_collection(LineCollection(list(nodes[edges]), colors=style.EDGE, linewidths=0.5, zorder=2))
         axes.plot(*nodes[:-2].T, ".", color=style.MILESTONE, markersize=3.5, zorder=3)
     halo = [Stroke(linewidth=5.0, foreground=style.HALO), Normal()]
     if result.path is not None and result.milestone_path is not None:
-        axes.plot(
-            *result.milestone_path.T, color=style.RAW_PATH, linewidth=1.4, zorder=4, label="roadmap path"
-        )
+        raw = "path before shortcuts" if result.roadmap is None else "roadmap path"
+        axes.plot(*result.milestone_path.T, color=style.RAW_PATH, linewidth=1.4, zorder=4, label=raw)
         _draw_swept_disks(axes, result.path, world.radius)
         axes.plot(*result.path.T, color=style.PATH, linewidth=2.4, zorder=6, path_effects=halo, label="path")
     for end, colour, name in ((result.start, style.START, "start"), (result.goal, style.GOAL, "goal")):
@@ -63,20 +61,37 @@ def draw_plan(axes: Axes, result: PlanResult, world: DiskWorld) -> None:
         axes.plot(*end, "o", color=colour, markersize=8, markeredgecolor="white", zorder=8, label=name)
     if result.status in (Status.START_INVALID, Status.GOAL_INVALID):
         _mark_collision(axes, result, world)
-    _set_frame(axes, result, world.grid)
+    _set_frame(axes, result, world)
 
 
-def _draw_map(axes: Axes, gridmap: GridMap) -> None:
+def _cells_with_components(result: PlanResult, world: DiskWorld) -> np.ndarray:
+    """Return which colour of `_MAP_COLOURS` each cell has.
+
+    Where it is proved that there is no path, the places that start and goal can reach have colours of their own.
+    """
+    grid = world.grid
+    kinds = np.where(grid.occupied, 1, 0)
+    kinds[grid.unknown] = 2
+    if result.status is Status.NOT_CONNECTED and not world.may_connect(result.start, result.goal):
+        for place, kind in ((result.start, 3), (result.goal, 4)):
+            kinds[world.cells_of(world.component(place))] = kind
+    return kinds
+
+
+_MAP_COLOURS = (style.FREE, style.OBSTACLE, style.UNKNOWN, style.START_COMPONENT, style.GOAL_COMPONENT)
+
+
+def _draw_map(axes: Axes, gridmap: Grid, kinds: np.ndarray) -> None:
     frame = gridmap.frame
     # imshow draws in pixel coordinates; the affine map takes those to map units, yaw included.
     corners = frame.to_map(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))
     (a, b), (c, d), (e, f) = corners[1] - corners[0], corners[2] - corners[0], corners[0]
     axes.imshow(
-        gridmap.occupied,
+        kinds,
         extent=(0.0, frame.cols, frame.rows, 0.0),
-        cmap=ListedColormap([style.FREE, style.OBSTACLE]),
+        cmap=ListedColormap(_MAP_COLOURS),
         vmin=0,
-        vmax=1,
+        vmax=len(_MAP_COLOURS) - 1,
         interpolation="nearest",
         transform=Affine2D.from_values(a, b, c, d, e, f) + axes.transData,
         zorder=1,
@@ -117,22 +132,35 @@ def _mark_collision(axes: Axes, result: PlanResult, world: DiskWorld) -> None:
     )
 
 
-def _set_frame(axes: Axes, result: PlanResult, gridmap: GridMap) -> None:
-    low, high = _outline(gridmap)
+def _set_frame(axes: Axes, result: PlanResult, world: DiskWorld) -> None:
+    gridmap = world.grid
+    low, high = _shown(result, world)
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(*((low[1], high[1]) if gridmap.frame.y_up else (high[1], low[1])))
     axes.set_aspect("equal")
     axes.set_facecolor(style.OUTSIDE)
     axes.set_xlabel("x" if gridmap.frame.y_up else "x (right)")
     axes.set_ylabel("y" if gridmap.frame.y_up else "y (down)")
-    title = f"{result.status}: {result.message}\n{result.origin}, {result.rule}"
+    title = f"{result.status}: {result.message}"
+    if result.rule != "none":
+        title += f"\n{result.origin}, {result.rule}"
     axes.set_title(style.without_math(title), fontsize=9, wrap=True)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=5, frameon=False, fontsize=9)
 
 
-def _outline(gridmap: GridMap) -> tuple[np.ndarray, np.ndarray]:
-    frame = gridmap.frame
+def _shown(result: PlanResult, world: DiskWorld) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lower and upper corner of what is shown: what is known of the map and the query, with a margin."""
+    frame, known = world.grid.frame, ~world.grid.unknown
+    rows, cols = (np.flatnonzero(known.any(axis=axis)) for axis in (1, 0))
+    if not rows.size:
+        rows, cols = np.arange(frame.rows), np.arange(frame.cols)
+    top, bottom, left, right = rows[0], rows[-1] + 1, cols[0], cols[-1] + 1
     corners = frame.to_map(
-        np.array([[0.0, 0.0], [frame.cols, 0.0], [0.0, frame.rows], [frame.cols, frame.rows]])
+        np.array([[left, top], [right, top], [left, bottom], [right, bottom]], dtype=float)
     )
-    return corners.min(axis=0), corners.max(axis=0)
+    if known.all():
+        return corners.min(axis=0), corners.max(axis=0)
+    disks = [place + world.radius * np.array([[-1.0], [1.0]]) for place in (result.start, result.goal)]
+    shown = np.concatenate([corners, *disks])
+    margin = 0.03 * (shown.max(axis=0) - shown.min(axis=0)).max()
+    return shown.min(axis=0) - margin, shown.max(axis=0) + margin

@@ -2,7 +2,10 @@
 
 OBSTACLE = "#3b3f46"
 FREE = "#ffffff"
+UNKNOWN = "#dcd6cb"
 OUTSIDE = "#9a9fa6"
+START_COMPONENT = "#c9ead9"
+GOAL_COMPONENT = "#cfdbf7"
 EDGE = "#b9c6d3"
 MILESTONE = "#6b8aa8"
 RAW_PATH = "#e6a23c"

@@ -33,9 +33,11 @@ class Counting:
     motions: int = 0
 
     def __post_init__(self) -> None:
-        # An attribute, and only where the world has it, so that Explains holds of both or of neither.
+        # An attribute, and only where the world has it, so that protocols hold of both or of neither.
         if isinstance(self.world, Explains):
             self.explain = self.world.explain
+        if hasattr(self.world, "fingerprint"):
+            self.fingerprint = self.world.fingerprint
 
     @property
     def space(self) -> Space:

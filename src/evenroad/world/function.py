@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -15,6 +16,9 @@ from evenroad.space import Product, Space
 from evenroad.space.axes import as_row
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.bisection import between_ends, require_few_segments
+
+_PROBES = 4096
+"""Places whose verdicts are part of a fingerprint."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +44,9 @@ class FunctionWorld:
         part in the part's own metric; n is then the largest that any part asks for.
     vectorised : bool
         Whether `is_valid` takes many configurations at once.
+    name : str
+        Part of the fingerprint: name another world differently, also where only its obstacles differ.  Default: the
+        name of the function.
 
     Raises
     ------
@@ -51,11 +58,13 @@ class FunctionWorld:
     is_valid: Callable[[npt.NDArray[np.float64]], Any]
     resolution: float | Sequence[float]
     vectorised: bool = True
+    name: str = ""
 
     def __post_init__(self) -> None:
         if not callable(self.is_valid):
             raise InvalidValue(f"is_valid must be a function, got {self.is_valid!r}")
         object.__setattr__(self, "resolution", _as_resolution(self.resolution, self.space))
+        object.__setattr__(self, "name", self.name or _name_of(self.is_valid))
 
     def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
         """Return which configurations, (n, dim), the space contains and the function calls free: (n,).
@@ -91,6 +100,19 @@ class FunctionWorld:
             states = self.space.interpolate(start[motion], end[motion], fraction)
             self._clear_blocked(free, motion, states)
         return free
+
+    def fingerprint(self) -> str:
+        """Return the SHA-256 (hex) of name, resolution and the verdicts on 4096 places spread over the space.
+
+        What a function does cannot be hashed: two that have one name and agree on all of these places count as the
+        same world.
+        """
+        step = _golden(self.space.cube_dim) ** -np.arange(1.0, self.space.cube_dim + 1.0)
+        places = self.space.from_cube(np.arange(1.0, _PROBES + 1.0)[:, np.newaxis] * step % 1.0)
+        digest = hashlib.sha256(f"function {self.name} {self.resolution!r}".encode())
+        digest.update(np.ascontiguousarray(places).tobytes())
+        digest.update(self.valid(places).tobytes())
+        return digest.hexdigest()
 
     def explain(self, q: npt.NDArray[np.float64]) -> str:
         """Return in words why one configuration, (dim,), is not free."""
@@ -143,6 +165,14 @@ class FunctionWorld:
                 f"{_name_of(self.is_valid)} must return a bool for one configuration, got {answer!r}"
             )
         return bool(answer)
+
+
+def _golden(d: int) -> float:
+    """Return the golden ratio of d dimensions, the root above 1 of ``x**(d + 1) = x + 1`` (Roberts 2018)."""
+    x = 2.0
+    for _ in range(64):
+        x = (1.0 + x) ** (1.0 / (d + 1))
+    return x
 
 
 def _as_resolution(resolution: object, space: Space) -> float | tuple[float, ...]:

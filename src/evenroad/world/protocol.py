@@ -95,3 +95,12 @@ class ConnectsItself(Protocol):
     def shorten(self, path: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], int]:
         """Return a path that is not longer and passes the strict check, and how many motions were checked."""
         ...
+
+
+@runtime_checkable
+class Separates(Protocol):
+    """A world that can prove that no path leads from one configuration to another."""
+
+    def may_connect(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> bool:
+        """Return False where it is proved that no path leads from `a` to `b`, (dim,) each; True says nothing."""
+        ...

@@ -24,7 +24,7 @@ ON_DEMAND_SETS = 8
 
 ON_DEMAND_STEPS = 5000
 
-TRAINED_FAMILIES = {
+TRAINED_FAMILIES: dict[str, str] = {
     "hickernell": "sets annealed for the Hickernell L2 discrepancy",
     "mpmc": "sets of the paper's message-passing network, trained for the same discrepancy; only those that ship",
 }

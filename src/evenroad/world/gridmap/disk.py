@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -12,12 +15,46 @@ from evenroad._checks import require_positive
 from evenroad.space import Rectangle
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.gridmap.cells import DiskTables, classify, vertical_runs
-from evenroad.world.gridmap.gridmap import GridMap
-from evenroad.world.gridmap.kernel import motions_are_free, points_are_free
-from evenroad.world.gridmap.nearest import nearest_obstacle_points
+from evenroad.world.gridmap.components import PARTS, find_gates, label_components
+from evenroad.world.gridmap.frame import MapFrame
+from evenroad.world.gridmap.kernel import (
+    motions_are_free,
+    nearest_free_point,
+    nearest_obstacle_points,
+    points_are_free,
+)
+from evenroad.world.gridmap.search import find_way, straighten
+from evenroad.world.protocol import Connection
+
+_SPREADS = (32, 96)
+"""Points that a way is offered to be straightened with, in the coarse rounds and in the fine ones."""
 
 _SMALLEST_RADIUS = 1e-150
 """In pixels: its square is still above 0, so that a disk of any size touches what its centre lies on."""
+
+
+class Grid(Protocol):
+    """What a disk needs to know of a map; a GridMap does."""
+
+    @property
+    def occupied(self) -> npt.NDArray[np.bool_]:
+        """Which cells are obstacles, (rows, cols)."""
+        ...
+
+    @property
+    def unknown(self) -> npt.NDArray[np.bool_]:
+        """Which cells the map says nothing of, (rows, cols): for pictures."""
+        ...
+
+    @property
+    def frame(self) -> MapFrame:
+        """Where the cells lie."""
+        ...
+
+    @property
+    def space(self) -> Rectangle:
+        """The map's rectangle, in map units."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,8 +68,8 @@ class DiskWorld:
 
     Parameters
     ----------
-    grid : GridMap
-        The map.
+    grid : Grid
+        The map: a GridMap.
     radius : float
         Of the disk with any clearance added, in map units, > 0.
 
@@ -42,7 +79,7 @@ class DiskWorld:
         If `radius` is not such a number.
     """
 
-    grid: GridMap
+    grid: Grid
     radius: float
     _tables: DiskTables = field(init=False, repr=False)
 
@@ -98,6 +135,81 @@ class DiskWorld:
         nearest[away] = self.grid.frame.to_map(pixels[away])
         return nearest
 
+    def may_connect(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> bool:
+        """Return False where it is proved that no way leads from map point `a`, (2,), to `b`, (2,).
+
+        Places none of whose points is free separate the others into components, in one of which every way stays.
+        Where both ends are in the same one, there is a way unless it leads through a passage that is narrower than
+        the disk by less than about a tenth of a pixel.
+        """
+        first, second = self.component(a), self.component(b)
+        return first == second and first != 0
+
+    def component(self, q: npt.NDArray[np.float64]) -> int:
+        """Return the number, from 1 on, of the component that a map point, (2,), lies in; 0 where no disk is free."""
+        column, row = self.grid.frame.to_pixels(as_batch("q", np.reshape(q, (1, -1)), 2))[0]
+        rows, cols = self.grid.occupied.shape
+        if not (0.0 < column < cols and 0.0 < row < rows):
+            return 0
+        cell = int(row) + 1, int(column) + 1
+        labels, parts = self._components
+        if parts[cell] < 0:
+            return int(labels[cell[0] * (cols + 2) + cell[1]])
+        part = int(PARTS * (row % 1.0)) * PARTS + int(PARTS * (column % 1.0))
+        return int(labels[(rows + 2) * (cols + 2) + parts[cell] * PARTS**2 + part])
+
+    def cells_of(self, component: int) -> npt.NDArray[np.bool_]:
+        """Return the cells of the map, (rows, cols), that have a part in a component."""
+        labels, parts = self._components
+        inside = (labels[: parts.size] == component).reshape(parts.shape)
+        at_gates = (labels[parts.size :].reshape(-1, PARTS**2) == component).any(axis=1)
+        inside[parts >= 0] = at_gates
+        return inside[1:-1, 1:-1]
+
+    @cached_property
+    def _gates(self) -> npt.NDArray[np.bool_]:
+        return find_gates(self._tables.cells)
+
+    @cached_property
+    def _components(self) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int64]]:
+        """Labels as `label_components` returns them, and the number of each cell among those at gates, or -1."""
+        parts = np.full(self._gates.shape, -1)
+        parts[self._gates] = np.arange(np.count_nonzero(self._gates))
+        return label_components(self._tables, self._gates), parts
+
+    def nearest_free(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64] | None:
+        """Return a free map point, (2,), near the map point `q`, (2,), or None if there is none.
+
+        It is the nearest of the surely free cells, and of a lattice of quarter pixels in those that are partly free.
+        """
+        pixels = self.grid.frame.to_pixels(as_batch("q", np.reshape(q, (1, -1)), 2))[0]
+        x, y = nearest_free_point(pixels[0] + 1.0, pixels[1] + 1.0, self._tables)
+        return None if math.isnan(x) else self.grid.frame.to_map(np.array([[x - 1.0, y - 1.0]]))[0]
+
+    def connect(
+        self,
+        start: npt.NDArray[np.float64],
+        goals: npt.NDArray[np.float64],
+        *,
+        most_motions: int = 2**31 - 1,
+        seconds: float = math.inf,
+    ) -> Connection:
+        """Find a way from a free map point, (2,), to the one of several, (g, 2), that is nearest on the lattice.
+
+        It leads over cell centres, and over half cells where it is narrow; it is found wherever `may_connect` holds
+        but for passages hardly wider than the disk.  `most_motions` bounds the motions that are tested.  The time is
+        bounded by the size of the map; `seconds` is not looked at.
+        """
+        first = as_batch("start", np.reshape(start, (1, -1)), 2)[0]
+        last = as_batch("goals", goals, 2)
+        way, goal, nodes, motions = find_way(first, last, self._tables, self._gates, most_motions)
+        return Connection(way, int(goal), nodes, 0, motions)
+
+    def shorten(self, path: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], int]:
+        """Return a path of free motions, (q, 2), that is not longer than `path`, (p, 2), and how many were tested."""
+        points = as_batch("path", path, 2)
+        return straighten(points, self._tables, _SPREADS) if len(points) > 1 else (points.copy(), 0)
+
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of map, frame and radius: equal for two worlds that give the same verdicts."""
         digest = hashlib.sha256(f"disk {self.radius!r} {self.grid.frame!r}".encode())
@@ -109,12 +221,19 @@ class DiskWorld:
         centre = np.asarray(q, dtype=np.float64)[np.newaxis]
         distance = float(self.clearance(centre)[0])
         if distance == 0.0:
-            return "its centre lies in an obstacle or outside the map"
-        x, y = self.nearest_obstacle(centre)[0]
-        return f"the obstacle at ({x:.6g}, {y:.6g}) is {distance:.6g} away, the disk needs {self.radius:.6g}"
+            reason = "its centre lies in an obstacle or outside the map"
+        else:
+            x, y = self.nearest_obstacle(centre)[0]
+            reason = (
+                f"the obstacle at ({x:.6g}, {y:.6g}) is {distance:.6g} away, the disk needs {self.radius:.6g}"
+            )
+        free = self.nearest_free(centre)
+        if free is None:
+            return f"{reason}; no place of the map is free"
+        return f"{reason}; the nearest free place is ({free[0]:.6g}, {free[1]:.6g})"
 
 
-def _tables_of(grid: GridMap, radius: float) -> DiskTables:
+def _tables_of(grid: Grid, radius: float) -> DiskTables:
     radius_in_pixels = max(radius / grid.frame.resolution, _SMALLEST_RADIUS)
     # The ring of occupied cells stands for everything outside the map.
     above, below = vertical_runs(np.pad(grid.occupied, 1, constant_values=True))

@@ -1,17 +1,60 @@
-"""Reading a map of any kind, told by the file's suffix."""
+"""Reading a map of any kind: a bare image, or a YAML file of the ROS map_server beside an image."""
 
 from __future__ import annotations
 
+import math
 import os
+from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from evenroad.errors import UnknownName
+import numpy as np
+import numpy.typing as npt
+from PIL import Image
+
+from evenroad._checks import require_positive
+from evenroad._yaml import read_mapping
+from evenroad.errors import BrokenFile, InvalidValue, UnknownName
+from evenroad.world.gridmap.frame import MapFrame
 from evenroad.world.gridmap.gridmap import GridMap
-from evenroad.world.gridmap.image import load_image
-from evenroad.world.gridmap.ros import load_ros_map, read_ros_meta
+from evenroad.world.gridmap.image import load_image, open_image
 
 _IMAGES = (".png", ".pgm")
 _ROS_MAPS = (".yaml", ".yml")
+
+_REQUIRED = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
+_KNOWN = (*_REQUIRED, "mode")
+_MODES = ("trinary", "scale", "raw")
+
+
+@dataclass(frozen=True, kw_only=True)
+class RosMapMeta:
+    """What a map_server YAML file says, checked.
+
+    Attributes
+    ----------
+    image : Path
+        The image file; a relative name is relative to the YAML file.
+    resolution : float
+        Metres per pixel, > 0.
+    origin : tuple of three floats
+        x and y in metres of the lower-left corner of the lower-left pixel, and yaw in radians.
+    negate : bool
+        White, not black, is occupied.
+    occupied_thresh, free_thresh : float
+        In [0, 1], free_thresh < occupied_thresh.
+    mode : str
+        trinary, scale or raw.
+    """
+
+    image: Path
+    resolution: float
+    origin: tuple[float, float, float]
+    negate: bool
+    occupied_thresh: float
+    free_thresh: float
+    mode: str = "trinary"
 
 
 def load_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False) -> GridMap:
@@ -43,3 +86,135 @@ def map_files(path: str | os.PathLike[str]) -> tuple[Path, ...]:
     """Return the files that `load_map` reads for `path`: itself and, for a ROS map, its image."""
     file = Path(path)
     return (file, read_ros_meta(file).image) if file.suffix.lower() in _ROS_MAPS else (file,)
+
+
+def load_ros_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False) -> GridMap:
+    """Read a map_server YAML file and its image as a map.
+
+    A cell is occupied, free or unknown by the rules of map_server (checked against nav2's ``map_io.cpp``):
+
+    * the *shade* of a pixel is the mean of its colour channels, 0 = black, 1 = white; in mode trinary an
+      alpha channel is one more channel of the mean;
+    * its *occupancy* is ``1 - shade``, or ``shade`` with `negate`;
+    * **trinary**: occupied if occupancy > occupied_thresh, free if occupancy < free_thresh, else unknown;
+    * **scale**: the same, but a pixel that is not opaque is unknown.  Cells between the thresholds, which
+      map_server grades from 1 to 99, are known neither to be free nor occupied: they count as unknown;
+    * **raw**: the pixel, on the scale 0..255, *is* the occupancy in percent, whatever `negate` says, and
+      values above 100 are unknown.  map_server leaves the verdict to whoever uses the percentage; here it is
+      the same two thresholds.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The YAML file.
+    unknown_is_free : bool
+        By default, unknown cells are obstacles, like the occupied ones.
+
+    Raises
+    ------
+    BrokenFile
+        If the YAML file or the image is missing or broken, or a key is missing or there twice.
+    UnknownName
+        If there is a key or a mode that map_server does not know; the known ones are listed.
+    InvalidValue
+        If a value has the wrong type or range.
+    """
+    meta = read_ros_meta(path)
+    occupied, unknown = classify_pixels(open_image(meta.image), meta)
+    obstacles = occupied if unknown_is_free else occupied | unknown
+    rows, cols = obstacles.shape
+    x, y, yaw = meta.origin
+    frame = MapFrame(rows=rows, cols=cols, resolution=meta.resolution, origin=(x, y), yaw=yaw, y_up=True)
+    return GridMap(obstacles, frame, unknown)
+
+
+def read_ros_meta(path: str | os.PathLike[str]) -> RosMapMeta:
+    """Read and check a map_server YAML file; the image is not opened.  Errors as `load_ros_map`."""
+    file = Path(path)
+    document = read_mapping(file, "map")
+    for key in document:
+        if key not in _KNOWN:
+            raise UnknownName.among(f"key in {file}:", key, _KNOWN)
+    missing = [key for key in _REQUIRED if key not in document]
+    if missing:
+        raise BrokenFile(f"{file} lacks {', '.join(missing)}; a map needs {', '.join(_REQUIRED)}")
+    return _checked_meta(document, file)
+
+
+def classify_pixels(
+    image: Image.Image, meta: RosMapMeta
+) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
+    """Return which pixels are occupied and which are unknown, two (rows, cols) arrays; the rest is free.
+
+    `image` is one of `open_image`.  The rules are those of `load_ros_map`.
+    """
+    levels, white = _summed_channels(image, with_alpha=meta.mode == "trinary")
+    # The verdict depends on the level alone, so it is made once a level, in float64, and looked up.
+    shade = np.arange(white + 1) / white
+    if meta.mode == "raw":
+        percent = np.round(shade * 255.0)
+        occupancy = np.where(percent <= 100.0, percent / 100.0, np.nan)
+    else:
+        occupancy = shade if meta.negate else 1.0 - shade
+    is_occupied = occupancy > meta.occupied_thresh
+    is_unknown = ~is_occupied & ~(occupancy < meta.free_thresh)
+    occupied, unknown = is_occupied[levels], is_unknown[levels]
+    if meta.mode == "scale" and image.mode == "RGBA":
+        see_through = np.asarray(image.getchannel("A")) < 255
+        occupied &= ~see_through
+        unknown |= see_through
+    return occupied, unknown
+
+
+def _summed_channels(image: Image.Image, *, with_alpha: bool) -> tuple[npt.NDArray[np.integer[Any]], int]:
+    """Return the sum of each pixel's channels and the sum that white has."""
+    pixels = np.asarray(image)
+    if image.mode in ("L", "I;16"):
+        return pixels, 255 if image.mode == "L" else 65535
+    channels = 4 if image.mode == "RGBA" and with_alpha else 3
+    return pixels[:, :, :channels].sum(axis=2, dtype=np.uint16), 255 * channels
+
+
+def _checked_meta(document: dict[str, Any], file: Path) -> RosMapMeta:
+    image, mode, negate, origin = (document.get(key) for key in ("image", "mode", "negate", "origin"))
+    if not isinstance(image, str) or not image:
+        raise InvalidValue(f"image in {file} must be the name of a file, got {image!r}")
+    if "mode" not in document:
+        mode = "trinary"
+    if mode not in _MODES:
+        raise UnknownName.among(f"mode in {file}:", mode, _MODES)
+    if negate not in (0, 1) or isinstance(negate, float):
+        raise InvalidValue(f"negate in {file} must be 0, 1, true or false, got {negate!r}")
+    if not isinstance(origin, list) or len(origin) != 3:
+        raise InvalidValue(f"origin in {file} must be a list [x, y, yaw], got {origin!r}")
+    x, y, yaw = (_number("origin", value, file) for value in origin)
+    occupied, free = (_number(key, document[key], file) for key in ("occupied_thresh", "free_thresh"))
+    if not 0.0 <= free < occupied <= 1.0:
+        raise InvalidValue(
+            f"the thresholds in {file} must satisfy 0 <= free_thresh < occupied_thresh <= 1,"
+            f" got free_thresh {free!r} and occupied_thresh {occupied!r}"
+        )
+    return RosMapMeta(
+        image=file.parent / image,
+        resolution=require_positive(
+            f"resolution in {file}", _number("resolution", document["resolution"], file)
+        ),
+        origin=(x, y, yaw),
+        negate=bool(negate),
+        occupied_thresh=occupied,
+        free_thresh=free,
+        mode=str(mode),
+    )
+
+
+def _number(key: str, value: object, file: Path) -> float:
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        # A whole number of hundreds of digits is no float.
+        with suppress(OverflowError):
+            number = float(value)
+            if math.isfinite(number):
+                return number
+    hint = ""
+    if isinstance(value, str):
+        hint = " (text; YAML reads an exponent only after a decimal point: 1.0e-2, not 1e-2)"
+    raise InvalidValue(f"{key} in {file} must be a finite number, got {value!r}{hint}")

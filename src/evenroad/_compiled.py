@@ -1,0 +1,63 @@
+"""Where compiled code is kept between runs, and what happens where it cannot be kept."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+VARIABLE = "NUMBA_CACHE_DIR"
+"""Names the folder of the user's choice; numba reads it."""
+
+
+def provide_cache() -> None:
+    """Give numba a folder of this process where it would find none, and say so in one line of the log.
+
+    Numba keeps compiled code beside the module, else in the user's cache, and refuses to load a module at all where it
+    can write to neither: read-only site-packages and no home, as in many containers.
+    """
+    if os.environ.get(VARIABLE) or _writable(Path(__file__).parent / "__pycache__") or _writable(_of_user()):
+        return
+    import atexit
+    import logging
+    import shutil
+    import tempfile
+
+    folder = tempfile.mkdtemp(prefix="evenroad-compiled-")
+    owner = os.getpid()
+
+    def remove() -> None:
+        if os.getpid() == owner:
+            shutil.rmtree(folder, ignore_errors=True)
+
+    atexit.register(remove)
+    # Worker processes inherit it.
+    os.environ[VARIABLE] = folder
+    if not _writable(Path(os.environ.get("XDG_CONFIG_HOME") or os.path.expanduser("~/.config"))):
+        # Nor would Matplotlib find a place, and it says so at length.
+        os.environ.setdefault("MPLCONFIGDIR", folder)
+    if "numba" in sys.modules:
+        sys.modules["numba"].config.CACHE_DIR = folder
+    logging.getLogger("evenroad").warning(
+        "evenroad: no folder to keep compiled code in, so every run compiles anew, which takes up to a minute;"
+        " set NUMBA_CACHE_DIR to a folder that can be written"
+    )
+
+
+def _of_user() -> Path:
+    """Return the user's cache folder of numba."""
+    if sys.platform == "darwin":
+        return Path(os.path.expanduser("~/Library/Caches/numba"))
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA", os.path.expanduser("~"))) / "numba" / "Cache"
+    return Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")) / "numba"
+
+
+def _writable(folder: Path) -> bool:
+    """Return whether a folder can be written, or could be made; nothing is made here."""
+    try:
+        while not folder.exists():
+            folder = folder.parent
+    except OSError:
+        return False
+    return folder.is_dir() and os.access(folder, os.W_OK)

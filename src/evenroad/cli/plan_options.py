@@ -1,0 +1,89 @@
+"""What ``evenroad plan`` is told: one value for a disk on a map, one for an arm in a scene."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlanOptions:
+    """What every plan is told."""
+
+    world: Annotated[Path, tyro.conf.Positional]
+    """The file of the world."""
+    start: tuple[str, ...]
+    """Where to start."""
+    goal: tuple[str, ...]
+    """As start."""
+    n: Annotated[int | None, tyro.conf.arg(aliases=["-n"])] = None
+    """Plan with exactly so many points.  Default: a disk is planned for without points, until there is a path or a
+    proof that there is none (with points where another option speaks of them: 512); an arm with 512."""
+    time: float = 5.0
+    """Disk without points: seconds to plan at most, > 0."""
+    k: Annotated[int | None, tyro.conf.arg(aliases=["-k"])] = None
+    """Connect each milestone with its k nearest, symmetrised (default 10; 20 from six joints on)."""
+    connect_radius: float | None = None
+    """Connect milestones up to this distance instead, in map units or radians."""
+    sampler: str = "auto"
+    """even, hickernell, mpmc, korobov, lattice, halton, sobol, sukharev or uniform; auto, the default, is
+    even."""
+    plain: bool = False
+    """halton and sobol: the plain sequence instead of the scrambled one."""
+    skip: int = 0
+    """halton and sobol: index of the first point of the sequence."""
+    allow_fewer: bool = False
+    """sukharev: take the largest grid with at most n points."""
+    seed: int = 0
+    """Seed of everything random; the same command gives the same path."""
+    raw: bool = False
+    """Leave the path as it runs along the roadmap, without shortcutting it."""
+    out: Path | None = None
+    """Where results go: OUT.json, OUT.png and, for an arm, OUT.csv. Default: the world's stem in the current folder,
+    with -plan added where that would overwrite an input."""
+    no_picture: bool = False
+    """Draw no picture."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class DiskOptions(PlanOptions):
+    """What a plan for a disk on a map is told."""
+
+    world: Annotated[Path, tyro.conf.Positional]
+    """A map: a .png or .pgm image, or a ROS map_server .yaml."""
+    start: tuple[str, ...]
+    """x y in map units."""
+    robot_radius: float
+    """Plan for a disk of this radius, > 0, in map units."""
+    clearance: float = 0.0
+    """Margin to keep from every obstacle, added to the radius, >= 0."""
+    unknown_is_free: bool = False
+    """May pass through unknown cells of a ROS map."""
+    csv: bool = False
+    """Also write the path as OUT.csv."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArmOptions(PlanOptions):
+    """What a plan for an arm in a scene is told."""
+
+    world: Annotated[Path, tyro.conf.Positional]
+    """A scene (.yaml; shipped: box-reach.yaml, box-reach-narrow.yaml)."""
+    start: tuple[str, ...]
+    """One number a joint with commas between them, name=value,..., or a named state."""
+    robot: str
+    """Plan for this arm: a URDF file, or the name of a shipped one (ur5, arm7)."""
+    srdf: Path | None = None
+    """Its SRDF, with groups, named states and pairs of links that need no test."""
+    group: str | None = None
+    """A group of the SRDF, or joints with commas between them; the others are held where the named states of start
+    and goal have them, else at 0."""
+    bodies: Path | None = None
+    """A YAML file of capsules and spheres in place of the URDF's collision geometry."""
+    deg: bool = False
+    """Angles of start and goal are in degrees."""
+    resolution: float = 0.05
+    """Largest step of a motion check, > 0, in radians."""

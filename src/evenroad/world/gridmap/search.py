@@ -1,0 +1,353 @@
+"""The compiled planner of a disk on a grid: a way over a lattice of points, and straightening it.
+
+Ways are made of map points, so that what is tested is what is returned.  They lead over the *half lattice*, the points
+``(column / 2, row / 2)`` of the padded pixel plane (see `cells`): over the centres of surely free cells, and over all
+of its points at *gates*, where components of such cells come close to each other (see `components`).  The narrowest
+place of a gate is the middle between two corners or sides of squares, which is a point of the half lattice.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from evenroad.world.gridmap.cells import BLOCKED, FREE, DiskTables
+from evenroad.world.gridmap.kernel import point_is_free, to_padded, way_is_free
+
+_BUCKETS = 64
+"""More than the largest step of the key of A*, twice the dearest step: a key names its bucket."""
+
+STEPS = np.array(
+    [
+        (2, 0), (-2, 0), (0, 2), (0, -2), (2, 2), (2, -2), (-2, 2), (-2, -2),
+        (1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1),
+        (2, 1), (2, -1), (-2, 1), (-2, -1), (1, 2), (1, -2), (-1, 2), (-1, -2),
+    ]
+)  # fmt: skip
+"""Columns and rows of each step on the half lattice; the first eight lead from cell to cell."""
+
+COSTS = np.array([10] * 4 + [14] * 4 + [5] * 4 + [7] * 4 + [11] * 8)
+"""Of the steps: about ten times their lengths in pixels."""
+
+_LINKS = 24
+"""Lattice points that an end is linked to."""
+
+
+@njit(cache=True, nogil=True)
+def find_way(
+    start: Any, goals: Any, disk: DiskTables, gates: npt.NDArray[np.bool_], most: int
+) -> tuple[npt.NDArray[np.float64], int, int, int]:
+    """Find a way over the half lattice from a free point, (2,), to the nearest on it of others, (g, 2).
+
+    A* over whole-number costs with buckets for the queue; a step between surely free cells that share a side or a
+    corner needs no check, every other one is tested exactly.
+
+    Returns
+    -------
+    way : (p, 2)
+        Map points, start and goal included; (0, 2) when there is none.
+    goal : int
+        Which goal, or -1.
+    expanded, motions : int
+        Lattice points looked at from, and motions tested; the search ends when `most` are.
+    """
+    rows, cols = disk.cells.shape
+    high, wide = 2 * rows + 1, 2 * cols + 1
+    reached = np.full(high * wide, -1, np.int32)
+    came = np.zeros(high * wide, np.int8)
+    closed = np.zeros(high * wide, np.bool_)
+    ends = np.full(high * wide, -1, np.int32)
+    targets = np.empty((len(goals), 2))
+    motions = 0
+    for g in range(len(goals)):
+        x, y = to_padded(goals[g, 0], goals[g, 1], disk.frame)
+        targets[g, 0], targets[g, 1] = 2.0 * x, 2.0 * y
+        linked, tried = _links(goals[g, 0], goals[g, 1], disk, gates)
+        motions += tried
+        for node in linked:
+            if ends[node] < 0:
+                ends[node] = g
+    heads = np.full(_BUCKETS, -1, np.int64)
+    entries = np.empty(4096, np.int64)
+    links = np.empty(4096, np.int64)
+    size, waiting, key = 0, 0, 2**60
+    linked, tried = _links(start[0], start[1], disk, gates)
+    motions += tried
+    seeds = np.empty(len(linked), np.int64)
+    x, y = to_padded(start[0], start[1], disk.frame)
+    for i in range(len(linked)):
+        node = linked[i]
+        r, c = divmod(node, wide)
+        away = math.hypot(0.5 * c - x, 0.5 * r - y)
+        reached[node] = int(10.0 * away)
+        came[node] = -1
+        seeds[i] = reached[node] + _left(c, r, targets)
+        key = min(key, seeds[i])
+    # The keys of the seeds may lie far apart, as no two steps of the search do: late ones count as less near.
+    for i in range(len(linked)):
+        bucket = min(seeds[i], key + _BUCKETS // 2 - 1) % _BUCKETS
+        entries[size], links[size] = linked[i], heads[bucket]
+        heads[bucket] = size
+        size += 1
+        waiting += 1
+    expanded = 0
+    while waiting > 0 and motions < most:
+        bucket = key % _BUCKETS
+        if heads[bucket] < 0:
+            key += 1
+            continue
+        entry = heads[bucket]
+        heads[bucket] = links[entry]
+        waiting -= 1
+        node = entries[entry]
+        if closed[node]:
+            continue
+        closed[node] = True
+        expanded += 1
+        if ends[node] >= 0:
+            way = _trace(node, came, wide, start, goals[ends[node]], disk)
+            return way, ends[node], expanded, motions
+        r, c = divmod(node, wide)
+        x, y = 0.5 * c, 0.5 * r
+        sure = _is_centre(r, c, disk)
+        at_gate = _is_at_gate(r, c, gates)
+        for s in range(0 if sure else 8, len(STEPS) if at_gate else 8):
+            to_c, to_r = c + STEPS[s, 0], r + STEPS[s, 1]
+            # Never out of the array: nothing is free on its ring.
+            to = to_r * wide + to_c
+            cost = reached[node] + COSTS[s]
+            if closed[to] or (0 <= reached[to] <= cost):
+                continue
+            if s < 8:
+                if not _is_centre(to_r, to_c, disk):
+                    continue
+            else:
+                if not _is_at_gate(to_r, to_c, gates) or disk.cells[to_r // 2, to_c // 2] == BLOCKED:
+                    continue
+                motions += 1
+                from_x, from_y = _to_map(x, y, disk.frame)
+                to_x, to_y = _to_map(0.5 * to_c, 0.5 * to_r, disk.frame)
+                if not _free_between(from_x, from_y, to_x, to_y, disk):
+                    continue
+            reached[to] = cost
+            came[to] = s
+            bucket = max(cost + _left(to_c, to_r, targets), key) % _BUCKETS
+            if size == len(entries):
+                entries, links = _twice(entries), _twice(links)
+            entries[size], links[size] = to, heads[bucket]
+            heads[bucket] = size
+            size += 1
+            waiting += 1
+    return np.empty((0, 2)), -1, expanded, motions
+
+
+@njit(cache=True, nogil=True)
+def straighten(way: Any, disk: DiskTables, spreads: Any) -> tuple[npt.NDArray[np.float64], int]:
+    """Return a shorter way of free motions between the same ends, and how many motions were tested.
+
+    First from each point on to the farthest that is found to be in sight; then rounds of points spread evenly along
+    the way, of which the shortest selection that stays free is kept.
+    """
+    points, motions = _skip_ahead(way, disk)
+    for most in spreads:
+        for _ in range(8):
+            before = _length(points)
+            shorter, tried = _best_selection(_spread(points, most), disk)
+            motions += tried
+            after = _length(shorter)
+            # Never more points for the same length: what could not be selected comes back as it was spread.
+            if not after < before:
+                break
+            points = shorter
+            if before - after < 1e-3 * before:
+                break
+    # Points on the way, or nearly so, are not needed.
+    points, tried = _skip_ahead(points, disk)
+    return points, motions + tried
+
+
+@njit(cache=True, nogil=True)
+def _links(x: float, y: float, disk: DiskTables, gates: npt.NDArray[np.bool_]) -> tuple[Any, int]:
+    """Return the lattice points near (x, y) that can be reached straight, and how many were tried."""
+    px, py = to_padded(x, y, disk.frame)
+    rows, cols = disk.cells.shape
+    near_c, near_r = round(2.0 * px), round(2.0 * py)
+    linked = [np.int64(0)]
+    linked.clear()
+    tried = 0
+    for ring in range(13):
+        for r in range(max(near_r - ring, 0), min(near_r + ring, 2 * rows - 1) + 1):
+            for c in range(max(near_c - ring, 0), min(near_c + ring, 2 * cols - 1) + 1):
+                if max(abs(r - near_r), abs(c - near_c)) != ring:
+                    continue
+                if not _is_centre(r, c, disk) and not _is_at_gate(r, c, gates):
+                    continue
+                tried += 1
+                to_x, to_y = _to_map(0.5 * c, 0.5 * r, disk.frame)
+                if _free_between(x, y, to_x, to_y, disk):
+                    linked.append(np.int64(r * (2 * cols + 1) + c))
+        if len(linked) >= _LINKS:
+            break
+    return linked, tried
+
+
+@njit(cache=True, nogil=True)
+def _left(c: int, r: int, targets: Any) -> int:
+    """Return the least cost from a lattice point to the nearest target, in half pixels as `c` and `r` are."""
+    least = 1e18
+    for g in range(len(targets)):
+        along, across = abs(targets[g, 0] - c), abs(targets[g, 1] - r)
+        least = min(least, 5.0 * max(along, across) + 2.0 * min(along, across))
+    return int(0.97 * least)
+
+
+@njit(cache=True, nogil=True)
+def _is_centre(r: int, c: int, disk: DiskTables) -> bool:
+    """Say whether a point of the half lattice is the centre of a surely free cell."""
+    return r % 2 == 1 and c % 2 == 1 and disk.cells[r // 2, c // 2] >= FREE
+
+
+@njit(cache=True, nogil=True)
+def _is_at_gate(r: int, c: int, gates: npt.NDArray[np.bool_]) -> bool:
+    """Say whether a point of the half lattice lies in a cell of a gate, or between two."""
+    return gates[r // 2, c // 2] or gates[(r - 1) // 2, (c - 1) // 2]
+
+
+@njit(cache=True, nogil=True)
+def _trace(node: int, came: Any, wide: int, start: Any, goal: Any, disk: DiskTables) -> Any:
+    count = 3
+    at = node
+    while came[at] >= 0:
+        at -= STEPS[came[at], 1] * wide + STEPS[came[at], 0]
+        count += 1
+    way = np.empty((count, 2))
+    way[0, 0], way[0, 1], way[-1, 0], way[-1, 1] = start[0], start[1], goal[0], goal[1]
+    at = node
+    for i in range(count - 2, 0, -1):
+        way[i, 0], way[i, 1] = _to_map(0.5 * (at % wide), 0.5 * (at // wide), disk.frame)
+        if came[at] >= 0:
+            at -= STEPS[came[at], 1] * wide + STEPS[came[at], 0]
+    return way
+
+
+@njit(cache=True, nogil=True)
+def _twice(array: Any) -> Any:
+    larger = np.empty(2 * len(array), array.dtype)
+    larger[: len(array)] = array
+    return larger
+
+
+@njit(cache=True, nogil=True)
+def _free_between(ax: float, ay: float, bx: float, by: float, disk: DiskTables) -> bool:
+    """Say whether the motion between two map points is free, as `motions_are_free` does."""
+    ax, ay = to_padded(ax, ay, disk.frame)
+    bx, by = to_padded(bx, by, disk.frame)
+    if not point_is_free(ax, ay, disk) or not point_is_free(bx, by, disk):
+        return False
+    if bx < ax or (bx == ax and by < ay):
+        return way_is_free(bx, by, ax, ay, disk)
+    return way_is_free(ax, ay, bx, by, disk)
+
+
+@njit(cache=True, nogil=True)
+def _to_map(column: float, row: float, frame: Any) -> tuple[float, float]:
+    """Return the map point at padded coordinates, as `MapFrame.to_map` does for the map's own."""
+    along, down = (column - 1.0) * frame[6], (row - 1.0 - frame[7]) * frame[6]
+    return frame[0] + frame[2] * along + frame[4] * down, frame[1] + frame[3] * along + frame[5] * down
+
+
+@njit(cache=True, nogil=True)
+def _skip_ahead(way: Any, disk: DiskTables) -> tuple[npt.NDArray[np.float64], int]:
+    kept = [0]
+    motions = 0
+    at, last = 0, len(way) - 1
+    while at < last:
+        # Steps of the way itself are free; farther ones are tried at 2, 4, 8, ... until one is not, then halved.
+        near, far = at + 1, at + 1
+        stride = 2
+        while near < last:
+            far = min(at + stride, last)
+            motions += 1
+            if not _free_between(way[at, 0], way[at, 1], way[far, 0], way[far, 1], disk):
+                break
+            near = far
+            stride *= 2
+        while far - near > 1:
+            middle = (near + far) // 2
+            motions += 1
+            if _free_between(way[at, 0], way[at, 1], way[middle, 0], way[middle, 1], disk):
+                near = middle
+            else:
+                far = middle
+        at = near
+        kept.append(at)
+    points = np.empty((len(kept), 2))
+    for i in range(len(kept)):
+        points[i] = way[kept[i]]
+    return points, motions
+
+
+@njit(cache=True, nogil=True)
+def _length(points: Any) -> float:
+    total = 0.0
+    for i in range(len(points) - 1):
+        total += math.hypot(points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1])
+    return total
+
+
+@njit(cache=True, nogil=True)
+def _spread(points: Any, most: int) -> Any:
+    """Return the points with evenly spread ones between them, about `most` in all."""
+    total, spare = _length(points), max(most - len(points), 0)
+    extra = np.zeros(len(points), np.int64)
+    for i in range(len(points) - 1):
+        piece = math.hypot(points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1])
+        extra[i] = int(spare * piece / total) if total > 0.0 else 0
+    spread = np.empty((len(points) + extra.sum(), 2))
+    at = 0
+    for i in range(len(points)):
+        for k in range(extra[i] + 1):
+            t = k / (extra[i] + 1)
+            following = points[min(i + 1, len(points) - 1)]
+            spread[at, 0] = (1.0 - t) * points[i, 0] + t * following[0]
+            spread[at, 1] = (1.0 - t) * points[i, 1] + t * following[1]
+            at += 1
+    return spread
+
+
+@njit(cache=True, nogil=True)
+def _best_selection(points: Any, disk: DiskTables) -> tuple[npt.NDArray[np.float64], int]:
+    """Return the shortest selection of the points, in their order, whose motions are free."""
+    count = len(points)
+    length = np.full(count, np.inf)
+    before = np.zeros(count, np.int64)
+    length[0] = 0.0
+    motions = 0
+    for j in range(1, count):
+        # From the first on: what skips most is found first, and what it beats needs no test.
+        for i in range(j):
+            through = length[i] + math.hypot(points[j, 0] - points[i, 0], points[j, 1] - points[i, 1])
+            if through >= length[j]:
+                continue
+            # Pieces of a free motion, too: their ends are rounded.
+            motions += 1
+            if not _free_between(points[i, 0], points[i, 1], points[j, 0], points[j, 1], disk):
+                continue
+            length[j], before[j] = through, i
+    if not np.isfinite(length[count - 1]):
+        return points, motions
+    kept = 1
+    at = count - 1
+    while at > 0:
+        at = before[at]
+        kept += 1
+    chosen = np.empty((kept, 2))
+    at = count - 1
+    for i in range(kept - 1, -1, -1):
+        chosen[i] = points[at]
+        at = before[at]
+    return chosen, motions

@@ -1,0 +1,94 @@
+"""The command as a process: how it is started, interrupted, and run where nothing can be kept."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import evenroad
+
+PACKAGE = Path(evenroad.__file__).parent
+
+
+def python(*arguments, **environment):
+    return subprocess.run(
+        [sys.executable, *arguments],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, **environment},
+    )
+
+
+def test_the_package_can_be_run_as_a_module():
+    done = python("-m", "evenroad", "--version")
+    assert (done.returncode, done.stdout, done.stderr) == (0, f"evenroad {evenroad.__version__}\n", "")
+
+
+@pytest.mark.parametrize("module", ["tyro", "evenroad.cli.verbs", "matplotlib"])
+def test_an_interrupt_while_modules_are_imported_exits_with_130_and_one_line(module):
+    code = f"""
+import sys
+class Interrupt:
+    def find_spec(self, name, path=None, target=None):
+        if name == {module!r}:
+            raise KeyboardInterrupt
+sys.meta_path.insert(0, Interrupt())
+sys.argv = ["evenroad", "demo", "-n", "16"]
+from evenroad.cli import main
+raise SystemExit(main())
+"""
+    done = python("-c", code)
+    assert (done.returncode, done.stderr) == (130, "evenroad: interrupted; what was finished is kept\n")
+
+
+@pytest.fixture
+def read_only(tmp_path):
+    """The environment of a copy of the package that cannot be written, even by root, for a user without a home."""
+    copy = tmp_path / "site" / "evenroad"
+    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    for folder in (copy, *(path for path in copy.rglob("*") if path.is_dir())):
+        # A file of this name keeps everybody from making the folder.
+        (folder / "__pycache__").write_text("")
+    temporary = tmp_path / "tmp"
+    temporary.mkdir()
+    return {
+        "PYTHONPATH": str(copy.parent),
+        "HOME": "/dev/null/nobody",
+        "XDG_CACHE_HOME": "",
+        "NUMBA_CACHE_DIR": "",
+        "TMPDIR": str(temporary),
+    }
+
+
+LOAD_COMPILED = (
+    "import evenroad; from evenroad.world.bisection_kernel import next_between; print(next_between(1, -1, 4))"
+)
+
+
+def test_without_a_folder_for_compiled_code_it_works_and_says_so_in_one_line(read_only):
+    done = python("-c", LOAD_COMPILED, **read_only)
+    assert (done.returncode, done.stdout) == (0, "(1, 1, 2)\n")
+    assert done.stderr.count("\n") == 1
+    assert done.stderr.startswith("evenroad: no folder to keep compiled code in")
+    assert list(Path(read_only["TMPDIR"]).iterdir()) == []
+
+
+def test_a_folder_of_the_users_choice_is_used_in_silence(read_only, tmp_path):
+    kept = tmp_path / "kept"
+    done = python("-c", LOAD_COMPILED, **read_only | {"NUMBA_CACHE_DIR": str(kept)})
+    assert (done.returncode, done.stdout, done.stderr) == (0, "(1, 1, 2)\n", "")
+    assert list(kept.rglob("*.nbi"))
+
+
+def test_a_long_input_is_cut_in_the_error_line_and_what_is_allowed_stays(run):
+    code, _, err = run("plan", "a.png", "--robot-radius", 1, "--start", "x" * 5000, "--goal", 1, 1)
+    assert code == 2
+    assert "start must be two finite numbers x y, got 'xxx" in err
+    assert len(err) < 700
+    code, _, err = run("demo", "--out", "a" * 5000)
+    assert (code, len(err) < 700) == (2, True)
+    assert "too long" in err

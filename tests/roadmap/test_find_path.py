@@ -1,0 +1,57 @@
+"""Planning without a number of points."""
+
+import numpy as np
+import pytest
+
+from evenroad.errors import InvalidValue
+from evenroad.roadmap import Budget, find_path
+from evenroad.space import Box
+from evenroad.world import FunctionWorld, GridMap
+
+
+def two_rooms(gap):
+    occupied = np.zeros((40, 60), dtype=bool)
+    occupied[:, 30] = True
+    occupied[10 : 10 + gap, 30] = False
+    return GridMap(occupied).world(2.0)
+
+
+def test_a_world_that_plans_by_itself_is_asked():
+    world = two_rooms(gap=5)
+    result = find_path(world, (10, 30), (50, 30))
+    assert result.solved
+    assert result.planner == "the world's own"
+    assert world.motion_valid(result.path[:-1], result.path[1:]).all()
+    assert result.cost <= result.milestone_cost
+    assert len(find_path(world, (10, 30), (50, 30), shorten=False).path) > len(result.path)
+
+
+def test_no_path_is_proved():
+    result = find_path(two_rooms(gap=3), (10, 30), (50, 30))
+    assert result.status == "not_connected"
+    assert result.message.startswith("proved: there is no path")
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "status"), [((30, 30), (5, 5), "start_invalid"), ((5, 5), (30, 30), "goal_invalid")]
+)
+def test_an_end_in_collision_is_a_status(start, goal, status):
+    result = find_path(two_rooms(gap=5), start, goal)
+    assert result.status == status
+    assert "the nearest free place is" in result.message
+
+
+def test_for_any_other_world_points_grow():
+    world = FunctionWorld(
+        Box((0, 0), (1, 1)), lambda q: (np.abs(q[:, 0] - 0.5) > 0.1) | (q[:, 1] > 0.9), 0.01
+    )
+    result = find_path(world, (0.1, 0.1), (0.9, 0.1))
+    assert result.solved
+    assert result.planner == "prm anytime"
+    closed = FunctionWorld(Box((0, 0), (1, 1)), lambda q: np.abs(q[:, 0] - 0.5) > 0.1, 0.01)
+    assert find_path(closed, (0.1, 0.1), (0.9, 0.1), budget=Budget(samples=128)).status == "budget_spent"
+
+
+def test_a_start_that_is_no_configuration_is_refused():
+    with pytest.raises(InvalidValue, match="start must be 2 finite numbers"):
+        find_path(two_rooms(gap=5), (1, 2, 3), (4, 5))
