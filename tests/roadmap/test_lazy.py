@@ -57,7 +57,7 @@ def test_lazy_finds_the_path_of_the_full_search_bit_for_bit(query, lazy_mileston
         assert lazy.cost == full.cost
     else:
         # Both know the piece of the start: the lazy one has seen the same cut, if not all that lies beyond.
-        assert lazy.counts["start_piece"] >= full.counts["start_piece"]
+        assert lazy.counts["start_component"] >= full.counts["start_component"]
 
 
 @settings(max_examples=100, deadline=None)
@@ -137,7 +137,7 @@ def test_lazily_not_connected_speaks_of_what_could_be_reached():
         ChanceWorld(1, 0.9, 0.0), START, GOAL, draw("sobol", 32, 2), search="lazy", lazy_milestones=True
     )
     assert result.status is Status.NOT_CONNECTED
-    assert result.counts["start_piece"] == 0
+    assert result.counts["start_component"] == 0
     assert "milestones not known to be invalid" in result.message
     assert result.planner == "prm lazy + lazy milestones"
 

@@ -123,7 +123,7 @@ def test_statuses_counts_and_names_of_a_query():
     assert known.query((5, 15), (0.2, 5)).status is Status.GOAL_INVALID
     apart = known.query((5, 15), (15, 5))
     assert apart.status is Status.NOT_CONNECTED
-    assert 0 < apart.counts["start_piece"] < apart.counts["valid"]
+    assert 0 < apart.counts["start_component"] < apart.counts["valid"]
     joined = known.query((5, 15), (5, 18), keep_graph=True, shorten=True)
     assert joined.solved
     assert joined.rule == "k=8 symmetrised of all points"

@@ -16,10 +16,9 @@ import numpy.typing as npt
 from evenroad._files import atomic_write
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, NotAvailable
 from evenroad.points.pointset import Origin, PointSet
-from evenroad.roadmap.build import Roadmap
 from evenroad.roadmap.cost import EdgeCost
+from evenroad.roadmap.kept import Roadmap, WorldRoadmap
 from evenroad.roadmap.rules import rule_named
-from evenroad.roadmap.world_roadmap import WorldRoadmap
 from evenroad.space import Space
 from evenroad.world import World
 

@@ -10,7 +10,7 @@ from evenroad.research.bench.connect import is_connected, milestones_until_conne
 from evenroad.research.bench.searches import SEARCHES, search_named
 from evenroad.research.worlds import Corridor
 from evenroad.roadmap import rule_named
-from evenroad.roadmap.search import FREE, Ledger
+from evenroad.roadmap.search import FREE, EdgeStates
 from evenroad.space import Box
 from evenroad.world.counting import Counting
 
@@ -35,7 +35,7 @@ def _ledger(nodes, edges, free):
     pairs = np.array(edges, dtype=np.int32).reshape(-1, 2)
     free_pairs = [pair for pair, is_free in zip(edges, free, strict=True) if is_free]
     world = Counting(_Graph(nodes, free_pairs))
-    ledger = Ledger(world, np.arange(nodes, dtype=float)[:, np.newaxis], pairs)
+    ledger = EdgeStates(world, np.arange(nodes, dtype=float)[:, np.newaxis], pairs)
     ledger.node_states[:] = FREE
     return ledger
 
@@ -101,7 +101,7 @@ def test_stock_counts_the_milestones_of_a_planner_that_adds_them_one_by_one(n):
         expected = _one_by_one(world, milestones)
         configurations = np.concatenate([milestones, [world.start], [world.goal]])
         edges = rule_named("k=10 earlier").edges(configurations, world.space, ends=2)
-        ledger = Ledger(world, configurations, edges)
+        ledger = EdgeStates(world, configurations, edges)
         ledger.node_states[:] = FREE
         assert milestones_until_connected(ledger) == expected
 
@@ -134,7 +134,7 @@ def test_all_searches_agree_on_whether_there_is_a_path_and_the_shortest_ones_on_
         edges = rule_named("k=6 symmetrised").edges(configurations, world.space, ends=2)
         found = {}
         for name in SEARCHES:
-            ledger = Ledger(world, configurations, edges)
+            ledger = EdgeStates(world, configurations, edges)
             ledger.node_states[:] = FREE
             found[name] = search_named(name)(ledger)
         assert len({each.solved for each in found.values()}) == 1

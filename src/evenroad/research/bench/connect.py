@@ -6,14 +6,13 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from evenroad.roadmap.search import FREE, UNKNOWN, Ledger
-from evenroad.roadmap.search.pieces import join
+from evenroad.roadmap.search import FREE, UNKNOWN, EdgeStates, join
 
 CHUNK = 64
 """Edges asked about together where order counts: few enough to stop soon, many enough for a batch to pay."""
 
 
-def is_connected(ledger: Ledger) -> bool:
+def is_connected(ledger: EdgeStates) -> bool:
     """Return whether free edges join the last two nodes, start and goal.
 
     The pieces of start and goal grow in turns, always the one that fewer unknown edges leave, by asking about all of
@@ -21,7 +20,7 @@ def is_connected(ledger: Ledger) -> bool:
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : EdgeStates
         All nodes are taken as free; what is asked is written down there.
     """
     label = np.arange(len(ledger.node_states), dtype=np.int32)
@@ -35,7 +34,7 @@ def is_connected(ledger: Ledger) -> bool:
     return True
 
 
-def milestones_until_connected(ledger: Ledger) -> int | None:
+def milestones_until_connected(ledger: EdgeStates) -> int | None:
     """Return how many of the milestones, added in order, it takes to connect the last two nodes; None if all do not.
 
     Start and goal are there first, an edge comes with the later of its milestones.  Under ``k earlier``, whose edges
@@ -43,7 +42,7 @@ def milestones_until_connected(ledger: Ledger) -> int | None:
 
     Parameters
     ----------
-    ledger : Ledger
+    ledger : EdgeStates
         As for :func:`is_connected`, which is asked first: most queries without an answer end there.
     """
     if not is_connected(ledger):
@@ -67,7 +66,7 @@ def milestones_until_connected(ledger: Ledger) -> int | None:
     raise AssertionError("is_connected said that there is a path")
 
 
-def _leaving(ledger: Ledger, label: npt.NDArray[np.int32], node: int) -> npt.NDArray[np.int64]:
+def _leaving(ledger: EdgeStates, label: npt.NDArray[np.int32], node: int) -> npt.NDArray[np.int64]:
     """Return the unknown edges with one end in the piece of this node and the other outside."""
     return _edges_leaving(ledger.edges, ledger.edge_states, label, label[node])
 

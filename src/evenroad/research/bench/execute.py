@@ -17,7 +17,7 @@ from evenroad.research.bench.task import Task
 from evenroad.research.bench.time_limit import OverTime, time_limit
 from evenroad.research.problems import source_named
 from evenroad.roadmap import rule_named
-from evenroad.roadmap.search import FREE, Ledger
+from evenroad.roadmap.search import FREE, EdgeStates
 
 Milestones = tuple[npt.NDArray[np.float64], str, float]
 """The valid configurations of a set, which set it is, and the seconds that their validity took."""
@@ -76,10 +76,10 @@ def _run(task: Task) -> Outcome:
 
 def _search(
     problem: Problem, milestones: npt.NDArray[np.float64], rule: str, search: str
-) -> tuple[Finding, Ledger]:
+) -> tuple[Finding, EdgeStates]:
     configurations = np.concatenate([milestones, problem.start[np.newaxis], problem.goal[np.newaxis]])
     edges = rule_named(rule).edges(configurations, problem.world.space, ends=2)
-    ledger = Ledger(problem.world, configurations, edges)
+    ledger = EdgeStates(problem.world, configurations, edges)
     ledger.node_states[:] = FREE
     return search_named(search)(ledger), ledger
 

@@ -9,9 +9,7 @@ from dataclasses import dataclass
 from evenroad.errors import UnknownName
 from evenroad.research.bench.connect import is_connected, milestones_until_connected
 from evenroad.roadmap.cost import edge_costs
-from evenroad.roadmap.plan import question_between_last_two
-from evenroad.roadmap.search import Ledger, length_along
-from evenroad.roadmap.search.find import FINDERS
+from evenroad.roadmap.search import FINDERS, EdgeStates, length_along, search_problem
 
 
 @dataclass(frozen=True)
@@ -33,7 +31,7 @@ class Finding:
     length: float = math.nan
 
 
-def search_named(name: str) -> Callable[[Ledger], Finding]:
+def search_named(name: str) -> Callable[[EdgeStates], Finding]:
     """Return the search of this name: from a ledger whose last two nodes are start and goal to what it says.
 
     Raises
@@ -46,32 +44,32 @@ def search_named(name: str) -> Callable[[Ledger], Finding]:
     return SEARCHES[name]
 
 
-def _connect(ledger: Ledger) -> Finding:
+def _connect(ledger: EdgeStates) -> Finding:
     return Finding(is_connected(ledger))
 
 
-def _stock(ledger: Ledger) -> Finding:
+def _stock(ledger: EdgeStates) -> Finding:
     needed = milestones_until_connected(ledger)
     return Finding(needed is not None, needed)
 
 
-def _full(ledger: Ledger) -> Finding:
+def _full(ledger: EdgeStates) -> Finding:
     return _shortest(ledger, "full")
 
 
-def _lazy(ledger: Ledger) -> Finding:
+def _lazy(ledger: EdgeStates) -> Finding:
     return _shortest(ledger, "lazy")
 
 
-def _shortest(ledger: Ledger, search: str) -> Finding:
+def _shortest(ledger: EdgeStates, search: str) -> Finding:
     costs = edge_costs(ledger.world.space, ledger.configurations, ledger.edges)
-    nodes, along = FINDERS[search](question_between_last_two(ledger, costs), ledger)
+    nodes, along = FINDERS[search](search_problem(ledger, costs), ledger)
     if not nodes.size:
         return Finding(False)
     return Finding(True, length=length_along(costs, along))
 
 
-SEARCHES: dict[str, Callable[[Ledger], Finding]] = {
+SEARCHES: dict[str, Callable[[EdgeStates], Finding]] = {
     "connect": _connect,
     "stock": _stock,
     "full": _full,
