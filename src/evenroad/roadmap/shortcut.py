@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +22,8 @@ SPREADS = (32, 96)
 A coarse round asks for a tenth of the motions and finds most of what there is to gain.
 """
 MAX_ROUNDS = 8
+PATIENCE = 4
+"""After every so many motions that fail a strict check in a round, their neighbours are given up one step further."""
 WORTH_WHILE = 1e-2
 """A round that shortens the path by less than this share is the last one with so many waypoints."""
 
@@ -40,7 +41,7 @@ def shortcut(
     the path longer.  At the end, waypoints that can be passed by are dropped.  It draws no random numbers.
 
     Where the world has a strict check (`Rechecks`), the motions of a round's way have to pass it, too; those that
-    fail are taken away and the next shortest way is tried.
+    fail are taken away, in time with those beside them, and the next shortest way is tried.
 
     Parameters
     ----------
@@ -87,74 +88,98 @@ class _Shortcut:
         """Take the shortest way through so many waypoints along the path, if it is shorter."""
         space = self.world.space
         waypoints, own = _spread(self.path, space, most)
-        first, second, free = self._pairs(waypoints)
-        edges = np.stack([first[free], second[free]], axis=1).astype(np.int32)
-        steps = np.stack([own[:-1], own[1:]], axis=1).astype(np.int32)
         # The path's own motions are known to be free; with them there always is a way.
-        edges = np.concatenate([edges, steps])
-        lengths = self.cost(waypoints[edges[:, 0]], waypoints[edges[:, 1]])
+        pairs = _Pairs(self._free_pairs(waypoints), own)
+        lengths = self.cost(waypoints[pairs.edges[:, 0]], waypoints[pairs.edges[:, 1]])
         goal = len(waypoints) - 1
         to_goal = space.distance(waypoints, np.broadcast_to(waypoints[-1], waypoints.shape))
-        trusted = {tuple(step) for step in steps.tolist()}
         while True:
-            way, _ = shortest_path(len(waypoints), edges, lengths, to_goal, 0, goal)
+            edges = pairs.edges[pairs.usable]
+            way, _ = shortest_path(len(waypoints), edges, lengths[pairs.usable], to_goal, 0, goal)
             shorter = self._total(waypoints[way])
             if not shorter < self.length:
                 return
-            failed = self._failed(waypoints, way.tolist(), trusted)
-            if not failed:
+            if self._holds(waypoints, way, pairs):
                 self.path, self.length = waypoints[way], shorter
                 return
-            kept = np.array([tuple(edge) not in failed for edge in edges.tolist()])
-            edges, lengths = edges[kept], lengths[kept]
 
     def drop_needless(self) -> None:
         """From each waypoint go straight to the last one that can be reached, and drop those between."""
         path = self.path
-        first, second, free = self._pairs(path)
-        trusted = {(i, i + 1) for i in range(len(path) - 1)}
-        open_pairs = set(zip(first[free].tolist(), second[free].tolist(), strict=True)) | trusted
+        pairs = _Pairs(self._free_pairs(path), np.arange(len(path)))
         while True:
-            reach = list(range(len(path)))
-            for i, j in open_pairs:
-                reach[i] = max(reach[i], j)
+            reach = np.arange(len(path))
+            first, second = pairs.edges[pairs.usable].T
+            np.maximum.at(reach, first, second)
             way = [0]
             while way[-1] < len(path) - 1:
-                way.append(reach[way[-1]])
-            failed = self._failed(path, way, trusted)
-            if not failed:
+                way.append(int(reach[way[-1]]))
+            if self._holds(path, np.array(way), pairs):
                 break
-            open_pairs -= failed
         # In a metric this never is longer; other costs may well prefer the waypoint.
         if self._total(path[way]) <= self.length * (1.0 + 1e-12):
             self.path = path[way]
 
+    def _holds(self, waypoints: npt.NDArray[np.float64], way: npt.NDArray[np.integer], pairs: _Pairs) -> bool:
+        """Return whether the world confirms a way; if it does not, some of its pairs are not usable any more."""
+        if time.perf_counter() >= self.deadline:
+            raise BudgetSpent
+        along = pairs.along(way)
+        passed = confirmed(self.world, waypoints[way], ~pairs.trusted[along])
+        pairs.trusted[along[passed]] = True
+        if not passed.all():
+            pairs.give_up(along[~passed])
+        return bool(passed.all())
+
     def _total(self, path: npt.NDArray[np.float64]) -> float:
         return float(np.sum(self.cost(path[:-1], path[1:])))
 
-    def _pairs(
-        self, waypoints: npt.NDArray[np.float64]
-    ) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp], npt.NDArray[np.bool_]]:
-        """Return all pairs of waypoints, as two arrays, and which of them can be joined."""
+    def _free_pairs(self, waypoints: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Return which pairs of waypoints i < j can be joined, (w, w)."""
         first, second = np.triu_indices(len(waypoints), k=1)
-        free = np.zeros(len(first), dtype=np.bool_)
+        free = np.zeros((len(waypoints), len(waypoints)), dtype=np.bool_)
         for rows in in_time(np.arange(len(first)), self.deadline):
-            free[rows] = self.world.motion_valid(waypoints[first[rows]], waypoints[second[rows]])
+            i, j = first[rows], second[rows]
+            free[i, j] = self.world.motion_valid(waypoints[i], waypoints[j])
             self.checked += len(rows)
-        return first, second, free
+        return free
 
-    def _failed(
-        self, waypoints: npt.NDArray[np.float64], way: list[int], trusted: set[tuple[int, int]]
-    ) -> set[tuple[int, int]]:
-        """Return which steps of a way the world does not confirm; those that pass are trusted from now on."""
-        if time.perf_counter() >= self.deadline:
-            raise BudgetSpent
-        steps = [(min(step), max(step)) for step in pairwise(way)]
-        doubtful = np.array([step not in trusted for step in steps], dtype=np.bool_)
-        passed = confirmed(self.world, waypoints[way], doubtful)
-        failed = {step for step, good in zip(steps, passed.tolist(), strict=True) if not good}
-        trusted |= set(steps) - failed
-        return failed
+
+class _Pairs:
+    """Pairs of waypoints that can be joined, among them the steps from each of a path's `own` ones to the next.
+
+    Attributes
+    ----------
+    edges : ndarray of int32, shape (m, 2)
+        The pairs, smaller first.
+    trusted, usable : ndarray of bool, shape (m,)
+        Which have passed the strict check, and which have not failed it.
+    """
+
+    def __init__(self, free: npt.NDArray[np.bool_], own: npt.NDArray[np.integer]) -> None:
+        free = free.copy()
+        free[own[:-1], own[1:]] = True
+        self.edges = np.argwhere(free).astype(np.int32)
+        self._number = np.zeros(free.shape, dtype=np.intp)
+        self._number[free] = np.arange(len(self.edges))
+        self.usable = np.ones(len(self.edges), dtype=np.bool_)
+        self.trusted = np.zeros(len(self.edges), dtype=np.bool_)
+        self.trusted[self._number[own[:-1], own[1:]]] = True
+        self._failures = 0
+
+    def along(self, way: npt.NDArray[np.integer]) -> npt.NDArray[np.intp]:
+        """Return the numbers of the pairs along a way."""
+        return self._number[np.minimum(way[:-1], way[1:]), np.maximum(way[:-1], way[1:])]
+
+    def give_up(self, failed: npt.NDArray[np.intp]) -> None:
+        """Use these pairs no more, nor those beside them that were not checked: the more, the more have failed.
+
+        What is in the way of one motion mostly is in that of its neighbours; one by one, thousands would be tried.
+        """
+        for pair in self.edges[failed]:
+            beside = (np.abs(self.edges - pair) <= self._failures // PATIENCE).all(axis=1)
+            self.usable &= ~beside | self.trusted
+            self._failures += 1
 
 
 def _spread(

@@ -55,6 +55,11 @@ class DiskWorld:
         """The map's rectangle, in map units."""
         return self.grid.space
 
+    @property
+    def proof(self) -> str:
+        """What is shown of a motion called free: ``exact``."""
+        return "exact"
+
     def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
         """Return whether the disk is free at each map point, (n, 2) -> (n,); False outside the map.
 
