@@ -11,7 +11,8 @@ from evenroad.cli import main
 from evenroad.errors import BrokenFile
 from evenroad.robot import ArmWorld, Obstacle, Scene, link_poses, load_robot
 from evenroad.robot.load import load_model
-from evenroad.robot.reference.recheck import has_meshes, recheck, states_along
+from evenroad.robot.reference.recheck import has_meshes, recheck
+from evenroad.space.path import resample
 
 pytest.importorskip("coal")
 
@@ -29,7 +30,7 @@ def test_states_are_those_at_which_a_motion_is_checked(arm):
     """Both ends of every motion and what divides it, no further apart than asked, the shorter way round."""
     space = ArmWorld(load_robot(arm), NOTHING).space
     path = np.array([[3.0, 0.0, 0.1], [-3.0, 0.4, 0.1], [-3.0, 0.4, 0.1], [-2.0, 0.4, 0.0]])
-    states, motions = states_along(space, path, 0.05)
+    states, motions = resample(path, space, 0.05)
     steps = space.distance(states[:-1], states[1:])
     assert steps.max() <= 0.05 + 1e-12
     lengths = space.distance(path[:-1], path[1:])
@@ -44,7 +45,7 @@ def test_states_are_those_at_which_a_motion_is_checked(arm):
 
 def test_one_waypoint_is_one_state(arm):
     space = ArmWorld(load_robot(arm), NOTHING).space
-    states, motions = states_along(space, np.zeros((1, 3)), 0.05)
+    states, motions = resample(np.zeros((1, 3)), space, 0.05)
     assert (states.tolist(), motions.tolist()) == ([[0.0, 0.0, 0.0]], [0])
 
 

@@ -120,6 +120,34 @@ def test_the_counts_are_what_the_world_was_asked(query, search, lazy_milestones)
     assert result.counts["points"] == points.n
 
 
+def test_lazy_is_full_with_a_cost_that_is_below_the_length_by_as_much_as_rounding_may():
+    # Costs may be 1e-9 below the lengths; a bound by the bare distance then cuts off the cheapest path.
+    def below(a, b):
+        length = np.linalg.norm(a - b, axis=1)
+        return length * (1.0 - 0.99e-9 * ((a + b)[:, 0] < 1.0))
+
+    grid = PointSet(np.stack(np.meshgrid(np.arange(6) / 6, np.arange(6) / 6), axis=-1).reshape(-1, 2))
+    for seed in range(300):
+        options = dict(rule=Radius(0.25), edge_cost=below, shorten=False)
+        full, lazy = (
+            plan(ChanceWorld(seed, 0.9, 0.8), START, GOAL, grid, search=search, **options)
+            for search in ("full", "lazy")
+        )
+        assert full.status is lazy.status
+        assert full.cost == lazy.cost
+        assert full.solved is False or full.path.tobytes() == lazy.path.tobytes()
+
+
+def test_a_number_of_points_is_drawn_from_the_even_family():
+    world = ChanceWorld(3, 1.0, 1.0)
+    drawn = plan(world, START, GOAL, 128)
+    assert drawn.counts["points"] == 128
+    assert drawn.path.tobytes() == plan(world, START, GOAL, draw("even", 128, 2)).path.tobytes()
+    for wrong in (0, -3, True, 2.5, "512", [[0.5, 0.5]]):
+        with pytest.raises(InvalidValue, match="points"):
+            plan(world, START, GOAL, wrong)
+
+
 @pytest.mark.parametrize("level", [1, 2, 3])
 def test_on_the_mazes_lazy_checks_few_edges_and_finds_the_same_path(level):
     maze = load_maze(level)

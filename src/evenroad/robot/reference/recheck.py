@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -18,7 +17,7 @@ from evenroad.robot.reference.bodies import original_geometries
 from evenroad.robot.reference.coal_world import CoalWorld
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
-from evenroad.space import JointSpace
+from evenroad.space.path import resample
 
 Verdict = Literal["free", "in collision", "not checked"]
 
@@ -92,7 +91,7 @@ def recheck(
         world = CoalWorld(robot, scene, original_geometries(source, robot), resolution)
     except NotAvailable:
         return MeshCheck("not checked", message="needs evenroad[mesh]")
-    states, motions = states_along(joint_space(robot), path, resolution)
+    states, motions = resample(path, joint_space(robot), resolution)
     blocked = np.flatnonzero(~world.valid(states))
     if len(blocked) == 0:
         return MeshCheck("free", len(states))
@@ -103,22 +102,6 @@ def recheck(
         f"at {_numbers(first)} in motion {motions[blocked[0]]} of the path: {world.explain(first)}",
         tuple(first.tolist()),
     )
-
-
-def states_along(
-    space: JointSpace, path: npt.NDArray[np.float64], resolution: float
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
-    """Return states along a path, (s, dim), at most `resolution` apart, and the number of each one's motion, (s,).
-
-    A motion has ``ceil(distance / resolution)`` segments; a path of one waypoint is one state.
-    """
-    states, motions = [path[:1]], [np.zeros(1, dtype=np.int64)]
-    for i, (a, b) in enumerate(pairwise(path)):
-        segments = max(int(np.ceil(space.distance(a[np.newaxis], b[np.newaxis])[0] / resolution)), 1)
-        starts, ends = np.tile(a, (segments, 1)), np.tile(b, (segments, 1))
-        states.append(space.interpolate(starts, ends, np.arange(1, segments + 1) / segments))
-        motions.append(np.full(segments, i))
-    return np.concatenate(states), np.concatenate(motions)
 
 
 def _numbers(row: Sequence[float] | npt.NDArray[np.float64]) -> str:
