@@ -11,7 +11,7 @@ import evenroad
 
 ROOT = Path(evenroad.__file__).parent
 
-BASE = {"errors", "_checks", "_rng", "_files", "_progress", "_yaml", "_extras"}
+BASE = {"errors", "_checks", "_rng", "_files", "_progress", "_yaml", "_extras", "_npz", "_fingerprint"}
 MAY_IMPORT = {
     "points": BASE,
     "space": BASE,

@@ -6,12 +6,12 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.roadmap.search import BLOCKED, EdgeStates, Found
-from evenroad.world import Rechecks, World
+from evenroad.world import Proves, Rechecks, World
 
 
 def proof_of(world: World) -> str:
     """Return what is shown of every path in a world: ``exact``, ``certified``, or ``resolution`` if it does not say."""
-    return getattr(world, "proof", "resolution")
+    return world.proof if isinstance(world, Proves) else "resolution"
 
 
 def confirmed(

@@ -10,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._checks import require_positive
-from evenroad.errors import InvalidValue
+from evenroad._fingerprint import fingerprint_of
+from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.space import Product, Space
 from evenroad.space.axes import as_row
 from evenroad.space.batch import as_batch, as_batch_pair
@@ -40,6 +41,9 @@ class FunctionWorld:
         part in the part's own metric; n is then the largest that any part asks for.
     vectorised : bool
         Whether `is_valid` takes many configurations at once.
+    name : str, optional
+        What the function tests, with all that its answers depend on, for example ``"cell 7, tool v2"``.  Only with a
+        name can a roadmap of this world be saved with what is known: a function cannot be compared.
 
     Raises
     ------
@@ -51,6 +55,7 @@ class FunctionWorld:
     is_valid: Callable[[npt.NDArray[np.float64]], Any]
     resolution: float | Sequence[float]
     vectorised: bool = True
+    name: str | None = None
 
     def __post_init__(self) -> None:
         if not callable(self.is_valid):
@@ -91,6 +96,20 @@ class FunctionWorld:
             states = self.space.interpolate(start[motion], end[motion], fraction)
             self._clear_blocked(free, motion, states)
         return free
+
+    def fingerprint(self) -> str:
+        """Return a text that two worlds of the same space, resolution and name share.
+
+        Raises
+        ------
+        NotAvailable
+            If the world has no name, or its space cannot be told from others.
+        """
+        if self.name is None:
+            raise NotAvailable(
+                "a FunctionWorld has a fingerprint only with a name: FunctionWorld(..., name='cell 7')"
+            )
+        return fingerprint_of("function", self.name, self.space, self.resolution)
 
     def explain(self, q: npt.NDArray[np.float64]) -> str:
         """Return in words why one configuration, (dim,), is not free."""
