@@ -7,7 +7,7 @@ from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points import PointSet, draw
 from evenroad.research.mazes import load_maze
 from evenroad.roadmap import Complete, KEarlier, KMutual, KNearest, Radius, Status, plan
-from evenroad.roadmap.rules.rule import ascending
+from evenroad.roadmap.rules.near import ascending
 from tests.roadmap.worlds import ChanceWorld
 
 START, GOAL = (0.0, 0.0), (1.0, 1.0)

@@ -10,7 +10,7 @@ from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points import PointSet, draw
 from evenroad.research.mazes import load_maze
 from evenroad.roadmap import Budget, Complete, KNearest, Radius, Roadmap, Status
-from evenroad.roadmap.neighbours.newcomer import Surroundings, nearest_of
+from evenroad.roadmap.neighbours.find import Surroundings, nearest_of
 from evenroad.space import Rectangle, Space
 from evenroad.world import GridMap
 from tests.roadmap.spaces import Great, Torus

@@ -16,7 +16,7 @@ from evenroad.points.pointset import PointSet
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.cost import BOUND, EdgeCost, edge_costs
-from evenroad.roadmap.neighbours.newcomer import Surroundings, nearest_of
+from evenroad.roadmap.neighbours.find import Surroundings, nearest_of
 from evenroad.roadmap.query import Query, as_points, read_places
 from evenroad.roadmap.result import PlanResult
 from evenroad.roadmap.rules import KNearest, Rule

@@ -8,7 +8,6 @@ from evenroad.roadmap.search.edge_states import EdgeStates as EdgeStates
 from evenroad.roadmap.search.finders import FINDERS as FINDERS
 from evenroad.roadmap.search.finders import Found as Found
 from evenroad.roadmap.search.finders import SearchProblem as SearchProblem
-from evenroad.roadmap.search.finders import are_joined as are_joined
 from evenroad.roadmap.search.finders import find_any as find_any
 from evenroad.roadmap.search.finders import find_lazily as find_lazily
 from evenroad.roadmap.search.finders import march as march

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from numba import njit
 
 from evenroad.roadmap.search.edge_states import BLOCKED, FREE, UNKNOWN, EdgeStates
-from evenroad.roadmap.search.graph import Graph, join
+from evenroad.roadmap.search.graph import Graph
 from evenroad.roadmap.search.shortest import FixedPoint, best_path
 
 Found = tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]
@@ -80,36 +80,84 @@ def find_lazily(problem: SearchProblem, states: EdgeStates) -> Found:
 
 
 def find_any(problem: SearchProblem, states: EdgeStates) -> Found:
-    """Return some path of free edges if there is one.
+    """Return some path of free edges if there is one, asking about no more edges than the full search.
 
-    The components of the start and of the goals grow in turns, always the one that fewer unknown edges leave, by
-    asking about all of these.  A search without an answer ends when one of the two can grow no more.
+    Two trees grow, from the start and from the goals, always the one that has asked less: each asks about the edges
+    that lead nearest to where the other began, until they meet.  A search without an answer ends when one of the two
+    can grow no more.  Edges between two nodes of one tree are not asked about.
     """
-    if not are_joined(states, problem.start, problem.goals):
-        return NOT_FOUND
-    known = np.where(states.edge_states == FREE, FREE, BLOCKED)
-    return _best(problem, known, states)
+    q, space = states.configurations, states.world.space
+    from_start = space.distance(q, np.broadcast_to(q[problem.start], q.shape))
+    trees = (
+        _Tree(problem.graph, states, np.array([problem.start]), problem.bounds.astype(np.float64)),
+        _Tree(problem.graph, states, problem.goals, from_start),
+    )
+    while True:
+        tree = min(trees, key=lambda tree: tree.asked)
+        if not tree.grow():
+            return NOT_FOUND
+        meeting = np.flatnonzero(trees[0].member & trees[1].member)
+        if meeting.size:
+            there, back = (tree.way_from_root(int(meeting[0])) for tree in trees)
+            return np.concatenate([there[0], back[0][-2::-1]]), np.concatenate([there[1], back[1][::-1]])
 
 
-def are_joined(states: EdgeStates, start: int, goals: npt.NDArray[np.int64]) -> bool:
-    """Return whether free edges join the start to one of the goals; what `find_any` asks."""
-    label = np.arange(len(states.node_states), dtype=np.int32)
-    # The goals are one virtual node.
-    join(label, np.stack([goals, np.roll(goals, 1)], axis=1).astype(np.int32))
-    join(label, states.edges[states.edge_states == FREE])
-    while label[start] != label[goals[0]]:
-        leaving = (
-            _edges_leaving(states.edges, states.edge_states, states.node_states, label, label[node])
-            for node in (start, goals[0])
+class _Tree:
+    """Nodes joined to its roots by free edges; grows towards the nodes of the least `nearness`."""
+
+    def __init__(
+        self,
+        graph: Graph,
+        states: EdgeStates,
+        roots: npt.NDArray[np.int64],
+        nearness: npt.NDArray[np.float64],
+    ) -> None:
+        self.graph, self.states, self.nearness = graph, states, nearness
+        self.member = np.zeros(graph.nodes, dtype=np.bool_)
+        self.parent_edge = np.full(graph.nodes, -1, dtype=np.int32)
+        self.asked = self._size = 0
+        # A binary heap of edges that lead out of the tree; every arc enters it once at most.
+        arcs = len(graph.fixed.edge) + len(graph.links.edge)
+        self._keys, self._edges = np.empty(arcs), np.empty(arcs, dtype=np.int32)
+        self._targets = np.empty(arcs, dtype=np.int32)
+        self._take_up(roots)
+
+    def grow(self) -> bool:
+        """Ask about the most promising edges, the more the longer it takes; return whether there were any."""
+        states, most = self.states, min(16 + self.asked // 4, _LARGEST_BATCH)
+        edges, targets, self._size = _next_edges(
+            most,
+            self._keys,
+            self._edges,
+            self._targets,
+            self._size,
+            self.member,
+            states.edge_states,
+            states.node_states,
         )
-        asked = min(leaving, key=len)
-        if not len(asked):
+        if not len(edges):
             return False
-        states.ask_nodes(np.unique(states.edges[asked]))
-        asked = asked[(states.node_states[states.edges[asked]] == FREE).all(axis=1)]
-        states.ask_edges(asked)
-        join(label, states.edges[asked[states.edge_states[asked] == FREE]])
-    return True
+        states.ask_nodes(targets)
+        free = states.node_states[targets] == FREE
+        edges, targets = edges[free], targets[free]
+        states.ask_edges(edges)
+        self.asked += len(edges)
+        free = states.edge_states[edges] == FREE
+        self.parent_edge[targets[free]] = edges[free]
+        self._take_up(targets[free])
+        return True
+
+    def way_from_root(self, node: int) -> Found:
+        """Return the nodes and edges from a root of the tree to a node in it."""
+        return _way_back(self.parent_edge, self.states.edges, node)
+
+    def _take_up(self, nodes: npt.NDArray[np.integer]) -> None:
+        self.member[nodes] = True
+        for rows in (self.graph.fixed, self.graph.links):
+            self._size = _add_arcs(
+                nodes, rows.first, rows.other, rows.edge, self.nearness, self.member, self._keys, self._edges,
+                self._targets, self._size,
+            )  # fmt: skip
 
 
 def march(problem: SearchProblem, states: EdgeStates) -> tuple[Found, int]:
@@ -128,7 +176,7 @@ def march(problem: SearchProblem, states: EdgeStates) -> tuple[Found, int]:
     while frontier:
         _, node = heapq.heappop(frontier)
         if node in goals:
-            return _way_back(parent_edge, states.edges, problem.start, node), int(np.count_nonzero(stage))
+            return _way_back(parent_edge, states.edges, node), int(np.count_nonzero(stage))
         fresh, offers = _best_offers(node, graph.first, graph.other, graph.edge, weights, cost, stage)
         states.ask_edges(offers)
         free = states.edge_states[offers] == FREE
@@ -144,6 +192,9 @@ def march(problem: SearchProblem, states: EdgeStates) -> tuple[Found, int]:
             heapq.heappush(frontier, (int(cost[newcomer]), newcomer))
     return NOT_FOUND, int(np.count_nonzero(stage))
 
+
+_LARGEST_BATCH = 32
+"""Edges that `find_any` asks about together: enough for a batch to pay."""
 
 FINDERS: dict[str, Callable[[SearchProblem, EdgeStates], Found]] = {
     "full": find_after_all,
@@ -179,13 +230,10 @@ def _all_free(nodes: npt.NDArray[np.int32], along: npt.NDArray[np.int32], states
     return True
 
 
-def _way_back(
-    parent_edge: npt.NDArray[np.int32], edges: npt.NDArray[np.int32], start: int, goal: int
-) -> Found:
-    """Return the nodes and edges from the start to a goal in the tree."""
-    nodes, along = [goal], []
-    while nodes[-1] != start:
-        edge = int(parent_edge[nodes[-1]])
+def _way_back(parent_edge: npt.NDArray[np.int32], edges: npt.NDArray[np.int32], node: int) -> Found:
+    """Return the nodes and edges from the root of a tree to a node in it."""
+    nodes, along = [node], []
+    while (edge := int(parent_edge[nodes[-1]])) >= 0:
         a, b = edges[edge].tolist()
         along.append(edge)
         nodes.append(b if a == nodes[-1] else a)
@@ -193,18 +241,69 @@ def _way_back(
 
 
 @njit(cache=True, nogil=True)
-def _edges_leaving(edges, states, node_states, label, component):  # type: ignore[no-untyped-def]
-    """Return the unknown edges with one end in this component and the other outside, no end known to be blocked."""
-    leaving = np.empty(edges.shape[0], dtype=np.int64)
-    count = 0
-    for e in range(edges.shape[0]):
-        a, b = edges[e, 0], edges[e, 1]
-        if states[e] != UNKNOWN or (label[a] == component) == (label[b] == component):
+def _add_arcs(nodes, first, other, edge, nearness, member, keys, edges, targets, size):  # type: ignore[no-untyped-def]
+    """Put the arcs that lead from nodes out of the tree into its heap; return the heap's size."""
+    for node in nodes:
+        if node + 1 >= first.shape[0]:
             continue
-        if node_states[a] != BLOCKED and node_states[b] != BLOCKED:
-            leaving[count] = e
-            count += 1
-    return leaving[:count].copy()
+        for slot in range(first[node], first[node + 1]):
+            target = other[slot]
+            if not member[target]:
+                size = _push(keys, edges, targets, size, nearness[target], edge[slot], target)
+    return size
+
+
+@njit(cache=True, nogil=True)
+def _next_edges(most, keys, edges, targets, size, member, edge_states, node_states):  # type: ignore[no-untyped-def]
+    """Take up to `most` edges to different nodes outside of the tree out of its heap, not known to be blocked."""
+    found = np.empty(most, dtype=np.int32)
+    leading_to = np.empty(most, dtype=np.int32)
+    count = 0
+    # Other edges to the same nodes wait for the verdicts on these; they go back into the heap.
+    chosen = np.zeros(member.shape[0], dtype=np.bool_)
+    waiting = [(0.0, np.int32(0), np.int32(0)) for _ in range(0)]
+    while size > 0 and count < most:
+        key, e, target = keys[0], edges[0], targets[0]
+        size = _drop_first(keys, edges, targets, size)
+        if member[target] or edge_states[e] == BLOCKED or node_states[target] == BLOCKED:
+            continue
+        if chosen[target]:
+            waiting.append((key, e, target))
+            continue
+        chosen[target] = True
+        found[count], leading_to[count] = e, target
+        count += 1
+    for key, e, target in waiting:
+        size = _push(keys, edges, targets, size, key, e, target)
+    return found[:count].copy(), leading_to[:count].copy(), size
+
+
+@njit(cache=True, nogil=True)
+def _push(keys, edges, targets, size, key, edge, target):  # type: ignore[no-untyped-def]
+    hole = size
+    while hole > 0 and keys[(hole - 1) // 2] > key:
+        above = (hole - 1) // 2
+        keys[hole], edges[hole], targets[hole] = keys[above], edges[above], targets[above]
+        hole = above
+    keys[hole], edges[hole], targets[hole] = key, edge, target
+    return size + 1
+
+
+@njit(cache=True, nogil=True)
+def _drop_first(keys, edges, targets, size):  # type: ignore[no-untyped-def]
+    size -= 1
+    key, edge, target = keys[size], edges[size], targets[size]
+    hole = 0
+    while 2 * hole + 1 < size:
+        child = 2 * hole + 1
+        if child + 1 < size and keys[child + 1] < keys[child]:
+            child += 1
+        if key <= keys[child]:
+            break
+        keys[hole], edges[hole], targets[hole] = keys[child], edges[child], targets[child]
+        hole = child
+    keys[hole], edges[hole], targets[hole] = key, edge, target
+    return size
 
 
 @njit(cache=True, nogil=True)
