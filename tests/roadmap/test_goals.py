@@ -87,3 +87,56 @@ def test_goals_in_collision_are_left_out_and_only_if_all_are_it_is_said(kept):
 def test_goals_that_are_none_are_refused_by_name(bad):
     with pytest.raises(InvalidValue, match=r"goal must be 2 finite numbers, or an array \(g, 2\)"):
         plan(ChanceWorld(0), START, bad, draw("sobol", 8, 2))
+
+
+@pytest.mark.parametrize("n", [200, 1000])
+def test_start_and_goals_are_linked_to_the_nearest_hundred_or_to_all_of_a_few(n):
+    world, points = ChanceWorld(1, 1.0, 1.0), draw("sobol", n, 2)
+    free, plain = (plan(world, START, GOALS[:2], points, links=links, shorten=False) for links in (100, None))
+    assert (free.links, plain.links) == (100, None)
+    assert free.rule == plain.rule
+    edges = free.roadmap.edges
+    for node, place in zip(range(n, n + 3), [START, *GOALS[:2]], strict=True):
+        linked = edges[(edges[:, 1] == node) & (edges[:, 0] < n), 0]
+        away = np.hypot(*(points.points - np.array(place)).T)
+        nearest = np.argsort(away, kind="stable")[: n if n <= 256 else 100]
+        # The rule's own links come on top: those milestones of which an end is one of the k nearest.
+        assert set(nearest) <= set(linked)
+        assert len(linked) <= len(nearest) + 60
+    same = {tuple(edge) for edge in plain.roadmap.edges.tolist()}
+    assert same <= {tuple(edge) for edge in edges.tolist()}
+    kept = (
+        Roadmap.build(world.space, points, KNearest(4))
+        .in_world(world)
+        .query(START, GOALS[:2], keep_graph=True)
+    )
+    assert kept.counts["edges_considered"] - len(Roadmap.build(world.space, points, KNearest(4)).edges) == (
+        3 * min(n, 100 if n > 256 else n) + 2
+    )
+
+
+def test_a_start_that_is_blocked_from_all_that_is_near_is_connected_by_its_links():
+    class Ringed:
+        """Nothing that is nearer than .3 to the start can be reached from there, and not the goal."""
+
+        space = ChanceWorld.space
+
+        def valid(self, q):
+            return np.ones(len(q), dtype=bool)
+
+        def motion_valid(self, a, b):
+            from_start = (a == START).all(axis=1) | (b == START).all(axis=1)
+            away = np.hypot(*(a - b).T)
+            return ~from_start | ((away > 0.3) & (away < 1.0))
+
+    query = Ringed(), START, (1.0, 1.0), draw("sobol", 1000, 2)
+    assert plan(*query, links=None).status is Status.NOT_CONNECTED
+    assert plan(*query).solved
+    assert fmt(*query).solved
+    assert Roadmap.build(Ringed.space, query[3], KNearest(10)).in_world(query[0]).query(*query[1:3]).solved
+
+
+@pytest.mark.parametrize("links", [0, -1, 2.5, True])
+def test_a_number_of_links_that_is_none_is_refused(links):
+    with pytest.raises(InvalidValue, match="links"):
+        plan(ChanceWorld(0), START, GOALS, draw("sobol", 8, 2), links=links)

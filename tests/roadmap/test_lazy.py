@@ -38,7 +38,8 @@ def queries(draw_value):
         seed, draw_value(st.sampled_from([1.0, 0.8])), draw_value(st.sampled_from([0.3, 0.6, 0.9]))
     )
     cost = draw_value(st.sampled_from([None, _steps, _detour]))
-    return world, PointSet(points), dict(rule=rule, edge_cost=cost, shorten=False)
+    links = draw_value(st.sampled_from([None, 3, 100]))
+    return world, PointSet(points), dict(rule=rule, edge_cost=cost, links=links, shorten=False)
 
 
 @settings(max_examples=150, deadline=None)
@@ -64,6 +65,7 @@ def test_lazy_finds_the_path_of_the_full_search_bit_for_bit(query, lazy_mileston
 @given(queries())
 def test_the_full_path_is_the_cheapest_one_and_follows_the_lowest_nodes_back(query):
     world, points, options = query
+    options |= dict(links=None)
     result = plan(world, START, GOAL, points, **options)
     nodes = np.concatenate([points.points[world.valid(points.points)], [START], [GOAL]])
     edges = options["rule"].edges(nodes, world.space, ends=2)
@@ -171,7 +173,13 @@ def test_on_the_mazes_lazy_checks_few_edges_and_finds_the_same_path(level):
 
 def test_lazily_not_connected_speaks_of_what_could_be_reached():
     result = plan(
-        ChanceWorld(1, 0.9, 0.0), START, GOAL, draw("sobol", 32, 2), search="lazy", lazy_milestones=True
+        ChanceWorld(1, 0.9, 0.0),
+        START,
+        GOAL,
+        draw("sobol", 32, 2),
+        search="lazy",
+        lazy_milestones=True,
+        links=None,
     )
     assert result.status is Status.NOT_CONNECTED
     assert result.counts["start_component"] == 0

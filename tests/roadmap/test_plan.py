@@ -115,7 +115,7 @@ def test_the_path_agrees_with_a_plain_reading_of_algorithm_1():
                 min(cost[i], cost[j] + distances[i][j]),
                 min(cost[j], cost[i] + distances[i][j]),
             )
-    result = plan(world, (2, 2), (2, 18), points, rule=KNearest(k))
+    result = plan(world, (2, 2), (2, 18), points, rule=KNearest(k), links=None)
     assert result.counts["edges_checked"] == len(edges)
     assert result.counts["edges_free"] == len(free)
     assert result.milestone_cost == pytest.approx(cost[-1])

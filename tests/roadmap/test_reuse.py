@@ -34,7 +34,7 @@ def reuses(draw_value):
     return Roadmap.build(SQUARE, PointSet(points), rule), world, queries
 
 
-def _cheapest(roadmap, world, start, goal, lazy_milestones):
+def _cheapest(roadmap, world, start, goal, lazy_milestones, links):
     """The definition: both ends joined as the rule's reach says, and the least cost by Bellman and Ford."""
     q = np.concatenate([roadmap.configurations, [start], [goal]])
     n = len(roadmap.configurations)
@@ -45,8 +45,9 @@ def _cheapest(roadmap, world, start, goal, lazy_milestones):
     for end in (n, n + 1):
         away = np.hypot(*(q[:n] - q[end]).T)
         near = [i for i in np.argsort(away, kind="stable") if usable[i]]
+        close = [] if links is None else near  # all of so few milestones
         near = [i for i in near if reach.radius is None or away[i] <= reach.radius]
-        edges += [(int(i), end) for i in near[: reach.k]]
+        edges += [(int(i), end) for i in [*near[: reach.k], *close]]
     first, second = np.array(edges).T
     free = world.motion_valid(q[first], q[second]) & valid[first] & valid[second]
     cost = np.full(n + 2, np.inf)
@@ -60,13 +61,13 @@ def _cheapest(roadmap, world, start, goal, lazy_milestones):
 
 
 @settings(max_examples=60, deadline=None)
-@given(reuses(), st.booleans())
-def test_a_query_finds_the_shortest_path_of_the_roadmap_and_its_two_ends(reuse, lazy_milestones):
+@given(reuses(), st.booleans(), st.sampled_from([None, 100]))
+def test_a_query_finds_the_shortest_path_of_the_roadmap_and_its_two_ends(reuse, lazy_milestones, links):
     roadmap, world, queries = reuse
     known = roadmap.in_world(world, lazy_milestones=lazy_milestones)
     for start, goal in queries:
-        result = known.query(start, goal)
-        expected = _cheapest(roadmap, world, start, goal, lazy_milestones)
+        result = known.query(start, goal, links=links)
+        expected = _cheapest(roadmap, world, start, goal, lazy_milestones, links)
         assert result.solved == np.isfinite(expected)
         if result.solved:
             assert result.cost == pytest.approx(expected, abs=1e-12)
@@ -269,9 +270,9 @@ def test_a_roadmap_measures_its_edges_once_and_only_when_asked():
 def test_a_budget_of_a_query_is_kept_to_and_what_was_asked_is_kept():
     world = ChanceWorld(5, 1.0, 0.0)
     known = Roadmap.build(SQUARE, draw("sobol", 64, 2), KNearest(6)).in_world(world)
-    result = known.query(*CORNERS[::3], search="full", budget=Budget(motions=10))
+    result = known.query(*CORNERS[::3], search="full", links=None, budget=Budget(motions=10))
     assert result.status is Status.BUDGET_SPENT
     assert world.asked_motions == result.counts["edges_checked"] == 10
     assert result.message.startswith("no path within 10 motions, 60 s; start reaches")
-    known.query(*CORNERS[::3], search="full")
+    known.query(*CORNERS[::3], search="full", links=None)
     assert world.asked_motions <= 10 + len(known.roadmap.edges) + 13

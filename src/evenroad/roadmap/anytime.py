@@ -16,7 +16,7 @@ from evenroad.points.samplers import Sampler, make_sampler
 from evenroad.roadmap.attempt import Attempt, Searched
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.cost import EdgeCost
-from evenroad.roadmap.query import Query, as_points, read_places
+from evenroad.roadmap.query import LINKS, Query, as_points, read_places
 from evenroad.roadmap.result import PlanResult, Stage
 from evenroad.roadmap.rules import Rule, default_rule
 from evenroad.roadmap.search import FREE, UNKNOWN, find_lazily
@@ -36,6 +36,7 @@ def plan_anytime(
     *,
     first: int = 64,
     until: str = "solved",
+    links: int | None = LINKS,
     budget: Budget | None = None,
     rng: RngLike = 0,
     rule: Rule | None = None,
@@ -49,7 +50,7 @@ def plan_anytime(
 
     Parameters
     ----------
-    world, start, goal, rule, edge_cost, shorten
+    world, start, goal, rule, edge_cost, shorten, links
         As in :func:`plan`.
     sampler : Sampler, optional
         Whose sets of more points begin with those of fewer; default: scrambled Sobol points.
@@ -81,7 +82,13 @@ def plan_anytime(
     first = require_count("first", first)
     rule = default_rule(world.space) if rule is None else rule
     budget = Budget() if budget is None else budget
-    query = Query(*read_places(start, goal, world.space), shorten=shorten, edge_cost=edge_cost, budget=budget)
+    query = Query(
+        *read_places(start, goal, world.space),
+        shorten=shorten,
+        edge_cost=edge_cost,
+        links=links,
+        budget=budget,
+    )
     # By name: the module of the sequences imports scipy.stats, half a second that only this default needs.
     sampler = make_sampler("sobol") if sampler is None else sampler
     points = _draw(sampler, min(first, budget.samples), world, rng, None)
@@ -100,7 +107,7 @@ class Growth:
     def __init__(self, attempt: Attempt, rule: Rule) -> None:
         self.attempt, self.rule = attempt, rule
         self.pairs = KnownPairs()
-        self.drawn = self.motions_checked = 0
+        self.drawn = 0
         self.names = np.empty(0, dtype=np.int64)
         self.milestones = np.empty((0, attempt.world.space.dim))
         self.stages: list[Stage] = []
@@ -111,24 +118,20 @@ class Growth:
         """Search with these points, of which the first are known; return whether the budget was enough."""
         attempt = self.attempt
         self._add_valid(points)
-        ends = attempt.start_and_goals
-        configurations = np.concatenate([self.milestones, ends])
+        states = attempt.candidates(self.rule, self.milestones)
         # Names of nodes: start and goals are the first, point i comes so many later.
-        names = np.concatenate([self.names, np.arange(len(ends))])
-        with attempt.watch("neighbours"):
-            edges = self.rule.edges(configurations, attempt.world.space, ends=len(ends))
-        states = attempt.states(configurations, edges, self.motions_checked)
+        names = np.concatenate([self.names, np.arange(len(attempt.start_and_goals))])
         states.node_states[:] = FREE
         with attempt.watch("search"):
-            states.edge_states[:] = self.pairs.recall(names[edges])
+            states.edge_states[:] = self.pairs.recall(names[states.edges])
         self.last = attempt.search(find_lazily, states)
         with attempt.watch("search"):
-            self.pairs.learn(names[edges], states.edge_states)
-        self.motions_checked += states.motions_checked
+            self.pairs.learn(names[states.edges], states.edge_states)
+        attempt.motions_checked += states.motions_checked
         cost = float(np.sum(self.last.costs[self.last.found[1]])) if self.last.solved else None
         if cost is not None and (self.best is None or cost < min(self._costs())):
             self.best = self.last
-        self.stages.append(Stage(points.n, len(self.milestones), self.motions_checked, cost))
+        self.stages.append(Stage(points.n, len(self.milestones), attempt.motions_checked, cost))
         return not self.last.spent and time.perf_counter() < attempt.deadline
 
     def is_done(self, until: str) -> bool:
@@ -144,7 +147,7 @@ class Growth:
         """Return the result: the best path of all stages, with the graph of the last one."""
         self.attempt.spent = True
         result = self.attempt.result(self.last, points, best=self.best)
-        counts = result.counts | {"edges_checked": self.motions_checked}
+        counts = result.counts | {"edges_checked": self.attempt.motions_checked}
         return replace(result, counts=counts, stages=tuple(self.stages))
 
     def _costs(self) -> list[float]:

@@ -10,9 +10,12 @@ import numpy.typing as npt
 
 from evenroad.points.pointset import Origin
 from evenroad.roadmap.cost import BOUND, edge_costs
+from evenroad.roadmap.neighbours.find import Surroundings, nearest_of
 from evenroad.roadmap.proof import confirm, proof_of
 from evenroad.roadmap.query import Query
 from evenroad.roadmap.result import PlanResult, SearchedGraph, Status
+from evenroad.roadmap.rules import Rule
+from evenroad.roadmap.rules.near import ascending
 from evenroad.roadmap.search import (
     BLOCKED,
     FREE,
@@ -74,6 +77,8 @@ class Attempt:
         Whether the planner draws its points itself, until the budget is spent.
     checked : int
         Configurations checked outside of a graph.
+    motions_checked : int
+        Motions checked in earlier graphs, which count for the budget.
     spent : bool
         Whether the budget was spent too early.
     """
@@ -86,6 +91,7 @@ class Attempt:
     grows: bool = False
     watch: Stopwatch = field(default_factory=Stopwatch)
     checked: int = 0
+    motions_checked: int = 0
     spent: bool = False
 
     def __post_init__(self) -> None:
@@ -128,16 +134,29 @@ class Attempt:
                 self.spent = True
         return free
 
+    def candidates(self, rule: Rule, milestones: npt.NDArray[np.float64]) -> EdgeStates:
+        """Return the graph of milestones, start and goals: the edges of the rule, and the links that the query adds."""
+        space, ends = self.world.space, self.start_and_goals
+        configurations = np.concatenate([milestones, ends])
+        n = len(milestones)
+        with self.watch("neighbours"):
+            edges = rule.edges(configurations, space, ends=len(ends))
+            if most := self.query.links_among(n):
+                surroundings, usable = Surroundings(milestones, space), np.ones(n, dtype=np.bool_)
+                near = [nearest_of(surroundings.distances(end), usable, most) for end in ends]
+                links = [np.stack([rows, np.full(len(rows), n + i)], axis=1) for i, rows in enumerate(near)]
+                edges = ascending(np.concatenate([edges, *links]), len(configurations))
+        return self.states(configurations, edges)
+
     def states(
         self,
         configurations: npt.NDArray[np.float64],
         edges: npt.NDArray[np.int32],
-        motions_checked: int = 0,
         known: Known | None = None,
     ) -> EdgeStates:
         """Return what is known of a graph (default: nothing), with what is left of the budget for asking more."""
         most = self.query.budget.motions
-        most = None if most is None else most - motions_checked
+        most = None if most is None else most - self.motions_checked
         return EdgeStates(self.world, configurations, edges, self.watch, most, self.deadline, known)
 
     def search(
@@ -275,6 +294,7 @@ class Attempt:
             goals=self.query.goals,
             origin=self.origin,
             rule=self.rule,
+            links=self.query.links,
             planner=self.planner,
             seconds=self.watch.seconds,
         )

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import numpy as np
 import numpy.typing as npt
 
 from evenroad.points.pointset import PointSet
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.cost import EdgeCost
-from evenroad.roadmap.query import Query, as_points, read_places
+from evenroad.roadmap.query import LINKS, Query, as_points, read_places
 from evenroad.roadmap.result import PlanResult
 from evenroad.roadmap.rules import Rule, default_rule
 from evenroad.roadmap.search import FREE, EdgeStates, Found, SearchProblem, march
@@ -25,6 +24,7 @@ def fmt(
     rule: Rule | None = None,
     edge_cost: EdgeCost | None = None,
     shorten: bool = True,
+    links: int | None = LINKS,
     budget: Budget | None = None,
 ) -> PlanResult:
     """Find a short free path from start to goal with a tree that grows outwards in the order of cost.
@@ -35,7 +35,7 @@ def fmt(
 
     Parameters
     ----------
-    world, start, goal, points, rule, edge_cost, shorten, budget
+    world, start, goal, points, rule, edge_cost, shorten, links, budget
         As in :func:`plan`.
 
     Returns
@@ -49,7 +49,8 @@ def fmt(
         As in :func:`plan`.
     """
     budget = Budget() if budget is None else budget
-    query = Query(*read_places(start, goal, world.space), shorten=shorten, edge_cost=edge_cost, budget=budget)
+    places = read_places(start, goal, world.space)
+    query = Query(*places, shorten=shorten, edge_cost=edge_cost, links=links, budget=budget)
     points = as_points(points, world.space)
     rule = default_rule(world.space) if rule is None else rule
     attempt = Attempt(world, query, points.origin, str(rule), "fmt*")
@@ -57,10 +58,7 @@ def fmt(
         return refusal
     milestones = world.space.from_cube(points.points)
     milestones = milestones[attempt.valid(milestones)]
-    configurations = np.concatenate([milestones, attempt.start_and_goals])
-    with attempt.watch("neighbours"):
-        edges = rule.edges(configurations, world.space, ends=len(attempt.start_and_goals))
-    states = attempt.states(configurations, edges)
+    states = attempt.candidates(rule, milestones)
     states.node_states[:] = FREE
     reached = 1
 

@@ -17,7 +17,7 @@ from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.cost import BOUND, EdgeCost, edge_costs
 from evenroad.roadmap.neighbours.find import Surroundings, nearest_of
-from evenroad.roadmap.query import Query, as_points, read_places
+from evenroad.roadmap.query import LINKS, Query, as_points, read_places
 from evenroad.roadmap.result import PlanResult
 from evenroad.roadmap.rules import KNearest, Rule
 from evenroad.roadmap.search import BLOCKED, FREE, UNKNOWN, EdgeStates, FixedPoint, Graph, SearchProblem
@@ -215,15 +215,16 @@ class WorldRoadmap:
         success_only: bool = False,
         shorten: bool = False,
         keep_graph: bool = False,
+        links: int | None = LINKS,
         budget: Budget | None = None,
     ) -> PlanResult:
         """Find a short free path from start to goal.
 
-        Both are joined to the milestones as the rule's :class:`Reach` says, and to one another.
+        Both are joined to one another, to milestones as the rule's :class:`Reach` says, and to as many as `links` says.
 
         Parameters
         ----------
-        start, goal, search, success_only, budget
+        start, goal, search, success_only, links, budget
             As in :func:`plan`; by default lazily.  What is known is never asked again.
         shorten : bool
             Also shortcut the path, which takes longer than finding it.
@@ -248,6 +249,7 @@ class WorldRoadmap:
             success_only=success_only,
             shorten=shorten,
             edge_cost=self._edge_cost,
+            links=links,
             budget=Budget() if budget is None else budget,
         )
         roadmap = self.roadmap
@@ -266,7 +268,7 @@ class WorldRoadmap:
         roadmap, ends = self.roadmap, attempt.start_and_goals
         n, m, nodes = len(roadmap.configurations), len(roadmap.edges), len(roadmap.configurations) + len(ends)
         distances = [roadmap.surroundings.distances(end) for end in ends]
-        links = self._links(distances)
+        links = self._links(distances, attempt.query)
         self._make_room(nodes, m + len(links))
         q, edges = self._configurations[:nodes], self._edges[: m + len(links)]
         costs, weights = self._costs[: len(edges)], self._weights[: len(edges)]
@@ -291,14 +293,16 @@ class WorldRoadmap:
             SearchProblem(graph, weights, bounds, n, np.arange(n + 1, nodes)),
         )
 
-    def _links(self, distances: list[npt.NDArray[np.float64]]) -> npt.NDArray[np.int32]:
+    def _links(self, distances: list[npt.NDArray[np.float64]], query: Query) -> npt.NDArray[np.int32]:
         """Return the links of the start and the goals, at such distances from the milestones, (l, 2)."""
         n = len(self.roadmap.configurations)
         reach = self.roadmap.rule.reach(n, self.roadmap.space)
         usable = np.ones(n, dtype=np.bool_) if self.lazy_milestones else self._known.nodes[:n] == FREE
-        links = []
+        links, most = [], query.links_among(n)
         for node, away in enumerate(distances, start=n):
             near = nearest_of(away, usable, reach.k, reach.radius)
+            if most:
+                near = np.union1d(near, nearest_of(away, usable, most))
             links.append(np.stack([near, np.full(len(near), node)], axis=1))
         goals = np.arange(n + 1, n + len(distances))
         links.append(np.stack([np.full(len(goals), n), goals], axis=1))

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import numpy as np
 import numpy.typing as npt
 
 from evenroad.points.pointset import PointSet
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.cost import EdgeCost
-from evenroad.roadmap.query import Query, as_points, read_places
+from evenroad.roadmap.query import LINKS, Query, as_points, read_places
 from evenroad.roadmap.result import PlanResult
 from evenroad.roadmap.rules import Rule, default_rule
 from evenroad.roadmap.search import FREE
@@ -28,6 +27,7 @@ def plan(
     success_only: bool = False,
     edge_cost: EdgeCost | None = None,
     shorten: bool = True,
+    links: int | None = LINKS,
     budget: Budget | None = None,
 ) -> PlanResult:
     """Find a short free path from start to goal over the given points.
@@ -56,6 +56,9 @@ def plan(
         Cost of the motions between the rows of two (m, dim) arrays, at least their lengths; default: the length.
     shorten : bool
         Also shortcut the path (the raw one is kept).
+    links : int or None
+        To how many of the nearest milestones start and goals are linked, besides those of the rule; to all up to 256.
+        None: as the rule says, which is what published protocols do.
     budget : Budget, optional
         Default: a minute.
 
@@ -78,6 +81,7 @@ def plan(
         success_only=success_only,
         shorten=shorten,
         edge_cost=edge_cost,
+        links=links,
         budget=Budget() if budget is None else budget,
     )
     points = as_points(points, world.space)
@@ -88,9 +92,6 @@ def plan(
     milestones = world.space.from_cube(points.points)
     if not lazy_milestones:
         milestones = milestones[attempt.valid(milestones)]
-    configurations = np.concatenate([milestones, attempt.start_and_goals])
-    with attempt.watch("neighbours"):
-        edges = rule.edges(configurations, world.space, ends=len(attempt.start_and_goals))
-    states = attempt.states(configurations, edges)
+    states = attempt.candidates(rule, milestones)
     states.node_states[len(milestones) if lazy_milestones else 0 :] = FREE
     return attempt.result(attempt.search(query.find, states), points.n)

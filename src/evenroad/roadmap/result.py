@@ -98,6 +98,8 @@ class PlanResult:
         Where the points came from.
     rule : str
         The connection rule, by name.
+    links : int or None
+        To how many of the nearest milestones start and goals were linked besides (to all, up to 256); None: to none.
     planner : str
         Who searched: ``prm full``, ``prm lazy``, ``prm any`` (some path, not the shortest), each with
         ``+ lazy milestones`` where those were checked late; ``prm anytime``, ``fmt*``.
@@ -113,6 +115,7 @@ class PlanResult:
     goals: npt.NDArray[np.float64]
     origin: Origin
     rule: str
+    links: int | None = None
     planner: str = "prm full"
     goal_index: int | None = None
     path: npt.NDArray[np.float64] | None = None
