@@ -41,7 +41,8 @@ def measure(level: int, n: int, k: int, queries: int, links: int | None = None) 
     cold, warm = 1e3 * np.array(seconds[:100]), 1e3 * np.array(seconds[queries:])
     return (
         f"| {level} | {n} | {k} | {1e3 * (built - begin):.0f} | {1e3 * (ready - built):.1f} |"
-        f" {1e3 * (again - ready):.2f} | {np.median(cold):.2f} | {np.median(warm):.2f} | {np.quantile(warm, 0.95):.2f} |"
+        f" {1e3 * (again - ready):.2f} | {np.median(cold):.2f} | {np.median(warm):.2f} |"
+        f" {np.quantile(warm, 0.95):.2f} |"
         f" {np.mean(checks[:100]):.1f} | {np.mean(checks[queries:]):.1f} | {100 * solved / len(pairs):.1f} % |"
     )
 
