@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from evenroad.research.bench.task import Problem
 from evenroad.roadmap.neighbours import nearest
-from evenroad.roadmap.search.pieces import join
+from evenroad.roadmap.search import join
 
 NEVER = 10**6
 """Stands for: not with any k that was tried."""

@@ -56,7 +56,7 @@ def main() -> None:
         theirs = statistics.median(seconds for _, _, seconds in peer)
 
         def ask(world=world, points=points, rule=rule, **how):  # type: ignore[no-untyped-def]
-            return plan(world, world.start, world.goal, points, rule=rule, shorten=False, **how)
+            return plan(world, world.start, world.goal, points, rule=rule, links=None, shorten=False, **how)
 
         full, quick = median_seconds(ask), median_seconds(lambda ask=ask: ask(success_only=True))
         agree = ask().solved == ask(success_only=True).solved == peer[0][0]

@@ -24,7 +24,7 @@ def searches(level: int, n: int, k: int, run: int) -> dict[str, PlanResult]:
     """Return the answers of all searches to one query, by name."""
     maze = load_maze(level)
     query = maze.world(), maze.start, maze.goal, draw("sobol", n, 2, rng=run)
-    options = dict(rule=KNearest(k), shorten=False)
+    options = dict(rule=KNearest(k), links=None, shorten=False)
     return {
         "full": plan(*query, **options),
         "lazy": plan(*query, search="lazy", **options),

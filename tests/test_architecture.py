@@ -11,7 +11,10 @@ import evenroad
 
 ROOT = Path(evenroad.__file__).parent
 
-BASE = {"errors", "_checks", "_rng", "_files", "_progress", "_yaml", "_extras", "_compiled"}
+BASE = {
+    *("errors", "_checks", "_rng", "_files", "_npz", "_yaml"),
+    *("_progress", "_extras", "_compiled", "_fingerprint"),
+}
 MAY_IMPORT = {
     "points": BASE,
     "space": BASE,

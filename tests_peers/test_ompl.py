@@ -34,7 +34,7 @@ def test_success_agrees_on_random_worlds(seed):
     points = draw("uniform", 40, d, rng=seed)
     share = 0.01
     world = FunctionWorld(Box(np.zeros(d), np.ones(d)), free, share * np.sqrt(d))
-    ours = plan(world, start, goal, points, rule=KEarlier(10), shorten=False)
+    ours = plan(world, start, goal, points, rule=KEarlier(10), links=None, shorten=False)
     if str(ours.status).endswith("invalid"):
         start_and_goal_free = free(np.stack([start, goal]))
         assert not start_and_goal_free.all()
@@ -49,7 +49,9 @@ def test_random_worlds_are_both_solved_and_not():
         d, free, _ = _balls(seed)
         world = FunctionWorld(Box(np.zeros(d), np.ones(d)), free, 0.01 * np.sqrt(d))
         points = draw("uniform", 40, d, rng=seed)
-        result = plan(world, np.full(d, 0.02), np.full(d, 0.98), points, rule=KEarlier(10), shorten=False)
+        result = plan(
+            world, np.full(d, 0.02), np.full(d, 0.98), points, rule=KEarlier(10), links=None, shorten=False
+        )
         outcomes.add(str(result.status))
     assert {"solved", "not_connected"} <= outcomes
 
@@ -61,5 +63,7 @@ def test_success_agrees_in_corridors(d, lam, n):
     world = Corridor(d, lam)
     for seed in range(4):
         points = draw("uniform", n, d, rng=seed)
-        ours = plan(world, world.start, world.goal, points, rule=KEarlier(10), shorten=False).solved
+        ours = plan(
+            world, world.start, world.goal, points, rule=KEarlier(10), links=None, shorten=False
+        ).solved
         assert ours == ompl_prm(corridor_checker(d, lam), points.points, world.start, world.goal, 0.001)[0]

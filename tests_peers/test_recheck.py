@@ -13,7 +13,8 @@ from evenroad.errors import BrokenFile
 from evenroad.robot import ArmWorld, Obstacle, Scene, link_poses, load_robot
 from evenroad.robot.load import load_model
 from evenroad.robot.reference.coal_world import CoalWorld
-from evenroad.robot.reference.recheck import has_meshes, recheck, states_along, unseen_pairs
+from evenroad.robot.reference.recheck import has_meshes, recheck, unseen_pairs
+from evenroad.space.path import resample
 
 pytest.importorskip("coal")
 
@@ -31,7 +32,7 @@ def test_states_are_those_at_which_a_motion_is_checked(arm):
     """Both ends of every motion and what divides it, no further apart than asked, the shorter way round."""
     space = ArmWorld(load_robot(arm), NOTHING).space
     path = np.array([[3.0, 0.0, 0.1], [-3.0, 0.4, 0.1], [-3.0, 0.4, 0.1], [-2.0, 0.4, 0.0]])
-    states, motions = states_along(space, path, 0.05)
+    states, motions = resample(path, space, 0.05)
     steps = space.distance(states[:-1], states[1:])
     assert steps.max() <= 0.05 + 1e-12
     lengths = space.distance(path[:-1], path[1:])
@@ -46,7 +47,7 @@ def test_states_are_those_at_which_a_motion_is_checked(arm):
 
 def test_one_waypoint_is_one_state(arm):
     space = ArmWorld(load_robot(arm), NOTHING).space
-    states, motions = states_along(space, np.zeros((1, 3)), 0.05)
+    states, motions = resample(np.zeros((1, 3)), space, 0.05)
     assert (states.tolist(), motions.tolist()) == ([[0.0, 0.0, 0.0]], [0])
 
 
@@ -118,7 +119,7 @@ def test_a_graze_between_the_states_of_the_planner_is_found(arm):
     """A thin post beside the way of the fork: a tenth of the resolution sees what the resolution itself passes over."""
     robot = load_robot(arm)
     path = np.array([[-0.4, 0.0, 0.0], [1.5, 0.0, 0.0]])
-    coarse = states_along(ArmWorld(robot, NOTHING).space, path, 0.951)[0]
+    coarse = resample(path, ArmWorld(robot, NOTHING).space, 0.951)[0]
     between = 0.5 * (coarse[0] + coarse[1])
     corner = link_poses(robot, between[np.newaxis])[0, robot.links.index("fork")]
     place = corner[:3, :3] @ (0.05, 0.0, 0.02) + corner[:3, 3]

@@ -81,7 +81,8 @@ def as_batch(name: str, values: object, dim: int) -> npt.NDArray[np.float64]:
     except (TypeError, ValueError) as error:
         raise InvalidValue(f"{name} must be an (n, {dim}) array of numbers: {error}") from None
     if array.ndim != 2 or array.shape[1] != dim:
-        raise InvalidValue(f"{name} must have shape (n, {dim}), got {array.shape}")
+        one = f"; one configuration is a batch, too: [{array.tolist()}]" if array.shape == (dim,) else ""
+        raise InvalidValue(f"{name} must have shape (n, {dim}), got {array.shape}{one}")
     batch = np.ascontiguousarray(array).view()
     batch.setflags(write=False)
     finite = np.isfinite(batch)

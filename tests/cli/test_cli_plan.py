@@ -145,7 +145,7 @@ def test_a_way_that_is_not_found_exits_with_1_and_says_what_to_try(run, tmp_path
     record = json.loads((tmp_path / "a.json").read_text())
     assert record["status"] == "not_connected"
     assert record["path"] is None
-    assert {"start_piece", "goal_piece"} <= set(record["counts"])
+    assert {"start_component", "goal_component"} <= set(record["counts"])
     assert "try n=32" in " ".join(out.split())
     assert (tmp_path / "a.png").exists()
 

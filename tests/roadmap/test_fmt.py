@@ -7,8 +7,7 @@ from evenroad.errors import InvalidValue
 from evenroad.points import PointSet, draw
 from evenroad.research.mazes import load_maze
 from evenroad.roadmap import Radius, Status, fmt, plan
-from evenroad.roadmap.search import Graph, Ledger
-from evenroad.roadmap.search.marching import march
+from evenroad.roadmap.search import EdgeStates, Graph, SearchProblem, march
 from tests.roadmap.worlds import ChanceWorld
 
 START, GOAL = (0.0, 0.0), (1.0, 1.0)
@@ -50,9 +49,12 @@ def test_the_tree_is_that_of_the_papers_algorithm(seed, n, share, steps):
         neighbours[b].add(a)
         length[a, b] = length[b, a] = weight
         is_free[a, b] = is_free[b, a] = verdict
-    ledger = Ledger(ChanceWorld(0), np.zeros((n, 2)), edges)
-    ledger.edge_states[:] = np.where(free, 1, 2)
-    (nodes, along), reached = march(Graph.of(n, edges), weights, ledger, n - 2, n - 1)
+    states = EdgeStates(ChanceWorld(0), np.zeros((n, 2)), edges)
+    states.edge_states[:] = np.where(free, 1, 2)
+    (nodes, along), reached = march(
+        SearchProblem(Graph.of(n, edges), weights, np.zeros(n, dtype=np.int64), n - 2, np.array([n - 1])),
+        states,
+    )
     expected, tree = _reading_of_the_paper(n, neighbours, length, is_free, n - 2, n - 1)
     assert reached == len(tree)
     if expected is None:
@@ -91,7 +93,7 @@ def test_a_path_of_the_tree_is_free_and_not_shorter_than_the_shortest(seed, free
         np.testing.assert_array_equal(tree.path[[0, -1]], [START, GOAL])
     else:
         assert tree.status is Status.NOT_CONNECTED
-        assert f"reached {tree.counts['start_piece']} of {tree.counts['valid']}" in tree.message
+        assert f"reached {tree.counts['start_component']} of {tree.counts['valid']}" in tree.message
 
 
 @pytest.mark.parametrize("level", [1, 2, 3])

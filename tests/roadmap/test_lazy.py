@@ -7,7 +7,7 @@ from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points import PointSet, draw
 from evenroad.research.mazes import load_maze
 from evenroad.roadmap import Complete, KEarlier, KMutual, KNearest, Radius, Status, plan
-from evenroad.roadmap.rules.rule import ascending
+from evenroad.roadmap.rules.near import ascending
 from tests.roadmap.worlds import ChanceWorld
 
 START, GOAL = (0.0, 0.0), (1.0, 1.0)
@@ -38,7 +38,8 @@ def queries(draw_value):
         seed, draw_value(st.sampled_from([1.0, 0.8])), draw_value(st.sampled_from([0.3, 0.6, 0.9]))
     )
     cost = draw_value(st.sampled_from([None, _steps, _detour]))
-    return world, PointSet(points), dict(rule=rule, edge_cost=cost, shorten=False)
+    links = draw_value(st.sampled_from([None, 3, 100]))
+    return world, PointSet(points), dict(rule=rule, edge_cost=cost, links=links, shorten=False)
 
 
 @settings(max_examples=150, deadline=None)
@@ -57,13 +58,14 @@ def test_lazy_finds_the_path_of_the_full_search_bit_for_bit(query, lazy_mileston
         assert lazy.cost == full.cost
     else:
         # Both know the piece of the start: the lazy one has seen the same cut, if not all that lies beyond.
-        assert lazy.counts["start_piece"] >= full.counts["start_piece"]
+        assert lazy.counts["start_component"] >= full.counts["start_component"]
 
 
 @settings(max_examples=100, deadline=None)
 @given(queries())
 def test_the_full_path_is_the_cheapest_one_and_follows_the_lowest_nodes_back(query):
     world, points, options = query
+    options |= dict(links=None)
     result = plan(world, START, GOAL, points, **options)
     nodes = np.concatenate([points.points[world.valid(points.points)], [START], [GOAL]])
     edges = options["rule"].edges(nodes, world.space, ends=2)
@@ -120,6 +122,43 @@ def test_the_counts_are_what_the_world_was_asked(query, search, lazy_milestones)
     assert result.counts["points"] == points.n
 
 
+def test_with_costs_below_the_lengths_by_as_much_as_rounding_may_the_path_still_is_the_cheapest():
+    # All nodes on one line, so that the distance to the goal is no slack bound; 1e-9 below it, and it is too large.
+    def below(a, b):
+        place = (a + b)[:, 0] + 3.0 * np.abs(a - b)[:, 0]
+        return np.linalg.norm(a - b, axis=1) * (1.0 - 0.99e-9 * np.abs(np.sin(1e3 * place)))
+
+    line = PointSet(np.stack([np.arange(1, 16) / 16, np.zeros(15)], axis=1))
+    for seed in range(30):
+        options = dict(rule=Radius(0.3), edge_cost=below, shorten=False)
+        full, lazy = (
+            plan(ChanceWorld(seed, 1.0, 0.6), (0.0, 0.0), (1.0, 0.0), line, search=search, **options)
+            for search in ("full", "lazy")
+        )
+        assert full.status is lazy.status
+        if not full.solved:
+            continue
+        assert full.path.tobytes() == lazy.path.tobytes()
+        nodes, edges = full.roadmap.configurations, full.roadmap.edges
+        costs = below(nodes[edges[:, 0]], nodes[edges[:, 1]])
+        cost = np.full(len(nodes), np.inf)
+        cost[-2] = 0.0
+        for _ in nodes:
+            for (i, j), step in zip(edges.tolist(), costs.tolist(), strict=True):
+                cost[i], cost[j] = min(cost[i], cost[j] + step), min(cost[j], cost[i] + step)
+        assert full.cost == pytest.approx(cost[-1], rel=1e-13)
+
+
+def test_a_number_of_points_is_drawn_from_the_even_family():
+    world = ChanceWorld(3, 1.0, 1.0)
+    drawn = plan(world, START, GOAL, 128)
+    assert drawn.counts["points"] == 128
+    assert drawn.path.tobytes() == plan(world, START, GOAL, draw("even", 128, 2)).path.tobytes()
+    for wrong in (0, -3, True, 2.5, "512", [[0.5, 0.5]]):
+        with pytest.raises(InvalidValue, match="points"):
+            plan(world, START, GOAL, wrong)
+
+
 @pytest.mark.parametrize("level", [1, 2, 3])
 def test_on_the_mazes_lazy_checks_few_edges_and_finds_the_same_path(level):
     maze = load_maze(level)
@@ -134,10 +173,16 @@ def test_on_the_mazes_lazy_checks_few_edges_and_finds_the_same_path(level):
 
 def test_lazily_not_connected_speaks_of_what_could_be_reached():
     result = plan(
-        ChanceWorld(1, 0.9, 0.0), START, GOAL, draw("sobol", 32, 2), search="lazy", lazy_milestones=True
+        ChanceWorld(1, 0.9, 0.0),
+        START,
+        GOAL,
+        draw("sobol", 32, 2),
+        search="lazy",
+        lazy_milestones=True,
+        links=None,
     )
     assert result.status is Status.NOT_CONNECTED
-    assert result.counts["start_piece"] == 0
+    assert result.counts["start_component"] == 0
     assert "milestones not known to be invalid" in result.message
     assert result.planner == "prm lazy + lazy milestones"
 

@@ -6,7 +6,8 @@ from hypothesis import strategies as st
 from evenroad.errors import InvalidValue
 from evenroad.points import PointSet, draw
 from evenroad.roadmap import KNearest, Radius, Status, plan
-from evenroad.roadmap.shortcut import path_length, shortcut
+from evenroad.roadmap.shortcut import shortcut
+from evenroad.space.path import path_length
 from evenroad.world import GridMap
 
 
@@ -31,8 +32,8 @@ def test_no_way_around_a_wall_is_an_answer_with_its_reason():
     assert result.status is Status.NOT_CONNECTED
     assert not result.solved
     assert result.path is None
-    assert result.counts["start_piece"] + result.counts["goal_piece"] <= result.counts["valid"]
-    assert f"start reaches {result.counts['start_piece']}" in result.message
+    assert result.counts["start_component"] + result.counts["goal_component"] <= result.counts["valid"]
+    assert f"start reaches {result.counts['start_component']}" in result.message
     assert "try n=128 or a larger k" in result.message
     by_radius = plan(WALL.world(0.5), (2, 2), (18, 18), draw("halton", 64, 2), rule=Radius(4.0))
     assert "or a larger radius" in by_radius.message
@@ -114,7 +115,7 @@ def test_the_path_agrees_with_a_plain_reading_of_algorithm_1():
                 min(cost[i], cost[j] + distances[i][j]),
                 min(cost[j], cost[i] + distances[i][j]),
             )
-    result = plan(world, (2, 2), (2, 18), points, rule=KNearest(k))
+    result = plan(world, (2, 2), (2, 18), points, rule=KNearest(k), links=None)
     assert result.counts["edges_checked"] == len(edges)
     assert result.counts["edges_free"] == len(free)
     assert result.milestone_cost == pytest.approx(cost[-1])

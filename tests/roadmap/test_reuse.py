@@ -1,3 +1,6 @@
+import pickle
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -6,9 +9,9 @@ from hypothesis import strategies as st
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points import PointSet, draw
 from evenroad.research.mazes import load_maze
-from evenroad.roadmap import Complete, KNearest, Radius, Roadmap, Status
-from evenroad.roadmap.neighbours.newcomer import Surroundings, nearest_of
-from evenroad.space import Rectangle
+from evenroad.roadmap import Budget, Complete, KNearest, Radius, Roadmap, Status
+from evenroad.roadmap.neighbours.find import Surroundings, nearest_of
+from evenroad.space import Rectangle, Space
 from evenroad.world import GridMap
 from tests.roadmap.spaces import Great, Torus
 from tests.roadmap.worlds import ChanceWorld
@@ -31,7 +34,7 @@ def reuses(draw_value):
     return Roadmap.build(SQUARE, PointSet(points), rule), world, queries
 
 
-def _cheapest(roadmap, world, start, goal, lazy_milestones):
+def _cheapest(roadmap, world, start, goal, lazy_milestones, links):
     """The definition: both ends joined as the rule's reach says, and the least cost by Bellman and Ford."""
     q = np.concatenate([roadmap.configurations, [start], [goal]])
     n = len(roadmap.configurations)
@@ -42,8 +45,9 @@ def _cheapest(roadmap, world, start, goal, lazy_milestones):
     for end in (n, n + 1):
         away = np.hypot(*(q[:n] - q[end]).T)
         near = [i for i in np.argsort(away, kind="stable") if usable[i]]
+        close = [] if links is None else near  # all of so few milestones
         near = [i for i in near if reach.radius is None or away[i] <= reach.radius]
-        edges += [(int(i), end) for i in near[: reach.k]]
+        edges += [(int(i), end) for i in [*near[: reach.k], *close]]
     first, second = np.array(edges).T
     free = world.motion_valid(q[first], q[second]) & valid[first] & valid[second]
     cost = np.full(n + 2, np.inf)
@@ -57,13 +61,13 @@ def _cheapest(roadmap, world, start, goal, lazy_milestones):
 
 
 @settings(max_examples=60, deadline=None)
-@given(reuses(), st.booleans())
-def test_a_query_finds_the_shortest_path_of_the_roadmap_and_its_two_ends(reuse, lazy_milestones):
+@given(reuses(), st.booleans(), st.sampled_from([None, 100]))
+def test_a_query_finds_the_shortest_path_of_the_roadmap_and_its_two_ends(reuse, lazy_milestones, links):
     roadmap, world, queries = reuse
     known = roadmap.in_world(world, lazy_milestones=lazy_milestones)
     for start, goal in queries:
-        result = known.query(start, goal)
-        expected = _cheapest(roadmap, world, start, goal, lazy_milestones)
+        result = known.query(start, goal, links=links)
+        expected = _cheapest(roadmap, world, start, goal, lazy_milestones, links)
         assert result.solved == np.isfinite(expected)
         if result.solved:
             assert result.cost == pytest.approx(expected, abs=1e-12)
@@ -123,7 +127,7 @@ def test_statuses_counts_and_names_of_a_query():
     assert known.query((5, 15), (0.2, 5)).status is Status.GOAL_INVALID
     apart = known.query((5, 15), (15, 5))
     assert apart.status is Status.NOT_CONNECTED
-    assert 0 < apart.counts["start_piece"] < apart.counts["valid"]
+    assert 0 < apart.counts["start_component"] < apart.counts["valid"]
     joined = known.query((5, 15), (5, 18), keep_graph=True, shorten=True)
     assert joined.solved
     assert joined.rule == "k=8 symmetrised of all points"
@@ -207,3 +211,68 @@ def test_the_graph_of_a_set_from_a_pool_is_joined_once_and_others_each_time():
         Roadmap.build(GridMap(np.zeros((20, 30), dtype=bool)).space, banked),
     ):
         assert different.edges is not Roadmap.build(space, banked).edges
+
+
+def test_threads_that_share_a_roadmap_get_the_answers_that_each_would_get_alone():
+    maze = load_maze(2)
+    world = maze.world()
+    known = Roadmap.build(world.space, draw("sobol", 256, 2, rng=1), KNearest(10)).in_world(world)
+    places = world.space.from_cube(draw("uniform", 400, 2, rng=5).points)
+    queries = places[world.valid(places)][:120].reshape(-1, 2, 2)
+    alone = [known.query(start, goal) for start, goal in queries]
+    shared = known.roadmap.in_world(world)
+    with ThreadPoolExecutor(8) as pool:
+        together = list(pool.map(lambda query: shared.query(*query), [*queries, *queries, *queries]))
+    for mine, expected in zip(together, 3 * alone, strict=True):
+        assert (mine.status, mine.cost) == (expected.status, expected.cost)
+        assert mine.path is expected.path or mine.path.tobytes() == expected.path.tobytes()
+
+
+def test_a_roadmap_in_a_world_can_be_sent_to_another_process():
+    known = Roadmap.build(SQUARE, draw("sobol", 32, 2), KNearest(6)).in_world(
+        GridMap(np.zeros((1, 1), dtype=bool)).world(0.01)
+    )
+    known.query((0.1, 0.1), (0.9, 0.9))
+    sent = pickle.loads(pickle.dumps(known))
+    assert sent.query((0.1, 0.1), (0.9, 0.9)).cost == known.query((0.1, 0.1), (0.9, 0.9)).cost
+
+
+def test_a_roadmap_measures_its_edges_once_and_only_when_asked():
+    class Ruled(Space):
+        measured = 0
+        dim = 2
+
+        def from_cube(self, u):
+            return np.array(u)
+
+        def distance(self, a, b):
+            Ruled.measured += len(a)
+            return np.hypot(*(a - b).T)
+
+        def interpolate(self, a, b, t):
+            return a + np.reshape(t, (-1, 1)) * (b - a)
+
+    space = Ruled()
+    roadmap = Roadmap.build(space, draw("sobol", 256, 2), Radius(0.1))
+    Ruled.measured = 0
+    worlds = [ChanceWorld(seed, 1.0, 0.9) for seed in range(3)]
+    for world in worlds:
+        world.space = space
+    known = [roadmap.in_world(world) for world in worlds]
+    assert Ruled.measured == 0
+    for one in known:
+        one.query(*CORNERS[::3])
+    # The edges once, and what each query measures of all milestones.
+    assert len(roadmap.edges) <= Ruled.measured < 2 * len(roadmap.edges) + 3 * 3 * 300
+    assert np.array_equal(roadmap.lengths, space.distance(*roadmap.configurations[roadmap.edges.T]))
+
+
+def test_a_budget_of_a_query_is_kept_to_and_what_was_asked_is_kept():
+    world = ChanceWorld(5, 1.0, 0.0)
+    known = Roadmap.build(SQUARE, draw("sobol", 64, 2), KNearest(6)).in_world(world)
+    result = known.query(*CORNERS[::3], search="full", links=None, budget=Budget(motions=10))
+    assert result.status is Status.BUDGET_SPENT
+    assert world.asked_motions == result.counts["edges_checked"] == 10
+    assert result.message.startswith("no path within 10 motions, 60 s; start reaches")
+    known.query(*CORNERS[::3], search="full", links=None)
+    assert world.asked_motions <= 10 + len(known.roadmap.edges) + 13

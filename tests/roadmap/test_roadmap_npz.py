@@ -1,6 +1,9 @@
+from contextlib import suppress
+
 import numpy as np
 import pytest
 
+from evenroad import _npz
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 from evenroad.points import draw
 from evenroad.roadmap import (
@@ -13,7 +16,7 @@ from evenroad.roadmap import (
     save_world_roadmap,
 )
 from evenroad.space import Rectangle
-from evenroad.world import GridMap, MapFrame
+from evenroad.world import FunctionWorld, GridMap, MapFrame
 from tests.roadmap.worlds import ChanceWorld
 
 GAP = np.zeros((20, 20), dtype=bool)
@@ -81,6 +84,22 @@ def test_a_world_without_a_fingerprint_can_only_keep_the_roadmap(tmp_path):
         load_world_roadmap(tmp_path / "road.npz", ChanceWorld(0))
 
 
+def test_a_function_with_a_name_keeps_what_is_known_and_one_without_is_told_what_to_do(tmp_path):
+    roadmap = Roadmap.build(ChanceWorld.space, draw("sobol", 64, 2), KNearest(8))
+    named, same, other, nameless = (
+        FunctionWorld(ChanceWorld.space, lambda q: q[:, 0] < 0.9, 0.1, name=name)
+        for name in ("shelf", "shelf", "table", None)
+    )
+    known = roadmap.in_world(named)
+    before = known.query((0.1, 0.1), (0.8, 0.8))
+    save_world_roadmap(tmp_path / "road.npz", known)
+    assert load_world_roadmap(tmp_path / "road.npz", same).query((0.1, 0.1), (0.8, 0.8)).cost == before.cost
+    with pytest.raises(InvalidValue, match="another world"):
+        load_world_roadmap(tmp_path / "road.npz", other)
+    with pytest.raises(NotAvailable, match="only with a name"):
+        save_world_roadmap(tmp_path / "road.npz", roadmap.in_world(nameless))
+
+
 def test_another_space_is_refused(tmp_path):
     save_roadmap(tmp_path / "road.npz", ROADMAP)
     with pytest.raises(InvalidValue, match="another space"):
@@ -136,7 +155,7 @@ def test_a_save_that_fails_leaves_the_old_file(tmp_path, monkeypatch):
         file.write(b"half")
         raise OSError("disk full")
 
-    monkeypatch.setattr("evenroad.roadmap.npz.np.savez_compressed", broken)
+    monkeypatch.setattr("evenroad._npz.np.savez_compressed", broken)
     with pytest.raises(BrokenFile, match="disk full"):
         save_world_roadmap(path, _known())
     assert path.read_bytes() == before
@@ -154,3 +173,54 @@ def test_a_fingerprint_tells_maps_frames_and_radii_apart():
     ]
     assert len({world.fingerprint() for world in worlds}) == len(worlds)
     assert GridMap(GAP.copy()).world(0.5, clearance=0.5).fingerprint() == WORLD.fingerprint()
+
+
+def test_whatever_byte_of_a_file_is_changed_it_is_a_broken_file_or_the_same_roadmap(tmp_path):
+    path, wrong = tmp_path / "road.npz", tmp_path / "wrong.npz"
+    save_world_roadmap(path, _known())
+    whole = path.read_bytes()
+    random = np.random.default_rng(5)
+    # The headers of the archive and of its arrays are where the surprises are: at the ends of the members.
+    places = np.unique(np.concatenate([random.integers(0, len(whole), 200), np.arange(0, len(whole), 29)]))
+    for place in places.tolist():
+        content = bytearray(whole)
+        content[place] ^= int(random.integers(1, 256))
+        wrong.write_bytes(bytes(content))
+        # Any other error fails the test.
+        with suppress(BrokenFile):
+            _assert_same(load_world_roadmap(wrong, WORLD).roadmap)
+
+
+def _rewritten(path, **changed):
+    """The file with some arrays changed and a digest that fits them."""
+    arrays = dict(np.load(path)) | {name: np.asarray(array) for name, array in changed.items()}
+    del arrays["digest"]
+    _npz.write_npz(path, arrays | {"digest": np.array(_npz.digest(arrays))})
+
+
+@pytest.mark.parametrize(
+    ("changed", "text"),
+    [
+        (dict(origin="{"), "origin is no JSON"),
+        (dict(origin="[1]"), "object with keys among"),
+        (dict(origin='{"colour": 1}'), "object with keys among"),
+        (dict(origin="{}"), "Origin"),
+        (dict(rule="k=many"), "unknown connection rule"),
+        (dict(rule="k=0 symmetrised"), "k must be"),
+        (dict(points=np.full((100, 2), 1.5)), r"\[0, 1\)"),
+        (dict(points=3.0), "points must be"),
+        (dict(edges=np.array([[0, 100]], dtype=np.int32)), "milestones 0 .. 99"),
+        (dict(edges=np.array([[0, 1]])), "edges must be int32"),
+        (dict(node_states=np.zeros(3, dtype=np.int8)), "node_states must be"),
+        (dict(edge_states=np.full(len(ROADMAP.edges), 7, dtype=np.int8)), "edge_states must be 0, 1 or 2"),
+        (dict(lazy_milestones="yes"), "lazy_milestones"),
+        (dict(format=99), "format 99"),
+        (dict(format="new"), "format must be"),
+    ],
+)
+def test_a_file_whose_digest_fits_is_checked_all_the_same(tmp_path, changed, text):
+    path = tmp_path / "road.npz"
+    save_world_roadmap(path, _known())
+    _rewritten(path, **changed)
+    with pytest.raises(BrokenFile, match=text):
+        load_world_roadmap(path, WORLD)

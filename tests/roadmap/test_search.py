@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 
-from evenroad.roadmap.search import Ruler, pieces, shortest_path
+from evenroad.roadmap.search import FixedPoint, components, shortest_path
 
 
 @st.composite
@@ -68,12 +68,12 @@ def test_start_and_goal_may_be_the_same_node():
 
 @settings(max_examples=100, deadline=None)
 @given(roadmaps())
-def test_pieces_are_labelled_by_their_lowest_node(roadmap):
+def test_components_are_labelled_by_their_lowest_node(roadmap):
     positions, edges, _ = roadmap
     n = len(positions)
     graph = coo_array((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(n, n))
     _, expected = connected_components(graph, directed=False)
-    label = pieces(n, edges)
+    label = components(n, edges)
     for component in set(expected.tolist()):
         members = np.flatnonzero(expected == component)
         assert (label[members] == members.min()).all()
@@ -87,14 +87,16 @@ def test_pieces_are_labelled_by_their_lowest_node(roadmap):
 )
 def test_whole_lengths_are_never_shorter_than_lengths_and_bounds_never_longer(lengths, nodes, scale):
     lengths = np.array(lengths) * scale
-    ruler = Ruler.of(float(lengths.max()), nodes)
-    weights, bounds = ruler.weights(lengths), ruler.bounds(lengths)
+    fixed_point = FixedPoint.of(float(lengths.max()), nodes)
+    weights, bounds = fixed_point.weights(lengths), fixed_point.bounds(lengths)
     assert (weights >= 1).all()
     assert (bounds < weights).all()
     if lengths.max() > 1e-280:
-        np.testing.assert_allclose(weights * ruler.quantum, lengths, rtol=1e-12, atol=2 * ruler.quantum)
+        np.testing.assert_allclose(
+            weights * fixed_point.quantum, lengths, rtol=1e-12, atol=2 * fixed_point.quantum
+        )
     # A path over all nodes, together with any bound, is still a 64-bit integer.
-    assert int(weights.max()) * nodes + int(ruler.bounds(np.array([np.finfo(float).max]))[0]) < 2**63
+    assert int(weights.max()) * nodes + int(fixed_point.bounds(np.array([np.finfo(float).max]))[0]) < 2**63
 
 
 def test_grid_paths_that_take_the_same_steps_in_another_order_are_ties():

@@ -9,8 +9,8 @@ import pytest
 
 from evenroad.errors import InvalidValue
 from evenroad.space import SE2, SE3, SO3, Box, Circle, JointSpace, Product, Rectangle
-from evenroad.space.all_pairs import all_distances
 from evenroad.space.chain import ChainSpace
+from evenroad.space.protocol import all_distances
 
 SPACES = {
     "box": Box([-1, 0, 2], [1, 5, 3], weights=[1.0, 2.0, 0.5]),

@@ -21,6 +21,13 @@ def test_a_wrong_shape_is_named(wrong):
         as_batch("q", wrong, 2)
 
 
+def test_who_gives_one_configuration_is_told_how_to_write_it():
+    with pytest.raises(
+        InvalidValue, match=r"shape \(n, 2\), got \(2,\); one configuration .*: \[\[1.0, 2.0\]\]"
+    ):
+        as_batch("q", [1.0, 2.0], 2)
+
+
 @pytest.mark.parametrize("wrong", [[["a", "b"]], [[1.0, 2.0], [3.0]]])
 def test_what_is_no_array_of_numbers_is_refused(wrong):
     with pytest.raises(InvalidValue, match="numbers"):

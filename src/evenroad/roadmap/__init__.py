@@ -2,15 +2,17 @@
 
 from evenroad.roadmap.anytime import plan_anytime as plan_anytime
 from evenroad.roadmap.budget import Budget as Budget
-from evenroad.roadmap.build import Roadmap as Roadmap
 from evenroad.roadmap.cost import EdgeCost as EdgeCost
 from evenroad.roadmap.find_path import find_path as find_path
 from evenroad.roadmap.fmt import fmt as fmt
+from evenroad.roadmap.kept import Roadmap as Roadmap
+from evenroad.roadmap.kept import WorldRoadmap as WorldRoadmap
 from evenroad.roadmap.npz import load_roadmap as load_roadmap
 from evenroad.roadmap.npz import load_world_roadmap as load_world_roadmap
 from evenroad.roadmap.npz import save_roadmap as save_roadmap
 from evenroad.roadmap.npz import save_world_roadmap as save_world_roadmap
 from evenroad.roadmap.plan import plan as plan
+from evenroad.roadmap.query import Query as Query
 from evenroad.roadmap.result import PlanResult as PlanResult
 from evenroad.roadmap.result import SearchedGraph as SearchedGraph
 from evenroad.roadmap.result import Stage as Stage
@@ -28,4 +30,3 @@ from evenroad.roadmap.rules import TheoryRadius as TheoryRadius
 from evenroad.roadmap.rules import default_rule as default_rule
 from evenroad.roadmap.rules import prm_star_gamma as prm_star_gamma
 from evenroad.roadmap.rules import rule_named as rule_named
-from evenroad.roadmap.world_roadmap import WorldRoadmap as WorldRoadmap

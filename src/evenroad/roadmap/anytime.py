@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -13,16 +13,19 @@ from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points.pointset import PointSet
 from evenroad.points.samplers import Sampler, make_sampler
-from evenroad.roadmap.answer import count, not_connected, searched_graph, solved
+from evenroad.roadmap.attempt import Attempt, Searched
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.cost import EdgeCost
-from evenroad.roadmap.ends import end_in_collision, read_ends, require_fitting
-from evenroad.roadmap.growth import Growth
-from evenroad.roadmap.result import PlanResult, Status
+from evenroad.roadmap.query import LINKS, Query, as_points, read_places
+from evenroad.roadmap.result import PlanResult, Stage
 from evenroad.roadmap.rules import Rule, default_rule
+from evenroad.roadmap.search import FREE, UNKNOWN, find_lazily
 from evenroad.world import World
 
 UNTIL = ("solved", "settled", "budget")
+
+SETTLED = 0.01
+"""A path counts as settled when doubling the points has shortened it by no more than this share."""
 
 
 def plan_anytime(
@@ -33,6 +36,7 @@ def plan_anytime(
     *,
     first: int = 64,
     until: str = "solved",
+    links: int | None = LINKS,
     budget: Budget | None = None,
     rng: RngLike = 0,
     rule: Rule | None = None,
@@ -46,7 +50,7 @@ def plan_anytime(
 
     Parameters
     ----------
-    world, start, goal, rule, edge_cost, shorten
+    world, start, goal, rule, edge_cost, shorten, links
         As in :func:`plan`.
     sampler : Sampler, optional
         Whose sets of more points begin with those of fewer; default: scrambled Sobol points.
@@ -56,7 +60,7 @@ def plan_anytime(
         Stop with the first path, or when a path has become at most 1 % shorter from one stage to the next, or
         only when the budget is spent.
     budget : Budget, optional
-        Default: 65536 samples.
+        Default: 65536 samples and a minute.
     rng : int or SeedSequence
         For the sampler.
 
@@ -78,52 +82,122 @@ def plan_anytime(
     first = require_count("first", first)
     rule = default_rule(world.space) if rule is None else rule
     budget = Budget() if budget is None else budget
-    growth = Growth(world, read_ends(start, goal, world.space.dim), rule, edge_cost, budget)
-    points = _draw(sampler, min(first, budget.samples), world, rng, None)
-    answer: dict[str, Any] = dict(
-        start=growth.ends[0],
-        goal=growth.ends[1],
-        origin=points.origin,
-        rule=str(rule),
-        planner="prm anytime",
+    query = Query(
+        *read_places(start, goal, world.space),
+        shorten=shorten,
+        edge_cost=edge_cost,
+        links=links,
+        budget=budget,
     )
-    watch = growth.watch
-    with watch("validity"):
-        free_ends = world.valid(growth.ends)
-    if not free_ends.all():
-        return PlanResult(**end_in_collision(free_ends, growth.ends, world), **answer, seconds=watch.seconds)
-
-    while growth.take(points) and not growth.is_done(until) and points.n < budget.samples:
-        points = _draw(sampler, min(2 * points.n, budget.samples), world, rng, points)
-
-    counts = count(points.n, growth.ledger, 2 + points.n)
-    counts["edges_checked"] = growth.motions_checked
-    answer |= dict(counts=counts, roadmap=searched_graph(growth.ledger), stages=tuple(growth.stages))
-    if growth.best is not None:
-        found, costs, ledger = growth.best
-        return solved(found, costs, ledger, watch, shorten=shorten, cost=edge_cost, **answer)
-    result = not_connected(growth.ledger, watch, **answer)
-    return _spent(result, budget)
-
-
-def _draw(sampler: Sampler | None, n: int, world: World, rng: RngLike, before: PointSet | None) -> PointSet:
-    """Draw n points, and make sure that they go on where those `before` ended."""
     # By name: the module of the sequences imports scipy.stats, half a second that only this default needs.
     sampler = make_sampler("sobol") if sampler is None else sampler
-    points = sampler.draw(n, world.space.cube_dim, rng=rng)
-    require_fitting(points, world.space)
+    points = _draw(sampler, min(first, budget.samples), world, rng, None)
+    attempt = Attempt(world, query, points.origin, str(rule), "prm anytime", grows=True)
+    if (refusal := attempt.refused()) is not None:
+        return refusal
+    growth = Growth(attempt, rule)
+    while growth.take(points) and not growth.is_done(until) and points.n < budget.samples:
+        points = _draw(sampler, min(2 * points.n, budget.samples), world, rng, points)
+    return growth.result(points.n)
+
+
+class Growth:
+    """A roadmap that grows point by point: the milestones so far, what is known of them, and the best path."""
+
+    def __init__(self, attempt: Attempt, rule: Rule) -> None:
+        self.attempt, self.rule = attempt, rule
+        self.pairs = KnownPairs()
+        self.drawn = 0
+        self.names = np.empty(0, dtype=np.int64)
+        self.milestones = np.empty((0, attempt.world.space.dim))
+        self.stages: list[Stage] = []
+        self.best: Searched | None = None
+        self.last: Searched
+
+    def take(self, points: PointSet) -> bool:
+        """Search with these points, of which the first are known; return whether the budget was enough."""
+        attempt = self.attempt
+        self._add_valid(points)
+        states = attempt.candidates(self.rule, self.milestones)
+        # Names of nodes: start and goals are the first, point i comes so many later.
+        names = np.concatenate([self.names, np.arange(len(attempt.start_and_goals))])
+        states.node_states[:] = FREE
+        with attempt.watch("search"):
+            states.edge_states[:] = self.pairs.recall(names[states.edges])
+        self.last = attempt.search(find_lazily, states)
+        with attempt.watch("search"):
+            self.pairs.learn(names[states.edges], states.edge_states)
+        attempt.motions_checked += states.motions_checked
+        cost = float(np.sum(self.last.costs[self.last.found[1]])) if self.last.solved else None
+        if cost is not None and (self.best is None or cost < min(self._costs())):
+            self.best = self.last
+        self.stages.append(Stage(points.n, len(self.milestones), attempt.motions_checked, cost))
+        return not self.last.spent and time.perf_counter() < attempt.deadline
+
+    def is_done(self, until: str) -> bool:
+        """Return whether the last stage ends the work."""
+        if self.best is None or until == "budget":
+            return False
+        if until == "solved":
+            return True
+        before = self._costs()[:-1] if self.last.solved else self._costs()
+        return bool(before) and min(self._costs()) >= (1.0 - SETTLED) * min(before)
+
+    def result(self, points: int) -> PlanResult:
+        """Return the result: the best path of all stages, with the graph of the last one."""
+        self.attempt.spent = True
+        result = self.attempt.result(self.last, points, best=self.best)
+        counts = result.counts | {"edges_checked": self.attempt.motions_checked}
+        return replace(result, counts=counts, stages=tuple(self.stages))
+
+    def _costs(self) -> list[float]:
+        return [stage.cost for stage in self.stages if stage.cost is not None]
+
+    def _add_valid(self, points: PointSet) -> None:
+        samples = self.attempt.world.space.from_cube(points.points[self.drawn :])
+        valid = self.attempt.valid(samples)
+        first = len(self.attempt.start_and_goals)
+        self.names = np.concatenate([self.names, first + self.drawn + np.flatnonzero(valid)])
+        self.milestones = np.concatenate([self.milestones, samples[valid]])
+        self.drawn = points.n
+
+
+class KnownPairs:
+    """Verdicts on pairs of names, which stay while the numbers of nodes change; memory O(pairs)."""
+
+    def __init__(self) -> None:
+        self._keys = np.empty(0, dtype=np.int64)
+        self._states = np.empty(0, dtype=np.int8)
+
+    def recall(self, pairs: npt.NDArray[np.int64]) -> npt.NDArray[np.int8]:
+        """Return what is known of each pair of names below 2^31, (m, 2) -> (m,)."""
+        keys = _keys(pairs)
+        states = np.full(len(keys), UNKNOWN)
+        if len(self._keys):
+            place = np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)
+            known = self._keys[place] == keys
+            states[known] = self._states[place[known]]
+        return states
+
+    def learn(self, pairs: npt.NDArray[np.int64], states: npt.NDArray[np.int8]) -> None:
+        """Take note of verdicts, the later one of two; those that are `UNKNOWN` are passed over."""
+        new = states != UNKNOWN
+        keys = np.concatenate([_keys(pairs[new]), self._keys])
+        states = np.concatenate([states[new], self._states])
+        self._keys, first = np.unique(keys, return_index=True)
+        self._states = states[first]
+
+
+def _keys(pairs: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+    return pairs.min(axis=1) << 32 | pairs.max(axis=1)
+
+
+def _draw(sampler: Sampler, n: int, world: World, rng: RngLike, before: PointSet | None) -> PointSet:
+    """Draw n points, and make sure that they go on where those `before` ended."""
+    points = as_points(sampler.draw(n, world.space.cube_dim, rng=rng), world.space)
     if before is not None and not np.array_equal(points.points[: before.n], before.points):
         raise InvalidValue(
             f"the {n} points of {sampler.name} do not begin with its {before.n} points: growing needs a sequence"
             " (sobol, halton, uniform) and a seed, not a Generator"
         )
     return points
-
-
-def _spent(result: PlanResult, budget: Budget) -> PlanResult:
-    """Return the answer `not_connected` as one of a budget that was spent."""
-    return replace(
-        result,
-        status=Status.BUDGET_SPENT,
-        message=f"no path within {budget}; {result.message.partition(':')[0]}",
-    )

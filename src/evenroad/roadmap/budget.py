@@ -1,4 +1,4 @@
-"""How much an anytime planner may spend."""
+"""How much a planner or a query may spend."""
 
 from __future__ import annotations
 
@@ -10,16 +10,17 @@ from evenroad._checks import require_count, require_positive
 
 @dataclass(frozen=True, kw_only=True)
 class Budget:
-    """Limits of a search that grows; None means that there is none of this kind.
+    """Limits of a search; when one is reached, the status is ``budget_spent`` unless a path is known by then.
 
     Attributes
     ----------
-    samples : int
-        Points drawn, valid or not.
-    checks : int or None
-        Motions checked, without those of the shortcut.
     seconds : float or None
-        Wall time, looked at before each call of the world; answers then depend on the machine.
+        Wall time, > 0, looked at before each call of the world; what a planner finds within it depends on the
+        machine.  The shortcut of a path that was found stops when it is over.  None: no limit.
+    motions : int or None
+        Motions checked, >= 1, without those of the shortcut.  None: no limit.
+    samples : int
+        Points drawn by a planner that grows, valid or not, >= 1.
 
     Raises
     ------
@@ -27,21 +28,22 @@ class Budget:
         If a limit is not such a number.
     """
 
+    seconds: float | None = 60.0
+    motions: int | None = None
     samples: int = 1 << 16
-    checks: int | None = None
-    seconds: float | None = None
 
     def __post_init__(self) -> None:
-        require_count("samples", self.samples)
-        if self.checks is not None:
-            require_count("checks", self.checks, at_least=0)
         if self.seconds is not None:
-            require_positive("seconds", self.seconds, or_zero=True)
+            require_positive("seconds", self.seconds)
+        if self.motions is not None:
+            require_count("motions", self.motions)
+        require_count("samples", self.samples)
 
-    def __str__(self) -> str:
-        limits = [f"{self.samples} samples"]
-        if self.checks is not None:
-            limits.append(f"{self.checks} checks")
+    def text(self, *, samples: bool) -> str:
+        """Return the limits in words, with the number of samples only for a planner that grows."""
+        limits = [f"{self.samples} samples"] if samples else []
+        if self.motions is not None:
+            limits.append(f"{self.motions} motions")
         if self.seconds is not None:
             limits.append(f"{self.seconds:g} s")
         return ", ".join(limits)

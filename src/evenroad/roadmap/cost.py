@@ -14,8 +14,8 @@ from evenroad.space import Space
 EdgeCost: TypeAlias = Callable[[npt.NDArray[np.float64], npt.NDArray[np.float64]], npt.NDArray[np.float64]]
 """Costs of the motions between the rows of two (m, dim) arrays, (m,); the same both ways, >= their lengths."""
 
-_ROUNDING = 1e-9
-"""A cost may be below the length by this share."""
+BOUND = 1.0 - 1e-9
+"""Costs are at least this share of the length: room for the rounding of a cost that should be the length."""
 
 
 def edge_costs(
@@ -39,7 +39,7 @@ def edge_costs(
     costs = np.asarray(cost(a, b), dtype=np.float64)
     if costs.shape != lengths.shape:
         raise InvalidValue(f"the edge cost must return shape {lengths.shape}, got {costs.shape}")
-    bad = ~(np.isfinite(costs) & (costs >= lengths * (1.0 - _ROUNDING)))
+    bad = ~(np.isfinite(costs) & (costs >= lengths * BOUND))
     if bad.any():
         i = int(np.flatnonzero(bad)[0])
         raise InvalidValue(

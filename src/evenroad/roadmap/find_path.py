@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-import numpy as np
+from dataclasses import replace
+
 import numpy.typing as npt
 
-from evenroad.errors import InvalidValue
 from evenroad.points.pointset import Origin
 from evenroad.roadmap.anytime import plan_anytime
+from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.result import PlanResult, Status
-from evenroad.roadmap.stopwatch import Stopwatch
-from evenroad.world import ConnectsItself, Explains, Separates, World
+from evenroad.roadmap.query import Query, read_places
+from evenroad.roadmap.result import PlanResult
+from evenroad.world import ConnectsItself, Separates, World
 
 SECONDS = 5.0
 """Wall time of a budget that is not given."""
 
-PROVED = "proved: there is no path; start and goal lie in two components of the free space"
+NO_POINTS = Origin(family="none", method="no points")
 
 
 def find_path(
@@ -29,8 +30,8 @@ def find_path(
 ) -> PlanResult:
     """Plan until there is a path, it is proved that there is none, or the budget is spent.
 
-    A world that connects itself plans; where it finds nothing, one that separates components is asked whether there can
-    be a path at all; then, and with any other world, points are added until they suffice.
+    A world that connects itself plans.  Where it finds nothing, one that separates components is asked whether there
+    can be a path at all.  Then, and with any other world, points are added until they suffice.
 
     Parameters
     ----------
@@ -50,73 +51,20 @@ def find_path(
         If start or goal does not have the dimension of the space, or is not finite.
     """
     budget = Budget(seconds=SECONDS) if budget is None else budget
-    first, last = (_place(name, value, world.space.dim) for name, value in (("start", start), ("goal", goal)))
-    watch = Stopwatch()
-
-    def result(status: Status, message: str, **more: object) -> PlanResult:
-        return PlanResult(
-            status=status,
-            message=message,
-            start=first,
-            goal=last,
-            origin=Origin(family="none", method="no points"),
-            rule="none",
-            planner="the world's own",
-            seconds=watch.seconds,
-            **more,  # type: ignore[arg-type]
-        )
-
-    with watch("validity"):
-        free = world.valid(np.stack([first, last]))
-    for is_free, place, name, status in (
-        (free[0], first, "start", Status.START_INVALID),
-        (free[1], last, "goal", Status.GOAL_INVALID),
-    ):
-        if not is_free:
-            reason = f": {world.explain(place)}" if isinstance(world, Explains) else ""
-            return result(status, f"the {name} is in collision{reason}")
+    query = Query(*read_places(start, goal, world.space), shorten=shorten, budget=budget)
     if isinstance(world, ConnectsItself):
-        most = 2**31 - 1 if budget.checks is None else budget.checks
-        seconds = np.inf if budget.seconds is None else budget.seconds
-        with watch("search"):
-            connection = world.connect(first, last[np.newaxis], most_motions=most, seconds=seconds)
-        counts = dict(
-            nodes=connection.nodes,
-            configurations_checked=2 + connection.configurations,
-            edges_checked=connection.motions,
-        )
+        attempt = Attempt(world, query, NO_POINTS, "none", world.planner)
+        if (refusal := attempt.refused()) is not None:
+            return refusal
+        connection = attempt.connect(world)
         if connection.goal >= 0:
-            path = connection.path
-            raw = float(np.sum(world.space.distance(path[:-1], path[1:])))
-            if shorten:
-                with watch("shortcut"):
-                    path, counts["shortcut_motions"] = world.shorten(path)
-            length = float(np.sum(world.space.distance(path[:-1], path[1:])))
-            return result(
-                Status.SOLVED,
-                f"path of length {length:.6g} with {len(path)} waypoints",
-                path=path,
-                milestone_path=connection.path,
-                cost=length,
-                milestone_cost=raw,
-                counts=counts,
-            )
-    if isinstance(world, Separates):
-        with watch("components"):
-            possible = world.may_connect(first, last)
-        if not possible:
-            return result(
-                Status.NOT_CONNECTED,
-                PROVED,
-            )
-    return plan_anytime(world, first, last, budget=budget, shorten=shorten)
-
-
-def _place(name: str, value: npt.ArrayLike, dim: int) -> npt.NDArray[np.float64]:
-    try:
-        place = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        place = np.empty(0)
-    if place.shape != (dim,) or not np.isfinite(place).all():
-        raise InvalidValue(f"{name} must be {dim} finite numbers, got {value!r}")
-    return place
+            return attempt.connected(connection)
+        if isinstance(world, Separates) and not any(
+            world.may_connect(query.start, goal) for goal in query.goals[attempt.goals]
+        ):
+            return attempt.proved_apart()
+        left = attempt.left()
+        if left is None:
+            return attempt.gave_up(connection)
+        budget = replace(budget, seconds=left)
+    return plan_anytime(world, query.start, query.goals, budget=budget, shorten=shorten)

@@ -2,41 +2,26 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
-import os
-import zipfile
-import zlib
-from dataclasses import asdict
-from typing import Any, Protocol, runtime_checkable
+from dataclasses import asdict, fields
 
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._files import atomic_write
+from evenroad._fingerprint import Fingerprinted
+from evenroad._npz import Arrays, Path, digest, one_line, read_json, read_npz, require_array, write_npz
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, NotAvailable
 from evenroad.points.pointset import Origin, PointSet
-from evenroad.roadmap.build import Roadmap
 from evenroad.roadmap.cost import EdgeCost
+from evenroad.roadmap.kept import Roadmap, WorldRoadmap
 from evenroad.roadmap.rules import rule_named
-from evenroad.roadmap.world_roadmap import WorldRoadmap
+from evenroad.roadmap.search import BLOCKED, FREE, UNKNOWN
 from evenroad.space import Space
 from evenroad.world import World
 
 FORMAT = 1
 _ROADMAP = {"format", "points", "origin", "rule", "configurations", "edges", "digest"}
 _IN_WORLD = _ROADMAP | {"fingerprint", "lazy_milestones", "node_states", "edge_states"}
-
-Path = str | os.PathLike[str]
-
-
-@runtime_checkable
-class Fingerprinted(Protocol):
-    """A world that can say which it is."""
-
-    def fingerprint(self) -> str:
-        """Return a text that two worlds share only if they give the same verdicts."""
-        ...
 
 
 def save_roadmap(path: Path, roadmap: Roadmap) -> None:
@@ -56,7 +41,7 @@ def save_world_roadmap(path: Path, known: WorldRoadmap) -> None:
     Raises
     ------
     NotAvailable
-        If the world has no ``fingerprint()``, so that a wrong one could not be refused later.
+        If the world cannot say which it is (`Fingerprinted`), so that a wrong one could not be refused later.
     BrokenFile
         If the file cannot be written; whatever was at `path` is then untouched.
     """
@@ -101,7 +86,7 @@ def load_world_roadmap(path: Path, world: World, *, edge_cost: EdgeCost | None =
     InvalidValue
         If it was saved in another world.
     NotAvailable
-        If the file knows of no world, or the world has no ``fingerprint()``.
+        If the file knows of no world, or the world cannot say which it is.
     """
     arrays = _read(path)
     if "fingerprint" not in arrays:
@@ -114,7 +99,7 @@ def load_world_roadmap(path: Path, world: World, *, edge_cost: EdgeCost | None =
     roadmap = _roadmap(path, arrays, world.space)
     # Nothing is asked of the world here: what the file knows is put in first.
     known = roadmap.in_world(world, lazy_milestones=True, edge_cost=edge_cost)
-    known.recall(arrays["node_states"], arrays["edge_states"])
+    known.recall(*_states(path, arrays, roadmap))
     known.lazy_milestones = bool(arrays["lazy_milestones"])
     return known
 
@@ -128,7 +113,7 @@ def _fingerprint(world: World) -> str:
     return world.fingerprint()
 
 
-def _arrays(roadmap: Roadmap) -> dict[str, npt.NDArray[Any]]:
+def _arrays(roadmap: Roadmap) -> Arrays:
     return dict(
         format=np.array(FORMAT),
         points=roadmap.points.points,
@@ -139,48 +124,49 @@ def _arrays(roadmap: Roadmap) -> dict[str, npt.NDArray[Any]]:
     )
 
 
-def _digest(arrays: dict[str, npt.NDArray[Any]]) -> str:
-    digest = hashlib.sha256()
-    for name in sorted(arrays):
-        array = np.ascontiguousarray(arrays[name])
-        digest.update(f"{name} {array.dtype.str} {array.shape}:".encode())
-        digest.update(array.tobytes())
-    return digest.hexdigest()
+def _write(path: Path, arrays: Arrays) -> None:
+    write_npz(path, arrays | {"digest": np.array(digest(arrays))}, compressed=True)
 
 
-def _write(path: Path, arrays: dict[str, npt.NDArray[Any]]) -> None:
-    with atomic_write(path) as file:
-        np.savez_compressed(file, allow_pickle=False, digest=np.array(_digest(arrays)), **arrays)
-
-
-def _read(path: Path) -> dict[str, npt.NDArray[Any]]:
-    try:
-        # Opened here, not by NumPy, which leaves the handle open when the archive is broken.
-        with open(path, "rb") as file:
-            archive = np.load(file, allow_pickle=False)
-            names = set(archive.files) if isinstance(archive, np.lib.npyio.NpzFile) else set()
-            if names not in (_ROADMAP, _IN_WORLD):
-                raise BrokenFile(f"{path} holds {sorted(names)}, a roadmap holds {sorted(_ROADMAP)}")
-            arrays = {name: archive[name] for name in names}
-    except FileNotFoundError:
-        raise BrokenFile(f"no such file: {path}") from None
-    except EvenroadError:
-        raise
-    except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile, zlib.error) as error:
-        raise BrokenFile(f"{path} is not a readable roadmap: {error}") from error
-    digest = str(arrays.pop("digest"))
-    if _digest(arrays) != digest:
+def _read(path: Path) -> Arrays:
+    arrays = read_npz(path, "roadmap", _ROADMAP, _IN_WORLD)
+    expected = str(arrays.pop("digest"))
+    if digest(arrays) != expected:
         raise BrokenFile(f"{path}: its content does not match its digest; the file was changed or damaged")
+    require_array(path, "format", arrays["format"], np.int64, ())
     if int(arrays["format"]) != FORMAT:
         raise BrokenFile(f"{path} has format {int(arrays['format'])}, this version reads {FORMAT}")
     return arrays
 
 
-def _roadmap(path: Path, arrays: dict[str, npt.NDArray[Any]], space: Space) -> Roadmap:
-    points = PointSet(arrays["points"], Origin(**json.loads(str(arrays["origin"]))))
+def _roadmap(path: Path, arrays: Arrays, space: Space) -> Roadmap:
     configurations, edges = arrays["configurations"], arrays["edges"]
+    n = len(arrays["points"]) if arrays["points"].ndim else 0
+    require_array(path, "points", arrays["points"], np.float64, (n, None))
+    require_array(path, "configurations", configurations, np.float64, (n, None))
+    require_array(path, "edges", edges, np.int32, (None, 2))
+    if edges.size and (edges.min() < 0 or edges.max() >= n):
+        raise BrokenFile(
+            f"{path}: edges must join milestones 0 .. {n - 1}, got {edges.min()} .. {edges.max()}"
+        )
+    origin = read_json(path, "origin", arrays["origin"], [field.name for field in fields(Origin)])
+    try:
+        points, rule = PointSet(arrays["points"], Origin(**origin)), rule_named(str(arrays["rule"]))
+    except (EvenroadError, TypeError, ValueError) as error:
+        raise BrokenFile(f"{path}: {one_line(error)}") from error
     if points.d != space.cube_dim or not np.array_equal(space.from_cube(points.points), configurations):
         raise InvalidValue(f"{path} was built for another space than {space!r}")
     for array in (configurations, edges):
         array.setflags(write=False)
-    return Roadmap(space, points, rule_named(str(arrays["rule"])), configurations, edges)
+    return Roadmap(space, points, rule, configurations, edges)
+
+
+def _states(
+    path: Path, arrays: Arrays, roadmap: Roadmap
+) -> tuple[npt.NDArray[np.int8], npt.NDArray[np.int8]]:
+    for name, among in (("node_states", roadmap.configurations), ("edge_states", roadmap.edges)):
+        require_array(path, name, arrays[name], np.int8, (len(among),))
+        if not np.isin(arrays[name], (UNKNOWN, FREE, BLOCKED)).all():
+            raise BrokenFile(f"{path}: {name} must be {UNKNOWN}, {FREE} or {BLOCKED}")
+    require_array(path, "lazy_milestones", arrays["lazy_milestones"], np.bool_, ())
+    return arrays["node_states"], arrays["edge_states"]

@@ -29,13 +29,16 @@ class SearchedGraph:
     Attributes
     ----------
     configurations : ndarray, shape (v, dim)
-        Milestones not known to be invalid, then start, then goal.
+        Milestones not known to be invalid, then the start, then the goals.
     edges : ndarray of int32, shape (m, 2)
         Motions found free, as pairs of rows, smaller first.
+    milestones : int
+        How many of the rows are milestones.
     """
 
     configurations: npt.NDArray[np.float64]
     edges: npt.NDArray[np.int32]
+    milestones: int
 
 
 @dataclass(frozen=True)
@@ -65,29 +68,38 @@ class PlanResult:
     Attributes
     ----------
     status : Status
-        ``solved``, ``start_invalid``, ``goal_invalid``, ``not_connected``, ``budget_spent``; or ``mesh_collision``,
-        of a path that is free in its world and not for the meshes which that stands for.
+        ``solved``, ``start_invalid``, ``goal_invalid`` (all goals), ``not_connected``, ``budget_spent``; or
+        ``mesh_collision``: the path is free in its world, but the robot's meshes touch something.
     message : str
         One sentence for people: what happened and, without a path, what to try.
-    start, goal : ndarray, shape (dim,)
-        The query.
+    start : ndarray, shape (dim,)
+        Of the query.
+    goals : ndarray, shape (g, dim)
+        Of the query.
+    goal_index : int or None
+        Which of the goals the path ends at; None without a path.
     path : ndarray, shape (p, dim), or None
         Waypoints after shortcutting, from start to goal, in the units of the space.
     milestone_path : ndarray, shape (q, dim), or None
         The shortest path along the roadmap, before shortcutting.
+    proof : str or None
+        What is shown of the motions of `path`: ``exact`` (no gap, up to rounding), ``certified`` (no gap), or
+        ``resolution`` (free at states close together); None without a path.
     cost, milestone_cost : float or None
         Of the two: lengths in the metric of the space, or the user's edge costs.
     counts : dict of str to int
         ``points`` (N), ``valid`` (milestones known to be valid), ``configurations_checked`` (without those inside
         of motions), ``edges_considered``, ``edges_checked``, ``edges_free`` (known to be),
-        ``shortcut_motions`` and, when not connected, ``start_piece`` and ``goal_piece`` (milestones that each
-        end can reach over what is not known to be blocked).
+        ``shortcut_motions`` and, when not connected, ``start_component`` and ``goal_component`` (milestones that
+        start and goals can reach over what is not known to be blocked).
     seconds : dict of str to float
         Wall time of each phase: ``validity``, ``neighbours``, ``motions``, ``search``, ``shortcut``.
     origin : Origin
         Where the points came from.
     rule : str
         The connection rule, by name.
+    links : int or None
+        To how many of the nearest milestones start and goals were linked besides (to all, up to 256); None: to none.
     planner : str
         Who searched: ``prm full``, ``prm lazy``, ``prm any`` (some path, not the shortest), each with
         ``+ lazy milestones`` where those were checked late; ``prm anytime``, ``fmt*``.
@@ -100,12 +112,15 @@ class PlanResult:
     status: Status
     message: str
     start: npt.NDArray[np.float64]
-    goal: npt.NDArray[np.float64]
+    goals: npt.NDArray[np.float64]
     origin: Origin
     rule: str
+    links: int | None = None
     planner: str = "prm full"
+    goal_index: int | None = None
     path: npt.NDArray[np.float64] | None = None
     milestone_path: npt.NDArray[np.float64] | None = None
+    proof: str | None = None
     cost: float | None = None
     milestone_cost: float | None = None
     counts: dict[str, int] = field(default_factory=dict)
@@ -117,3 +132,8 @@ class PlanResult:
     def solved(self) -> bool:
         """Whether a path was found."""
         return self.status is Status.SOLVED
+
+    @property
+    def goal(self) -> npt.NDArray[np.float64]:
+        """The goal that the path ends at, (dim,); without a path the first one."""
+        return self.goals[0 if self.goal_index is None else self.goal_index]

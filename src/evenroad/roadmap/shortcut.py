@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import math
+import time
+
 import numpy as np
 import numpy.typing as npt
 
 from evenroad.roadmap.cost import EdgeCost
-from evenroad.roadmap.search import shortest_path
+from evenroad.roadmap.proof import confirmed
+from evenroad.roadmap.search import BudgetSpent, shortest_path
+from evenroad.roadmap.search.edge_states import in_time
 from evenroad.space import Space
+from evenroad.space.path import motion_lengths, subdivide
 from evenroad.world import World
 
 SPREADS = (32, 96)
@@ -16,106 +22,172 @@ SPREADS = (32, 96)
 A coarse round asks for a tenth of the motions and finds most of what there is to gain.
 """
 MAX_ROUNDS = 8
+PATIENCE = 4
+"""After every so many motions that fail a strict check in a round, their neighbours are given up one step further."""
 WORTH_WHILE = 1e-2
 """A round that shortens the path by less than this share is the last one with so many waypoints."""
 
 
 def shortcut(
-    path: npt.NDArray[np.float64], world: World, cost: EdgeCost | None = None
+    path: npt.NDArray[np.float64],
+    world: World,
+    cost: EdgeCost | None = None,
+    deadline: float = math.inf,
 ) -> tuple[npt.NDArray[np.float64], int]:
-    """Return a path that does not cost more, and whose every motion was reported free by `world`.
+    """Return a path that does not cost more, and whose every new motion was reported free by `world`.
 
     Each round puts waypoints evenly along the path, few at first, joins every pair that `world` says can be joined,
     and takes the shortest way through them; its own waypoints are always among those offered, so a round never makes
     the path longer.  At the end, waypoints that can be passed by are dropped.  It draws no random numbers.
+
+    Where the world has a strict check (`Rechecks`), the motions of a round's way have to pass it, too; those that
+    fail are taken away, in time with those beside them, and the next shortest way is tried.
 
     Parameters
     ----------
     path : ndarray, shape (p, dim), p >= 2
         A path whose motions are free.
     world : World
-        Whose ``motion_valid`` decides.
+        Whose ``motion_valid`` decides, and its ``recheck`` if there is one.
     cost : callable, optional
         What a motion costs; default: its length in the metric of the space.
+    deadline : float
+        When to stop with what was reached, on the clock of ``time.perf_counter``.
 
     Returns
     -------
     path : ndarray, shape (q, dim)
         From the same start to the same goal.
     motions : int
-        How many motions were checked.
+        How many motions were checked, rechecks apart.
     """
-    cost = world.space.distance if cost is None else cost
-    length = _total(path, cost)
-    checked = 0
-    for most in SPREADS:
-        for _ in range(MAX_ROUNDS):
-            candidate, motions = _round(path, world, cost, most)
-            checked += motions
-            shorter = _total(candidate, cost)
-            if not shorter < length:
+    work = _Shortcut(path, world, world.space.distance if cost is None else cost, deadline)
+    try:
+        for most in SPREADS:
+            for _ in range(MAX_ROUNDS):
+                before = work.length
+                work.round(most)
+                gain = before - work.length
+                if not gain > 0.0 or gain < WORTH_WHILE * work.length:
+                    break
+        work.drop_needless()
+    except BudgetSpent:
+        pass
+    return work.path, work.checked
+
+
+class _Shortcut:
+    """A path that becomes shorter, and what was asked for it."""
+
+    def __init__(self, path: npt.NDArray[np.float64], world: World, cost: EdgeCost, deadline: float) -> None:
+        self.path, self.world, self.cost, self.deadline = path, world, cost, deadline
+        self.length = self._total(path)
+        self.checked = 0
+
+    def round(self, most: int) -> None:
+        """Take the shortest way through so many waypoints along the path, if it is shorter."""
+        space = self.world.space
+        waypoints, own = _spread(self.path, space, most)
+        # The path's own motions are known to be free; with them there always is a way.
+        pairs = _Pairs(self._free_pairs(waypoints), own)
+        lengths = self.cost(waypoints[pairs.edges[:, 0]], waypoints[pairs.edges[:, 1]])
+        goal = len(waypoints) - 1
+        to_goal = space.distance(waypoints, np.broadcast_to(waypoints[-1], waypoints.shape))
+        while True:
+            edges = pairs.edges[pairs.usable]
+            way, _ = shortest_path(len(waypoints), edges, lengths[pairs.usable], to_goal, 0, goal)
+            shorter = self._total(waypoints[way])
+            if not shorter < self.length:
+                return
+            if self._holds(waypoints, way, pairs):
+                self.path, self.length = waypoints[way], shorter
+                return
+
+    def drop_needless(self) -> None:
+        """From each waypoint go straight to the last one that can be reached, and drop those between."""
+        path = self.path
+        pairs = _Pairs(self._free_pairs(path), np.arange(len(path)))
+        while True:
+            reach = np.arange(len(path))
+            first, second = pairs.edges[pairs.usable].T
+            np.maximum.at(reach, first, second)
+            way = [0]
+            while way[-1] < len(path) - 1:
+                way.append(int(reach[way[-1]]))
+            if self._holds(path, np.array(way), pairs):
                 break
-            gain = length - shorter
-            path, length = candidate, shorter
-            if gain < WORTH_WHILE * length:
-                break
-    straighter, motions = _drop_needless(path, world)
-    # In a metric this never is longer; other costs may well prefer the waypoint.
-    if _total(straighter, cost) <= length * (1.0 + 1e-12):
-        path = straighter
-    return path, checked + motions
+        # In a metric this never is longer; other costs may well prefer the waypoint.
+        if self._total(path[way]) <= self.length * (1.0 + 1e-12):
+            self.path = path[way]
+
+    def _holds(self, waypoints: npt.NDArray[np.float64], way: npt.NDArray[np.integer], pairs: _Pairs) -> bool:
+        """Return whether the world confirms a way; if it does not, some of its pairs are not usable any more."""
+        if time.perf_counter() >= self.deadline:
+            raise BudgetSpent
+        along = pairs.along(way)
+        passed = confirmed(self.world, waypoints[way], ~pairs.trusted[along])
+        pairs.trusted[along[passed]] = True
+        if not passed.all():
+            pairs.give_up(along[~passed])
+        return bool(passed.all())
+
+    def _total(self, path: npt.NDArray[np.float64]) -> float:
+        return float(np.sum(self.cost(path[:-1], path[1:])))
+
+    def _free_pairs(self, waypoints: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Return which pairs of waypoints i < j can be joined, (w, w)."""
+        first, second = np.triu_indices(len(waypoints), k=1)
+        free = np.zeros((len(waypoints), len(waypoints)), dtype=np.bool_)
+        for rows in in_time(np.arange(len(first)), self.deadline):
+            i, j = first[rows], second[rows]
+            free[i, j] = self.world.motion_valid(waypoints[i], waypoints[j])
+            self.checked += len(rows)
+        return free
 
 
-def path_length(path: npt.NDArray[np.float64], space: Space) -> float:
-    """Return the length of a path of waypoints, shape (p, dim), in the metric of the space."""
-    return _total(path, space.distance)
+class _Pairs:
+    """Pairs of waypoints that can be joined, among them the steps from each of a path's `own` ones to the next.
 
+    Attributes
+    ----------
+    edges : ndarray of int32, shape (m, 2)
+        The pairs, smaller first.
+    trusted, usable : ndarray of bool, shape (m,)
+        Which have passed the strict check, and which have not failed it.
+    """
 
-def _total(path: npt.NDArray[np.float64], cost: EdgeCost) -> float:
-    return float(np.sum(cost(path[:-1], path[1:])))
+    def __init__(self, free: npt.NDArray[np.bool_], own: npt.NDArray[np.integer]) -> None:
+        free = free.copy()
+        free[own[:-1], own[1:]] = True
+        self.edges = np.argwhere(free).astype(np.int32)
+        self._number = np.zeros(free.shape, dtype=np.intp)
+        self._number[free] = np.arange(len(self.edges))
+        self.usable = np.ones(len(self.edges), dtype=np.bool_)
+        self.trusted = np.zeros(len(self.edges), dtype=np.bool_)
+        self.trusted[self._number[own[:-1], own[1:]]] = True
+        self._failures = 0
 
+    def along(self, way: npt.NDArray[np.integer]) -> npt.NDArray[np.intp]:
+        """Return the numbers of the pairs along a way."""
+        return self._number[np.minimum(way[:-1], way[1:]), np.maximum(way[:-1], way[1:])]
 
-def _round(
-    path: npt.NDArray[np.float64], world: World, cost: EdgeCost, most: int
-) -> tuple[npt.NDArray[np.float64], int]:
-    waypoints, own = _spread(path, world.space, most)
-    first, second = np.triu_indices(len(waypoints), k=1)
-    free = world.motion_valid(waypoints[first], waypoints[second])
-    edges = np.stack([first[free], second[free]], axis=1).astype(np.int32)
-    steps = np.stack([own[:-1], own[1:]], axis=1).astype(np.int32)
-    # The path's own motions are known to be free; with them there always is a way.
-    edges = np.concatenate([edges, steps])
-    lengths = cost(waypoints[edges[:, 0]], waypoints[edges[:, 1]])
-    goal = len(waypoints) - 1
-    to_goal = world.space.distance(waypoints, np.broadcast_to(waypoints[-1], waypoints.shape))
-    way, _ = shortest_path(len(waypoints), edges, lengths, to_goal, 0, goal)
-    return waypoints[way], len(first)
+    def give_up(self, failed: npt.NDArray[np.intp]) -> None:
+        """Use these pairs no more, nor those beside them that were not checked: the more, the more have failed.
 
-
-def _drop_needless(path: npt.NDArray[np.float64], world: World) -> tuple[npt.NDArray[np.float64], int]:
-    """From each waypoint go straight to the last one that can be reached, and drop those between."""
-    first, second = np.triu_indices(len(path), k=1)
-    free = world.motion_valid(path[first], path[second]) | (second == first + 1)
-    reach = np.arange(len(path))
-    np.maximum.at(reach, first[free], second[free])
-    kept = [0]
-    while kept[-1] < len(path) - 1:
-        kept.append(int(reach[kept[-1]]))
-    return path[kept], len(first)
+        What is in the way of one motion mostly is in that of its neighbours; one by one, thousands would be tried.
+        """
+        for pair in self.edges[failed]:
+            beside = (np.abs(self.edges - pair) <= self._failures // PATIENCE).all(axis=1)
+            self.usable &= ~beside | self.trusted
+            self._failures += 1
 
 
 def _spread(
     path: npt.NDArray[np.float64], space: Space, most: int
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.intp]]:
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
     """Return the path's waypoints with evenly spread ones between them, `most` in all, and the rows of its own."""
-    lengths = space.distance(path[:-1], path[1:])
+    lengths = motion_lengths(path, space)
     spare = max(0, most - len(path))
     total = lengths.sum()
     extra = np.floor(spare * lengths / total).astype(int) if total > 0 else np.zeros(len(lengths), dtype=int)
-    pieces = []
-    for a, b, count in zip(path[:-1], path[1:], extra, strict=True):
-        t = np.arange(count + 1) / (count + 1)
-        start, end = np.broadcast_to(a, (len(t), len(a))), np.broadcast_to(b, (len(t), len(b)))
-        pieces.append(space.interpolate(start, end, t))
-    own = np.concatenate([[0], np.cumsum(extra + 1)])
-    return np.concatenate([*pieces, path[-1:]]), own
+    return subdivide(path, space, extra + 1)

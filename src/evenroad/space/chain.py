@@ -11,7 +11,7 @@ from numba import njit
 
 from evenroad._checks import require_count
 from evenroad.space.batch import as_batch, as_batch_pair
-from evenroad.space.flat_space import FlatSpace
+from evenroad.space.flat import FlatSpace
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,8 @@
-"""JointSpace: the joints of an arm, each bounded or wrapping."""
+"""Spaces of numbers side by side: Box, bounded axes; Circle, one angle that wraps; JointSpace, the joints of an arm."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -9,7 +10,47 @@ import numpy as np
 
 from evenroad.errors import InvalidValue
 from evenroad.space.axes import as_bounds, as_weights
-from evenroad.space.flat_space import FlatSpace
+from evenroad.space.flat import FlatSpace
+
+
+@dataclass(frozen=True)
+class Box(FlatSpace):
+    """The box ``[low_1, high_1] x ... x [low_dim, high_dim]``; straight lines are its shortest ways.
+
+    Parameters
+    ----------
+    low, high : sequence of floats, length dim
+        The bounds, ``low < high`` on every axis; stored as tuples.
+    weights : sequence of floats, length dim, optional
+        What a unit of each axis counts in the metric, > 0; 1 by default.
+
+    Raises
+    ------
+    InvalidValue
+        If the bounds or weights are not such numbers.
+    """
+
+    low: Sequence[float]
+    high: Sequence[float]
+    weights: Sequence[float] | None = None
+
+    def __post_init__(self) -> None:
+        low, high = as_bounds(self.low, self.high)
+        weights = as_weights(self.weights, len(low))
+        for name, value in (("low", low), ("high", high), ("weights", weights)):
+            object.__setattr__(self, name, value)
+        self._set_axes(low, high, (False,) * len(low), weights)
+
+
+@dataclass(frozen=True)
+class Circle(FlatSpace):
+    """The directions of the plane, SO(2), as (n, 1) angles in radians; the metric is the angle between two.
+
+    Any angle is taken; given back are angles in [-pi, pi).
+    """
+
+    def __post_init__(self) -> None:
+        self._set_axes((-math.pi,), (math.pi,), (True,), (1.0,))
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Product: spaces side by side, as one space."""
+"""Product: spaces side by side, as one space; among them the poses of rigid bodies, SE2 and SE3."""
 
 from __future__ import annotations
 
@@ -10,11 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.errors import InvalidValue, UnknownName
-from evenroad.space.all_pairs import all_distances
 from evenroad.space.axes import as_weights
 from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions
 from evenroad.space.flat import FlatMetric
-from evenroad.space.protocol import Space
+from evenroad.space.joints import Box, Circle
+from evenroad.space.protocol import Space, all_distances
+from evenroad.space.so3 import SO3
 
 _COMBINATIONS = ("sum", "l2")
 
@@ -154,3 +155,62 @@ def _flat_product(parts: Sequence[Space], weights: Sequence[float], combine: str
         scale=np.concatenate([weight * metric.scale for weight, metric in zip(weights, flat, strict=True)]),
         period=np.concatenate([metric.period for metric in flat]),
     )
+
+
+def SE2(
+    low: Sequence[float],
+    high: Sequence[float],
+    *,
+    weights: Sequence[float] = (1.0, 1.0),
+    combine: Literal["sum", "l2"] = "l2",
+) -> Product:
+    """Return the poses (x, y, heading) of a body in the plane.
+
+    Parameters
+    ----------
+    low, high : sequence of two floats
+        Bounds of the position.
+    weights : sequence of two floats
+        What a unit of length and a radian count, > 0.
+    combine : {"sum", "l2"}
+        How the two distances make one; with "l2" the metric is flat, so that neighbours are found in a tree.
+
+    Raises
+    ------
+    InvalidValue, UnknownName
+        As `Box` and `Product`.
+    """
+    return Product((_position(low, high, 2), Circle()), weights, combine)
+
+
+def SE3(
+    low: Sequence[float],
+    high: Sequence[float],
+    *,
+    weights: Sequence[float] = (1.0, 1.0),
+    combine: Literal["sum", "l2"] = "sum",
+) -> Product:
+    """Return the poses (x, y, z, qw, qx, qy, qz) of a body in space; points of the cube have 6 coordinates.
+
+    Parameters
+    ----------
+    low, high : sequence of three floats
+        Bounds of the position.
+    weights : sequence of two floats
+        What a unit of length and a radian of ``arccos |q . q'|`` count, > 0.
+    combine : {"sum", "l2"}
+        How the two distances make one; "sum" is OMPL's.
+
+    Raises
+    ------
+    InvalidValue, UnknownName
+        As `Box` and `Product`.
+    """
+    return Product((_position(low, high, 3), SO3()), weights, combine)
+
+
+def _position(low: Sequence[float], high: Sequence[float], dim: int) -> Box:
+    box = Box(low, high)
+    if box.dim != dim:
+        raise InvalidValue(f"low and high must have {dim} numbers, got {low!r} and {high!r}")
+    return box

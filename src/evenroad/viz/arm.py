@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +18,7 @@ from matplotlib.patches import Patch
 from evenroad._files import atomic_write
 from evenroad.roadmap import PlanResult, Status
 from evenroad.robot.kinematics import capsule_ends, link_poses
+from evenroad.space.path import resample
 from evenroad.viz import style
 from evenroad.viz.outline import obstacle_bounds, obstacle_outline, stadium
 
@@ -31,6 +31,8 @@ DPI = 120
 _AXES = "xyz"
 _BETWEEN = 7
 """Places between start and goal at which the arm is shown."""
+_STEP = 0.05
+"""Between places of the tip that are joined by a line, in the metric of the joints."""
 
 
 def save_arm_picture(path: str | os.PathLike[str], result: PlanResult, world: ArmWorld) -> None:
@@ -111,19 +113,10 @@ def _shown(result: PlanResult, world: ArmWorld) -> npt.NDArray[np.float64]:
     """Return configurations from start to goal, evenly along the path, (s, dim)."""
     if result.path is None:
         return np.stack([result.start, result.goal])
-    dense = _dense(result.path, world)
+    dense = resample(result.path, world.space, _STEP)[0]
     lengths = np.append(0.0, np.cumsum(world.space.distance(dense[:-1], dense[1:])))
     wanted = np.linspace(0.0, lengths[-1], _BETWEEN + 2)
     return dense[np.abs(lengths - wanted[:, np.newaxis]).argmin(axis=1)]
-
-
-def _dense(path: npt.NDArray[np.float64], world: ArmWorld, step: float = 0.05) -> npt.NDArray[np.float64]:
-    rows = [path[:1]]
-    for a, b in pairwise(path):
-        count = max(1, int(np.ceil(world.space.distance(a[np.newaxis], b[np.newaxis])[0] / step)))
-        fractions = np.arange(1, count + 1) / count
-        rows.append(world.space.interpolate(np.tile(a, (count, 1)), np.tile(b, (count, 1)), fractions))
-    return np.concatenate(rows)
 
 
 def _bodies(
@@ -146,7 +139,7 @@ def _tip(robot: Robot) -> int:
 
 
 def _tip_path(path: npt.NDArray[np.float64], world: ArmWorld) -> npt.NDArray[np.float64]:
-    return link_poses(world.robot, _dense(path, world))[:, _tip(world.robot), :3, 3]
+    return link_poses(world.robot, resample(path, world.space, _STEP)[0])[:, _tip(world.robot), :3, 3]
 
 
 def _draw_tips(axes: Axes, result: PlanResult, world: ArmWorld, pair: tuple[int, int]) -> None:

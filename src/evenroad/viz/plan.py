@@ -49,7 +49,7 @@ def draw_plan(axes: Axes, result: PlanResult, world: DiskWorld) -> None:
     if result.roadmap is not None:
         nodes, edges = result.roadmap.configurations, result.roadmap.edges
         axes.add_collection(LineCollection(list(nodes[edges]), colors=style.EDGE, linewidths=0.5, zorder=2))
-        axes.plot(*nodes[:-2].T, ".", color=style.MILESTONE, markersize=3.5, zorder=3)
+        axes.plot(*nodes[: result.roadmap.milestones].T, ".", color=style.MILESTONE, markersize=3.5, zorder=3)
     halo = [Stroke(linewidth=5.0, foreground=style.HALO), Normal()]
     if result.path is not None and result.milestone_path is not None:
         raw = "path before shortcuts" if result.roadmap is None else "roadmap path"

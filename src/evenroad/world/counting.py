@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.space import Space
-from evenroad.world.protocol import Explains, World
+from evenroad.world.protocol import World
 
 
 @dataclass(eq=False)
@@ -33,11 +33,10 @@ class Counting:
     motions: int = 0
 
     def __post_init__(self) -> None:
-        # An attribute, and only where the world has it, so that protocols hold of both or of neither.
-        if isinstance(self.world, Explains):
-            self.explain = self.world.explain
-        if hasattr(self.world, "fingerprint"):
-            self.fingerprint = self.world.fingerprint
+        # Attributes, and only where the world has them, so that its optional protocols hold of both or of neither.
+        for name in ("explain", "proof", "recheck", "fingerprint"):
+            if hasattr(self.world, name):
+                setattr(self, name, getattr(self.world, name))
 
     @property
     def space(self) -> Space:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -11,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._checks import require_positive
-from evenroad.errors import InvalidValue
+from evenroad._fingerprint import fingerprint_of
+from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.space import Product, Space
 from evenroad.space.axes import as_row
 from evenroad.space.batch import as_batch, as_batch_pair
@@ -44,9 +44,9 @@ class FunctionWorld:
         part in the part's own metric; n is then the largest that any part asks for.
     vectorised : bool
         Whether `is_valid` takes many configurations at once.
-    name : str
-        Part of the fingerprint: name another world differently, also where only its obstacles differ.  Default: the
-        name of the function.
+    name : str, optional
+        What the function tests, with all that its answers depend on, for example ``"cell 7, tool v2"``.  Only with a
+        name can a roadmap of this world be saved with what is known: a function cannot be compared.
 
     Raises
     ------
@@ -58,7 +58,7 @@ class FunctionWorld:
     is_valid: Callable[[npt.NDArray[np.float64]], Any]
     resolution: float | Sequence[float]
     vectorised: bool = True
-    name: str = ""
+    name: str | None = None
 
     def __post_init__(self) -> None:
         if not callable(self.is_valid):
@@ -102,17 +102,18 @@ class FunctionWorld:
         return free
 
     def fingerprint(self) -> str:
-        """Return the SHA-256 (hex) of name, resolution and the verdicts on 4096 places spread over the space.
+        """Return a text that two worlds of the same space, resolution and name share.
 
-        What a function does cannot be hashed: two that have one name and agree on all of these places count as the
-        same world.
+        Raises
+        ------
+        NotAvailable
+            If the world has no name, or its space cannot be told from others.
         """
-        step = _golden(self.space.cube_dim) ** -np.arange(1.0, self.space.cube_dim + 1.0)
-        places = self.space.from_cube(np.arange(1.0, _PROBES + 1.0)[:, np.newaxis] * step % 1.0)
-        digest = hashlib.sha256(f"function {self.name} {self.resolution!r}".encode())
-        digest.update(np.ascontiguousarray(places).tobytes())
-        digest.update(self.valid(places).tobytes())
-        return digest.hexdigest()
+        if self.name is None:
+            raise NotAvailable(
+                "a FunctionWorld has a fingerprint only with a name: FunctionWorld(..., name='cell 7')"
+            )
+        return fingerprint_of("function", self.name, self.space, self.resolution)
 
     def explain(self, q: npt.NDArray[np.float64]) -> str:
         """Return in words why one configuration, (dim,), is not free."""

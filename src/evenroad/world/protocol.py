@@ -56,6 +56,16 @@ class Rechecks(Protocol):
         ...
 
 
+@runtime_checkable
+class Proves(Protocol):
+    """A world that says what its verdict on a motion shows; of others nothing but ``resolution`` is claimed."""
+
+    @property
+    def proof(self) -> str:
+        """``exact`` (no gap, up to rounding), ``certified`` (no gap), or ``resolution`` (states close together)."""
+        ...
+
+
 @dataclass(frozen=True, eq=False)
 class Connection:
     """What a world that plans by itself found between a start and its goals.
@@ -80,6 +90,11 @@ class Connection:
 @runtime_checkable
 class ConnectsItself(Protocol):
     """A world with a compiled planner of its own; planners ask it before they build a roadmap."""
+
+    @property
+    def planner(self) -> str:
+        """What results call this planner."""
+        ...
 
     def connect(
         self,

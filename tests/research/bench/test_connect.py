@@ -9,7 +9,7 @@ from evenroad.errors import UnknownName
 from evenroad.research.bench.searches import SEARCHES, is_connected, milestones_until_connected, search_named
 from evenroad.research.worlds import Corridor
 from evenroad.roadmap import rule_named
-from evenroad.roadmap.search import FREE, Ledger
+from evenroad.roadmap.search import FREE, EdgeStates
 from evenroad.space import Box
 from evenroad.world.counting import Counting
 
@@ -30,13 +30,13 @@ class _Graph:
         )
 
 
-def _ledger(nodes, edges, free):
+def _states_of(nodes, edges, free):
     pairs = np.array(edges, dtype=np.int32).reshape(-1, 2)
     free_pairs = [pair for pair, is_free in zip(edges, free, strict=True) if is_free]
     world = Counting(_Graph(nodes, free_pairs))
-    ledger = Ledger(world, np.arange(nodes, dtype=float)[:, np.newaxis], pairs)
-    ledger.node_states[:] = FREE
-    return ledger
+    states = EdgeStates(world, np.arange(nodes, dtype=float)[:, np.newaxis], pairs)
+    states.node_states[:] = FREE
+    return states
 
 
 def _reaches(nodes, edges):
@@ -63,9 +63,9 @@ def _graphs(draw):
 def test_connected_is_what_flooding_the_free_edges_says(graph):
     nodes, edges, free = graph
     free_edges = [pair for pair, is_free in zip(edges, free, strict=True) if is_free]
-    ledger = _ledger(nodes, edges, free)
-    assert is_connected(ledger) == _reaches(nodes, free_edges)
-    assert ledger.world.motions == ledger.motions_checked <= len(edges)
+    states = _states_of(nodes, edges, free)
+    assert is_connected(states) == _reaches(nodes, free_edges)
+    assert states.world.motions == states.motions_checked <= len(edges)
 
 
 @settings(max_examples=300, deadline=None)
@@ -80,15 +80,15 @@ def test_the_first_connected_prefix_is_what_trying_all_prefixes_says(graph):
         if _reaches(nodes, here):
             expected = count
             break
-    assert milestones_until_connected(_ledger(nodes, edges, free)) == expected
+    assert milestones_until_connected(_states_of(nodes, edges, free)) == expected
 
 
 def test_a_start_without_free_edges_ends_the_query_whatever_else_there_is():
     edges = [(i, j) for i in range(30) for j in range(i + 1, 31)] + [(0, 31)]
     free = [True] * (len(edges) - 1) + [False]
-    ledger = _ledger(32, edges, free)
-    assert not is_connected(ledger)
-    assert ledger.motions_checked == 1
+    states = _states_of(32, edges, free)
+    assert not is_connected(states)
+    assert states.motions_checked == 1
 
 
 @pytest.mark.parametrize("n", [0, 1, 40, 400])
@@ -100,9 +100,9 @@ def test_stock_counts_the_milestones_of_a_planner_that_adds_them_one_by_one(n):
         expected = _one_by_one(world, milestones)
         configurations = np.concatenate([milestones, [world.start], [world.goal]])
         edges = rule_named("k=10 earlier").edges(configurations, world.space, ends=2)
-        ledger = Ledger(world, configurations, edges)
-        ledger.node_states[:] = FREE
-        assert milestones_until_connected(ledger) == expected
+        states = EdgeStates(world, configurations, edges)
+        states.node_states[:] = FREE
+        assert milestones_until_connected(states) == expected
 
 
 def _one_by_one(world, milestones):
@@ -133,9 +133,9 @@ def test_all_searches_agree_on_whether_there_is_a_path_and_the_shortest_ones_on_
         edges = rule_named("k=6 symmetrised").edges(configurations, world.space, ends=2)
         found = {}
         for name in SEARCHES:
-            ledger = Ledger(world, configurations, edges)
-            ledger.node_states[:] = FREE
-            found[name] = search_named(name)(ledger)
+            states = EdgeStates(world, configurations, edges)
+            states.node_states[:] = FREE
+            found[name] = search_named(name)(states)
         assert len({each.solved for each in found.values()}) == 1
         np.testing.assert_equal(found["full"].length, found["lazy"].length)
         assert np.isfinite(found["full"].length) == found["full"].solved

@@ -84,7 +84,9 @@ def test_the_plate_of_twistycool_is_between_start_and_goal():
 def test_a_path_through_the_window_is_found():
     problem = source_named("twistycool").make(0)
     points = draw("uniform", 1024, 6, rng=0)
-    result = plan(problem.world, problem.start, problem.goal, points, rule=KEarlier(10), shorten=False)
+    result = plan(
+        problem.world, problem.start, problem.goal, points, rule=KEarlier(10), links=None, shorten=False
+    )
     assert result.solved
     assert problem.world.motion_valid(result.path[:-1], result.path[1:]).all()
     assert result.path[0, 2] > -293.0 > -305.0 > result.path[-1, 2]
@@ -103,7 +105,14 @@ def test_the_goal_of_cubicles_has_no_way_in_but_from_below():
     points = draw("halton", 3000, 6, rng=0)
     ways = [
         plan(
-            scene, problem.start, problem.goal, points, rule=KNearest(10), success_only=True, shorten=False
+            scene,
+            problem.start,
+            problem.goal,
+            points,
+            rule=KNearest(10),
+            links=None,
+            success_only=True,
+            shorten=False,
         ).solved
         for scene in (world, closed)
     ]

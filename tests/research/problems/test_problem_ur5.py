@@ -49,6 +49,7 @@ def test_the_problem_can_be_solved():
             problem.goal,
             draw("halton", 1024, 5, rng=run),
             rule=KNearest(20),
+            links=None,
             success_only=True,
         ).solved
         for run in range(30)

@@ -27,7 +27,7 @@ from evenroad.research.bench.searches import Finding, search_named
 from evenroad.research.bench.task import Outcome, Problem, Task
 from evenroad.research.problems import source_named
 from evenroad.roadmap import rule_named
-from evenroad.roadmap.search import FREE, Ledger
+from evenroad.roadmap.search import FREE, EdgeStates
 
 Milestones = tuple[npt.NDArray[np.float64], str, float]
 """The valid configurations of a set, which set it is, and the seconds that their validity took."""
@@ -72,12 +72,12 @@ def _run(task: Task) -> Outcome:
     if not ends_free.all():
         status = "goal_invalid" if ends_free[0] else "start_invalid"
         return Outcome(status, valid=len(milestones), set_id=set_id, seconds=validity_seconds)
-    finding, ledger = _search(problem, milestones, task.rule, task.search)
+    finding, states = _search(problem, milestones, task.rule, task.search)
     return Outcome(
         status="solved" if finding.solved else "not_connected",
         valid=len(milestones),
         valid_at_solution=finding.valid_at_solution,
-        edges_checked=ledger.motions_checked,
+        edges_checked=states.motions_checked,
         length=finding.length,
         seconds=validity_seconds + time.perf_counter() - began,
         set_id=set_id,
@@ -86,12 +86,12 @@ def _run(task: Task) -> Outcome:
 
 def _search(
     problem: Problem, milestones: npt.NDArray[np.float64], rule: str, search: str
-) -> tuple[Finding, Ledger]:
+) -> tuple[Finding, EdgeStates]:
     configurations = np.concatenate([milestones, problem.start[np.newaxis], problem.goal[np.newaxis]])
     edges = rule_named(rule).edges(configurations, problem.world.space, ends=2)
-    ledger = Ledger(problem.world, configurations, edges)
-    ledger.node_states[:] = FREE
-    return search_named(search)(ledger), ledger
+    states = EdgeStates(problem.world, configurations, edges)
+    states.node_states[:] = FREE
+    return search_named(search)(states), states
 
 
 def _problem(name: str, instance: int) -> Problem:

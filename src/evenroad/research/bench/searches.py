@@ -13,10 +13,7 @@ from numba import njit
 
 from evenroad.errors import UnknownName
 from evenroad.roadmap.cost import edge_costs
-from evenroad.roadmap.plan import question_between_last_two
-from evenroad.roadmap.search import FREE, UNKNOWN, Ledger, length_along
-from evenroad.roadmap.search.find import FINDERS
-from evenroad.roadmap.search.pieces import join
+from evenroad.roadmap.search import FINDERS, FREE, UNKNOWN, EdgeStates, join, length_along, search_problem
 
 
 @dataclass(frozen=True)
@@ -38,8 +35,8 @@ class Finding:
     length: float = math.nan
 
 
-def search_named(name: str) -> Callable[[Ledger], Finding]:
-    """Return the search of this name: from a ledger whose last two nodes are start and goal to what it says.
+def search_named(name: str) -> Callable[[EdgeStates], Finding]:
+    """Return the search of this name: from a graph's states, whose last two nodes are start and goal, to what it says.
 
     Raises
     ------
@@ -51,24 +48,24 @@ def search_named(name: str) -> Callable[[Ledger], Finding]:
     return SEARCHES[name]
 
 
-def _connect(ledger: Ledger) -> Finding:
-    return Finding(is_connected(ledger))
+def _connect(states: EdgeStates) -> Finding:
+    return Finding(is_connected(states))
 
 
-def _stock(ledger: Ledger) -> Finding:
-    needed = milestones_until_connected(ledger)
+def _stock(states: EdgeStates) -> Finding:
+    needed = milestones_until_connected(states)
     return Finding(needed is not None, needed)
 
 
-def _shortest(search: str, ledger: Ledger) -> Finding:
-    costs = edge_costs(ledger.world.space, ledger.configurations, ledger.edges)
-    nodes, along = FINDERS[search](question_between_last_two(ledger, costs), ledger)
+def _shortest(search: str, states: EdgeStates) -> Finding:
+    costs = edge_costs(states.world.space, states.configurations, states.edges)
+    nodes, along = FINDERS[search](search_problem(states, costs), states)
     if not nodes.size:
         return Finding(False)
     return Finding(True, length=length_along(costs, along))
 
 
-SEARCHES: dict[str, Callable[[Ledger], Finding]] = {
+SEARCHES: dict[str, Callable[[EdgeStates], Finding]] = {
     "connect": _connect,
     "stock": _stock,
     "full": partial(_shortest, "full"),
@@ -81,7 +78,7 @@ CHUNK = 64
 """Edges asked about together where order counts: few enough to stop soon, many enough for a batch to pay."""
 
 
-def is_connected(ledger: Ledger) -> bool:
+def is_connected(states: EdgeStates) -> bool:
     """Return whether free edges join the last two nodes, start and goal.
 
     The components of start and goal grow in turns, always the one that fewer unknown edges leave, by asking about all
@@ -89,21 +86,21 @@ def is_connected(ledger: Ledger) -> bool:
 
     Parameters
     ----------
-    ledger : Ledger
+    states : EdgeStates
         All nodes are taken as free; what is asked is written down there.
     """
-    label = np.arange(len(ledger.node_states), dtype=np.int32)
-    join(label, ledger.edges[ledger.edge_states == FREE])
+    label = np.arange(len(states.node_states), dtype=np.int32)
+    join(label, states.edges[states.edge_states == FREE])
     while label[-2] != label[-1]:
-        asked = min((_leaving(ledger, label, end) for end in (-2, -1)), key=len)
+        asked = min((_leaving(states, label, end) for end in (-2, -1)), key=len)
         if not len(asked):
             return False
-        ledger.ask_edges(asked)
-        join(label, ledger.edges[asked[ledger.edge_states[asked] == FREE]])
+        states.ask_edges(asked)
+        join(label, states.edges[asked[states.edge_states[asked] == FREE]])
     return True
 
 
-def milestones_until_connected(ledger: Ledger) -> int | None:
+def milestones_until_connected(states: EdgeStates) -> int | None:
     """Return how many of the milestones, added in order, it takes to connect the last two nodes; None if all do not.
 
     Start and goal are there first, an edge comes with the later of its milestones.  Under ``k earlier``, whose edges
@@ -111,13 +108,13 @@ def milestones_until_connected(ledger: Ledger) -> int | None:
 
     Parameters
     ----------
-    ledger : Ledger
+    states : EdgeStates
         As for :func:`is_connected`, which is asked first: most queries without an answer end there.
     """
-    if not is_connected(ledger):
+    if not is_connected(states):
         return None
-    milestones = len(ledger.node_states) - 2
-    with_ends = ledger.edges.astype(np.int64)
+    milestones = len(states.node_states) - 2
+    with_ends = states.edges.astype(np.int64)
     with_ends[with_ends >= milestones] = -1
     needed = with_ends.max(axis=1) + 1
     order = np.argsort(needed, kind="stable")
@@ -125,19 +122,19 @@ def milestones_until_connected(ledger: Ledger) -> int | None:
     for begin in range(0, len(order), CHUNK):
         edges = order[begin : begin + CHUNK]
         # Edges inside one component change nothing, now or later.
-        edges = edges[label[ledger.edges[edges, 0]] != label[ledger.edges[edges, 1]]]
-        ledger.ask_edges(edges)
-        free = edges[ledger.edge_states[edges] == FREE]
+        edges = edges[label[states.edges[edges, 0]] != label[states.edges[edges, 1]]]
+        states.ask_edges(edges)
+        free = edges[states.edge_states[edges] == FREE]
         before = label.copy()
-        join(label, ledger.edges[free])
+        join(label, states.edges[free])
         if label[-2] == label[-1]:
-            return int(needed[free[_first_to_connect(before, ledger.edges[free])]])
+            return int(needed[free[_first_to_connect(before, states.edges[free])]])
     raise AssertionError("is_connected said that there is a path")
 
 
-def _leaving(ledger: Ledger, label: npt.NDArray[np.int32], node: int) -> npt.NDArray[np.int64]:
+def _leaving(states: EdgeStates, label: npt.NDArray[np.int32], node: int) -> npt.NDArray[np.int64]:
     """Return the unknown edges with one end in the component of this node and the other outside."""
-    return _edges_leaving(ledger.edges, ledger.edge_states, label, label[node])
+    return _edges_leaving(states.edges, states.edge_states, label, label[node])
 
 
 def _first_to_connect(label: npt.NDArray[np.int32], edges: npt.NDArray[np.int32]) -> int:

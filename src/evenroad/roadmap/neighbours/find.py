@@ -1,14 +1,17 @@
-"""Neighbours in a space: by kd-tree where its metric is flat, else by all distances."""
+"""Neighbours in a space, by kd-tree where its metric is flat, else by all distances; and those of one newcomer."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import numpy.typing as npt
+from numba import njit
 
-from evenroad.roadmap.neighbours.brute import k_nearest_in, pairs_within_in
 from evenroad.roadmap.neighbours.kdtree import k_nearest, pairs_within
 from evenroad.space import Space
 from evenroad.space.flat import FlatMetric
+from evenroad.space.protocol import all_distances
 
 
 def nearest(
@@ -67,3 +70,125 @@ def in_metric(
         # The remainder of a tiny negative number rounds up to the period itself.
         points[points[:, axis] >= period[axis], axis] = 0.0
     return points, period
+
+
+BLOCK = 1 << 16
+"""Distances held at once."""
+
+
+def k_nearest_in(
+    space: Space, q: npt.NDArray[np.float64], k: int, *, earlier: bool = False
+) -> npt.NDArray[np.int32]:
+    """Return what `kdtree.k_nearest` returns, by the distances of all pairs: O(n^2) time, O(n k) memory."""
+    n = len(q)
+    k = min(k, n - 1)
+    if k < 1:
+        return np.empty((n, 0), dtype=np.int32)
+    nearest = np.full((n, k), -1, dtype=np.int32)
+    for rows, distance in _blocks(space, q, earlier=earlier):
+        own = np.arange(rows.start, rows.stop)[:, np.newaxis]
+        others = np.arange(distance.shape[1])[np.newaxis]
+        distance[others >= own if earlier else others == own] = np.inf
+        last = min(k, distance.shape[1]) - 1
+        furthest = np.partition(distance, last, axis=1)[:, last : last + 1]
+        row, column = np.nonzero((distance <= furthest) & np.isfinite(distance))
+        # All that tie with the k-th are still here; sorting puts the lower index first.
+        order = np.lexsort((column, distance[row, column], row))
+        row, column = row[order], column[order]
+        rank = np.arange(len(row)) - np.searchsorted(row, row)
+        kept = rank < k
+        nearest[rows.start + row[kept], rank[kept]] = column[kept]
+    return nearest
+
+
+def pairs_within_in(space: Space, q: npt.NDArray[np.float64], radius: float) -> npt.NDArray[np.int32]:
+    """Return every pair i < j with ``space.distance`` <= `radius`, shape (m, 2), ascending."""
+    found = [np.empty((0, 2), dtype=np.int32)]
+    for rows, distance in _blocks(space, q):
+        row, column = np.nonzero(distance <= radius)
+        later = column > row + rows.start
+        found.append(np.stack([row[later] + rows.start, column[later]], axis=1).astype(np.int32))
+    return np.concatenate(found)
+
+
+def _blocks(
+    space: Space, q: npt.NDArray[np.float64], *, earlier: bool = False
+) -> Iterator[tuple[slice, npt.NDArray[np.float64]]]:
+    """Yield row ranges with their distances to all configurations, (rows, n), or to those up to the range's end."""
+    n = len(q)
+    step = max(1, BLOCK // max(n, 1))
+    for begin in range(0, n, step):
+        rows = slice(begin, min(begin + step, n))
+        yield rows, all_distances(space, q[rows], q[: rows.stop] if earlier else q)
+
+
+class Surroundings:
+    """Milestones, ready to be asked which of them are near a configuration, in O(n).
+
+    Parameters
+    ----------
+    q : ndarray, shape (n, dim)
+        Their configurations.
+    space : Space
+        Whose metric counts.
+    """
+
+    def __init__(self, q: npt.NDArray[np.float64], space: Space) -> None:
+        self._q, self._space = q, space
+        self._metric = flat_metric(space)
+        self._points, self._period = in_metric(q, self._metric)
+
+    def distances(self, newcomer: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Return the distance of a configuration, (dim,), from each milestone, (n,)."""
+        if self._metric is None:
+            return self._space.distance(np.broadcast_to(newcomer, self._q.shape), self._q)
+        point, _ = in_metric(newcomer[np.newaxis], self._metric)
+        return _distances(self._points, self._period, point)
+
+
+def nearest_of(
+    distances: npt.NDArray[np.float64],
+    usable: npt.NDArray[np.bool_],
+    k: int | None = None,
+    radius: float | None = None,
+) -> npt.NDArray[np.int32]:
+    """Return the rows that are usable, the `k` nearest of them, at most `radius` away, nearest first.
+
+    Ties go to the lower row; without a `k` all rows come, in their order.
+    """
+    if k is None:
+        return np.flatnonzero(usable if radius is None else usable & (distances <= radius)).astype(np.int32)
+    return _k_smallest(distances, usable, min(k, len(distances)), np.inf if radius is None else radius)
+
+
+@njit(cache=True, nogil=True)
+def _distances(points, period, point):  # type: ignore[no-untyped-def]
+    distance = np.empty(points.shape[0])
+    for i in range(points.shape[0]):
+        total = 0.0
+        for axis in range(points.shape[1]):
+            gap = abs(points[i, axis] - point[0, axis])
+            gap = min(gap, period[axis] - gap)
+            total += gap * gap
+        distance[i] = np.sqrt(total)
+    return distance
+
+
+@njit(cache=True, nogil=True)
+def _k_smallest(distances, usable, k, radius):  # type: ignore[no-untyped-def]
+    rows = np.empty(k, dtype=np.int32)
+    nearest = np.empty(k)
+    count = 0
+    for row in range(distances.shape[0]):
+        distance = distances[row]
+        if not usable[row] or distance > radius or k == 0 or (count == k and distance >= nearest[k - 1]):
+            continue
+        slot = min(count, k - 1)
+        while slot > 0 and nearest[slot - 1] > distance:
+            nearest[slot] = nearest[slot - 1]
+            rows[slot] = rows[slot - 1]
+            slot -= 1
+        nearest[slot] = distance
+        rows[slot] = row
+        count = min(count + 1, k)
+    return rows[:count].copy()

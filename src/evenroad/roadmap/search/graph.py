@@ -1,8 +1,8 @@
-"""A graph as compressed rows: the neighbours of each node, side by side."""
+"""A graph as compressed rows, with links that come and go; its connected components."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -10,53 +10,109 @@ from numba import njit
 
 
 @dataclass(frozen=True, eq=False)
-class Graph:
-    """Undirected edges, by node.
+class Rows:
+    """For each node the arcs that leave it, side by side.
 
     Attributes
     ----------
-    edges : ndarray of int32, shape (m, 2)
-        Pairs of nodes.
     first : ndarray of int64, shape (nodes + 1,)
         The arcs that leave node v are the slots first[v] .. first[v + 1] - 1.
     other, edge : ndarray of int32, shape (slots,)
-        For each slot the node that the arc leads to, and its edge; edge -1 where the slot is not in use.
+        For each slot the node that the arc leads to, and its edge.
     """
 
-    edges: npt.NDArray[np.int32]
     first: npt.NDArray[np.int64]
     other: npt.NDArray[np.int32]
     edge: npt.NDArray[np.int32]
 
     @classmethod
-    def of(
-        cls, nodes: int, edges: npt.NDArray[np.int32], spare: npt.NDArray[np.int64] | None = None
-    ) -> Graph:
-        """Return the graph of these edges, with `spare[v]` slots not in use at the end of each row v."""
-        spare = np.zeros(nodes, dtype=np.int64) if spare is None else spare
-        return cls(edges, *_rows(nodes, np.array(edges, dtype=np.int32), spare))
+    def of(cls, nodes: int, edges: npt.NDArray[np.int32], *, numbered_from: int = 0) -> Rows:
+        """Return the rows of undirected edges, (m, 2), whose numbers begin with `numbered_from`."""
+        return cls(*_rows(nodes, np.array(edges, dtype=np.int32), numbered_from))
 
-    @property
-    def nodes(self) -> int:
-        """Number of nodes."""
-        return len(self.first) - 1
+
+@dataclass(frozen=True, eq=False)
+class Graph:
+    """Undirected edges, by node: fixed ones, and links of one query beside them.
+
+    Attributes
+    ----------
+    nodes : int
+        Number of nodes.
+    fixed, links : Rows
+        Of all nodes, or of the first ones only: the others have no arcs there.
+    """
+
+    nodes: int
+    fixed: Rows
+    links: Rows
+
+    @classmethod
+    def of(cls, nodes: int, edges: npt.NDArray[np.int32]) -> Graph:
+        """Return the graph of these edges, without links."""
+        return cls(nodes, Rows.of(nodes, edges), _NO_LINKS)
+
+    def with_links(self, nodes: int, edges: npt.NDArray[np.int32], numbered_from: int) -> Graph:
+        """Return this graph with so many nodes, and links instead of those that it has; O(nodes)."""
+        return replace(self, nodes=nodes, links=Rows.of(nodes, edges, numbered_from=numbered_from))
+
+
+def components(nodes: int, edges: npt.NDArray[np.int32]) -> npt.NDArray[np.int32]:
+    """Return a label for every node, shape (nodes,): the lowest node of its connected component."""
+    label = np.arange(nodes, dtype=np.int32)
+    join(label, edges)
+    return label
+
+
+def join(label: npt.NDArray[np.int32], edges: npt.NDArray[np.int32]) -> npt.NDArray[np.bool_]:
+    """Join components along edges, one after the other, in place; return for each edge whether it joined two.
+
+    `label` holds for every node the lowest node of its component, before and after.
+    """
+    return _join(label, np.array(edges, dtype=np.int32))
 
 
 @njit(cache=True, nogil=True)
-def _rows(nodes, edges, spare):  # type: ignore[no-untyped-def]
+def _rows(nodes, edges, numbered_from):  # type: ignore[no-untyped-def]
     first = np.zeros(nodes + 1, dtype=np.int64)
     for e in range(edges.shape[0]):
         first[edges[e, 0] + 1] += 1
         first[edges[e, 1] + 1] += 1
     for v in range(nodes):
-        first[v + 1] += first[v] + spare[v]
+        first[v + 1] += first[v]
     place = first[:-1].copy()
-    other = np.zeros(first[nodes], dtype=np.int32)
-    edge = np.full(first[nodes], -1, dtype=np.int32)
+    other = np.empty(first[nodes], dtype=np.int32)
+    edge = np.empty(first[nodes], dtype=np.int32)
     for e in range(edges.shape[0]):
         for side in range(2):
             v = edges[e, side]
             other[place[v]] = edges[e, 1 - side]
-            edge[place[v]] = e
+            edge[place[v]] = numbered_from + e
             place[v] += 1
     return first, other, edge
+
+
+_NO_LINKS = Rows(np.zeros(1, dtype=np.int64), np.empty(0, dtype=np.int32), np.empty(0, dtype=np.int32))
+
+
+@njit(cache=True, nogil=True)
+def _join(root, edges):  # type: ignore[no-untyped-def]
+    """Union-find; the root of a component is always its lowest node."""
+    joined = np.zeros(edges.shape[0], dtype=np.bool_)
+    for e in range(edges.shape[0]):
+        a, b = edges[e, 0], edges[e, 1]
+        while root[a] != a:
+            root[a] = root[root[a]]
+            a = root[a]
+        while root[b] != b:
+            root[b] = root[root[b]]
+            b = root[b]
+        joined[e] = a != b
+        if a < b:
+            root[b] = a
+        else:
+            root[a] = b
+    for v in range(root.shape[0]):
+        # Roots are lower than their children, so one ascending sweep flattens every tree.
+        root[v] = root[root[v]]
+    return joined

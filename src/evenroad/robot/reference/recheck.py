@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -18,7 +17,7 @@ from evenroad.robot.reference.coal_world import CoalWorld
 from evenroad.robot.reference.engine_world import original_shapes
 from evenroad.robot.robot import Robot, RobotModel
 from evenroad.robot.scene import Scene
-from evenroad.space import JointSpace
+from evenroad.space.path import resample
 
 Verdict = Literal["free", "in collision", "not checked"]
 
@@ -116,7 +115,7 @@ def recheck(
     if always:
         kept = tuple(pair for pair in every.pairs if pair not in always)
         world = CoalWorld(replace(robot, pairs=kept), scene, shapes, resolution)
-    states, motions = states_along(world.space, path, resolution / FINER)
+    states, motions = resample(path, world.space, resolution / FINER)
     blocked = np.flatnonzero(~world.valid(states))
     if len(blocked) == 0:
         return MeshCheck("free", len(states), always_touching=always)
@@ -139,22 +138,6 @@ def _always_touching(world: CoalWorld, pairs: Sequence[tuple[str, str]]) -> tupl
             break
         left &= world.contacts(q)
     return tuple(pair for pair in pairs if pair in left)
-
-
-def states_along(
-    space: JointSpace, path: npt.NDArray[np.float64], resolution: float
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
-    """Return states along a path, (s, dim), at most `resolution` apart, and the number of each one's motion, (s,).
-
-    A motion has ``ceil(distance / resolution)`` segments; a path of one waypoint is one state.
-    """
-    states, motions = [path[:1]], [np.zeros(1, dtype=np.int64)]
-    for i, (a, b) in enumerate(pairwise(path)):
-        segments = max(int(np.ceil(space.distance(a[np.newaxis], b[np.newaxis])[0] / resolution)), 1)
-        starts, ends = np.tile(a, (segments, 1)), np.tile(b, (segments, 1))
-        states.append(space.interpolate(starts, ends, np.arange(1, segments + 1) / segments))
-        motions.append(np.full(segments, i))
-    return np.concatenate(states), np.concatenate(motions)
 
 
 def _named(pairs: Sequence[tuple[str, str]]) -> str:

@@ -92,6 +92,11 @@ class DiskWorld:
         """The map's rectangle, in map units."""
         return self.grid.space
 
+    @property
+    def proof(self) -> str:
+        """What is shown of a motion called free: ``exact``."""
+        return "exact"
+
     def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
         """Return whether the disk is free at each map point, (n, 2) -> (n,); False outside the map.
 
@@ -185,6 +190,11 @@ class DiskWorld:
         pixels = self.grid.frame.to_pixels(as_batch("q", np.reshape(q, (1, -1)), 2))[0]
         x, y = nearest_free_point(pixels[0] + 1.0, pixels[1] + 1.0, self._tables)
         return None if math.isnan(x) else self.grid.frame.to_map(np.array([[x - 1.0, y - 1.0]]))[0]
+
+    @property
+    def planner(self) -> str:
+        """How `connect` plans, in results."""
+        return "cells"
 
     def connect(
         self,

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._checks import require_positive
+from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
 from evenroad.space import Box, Product
 from evenroad.space.axes import as_row
@@ -74,6 +75,10 @@ class SolidWorld:
             ("_steps", steps),
         ):
             object.__setattr__(self, name, value)
+
+    def fingerprint(self) -> str:
+        """Return the SHA-256 (hex) of space, body, obstacles and resolution: equal for worlds of the same verdicts."""
+        return fingerprint_of("solid", self.space, self.body, self.obstacles, self.resolution)
 
     def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
         """Return which poses, (n, dim), lie in the space and are free: (n,).

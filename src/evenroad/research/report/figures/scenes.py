@@ -77,7 +77,9 @@ def find_path(problem: Problem) -> PlanResult:
     """Return the first plan with a path, on scrambled Halton points; the last one if none has."""
     for n, k in TRIES:
         points = draw("halton", n, problem.world.space.cube_dim)
-        result = plan(problem.world, problem.start, problem.goal, points, rule=KNearest(k), search="lazy")
+        result = plan(
+            problem.world, problem.start, problem.goal, points, rule=KNearest(k), search="lazy", links=None
+        )
         if result.solved:
             break
     return result

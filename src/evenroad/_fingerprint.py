@@ -1,0 +1,80 @@
+"""Fingerprints: one text for all equal values, by which a file knows what it was made for."""
+
+from __future__ import annotations
+
+import enum
+import hashlib
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+
+from evenroad.errors import NotAvailable
+
+
+@runtime_checkable
+class Fingerprinted(Protocol):
+    """A value that can say which it is."""
+
+    def fingerprint(self) -> str:
+        """Return a text that two values share only if they mean the same: two worlds, the same verdicts.
+
+        Raises
+        ------
+        NotAvailable
+            If the value cannot know, such as a world made from a function without a name.
+        """
+        ...
+
+
+def fingerprint_of(*values: object) -> str:
+    """Return the SHA-256 (hex) of values: equal for equal values, in any process and on any machine.
+
+    Parameters
+    ----------
+    *values
+        Numbers, texts, None, enumerations, arrays, sequences, sets and mappings of such; values with a
+        ``fingerprint()`` of their own; and dataclasses, of which all fields count that take part in comparisons.
+
+    Raises
+    ------
+    NotAvailable
+        If a value is none of these, such as a function.
+    """
+    sha = hashlib.sha256()
+    for value in values:
+        sha.update(_canonical(value))
+    return sha.hexdigest()
+
+
+def _canonical(value: Any) -> bytes:
+    """Return a text in which no two different values look the same."""
+    if isinstance(value, enum.Enum):
+        return _tagged("enum", type(value).__name__.encode(), value.name.encode())
+    if value is None or isinstance(value, bool | int | float | str | bytes | np.bool_ | np.number):
+        plain = value.item() if isinstance(value, np.generic) else value
+        return _tagged(type(plain).__name__, repr(plain).encode())
+    if isinstance(value, np.ndarray) and value.dtype != object:
+        return _tagged(
+            "array", f"{value.dtype.str} {value.shape}".encode(), np.ascontiguousarray(value).tobytes()
+        )
+    if isinstance(value, Fingerprinted) and not isinstance(value, type):
+        return _tagged("fingerprint", value.fingerprint().encode())
+    if is_dataclass(value) and not isinstance(value, type):
+        own = [field.name for field in fields(value) if field.compare and field.init]
+        parts = [_tagged(name, _canonical(getattr(value, name))) for name in own]
+        return _tagged("dataclass", type(value).__name__.encode(), *parts)
+    if isinstance(value, tuple | list):
+        return _tagged("sequence", *map(_canonical, value))
+    if isinstance(value, set | frozenset):
+        return _tagged("set", *sorted(map(_canonical, value)))
+    if isinstance(value, Mapping):
+        return _tagged("mapping", *sorted(_canonical(item) for item in value.items()))
+    raise NotAvailable(
+        f"a {type(value).__name__} has no fingerprint, so a file could not know it again: {value!r}"
+    )
+
+
+def _tagged(tag: str, *parts: bytes) -> bytes:
+    return b"(" + tag.encode() + b"".join(b" %d:" % len(part) + part for part in parts) + b")"

@@ -1,0 +1,114 @@
+"""Files of arrays (.npz): written atomically, and read so that whatever is wrong with one is a BrokenFile."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Collection, Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._files import atomic_write
+from evenroad.errors import BrokenFile
+
+Path = str | os.PathLike[str]
+Arrays = dict[str, npt.NDArray[Any]]
+
+
+def write_npz(path: Path, arrays: Mapping[str, npt.ArrayLike], *, compressed: bool = False) -> None:
+    """Write arrays by their names, atomically; texts become arrays of no axes.
+
+    Raises
+    ------
+    BrokenFile
+        If the file cannot be written; whatever was at `path` is then untouched.
+    """
+    save = np.savez_compressed if compressed else np.savez
+    with atomic_write(path) as file:
+        save(file, allow_pickle=False, **{name: np.asarray(array) for name, array in arrays.items()})
+
+
+def read_npz(path: Path, what: str, *layouts: Collection[str]) -> Arrays:
+    """Read a file that `write_npz` wrote.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    what : str
+        What it should hold, for the texts of errors: ``point set``, ``roadmap``.
+    *layouts : collections of str
+        The names of its arrays have to be those of one of these.
+
+    Raises
+    ------
+    BrokenFile
+        If the file is missing, is no such npz, or was damaged; the text names it and says what is wrong.
+    """
+    arrays = {}
+    try:
+        # Opened here, not by NumPy, which leaves the handle open when the archive is broken.
+        with open(path, "rb") as file:
+            archive = np.load(file, allow_pickle=False)
+            if not isinstance(archive, np.lib.npyio.NpzFile):
+                raise BrokenFile(f"{path} is a plain array, not a .npz {what}")
+            names = set(archive.files)
+            if not any(names == set(layout) for layout in layouts):
+                raise BrokenFile(f"{path} holds {sorted(names)}, a {what} holds {sorted(layouts[0])}")
+            for name in names:
+                arrays[name] = archive[name]
+                if not isinstance(arrays[name], np.ndarray):
+                    # NumPy hands out a member without the magic of an array as bytes.
+                    raise BrokenFile(f"{path}: {name} is no array")
+    except FileNotFoundError:
+        raise BrokenFile(f"no such file: {path}") from None
+    except BrokenFile:
+        raise
+    except Exception as error:
+        # No list is complete: damaged headers alone give errors of the tokenizer, of memory and of overflow, and
+        # zipfile has its own for every compression, encryption and version that it does not know.
+        raise BrokenFile(f"{path} is not a readable .npz {what}: {one_line(error)}") from error
+    return arrays
+
+
+def read_json(path: Path, name: str, array: npt.NDArray[Any], keys: Collection[str]) -> dict[str, Any]:
+    """Return the JSON object that an array of no axes holds as text, with keys among `keys`, or raise BrokenFile."""
+    try:
+        record = json.loads(str(array))
+    except (ValueError, RecursionError) as error:
+        raise BrokenFile(f"{path}: {name} is no JSON: {one_line(error)}") from error
+    if not isinstance(record, dict) or not set(record) <= set(keys):
+        raise BrokenFile(f"{path}: {name} must be an object with keys among {sorted(keys)}")
+    return record
+
+
+def require_array(
+    path: Path, name: str, array: npt.NDArray[Any], dtype: npt.DTypeLike, shape: tuple[int | None, ...]
+) -> None:
+    """Raise BrokenFile unless an array has this dtype and shape; None stands for any length."""
+    fits = len(shape) == array.ndim and all(
+        wanted is None or wanted == length for wanted, length in zip(shape, array.shape, strict=True)
+    )
+    if array.dtype != np.dtype(dtype) or not fits:
+        lengths = ", ".join("any" if length is None else str(length) for length in shape)
+        raise BrokenFile(
+            f"{path}: {name} must be {np.dtype(dtype)} of shape ({lengths}), got {array.dtype} of shape {array.shape}"
+        )
+
+
+def digest(arrays: Mapping[str, npt.NDArray[Any]]) -> str:
+    """Return the SHA-256 (hex) of arrays: their names, dtypes, shapes and bytes."""
+    sha = hashlib.sha256()
+    for name in sorted(arrays):
+        array = np.ascontiguousarray(arrays[name])
+        sha.update(f"{name} {array.dtype.str} {array.shape}:".encode())
+        sha.update(array.tobytes())
+    return sha.hexdigest()
+
+
+def one_line(error: BaseException) -> str:
+    """Return the kind and the text of an error in one line."""
+    return " ".join(f"{type(error).__name__}: {error}".split())

@@ -1,0 +1,140 @@
+"""Query: what is asked of a planner."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import KW_ONLY, dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._checks import require_count
+from evenroad.errors import InvalidValue, NotAvailable, UnknownName
+from evenroad.points.pointset import PointSet
+from evenroad.points.samplers import make_sampler
+from evenroad.roadmap.budget import Budget
+from evenroad.roadmap.cost import EdgeCost
+from evenroad.roadmap.search import FINDERS, EdgeStates, Found, SearchProblem, find_any
+from evenroad.space import Space
+
+LINKS = 100
+"""Milestones that start and goals are linked to by default, besides those of the rule.
+
+A start in a narrow place sees few of its nearest milestones.  On shelves, 100 links instead of k = 10 to 20 are worth
+20 to 45 points of success with every sampler, for some checks a query.  The edges between milestones stay as they are.
+"""
+
+FEW = 256
+"""Up to so many milestones, start and goals are linked to all."""
+
+
+@dataclass(frozen=True, eq=False)
+class Query:
+    """From where to where, and how; never changed.
+
+    Attributes
+    ----------
+    start : float64 ndarray, shape (dim,)
+    goals : float64 ndarray, shape (g, dim), g >= 1
+        As :func:`read_places` gives them; the path ends at the goal that is cheapest to reach.
+    search, success_only, shorten, edge_cost, links, budget
+        As in :func:`plan`.
+
+    Raises
+    ------
+    UnknownName
+        If there is no such search.
+    """
+
+    start: npt.NDArray[np.float64]
+    goals: npt.NDArray[np.float64]
+    _: KW_ONLY
+    search: str = "full"
+    success_only: bool = False
+    shorten: bool = True
+    edge_cost: EdgeCost | None = None
+    links: int | None = None
+    budget: Budget = field(default_factory=Budget)
+
+    def __post_init__(self) -> None:
+        if self.search not in FINDERS:
+            raise UnknownName.among("search", self.search, FINDERS)
+        if self.links is not None:
+            require_count("links", self.links)
+        for array in (self.start, self.goals):
+            array.setflags(write=False)
+
+    @property
+    def start_and_goals(self) -> npt.NDArray[np.float64]:
+        """The start, then the goals, (1 + g, dim)."""
+        return np.concatenate([self.start[np.newaxis], self.goals])
+
+    def links_among(self, milestones: int) -> int:
+        """Return to how many of so many milestones start and goals are linked besides what the rule says."""
+        if self.links is None:
+            return 0
+        return milestones if milestones <= FEW else min(self.links, milestones)
+
+    @property
+    def find(self) -> Callable[[SearchProblem, EdgeStates], Found]:
+        """The search."""
+        return find_any if self.success_only else FINDERS[self.search]
+
+    def planner(self, lazy_milestones: bool) -> str:
+        """Return what results call the planner that searches so."""
+        name = "any" if self.success_only else self.search
+        return f"prm {name}{' + lazy milestones' if lazy_milestones else ''}"
+
+
+def read_places(
+    start: npt.ArrayLike, goal: npt.ArrayLike, space: Space
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Return start, (dim,), and goals, (g, dim), from one start and one or more goals.
+
+    Raises
+    ------
+    InvalidValue
+        If they do not have the dimension of the space, or are not finite.
+    """
+    dim = space.dim
+    first, goals = _finite(start), _finite(goal)
+    if first.shape != (dim,):
+        raise InvalidValue(f"start must be {dim} finite numbers, got {start!r}")
+    if goals.shape != (dim,) and (goals.ndim != 2 or goals.shape[1] != dim or not len(goals)):
+        raise InvalidValue(
+            f"goal must be {dim} finite numbers, or an array (g, {dim}) of g >= 1 goals, got {goal!r}"
+        )
+    return first, goals.reshape(-1, dim)
+
+
+def as_points(points: PointSet | int, space: Space) -> PointSet:
+    """Return points of the space's cube: those given, or so many even ones.
+
+    Raises
+    ------
+    InvalidValue
+        If `points` is neither a point set of the dimension of the cube nor a number >= 1.
+    """
+    if not isinstance(points, PointSet):
+        if isinstance(points, bool) or not isinstance(points, int | np.integer):
+            raise InvalidValue(
+                "points must be a PointSet, such as draw('even', 512, 2), or how many points to draw,"
+                f" got {points!r}"
+            )
+        n = require_count("points", points)
+        try:
+            points = make_sampler("even").draw(n, space.cube_dim)
+        except NotAvailable:
+            points = make_sampler("korobov").draw(n, space.cube_dim)
+    if points.d != space.cube_dim:
+        raise InvalidValue(f"the points have d={points.d}, the space has {space.cube_dim} dimensions")
+    return points
+
+
+def _finite(value: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """Return a copy as floats; of what is not finite numbers, an array whose shape nobody asks for."""
+    try:
+        array = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        return np.empty((0, 0))
+    return array if np.isfinite(array).all() else np.empty((0, 0))

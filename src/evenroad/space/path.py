@@ -1,0 +1,96 @@
+"""Paths: waypoints, shape (p, dim), between which a robot moves by the shortest interpolation of its space."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._checks import require_positive
+from evenroad.errors import InvalidValue
+from evenroad.space.protocol import Space
+
+
+def motion_lengths(path: npt.NDArray[np.float64], space: Space) -> npt.NDArray[np.float64]:
+    """Return the length of each motion of a path in the metric of the space, (p - 1,)."""
+    return space.distance(path[:-1], path[1:])
+
+
+def path_length(path: npt.NDArray[np.float64], space: Space) -> float:
+    """Return the length of a path in the metric of the space; 0 for one waypoint."""
+    return float(np.sum(motion_lengths(path, space)))
+
+
+def subdivide(
+    path: npt.NDArray[np.float64], space: Space, segments: npt.NDArray[np.integer]
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
+    """Divide each motion of a path into equal segments.
+
+    Parameters
+    ----------
+    path : ndarray, shape (p, dim), p >= 1
+        Waypoints; they are among the states as they are.
+    space : Space
+        Whose interpolation joins them.
+    segments : ndarray of int, shape (p - 1,)
+        How many for each motion, >= 1.
+
+    Returns
+    -------
+    states : ndarray, shape (s, dim)
+        The ends of all segments, ``s = 1 + sum(segments)``.
+    own : ndarray of int64, shape (p,)
+        Which of the states are the waypoints.
+    """
+    own = np.concatenate([[0], np.cumsum(segments)]).astype(np.int64)
+    motion = np.repeat(np.arange(len(path) - 1), segments)
+    states = np.empty((own[-1] + 1, path.shape[1]))
+    share = (np.arange(own[-1]) - own[motion] + 1) / segments[motion]
+    states[1:] = space.interpolate(path[motion], path[motion + 1], share)
+    states[own] = path
+    return states, own
+
+
+def resample(
+    path: npt.NDArray[np.float64], space: Space, step: float
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
+    """Return states along a path that are at most `step` apart, its waypoints among them.
+
+    Each motion has ``max(1, ceil(length / step))`` equal segments; a path of one waypoint is one state.
+
+    Returns
+    -------
+    states : ndarray, shape (s, dim)
+        From the first waypoint to the last.
+    motion : ndarray of int64, shape (s,)
+        In which motion of the path each state lies; waypoints belong to the motion that ends there.
+
+    Raises
+    ------
+    InvalidValue
+        If `step` is not a finite number > 0.
+    """
+    step = require_positive("step", step)
+    segments = np.maximum(np.ceil(motion_lengths(path, space) / step), 1.0).astype(np.int64)
+    states, _ = subdivide(path, space, segments)
+    return states, np.concatenate([[0], np.repeat(np.arange(len(path) - 1), segments)]).astype(np.int64)
+
+
+def place_at(path: npt.NDArray[np.float64], space: Space, t: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """Return where on a path a robot is after shares `t` of its length, (n,) in [0, 1], as (n, dim).
+
+    Raises
+    ------
+    InvalidValue
+        If a share lies outside [0, 1].
+    """
+    shares = np.atleast_1d(np.asarray(t, dtype=np.float64))
+    if not ((shares >= 0.0) & (shares <= 1.0)).all():
+        raise InvalidValue(f"t must lie in [0, 1], got {t!r}")
+    if len(path) == 1:
+        return np.repeat(path, len(shares), axis=0)
+    ends = np.concatenate([[0.0], np.cumsum(motion_lengths(path, space))])
+    along = shares * ends[-1]
+    motion = np.clip(np.searchsorted(ends, along, side="right") - 1, 0, len(path) - 2)
+    length = ends[motion + 1] - ends[motion]
+    within = np.divide(along - ends[motion], length, out=np.zeros_like(along), where=length > 0.0)
+    return space.interpolate(path[motion], path[motion + 1], np.clip(within, 0.0, 1.0))
