@@ -152,7 +152,7 @@ def _room(capacity: int, dim: int) -> tuple[Floats, npt.NDArray[np.float32], npt
     return (
         np.empty((2, capacity, dim)),
         np.empty(2 * dim * capacity, dtype=np.float32),
-        np.empty((3, 2, capacity), dtype=np.int64),
+        np.empty((4, 2, capacity), dtype=np.int64),
     )
 
 
@@ -169,14 +169,22 @@ _KEPT: dict[int, tuple[ref[Robot], Floats, Floats]] = {}
 
 
 def _arms(world: ArmWorld) -> tuple[Floats, Floats]:
-    """Return how fast each coordinate moves capsules and pairs of them at most."""
+    """Return how fast each coordinate moves capsules and pairs of them at most, (dim, capsules) and (dim, pairs)."""
     robot, number = world.robot, id(world.robot)
     kept = _KEPT.get(number)
     if kept is None or kept[0]() is not robot:
         certified = CertifiedWorld(world)
-        kept = ref(robot, lambda _: _KEPT.pop(number, None)), certified._arms, certified._pair_arms
+        arms, pair_arms = (_by_coordinate(arms) for arms in (certified._arms, certified._pair_arms))
+        kept = ref(robot, lambda _: _KEPT.pop(number, None)), arms, pair_arms
         _KEPT[number] = kept
     return kept[1], kept[2]
+
+
+def _by_coordinate(arms: Floats) -> Floats:
+    """Return the arms with a row for each coordinate, read-only."""
+    rows = np.ascontiguousarray(arms.T)
+    rows.setflags(write=False)
+    return rows
 
 
 def _world_arguments(world: ArmWorld) -> tuple[int, float, Floats, npt.NDArray[np.int64], Floats, Floats]:

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from evenroad.robot.kernel.inner import quick
+from evenroad.robot.kernel.inner import inner, quick
 from evenroad.robot.kernel.layout import LANES
 from evenroad.robot.kernel.motion import enter
 from evenroad.robot.kernel.tree_checks import (
@@ -109,7 +109,7 @@ class Memory(NamedTuple):
     lanes: Singles
 
 
-@quick
+@inner
 def _memory(bounds: Floats) -> Memory:
     dim = bounds.shape[1]
     squares = 0.0
@@ -249,7 +249,7 @@ def goal_of(links: Ints, state: Ints) -> int:
     return links[PROVED, 1, node]
 
 
-@quick
+@inner
 def _begin(ends: Floats, trees: Trees, checks: Checks, memory: Memory) -> None:
     """Plant the trees: the start, and the goals, the nearest first; leave out what is not free."""
     count, dim = ends.shape
