@@ -121,6 +121,13 @@ def _grown(world: ArmWorld, ends: Floats, samples: Floats, most: int, seconds: f
     # Imported late: where the vector type cannot even be defined, all else still works.
     from evenroad.robot.kernel import trees as kernel
 
+    order = np.arange(len(ends) - 1)
+    if len(order) > 1:
+        # The nearest goals are tried first.
+        distances = world.space.distance(np.broadcast_to(ends[0], ends[1:].shape), ends[1:])
+        order = np.argsort(distances, kind="stable")
+        ends = ends[np.concatenate([[0], 1 + order])]
+        ends.setflags(write=False)
     dim, ball, arguments = ends.shape[1], ball_points(ends.shape[1]), _world_arguments(world)
     capacity = -(-max(_CAPACITY, 2 * len(ends) + kernel.ROOM) // 16) * 16
     nodes, columns, links = _room(capacity, dim)
@@ -143,7 +150,10 @@ def _grown(world: ArmWorld, ends: Floats, samples: Floats, most: int, seconds: f
     path, goal = np.empty((0, dim)), -1
     if ended == kernel.SOLVED:
         path = kernel.path_of(nodes, links, state)
-        goal = kernel.goal_of(links, state)
+        node = state[kernel.GOAL_NODE]
+        while links[kernel.PARENT, 1, node] >= 0:
+            node = links[kernel.PARENT, 1, node]
+        goal = int(order[links[kernel.PROVED, 1, node] - 1])
     motions, configurations, _ = state[:3].tolist()
     return Connection(path, goal, int(sizes[0] + sizes[1]), configurations, motions)
 

@@ -30,7 +30,7 @@ class Trees(NamedTuple):
         The same by coordinate, for the search of the nearest; the capacity is a multiple of 16.
     links : int64 array, shape (4, 2, capacity)
         Each node's parent (-1 for a root), how often it was tried, 1 where the motion from the parent is proved (for
-        the root of a goal, which of the goals it is), and room for `remove_branch`.
+        a root, which of the ends it is), and room for `remove_branch`.
     sizes : int64 array, shape (2,)
         How many nodes each tree has.
     periods : float32 array, shape (dim,)
