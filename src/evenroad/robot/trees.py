@@ -22,7 +22,7 @@ Floats = npt.NDArray[np.float64]
 MOST_MOTIONS = 1_000_000
 SECONDS = 5.0
 
-_CAPACITY = 2048
+_CAPACITY = 1024
 """Nodes of a tree there is room for at first; doubled when it is full."""
 
 _SLICE = 1000
@@ -121,8 +121,8 @@ def _grown(world: ArmWorld, ends: Floats, samples: Floats, most: int, seconds: f
     # Imported late: where the vector type cannot even be defined, all else still works.
     from evenroad.robot.kernel import trees as kernel
 
-    order = np.arange(len(ends) - 1)
-    if len(order) > 1:
+    order = None
+    if len(ends) > 2:
         # The nearest goals are tried first.
         distances = world.space.distance(np.broadcast_to(ends[0], ends[1:].shape), ends[1:])
         order = np.argsort(distances, kind="stable")
@@ -153,7 +153,8 @@ def _grown(world: ArmWorld, ends: Floats, samples: Floats, most: int, seconds: f
         node = state[kernel.GOAL_NODE]
         while links[kernel.PARENT, 1, node] >= 0:
             node = links[kernel.PARENT, 1, node]
-        goal = int(order[links[kernel.PROVED, 1, node] - 1])
+        goal = int(links[kernel.PROVED, 1, node]) - 1
+        goal = goal if order is None else int(order[goal])
     motions, configurations, _ = state[:3].tolist()
     return Connection(path, goal, int(sizes[0] + sizes[1]), configurations, motions)
 

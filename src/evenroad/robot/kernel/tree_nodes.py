@@ -103,12 +103,14 @@ def nearest(trees: Trees, tree: int, q: Floats, room: Singles) -> int:
 @quick
 def least_tried(trees: Trees, tree: int) -> int:
     """Return the number of the tree's node that was tried least often, the first of equals."""
-    best, number = np.int64(1 << 60), 0
-    for i in range(trees.sizes[tree]):
-        if trees.links[TRIED, tree, i] < best:
-            best, number = trees.links[TRIED, tree, i], i
-            if best == 0:
-                break
+    tried = trees.links[TRIED, tree, : trees.sizes[tree]]
+    least = tried[0]
+    # A loop of its own, of which the compiler makes vectors.
+    for i in range(len(tried)):
+        least = min(least, tried[i])
+    number = 0
+    while tried[number] != least:
+        number += 1
     return number
 
 
