@@ -1,6 +1,7 @@
 """The trees of arms: joined where there is a way, the same each time, every motion proved, the budget kept."""
 
 import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from itertools import pairwise
 
@@ -14,7 +15,7 @@ from evenroad.robot.joint import Joint
 from evenroad.robot.robot import with_limits
 from evenroad.robot.scene import Obstacle, Scene
 from evenroad.robot.tree_sequences import ball_points, cube_points, reversed_halton
-from evenroad.robot.trees import connect
+from evenroad.robot.trees import connect, shorten
 from tests.robot.kernel_arms import STRAIGHT, box_scene, random_scene, random_tree, seven_joint_arm, ur5
 from tests.robot.oracle import clearance
 
@@ -253,3 +254,13 @@ def test_halton_points_are_those_of_the_definition():
     # Base 3: 1 -> 2/3, 2 -> 1/3, 3 = 10 -> 2/9, 4 = 11 -> 2/3 + 2/9.
     np.testing.assert_allclose(reversed_halton(4, 2)[:, 1], [2 / 3, 1 / 3, 2 / 9, 8 / 9])
     assert cube_points(30).shape == (2048, 30)
+
+
+def test_threads_do_not_disturb_each_other(world, found):
+    detour = np.concatenate([found.path, found.path[::-1], found.path])
+    alone = shorten(world, detour)[0]
+    with ThreadPoolExecutor(4) as threads:
+        answers = threads.map(lambda _: (connect(world, START, [GOAL]), shorten(world, detour)[0]), range(40))
+        for connection, shorter in answers:
+            np.testing.assert_array_equal(connection.path, found.path)
+            np.testing.assert_array_equal(shorter, alone)

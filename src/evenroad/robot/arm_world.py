@@ -10,7 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._checks import require_positive
+from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue, NotAvailable, UnknownName
+from evenroad.robot.fingerprint import fingerprint
 from evenroad.robot.kernel import scalar
 from evenroad.robot.kernel.certify import motions_certified
 from evenroad.robot.kernel.obstacles import obstacle_arrays, tested_contacts
@@ -19,9 +21,11 @@ from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
 from evenroad.robot.kernel.selftest import lanes_failure
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
+from evenroad.robot.trees import MOST_MOTIONS, SECONDS, connect, shorten
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.bisection import require_few_segments
+from evenroad.world.protocol import Connection
 
 _BACKENDS = ("auto", "lanes", "scalar")
 
@@ -209,6 +213,36 @@ class ArmWorld:
             self.robot_tables.pair_speeds,
         )
         return proved
+
+    @property
+    def planner(self) -> str:
+        """How `connect` plans, in results."""
+        return "trees"
+
+    def connect(
+        self,
+        start: npt.NDArray[np.float64],
+        goals: npt.NDArray[np.float64],
+        *,
+        most_motions: int = MOST_MOTIONS,
+        seconds: float = SECONDS,
+    ) -> Connection:
+        """Join a start, (dim,), to one of the goals, (g, dim), by motions that are proved free.
+
+        See :func:`evenroad.robot.trees.connect`.
+        """
+        return connect(self, start, goals, most_motions=most_motions, seconds=seconds)
+
+    def shorten(self, path: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], int]:
+        """Return a path that is not longer and whose new motions are proved free, and how many were looked at.
+
+        See :func:`evenroad.robot.trees.shorten`.
+        """
+        return shorten(self, path)
+
+    def fingerprint(self) -> str:
+        """Return a text that two worlds share whose robot, scene and resolution are the same."""
+        return fingerprint_of("arm", fingerprint(self.robot), fingerprint(self.scene), self.resolution)
 
     def explain(self, q: npt.NDArray[np.float64]) -> str:
         """Return in words why one configuration, (dim,), is not free: the joint outside its limits and by

@@ -9,13 +9,15 @@ import math
 import time
 from contextlib import suppress
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.certified import CertifiedWorld
+from evenroad.robot.kernel.robot_tables import RobotTables
+from evenroad.robot.kernel.scene_tables import ArmTables
 from evenroad.robot.tree_sequences import ball_points, share_pairs
+from evenroad.space import JointSpace
 from evenroad.world.protocol import Connection
 
 Floats = npt.NDArray[np.float64]
@@ -28,8 +30,58 @@ LARGEST_BALL, BALL_SHARE = 2.0, 1.5
 TOLERANCE = 1e-6
 """Of proofs [m]."""
 
+_SHORTCUT_TOLERANCE = 1e-4
+"""Of proofs of shortcuts, which may well be left out [m]."""
+
 WORTH_WHILE = 3e-3
 """Motions that shorten a path by less than this share are not looked at."""
+
+
+class PlansWithTrees(Protocol):
+    """What trees need of an arm's world; see ``ArmWorld``, which has these attributes."""
+
+    @property
+    def space(self) -> JointSpace:
+        """Where configurations live."""
+        ...
+
+    @property
+    def robot_tables(self) -> RobotTables:
+        """What compiled code reads of the robot."""
+        ...
+
+    @property
+    def tables(self) -> ArmTables:
+        """What compiled code reads of robot and scene."""
+        ...
+
+    @property
+    def bounds(self) -> Floats:
+        """Low, high and period of each joint, (3, dim)."""
+        ...
+
+    @property
+    def resolution(self) -> float:
+        """Largest distance between tested states of a motion."""
+        ...
+
+    @property
+    def backend(self) -> str:
+        """``lanes`` or ``scalar``."""
+        ...
+
+    @property
+    def fixed_contact(self) -> tuple[str, str] | None:
+        """Two bodies that touch whatever the joints do, or None."""
+        ...
+
+    def valid(self, q: Floats) -> npt.NDArray[np.bool_]:
+        """Return which configurations, (n, dim), are free: (n,)."""
+        ...
+
+    def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> npt.NDArray[np.bool_]:
+        """Return which motions, two (m, dim) arrays, are proved free: (m,)."""
+        ...
 
 
 @dataclass(eq=False)
@@ -61,11 +113,11 @@ class _Spent(Exception):
 class _Growth:
     """Two trees and what their motions cost."""
 
-    def __init__(self, world: ArmWorld, trees: tuple[_Tree, _Tree], most: int, seconds: float) -> None:
+    def __init__(self, world: PlansWithTrees, trees: tuple[_Tree, _Tree], most: int, seconds: float) -> None:
         self.world, self.trees, self.most = world, trees, most
-        self.proofs = CertifiedWorld(world, TOLERANCE)
         # Compiled, or loaded, before the clock runs.
-        self.proofs.motion_valid(*np.empty((2, 0, world.space.dim)))
+        nothing = np.empty((0, world.space.dim))
+        world.motion_certified(nothing, nothing, TOLERANCE)
         self.deadline = time.perf_counter() + seconds
         self.configurations = self.motions = 0
         spread = np.array(world.space.high) - np.array(world.space.low)
@@ -78,7 +130,7 @@ class _Growth:
         self.motions += 1
         self.configurations += 1 + math.ceil(self.distance(a, b) / self.world.resolution)
         # Proved at once: the compiled trees prove no more than what becomes a path.
-        return bool(self.proofs.motion_valid(a[np.newaxis], b[np.newaxis])[0])
+        return bool(self.world.motion_certified(a[np.newaxis], b[np.newaxis], TOLERANCE)[0])
 
     def distance(self, a: Floats, b: Floats) -> float:
         return float(self.world.space.distance(a[np.newaxis], b[np.newaxis])[0])
@@ -128,7 +180,7 @@ class _Growth:
         return np.where(space.flat.wrapping, self.between(q, q, 0.0), np.clip(q, space.low, space.high))
 
 
-def grown(world: ArmWorld, ends: Floats, samples: Floats, most: int, seconds: float) -> Connection:
+def grown(world: PlansWithTrees, ends: Floats, samples: Floats, most: int, seconds: float) -> Connection:
     """Join a start, the first of `ends`, to one of the goals, the others; see :func:`evenroad.robot.trees.connect`."""
     space, dim = world.space, world.space.dim
     roots, free = space.interpolate(ends, ends, 0.0), world.valid(ends)
@@ -184,16 +236,16 @@ def _path(growth: _Growth, first: int, second: int) -> tuple[Floats, int]:
     return np.array(nodes), behind[-1]
 
 
-def shortened(world: ArmWorld, path: Floats) -> tuple[Floats, int]:
+def shortened(world: PlansWithTrees, path: Floats) -> tuple[Floats, int]:
     """Return a path that is not longer, and how many motions were looked at; see ``trees.shorten``."""
-    space, proofs = world.space, CertifiedWorld(world)
+    space = world.space
     path = space.interpolate(path, path, 0.0)
     motions = 0
 
     def is_shortcut(a: Floats, b: Floats) -> bool:
         nonlocal motions
         motions += 1
-        return bool(proofs.motion_valid(a[np.newaxis], b[np.newaxis])[0])
+        return bool(world.motion_certified(a[np.newaxis], b[np.newaxis], _SHORTCUT_TOLERANCE)[0])
 
     i = 0
     while i < len(path) - 2:

@@ -12,7 +12,7 @@ Floats = npt.NDArray[np.float64]
 _PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89, 97)
 _SAMPLES = 2048
 _STEPS = 2048
-_PAIRS = 64
+_PAIRS = 96
 
 
 @cache
@@ -36,7 +36,7 @@ def ball_points(dim: int) -> Floats:
 
 @cache
 def share_pairs() -> Floats:
-    """Return the pairs of places, shares of a path's length, that shortening joins, (64, 2)."""
+    """Return the pairs of places, shares of a path's length, that shortening joins, (96, 2)."""
     return _read_only(reversed_halton(_PAIRS, 2))
 
 

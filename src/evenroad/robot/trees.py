@@ -9,7 +9,8 @@ import numpy.typing as npt
 
 from evenroad._checks import require_count, require_positive
 from evenroad.errors import InvalidValue
-from evenroad.robot.arm_world import ArmWorld
+from evenroad.robot import plain_trees
+from evenroad.robot.plain_trees import PlansWithTrees
 from evenroad.robot.tree_sequences import ball_points, cube_points, share_pairs
 from evenroad.space.batch import as_batch
 from evenroad.world.protocol import Connection
@@ -19,7 +20,7 @@ Floats = npt.NDArray[np.float64]
 MOST_MOTIONS = 1_000_000
 SECONDS = 5.0
 
-_CAPACITY = 2048
+_CAPACITY = 1024
 """Nodes of a tree there is room for at first; doubled when it is full."""
 
 _SLICE = 1000
@@ -27,7 +28,7 @@ _SLICE = 1000
 
 
 def connect(
-    world: ArmWorld,
+    world: PlansWithTrees,
     start: npt.ArrayLike,
     goals: npt.ArrayLike,
     *,
@@ -42,7 +43,7 @@ def connect(
 
     Parameters
     ----------
-    world : ArmWorld
+    world : PlansWithTrees
         The robot in its scene.
     start : array_like, shape (dim,)
         Where to begin.
@@ -74,13 +75,11 @@ def connect(
     if world.fixed_contact is not None:
         return Connection(np.empty((0, dim)), -1, 0, 0, 0)
     if world.backend == "scalar":
-        from evenroad.robot import plain_trees
-
         return plain_trees.grown(world, ends, samples, most, limit)
     return _grown(world, ends, samples, most, limit)
 
 
-def shorten(world: ArmWorld, path: npt.ArrayLike, *, proved: bool = False) -> tuple[Floats, int]:
+def shorten(world: PlansWithTrees, path: npt.ArrayLike, *, proved: bool = False) -> tuple[Floats, int]:
     """Return a path that is not longer, and how many motions were looked at.
 
     A motion is put in only where it is proved free throughout.  Motions of the path as it was given stay where
@@ -88,7 +87,7 @@ def shorten(world: ArmWorld, path: npt.ArrayLike, *, proved: bool = False) -> tu
 
     Parameters
     ----------
-    world : ArmWorld
+    world : PlansWithTrees
         The robot in its scene.
     path : array_like, shape (p, dim), p >= 2
         Waypoints; every motion is free in the world.
@@ -104,8 +103,6 @@ def shorten(world: ArmWorld, path: npt.ArrayLike, *, proved: bool = False) -> tu
     if len(waypoints) < 2:
         raise InvalidValue(f"a path must have 2 waypoints or more, got {len(waypoints)}")
     if world.backend == "scalar":
-        from evenroad.robot import plain_trees
-
         return plain_trees.shortened(world, waypoints)
     from evenroad.robot.kernel import shorten as kernel
 
@@ -114,10 +111,17 @@ def shorten(world: ArmWorld, path: npt.ArrayLike, *, proved: bool = False) -> tu
     return shorter, int(counts[0])
 
 
-def _grown(world: ArmWorld, ends: Floats, samples: Floats, most: int, seconds: float) -> Connection:
+def _grown(world: PlansWithTrees, ends: Floats, samples: Floats, most: int, seconds: float) -> Connection:
     # Imported late: where the vector type cannot even be defined, all else still works.
     from evenroad.robot.kernel import trees as kernel
 
+    order = None
+    if len(ends) > 2:
+        # The nearest goals are tried first.
+        distances = world.space.distance(np.broadcast_to(ends[0], ends[1:].shape), ends[1:])
+        order = np.argsort(distances, kind="stable")
+        ends = ends[np.concatenate([[0], 1 + order])]
+        ends.setflags(write=False)
     dim, ball, arguments = ends.shape[1], ball_points(ends.shape[1]), _world_arguments(world)
     capacity = -(-max(_CAPACITY, 2 * len(ends) + kernel.ROOM) // 16) * 16
     nodes, columns, links = _room(capacity, dim)
@@ -140,7 +144,11 @@ def _grown(world: ArmWorld, ends: Floats, samples: Floats, most: int, seconds: f
     path, goal = np.empty((0, dim)), -1
     if ended == kernel.SOLVED:
         path = kernel.path_of(nodes, links, state)
-        goal = kernel.goal_of(links, state)
+        node = state[kernel.GOAL_NODE]
+        while links[kernel.PARENT, 1, node] >= 0:
+            node = links[kernel.PARENT, 1, node]
+        goal = int(links[kernel.PROVED, 1, node]) - 1
+        goal = goal if order is None else int(order[goal])
     motions, configurations, _ = state[:3].tolist()
     return Connection(path, goal, int(sizes[0] + sizes[1]), configurations, motions)
 
@@ -149,7 +157,7 @@ def _room(capacity: int, dim: int) -> tuple[Floats, npt.NDArray[np.float32], npt
     return (
         np.empty((2, capacity, dim)),
         np.empty(2 * dim * capacity, dtype=np.float32),
-        np.empty((3, 2, capacity), dtype=np.int64),
+        np.empty((4, 2, capacity), dtype=np.int64),
     )
 
 
@@ -161,19 +169,14 @@ def _fill_columns(columns: npt.NDArray[np.float32], nodes: Floats, sizes: npt.ND
         by_tree[tree, :, :size] = nodes[tree, :size].T
 
 
-def _world_arguments(world: ArmWorld) -> tuple[int, float, Floats, npt.NDArray[np.int64], Floats, Floats]:
+def _world_arguments(
+    world: PlansWithTrees,
+) -> tuple[int, float, Floats, npt.NDArray[np.int64], Floats, Floats]:
     """Return what compiled planners take of a world."""
     from evenroad.robot.kernel.lane_check import check_address
 
-    of_robot = world.robot_tables
-    return (
-        check_address(),
-        world.resolution,
-        world.bounds,
-        world.tables.lanes,
-        of_robot.speeds,
-        of_robot.pair_speeds,
-    )
+    arms = world.robot_tables.speeds_by_joint
+    return check_address(), world.resolution, world.bounds, world.tables.lanes, *arms
 
 
 def _stacked(start: npt.ArrayLike, goals: npt.ArrayLike, dim: int) -> Floats:

@@ -70,6 +70,7 @@ class RobotTables:
     pair_margins: Floats
     speeds: Floats
     pair_speeds: Floats
+    speeds_by_joint: tuple[Floats, Floats]
     fixed_contact: tuple[str, str] | None
 
 
@@ -120,9 +121,11 @@ def robot_tables(robot: Robot) -> RobotTables:
         2.0 * (padded[radii] - floats[radii]),
         np.ascontiguousarray(speeds),
         np.ascontiguousarray(pair_speeds),
+        (np.ascontiguousarray(speeds.T), np.ascontiguousarray(pair_speeds.T)),
         _fixed_contact(capsules, fixed),
     )
-    for array in (ints, floats, tables.singles, tables.pair_margins, tables.speeds, tables.pair_speeds):
+    arrays = ints, floats, tables.singles, tables.pair_margins, tables.speeds, tables.pair_speeds
+    for array in (*arrays, *tables.speeds_by_joint):
         array.setflags(write=False)
     return tables
 

@@ -168,9 +168,7 @@ def _pass_by(points: Floats, proved: Flags, size: int, checks: Checks) -> int:
         while j > i + 1:
             if _is_shortcut(points[i], points[j], checks):
                 for row in range(j, size):
-                    for k in range(points.shape[1]):
-                        points[i + 1 + row - j, k] = points[row, k]
-                    proved[i + 1 + row - j] = proved[row]
+                    _move(points, proved, row, i + 1 + row - j)
                 proved[i] = True
                 size -= j - i - 1
                 break
@@ -212,10 +210,18 @@ def _splice(points: Floats, proved: Flags, size: int, begin: int, end: int, ends
     rest = proved[end - 1]
     if grown > 0:
         for row in range(size - 1, end - 1, -1):
-            points[row + grown], proved[row + grown] = points[row], proved[row]
+            _move(points, proved, row, row + grown)
     elif grown < 0:
         for row in range(end, size):
-            points[row + grown], proved[row + grown] = points[row], proved[row]
+            _move(points, proved, row, row + grown)
     for k in range(points.shape[1]):
         points[begin, k], points[begin + 1, k] = ends[0, k], ends[1, k]
     proved[begin], proved[begin + 1] = True, rest
+
+
+@quick
+def _move(points: Floats, proved: Flags, row: int, to: int) -> None:
+    """Copy a waypoint, and whether the motion that begins there is proved."""
+    for k in range(points.shape[1]):
+        points[to, k] = points[row, k]
+    proved[to] = proved[row]

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.forward_kinematics import scratch_memory, unpacked
 from evenroad.robot.kernel.lane_check import blocked_states
-from evenroad.robot.kernel.layout import quick
+from evenroad.robot.kernel.layout import inner, quick
 from evenroad.robot.kernel.motion import enter, span
 
 LANES = at.LANES
@@ -47,10 +47,10 @@ class Checks(NamedTuple):
         The tables of the lanes.
     enlarged : float32 array
         A copy of `table` with radii for proofs.
-    arms, pair_arms : float64 arrays, shapes (capsules, dim) and (capsule pairs, dim)
+    arms, pair_arms : float64 arrays, shapes (dim, capsules) and (dim, capsule pairs)
         How fast each coordinate moves a capsule, and the two of a pair against each other, at most [m/rad].
     states, scratch : arrays
-        As ``place.scratch_memory`` makes them.
+        As ``forward_kinematics.scratch_memory`` makes them.
     start, end, way : float64 arrays, shape (dim,)
         The motion at hand.
     share : float64 array, shape (16,)
@@ -84,7 +84,7 @@ class Checks(NamedTuple):
     counts: Ints
 
 
-@quick
+@inner
 def checks_of(
     address: int,
     resolution: float,
@@ -98,11 +98,11 @@ def checks_of(
     dim = bounds.shape[1]
     ints, table = unpacked(tables)
     states, _, scratch = scratch_memory(dim, ints, table)
-    room = np.empty(3 * dim + LANES + len(arms) + len(pair_arms) + _STACK)
+    room = np.empty(3 * dim + LANES + arms.shape[1] + pair_arms.shape[1] + _STACK)
     a, b, c = dim, 2 * dim, 3 * dim
     d = c + LANES
-    e = d + len(arms)
-    f = e + len(pair_arms)
+    e = d + arms.shape[1]
+    f = e + pair_arms.shape[1]
     return Checks(
         address,
         resolution,
@@ -137,8 +137,11 @@ def blocked(c: Checks, table: Singles, enough: int) -> int:
 def write_states(c: Checks) -> None:
     """Write the configurations at the sixteen shares of the motion at hand."""
     for k in range(len(c.start)):
-        for lane in range(LANES):
-            c.states[k * LANES + lane] = c.start[k] + c.share[lane] * c.way[k]
+        start, way = c.start[k], c.way[k]
+        states = c.states[k * LANES : (k + 1) * LANES]
+        # A length that the compiler does not know: it then makes vectors of the loop instead of unrolling it.
+        for lane in range(len(states)):
+            states[lane] = start + c.share[lane] * way
 
 
 @quick
@@ -263,34 +266,50 @@ def motion_proved(a: Floats, b: Floats, tolerance: float, most_batches: int, c: 
 @quick
 def _write_speeds(arms: Floats, way: Floats, speeds: Floats) -> float:
     """Write how far each body can move during the whole motion, and return the largest [m]."""
+    for i in range(len(speeds)):
+        speeds[i] = 0.0
+    for k in range(len(way)):
+        size = abs(way[k])
+        row = arms[k]
+        for i in range(len(row)):
+            speeds[i] += row[i] * size
     largest = 0.0
-    for i in range(len(arms)):
-        speed = 0.0
-        for k in range(len(way)):
-            speed += arms[i, k] * abs(way[k])
-        speeds[i] = speed
-        largest = max(largest, speed)
+    for i in range(len(speeds)):
+        largest = max(largest, speeds[i])
     return largest
 
 
 @quick
 def _enlarge(half: float, c: Checks) -> None:
     """Write radii that are larger by what `half` of the motion at hand can move the bodies."""
-    ints, wide = c.ints, c.enlarged
+    ints, table, wide = c.ints, c.table, c.enlarged
+    place = ints[at.CAPSULE_FLOATS] + 6
     for i in range(len(c.speeds)):
-        place = ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i + 6
-        wide[place] = c.table[place] + np.float32(half * c.speeds[i] + _ROUNDING)
+        wide[place] = table[place] + np.float32(half * c.speeds[i] + _ROUNDING)
+        place += at.CAPSULE_FLOAT_ROW
+    # What is around a body moves no farther than the fastest of its capsules.
+    for body in range(ints[at.BODIES]):
+        row, place = (
+            ints[at.BODY_INTS] + at.BODY_INT_ROW * body,
+            ints[at.BODY_FLOATS] + at.BODY_FLOAT_ROW * body,
+        )
+        fastest = 0.0
+        for i in range(ints[row + 1], ints[row + 2]):
+            fastest = max(fastest, c.speeds[i])
+        for entry in range(place + 3, place + 7):
+            wide[entry] = table[entry] + np.float32(half * fastest + _ROUNDING)
+    row, first = ints[at.BODY_PAIR_INTS], ints[at.PAIR_FLOATS]
     for p in range(ints[at.BODY_PAIRS]):
-        row = ints[at.BODY_PAIR_INTS] + at.BODY_PAIR_INT_ROW * p
-        most = 0.0
+        most = np.float32(0.0)
         for pair in range(ints[row + 2], ints[row + 3]):
-            margin = half * c.pair_speeds[pair] + _ROUNDING
+            margin = np.float32(half * c.pair_speeds[pair] + _ROUNDING)
             most = max(most, margin)
-            place = ints[at.PAIR_FLOATS] + at.PAIR_FLOAT_ROW * pair
-            wide[place] = c.table[place] + np.float32(margin)
-            wide[place + 1] = c.table[place + 1] + np.float32(margin)
+            place = first + at.PAIR_FLOAT_ROW * pair
+            wide[place] = table[place] + margin
+            wide[place + 1] = table[place + 1] + margin
+        row += at.BODY_PAIR_INT_ROW
         place = ints[at.BODY_PAIR_FLOATS] + p
-        wide[place] = c.table[place] + np.float32(most)
+        wide[place] = table[place] + most
 
 
 @quick

@@ -27,8 +27,9 @@ class Trees(NamedTuple):
         Configurations within bounds; the roots come first.
     columns : float32 array, shape (2 * dim * capacity,)
         The same by coordinate, for the search of the nearest; the capacity is a multiple of 16.
-    links : int64 array, shape (3, 2, capacity)
-        Each node's parent (-1 for a root), how often it was tried, and 1 where the motion from the parent is proved.
+    links : int64 array, shape (4, 2, capacity)
+        Each node's parent (-1 for a root), how often it was tried, 1 where the motion from the parent is proved (for
+        a root, which of the ends it is), and room for `remove_branch`.
     sizes : int64 array, shape (2,)
         How many nodes each tree has.
     periods : float32 array, shape (dim,)
@@ -42,7 +43,7 @@ class Trees(NamedTuple):
     periods: Singles
 
 
-PARENT, TRIED, PROVED = range(3)
+PARENT, TRIED, PROVED, MOVED = range(4)
 """Rows of ``Trees.links``."""
 
 
@@ -101,12 +102,14 @@ def nearest(trees: Trees, tree: int, q: Floats, room: Singles) -> int:
 @quick
 def least_tried(trees: Trees, tree: int) -> int:
     """Return the number of the tree's node that was tried least often, the first of equals."""
-    best, number = np.int64(1 << 60), 0
-    for i in range(trees.sizes[tree]):
-        if trees.links[TRIED, tree, i] < best:
-            best, number = trees.links[TRIED, tree, i], i
-            if best == 0:
-                break
+    tried = trees.links[TRIED, tree, : trees.sizes[tree]]
+    least = tried[0]
+    # A loop of its own, of which the compiler makes vectors.
+    for i in range(len(tried)):
+        least = min(least, tried[i])
+    number = 0
+    while tried[number] != least:
+        number += 1
     return number
 
 
@@ -114,7 +117,7 @@ def least_tried(trees: Trees, tree: int) -> int:
 def remove_branch(trees: Trees, tree: int, number: int) -> None:
     """Remove a node and all that descend from it; the others move up and keep their order."""
     size = trees.sizes[tree]
-    moved = np.empty(size, dtype=np.int64)
+    moved = trees.links[MOVED, tree]
     kept = 0
     for i in range(size):
         parent = trees.links[PARENT, tree, i]

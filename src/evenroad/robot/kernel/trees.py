@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from evenroad.robot.kernel.layout import LANES, quick
+from evenroad.robot.kernel.layout import LANES, inner, quick
 from evenroad.robot.kernel.motion import enter
 from evenroad.robot.kernel.tree_checks import (
     BATCHES,
@@ -108,7 +108,7 @@ class Memory(NamedTuple):
     lanes: Singles
 
 
-@quick
+@inner
 def _memory(bounds: Floats) -> Memory:
     dim = bounds.shape[1]
     squares = 0.0
@@ -156,7 +156,7 @@ def grow(
     Parameters
     ----------
     ends : float64 array, shape (1 + g, dim)
-        The start, and the goals; in the order of their distance they become the roots of the second tree.
+        The start, and the goals, which become the roots of the second tree; the first are tried straight on.
     nodes, columns, links, sizes : arrays
         The fields of ``Trees``; sizes are 0 at first.  Room for 2 g + ROOM nodes at least.
     state : int64 array, shape (STATE,)
@@ -178,7 +178,7 @@ def grow(
     checks = checks_of(address, resolution, bounds, tables, arms, pair_arms, state[:COUNTS])
     memory = _memory(bounds)
     if state[BEGUN] == 0:
-        _begin(ends, trees, checks, memory)
+        _begin(ends, trees, memory, checks)
         state[BEGUN] = 1
     if sizes[0] == 0 or sizes[1] == 0:
         return NOT_FREE
@@ -233,51 +233,39 @@ def path_of(nodes: Floats, links: Ints, state: Ints) -> Floats:
     for tree in range(2):
         node, row, step = state[START_NODE + tree], counts[0] - 1 + tree, 2 * tree - 1
         while node >= 0:
-            path[row] = nodes[tree, node]
+            for k in range(path.shape[1]):
+                path[row, k] = nodes[tree, node, k]
             row += step
             node = links[PARENT, tree, node]
     return path
 
 
-@njit(cache=True, nogil=True)
-def goal_of(links: Ints, state: Ints) -> int:
-    """Return which of the goals the path leads to."""
-    node = state[GOAL_NODE]
-    while links[PARENT, 1, node] >= 0:
-        node = links[PARENT, 1, node]
-    return links[PROVED, 1, node]
-
-
 @quick
-def _begin(ends: Floats, trees: Trees, checks: Checks, memory: Memory) -> None:
-    """Plant the trees: the start, and the goals, the nearest first; leave out what is not free."""
+def _begin(ends: Floats, trees: Trees, memory: Memory, checks: Checks) -> None:
+    """Plant the trees: the start in the first, the goals in the second; leave out what is not free."""
     count, dim = ends.shape
-    q, distances = np.empty((count, dim)), np.empty(count)
     for first in range(0, count, LANES):
+        some = min(LANES, count - first)
         inside = 0
         for lane in range(LANES):
-            row = min(first + lane, count - 1)
-            if enter(ends[row], checks.bounds, q[row]):
+            # Lanes to spare repeat the last row.
+            if enter(ends[first + min(lane, some - 1)], checks.bounds, memory.here):
                 inside |= 1 << lane
-            else:
-                canonical(q[row], checks.bounds)
+            canonical(memory.here, checks.bounds)
             for k in range(dim):
-                checks.states[k * LANES + lane] = q[row, k]
+                checks.states[k * LANES + lane] = memory.here[k]
         free = inside & ~blocked(checks, checks.table, LANES)
-        checks.counts[CONFIGURATIONS] += min(LANES, count - first)
-        for lane in range(min(LANES, count - first)):
-            row = first + lane
-            distances[row] = np.inf
+        checks.counts[CONFIGURATIONS] += some
+        for lane in range(some):
             if (free >> lane) & 1:
-                distances[row] = distance_and_way(q[0], q[row], checks.bounds, memory.way)
-    if distances[0] == np.inf:
-        return
-    add_node(trees, 0, q[0], -1)
-    for row in np.argsort(distances[1:], kind="mergesort"):
-        if distances[1 + row] < np.inf:
-            goal = add_node(trees, 1, q[1 + row], -1)
-            # While it is a root, nothing is proved of a motion that leads to it: here is which of the goals it is.
-            trees.links[PROVED, 1, goal] = row
+                row = first + lane
+                for k in range(dim):
+                    memory.here[k] = checks.states[k * LANES + lane]
+                root = add_node(trees, min(row, 1), memory.here, -1)
+                # Nothing leads to a root that could be proved: here is which of the ends it is.
+                trees.links[PROVED, min(row, 1), root] = row
+        if trees.sizes[0] == 0:
+            return
 
 
 @quick
