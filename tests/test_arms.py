@@ -52,4 +52,4 @@ def test_meshes_have_the_last_word(tmp_path, monkeypatch):
     result = er.plan_arm(tmp_path / "arm.urdf", tmp_path / "desk.yaml", "home", "away", 64)
     assert result.status == "mesh_collision"
     assert not result.solved
-    assert "not for its meshes: in collision at (0, 0, 0)" in result.message
+    assert "not for the shapes that they stand for: in collision at (0, 0, 0)" in result.message

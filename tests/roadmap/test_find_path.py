@@ -20,7 +20,7 @@ def test_a_world_that_plans_by_itself_is_asked():
     world = two_rooms(gap=5)
     result = find_path(world, (10, 30), (50, 30))
     assert result.solved
-    assert result.planner == "the world's own"
+    assert result.planner == "cells"
     assert world.motion_valid(result.path[:-1], result.path[1:]).all()
     assert result.cost <= result.milestone_cost
     assert len(find_path(world, (10, 30), (50, 30), shorten=False).path) > len(result.path)

@@ -113,7 +113,7 @@ def as_balls(robot, of_each=3):
     for capsule in robot.capsules:
         a, b = np.array(capsule.a), np.array(capsule.b)
         places = [tuple((a + (i + 0.5) / of_each * (b - a)).tolist()) for i in range(of_each)]
-        balls += [Capsule(capsule.link, place, place, capsule.radius) for place in places]
+        balls += [Capsule(place, place, capsule.radius, link=capsule.link) for place in places]
     return replace(robot, capsules=tuple(balls))
 
 

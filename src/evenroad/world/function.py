@@ -64,7 +64,6 @@ class FunctionWorld:
         if not callable(self.is_valid):
             raise InvalidValue(f"is_valid must be a function, got {self.is_valid!r}")
         object.__setattr__(self, "resolution", _as_resolution(self.resolution, self.space))
-        object.__setattr__(self, "name", self.name or _name_of(self.is_valid))
 
     def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
         """Return which configurations, (n, dim), the space contains and the function calls free: (n,).
