@@ -59,10 +59,14 @@ def test_an_end_in_collision_is_an_answer_and_nothing_is_searched(start, goal, s
 def test_an_end_in_collision_says_with_what_and_by_how_much():
     touching = plan(WALL.world(1.0), (2, 8.5), (18, 18), draw("halton", 64, 2))
     assert touching.message == (
-        "the start is in collision: the obstacle at (2, 9) is 0.5 away, the disk needs 1; the nearest free place is (2, 8)"
+        "the start is in collision: the obstacle at (2, 9) is 0.5 away, the disk needs 1; the nearest free place is"
+        " (2, 8)"
     )
     inside = plan(WALL.world(1.0), (2, 2), (18, 9.5), draw("halton", 64, 2))
-    assert inside.message == "the goal is in collision: its centre lies in an obstacle or outside the map"
+    assert (
+        inside.message
+        == "the goal is in collision: its centre lies in an obstacle or outside the map; the nearest free place is (18, 8)"
+    )
 
 
 def test_a_world_that_cannot_explain_itself_is_planned_in_all_the_same():
