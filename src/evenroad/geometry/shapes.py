@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad._checks import as_row, require_positive
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.geometry.mesh import TriangleMesh, load_mesh, scaled, volume_of
@@ -215,7 +215,7 @@ class PointCloud(Shape):
 
     kind: ClassVar[str] = "point cloud"
 
-    points: npt.NDArray[np.float64]
+    points: Floats
     radius: float = 0.0
 
     def __post_init__(self) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad import __version__
+from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue, shown
 
 BELOW_ONE = float(np.nextafter(np.float32(1.0), np.float32(0.0)))
@@ -77,7 +78,7 @@ class PointSet:
         If the array is not two-dimensional and numeric, or a coordinate is NaN or outside [0, 1).
     """
 
-    points: npt.NDArray[np.float64]
+    points: Floats
     origin: Origin = field(default_factory=lambda: Origin(family="given", method="given"))
 
     def __post_init__(self) -> None:
@@ -124,7 +125,7 @@ class PointSet:
         return f"PointSet(n={self.n}, d={self.d}, origin={str(self.origin)!r}, hash={self.hash[:12]})"
 
 
-def as_unit_points(points: object) -> npt.NDArray[np.float64]:
+def as_unit_points(points: object) -> Floats:
     """Return `points` as a C-contiguous float64 array of shape (n, d), checked to lie in [0, 1).
 
     Raises

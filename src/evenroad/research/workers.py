@@ -81,10 +81,7 @@ class ProcessPool(ProcessPoolExecutor):
     ) -> None:
         # Spawned, not forked: a fork of a process with threads (numba, BLAS) can hang.
         super().__init__(
-            jobs,
-            multiprocessing.get_context("spawn"),
-            initializer=_settle,
-            initargs=(initializer, initargs),
+            jobs, multiprocessing.get_context("spawn"), initializer=_settle, initargs=(initializer, initargs)
         )
 
     def submit(

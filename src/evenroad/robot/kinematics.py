@@ -8,6 +8,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue
 from evenroad.geometry.shapes import Capsule
 from evenroad.robot.joint import Joint
@@ -28,7 +29,7 @@ class KinematicTree(Protocol):
     def held(self) -> Mapping[str, float]: ...  # noqa: D102
 
 
-def joint_values(robot: KinematicTree, q: npt.ArrayLike) -> dict[str, npt.NDArray[np.float64]]:
+def joint_values(robot: KinematicTree, q: npt.ArrayLike) -> dict[str, Floats]:
     """Return the value of every movable joint, joint -> (n,), for configurations of the group, (n, dim).
 
     Joints outside of the group are held (see :class:`Robot`); mimics follow.
@@ -46,9 +47,7 @@ def joint_values(robot: KinematicTree, q: npt.ArrayLike) -> dict[str, npt.NDArra
     return with_mimics(robot, values)
 
 
-def with_mimics(
-    robot: KinematicTree, values: Mapping[str, npt.NDArray[np.float64]]
-) -> dict[str, npt.NDArray[np.float64]]:
+def with_mimics(robot: KinematicTree, values: Mapping[str, Floats]) -> dict[str, Floats]:
     """Return values, joint -> (n,), of all movable joints from those of the joints that move by themselves."""
     all_values = dict(values)
     for joint in robot.joints:
@@ -66,7 +65,7 @@ def held_values(robot: KinematicTree) -> dict[str, float]:
     }
 
 
-def link_poses(robot: KinematicTree, q: npt.ArrayLike) -> npt.NDArray[np.float64]:
+def link_poses(robot: KinematicTree, q: npt.ArrayLike) -> Floats:
     """Return the frames of all links in that of the root: (n, links, 4, 4) for configurations (n, dim) [m].
 
     The links are in the order of ``robot.links``.  Raises as :func:`joint_values`.
@@ -74,9 +73,7 @@ def link_poses(robot: KinematicTree, q: npt.ArrayLike) -> npt.NDArray[np.float64
     return poses_at(robot, joint_values(robot, q), len(np.asarray(q)))
 
 
-def poses_at(
-    robot: KinematicTree, values: Mapping[str, npt.NDArray[np.float64]], count: int
-) -> npt.NDArray[np.float64]:
+def poses_at(robot: KinematicTree, values: Mapping[str, Floats], count: int) -> Floats:
     """Return the frames of all links, (count, links, 4, 4), for the values, (count,), of all movable joints."""
     poses = np.zeros((count, len(robot.links), 4, 4))
     poses[:, 0] = np.eye(4)
@@ -87,7 +84,7 @@ def poses_at(
     return poses
 
 
-def joint_motion(joint: Joint, value: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def joint_motion(joint: Joint, value: Floats) -> Floats:
     """Return how a joint moves its child's frame, (n, 4, 4), for its values, (n,) [rad or m].
 
     Rotations by Rodrigues' formula: ``R = I + sin(q) K + (1 - cos(q)) K^2``, K v = axis x v.
@@ -104,12 +101,12 @@ def joint_motion(joint: Joint, value: npt.NDArray[np.float64]) -> npt.NDArray[np
     return motion
 
 
-def capsule_ends(robot: KinematicTree, q: npt.ArrayLike) -> npt.NDArray[np.float64]:
+def capsule_ends(robot: KinematicTree, q: npt.ArrayLike) -> Floats:
     """Return the end points of all capsules in the frame of the root: (n, capsules, 2, 3) [m]."""
     return ends_at(robot, link_poses(robot, q))
 
 
-def ends_at(robot: KinematicTree, poses: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def ends_at(robot: KinematicTree, poses: Floats) -> Floats:
     """Return the end points of all capsules, (n, capsules, 2, 3), where the links have these poses."""
     link = [robot.links.index(capsule.link) for capsule in robot.capsules]
     ends = np.array([[capsule.a, capsule.b] for capsule in robot.capsules]).reshape(-1, 2, 3)

@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Bools, Ints
 from evenroad.errors import InvalidValue
 
 MOST_SEGMENTS = 2**30
@@ -30,9 +30,7 @@ def require_few_segments(resolution: object, segments: float) -> None:
         )
 
 
-def between_ends(
-    segments: npt.NDArray[np.int64], open_motions: npt.NDArray[np.bool_]
-) -> Iterator[tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]]:
+def between_ends(segments: Ints, open_motions: Bools) -> Iterator[tuple[Ints, Ints]]:
     """Yield the states of all motions level by level, as the motions' indices and the states' numbers.
 
     Parameters

@@ -18,8 +18,8 @@ from contextlib import contextmanager
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue
 from evenroad.research.bench.samplers import draw_set
@@ -29,7 +29,7 @@ from evenroad.research.problems import source_named
 from evenroad.roadmap import rule_named
 from evenroad.roadmap.search import FREE, EdgeStates
 
-Milestones = tuple[npt.NDArray[np.float64], str, float]
+Milestones = tuple[Floats, str, float]
 """The valid configurations of a set, which set it is, and the seconds that their validity took."""
 
 
@@ -84,9 +84,7 @@ def _run(task: Task) -> Outcome:
     )
 
 
-def _search(
-    problem: Problem, milestones: npt.NDArray[np.float64], rule: str, search: str
-) -> tuple[Finding, EdgeStates]:
+def _search(problem: Problem, milestones: Floats, rule: str, search: str) -> tuple[Finding, EdgeStates]:
     configurations = np.concatenate([milestones, problem.start[np.newaxis], problem.goal[np.newaxis]])
     edges = rule_named(rule).edges(configurations, problem.world.space, ends=2)
     states = EdgeStates(problem.world, configurations, edges)

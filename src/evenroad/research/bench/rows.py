@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._arrays import Bools, Floats, Ints, Ints32
 from evenroad.research.bench.store_file import (
     COLUMNS,
     checked_rows,
@@ -39,7 +40,7 @@ class Labels:
         The different texts, in alphabetical order; some may not occur after a selection.
     """
 
-    codes: npt.NDArray[np.int32]
+    codes: Ints32
     names: tuple[str, ...]
 
     def __len__(self) -> int:
@@ -52,7 +53,7 @@ class Labels:
         """Return the texts, one a row."""
         return np.array(self.names, dtype=object)[self.codes]
 
-    def is_in(self, names: Iterable[str]) -> npt.NDArray[np.bool_]:
+    def is_in(self, names: Iterable[str]) -> Bools:
         """Return which rows have one of these texts; those that no row has are passed over."""
         wanted = set(names)
         return np.array([name in wanted for name in self.names], dtype=np.bool_)[self.codes]
@@ -83,19 +84,19 @@ class Rows:
 
     suite: Labels
     problem: Labels
-    instance: npt.NDArray[np.int64]
+    instance: Ints
     sampler: Labels
-    n: npt.NDArray[np.int64]
+    n: Ints
     rule: Labels
     search: Labels
-    run: npt.NDArray[np.int64]
-    seed: npt.NDArray[np.int64]
+    run: Ints
+    seed: Ints
     status: Labels
-    valid: npt.NDArray[np.int64]
-    valid_at_solution: npt.NDArray[np.int64]
-    edges_checked: npt.NDArray[np.int64]
-    length: npt.NDArray[np.float64]
-    seconds: npt.NDArray[np.float64]
+    valid: Ints
+    valid_at_solution: Ints
+    edges_checked: Ints
+    length: Floats
+    seconds: Floats
     set_id: Labels
     error: Labels
     worker: Labels
@@ -104,16 +105,16 @@ class Rows:
         return len(self.n)
 
     @property
-    def solved(self) -> npt.NDArray[np.bool_]:
+    def solved(self) -> Bools:
         """Which rows have a path."""
         return self.status.is_in(["solved"])
 
     @property
-    def answered(self) -> npt.NDArray[np.bool_]:
+    def answered(self) -> Bools:
         """Which rows are answers, a path or none, and not failures of the run."""
         return ~self.status.is_in(FAILURES)
 
-    def where(self, chosen: npt.NDArray[np.bool_] | npt.NDArray[np.integer]) -> Rows:
+    def where(self, chosen: Bools | npt.NDArray[np.integer]) -> Rows:
         """Return the rows that a mask or row numbers choose, in that order."""
         selected: dict[str, Any] = {}
         for field in fields(self):

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from evenroad._arrays import Ints, Ints32
 from evenroad.errors import UnknownName
 from evenroad.roadmap.cost import edge_costs
 from evenroad.roadmap.search import FINDERS, FREE, UNKNOWN, EdgeStates, join, length_along, search_problem
@@ -132,12 +132,12 @@ def milestones_until_connected(states: EdgeStates) -> int | None:
     raise AssertionError("is_connected said that there is a path")
 
 
-def _leaving(states: EdgeStates, label: npt.NDArray[np.int32], node: int) -> npt.NDArray[np.int64]:
+def _leaving(states: EdgeStates, label: Ints32, node: int) -> Ints:
     """Return the unknown edges with one end in the component of this node and the other outside."""
     return _edges_leaving(states.edges, states.edge_states, label, label[node])
 
 
-def _first_to_connect(label: npt.NDArray[np.int32], edges: npt.NDArray[np.int32]) -> int:
+def _first_to_connect(label: Ints32, edges: Ints32) -> int:
     """Return the row of the edge that, joined after those before it, connects the last two nodes."""
     row = 0
     while label[-2] != label[-1]:

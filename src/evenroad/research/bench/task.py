@@ -9,8 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad.points.pointset import PointSet
 from evenroad.world import World
 
@@ -34,11 +34,11 @@ class Problem:
     """
 
     world: World
-    start: npt.NDArray[np.float64]
-    goal: npt.NDArray[np.float64]
+    start: Floats
+    goal: Floats
     set_dim: int
 
-    def configurations(self, points: PointSet, rng: np.random.Generator) -> npt.NDArray[np.float64]:
+    def configurations(self, points: PointSet, rng: np.random.Generator) -> Floats:
         """Return the set's configurations, (n, dim); `rng` draws the coordinates that the set does not give."""
         missing = self.world.space.cube_dim - self.set_dim
         cube = points.points

@@ -12,20 +12,17 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import torch
 from scipy.spatial import cKDTree
 from torch import nn
 from torch.autograd.function import once_differentiable
 from torch.nn import functional
 
+from evenroad._arrays import Floats, Ints
 from evenroad.errors import InvalidValue
-from evenroad.points.measures.l2 import Array
 from evenroad.points.optimise.objective import Objective, objective_of_columns
 from evenroad.points.pointset import BELOW_ONE
 from evenroad.research.network.config import NetworkConfig
-
-Indices = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,11 +35,11 @@ class Edges:
         Sorted by receiver.
     """
 
-    sender: Indices
-    receiver: Indices
+    sender: Ints
+    receiver: Ints
 
 
-def nearest_edges(points: Array, k: int) -> Edges:
+def nearest_edges(points: Floats, k: int) -> Edges:
     """Send every point of (n, d) messages from its k nearest others, or from all others if n <= k."""
     n = len(points)
     k = min(k, n - 1)
@@ -54,7 +51,7 @@ def nearest_edges(points: Array, k: int) -> Edges:
     return Edges(found[other].astype(np.int64), np.repeat(np.arange(n), k))
 
 
-def radius_edges(points: Array, radius: float) -> Edges:
+def radius_edges(points: Floats, radius: float) -> Edges:
     """Send every point of (n, d) messages from all points at most `radius` away, itself included."""
     lists = cKDTree(points).query_ball_point(points, radius, return_sorted=True)
     found = [np.array(each, dtype=np.int64) for each in lists]
@@ -62,7 +59,7 @@ def radius_edges(points: Array, radius: float) -> Edges:
     return Edges(np.concatenate(found), np.repeat(np.arange(len(points)), degrees))
 
 
-def edges_of_sets(sets: Array, k: int, radius: float | None) -> Edges:
+def edges_of_sets(sets: Floats, k: int, radius: float | None) -> Edges:
     """Return the graphs of several sets as one; point i of set t has the number t n + i.
 
     Parameters

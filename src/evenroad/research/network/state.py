@@ -19,9 +19,9 @@ import safetensors.torch
 import torch
 from safetensors import SafetensorError
 
+from evenroad._arrays import Floats
 from evenroad._files import atomic_write
 from evenroad.errors import BrokenFile, shown
-from evenroad.points.measures.l2 import Array
 from evenroad.points.optimise.objective import Objective
 from evenroad.research.network.config import NetworkConfig
 from evenroad.research.network.model import PointNetwork, build_network, edges_of_sets, objective_of_sets
@@ -66,8 +66,8 @@ class TrainingState:
 
     network: PointNetwork
     optimiser: torch.optim.Adam
-    best_points: Array
-    best_values: Array
+    best_points: Floats
+    best_values: Floats
     best_mean: float = math.inf
     step: int = 0
     last_improved: int = 0
@@ -126,7 +126,7 @@ def learning_rate(step: int, config: NetworkConfig) -> float:
     return config.rate * 0.5 * (1.0 + math.cos(math.pi * (step - 1) / config.steps))
 
 
-def _take_note(state: TrainingState, first: int, points: Array, values: Array) -> None:
+def _take_note(state: TrainingState, first: int, points: Floats, values: Floats) -> None:
     for index, value in enumerate(values, start=first):
         if value < state.best_values[index]:
             state.best_values[index] = value

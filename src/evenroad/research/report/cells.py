@@ -16,19 +16,10 @@ from functools import cache
 
 import numpy as np
 
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad.research.bench.samplers import PERMUTED_FROM
 from evenroad.research.problems import PROBLEMS
-from evenroad.research.report.runs import (
-    Floats,
-    Ints,
-    Mask,
-    Question,
-    Runs,
-    UnitSums,
-    combined,
-    first_rows,
-    sums_by_unit,
-)
+from evenroad.research.report.runs import Question, Runs, UnitSums, combined, first_rows, sums_by_unit
 from evenroad.research.statistics import Interval, clustered_rate, student_interval, wilson
 
 GRID = "grid"
@@ -80,8 +71,8 @@ class Grouping:
     cell: Ints
     unit: Ints
     kinds: tuple[str, ...]
-    pooled: Mask
-    permuted: Mask
+    pooled: Bools
+    permuted: Bools
 
     def also_by_set(self, c: int) -> bool:
         """Say whether runs of different units share sets: so it is with a pool in random worlds."""
@@ -134,14 +125,14 @@ def _units(kind: str, sums: UnitSums, c: int) -> Units:
     return Units(kind, sums.unit[entries], sums.sums[entries], sums.runs[entries])
 
 
-def _repeats(cell: Ints, cells: int, unit: Ints) -> Mask:
+def _repeats(cell: Ints, cells: int, unit: Ints) -> Bools:
     """Return which cells have a unit with more than one run."""
     place = combined(cell, unit)
     several = np.bincount(place)[place] > 1
     return np.bincount(cell[several], minlength=cells) > 0
 
 
-def _varies(column: Ints, cell: Ints, cells: int) -> Mask:
+def _varies(column: Ints, cell: Ints, cells: int) -> Bools:
     """Return in which cells a column has more than one value."""
     first = column[first_rows(cell)]
     return np.bincount(cell, weights=column != first[cell], minlength=cells) > 0

@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad.research.report.cells import Cell, cell_codes, grouping_of
-from evenroad.research.report.runs import Floats, Ints, Mask, Question, Runs, UnitSums, combined, sums_by_unit
+from evenroad.research.report.runs import Question, Runs, UnitSums, combined, sums_by_unit
 from evenroad.research.statistics import (
     Interval,
     bonett_price,
@@ -36,7 +37,7 @@ def pair_codes(runs: Runs) -> Ints:
     return combined(runs.question, runs.n, runs.instance, runs.run, runs.seed)
 
 
-def differences_from(runs: Runs, pair: Ints, reference: str) -> tuple[Mask, Ints]:
+def differences_from(runs: Runs, pair: Ints, reference: str) -> tuple[Bools, Ints]:
     """Compare every run with the same run of the reference sampler.
 
     Returns

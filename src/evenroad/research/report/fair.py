@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from evenroad._arrays import Ints
 from evenroad.research.problems import PROBLEMS
 from evenroad.research.report.cells import cell_codes, grouping_of
 from evenroad.research.report.comparisons import (
@@ -17,15 +18,7 @@ from evenroad.research.report.comparisons import (
     holm_of_tested,
     pair_codes,
 )
-from evenroad.research.report.runs import (
-    Ints,
-    Question,
-    Runs,
-    combined,
-    first_rows,
-    natural_key,
-    sums_by_unit,
-)
+from evenroad.research.report.runs import Question, Runs, combined, first_rows, natural_key, sums_by_unit
 from evenroad.research.statistics import (
     Interval,
     clustered_difference,

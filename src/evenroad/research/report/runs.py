@@ -10,12 +10,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad.research.bench.rows import Labels, Rows
 from evenroad.research.bench.samplers import SAMPLERS
-
-Ints = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 TABLE_LIMIT = 2**25
 """Codes are numbered anew with a table of this length at most (128 MiB), beyond it by sorting."""
@@ -61,8 +58,8 @@ class Runs:
     instance: Ints
     run: Ints
     seed: Ints
-    solved: Mask
-    failed: Mask
+    solved: Bools
+    failed: Bools
     valid: Floats
     early: Floats
     edges_checked: Floats
@@ -72,7 +69,7 @@ class Runs:
         """Return the number of runs."""
         return len(self.n)
 
-    def where(self, chosen: Mask | Ints) -> Runs:
+    def where(self, chosen: Bools | Ints) -> Runs:
         """Return the runs that a mask or row numbers choose, in that order."""
         columns = {field.name: getattr(self, field.name) for field in fields(self)}
         arrays: dict[str, Any] = {

@@ -6,11 +6,12 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import bdtr, ndtri, stdtr, stdtrit
 
+from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue
 from evenroad.research.statistics.rates import LEVEL, Interval, as_counts, require_share
 
 
-def mcnemar_exact(only_first: npt.ArrayLike, only_second: npt.ArrayLike) -> npt.NDArray[np.float64]:
+def mcnemar_exact(only_first: npt.ArrayLike, only_second: npt.ArrayLike) -> Floats:
     """Return the two-sided p-value of McNemar's exact test.
 
     Runs that both or neither solved say nothing of a difference; of the others, each is as likely to be the

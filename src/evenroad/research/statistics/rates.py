@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import gammaln, ndtri
 
+from evenroad._arrays import Floats, Ints
 from evenroad.errors import InvalidValue
 
 LEVEL = 0.95
@@ -39,9 +40,7 @@ class Interval:
         return other if other.high - other.low > self.high - self.low else self
 
 
-def wilson(
-    solved: npt.ArrayLike, runs: npt.ArrayLike, *, level: float = LEVEL
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def wilson(solved: npt.ArrayLike, runs: npt.ArrayLike, *, level: float = LEVEL) -> tuple[Floats, Floats]:
     """Return Wilson's score interval of success rates from independent runs.
 
     Parameters
@@ -77,7 +76,7 @@ def wilson(
     return low, high
 
 
-def as_counts(name: str, values: Any) -> npt.NDArray[np.int64]:
+def as_counts(name: str, values: Any) -> Ints:
     """Return `values` as int64, or raise InvalidValue unless all are whole numbers >= 0."""
     array = np.asarray(values)
     if array.dtype.kind not in "iub" and not (array.dtype.kind == "f" and np.all(array == np.trunc(array))):
@@ -87,7 +86,7 @@ def as_counts(name: str, values: Any) -> npt.NDArray[np.int64]:
     return array.astype(np.int64)
 
 
-def as_successes(solved: Any, runs: Any) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+def as_successes(solved: Any, runs: Any) -> tuple[Ints, Ints]:
     """Return both as int64, or raise InvalidValue unless 0 <= solved <= runs and runs >= 1 everywhere."""
     successes, trials = as_counts("solved", solved), as_counts("runs", runs)
     if np.any(trials < 1):
@@ -138,12 +137,12 @@ def fisher_exact(first: tuple[int, int], second: tuple[int, int]) -> float:
     return float(min(1.0, np.exp(log_chance[log_chance <= seen + SAME]).sum()))
 
 
-def _log_choose(n: int, k: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
-    ways: npt.NDArray[np.float64] = gammaln(n + 1) - gammaln(k + 1) - gammaln(n - k + 1)
+def _log_choose(n: int, k: Ints) -> Floats:
+    ways: Floats = gammaln(n + 1) - gammaln(k + 1) - gammaln(n - k + 1)
     return ways
 
 
-def holm(p_values: npt.ArrayLike) -> npt.NDArray[np.float64]:
+def holm(p_values: npt.ArrayLike) -> Floats:
     """Return p-values corrected so that all of a family may be read at one level.
 
     The i-th smallest of m (from 0) is multiplied by m - i; none falls below a smaller one's, none exceeds 1.

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import gammaln, ndtri, stdtrit
 
+from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue
 from evenroad.research.statistics.paired import bonett_price, student_interval
 from evenroad.research.statistics.rates import (
@@ -153,7 +154,7 @@ def sign_flip_test(sums: npt.ArrayLike) -> float:
     return float(min(1.0, chance[total].sum()))
 
 
-def _as_if_one_pair_a_unit(shares: npt.NDArray[np.float64], unit: str, level: float) -> Interval:
+def _as_if_one_pair_a_unit(shares: Floats, unit: str, level: float) -> Interval:
     """Return Bonett and Price's interval for as many pairs as units; `shares` add up to the difference."""
     units = len(shares)
     wins, losses = (units * float(np.maximum(sign * shares, 0.0).sum()) for sign in (1, -1))

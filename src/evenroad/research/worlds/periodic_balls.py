@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue
 from evenroad.research.worlds.corridor import is_in_cube
@@ -37,7 +37,7 @@ class PeriodicBalls:
         If the centres are no such array, or the radius is not such a number.
     """
 
-    centres: npt.NDArray[np.float64]
+    centres: Floats
     radius: float
     _space: Box = field(init=False, repr=False)
 
@@ -60,7 +60,7 @@ class PeriodicBalls:
         """The unit cube with the Euclidean metric."""
         return self._space
 
-    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def valid(self, q: Floats) -> Bools:
         """Return which configurations, (n, d), are in the cube and in no ball: (n,).
 
         Raises
@@ -70,7 +70,7 @@ class PeriodicBalls:
         """
         return points_are_free(as_batch("q", q, self.d), self.centres, self.radius**2)
 
-    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return which straight motions from a row of `a` to that of `b`, two (m, d) arrays, are free: (m,).
 
         Raises
@@ -86,7 +86,7 @@ ROUNDING = 1e-9
 
 
 @njit(cache=True, nogil=True, inline="always")
-def comes_first(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> bool:
+def comes_first(a: Floats, b: Floats) -> bool:
     """Return whether `a` is not after `b` in the order of words.
 
     Motions are tested from the end that comes first: one and its reverse then give the same bits.
@@ -98,9 +98,7 @@ def comes_first(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def points_are_free(
-    q: npt.NDArray[np.float64], centres: npt.NDArray[np.float64], squared_radius: float
-) -> npt.NDArray[np.bool_]:
+def points_are_free(q: Floats, centres: Floats, squared_radius: float) -> Bools:
     """Return which rows of `q`, (n, d), lie in the unit cube and in no ball."""
     free = np.empty(len(q), dtype=np.bool_)
     for row in range(len(q)):
@@ -109,12 +107,7 @@ def points_are_free(
 
 
 @njit(cache=True, nogil=True)
-def motions_are_free(
-    a: npt.NDArray[np.float64],
-    b: npt.NDArray[np.float64],
-    centres: npt.NDArray[np.float64],
-    squared_radius: float,
-) -> npt.NDArray[np.bool_]:
+def motions_are_free(a: Floats, b: Floats, centres: Floats, squared_radius: float) -> Bools:
     """Return which straight motions stay in the unit cube and meet no ball."""
     free = np.empty(len(a), dtype=np.bool_)
     d = a.shape[1]
@@ -133,9 +126,7 @@ def motions_are_free(
 
 
 @njit(cache=True, nogil=True)
-def _is_outside_all(
-    q: npt.NDArray[np.float64], centres: npt.NDArray[np.float64], squared_radius: float
-) -> bool:
+def _is_outside_all(q: Floats, centres: Floats, squared_radius: float) -> bool:
     for i in range(len(centres)):
         squared = 0.0
         for k in range(len(q)):
@@ -149,13 +140,7 @@ def _is_outside_all(
 
 @njit(cache=True, nogil=True)
 def _misses_all(
-    a: npt.NDArray[np.float64],
-    b: npt.NDArray[np.float64],
-    centres: npt.NDArray[np.float64],
-    squared_radius: float,
-    step: npt.NDArray[np.float64],
-    times: npt.NDArray[np.float64],
-    axes: npt.NDArray[np.int64],
+    a: Floats, b: Floats, centres: Floats, squared_radius: float, step: Floats, times: Floats, axes: Ints
 ) -> bool:
     """Return whether ``a + t (b - a)``, t in [0, 1], stays out of every ball; the last three are room to work in.
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._arrays import Bools, Floats, Ints32
 from evenroad.roadmap.stopwatch import Stopwatch
 from evenroad.world import World
 
@@ -59,7 +60,7 @@ class Known:
 
     nodes: npt.NDArray[np.int8]
     edges: npt.NDArray[np.int8]
-    confirmed: npt.NDArray[np.bool_]
+    confirmed: Bools
 
     @classmethod
     def nothing(cls, nodes: int, edges: int) -> Known:
@@ -99,8 +100,8 @@ class EdgeStates:
     def __init__(
         self,
         world: World,
-        configurations: npt.NDArray[np.float64],
-        edges: npt.NDArray[np.int32],
+        configurations: Floats,
+        edges: Ints32,
         watch: Stopwatch | None = None,
         most_motions: int | None = None,
         deadline: float = math.inf,
@@ -150,7 +151,7 @@ class EdgeStates:
         if len(unknown) < wanted:
             raise BudgetSpent
 
-    def open_edges(self) -> npt.NDArray[np.int32]:
+    def open_edges(self) -> Ints32:
         """Return the edges that are not known to be blocked, nor their nodes, shape (m', 2)."""
         open_nodes = (self.node_states[self.edges] != BLOCKED).all(axis=1)
         return self.edges[open_nodes & (self.edge_states != BLOCKED)]

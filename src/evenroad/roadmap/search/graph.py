@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
+
+from evenroad._arrays import Bools, Ints, Ints32
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,12 +22,12 @@ class Rows:
         For each slot the node that the arc leads to, and its edge.
     """
 
-    first: npt.NDArray[np.int64]
-    other: npt.NDArray[np.int32]
-    edge: npt.NDArray[np.int32]
+    first: Ints
+    other: Ints32
+    edge: Ints32
 
     @classmethod
-    def of(cls, nodes: int, edges: npt.NDArray[np.int32], *, numbered_from: int = 0) -> Rows:
+    def of(cls, nodes: int, edges: Ints32, *, numbered_from: int = 0) -> Rows:
         """Return the rows of undirected edges, (m, 2), whose numbers begin with `numbered_from`."""
         return cls(*_rows(nodes, np.array(edges, dtype=np.int32), numbered_from))
 
@@ -48,23 +49,23 @@ class Graph:
     links: Rows
 
     @classmethod
-    def of(cls, nodes: int, edges: npt.NDArray[np.int32]) -> Graph:
+    def of(cls, nodes: int, edges: Ints32) -> Graph:
         """Return the graph of these edges, without links."""
         return cls(nodes, Rows.of(nodes, edges), _NO_LINKS)
 
-    def with_links(self, nodes: int, edges: npt.NDArray[np.int32], numbered_from: int) -> Graph:
+    def with_links(self, nodes: int, edges: Ints32, numbered_from: int) -> Graph:
         """Return this graph with so many nodes, and links instead of those that it has; O(nodes)."""
         return replace(self, nodes=nodes, links=Rows.of(nodes, edges, numbered_from=numbered_from))
 
 
-def components(nodes: int, edges: npt.NDArray[np.int32]) -> npt.NDArray[np.int32]:
+def components(nodes: int, edges: Ints32) -> Ints32:
     """Return a label for every node, shape (nodes,): the lowest node of its connected component."""
     label = np.arange(nodes, dtype=np.int32)
     join(label, edges)
     return label
 
 
-def join(label: npt.NDArray[np.int32], edges: npt.NDArray[np.int32]) -> npt.NDArray[np.bool_]:
+def join(label: Ints32, edges: Ints32) -> Bools:
     """Join components along edges, one after the other, in place; return for each edge whether it joined two.
 
     `label` holds for every node the lowest node of its component, before and after.

@@ -7,9 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-import numpy as np
-import numpy.typing as npt
-
+from evenroad._arrays import Bools, Floats
 from evenroad.errors import InvalidValue
 from evenroad.geometry.shapes import Shape, along_z
 from evenroad.robot.arm_world import joint_space
@@ -65,7 +63,7 @@ class EngineWorld(ABC):
         """The ranges of the group's joints."""
         return self._states.space  # type: ignore[return-value]
 
-    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def valid(self, q: Floats) -> Bools:
         """Return which configurations, (n, dim) [rad or m], are within the limits and touch nothing: (n,).
 
         Raises
@@ -75,7 +73,7 @@ class EngineWorld(ABC):
         """
         return self._states.valid(q)
 
-    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return which motions, two (m, dim) arrays, are free at states at most `resolution` apart: (m,).
 
         Raises
@@ -86,7 +84,7 @@ class EngineWorld(ABC):
         return self._states.motion_valid(a, b)
 
     @abstractmethod
-    def _free(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def _free(self, q: Floats) -> Bools:
         """Return which configurations within the limits, (n, dim), touch nothing: (n,)."""
 
 

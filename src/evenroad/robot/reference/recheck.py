@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad._rng import generator
 from evenroad.errors import NotAvailable
 from evenroad.robot.pairs import TOUCHING
@@ -75,7 +75,7 @@ def recheck(
     source: str | os.PathLike[str],
     robot: Robot,
     scene: Scene,
-    path: npt.NDArray[np.float64],
+    path: Floats,
     resolution: float = 0.05,
     unseen: Sequence[tuple[str, str]] = (),
 ) -> MeshCheck:
@@ -144,5 +144,5 @@ def _named(pairs: Sequence[tuple[str, str]]) -> str:
     return ", ".join(f"{first!r} with {second!r}" for first, second in pairs)
 
 
-def _numbers(row: Sequence[float] | npt.NDArray[np.float64]) -> str:
+def _numbers(row: Sequence[float] | Floats) -> str:
     return "(" + ", ".join(f"{value:.4g}" for value in row) + ")"

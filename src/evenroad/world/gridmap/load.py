@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
+from evenroad._arrays import Bools
 from evenroad._checks import require_positive
 from evenroad._yaml import read_mapping
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
@@ -141,9 +142,7 @@ def read_ros_meta(path: str | os.PathLike[str]) -> RosMapMeta:
     return _checked_meta(document, file)
 
 
-def classify_pixels(
-    image: Image.Image, meta: RosMapMeta
-) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
+def classify_pixels(image: Image.Image, meta: RosMapMeta) -> tuple[Bools, Bools]:
     """Return which pixels are occupied and which are unknown, two (rows, cols) arrays; the rest is free.
 
     `image` is one of `open_image`.  The rules are those of `load_ros_map`.

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad._checks import as_row
 from evenroad.errors import InvalidValue
 from evenroad.geometry.mesh import TriangleMesh
@@ -94,12 +94,12 @@ class OrientedBox:
         return len(self.centre)
 
     @property
-    def matrix(self) -> npt.NDArray[np.float64]:
+    def matrix(self) -> Floats:
         """The rotation as a matrix, (dim, dim)."""
         return np.array(self.rotation).reshape(self.dim, self.dim)
 
     @property
-    def corners(self) -> npt.NDArray[np.float64]:
+    def corners(self) -> Floats:
         """The corners, (2^dim, dim)."""
         signs = np.array(np.meshgrid(*[(-1.0, 1.0)] * self.dim, indexing="ij")).reshape(self.dim, -1).T
         return np.array(self.centre) + (signs * np.array(self.half_extents)) @ self.matrix.T
@@ -151,11 +151,11 @@ class BoxTable(NamedTuple):
         Corners of the smallest boxes that are not turned and hold them.
     """
 
-    centre: npt.NDArray[np.float64]
-    half: npt.NDArray[np.float64]
-    axes: npt.NDArray[np.float64]
-    low: npt.NDArray[np.float64]
-    high: npt.NDArray[np.float64]
+    centre: Floats
+    half: Floats
+    axes: Floats
+    low: Floats
+    high: Floats
 
 
 def box_table(boxes: Sequence[OrientedBox]) -> BoxTable:
