@@ -17,9 +17,6 @@ from evenroad.space.axes import as_row
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.bisection import between_ends, require_few_segments
 
-_PROBES = 4096
-"""Places whose verdicts are part of a fingerprint."""
-
 
 @dataclass(frozen=True, eq=False)
 class FunctionWorld:
@@ -162,12 +159,18 @@ class FunctionWorld:
         return bool(answer)
 
 
-def _golden(d: int) -> float:
-    """Return the golden ratio of d dimensions, the root above 1 of ``x**(d + 1) = x + 1`` (Roberts 2018)."""
-    x = 2.0
-    for _ in range(64):
-        x = (1.0 + x) ** (1.0 / (d + 1))
-    return x
+class TestedAtStates:
+    """Base of worlds that test motions as :class:`FunctionWorld` does; a subclass sets `_states`."""
+
+    _states: FunctionWorld
+
+    def valid(self, q: Floats) -> Bools:
+        """Return which configurations, (n, dim), lie in the space and are free: (n,)."""
+        return self._states.valid(q)
+
+    def motion_valid(self, a: Floats, b: Floats) -> Bools:
+        """Return which motions, two (m, dim) arrays, are free at all states: (m,)."""
+        return self._states.motion_valid(a, b)
 
 
 def _as_resolution(resolution: object, space: Space) -> float | tuple[float, ...]:

@@ -165,7 +165,7 @@ def _parse_index(path: Path, mtime_ns: int) -> dict[str, Any]:
 def _load_checked(path: Path, shape: tuple[int, ...], hashes: tuple[str, ...]) -> npt.NDArray[np.float32]:
     try:
         sets = np.load(path, allow_pickle=False)
-    except Exception as error:  # no list is complete: see evenroad.points.npz
+    except Exception as error:  # no list is complete: see evenroad._npz
         raise BrokenFile(f"the bank's file {path} cannot be read: {shown(error)}") from error
     if not isinstance(sets, np.ndarray) or sets.dtype != np.float32 or sets.shape != shape:
         raise BrokenFile(f"the bank's file {path} is not a float32 array of shape {shape}")

@@ -34,23 +34,11 @@ Milestones = tuple[Floats, str, float]
 
 
 def run_task(task: Task, limit: float | None = None) -> Outcome:
-    """Run one task; whatever goes wrong is an outcome, too.
+    """Run one task; whatever goes wrong is an outcome, too: ``failed``, or ``timeout`` after `limit` seconds.
 
     What the next task is likely to need again is kept for the process: fixed problems, the last random one, and the
     valid milestones of the last set.  So tasks should come with the rules of one set, and the sets of one random
-    problem, side by side.
-
-    Parameters
-    ----------
-    task : Task
-        What to run.
-    limit : float, optional
-        Seconds after which the task is given up, where the platform can (see :func:`time_limit`).
-
-    Returns
-    -------
-    Outcome
-        Of status ``failed``, with a traceback, for any exception; ``timeout`` when it took too long.
+    problem, side by side.  Where the platform cannot (:func:`time_limit`), nothing is limited.
     """
     try:
         with time_limit(limit):

@@ -30,14 +30,9 @@ FAILURES = ("failed", "lost", "timeout")
 
 @dataclass(frozen=True, eq=False)
 class Labels:
-    """A column of texts.
+    """A column of texts: `codes`, (rows,) int32 and read-only, are places in `names`.
 
-    Attributes
-    ----------
-    codes : ndarray of int32, shape (rows,)
-        Place of each row's text in `names`; read-only.
-    names : tuple of str
-        The different texts, in alphabetical order; some may not occur after a selection.
+    `names` are in alphabetical order; some may not occur after a selection.
     """
 
     codes: Ints32
@@ -67,19 +62,8 @@ class Labels:
 class Rows:
     """Columns of equal length, one row a task, in the order of the task's fields; never in that of arrival.
 
-    The fields are those of `Task` and `Outcome`, and:
-
-    Attributes
-    ----------
-    suite : Labels
-        Which suite asked first.
-    worker : Labels
-        Host and process that ran it.
-    instance, n, run, seed, valid, edges_checked : ndarray of int64
-    valid_at_solution : ndarray of int64
-        -1 where there is none.
-    length, seconds : ndarray of float64
-        NaN where there is none.
+    The fields are those of `Task` and `Outcome`; `suite` is the one that asked first, `worker` the host and process
+    that ran it.  `valid_at_solution` is -1, `length` and `seconds` are NaN where there is none.
     """
 
     suite: Labels
@@ -213,15 +197,7 @@ def read_sessions(path: str | os.PathLike[str]) -> tuple[Session, ...]:
 
 
 def _rows_from(columns: dict[str, npt.NDArray[np.generic]], texts: dict[int, str]) -> Rows:
-    """Return rows sorted by the fields of the task.
-
-    Parameters
-    ----------
-    columns : dict of str to ndarray
-        Every field of :class:`Rows`; texts as numbers.
-    texts : dict of int to str
-        What the numbers stand for.
-    """
+    """Return rows, sorted by the fields of the task, from columns whose texts are numbers."""
     in_order: dict[str, Any] = {}
     for field in fields(Rows):
         column = columns[field.name]

@@ -27,13 +27,7 @@ from evenroad.research.network.config import NetworkConfig
 
 @dataclass(frozen=True, eq=False)
 class Edges:
-    """Messages of a graph: message e goes from point ``sender[e]`` to point ``receiver[e]``.
-
-    Attributes
-    ----------
-    sender, receiver : ndarray of int64, shape (m,)
-        Sorted by receiver.
-    """
+    """Messages of a graph, sorted by receiver: number e goes from point ``sender[e]`` to ``receiver[e]``, (m,) each."""
 
     sender: Ints
     receiver: Ints
@@ -60,16 +54,9 @@ def radius_edges(points: Floats, radius: float) -> Edges:
 
 
 def edges_of_sets(sets: Floats, k: int, radius: float | None) -> Edges:
-    """Return the graphs of several sets as one; point i of set t has the number t n + i.
+    """Return the graphs of several sets, (s, n, d), n >= 2, as one; point i of set t has the number t n + i.
 
-    Parameters
-    ----------
-    sets : ndarray, shape (s, n, d)
-        Starting points, n >= 2.
-    k : int
-        Number of nearest neighbours; used if `radius` is None.
-    radius : float or None
-        Distance up to which points are neighbours.
+    Points are joined to their `k` nearest; or, where `radius` is given, to all within it.
     """
     n = sets.shape[1]
     graphs = [nearest_edges(each, k) if radius is None else radius_edges(each, radius) for each in sets]
@@ -84,17 +71,12 @@ NORM_FLOOR = 1e-5
 
 
 class MessageLayer(nn.Module):
-    """Rewrite the description of every point from its own and its neighbours' (Rusch et al. 2024).
+    """Rewrite the `width` numbers that describe every point from its own and its neighbours' (Rusch et al. 2024).
 
         m_i  = sum over neighbours j of message(x_i, x_j)
         x_i' = instance_norm(relu(update(x_i, m_i)))
 
     Both `message` and `update` are linear -> ReLU -> linear on the two arguments side by side.
-
-    Parameters
-    ----------
-    width : int
-        Numbers that describe a point.
     """
 
     def __init__(self, width: int) -> None:
@@ -141,16 +123,8 @@ def instance_norm(points: torch.Tensor, n: int) -> torch.Tensor:
 class PointNetwork(nn.Module):
     """Turn random points into even ones (Rusch, Kirk, Bronstein, Lemieux, Rus 2024).
 
-    Parameters
-    ----------
-    d : int
-        Dimension of the points.
-    width, layers : int
-        As in :class:`~evenroad.research.network.NetworkConfig`.
-
-    Notes
-    -----
-    It is built without weights; :func:`draw_weights` draws them.
+    It is built without weights; :func:`draw_weights` draws them.  `width` and `layers` are those of
+    :class:`~evenroad.research.network.NetworkConfig`.
     """
 
     def __init__(self, d: int, width: int, layers: int) -> None:
@@ -160,19 +134,10 @@ class PointNetwork(nn.Module):
         self.decoder = nn.utils.skip_init(nn.Linear, width, d)
 
     def forward(self, starts: torch.Tensor, sender: torch.Tensor, receiver: torch.Tensor) -> torch.Tensor:
-        """Return the points that the network makes of `starts`.
+        """Return the points that the network makes of random `starts`, (sets, n, d) float32, as (sets, n, d) float64.
 
-        Parameters
-        ----------
-        starts : Tensor of float32, shape (sets, n, d)
-            Random points.
-        sender, receiver : Tensor of int64, shape (m,)
-            Their graph, as of :func:`edges_of_sets`.
-
-        Returns
-        -------
-        Tensor of float64, shape (sets, n, d)
-            In the open unit cube, and below 1 as float32 too.
+        They lie in the open unit cube, and below 1 as float32 too.  `sender` and `receiver`, (m,), are the graph of
+        :func:`edges_of_sets`.
         """
         sets, n, d = starts.shape
         points = self.encoder(starts.reshape(sets * n, d))
@@ -205,19 +170,7 @@ def draw_weights(network: PointNetwork, draws: np.random.Generator) -> None:
 
 
 def objective_of_sets(points: torch.Tensor, objective: Objective) -> torch.Tensor:
-    """Return the objective of every set, differentiable once.
-
-    Parameters
-    ----------
-    points : Tensor of float64, shape (sets, n, d)
-        In [0, 1), on any device.
-    objective : Objective
-        Any that ``points.optimise`` knows.
-
-    Returns
-    -------
-    Tensor of float64, shape (sets,)
-        On the device of the points.
+    """Return the objective of every set of points, (sets, n, d) float64 in [0, 1), as (sets,), differentiable once.
 
     Raises
     ------

@@ -32,15 +32,7 @@ FORMAT = 1
 
 @dataclass(frozen=True, eq=False)
 class MicroBatch:
-    """Sets that go through the network together: ``first``, ``first + 1``, ...
-
-    Attributes
-    ----------
-    first : int
-        Number of its first set.
-    starts : Tensor of float32, shape (sets, n, d)
-    sender, receiver : Tensor of int64, shape (m,)
-    """
+    """Sets that go through the network together: number `first`, ``first + 1``, ...; their starts and their graph."""
 
     first: int
     starts: torch.Tensor
@@ -52,16 +44,8 @@ class MicroBatch:
 class TrainingState:
     """All that changes during a training; a checkpoint holds it.
 
-    Attributes
-    ----------
-    network : PointNetwork
-    optimiser : torch.optim.Adam
-    best_points, best_values : ndarray, shapes (sets, n, d) and (sets,)
-        Best points of every set over all steps, and their objectives; ``inf`` before the first step.
-    best_mean : float
-        Smallest mean of the objective over the sets, of all steps.
-    step, last_improved : int
-        Number of steps done, and the step with the best mean.
+    `best_points` and `best_values`, (sets, n, d) and (sets,), are those of every set over all steps, ``inf`` before the
+    first; `best_mean` is the smallest mean of the objective over the sets, of step `last_improved`.
     """
 
     network: PointNetwork

@@ -59,14 +59,10 @@ def instance_rng(
 def make_instance(
     stream: Stream, family: Family, d: int, difficulty: int, size: float, instance: int
 ) -> Problem:
-    """Return the problem of this number; the same arguments give the same one, in every process.
+    """Return the problem of number `instance` >= 0; the same arguments give the same one, in every process.
 
     Parameters
     ----------
-    stream : Stream
-        What it is for.
-    family : Family
-        Kind of world.
     d : int
         Dimension of the point sets: any with a number of obstacles for balls and boxes, 2 for mazes, 3 for SE(2) and
         6 for SE(3).
@@ -74,8 +70,6 @@ def make_instance(
         Success of uniform points in % that `size` is meant to give; part of the seed.
     size : float
         Of the obstacles: radius, half extent; width of the doors in mazes.
-    instance : int
-        Number, >= 0.
     """
     ways: dict[Family, tuple[Callable[..., World], FarApart]] = {
         Family.BALLS: (partial(draw_balls, d), far_on_torus),
@@ -100,24 +94,10 @@ BATCH = 32
 def draw_query(
     draw_world: Callable[[np.random.Generator], World], far_apart: FarApart, rng: np.random.Generator
 ) -> tuple[World, Array, Array]:
-    """Draw a world, a start and a goal.
+    """Draw a world, a start and a goal, (dim,) each; `rng` is consumed.
 
     Start and goal are two uniform configurations: the first pair of which both are free, that is far apart, and
     between which the straight motion is blocked.  A world in which none of 512 pairs will do is replaced by the next.
-
-    Parameters
-    ----------
-    draw_world : callable
-        From a generator to a world.
-    far_apart : callable
-        From the rows of two (m, cube_dim) arrays of the space's unit cube to which are far enough apart: (m,).
-    rng : Generator
-        Is consumed.
-
-    Returns
-    -------
-    world : World
-    start, goal : ndarray, shape (dim,)
     """
     while True:
         world = draw_world(rng)

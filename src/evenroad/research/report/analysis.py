@@ -111,21 +111,10 @@ def _resampled(cells: Sequence[Cell]) -> Floats:
 
 @dataclass(frozen=True)
 class Analysis:
-    """All results of a store.
+    """All results of a store; cells in the order of questions, samplers and numbers of samples.
 
-    Attributes
-    ----------
-    runs : Runs
-    cells : tuple of Cell
-        In the order of questions, samplers and numbers of samples.
-    comparisons : tuple of Comparison
-    needed : dict of (Question, sampler) to SamplesNeeded
-    verdicts : dict of source name to (ExpectedTable, tuple of Verdict)
-        Of the sources with a cell that the store has runs for.
-    pooled : dict of grouping to tuple of Pooled
-        Empty without a fair suite.
-    lazy : tuple of LazyChecks
-    failures : tuple of Failure
+    `verdicts` has, for each source with a cell that the store has runs for, its table and the verdicts; `pooled` is
+    empty without a fair suite.
     """
 
     runs: Runs

@@ -30,16 +30,11 @@ BLOCKS = "paper-blocks"
 
 @dataclass(frozen=True)
 class Units:
-    """Independent units of a cell, each with its runs.
+    """Independent units of a cell, each with its runs; all arrays (units,).
 
-    Attributes
-    ----------
-    kind : str
-        ``sets`` of a pool, ``blocks`` of a sequence, ``instances`` of random worlds; ``runs`` where every unit has one
-        run.
-    unit : ndarray of int, shape (units,)
-        Codes.  Those of sets differ between numbers of points; all others mean the same in every cell of a question.
-    solved, runs : ndarray of int, shape (units,)
+    `kind` is ``sets`` of a pool, ``blocks`` of a sequence, ``instances`` of random worlds, or ``runs`` where every
+    unit has one run.  The codes in `unit` differ between numbers of points for sets; all others mean the same in every
+    cell of a question.
     """
 
     kind: str
@@ -54,18 +49,10 @@ class Units:
 
 @dataclass(frozen=True)
 class Grouping:
-    """The cell and the unit of every run.
+    """The cell and the unit of every run, as codes, (rows,); the others are of each cell, (cells,).
 
-    Attributes
-    ----------
-    cell, unit : ndarray of int, shape (rows,)
-        Codes.
-    kinds : tuple of str
-        Kind of the units of each cell.
-    pooled : ndarray of bool, shape (cells,)
-        Whether a pool gave one of its sets more than once; the grid is no pool.
-    permuted : ndarray of bool, shape (cells,)
-        Whether every run permutes the coordinates of such a set.
+    `kinds` are the kinds of the units; `pooled` says whether a pool gave one of its sets more than once (the grid is no
+    pool), and `permuted` whether every run permutes the coordinates of such a set.
     """
 
     cell: Ints

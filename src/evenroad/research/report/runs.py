@@ -150,15 +150,7 @@ def natural_key(text: str) -> list[tuple[int, int, str]]:
 class UnitSums:
     """Sums per (group, unit), sorted by group and then unit.
 
-    Attributes
-    ----------
-    begins : ndarray, shape (groups + 1,)
-        Group g has the entries ``begins[g]`` up to ``begins[g + 1]``.
-    unit : ndarray, shape (entries,)
-    runs : ndarray, shape (entries,)
-        Rows of each.
-    sums : ndarray, shape (entries,)
-        Sum of the column.
+    Group g has the entries ``begins[g]`` up to ``begins[g + 1]``; `runs`, (entries,), counts the rows of each.
     """
 
     begins: Ints
@@ -208,17 +200,7 @@ def _without_gaps(code: Ints) -> Ints:
 
 
 def sums_by_unit(group: Ints, groups: int, unit: Ints, column: Ints) -> UnitSums:
-    """Return the sums of a column over the units of each group.
-
-    Parameters
-    ----------
-    group : ndarray of int, shape (rows,)
-        In [0, groups).
-    groups : int
-        Groups may be empty.
-    unit, column : ndarray of int, shape (rows,)
-        Units may have any numbers.
-    """
+    """Return the sums of a column over the units of each group; groups are in [0, groups), units any numbers."""
     place = combined(group, unit)
     first = first_rows(place)
     begins = np.searchsorted(group[first], np.arange(groups + 1))

@@ -61,22 +61,10 @@ MEASURED: dict[str, Callable[[Floats], float]] = {
 
 @dataclass(frozen=True)
 class Recipe:
-    """One cell of the bank: how its sets are made.
+    """One cell of the bank: how the `sets` sets of n points in d dimensions are made.
 
-    Attributes
-    ----------
-    family : str
-        Name of the family.
-    d, n : int
-        Dimension and number of points.
-    sets : int
-        Size of the pool.
-    objective : str
-        It is made small; see :func:`evenroad.points.optimise.parse_objective`.
-    steps : int
-        Steps of the optimiser.
-    method : str
-        ``annealed`` (noisy Adam on the coordinates) or ``network`` (MPMC; needs the extra ``[train]``).
+    `objective` is made small in so many `steps`, by the method ``annealed`` (noisy Adam on the coordinates) or
+    ``network`` (needs the extra ``[train]``).
     """
 
     family: str

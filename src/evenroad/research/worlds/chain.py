@@ -11,7 +11,8 @@ from numba import njit
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad._checks import require_count
 from evenroad.errors import InvalidValue
-from evenroad.space.batch import as_batch, as_batch_pair
+from evenroad.research.worlds.compiled import CompiledWorld, comes_first
+from evenroad.space.batch import as_batch
 from evenroad.space.chain import ChainSpace, chain_distance
 from evenroad.world.bisection_kernel import next_between
 
@@ -25,7 +26,7 @@ _REASONS = {SELF: "two links of the chain cross", WALL: "a link crosses the horn
 
 
 @dataclass(frozen=True)
-class ChainWorld:
+class ChainWorld(CompiledWorld):
     """A planar chain of equal links that must cross neither itself nor the walls of :func:`horn`.
 
     OMPL's kinematic chain benchmark.  A configuration is free if no two of the segments (the links, and a piece of
@@ -82,28 +83,12 @@ class ChainWorld:
         """The chain stretched out to the other side: (pi - .001, 0, .., 0)."""
         return np.array([math.pi - 0.001] + [0.0] * (self.links - 1))
 
-    def valid(self, q: Floats) -> Bools:
-        """Return which configurations, (n, links), are free: (n,).
+    def _valid(self, q: Floats) -> Bools:
+        return verdicts(q, self._walls, _END_PIECE) == FREE
 
-        Raises
-        ------
-        InvalidValue
-            If `q` has another shape or an entry that is not finite.
-        """
-        return verdicts(as_batch("q", q, self.links), self._walls, _END_PIECE) == FREE
-
-    def motion_valid(self, a: Floats, b: Floats) -> Bools:
-        """Return which motions from each row of `a` to that of `b`, two (m, links) arrays, are free: (m,).
-
-        Raises
-        ------
-        InvalidValue
-            If the two differ in length, or as `valid`.
-        """
-        first, second = as_batch_pair(a, b, self.links)
-        return motions_are_free(
-            self._space.wrapped(first), self._space.wrapped(second), self.resolution, self._walls, _END_PIECE
-        )
+    def _motion_valid(self, a: Floats, b: Floats) -> Bools:
+        ends = self._space.wrapped(a), self._space.wrapped(b)
+        return motions_are_free(*ends, self.resolution, self._walls, _END_PIECE)
 
     def explain(self, q: Floats) -> str:
         """Return in words why the configuration `q`, (links,), is not free."""
@@ -157,7 +142,7 @@ def motions_are_free(a: Floats, b: Floats, resolution: float, walls: Floats, end
     chain, state, difference = np.empty((4, links + 1)), np.empty(links), np.empty(links)
     for row in range(len(a)):
         first, second = a[row], b[row]
-        if _comes_after(first, second):
+        if not comes_first(first, second):
             # States are rounded: in one fixed order a motion and its reverse have the same.
             first, second = second, first
         for k in range(links):
@@ -190,15 +175,6 @@ def _way_is_free(start, difference, segments, walls, end_piece, chain, state):  
             return False
         level, multiple, number = next_between(level, multiple, segments)
     return True
-
-
-@njit(cache=True, nogil=True)
-def _comes_after(a, b):  # type: ignore[no-untyped-def]
-    """Return whether a comes after b in dictionary order."""
-    for k in range(len(a)):
-        if a[k] != b[k]:
-            return a[k] > b[k]
-    return False
 
 
 @njit(cache=True, nogil=True)

@@ -12,14 +12,14 @@ from numba import njit
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad._checks import require_count, require_positive
 from evenroad.errors import InvalidValue, UnknownName
+from evenroad.research.worlds.compiled import CompiledWorld, is_in_cube
 from evenroad.space import Box
-from evenroad.space.batch import as_batch, as_batch_pair
 
 _SIDES = ("comment", "demo")
 
 
 @dataclass(frozen=True)
-class Corridor:
+class Corridor(CompiledWorld):
     """The corridor of width `lam` along d edges of the unit cube, from (0, .., 0) to (1, .., 1).
 
     A configuration is free iff it lies in [0, 1]^d and there is a k with ``x_i <= lam`` for all i < k and
@@ -105,26 +105,11 @@ class Corridor:
         m = len(self._axes)
         return m * (1.0 - self.lam) * self.lam ** (m - 1) + self.lam**m
 
-    def valid(self, q: Floats) -> Bools:
-        """Return which configurations, (n, d), are free: (n,).
+    def _valid(self, q: Floats) -> Bools:
+        return points_are_free(q, self.lam, self._axes)
 
-        Raises
-        ------
-        InvalidValue
-            If `q` has another shape or an entry that is not finite.
-        """
-        return points_are_free(as_batch("q", q, self.d), self.lam, self._axes)
-
-    def motion_valid(self, a: Floats, b: Floats) -> Bools:
-        """Return which straight motions from a row of `a` to that of `b`, two (m, d) arrays, are free: (m,).
-
-        Raises
-        ------
-        InvalidValue
-            If the two differ in length, or as `valid`.
-        """
-        first, second = as_batch_pair(a, b, self.d)
-        return motions_are_free(first, second, self.resolution, self.lam, self._axes)
+    def _motion_valid(self, a: Floats, b: Floats) -> Bools:
+        return motions_are_free(a, b, self.resolution, self.lam, self._axes)
 
 
 def hypercube_legacy6(side: Literal["comment", "demo"] = "demo") -> Corridor:
@@ -177,15 +162,6 @@ def _way_is_free(a: Floats, b: Floats, resolution: float, width: float, axes: In
             before = after
         level += 1
     return True
-
-
-@njit(cache=True, nogil=True)
-def is_in_cube(q: Floats) -> bool:
-    """Return whether `q`, (d,), lies in the closed unit cube."""
-    inside = True
-    for coordinate in q:
-        inside &= 0.0 <= coordinate <= 1.0
-    return inside
 
 
 @njit(cache=True, nogil=True)

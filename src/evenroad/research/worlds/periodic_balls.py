@@ -11,13 +11,13 @@ from numba import njit
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue
-from evenroad.research.worlds.corridor import is_in_cube
+from evenroad.research.worlds.compiled import ROUNDING, CompiledWorld, comes_first, is_in_cube
 from evenroad.space import Box
-from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch
+from evenroad.space.batch import as_cube_batch
 
 
 @dataclass(frozen=True, eq=False)
-class PeriodicBalls:
+class PeriodicBalls(CompiledWorld):
     """A point robot in [0, 1]^d among open balls of one radius that repeat with period 1 along every axis.
 
     With centres drawn uniformly the free set is stationary: no place of the cube, at its faces or in the middle, is
@@ -60,41 +60,11 @@ class PeriodicBalls:
         """The unit cube with the Euclidean metric."""
         return self._space
 
-    def valid(self, q: Floats) -> Bools:
-        """Return which configurations, (n, d), are in the cube and in no ball: (n,).
+    def _valid(self, q: Floats) -> Bools:
+        return points_are_free(q, self.centres, self.radius**2)
 
-        Raises
-        ------
-        InvalidValue
-            If `q` has another shape or an entry that is not finite.
-        """
-        return points_are_free(as_batch("q", q, self.d), self.centres, self.radius**2)
-
-    def motion_valid(self, a: Floats, b: Floats) -> Bools:
-        """Return which straight motions from a row of `a` to that of `b`, two (m, d) arrays, are free: (m,).
-
-        Raises
-        ------
-        InvalidValue
-            If the two differ in length, or as `valid`.
-        """
-        return motions_are_free(*as_batch_pair(a, b, self.d), self.centres, self.radius**2)
-
-
-ROUNDING = 1e-9
-"""What bounds leave for rounding, so that they never decide what the exact test would decide otherwise."""
-
-
-@njit(cache=True, nogil=True, inline="always")
-def comes_first(a: Floats, b: Floats) -> bool:
-    """Return whether `a` is not after `b` in the order of words.
-
-    Motions are tested from the end that comes first: one and its reverse then give the same bits.
-    """
-    for k in range(len(a)):
-        if a[k] != b[k]:
-            return bool(a[k] < b[k])
-    return True
+    def _motion_valid(self, a: Floats, b: Floats) -> Bools:
+        return motions_are_free(a, b, self.centres, self.radius**2)
 
 
 @njit(cache=True, nogil=True)

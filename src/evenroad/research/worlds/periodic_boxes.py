@@ -11,15 +11,13 @@ from numba import njit
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad._checks import require_count
 from evenroad.errors import InvalidValue
-from evenroad.research.worlds.corridor import is_in_cube
-from evenroad.research.worlds.periodic_balls import ROUNDING, comes_first
-from evenroad.research.worlds.periodic_balls import PeriodicBalls as PeriodicBalls
+from evenroad.research.worlds.compiled import ROUNDING, CompiledWorld, comes_first, is_in_cube
 from evenroad.space import Box
-from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch
+from evenroad.space.batch import as_cube_batch
 
 
 @dataclass(frozen=True, eq=False)
-class PeriodicBoxes:
+class PeriodicBoxes(CompiledWorld):
     """A point robot in [0, 1]^d among open boxes in some of the coordinates, with period 1 along every axis.
 
     A configuration is in a box if each of the box's own m coordinates is closer to the centre than the half extent;
@@ -75,25 +73,11 @@ class PeriodicBoxes:
         """The unit cube with the Euclidean metric."""
         return self._space
 
-    def valid(self, q: Floats) -> Bools:
-        """Return which configurations, (n, d), are in the cube and in no box: (n,).
+    def _valid(self, q: Floats) -> Bools:
+        return points_are_free(q, self.axes, self.centres, self.half_extents)
 
-        Raises
-        ------
-        InvalidValue
-            If `q` has another shape or an entry that is not finite.
-        """
-        return points_are_free(as_batch("q", q, self.d), self.axes, self.centres, self.half_extents)
-
-    def motion_valid(self, a: Floats, b: Floats) -> Bools:
-        """Return which straight motions from a row of `a` to that of `b`, two (m, d) arrays, are free: (m,).
-
-        Raises
-        ------
-        InvalidValue
-            If the two differ in length, or as `valid`.
-        """
-        return motions_are_free(*as_batch_pair(a, b, self.d), self.axes, self.centres, self.half_extents)
+    def _motion_valid(self, a: Floats, b: Floats) -> Bools:
+        return motions_are_free(a, b, self.axes, self.centres, self.half_extents)
 
 
 def _as_axes(values: npt.ArrayLike, d: int) -> Ints:

@@ -16,11 +16,11 @@ from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
 from evenroad.robot.urdf import read_urdf
 from evenroad.space import JointSpace
-from evenroad.world import FunctionWorld
+from evenroad.world.function import FunctionWorld, TestedAtStates
 
 
 @dataclass(frozen=True, eq=False)
-class EngineWorld(ABC):
+class EngineWorld(TestedAtStates, ABC):
     """A robot's shapes among a scene's, checked state by state; subclasses say by whom.
 
     Parameters
@@ -62,26 +62,6 @@ class EngineWorld(ABC):
     def space(self) -> JointSpace:
         """The ranges of the group's joints."""
         return self._states.space  # type: ignore[return-value]
-
-    def valid(self, q: Floats) -> Bools:
-        """Return which configurations, (n, dim) [rad or m], are within the limits and touch nothing: (n,).
-
-        Raises
-        ------
-        InvalidValue
-            If `q` has another shape or an entry that is not finite.
-        """
-        return self._states.valid(q)
-
-    def motion_valid(self, a: Floats, b: Floats) -> Bools:
-        """Return which motions, two (m, dim) arrays, are free at states at most `resolution` apart: (m,).
-
-        Raises
-        ------
-        InvalidValue
-            As `valid`, or if the two differ in length.
-        """
-        return self._states.motion_valid(a, b)
 
     @abstractmethod
     def _free(self, q: Floats) -> Bools:

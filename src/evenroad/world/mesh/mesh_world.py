@@ -11,13 +11,13 @@ from evenroad._arrays import Bools, Floats
 from evenroad.errors import InvalidValue
 from evenroad.geometry.mesh import TriangleMesh, merged
 from evenroad.space.batch import as_batch
-from evenroad.world.function import FunctionWorld
+from evenroad.world.function import FunctionWorld, TestedAtStates
 from evenroad.world.mesh.coal import Collider
 from evenroad.world.solids.poses import RigidSpace, as_poses, body_dimension
 
 
 @dataclass(frozen=True, eq=False)
-class MeshWorld:
+class MeshWorld(TestedAtStates):
     """A rigid body of triangles that moves among obstacles of triangles, checked by coal.
 
     A pose is free if it lies in the space and no triangle of the body meets one of an obstacle.  Meshes are
@@ -68,26 +68,6 @@ class MeshWorld:
             ("_states", states),
         ):
             object.__setattr__(self, name, value)
-
-    def valid(self, q: Floats) -> Bools:
-        """Return which poses, (n, dim), lie in the space and are free: (n,).
-
-        Raises
-        ------
-        InvalidValue
-            If `q` has another shape or an entry that is not finite.
-        """
-        return self._states.valid(q)
-
-    def motion_valid(self, a: Floats, b: Floats) -> Bools:
-        """Return which motions from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
-
-        Raises
-        ------
-        InvalidValue
-            As `valid`; if the two differ in length; or if a motion has more than 2^30 states.
-        """
-        return self._states.motion_valid(a, b)
 
     def explain(self, q: Floats) -> str:
         """Return in words why the pose `q`, (dim,), is not free."""
