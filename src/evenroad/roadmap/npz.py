@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from evenroad._fingerprint import Fingerprinted
 from evenroad._npz import Arrays, Path, digest, read_json, read_npz, require_array, write_npz
-from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, NotAvailable, shown
+from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, NotAvailable
 from evenroad.points.pointset import Origin, PointSet
 from evenroad.roadmap.cost import EdgeCost
 from evenroad.roadmap.kept import Roadmap, WorldRoadmap
@@ -153,7 +153,7 @@ def _roadmap(path: Path, arrays: Arrays, space: Space) -> Roadmap:
     try:
         points, rule = PointSet(arrays["points"], Origin(**origin)), rule_named(str(arrays["rule"]))
     except (EvenroadError, TypeError, ValueError) as error:
-        raise BrokenFile(f"{path}: {shown(error)}") from error
+        raise BrokenFile(f"{path}: {error}") from error
     if points.d != space.cube_dim or not np.array_equal(space.from_cube(points.points), configurations):
         raise InvalidValue(f"{path} was built for another space than {space!r}")
     for array in (configurations, edges):
