@@ -26,14 +26,9 @@ WORLD = ""
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Shape:
-    """What all shapes have.
+    """What all shapes have: a pose, from the shape's own frame to that of its link, or of the world.
 
-    Parameters
-    ----------
-    pose : Pose
-        From the shape's own frame to that of its link, or of the world.
-    link : str
-        Name of the link that it is fixed to; `WORLD`, an empty text, for the world.
+    `link` is the name of the link that it is fixed to; `WORLD`, an empty text, for the world.
     """
 
     kind: ClassVar[str]

@@ -25,18 +25,15 @@ class Origin:
 
     Attributes
     ----------
-    family : str
-        Name of the sampler or family: ``halton``, ``hickernell``, ...
-    method : str
-        How it was made: ``plain``, ``scrambled``, ``annealed``, ``given``, ...
+    family, method : str
+        Name of the sampler or family (``halton``, ``hickernell``), and how it was made (``plain``, ``annealed``,
+        ``given``).
     objective : str
         The expression that was minimised, or "" for constructions.
     seed : int or None
         The seed it was drawn with; None when a Generator was passed, or none was used.
-    replica : int or None
-        Index of the set in its pool (trained families).
-    steps : int or None
-        Steps of the optimiser (trained families), else None.
+    replica, steps : int or None
+        Index of the set in its pool, and steps of the optimiser (trained families).
     start : int
         Index of the first point in its sequence (sequences only, else 0).
     version : str

@@ -59,14 +59,7 @@ def save_world_roadmap(path: Path, known: WorldRoadmap) -> None:
 
 
 def load_roadmap(path: Path, space: Space) -> Roadmap:
-    """Read a roadmap written by either function, leaving out what is known of a world.
-
-    Parameters
-    ----------
-    path : path
-        The file.
-    space : Space
-        That it was built for.
+    """Read a roadmap written by either function for this space, leaving out what is known of a world.
 
     Raises
     ------

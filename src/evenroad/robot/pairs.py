@@ -22,15 +22,7 @@ TOUCHING = "touch in every sample"
 
 @dataclass(frozen=True)
 class SelfPairs:
-    """Pairs of links, those that are tested and those that are not.
-
-    Attributes
-    ----------
-    tested : tuple of pairs of str
-        In the order of the links.
-    dropped : tuple of (str, str, str)
-        The other pairs of links with bodies, each with the reason.
-    """
+    """Pairs of links that are tested, in the order of the links; and the others with bodies, each with the reason."""
 
     tested: tuple[tuple[str, str], ...]
     dropped: tuple[tuple[str, str, str], ...]

@@ -141,20 +141,9 @@ def _renamed(robot: Robot, prefix: str) -> Robot:
 class LinkBody:
     """What became of the collision geometry of a link.
 
-    Attributes
-    ----------
-    link : str
-        Name of the link.
-    shapes : tuple of str
-        What the URDF gives, e.g. ``box``, ``mesh forearm.stl``.
-    shape_volume : float
-        Sum of the volumes of those shapes [m^3].
-    capsules : int
-        How many capsules stand for them.
-    capsule_volume : float
-        Volume of the union of the capsules [m^3].
-    given : bool
-        Whether the user gave the capsules; else they were fitted, or the URDF has capsules and spheres itself.
+    `shapes` are those of the URDF, e.g.  ``box``, ``mesh forearm.stl``, and `shape_volume` the sum of their volumes
+    [m^3]; so many `capsules` stand for them, whose union has `capsule_volume` [m^3].  `given` says whether the user
+    gave them.
     """
 
     link: str
@@ -176,8 +165,6 @@ class RobotModel:
 
     Attributes
     ----------
-    robot : Robot
-        The robot.
     bodies : tuple of LinkBody
         One for each link that has a body.
     pairs_from : str
@@ -187,8 +174,8 @@ class RobotModel:
     drawn_only : tuple of str
         Links that the URDF draws (``<visual>``) and that have no body: nothing is ever found to touch them.
     always_touching : tuple of pairs of str
-        Pairs that are tested, since the SRDF does not disable them, and that touch in every sampled configuration: with
-        one of these no configuration is free.
+        Pairs that are tested, since the SRDF does not disable them, and touch in every sampled configuration: with one
+        of these no configuration is free.
     """
 
     robot: Robot

@@ -65,12 +65,8 @@ def at_states(robot: Robot, texts: Iterable[str], scene: Scene | None = None) ->
 def state_values(robot: Robot, name: str, scene: Scene | None = None) -> Floats:
     """Return the configuration, (dim,), of a named state of robot or scene [rad or m].
 
-    Raises
-    ------
-    UnknownName
-        If the state has a joint that the robot does not have.
-    InvalidValue
-        If it lacks a joint of the group, or has another joint elsewhere than where the robot holds it.
+    UnknownName if the state has a joint that the robot does not have; InvalidValue if it lacks a joint of the group, or
+    has another joint elsewhere than where the robot holds it.
     """
     values = named_states(robot, scene)[name]
     missing = [joint for joint in robot.group if joint not in values]

@@ -22,21 +22,12 @@ def path_length(path: Floats, space: Space) -> float:
 
 
 def subdivide(path: Floats, space: Space, segments: npt.NDArray[np.integer]) -> tuple[Floats, Ints]:
-    """Divide each motion of a path into equal segments.
-
-    Parameters
-    ----------
-    path : ndarray, shape (p, dim), p >= 1
-        Waypoints; they are among the states as they are.
-    space : Space
-        Whose interpolation joins them.
-    segments : ndarray of int, shape (p - 1,)
-        How many for each motion, >= 1.
+    """Divide each motion of a path, (p, dim), p >= 1, into so many equal segments, (p - 1,), >= 1.
 
     Returns
     -------
     states : ndarray, shape (s, dim)
-        The ends of all segments, ``s = 1 + sum(segments)``.
+        The ends of all segments, ``s = 1 + sum(segments)``; waypoints are among them as they are.
     own : ndarray of int64, shape (p,)
         Which of the states are the waypoints.
     """

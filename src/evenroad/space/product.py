@@ -183,19 +183,7 @@ def SE3(
 ) -> Product:
     """Return the poses (x, y, z, qw, qx, qy, qz) of a body in space; points of the cube have 6 coordinates.
 
-    Parameters
-    ----------
-    low, high : sequence of three floats
-        Bounds of the position.
-    weights : sequence of two floats
-        What a unit of length and a radian of ``arccos |q . q'|`` count, > 0.
-    combine : {"sum", "l2"}
-        How the two distances make one; "sum" is OMPL's.
-
-    Raises
-    ------
-    InvalidValue, UnknownName
-        As `Box` and `Product`.
+    Parameters and errors as :func:`SE2`, with three bounds.  A radian is one of ``arccos |q . q'|``; "sum" is OMPL's.
     """
     return Product((_position(low, high, 3), SO3()), weights, combine)
 

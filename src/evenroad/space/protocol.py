@@ -56,11 +56,6 @@ def all_distances(space: Space, a: Floats, b: Floats) -> Floats:
 
     By the space's own ``all_distances(a, b)`` if it has one, which is a matter of speed alone: it gives what
     ``distance`` gives, up to rounding.
-
-    Raises
-    ------
-    InvalidValue
-        As the space's ``distance``.
     """
     own = getattr(space, "all_distances", None)
     if own is not None:

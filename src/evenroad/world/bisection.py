@@ -33,6 +33,8 @@ def require_few_segments(resolution: object, segments: float) -> None:
 def between_ends(segments: Ints, open_motions: Bools) -> Iterator[tuple[Ints, Ints]]:
     """Yield the states of all motions level by level, as the motions' indices and the states' numbers.
 
+    State k of n segments lies a fraction k / n along its motion.  All levels together hold each state once.
+
     Parameters
     ----------
     segments : int64 array, shape (m,)
@@ -40,11 +42,6 @@ def between_ends(segments: Ints, open_motions: Bools) -> Iterator[tuple[Ints, In
     open_motions : bool array, shape (m,)
         Which motions are still of interest.  The caller may clear entries between two steps; no further
         states of those motions are then yielded.
-
-    Yields
-    ------
-    motion, state : int64 arrays of one length
-        State k of n lies a fraction k / n along its motion.  All levels together hold each state once.
     """
     level = 1
     while True:

@@ -11,19 +11,10 @@ from evenroad.world.protocol import World
 
 @dataclass(eq=False)
 class Counting:
-    """Another world's answers, with a count of the questions.  Not for several threads at once.
+    """Another world's answers, with counts of what was asked.  Not for several threads at once.
 
-    Parameters
-    ----------
-    world : World
-        The world that answers.
-
-    Attributes
-    ----------
-    configurations : int
-        How many configurations `valid` was asked for.
-    motions : int
-        How many motions `motion_valid` was asked for; the states inside them are not configurations here.
+    `configurations` counts those that `valid` was asked for, `motions` those of `motion_valid`; the states inside of
+    motions are not configurations here.
     """
 
     world: World

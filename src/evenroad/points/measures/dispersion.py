@@ -171,16 +171,11 @@ def _corners(d: int) -> Floats:
 
 
 def _largest_hole(coordinates: Floats) -> float:
-    """Return the largest r such that some place of [0, 1]^d has linf-distance r to the nearest point.
+    """Return the largest linf-distance of a place of [0, 1]^d from the nearest of (n, d) points, d = 2 or 3.
 
     The unit cube is cut into slabs, taken in a fixed random order.  A slab is bisected only if it holds a larger
     hole than all before: a few of them, so the whole costs little more than one test of coverage (the
     randomised optimisation of Chan 1999).
-
-    Parameters
-    ----------
-    coordinates : ndarray, shape (n, d)
-        n >= 1 points, d = 2 or 3.
     """
     n, d = coordinates.shape
     ordered = coordinates[np.argsort(coordinates[:, -1], kind="stable")]

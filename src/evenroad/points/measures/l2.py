@@ -46,14 +46,8 @@ class DistancePairs(NamedTuple):
 class ProductTerms(NamedTuple):
     """The three parts of a squared discrepancy at given points.
 
-    Attributes
-    ----------
-    constant : float
-        Double integral of the kernel.
-    linear, linear_slope : ndarray, shape (d, n)
-        Integral of the kernel over one argument, a factor a coordinate, and its derivative.
-    pairs : MaximumPairs or DistancePairs
-        The kernel at pairs of points.
+    `constant` is the double integral of the kernel; `linear` its integral over one argument, a factor a coordinate,
+    (d, n), and `linear_slope` the derivative of that; `pairs` is the kernel at pairs of points.
     """
 
     constant: float
@@ -193,22 +187,13 @@ def pair_sums(
     |x - y|.  Points come in tiles that stay in the first caches, and fastmath lets the inner loops run as vectors;
     input is finite because ``as_unit_points`` refused everything else.
 
-    Parameters
-    ----------
-    columns : ndarray, shape (d, n)
-        The points, coordinate by coordinate, finite.
-    pairs : MaximumPairs or DistancePairs
-        The factors.
-    want_gradient : bool
-        False leaves the second result zero, in about half the time.
-
     Returns
     -------
     sums : ndarray, shape (n,)
         ``sum_j prod_k K_k(x_ik, x_jk)`` of every i.
     gradient : ndarray, shape (d, n)
-        Derivative of ``sums.sum()`` by every coordinate.  Where two points share a coordinate the kernels
-        have a kink; the gradient is then one of the one-sided ones.
+        Derivative of ``sums.sum()`` by every coordinate; zero, in about half the time, where it is not wanted.  Where
+        two points share a coordinate the kernels have a kink; the gradient is then one of the one-sided ones.
     """
     if isinstance(pairs, MaximumPairs):
         return _maximum_pair_sums(columns, *pairs, want_gradient)

@@ -46,20 +46,16 @@ TINY = 1e-30
 
 @dataclass(frozen=True, eq=False)
 class Annealed:
-    """The best points that an annealing saw.
+    """The best points that an annealing saw, and the objective there.
 
     Attributes
     ----------
     points : ndarray, shape (n, d)
         Coordinates in (0, 1), read-only; they stay below 1 as float32.
-    value : float
-        The objective there.
-    objective : Objective
-        What was minimised.
-    steps : int
-        Gradient steps taken.
-    seconds : float
-        Wall time, compilation excluded as far as it was done before.
+    value, objective : float, Objective
+        What was minimised, and its value.
+    steps, seconds : int, float
+        Gradient steps taken; wall time, compilation excluded as far as it was done before.
     """
 
     points: Floats

@@ -44,23 +44,10 @@ _TOKEN = re.compile(
 
 @dataclass(frozen=True)
 class Term:
-    """One term: ``weight * name`` or ``weight * log(name)``.
+    """One term: ``weight * name`` or ``weight * log(name)``, weight > 0.
 
-    Attributes
-    ----------
-    name : str
-        A name of ``MEASURES``, meaning its rooted value, or of ``ENERGIES``.
-    weight : float
-        Positive factor.
-    logarithm : bool
-        Whether the natural log is taken.
-
-    Raises
-    ------
-    UnknownName
-        For another name.
-    InvalidValue
-        For a weight that is not a finite number > 0.
+    `name` is one of ``MEASURES``, meaning its rooted value, or of ``ENERGIES``; another is an UnknownName, a weight
+    that is not a finite number > 0 an InvalidValue.
     """
 
     name: str

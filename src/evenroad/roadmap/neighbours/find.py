@@ -115,15 +115,7 @@ def _blocks(space: Space, q: Floats, *, earlier: bool = False) -> Iterator[tuple
 
 
 class Surroundings:
-    """Milestones, ready to be asked which of them are near a configuration, in O(n).
-
-    Parameters
-    ----------
-    q : ndarray, shape (n, dim)
-        Their configurations.
-    space : Space
-        Whose metric counts.
-    """
+    """Milestones, (n, dim), ready to be asked which of them are near a configuration, in O(n)."""
 
     def __init__(self, q: Floats, space: Space) -> None:
         self._q, self._space = q, space

@@ -21,14 +21,9 @@ from evenroad.space import Space
 
 @dataclass(frozen=True)
 class Reach:
-    """How one more configuration is joined to milestones that are there already.
+    """How one more configuration is joined to milestones: to its `k` nearest ones, or to those within `radius`.
 
-    Attributes
-    ----------
-    k : int or None
-        To this many nearest ones.
-    radius : float or None
-        To those at most this far, in the units of the space.  With both None: to all.
+    With both None: to all.
     """
 
     k: int | None = None

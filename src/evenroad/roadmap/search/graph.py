@@ -14,12 +14,8 @@ from evenroad._arrays import Bools, Ints, Ints32
 class Rows:
     """For each node the arcs that leave it, side by side.
 
-    Attributes
-    ----------
-    first : ndarray of int64, shape (nodes + 1,)
-        The arcs that leave node v are the slots first[v] .. first[v + 1] - 1.
-    other, edge : ndarray of int32, shape (slots,)
-        For each slot the node that the arc leads to, and its edge.
+    Those of node v are the slots ``first[v] .. first[v + 1] - 1``; for each slot, `other` is the node that the arc
+    leads to and `edge` its edge.
     """
 
     first: Ints
@@ -36,12 +32,7 @@ class Rows:
 class Graph:
     """Undirected edges, by node: fixed ones, and links of one query beside them.
 
-    Attributes
-    ----------
-    nodes : int
-        Number of nodes.
-    fixed, links : Rows
-        Of all nodes, or of the first ones only: the others have no arcs there.
+    Both may be rows of the first nodes only: the others have no arcs there.
     """
 
     nodes: int

@@ -111,20 +111,14 @@ def best_path(
 def shortest_path(
     nodes: int, edges: Ints32, lengths: Floats, bounds: Floats, start: int, goal: int
 ) -> tuple[Ints32, float]:
-    """Return the shortest path from start to goal over edges that are all free, and its length.
+    """Return the shortest path from start to goal over edges, (m, 2), that are all free, and its length.
 
     Parameters
     ----------
-    nodes : int
-        Number of nodes.
-    edges : ndarray of int32, shape (m, 2)
-        Undirected edges.
     lengths : ndarray, shape (m,)
         Length of each edge, >= 0.
     bounds : ndarray, shape (nodes,)
         Consistent lower bound of the way from each node to the goal, e.g. its distance in the space.
-    start, goal : int
-        Node numbers.
 
     Returns
     -------

@@ -69,19 +69,10 @@ class EngineWorld(TestedAtStates, ABC):
 
 
 def original_shapes(source: str | os.PathLike[str], robot: Robot) -> tuple[Shape, ...]:
-    """Return the collision shapes that a robot's URDF gives, before any capsule was fitted to them.
+    """Return the collision shapes that the URDF `source`, or a shipped robot, gives, before capsules were fitted.
 
-    Parameters
-    ----------
-    source : str or path-like
-        The URDF, or the name of a shipped robot, from which `robot` was loaded.
-    robot : Robot
-        Its links that have no shape in the URDF, because their capsules were given, keep those.
-
-    Raises
-    ------
-    BrokenFile, InvalidValue, UnknownName
-        As :func:`evenroad.robot.load_model`.
+    Links of `robot` that have no shape there, because their capsules were given, keep those.  Raises as
+    :func:`evenroad.robot.load_model`.
     """
     shapes = read_urdf(find_robot(source)[0]).shapes
     there = {shape.link for shape in shapes}

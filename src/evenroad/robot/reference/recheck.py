@@ -32,18 +32,10 @@ SAMPLES = 100
 class MeshCheck:
     """What the original shapes say about a path.
 
-    Attributes
-    ----------
-    verdict : {"free", "in collision", "not checked"}
-        Of all states, ends included, at most a tenth of the resolution apart.
-    states : int
-        How many states were asked for; 0 where nothing was checked.
-    message : str
-        Why it was not checked; or which motion of the path is in collision where, and which bodies touch.
-    configuration : tuple of floats, or None
-        The first state in collision [rad or m].
-    always_touching : tuple of pairs of str
-        Pairs of links that were left out: their shapes touch in each of 100 random configurations.
+    Of so many `states`, ends included, at most a tenth of the resolution apart; 0 where nothing was checked.
+    `message` says why not, or which motion is in collision where, and which bodies touch; `configuration` is the first
+    state in collision [rad or m].  Pairs in `always_touching` were left out: their shapes touch in each of 100 random
+    configurations.
     """
 
     verdict: Verdict

@@ -33,20 +33,9 @@ _MODES = ("trinary", "scale", "raw")
 class RosMapMeta:
     """What a map_server YAML file says, checked.
 
-    Attributes
-    ----------
-    image : Path
-        The image file; a relative name is relative to the YAML file.
-    resolution : float
-        Metres per pixel, > 0.
-    origin : tuple of three floats
-        x and y in metres of the lower-left corner of the lower-left pixel, and yaw in radians.
-    negate : bool
-        White, not black, is occupied.
-    occupied_thresh, free_thresh : float
-        In [0, 1], free_thresh < occupied_thresh.
-    mode : str
-        trinary, scale or raw.
+    `resolution` is metres per pixel; `origin` x and y [m] of the lower-left corner of the lower-left pixel, and yaw
+    [rad]; `negate` says that white, not black, is occupied; ``0 <= free_thresh < occupied_thresh <= 1``; `mode` is
+    trinary, scale or raw.
     """
 
     image: Path

@@ -45,17 +45,9 @@ def tree_of(coal: Any, mesh: TriangleMesh) -> Any:
 
 
 class Collider:
-    """A body and obstacles as trees of bounding boxes over their triangles.
+    """A body and obstacles as trees of bounding boxes over their triangles: surfaces, which have no inside.
 
-    Parameters
-    ----------
-    body, obstacles : TriangleMesh
-        Surfaces: a body inside of a closed obstacle meets nothing.
-
-    Raises
-    ------
-    NotAvailable
-        If coal is not installed.
+    Raises NotAvailable if coal is not installed.
     """
 
     def __init__(self, body: TriangleMesh, obstacles: TriangleMesh) -> None:

@@ -138,17 +138,9 @@ def surface_of(box: OrientedBox) -> TriangleMesh:
 
 
 class BoxTable(NamedTuple):
-    """Boxes in space, one a row; read-only.
+    """Boxes in space for compiled code, as arrays (n, 3), axes (n, 3, 3) with a column an axis of the box.
 
-    Attributes
-    ----------
-    centre : float64 array, shape (m, 3)
-    half : float64 array, shape (m, 3)
-        Half extents.
-    axes : float64 array, shape (m, 3, 3)
-        ``axes[i, :, k]`` is the direction of the k-th own axis of box i.
-    low, high : float64 array, shape (m, 3)
-        Corners of the smallest boxes that are not turned and hold them.
+    `low` and `high` are corners of the boxes' bounding boxes.
     """
 
     centre: Floats
