@@ -13,7 +13,7 @@ ROOT = Path(evenroad.__file__).parent
 
 BASE = {
     *("errors", "_checks", "_rng", "_files", "_npz", "_yaml"),
-    *("_progress", "_extras", "_compiled", "_fingerprint"),
+    *("_arrays", "_progress", "_extras", "_compiled", "_fingerprint"),
 }
 MAY_IMPORT = {
     "points": BASE,
@@ -67,6 +67,59 @@ def test_imports_go_in_one_direction():
             for other in sorted(set(_imported_parts(path)) - {part} - MAY_IMPORT[part])
         ]
     assert against == []
+
+
+def _imported_modules(path, known):
+    """Yield the modules of `known` that a file imports anywhere, also in functions and for type checkers alone."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        names = []
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            # What a package hands on is imported from the package; a submodule is a module of its own.
+            inner = [f"{node.module}.{alias.name}" for alias in node.names]
+            names = [name if name in known else node.module for name in inner]
+        yield from (name for name in names if name in known)
+
+
+def _circles(imports):
+    """Return the strongly connected components of more than one module (Tarjan 1972)."""
+    number, lowest, stack, circles = {}, {}, [], []
+
+    def visit(module):
+        number[module] = lowest[module] = len(number)
+        stack.append(module)
+        for other in imports[module]:
+            if other not in number:
+                visit(other)
+                lowest[module] = min(lowest[module], lowest[other])
+            elif other in stack:
+                lowest[module] = min(lowest[module], number[other])
+        if lowest[module] == number[module]:
+            at = stack.index(module)
+            circles.append(sorted(stack[at:]))
+            del stack[at:]
+
+    for module in imports:
+        if module not in number:
+            visit(module)
+    return [circle for circle in circles if len(circle) > 1]
+
+
+def test_circles_are_found():
+    assert _circles({"a": ["b"], "b": ["c"], "c": ["b"], "d": ["a"]}) == [["b", "c"]]
+    assert _circles({"a": ["b", "c"], "b": ["c"], "c": []}) == []
+
+
+def test_no_modules_import_each_other_in_a_circle():
+    names = {}
+    for path in MODULES:
+        parts = ("evenroad", *path.relative_to(ROOT).with_suffix("").parts)
+        names[".".join(parts).removesuffix(".__init__")] = path
+    # The package itself is imported for its version alone, and takes its names when they are asked for.
+    del names["evenroad"]
+    imports = {name: sorted(set(_imported_modules(path, names)) - {name}) for name, path in names.items()}
+    assert _circles(imports) == []
 
 
 def test_only_the_command_imports_the_studies():

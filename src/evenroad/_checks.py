@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue, shown
 
 LARGEST_COUNT = 2**31 - 1
@@ -57,7 +57,7 @@ def as_row(name: str, values: Sequence[float], length: int | None = None) -> tup
     return row
 
 
-def as_batch(name: str, values: object, dim: int) -> npt.NDArray[np.float64]:
+def as_batch(name: str, values: object, dim: int) -> Floats:
     """Return `values` as a read-only C-contiguous float64 array of shape (n, dim) with finite entries.
 
     Read-only whatever `values` is: compiled code is compiled anew for each mix of read-only and other arrays.

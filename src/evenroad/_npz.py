@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._files import atomic_write
-from evenroad.errors import BrokenFile
+from evenroad.errors import BrokenFile, shown
 
 Path = str | os.PathLike[str]
 Arrays = dict[str, npt.NDArray[Any]]
@@ -55,10 +55,11 @@ def read_npz(path: Path, what: str, *layouts: Collection[str]) -> Arrays:
             archive = np.load(file, allow_pickle=False)
             if not isinstance(archive, np.lib.npyio.NpzFile):
                 raise BrokenFile(f"{path} is a plain array, not a .npz {what}")
-            names = set(archive.files)
-            if not any(names == set(layout) for layout in layouts):
-                raise BrokenFile(f"{path} holds {sorted(names)}, a {what} holds {sorted(layouts[0])}")
-            for name in names:
+            if not any(set(archive.files) == set(layout) for layout in layouts):
+                raise BrokenFile(
+                    f"{path} holds {shown(sorted(archive.files))}, a {what} holds {sorted(layouts[0])}"
+                )
+            for name in archive.files:
                 arrays[name] = archive[name]
                 if not isinstance(arrays[name], np.ndarray):
                     # NumPy hands out a member without the magic of an array as bytes.
@@ -70,7 +71,7 @@ def read_npz(path: Path, what: str, *layouts: Collection[str]) -> Arrays:
     except Exception as error:
         # No list is complete: damaged headers alone give errors of the tokenizer, of memory and of overflow, and
         # zipfile has its own for every compression, encryption and version that it does not know.
-        raise BrokenFile(f"{path} is not a readable .npz {what}: {one_line(error)}") from error
+        raise BrokenFile(f"{path} is not a readable .npz {what}: {shown(error)}") from error
     return arrays
 
 
@@ -79,7 +80,7 @@ def read_json(path: Path, name: str, array: npt.NDArray[Any], keys: Collection[s
     try:
         record = json.loads(str(array))
     except (ValueError, RecursionError) as error:
-        raise BrokenFile(f"{path}: {name} is no JSON: {one_line(error)}") from error
+        raise BrokenFile(f"{path}: {name} is no JSON: {shown(error)}") from error
     if not isinstance(record, dict) or not set(record) <= set(keys):
         raise BrokenFile(f"{path}: {name} must be an object with keys among {sorted(keys)}")
     return record
@@ -107,8 +108,3 @@ def digest(arrays: Mapping[str, npt.NDArray[Any]]) -> str:
         sha.update(f"{name} {array.dtype.str} {array.shape}:".encode())
         sha.update(array.tobytes())
     return sha.hexdigest()
-
-
-def one_line(error: BaseException) -> str:
-    """Return the kind and the text of an error in one line."""
-    return " ".join(f"{type(error).__name__}: {error}".split())

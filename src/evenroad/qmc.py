@@ -10,9 +10,9 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-import numpy.typing as npt
 from scipy.stats.qmc import QMCEngine
 
+from evenroad._arrays import Floats
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator
 from evenroad.errors import Exhausted, InvalidValue
@@ -87,7 +87,7 @@ class FamilyEngine(QMCEngine):
         self.num_generated = self._end_of_next(n)
         return self
 
-    def _random(self, n: object = 1, *, workers: object = 1) -> npt.NDArray[np.float64]:
+    def _random(self, n: object = 1, *, workers: object = 1) -> Floats:
         """Return the next n points, shape (n, d); SciPy's ``random`` counts them. `workers` has no use here.
 
         Raises

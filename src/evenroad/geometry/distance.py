@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue
 from evenroad.geometry.shapes import Shape
 
 
-def segment_distance(
-    first: npt.NDArray[np.float64], second: npt.NDArray[np.float64]
-) -> npt.NDArray[np.float64]:
+def segment_distance(first: Floats, second: Floats) -> Floats:
     """Return the distances of pairs of segments, (n, 2, 3) each, end points in the second axis: (n,).
 
     Closest points of two segments after C. Ericson, Real-Time Collision Detection (2005), section 5.1.9: the
@@ -35,19 +33,17 @@ def segment_distance(
     return np.sqrt(_dot(gap, gap))
 
 
-def _dot(first: npt.NDArray[np.float64], second: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def _dot(first: Floats, second: Floats) -> Floats:
     return np.einsum("ni,ni->n", first, second)
 
 
-def _clamped(
-    numerator: npt.NDArray[np.float64], denominator: npt.NDArray[np.float64]
-) -> npt.NDArray[np.float64]:
+def _clamped(numerator: Floats, denominator: Floats) -> Floats:
     """Return numerator / denominator within [0, 1]; 0 where the denominator is."""
     safe = np.where(denominator > 0.0, denominator, 1.0)
     return np.where(denominator > 0.0, np.clip(numerator / safe, 0.0, 1.0), 0.0)
 
 
-def point_distance(point: npt.NDArray[np.float64], shape: Shape) -> float:
+def point_distance(point: Floats, shape: Shape) -> float:
     """Return the distance of a point (3,) from a box, sphere, cylinder or capsule along z; 0 inside [m].
 
     Raises

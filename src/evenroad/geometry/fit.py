@@ -7,8 +7,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats, Ints
 from evenroad.errors import InvalidValue
 from evenroad.geometry.fit_points import Fitted, capsule_around, rough_capsule_around, volume
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
@@ -84,9 +84,7 @@ def smallest_around_prism(reach: float, half: float) -> tuple[float, float]:
     return float(radius[best]), float(h[best])
 
 
-def _around_box(
-    size: npt.NDArray[np.float64],
-) -> list[tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], float]]:
+def _around_box(size: Floats) -> list[tuple[Floats, Floats, float]]:
     thin, middle, long = np.argsort(size, kind="stable")
     count = int(np.clip(round(size[middle] / size[thin]), 1, MOST_SIDE_BY_SIDE))
     width = size[middle] / count
@@ -100,7 +98,7 @@ def _around_box(
 class _Part:
     """Some triangles, (t, 3, 3), a capsule around them, and the two parts that splitting best makes of them, if any."""
 
-    corners: npt.NDArray[np.float64]
+    corners: Floats
     capsule: Fitted
     halves: tuple[_Part, ...] = ()
 
@@ -112,7 +110,7 @@ class _Part:
         return volume(self.capsule) - sum(volume(half.capsule) for half in self.halves)
 
 
-def capsules_around_mesh(vertices: npt.NDArray[np.float64], triangles: npt.NDArray[np.int64]) -> list[Fitted]:
+def capsules_around_mesh(vertices: Floats, triangles: Ints) -> list[Fitted]:
     """Return up to 4 capsules (a, b, radius) such that every triangle lies within one of them.
 
     One capsule is fitted around everything; then the one whose split saves most is split, again and again, and that
@@ -175,11 +173,11 @@ def _splittable(part: _Part) -> _Part:
     return _Part(corners, part.capsule, halves)
 
 
-def _rough(corners: npt.NDArray[np.float64]) -> Fitted:
+def _rough(corners: Floats) -> Fitted:
     return rough_capsule_around(corners.reshape(-1, 3))
 
 
-def _divided(corners: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def _divided(corners: Floats) -> Floats:
     """Return triangles, (t, 3, 3), of the same surface without long edges: halved at the longest, again and again."""
     longest = _LONGEST_EDGE * float(np.ptp(corners.reshape(-1, 3), axis=0).max())
     done = []

@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad._rng import generator
 from evenroad.geometry.shapes import Capsule
 
-Fitted = tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], float]
+Fitted = tuple[Floats, Floats, float]
 """End points a and b, each (3,), and radius of a capsule."""
 
 SAMPLES = 1 << 15
@@ -21,7 +21,7 @@ _LEAST_RADIUS = 1e-6
 """Radius around points in a line [m]."""
 
 
-def capsule_around(points: npt.NDArray[np.float64]) -> Fitted:
+def capsule_around(points: Floats) -> Fitted:
     """Return a small capsule that contains all points, (n, 3), to rounding.
 
     :func:`rough_capsule_around`, then refined by Nelder and Mead's simplex (1965) over direction and place of the axis.
@@ -34,7 +34,7 @@ def capsule_around(points: npt.NDArray[np.float64]) -> Fitted:
     best = _capsule_on(points, centre, frame)
     size = float(np.ptp(points, axis=0).max()) or 1.0
 
-    def moved(x: npt.NDArray[np.float64]) -> Fitted:
+    def moved(x: Floats) -> Fitted:
         tilted = _frame(frame[0] + x[0] * frame[1] + x[1] * frame[2])
         return _capsule_on(points, centre + size * (x[2] * frame[1] + x[3] * frame[2]), tilted)
 
@@ -45,7 +45,7 @@ def capsule_around(points: npt.NDArray[np.float64]) -> Fitted:
     return min((best, moved(found.x)), key=volume)
 
 
-def rough_capsule_around(points: npt.NDArray[np.float64]) -> Fitted:
+def rough_capsule_around(points: Floats) -> Fitted:
     """Return the smallest capsule around points, (n, 3), through the middle along a principal or coordinate axis."""
     centre, frames = _starts(points)
     return min((_capsule_on(points, centre, frame) for frame in frames), key=volume)
@@ -57,18 +57,14 @@ def volume(capsule: Fitted) -> float:
     return math.pi * radius**2 * (math.dist(a, b) + 4.0 / 3.0 * radius)
 
 
-def _starts(
-    points: npt.NDArray[np.float64],
-) -> tuple[npt.NDArray[np.float64], list[npt.NDArray[np.float64]]]:
+def _starts(points: Floats) -> tuple[Floats, list[Floats]]:
     """Return the middle of the points' bounding box, and frames along principal and coordinate axes."""
     centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
     _, _, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=len(points) < 3)
     return centre, [_frame(axis) for axis in (*np.eye(3), *axes)]
 
 
-def _capsule_on(
-    points: npt.NDArray[np.float64], place: npt.NDArray[np.float64], frame: npt.NDArray[np.float64]
-) -> Fitted:
+def _capsule_on(points: Floats, place: Floats, frame: Floats) -> Fitted:
     """Return the smallest of six capsules around the points on the line through `place` along ``frame[0]``.
 
     The radius is the least that the line allows, or more where the shorter caps save volume.
@@ -91,7 +87,7 @@ def _capsule_on(
     return min(candidates, key=volume)
 
 
-def _frame(axis: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def _frame(axis: Floats) -> Floats:
     """Return three unit vectors as rows, the first along `axis`."""
     first = axis / np.linalg.norm(axis)
     helper = np.eye(3)[np.abs(first).argmin()]
@@ -100,7 +96,7 @@ def _frame(axis: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     return np.stack([first, second, np.cross(first, second)])
 
 
-def _extreme(points: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def _extreme(points: Floats) -> Floats:
     """Return the corners of the convex hull: a capsule that contains those contains all points."""
     from scipy.spatial import ConvexHull, QhullError
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats, Ints
 from evenroad._checks import as_batch, require_positive
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 
@@ -34,8 +34,8 @@ class TriangleMesh:
         If the two are not such arrays, or a triangle names a vertex that there is not.
     """
 
-    vertices: npt.NDArray[np.float64]
-    triangles: npt.NDArray[np.int64]
+    vertices: Floats
+    triangles: Ints
     name: str = ""
 
     def __post_init__(self) -> None:

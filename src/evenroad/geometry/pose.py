@@ -14,11 +14,11 @@ from operator import mul
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad._checks import as_row
 from evenroad.errors import InvalidValue
 
 Vector = tuple[float, float, float]
-Matrix = npt.NDArray[np.float64]
 
 NO_ROTATION = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
@@ -78,7 +78,7 @@ def rotation_from_quaternion(quaternion: Sequence[float]) -> tuple[float, ...]:
     )  # fmt: skip
 
 
-def rotations_from_quaternions(quaternions: Matrix) -> Matrix:
+def rotations_from_quaternions(quaternions: Floats) -> Floats:
     """Return the matrices, (n, 3, 3), of quaternions (n, 4), w first and of any norm > 0."""
     w, x, y, z = (quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)).T
     rows = [
@@ -89,7 +89,7 @@ def rotations_from_quaternions(quaternions: Matrix) -> Matrix:
     return np.moveaxis(np.array(rows), 2, 0).copy()
 
 
-def rotation_from_z(axis: Sequence[float]) -> Matrix:
+def rotation_from_z(axis: Sequence[float]) -> Floats:
     """Return a rotation (3, 3) that takes the z axis to the direction `axis`.
 
     Raises
@@ -197,23 +197,23 @@ class Pose:
         return pose
 
     @property
-    def rotation_matrix(self) -> Matrix:
+    def rotation_matrix(self) -> Floats:
         """The rotation as a matrix, (3, 3)."""
         return np.array(self.rotation).reshape(3, 3)
 
     @property
-    def matrix(self) -> Matrix:
+    def matrix(self) -> Floats:
         """The pose as a matrix, (4, 4)."""
         matrix = np.eye(4)
         matrix[:3, :3], matrix[:3, 3] = self.rotation_matrix, self.xyz
         return matrix
 
-    def apply(self, points: npt.ArrayLike) -> Matrix:
+    def apply(self, points: npt.ArrayLike) -> Floats:
         """Return points of the own frame, (3,) or (n, 3), in the frame that the pose is given in."""
         p = np.asarray(points, dtype=np.float64)
         return (self.rotation_matrix @ p if p.ndim == 1 else p @ self.rotation_matrix.T) + np.array(self.xyz)
 
-    def local(self, points: npt.ArrayLike) -> Matrix:
+    def local(self, points: npt.ArrayLike) -> Floats:
         """Return points, (3,) or (n, 3), in the pose's own frame: what undoes :meth:`apply`."""
         p = np.asarray(points, dtype=np.float64) - np.array(self.xyz)
         return self.rotation_matrix.T @ p if p.ndim == 1 else p @ self.rotation_matrix

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad._checks import as_row, require_positive
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.geometry.mesh import TriangleMesh, load_mesh, scaled, volume_of
@@ -26,14 +26,9 @@ WORLD = ""
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Shape:
-    """What all shapes have.
+    """What all shapes have: a pose, from the shape's own frame to that of its link, or of the world.
 
-    Parameters
-    ----------
-    pose : Pose
-        From the shape's own frame to that of its link, or of the world.
-    link : str
-        Name of the link that it is fixed to; `WORLD`, an empty text, for the world.
+    `link` is the name of the link that it is fixed to; `WORLD`, an empty text, for the world.
     """
 
     kind: ClassVar[str]
@@ -215,7 +210,7 @@ class PointCloud(Shape):
 
     kind: ClassVar[str] = "point cloud"
 
-    points: npt.NDArray[np.float64]
+    points: Floats
     radius: float = 0.0
 
     def __post_init__(self) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad import __version__
+from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue, shown
 
 BELOW_ONE = float(np.nextafter(np.float32(1.0), np.float32(0.0)))
@@ -24,18 +25,15 @@ class Origin:
 
     Attributes
     ----------
-    family : str
-        Name of the sampler or family: ``halton``, ``hickernell``, ...
-    method : str
-        How it was made: ``plain``, ``scrambled``, ``annealed``, ``given``, ...
+    family, method : str
+        Name of the sampler or family (``halton``, ``hickernell``), and how it was made (``plain``, ``annealed``,
+        ``given``).
     objective : str
         The expression that was minimised, or "" for constructions.
     seed : int or None
         The seed it was drawn with; None when a Generator was passed, or none was used.
-    replica : int or None
-        Index of the set in its pool (trained families).
-    steps : int or None
-        Steps of the optimiser (trained families), else None.
+    replica, steps : int or None
+        Index of the set in its pool, and steps of the optimiser (trained families).
     start : int
         Index of the first point in its sequence (sequences only, else 0).
     version : str
@@ -77,7 +75,7 @@ class PointSet:
         If the array is not two-dimensional and numeric, or a coordinate is NaN or outside [0, 1).
     """
 
-    points: npt.NDArray[np.float64]
+    points: Floats
     origin: Origin = field(default_factory=lambda: Origin(family="given", method="given"))
 
     def __post_init__(self) -> None:
@@ -124,7 +122,7 @@ class PointSet:
         return f"PointSet(n={self.n}, d={self.d}, origin={str(self.origin)!r}, hash={self.hash[:12]})"
 
 
-def as_unit_points(points: object) -> npt.NDArray[np.float64]:
+def as_unit_points(points: object) -> Floats:
     """Return `points` as a C-contiguous float64 array of shape (n, d), checked to lie in [0, 1).
 
     Raises

@@ -46,12 +46,8 @@ def symmetries_of_term(name: str) -> frozenset[Symmetry]:
 def symmetries_of(origin: Origin) -> frozenset[Symmetry]:
     """Return what keeps the quality of a set with this origin: the symmetries of every term of its objective.
 
-    A set without an objective has those of its sampler.  Of other sets (``given``) nothing is known: none.
-
-    Raises
-    ------
-    InvalidValue
-        If the origin's objective does not parse (UnknownName for a measure that is not known).
+    A set without an objective has those of its sampler.  Of other sets (``given``) nothing is known: none.  An
+    objective that does not parse is an InvalidValue.
     """
     if not origin.objective:
         return SAMPLERS[origin.family]().symmetries if origin.family in SAMPLERS else frozenset()

@@ -28,15 +28,7 @@ COUNTS = (128, 256, 512, 1024)
 
 @dataclass(frozen=True)
 class Suite:
-    """What to run.
-
-    Attributes
-    ----------
-    name : str
-        The label of its rows in a store.
-    tasks : tuple of Task
-        In an order that suits caches: what shares a problem, and then a set, stands together.
-    """
+    """What to run: tasks in an order that suits caches, by problem and then by set; `name` labels their rows."""
 
     name: str
     tasks: tuple[Task, ...]
@@ -73,20 +65,10 @@ MAZE_COUNTS = (32, 64, 128, 256, 512, 1024)
 
 @dataclass(frozen=True)
 class Experiment:
-    """One row of figures.
+    """One row of figures: a problem with numbers of points N, and connection rules, each on the same sets.
 
-    Attributes
-    ----------
-    problem : str
-        Name in :data:`~evenroad.research.problems.PROBLEMS`.
-    counts : tuple of int
-        N.
-    rules : tuple of str
-        Connection rules, each on the same sets.
-    search : str
-        As in :class:`~evenroad.research.bench.task.Task`.
-    whole_sets : bool
-        Whether sets give all coordinates, so that one set is one outcome.
+    `whole_sets` says that sets give all coordinates, so that one set is one outcome; `search` is as in
+    :class:`~evenroad.research.bench.task.Task`.
     """
 
     problem: str
@@ -183,25 +165,10 @@ FAIR_QUICK_RUNS = 30
 
 
 def fair_suite(runs: int = 400, seed: int = SEED, only: Iterable[str] = (), quick: bool = False) -> Suite:
-    """Return the tasks of the fair suite with every sampler.
+    """Return the tasks of the fair suite with every sampler; parameters and errors as :func:`paper_suite`.
 
-    Parameters
-    ----------
-    runs : int
-        Runs of every cell, three in each world; the one Sukharev grid that there may be has one run a world.
-    seed : int
-        Root of the random numbers that draw the sets, >= 0.
-    only : iterable of str
-        Problems to keep; all if empty.
-    quick : bool
-        A taste: at most 30 runs, the middle difficulty and the calibration's N only.
-
-    Raises
-    ------
-    InvalidValue
-        If `runs` or `seed` is no such integer.
-    UnknownName
-        If `only` names a problem that the suite does not have; the text lists those that it has.
+    There are three runs in each world, but one with the Sukharev grid.  A quick suite has at most 30 runs, of the
+    middle difficulty and the calibration's N only.
     """
     runs, seed = require_count("runs", runs), require_count("seed", seed, at_least=0)
     runs = min(runs, FAIR_QUICK_RUNS) if quick else runs

@@ -22,14 +22,9 @@ THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"
 
 @dataclass(frozen=True)
 class Workers:
-    """How to get an executor, and again after its processes died.
+    """How to make an executor, and again after its processes died; and how many calls one works on at a time.
 
-    Attributes
-    ----------
-    make : callable
-        Returns a fresh ``concurrent.futures.Executor``.
-    count : callable
-        From the executor to how many calls it works on at a time; asked again and again, as clusters may grow.
+    `count` is asked again and again, as clusters may grow.
     """
 
     make: Callable[[], Executor]
@@ -68,12 +63,7 @@ class SerialExecutor(Executor):
 class ProcessPool(ProcessPoolExecutor):
     """A pool whose processes have one thread each, leave Ctrl-C to the parent, and end when the parent ends.
 
-    Parameters
-    ----------
-    jobs : int
-        Processes, >= 1.
-    initializer : callable, optional
-        Called once in each process, with `initargs`.
+    `initializer` is called once in each process, with `initargs`.
     """
 
     def __init__(
@@ -81,10 +71,7 @@ class ProcessPool(ProcessPoolExecutor):
     ) -> None:
         # Spawned, not forked: a fork of a process with threads (numba, BLAS) can hang.
         super().__init__(
-            jobs,
-            multiprocessing.get_context("spawn"),
-            initializer=_settle,
-            initargs=(initializer, initargs),
+            jobs, multiprocessing.get_context("spawn"), initializer=_settle, initargs=(initializer, initargs)
         )
 
     def submit(

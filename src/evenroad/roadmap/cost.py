@@ -6,24 +6,19 @@ from collections.abc import Callable
 from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats, Ints32
 from evenroad.errors import InvalidValue
 from evenroad.space import Space
 
-EdgeCost: TypeAlias = Callable[[npt.NDArray[np.float64], npt.NDArray[np.float64]], npt.NDArray[np.float64]]
+EdgeCost: TypeAlias = Callable[[Floats, Floats], Floats]
 """Costs of the motions between the rows of two (m, dim) arrays, (m,); the same both ways, >= their lengths."""
 
 BOUND = 1.0 - 1e-9
 """Costs are at least this share of the length: room for the rounding of a cost that should be the length."""
 
 
-def edge_costs(
-    space: Space,
-    q: npt.NDArray[np.float64],
-    edges: npt.NDArray[np.int32],
-    cost: EdgeCost | None = None,
-) -> npt.NDArray[np.float64]:
+def edge_costs(space: Space, q: Floats, edges: Ints32, cost: EdgeCost | None = None) -> Floats:
     """Return what the edges between rows of `q` cost, (m,): by default their lengths.
 
     Raises

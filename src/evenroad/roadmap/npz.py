@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._fingerprint import Fingerprinted
-from evenroad._npz import Arrays, Path, digest, one_line, read_json, read_npz, require_array, write_npz
+from evenroad._npz import Arrays, Path, digest, read_json, read_npz, require_array, write_npz
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, NotAvailable
 from evenroad.points.pointset import Origin, PointSet
 from evenroad.roadmap.cost import EdgeCost
@@ -59,14 +59,7 @@ def save_world_roadmap(path: Path, known: WorldRoadmap) -> None:
 
 
 def load_roadmap(path: Path, space: Space) -> Roadmap:
-    """Read a roadmap written by either function, leaving out what is known of a world.
-
-    Parameters
-    ----------
-    path : path
-        The file.
-    space : Space
-        That it was built for.
+    """Read a roadmap written by either function for this space, leaving out what is known of a world.
 
     Raises
     ------
@@ -153,7 +146,7 @@ def _roadmap(path: Path, arrays: Arrays, space: Space) -> Roadmap:
     try:
         points, rule = PointSet(arrays["points"], Origin(**origin)), rule_named(str(arrays["rule"]))
     except (EvenroadError, TypeError, ValueError) as error:
-        raise BrokenFile(f"{path}: {one_line(error)}") from error
+        raise BrokenFile(f"{path}: {error}") from error
     if points.d != space.cube_dim or not np.array_equal(space.from_cube(points.points), configurations):
         raise InvalidValue(f"{path} was built for another space than {space!r}")
     for array in (configurations, edges):

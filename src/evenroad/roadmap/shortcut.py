@@ -8,6 +8,7 @@ import time
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad.roadmap.cost import EdgeCost
 from evenroad.roadmap.proof import confirmed
 from evenroad.roadmap.search import BudgetSpent, shortest_path
@@ -29,11 +30,8 @@ WORTH_WHILE = 1e-2
 
 
 def shortcut(
-    path: npt.NDArray[np.float64],
-    world: World,
-    cost: EdgeCost | None = None,
-    deadline: float = math.inf,
-) -> tuple[npt.NDArray[np.float64], int]:
+    path: Floats, world: World, cost: EdgeCost | None = None, deadline: float = math.inf
+) -> tuple[Floats, int]:
     """Return a path that does not cost more, and whose every new motion was reported free by `world`.
 
     Each round puts waypoints evenly along the path, few at first, joins every pair that `world` says can be joined,
@@ -79,7 +77,7 @@ def shortcut(
 class _Shortcut:
     """A path that becomes shorter, and what was asked for it."""
 
-    def __init__(self, path: npt.NDArray[np.float64], world: World, cost: EdgeCost, deadline: float) -> None:
+    def __init__(self, path: Floats, world: World, cost: EdgeCost, deadline: float) -> None:
         self.path, self.world, self.cost, self.deadline = path, world, cost, deadline
         self.length = self._total(path)
         self.checked = 0
@@ -120,7 +118,7 @@ class _Shortcut:
         if self._total(path[way]) <= self.length * (1.0 + 1e-12):
             self.path = path[way]
 
-    def _holds(self, waypoints: npt.NDArray[np.float64], way: npt.NDArray[np.integer], pairs: _Pairs) -> bool:
+    def _holds(self, waypoints: Floats, way: npt.NDArray[np.integer], pairs: _Pairs) -> bool:
         """Return whether the world confirms a way; if it does not, some of its pairs are not usable any more."""
         if time.perf_counter() >= self.deadline:
             raise BudgetSpent
@@ -131,10 +129,10 @@ class _Shortcut:
             pairs.give_up(along[~passed])
         return bool(passed.all())
 
-    def _total(self, path: npt.NDArray[np.float64]) -> float:
+    def _total(self, path: Floats) -> float:
         return float(np.sum(self.cost(path[:-1], path[1:])))
 
-    def _free_pairs(self, waypoints: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def _free_pairs(self, waypoints: Floats) -> Bools:
         """Return which pairs of waypoints i < j can be joined, (w, w)."""
         first, second = np.triu_indices(len(waypoints), k=1)
         free = np.zeros((len(waypoints), len(waypoints)), dtype=np.bool_)
@@ -156,7 +154,7 @@ class _Pairs:
         Which have passed the strict check, and which have not failed it.
     """
 
-    def __init__(self, free: npt.NDArray[np.bool_], own: npt.NDArray[np.integer]) -> None:
+    def __init__(self, free: Bools, own: npt.NDArray[np.integer]) -> None:
         free = free.copy()
         free[own[:-1], own[1:]] = True
         self.edges = np.argwhere(free).astype(np.int32)
@@ -182,9 +180,7 @@ class _Pairs:
             self._failures += 1
 
 
-def _spread(
-    path: npt.NDArray[np.float64], space: Space, most: int
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
+def _spread(path: Floats, space: Space, most: int) -> tuple[Floats, Ints]:
     """Return the path's waypoints with evenly spread ones between them, `most` in all, and the rows of its own."""
     lengths = motion_lengths(path, space)
     spare = max(0, most - len(path))

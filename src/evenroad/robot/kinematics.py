@@ -2,15 +2,34 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Protocol
+
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue
+from evenroad.geometry.shapes import Capsule
 from evenroad.robot.joint import Joint
-from evenroad.robot.robot import Robot
 
 
-def joint_values(robot: Robot, q: npt.ArrayLike) -> dict[str, npt.NDArray[np.float64]]:
+class KinematicTree(Protocol):
+    """What kinematics needs of a robot; the attributes are those of :class:`evenroad.robot.Robot`."""
+
+    @property
+    def links(self) -> tuple[str, ...]: ...  # noqa: D102
+    @property
+    def joints(self) -> tuple[Joint, ...]: ...  # noqa: D102
+    @property
+    def capsules(self) -> tuple[Capsule, ...]: ...  # noqa: D102
+    @property
+    def group(self) -> tuple[str, ...]: ...  # noqa: D102
+    @property
+    def held(self) -> Mapping[str, float]: ...  # noqa: D102
+
+
+def joint_values(robot: KinematicTree, q: npt.ArrayLike) -> dict[str, Floats]:
     """Return the value of every movable joint, joint -> (n,), for configurations of the group, (n, dim).
 
     Joints outside of the group are held (see :class:`Robot`); mimics follow.
@@ -25,13 +44,19 @@ def joint_values(robot: Robot, q: npt.ArrayLike) -> dict[str, npt.NDArray[np.flo
         raise InvalidValue(f"q must have the shape (n, {len(robot.group)}), got {batch.shape}")
     values = dict(zip(robot.group, batch.T, strict=True))
     values |= {name: np.full(len(batch), value) for name, value in held_values(robot).items()}
+    return with_mimics(robot, values)
+
+
+def with_mimics(robot: KinematicTree, values: Mapping[str, Floats]) -> dict[str, Floats]:
+    """Return values, joint -> (n,), of all movable joints from those of the joints that move by themselves."""
+    all_values = dict(values)
     for joint in robot.joints:
         if joint.kind != "fixed" and joint.mimic is not None:
-            values[joint.name] = joint.mimic.multiplier * values[joint.mimic.joint] + joint.mimic.offset
-    return values
+            all_values[joint.name] = joint.mimic.multiplier * values[joint.mimic.joint] + joint.mimic.offset
+    return all_values
 
 
-def held_values(robot: Robot) -> dict[str, float]:
+def held_values(robot: KinematicTree) -> dict[str, float]:
     """Return where the joints are that move by themselves and are not planned for, joint -> value [rad or m]."""
     return {
         joint.name: float(robot.held.get(joint.name, joint.neutral))
@@ -40,26 +65,26 @@ def held_values(robot: Robot) -> dict[str, float]:
     }
 
 
-def link_poses(robot: Robot, q: npt.ArrayLike) -> npt.NDArray[np.float64]:
+def link_poses(robot: KinematicTree, q: npt.ArrayLike) -> Floats:
     """Return the frames of all links in that of the root: (n, links, 4, 4) for configurations (n, dim) [m].
 
     The links are in the order of ``robot.links``.  Raises as :func:`joint_values`.
     """
-    values = joint_values(robot, q)
-    count = len(np.asarray(q))
+    return poses_at(robot, joint_values(robot, q), len(np.asarray(q)))
+
+
+def poses_at(robot: KinematicTree, values: Mapping[str, Floats], count: int) -> Floats:
+    """Return the frames of all links, (count, links, 4, 4), for the values, (count,), of all movable joints."""
     poses = np.zeros((count, len(robot.links), 4, 4))
     poses[:, 0] = np.eye(4)
     number = {link: i for i, link in enumerate(robot.links)}
     for i, joint in enumerate(robot.joints):
-        origin = np.eye(4)
-        origin[:3, :3] = np.reshape(joint.rotation, (3, 3))
-        origin[:3, 3] = joint.xyz
         motion = joint_motion(joint, values.get(joint.name, np.zeros(count)))
-        poses[:, i + 1] = poses[:, number[joint.parent]] @ origin @ motion
+        poses[:, i + 1] = poses[:, number[joint.parent]] @ joint.origin.matrix @ motion
     return poses
 
 
-def joint_motion(joint: Joint, value: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def joint_motion(joint: Joint, value: Floats) -> Floats:
     """Return how a joint moves its child's frame, (n, 4, 4), for its values, (n,) [rad or m].
 
     Rotations by Rodrigues' formula: ``R = I + sin(q) K + (1 - cos(q)) K^2``, K v = axis x v.
@@ -76,9 +101,13 @@ def joint_motion(joint: Joint, value: npt.NDArray[np.float64]) -> npt.NDArray[np
     return motion
 
 
-def capsule_ends(robot: Robot, q: npt.ArrayLike) -> npt.NDArray[np.float64]:
+def capsule_ends(robot: KinematicTree, q: npt.ArrayLike) -> Floats:
     """Return the end points of all capsules in the frame of the root: (n, capsules, 2, 3) [m]."""
-    poses = link_poses(robot, q)
+    return ends_at(robot, link_poses(robot, q))
+
+
+def ends_at(robot: KinematicTree, poses: Floats) -> Floats:
+    """Return the end points of all capsules, (n, capsules, 2, 3), where the links have these poses."""
     link = [robot.links.index(capsule.link) for capsule in robot.capsules]
     ends = np.array([[capsule.a, capsule.b] for capsule in robot.capsules]).reshape(-1, 2, 3)
     turned = np.einsum("nkij,kej->nkei", poses[:, link][..., :3, :3], ends)

@@ -11,8 +11,7 @@ import numpy as np
 from evenroad._rng import generator
 from evenroad.geometry.distance import segment_distance
 from evenroad.robot.joint import Joint
-from evenroad.robot.kinematics import capsule_ends
-from evenroad.robot.robot import Robot
+from evenroad.robot.kinematics import KinematicTree, ends_at, poses_at, with_mimics
 
 SAMPLES = 1000
 """Random configurations that tell pairs that are always in contact."""
@@ -23,28 +22,20 @@ TOUCHING = "touch in every sample"
 
 @dataclass(frozen=True)
 class SelfPairs:
-    """Pairs of links, those that are tested and those that are not.
-
-    Attributes
-    ----------
-    tested : tuple of pairs of str
-        In the order of the links.
-    dropped : tuple of (str, str, str)
-        The other pairs of links with bodies, each with the reason.
-    """
+    """Pairs of links that are tested, in the order of the links; and the others with bodies, each with the reason."""
 
     tested: tuple[tuple[str, str], ...]
     dropped: tuple[tuple[str, str, str], ...]
 
 
-def pairs_without(robot: Robot, disabled: Collection[frozenset[str]]) -> SelfPairs:
+def pairs_without(robot: KinematicTree, disabled: Collection[frozenset[str]]) -> SelfPairs:
     """Return all pairs of links that have bodies and can move on each other, but those disabled by an SRDF."""
     return _sorted_out(
         robot, {pair: "disabled in the SRDF" for pair in _bodied(robot) if frozenset(pair) in disabled}
     )
 
 
-def computed_pairs(robot: Robot) -> SelfPairs:
+def computed_pairs(robot: KinematicTree) -> SelfPairs:
     """Return the pairs of links with bodies without those that touch by construction.
 
     Dropped are neighbours in the tree (links without bodies between them do not count where only one joint
@@ -57,7 +48,7 @@ def computed_pairs(robot: Robot) -> SelfPairs:
     return _sorted_out(robot, reasons)
 
 
-def _sorted_out(robot: Robot, reasons: dict[tuple[str, str], str]) -> SelfPairs:
+def _sorted_out(robot: KinematicTree, reasons: dict[tuple[str, str], str]) -> SelfPairs:
     rigid = {pair: "fixed to each other" for pair in _bodied(robot) if not _can_move(robot, *pair)}
     reasons = reasons | rigid
     return SelfPairs(
@@ -66,12 +57,12 @@ def _sorted_out(robot: Robot, reasons: dict[tuple[str, str], str]) -> SelfPairs:
     )
 
 
-def _bodied(robot: Robot) -> list[tuple[str, str]]:
+def _bodied(robot: KinematicTree) -> list[tuple[str, str]]:
     bodied = {capsule.link for capsule in robot.capsules}
     return list(combinations((link for link in robot.links if link in bodied), 2))
 
 
-def _path_to_root(robot: Robot, link: str) -> list[Joint]:
+def _path_to_root(robot: KinematicTree, link: str) -> list[Joint]:
     by_child = {joint.child: joint for joint in robot.joints}
     path = []
     while link in by_child:
@@ -80,17 +71,17 @@ def _path_to_root(robot: Robot, link: str) -> list[Joint]:
     return path
 
 
-def _between(robot: Robot, first: str, second: str) -> list[Joint]:
+def _between(robot: KinematicTree, first: str, second: str) -> list[Joint]:
     """Return the joints between two links."""
     up, down = _path_to_root(robot, first), _path_to_root(robot, second)
     return [joint for joint in up if joint not in down] + [joint for joint in down if joint not in up]
 
 
-def _can_move(robot: Robot, first: str, second: str) -> bool:
+def _can_move(robot: KinematicTree, first: str, second: str) -> bool:
     return any(joint.kind != "fixed" for joint in _between(robot, first, second))
 
 
-def _are_neighbours(robot: Robot, first: str, second: str) -> bool:
+def _are_neighbours(robot: KinematicTree, first: str, second: str) -> bool:
     if first not in {joint.parent for joint in _path_to_root(robot, second)}:
         return False
     joints = _between(robot, first, second)
@@ -101,20 +92,16 @@ def _are_neighbours(robot: Robot, first: str, second: str) -> bool:
     return not passed & {capsule.link for capsule in robot.capsules}
 
 
-def always_touching(robot: Robot, pairs: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
+def always_touching(robot: KinematicTree, pairs: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
     """Return those pairs of links that touch in every one of 1000 random configurations within the limits."""
     movable = [joint for joint in robot.joints if joint.kind != "fixed" and joint.mimic is None]
-    free = Robot(
-        robot.name, robot.links, robot.joints, robot.capsules, (), tuple(joint.name for joint in movable)
-    )
-    low = np.array(
-        [max(joint.lower, -np.pi) if joint.kind == "continuous" else joint.lower for joint in movable]
-    )
-    high = np.array(
-        [min(joint.upper, np.pi) if joint.kind == "continuous" else joint.upper for joint in movable]
-    )
+    # A full circle for continuous joints, which have no limits.
+    circle = [np.pi if joint.kind == "continuous" else np.inf for joint in movable]
+    low = np.maximum([joint.lower for joint in movable], np.negative(circle))
+    high = np.minimum([joint.upper for joint in movable], circle)
     q = low + generator(0).random((SAMPLES, len(movable))) * (high - low)
-    ends = capsule_ends(free, q)
+    values = with_mimics(robot, {joint.name: q[:, i] for i, joint in enumerate(movable)})
+    ends = ends_at(robot, poses_at(robot, values, SAMPLES))
     number: dict[str, list[int]] = {}
     for i, capsule in enumerate(robot.capsules):
         number.setdefault(capsule.link, []).append(i)

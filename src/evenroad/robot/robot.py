@@ -6,9 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from evenroad.errors import InvalidValue, UnknownName
+from evenroad.geometry.fit import fit_capsules
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import Capsule, Shape, without_pose
 from evenroad.robot.joint import Joint, require_within, within_limits_of_mimics
+from evenroad.robot.kinematics import held_values
+from evenroad.robot.pairs import computed_pairs
 from evenroad.robot.scene import Scene
 
 
@@ -53,31 +56,94 @@ class Robot:
     def with_tool(
         self, tool: Robot | Sequence[Shape], at: str, *, pose: Pose = IDENTITY, prefix: str = ""
     ) -> Robot:
-        """Return the robot with a tool fixed to one of its links; see :func:`evenroad.robot.tool.with_tool`."""
-        # Here, since working out its pairs needs robots.
-        from evenroad.robot.tool import with_tool
+        """Return the robot with a tool fixed to one of its links.
 
-        return with_tool(self, tool, at, pose=pose, prefix=prefix)
+        The group stays the robot's; the tool's joints are held where the tool has them, its group at 0 or the nearest
+        to it within limits.  Pairs within the robot and within the tool stay; those between the two are computed as
+        for a robot without an SRDF.
+
+        Parameters
+        ----------
+        tool : Robot, or sequence of Shape
+            A gripper or another tool as a robot of its own; or its shapes in the frame of a new link ``tool``, to which
+            capsules are fitted.
+        at : str
+            The link that carries it.
+        pose : Pose
+            Of the tool's root link in the frame of that link.
+        prefix : str
+            Put before the names of all of the tool's links and joints.
+
+        Raises
+        ------
+        UnknownName
+            If the robot has no such link.
+        InvalidValue
+            If the tool has no body, or a name in common with the robot.
+        """
+        if at not in self.links:
+            raise UnknownName.among(f"link of {self.name!r}", at, self.links)
+        if not isinstance(tool, Robot):
+            capsules = [capsule for shape in tool for capsule in fit_capsules(shape)]
+            tool = Robot("tool", ("tool",), (), tuple(replace(c, link="tool") for c in capsules), (), ())
+        if not tool.capsules:
+            raise InvalidValue(f"tool {tool.name!r} must have a body: without one it would never collide")
+        held = {name: joint.neutral for name in tool.group for joint in tool.joints if joint.name == name}
+        tool = _renamed(replace(tool, group=(), held=held_values(tool) | held, states={}), prefix)
+        mount = Joint(f"{at}-{tool.links[0]}", "fixed", at, tool.links[0], pose.xyz, pose.rotation)
+        joints = [joint.name for joint in self.joints], [mount.name, *(joint.name for joint in tool.joints)]
+        for what, ours, theirs in (("link", self.links, tool.links), ("joint", *joints)):
+            shared = sorted(set(ours) & set(theirs))
+            if shared:
+                raise InvalidValue(
+                    f"robot {self.name!r} and its tool must differ in the names of their {what}s, both have"
+                    f" {', '.join(shared)}; prefix='tool_' renames those of the tool"
+                )
+        joined = replace(
+            self,
+            name=f"{self.name} with {tool.name}",
+            links=(*self.links, *tool.links),
+            joints=(*self.joints, mount, *tool.joints),
+            capsules=(*self.capsules, *tool.capsules),
+            held={**self.held, **tool.held},
+        )
+        between = tuple(
+            pair
+            for pair in computed_pairs(joined).tested
+            if (pair[0] in tool.links) != (pair[1] in tool.links)
+        )
+        return replace(joined, pairs=(*self.pairs, *tool.pairs, *between))
+
+
+def _renamed(robot: Robot, prefix: str) -> Robot:
+    """Return a robot with `prefix` before the names of all links and joints."""
+    joints = tuple(
+        replace(
+            joint,
+            name=prefix + joint.name,
+            parent=prefix + joint.parent,
+            child=prefix + joint.child,
+            mimic=replace(joint.mimic, joint=prefix + joint.mimic.joint) if joint.mimic else None,
+        )
+        for joint in robot.joints
+    )
+    return replace(
+        robot,
+        links=tuple(prefix + link for link in robot.links),
+        joints=joints,
+        capsules=tuple(replace(capsule, link=prefix + capsule.link) for capsule in robot.capsules),
+        pairs=tuple((prefix + first, prefix + second) for first, second in robot.pairs),
+        held={prefix + name: value for name, value in robot.held.items()},
+    )
 
 
 @dataclass(frozen=True)
 class LinkBody:
     """What became of the collision geometry of a link.
 
-    Attributes
-    ----------
-    link : str
-        Name of the link.
-    shapes : tuple of str
-        What the URDF gives, e.g. ``box``, ``mesh forearm.stl``.
-    shape_volume : float
-        Sum of the volumes of those shapes [m^3].
-    capsules : int
-        How many capsules stand for them.
-    capsule_volume : float
-        Volume of the union of the capsules [m^3].
-    given : bool
-        Whether the user gave the capsules; else they were fitted, or the URDF has capsules and spheres itself.
+    `shapes` are those of the URDF, e.g.  ``box``, ``mesh forearm.stl``, and `shape_volume` the sum of their volumes
+    [m^3]; so many `capsules` stand for them, whose union has `capsule_volume` [m^3].  `given` says whether the user
+    gave them.
     """
 
     link: str
@@ -99,8 +165,6 @@ class RobotModel:
 
     Attributes
     ----------
-    robot : Robot
-        The robot.
     bodies : tuple of LinkBody
         One for each link that has a body.
     pairs_from : str
@@ -110,8 +174,8 @@ class RobotModel:
     drawn_only : tuple of str
         Links that the URDF draws (``<visual>``) and that have no body: nothing is ever found to touch them.
     always_touching : tuple of pairs of str
-        Pairs that are tested, since the SRDF does not disable them, and that touch in every sampled configuration: with
-        one of these no configuration is free.
+        Pairs that are tested, since the SRDF does not disable them, and touch in every sampled configuration: with one
+        of these no configuration is free.
     """
 
     robot: Robot

@@ -17,17 +17,9 @@ from evenroad.robot.urdf import Urdf
 class Srdf:
     """What an SRDF adds to a URDF.
 
-    Attributes
-    ----------
-    groups : mapping of str to tuple of str
-        Group -> its joints that can be planned for, in the order of the URDF: those that move, by themselves, and are
-        not passive.
-    states : mapping of (group, name) to mapping of str to float
-        Named states: joint -> value [rad or m].
-    disabled : frozenset of frozenset of two str
-        Pairs of links that are not tested against each other.
-    passive : frozenset of str
-        Joints that no motor moves.
+    `groups`, by name, are the joints that can be planned for, in the order of the URDF: those that move, by
+    themselves, and are not `passive`, without a motor.  `states` are named states, (group, name) -> joint -> value
+    [rad or m]; `disabled` are pairs of links that are not tested against each other.
     """
 
     groups: Mapping[str, tuple[str, ...]]

@@ -7,8 +7,8 @@ import re
 from collections.abc import Iterable, Mapping
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.robot.joint import Joint, require_within
 from evenroad.robot.kinematics import held_values
@@ -62,15 +62,11 @@ def at_states(robot: Robot, texts: Iterable[str], scene: Scene | None = None) ->
     return with_group(robot, robot.group, {**robot.held, **held})
 
 
-def state_values(robot: Robot, name: str, scene: Scene | None = None) -> npt.NDArray[np.float64]:
+def state_values(robot: Robot, name: str, scene: Scene | None = None) -> Floats:
     """Return the configuration, (dim,), of a named state of robot or scene [rad or m].
 
-    Raises
-    ------
-    UnknownName
-        If the state has a joint that the robot does not have.
-    InvalidValue
-        If it lacks a joint of the group, or has another joint elsewhere than where the robot holds it.
+    UnknownName if the state has a joint that the robot does not have; InvalidValue if it lacks a joint of the group, or
+    has another joint elsewhere than where the robot holds it.
     """
     values = named_states(robot, scene)[name]
     missing = [joint for joint in robot.group if joint not in values]
@@ -103,9 +99,7 @@ def _outside_group(robot: Robot, name: str, values: Mapping[str, float]) -> dict
     return {joint: values[joint] for joint in held_values(robot) if joint in values}
 
 
-def configuration(
-    robot: Robot, text: str, scene: Scene | None = None, *, degrees: bool = False
-) -> npt.NDArray[np.float64]:
+def configuration(robot: Robot, text: str, scene: Scene | None = None, *, degrees: bool = False) -> Floats:
     """Return the configuration that a text describes, (dim,) [rad or m].
 
     Parameters
@@ -144,14 +138,14 @@ def configuration(
     return q
 
 
-def require_within_limits(robot: Robot, q: npt.NDArray[np.float64], text: str) -> None:
+def require_within_limits(robot: Robot, q: Floats, text: str) -> None:
     """Raise InvalidValue unless a configuration, (dim,), is within the limits of its joints."""
     joints = {joint.name: joint for joint in robot.joints}
     for name, value in zip(robot.group, q.tolist(), strict=True):
         require_within(joints[name], value, repr(text))
 
 
-def _from_pairs(robot: Robot, text: str, degrees: bool) -> npt.NDArray[np.float64]:
+def _from_pairs(robot: Robot, text: str, degrees: bool) -> Floats:
     joints = {joint.name: joint for joint in robot.joints}
     values: dict[str, float] = {}
     place = 0
@@ -170,9 +164,7 @@ def _from_pairs(robot: Robot, text: str, degrees: bool) -> npt.NDArray[np.float6
     return np.array([values.get(name, neutral[name]) for name in robot.group])
 
 
-def _from_list(
-    robot: Robot, text: str, states: Mapping[str, object], degrees: bool
-) -> npt.NDArray[np.float64]:
+def _from_list(robot: Robot, text: str, states: Mapping[str, object], degrees: bool) -> Floats:
     words = text.replace(",", " ").split()
     if len(words) == 1 and not _is_number(words[0]):
         raise UnknownName(

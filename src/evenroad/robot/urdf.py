@@ -27,8 +27,6 @@ class Urdf:
 
     Attributes
     ----------
-    name : str
-        Name of the robot.
     links : tuple of str
         All links; the root first, every parent before its children.
     joints : tuple of Joint

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad._checks import as_batch as as_batch
 from evenroad.errors import InvalidValue
 
 
-def as_batch_pair(a: object, b: object, dim: int) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def as_batch_pair(a: object, b: object, dim: int) -> tuple[Floats, Floats]:
     """Return the two ends `a` and `b` of a batch of motions, both checked by `as_batch`, of one length.
 
     Raises
@@ -23,7 +23,7 @@ def as_batch_pair(a: object, b: object, dim: int) -> tuple[npt.NDArray[np.float6
     return first, second
 
 
-def as_cube_batch(u: object, cube_dim: int) -> npt.NDArray[np.float64]:
+def as_cube_batch(u: object, cube_dim: int) -> Floats:
     """Return `u` checked by `as_batch` and to lie in the closed unit cube.
 
     Raises
@@ -39,7 +39,7 @@ def as_cube_batch(u: object, cube_dim: int) -> npt.NDArray[np.float64]:
     return unit
 
 
-def as_fractions(t: object, n: int) -> npt.NDArray[np.float64]:
+def as_fractions(t: object, n: int) -> Floats:
     """Return the fractions `t` of `n` motions, a scalar or (n,) in [0, 1], as a column (n, 1).
 
     Raises

@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from evenroad._arrays import Floats
 from evenroad._checks import require_count
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.space.flat import FlatSpace
@@ -47,7 +47,7 @@ class ChainSpace(FlatSpace):
         """None: the metric is that of the plane in which the chain moves."""
         return None
 
-    def distance(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def distance(self, a: Floats, b: Floats) -> Floats:
         """Return ``sum_m |p_m(a) - p_m(b)|`` for two (n, joints) arrays as (n,), p_m the far end of link m.
 
         With the headings ``theta_j = q_1 + .. + q_j`` it is ``p_m = (1 / joints) sum_(j <= m) (cos theta_j, sin
@@ -56,15 +56,13 @@ class ChainSpace(FlatSpace):
         first, second = as_batch_pair(a, b, self.joints)
         return _distances(first, second)
 
-    def all_distances(
-        self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]
-    ) -> npt.NDArray[np.float64]:
+    def all_distances(self, a: Floats, b: Floats) -> Floats:
         """Return the distances of all pairs of rows, (n, joints) and (m, joints), as (n, m)."""
         return _all_distances(
             _far_ends(as_batch("a", a, self.joints)), _far_ends(as_batch("b", b, self.joints))
         )
 
-    def wrapped(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def wrapped(self, q: Floats) -> Floats:
         """Return `q`, (n, joints), with angles brought into [-pi, pi)."""
         return self._canonical(as_batch("q", q, self.joints))
 
@@ -78,7 +76,7 @@ def _distances(a, b):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def chain_distance(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> float:
+def chain_distance(a: Floats, b: Floats) -> float:
     """Return the distance of two configurations, (joints,): compiled, for compiled callers."""
     heading_a, heading_b, apart_x, apart_y, total = 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(len(a)):

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from evenroad._arrays import Bools, Floats
 from evenroad.errors import InvalidValue
 from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions
 
@@ -31,8 +31,8 @@ class FlatMetric:
         If the two are not such arrays of one length >= 1.
     """
 
-    scale: npt.NDArray[np.float64]
-    period: npt.NDArray[np.float64]
+    scale: Floats
+    period: Floats
 
     def __post_init__(self) -> None:
         for name in ("scale", "period"):
@@ -57,11 +57,11 @@ class FlatMetric:
         return len(self.scale)
 
     @property
-    def wrapping(self) -> npt.NDArray[np.bool_]:
+    def wrapping(self) -> Bools:
         """Which coordinates wrap, (dim,)."""
         return np.isfinite(self.period)
 
-    def difference(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def difference(self, a: Floats, b: Floats) -> Floats:
         """Return ``b - a`` the short way round, not scaled, for two (n, dim) arrays as (n, dim).
 
         Opposite places of a wrapping coordinate keep the sign of ``b - a``, so that the way between two of
@@ -73,7 +73,7 @@ class FlatMetric:
             difference[:, k] -= self.period[k] * np.rint(difference[:, k] / self.period[k])
         return difference
 
-    def distance(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def distance(self, a: Floats, b: Floats) -> Floats:
         """Return the distances of the rows of two float64 arrays, (n, dim), as (n,)."""
         scaled = self.difference(a, b) * self.scale
         # Column by column: the sum of a row then never depends on how long the batch is, nor does it overflow.
@@ -82,9 +82,7 @@ class FlatMetric:
             total = np.hypot(total, scaled[:, k])
         return total
 
-    def all_distances(
-        self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]
-    ) -> npt.NDArray[np.float64]:
+    def all_distances(self, a: Floats, b: Floats) -> Floats:
         """Return the distances of all pairs of rows of two float64 arrays, (n, dim) and (m, dim), as (n, m)."""
         return _all_distances(np.ascontiguousarray(a), np.ascontiguousarray(b), self.scale, self.period)
 
@@ -110,8 +108,8 @@ class FlatSpace:
     A wrapping axis takes any number and gives one in its half-open range ``[low, high)``.
     """
 
-    _low: npt.NDArray[np.float64]
-    _high: npt.NDArray[np.float64]
+    _low: Floats
+    _high: Floats
     _flat: FlatMetric
 
     def _set_axes(
@@ -143,19 +141,19 @@ class FlatSpace:
         """The metric as scales and periods of the coordinates."""
         return self._flat
 
-    def from_cube(self, u: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def from_cube(self, u: Floats) -> Floats:
         """Return ``low + u (high - low)`` for `u` of shape (n, dim) in [0, 1]^dim, as (n, dim)."""
         unit = as_cube_batch(u, self.dim)
         # Rounding may carry a point past the upper bound.
         return self._canonical(np.minimum(self._low + unit * (self._high - self._low), self._high))
 
-    def contains(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def contains(self, q: Floats) -> Bools:
         """Return for each row of `q`, (n, dim), whether its bounded axes are within their bounds: (n,)."""
         batch = as_batch("q", q, self.dim)
         within = (self._low <= batch) & (batch <= self._high)
         return np.logical_and.reduce(within | self._flat.wrapping, axis=1)
 
-    def distance(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def distance(self, a: Floats, b: Floats) -> Floats:
         """Return ``sqrt(sum_k (weight_k difference_k)^2)`` for two (n, dim) arrays as (n,).
 
         The difference on a wrapping axis is taken the short way round.
@@ -163,19 +161,12 @@ class FlatSpace:
         first, second = as_batch_pair(a, b, self.dim)
         return self._flat.distance(self._canonical(first), self._canonical(second))
 
-    def all_distances(
-        self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]
-    ) -> npt.NDArray[np.float64]:
+    def all_distances(self, a: Floats, b: Floats) -> Floats:
         """Return the distances of all pairs of rows, (n, dim) and (m, dim), as (n, m)."""
         first, second = as_batch("a", a, self.dim), as_batch("b", b, self.dim)
         return self._flat.all_distances(self._canonical(first), self._canonical(second))
 
-    def interpolate(
-        self,
-        a: npt.NDArray[np.float64],
-        b: npt.NDArray[np.float64],
-        t: npt.NDArray[np.float64] | float,
-    ) -> npt.NDArray[np.float64]:
+    def interpolate(self, a: Floats, b: Floats, t: Floats | float) -> Floats:
         """Return the points a fraction `t`, scalar or (n,) in [0, 1], of the short way from `a` to `b`.
 
         Exact at both ends and never beyond them.  Of the two ways between opposite places of a wrapping
@@ -195,7 +186,7 @@ class FlatSpace:
         )
         return np.where(fraction == 1.0, second, self._canonical(between))
 
-    def _canonical(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def _canonical(self, q: Floats) -> Floats:
         """Return `q` with wrapping axes brought into their ranges; what is there already is not rounded."""
         outside = ((q < self._low) | (q >= self._high)) & self._flat.wrapping
         if not outside.any():

@@ -5,39 +5,29 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue
 from evenroad.space.protocol import Space
 
 
-def motion_lengths(path: npt.NDArray[np.float64], space: Space) -> npt.NDArray[np.float64]:
+def motion_lengths(path: Floats, space: Space) -> Floats:
     """Return the length of each motion of a path in the metric of the space, (p - 1,)."""
     return space.distance(path[:-1], path[1:])
 
 
-def path_length(path: npt.NDArray[np.float64], space: Space) -> float:
+def path_length(path: Floats, space: Space) -> float:
     """Return the length of a path in the metric of the space; 0 for one waypoint."""
     return float(np.sum(motion_lengths(path, space)))
 
 
-def subdivide(
-    path: npt.NDArray[np.float64], space: Space, segments: npt.NDArray[np.integer]
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
-    """Divide each motion of a path into equal segments.
-
-    Parameters
-    ----------
-    path : ndarray, shape (p, dim), p >= 1
-        Waypoints; they are among the states as they are.
-    space : Space
-        Whose interpolation joins them.
-    segments : ndarray of int, shape (p - 1,)
-        How many for each motion, >= 1.
+def subdivide(path: Floats, space: Space, segments: npt.NDArray[np.integer]) -> tuple[Floats, Ints]:
+    """Divide each motion of a path, (p, dim), p >= 1, into so many equal segments, (p - 1,), >= 1.
 
     Returns
     -------
     states : ndarray, shape (s, dim)
-        The ends of all segments, ``s = 1 + sum(segments)``.
+        The ends of all segments, ``s = 1 + sum(segments)``; waypoints are among them as they are.
     own : ndarray of int64, shape (p,)
         Which of the states are the waypoints.
     """
@@ -50,9 +40,7 @@ def subdivide(
     return states, own
 
 
-def resample(
-    path: npt.NDArray[np.float64], space: Space, step: float
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
+def resample(path: Floats, space: Space, step: float) -> tuple[Floats, Ints]:
     """Return states along a path that are at most `step` apart, its waypoints among them.
 
     Each motion has ``max(1, ceil(length / step))`` equal segments; a path of one waypoint is one state.
@@ -75,7 +63,7 @@ def resample(
     return states, np.concatenate([[0], np.repeat(np.arange(len(path) - 1), segments)]).astype(np.int64)
 
 
-def place_at(path: npt.NDArray[np.float64], space: Space, t: npt.ArrayLike) -> npt.NDArray[np.float64]:
+def place_at(path: Floats, space: Space, t: npt.ArrayLike) -> Floats:
     """Return where on a path a robot is after shares `t` of its length, (n,) in [0, 1], as (n, dim).
 
     Raises

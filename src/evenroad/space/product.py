@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Bools, Floats
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.space.axes import as_weights
 from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions
@@ -74,17 +74,17 @@ class Product:
         """The metric as scales and periods, where every part has one and ``combine`` is "l2"; else None."""
         return self._flat
 
-    def from_cube(self, u: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def from_cube(self, u: Floats) -> Floats:
         """Map `u`, (n, cube_dim), to configurations, (n, dim), each part from its own columns."""
         columns = _split(as_cube_batch(u, self.cube_dim), [part.cube_dim for part in self.parts])
         return np.hstack([part.from_cube(own) for part, own in zip(self.parts, columns, strict=True)])
 
-    def contains(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def contains(self, q: Floats) -> Bools:
         """Return for each row of `q`, (n, dim), whether every part contains its own coordinates: (n,)."""
         columns = self.split(as_batch("q", q, self.dim))
         return np.all([part.contains(own) for part, own in zip(self.parts, columns, strict=True)], axis=0)
 
-    def distance(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def distance(self, a: Floats, b: Floats) -> Floats:
         """Return the combined, weighted distances of the rows of two (n, dim) arrays, (n,)."""
         assert self.weights is not None  # __post_init__ put numbers there
         lengths = [w * own for w, own in zip(self.weights, self.part_distances(a, b), strict=True)]
@@ -93,9 +93,7 @@ class Product:
             total = total + length if self.combine == "sum" else np.hypot(total, length)
         return total
 
-    def all_distances(
-        self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]
-    ) -> npt.NDArray[np.float64]:
+    def all_distances(self, a: Floats, b: Floats) -> Floats:
         """Return the distances of all pairs of rows, (n, dim) and (m, dim), as (n, m)."""
         assert self.weights is not None  # __post_init__ put numbers there
         first, second = self.split(as_batch("a", a, self.dim)), self.split(as_batch("b", b, self.dim))
@@ -105,9 +103,7 @@ class Product:
             total = total + length if self.combine == "sum" else np.hypot(total, length)
         return total
 
-    def part_distances(
-        self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]
-    ) -> list[npt.NDArray[np.float64]]:
+    def part_distances(self, a: Floats, b: Floats) -> list[Floats]:
         """Return for every part the distances in its own metric, without weights, each (n,)."""
         first, second = as_batch_pair(a, b, self.dim)
         return [
@@ -117,12 +113,7 @@ class Product:
             )
         ]
 
-    def interpolate(
-        self,
-        a: npt.NDArray[np.float64],
-        b: npt.NDArray[np.float64],
-        t: npt.NDArray[np.float64] | float,
-    ) -> npt.NDArray[np.float64]:
+    def interpolate(self, a: Floats, b: Floats, t: Floats | float) -> Floats:
         """Return the points a fraction `t`, scalar or (n,) in [0, 1], of the way in every part, (n, dim)."""
         first, second = as_batch_pair(a, b, self.dim)
         fraction = as_fractions(t, len(first))[:, 0]
@@ -135,12 +126,12 @@ class Product:
             ]
         )
 
-    def split(self, q: npt.NDArray[np.float64]) -> list[npt.NDArray[np.float64]]:
+    def split(self, q: Floats) -> list[Floats]:
         """Return the columns of `q`, (n, dim), that belong to each part."""
         return _split(q, [part.dim for part in self.parts])
 
 
-def _split(q: npt.NDArray[np.float64], widths: list[int]) -> list[npt.NDArray[np.float64]]:
+def _split(q: Floats, widths: list[int]) -> list[Floats]:
     return np.split(q, np.cumsum(widths)[:-1], axis=1)
 
 
@@ -192,19 +183,7 @@ def SE3(
 ) -> Product:
     """Return the poses (x, y, z, qw, qx, qy, qz) of a body in space; points of the cube have 6 coordinates.
 
-    Parameters
-    ----------
-    low, high : sequence of three floats
-        Bounds of the position.
-    weights : sequence of two floats
-        What a unit of length and a radian of ``arccos |q . q'|`` count, > 0.
-    combine : {"sum", "l2"}
-        How the two distances make one; "sum" is OMPL's.
-
-    Raises
-    ------
-    InvalidValue, UnknownName
-        As `Box` and `Product`.
+    Parameters and errors as :func:`SE2`, with three bounds.  A radian is one of ``arccos |q . q'|``; "sum" is OMPL's.
     """
     return Product((_position(low, high, 3), SO3()), weights, combine)
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Bools, Floats
 from evenroad.space.batch import as_batch
 from evenroad.space.flat import FlatMetric
 
@@ -34,40 +34,28 @@ class Space(Protocol):
         """The metric as scales and periods of the coordinates, or None where it is not of that kind."""
         return None
 
-    def from_cube(self, u: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def from_cube(self, u: Floats) -> Floats:
         """Map points of the unit cube, (n, cube_dim), to configurations, (n, dim), preserving measure."""
         ...
 
-    def contains(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def contains(self, q: Floats) -> Bools:
         """Return for each row of `q`, (n, dim), whether it lies in the space, bounds included: (n,)."""
         return np.ones(len(as_batch("q", q, self.dim)), dtype=np.bool_)
 
-    def distance(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def distance(self, a: Floats, b: Floats) -> Floats:
         """Return the distance of each row of `a` from the same row of `b`: two (n, dim) arrays -> (n,)."""
         ...
 
-    def interpolate(
-        self,
-        a: npt.NDArray[np.float64],
-        b: npt.NDArray[np.float64],
-        t: npt.NDArray[np.float64] | float,
-    ) -> npt.NDArray[np.float64]:
+    def interpolate(self, a: Floats, b: Floats, t: Floats | float) -> Floats:
         """Return the points a fraction `t` (scalar or (n,), in [0, 1]) from `a` to `b`, (n, dim)."""
         ...
 
 
-def all_distances(
-    space: Space, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]
-) -> npt.NDArray[np.float64]:
+def all_distances(space: Space, a: Floats, b: Floats) -> Floats:
     """Return the distance of every row of `a`, (n, dim), from every row of `b`, (m, dim), as (n, m).
 
     By the space's own ``all_distances(a, b)`` if it has one, which is a matter of speed alone: it gives what
     ``distance`` gives, up to rounding.
-
-    Raises
-    ------
-    InvalidValue
-        As the space's ``distance``.
     """
     own = getattr(space, "all_distances", None)
     if own is not None:

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Bools, Floats
 from evenroad.errors import InvalidValue
 from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions
 from evenroad.space.flat import FlatMetric
@@ -74,7 +74,7 @@ class Rectangle:
         """Area, in squared units of `corner`."""
         return math.hypot(*self.edge_u) * math.hypot(*self.edge_v)
 
-    def from_cube(self, u: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def from_cube(self, u: Floats) -> Floats:
         """Return ``corner + u[:, 0] edge_u + u[:, 1] edge_v`` for `u` of shape (n, 2), as (n, 2)."""
         unit = as_cube_batch(u, 2)
         # Written out instead of a matrix product: BLAS may round a row differently in a longer batch.
@@ -82,7 +82,7 @@ class Rectangle:
             [self.corner[k] + unit[:, 0] * self.edge_u[k] + unit[:, 1] * self.edge_v[k] for k in (0, 1)]
         )
 
-    def contains(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def contains(self, q: Floats) -> Bools:
         """Return for each row of `q`, (n, 2), whether it lies in the rectangle, up to rounding: (n,)."""
         offset = as_batch("q", q, 2) - np.array(self.corner)
         inside = np.ones(len(offset), dtype=np.bool_)
@@ -91,17 +91,12 @@ class Rectangle:
             inside &= (along >= -_ROUNDING) & (along <= 1.0 + _ROUNDING)
         return inside
 
-    def distance(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def distance(self, a: Floats, b: Floats) -> Floats:
         """Return the Euclidean distances of the rows of `a` and `b`, both (n, 2), as (n,)."""
         first, second = as_batch_pair(a, b, 2)
         return np.hypot(second[:, 0] - first[:, 0], second[:, 1] - first[:, 1])
 
-    def interpolate(
-        self,
-        a: npt.NDArray[np.float64],
-        b: npt.NDArray[np.float64],
-        t: npt.NDArray[np.float64] | float,
-    ) -> npt.NDArray[np.float64]:
+    def interpolate(self, a: Floats, b: Floats, t: Floats | float) -> Floats:
         """Return ``(1 - t) a + t b`` for `a`, `b` of shape (n, 2) and `t` in [0, 1], scalar or (n,)."""
         first, second = as_batch_pair(a, b, 2)
         column = as_fractions(t, len(first))

@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from evenroad._arrays import Bools, Floats
 from evenroad.errors import InvalidValue
 from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions
 
@@ -42,7 +42,7 @@ class SO3:
         """None: rotations are curved."""
         return None
 
-    def from_cube(self, u: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def from_cube(self, u: Floats) -> Floats:
         """Map `u`, (n, 3) in [0, 1]^3, to quaternions, (n, 4), so that equal volumes get equal measure.
 
         K. Shoemake, "Uniform random rotations", Graphics Gems III, 1992, pp. 124-132.  All unit quaternions
@@ -54,11 +54,11 @@ class SO3:
         x, y, z, w = near * np.sin(first), near * np.cos(first), far * np.sin(second), far * np.cos(second)
         return np.column_stack([w, x, y, z])
 
-    def contains(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def contains(self, q: Floats) -> Bools:
         """Return for each row of `q`, (n, 4), whether its norm is 1 up to 1e-6: (n,)."""
         return np.abs(_norm(as_batch("q", q, 4)) - 1.0) <= _UNIT_TOLERANCE
 
-    def distance(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def distance(self, a: Floats, b: Floats) -> Floats:
         """Return ``arccos |a . b|`` of the rows of two (n, 4) arrays, (n,), in [0, pi / 2].
 
         Raises
@@ -69,19 +69,12 @@ class SO3:
         first, second = self._unit_pair(a, b)
         return _angle(first, _nearer_sign(first, second)[:, np.newaxis] * second)
 
-    def all_distances(
-        self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]
-    ) -> npt.NDArray[np.float64]:
+    def all_distances(self, a: Floats, b: Floats) -> Floats:
         """Return the distances of all pairs of rows, (n, 4) and (m, 4), as (n, m).  Errors as `distance`."""
         first, second = _unit_batch("a", a), _unit_batch("b", b)
         return _all_angles(first, second)
 
-    def interpolate(
-        self,
-        a: npt.NDArray[np.float64],
-        b: npt.NDArray[np.float64],
-        t: npt.NDArray[np.float64] | float,
-    ) -> npt.NDArray[np.float64]:
+    def interpolate(self, a: Floats, b: Floats, t: Floats | float) -> Floats:
         """Return the rotations a fraction `t`, scalar or (n,) in [0, 1], of the shortest turn from `a` to `b`.
 
         Spherical linear interpolation (K. Shoemake, SIGGRAPH 1985) towards b or -b, whichever is nearer, and
@@ -98,12 +91,12 @@ class SO3:
         between /= _norm(between)[:, np.newaxis]
         return np.where(fraction == 0.0, first, np.where(fraction == 1.0, second, between))
 
-    def _unit_pair(self, a: object, b: object) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    def _unit_pair(self, a: object, b: object) -> tuple[Floats, Floats]:
         first, second = as_batch_pair(a, b, 4)
         return _unit_batch("a", first), _unit_batch("b", second)
 
 
-def _unit_batch(name: str, q: object) -> npt.NDArray[np.float64]:
+def _unit_batch(name: str, q: object) -> Floats:
     batch = as_batch(name, q, 4)
     norm = _norm(batch)
     wrong = np.flatnonzero(np.abs(norm - 1.0) > _UNIT_TOLERANCE)
@@ -114,17 +107,17 @@ def _unit_batch(name: str, q: object) -> npt.NDArray[np.float64]:
     return batch
 
 
-def _norm(q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def _norm(q: Floats) -> Floats:
     # Written out: the bits of a row must not depend on the length of the batch, nor huge entries overflow.
     return np.hypot(np.hypot(q[:, 0], q[:, 1]), np.hypot(q[:, 2], q[:, 3]))
 
 
-def _nearer_sign(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def _nearer_sign(a: Floats, b: Floats) -> Floats:
     dot = a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2] + a[:, 3] * b[:, 3]
     return np.where(dot < 0.0, -1.0, 1.0)
 
 
-def _angle(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def _angle(a: Floats, b: Floats) -> Floats:
     """Return the angle between unit vectors; unlike arccos it keeps all digits of small angles (Kahan)."""
     return 2.0 * np.arctan2(_norm(a - b), _norm(a + b))
 

@@ -7,9 +7,9 @@ from __future__ import annotations
 import itertools
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
+from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue
 from evenroad.space import Space
 
@@ -36,11 +36,11 @@ class SpaceContract:
     space: Space
     measure_is_the_metrics = True
 
-    def configurations(self, n: int, seed: int = 7) -> npt.NDArray[np.float64]:
+    def configurations(self, n: int, seed: int = 7) -> Floats:
         """Return `n` random configurations of the space, (n, dim)."""
         return self.space.from_cube(np.random.default_rng(seed).random((n, self.space.cube_dim)))
 
-    def pairs(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], float]:
+    def pairs(self) -> tuple[Floats, Floats, float]:
         """Return the ends of 30 random motions, two (30, dim) arrays, and a tolerance for their lengths."""
         q = self.configurations(60)
         a, b = q[:30], q[30:]
@@ -78,9 +78,7 @@ class SpaceContract:
         volumes = [np.mean(self._lengths(place, directions) ** -dim) for place in places]
         np.testing.assert_allclose(volumes / np.mean(volumes), 1.0, atol=_VOLUME_TOLERANCE)
 
-    def _lengths(
-        self, place: npt.NDArray[np.float64], steps: npt.NDArray[np.float64]
-    ) -> npt.NDArray[np.float64]:
+    def _lengths(self, place: Floats, steps: Floats) -> Floats:
         """Return how far the space goes for `steps` of the cube, (n, cube_dim), in the limit of small ones."""
         shrink = 1e-4 / np.abs(steps).max(axis=1)
         here = self.space.from_cube(np.tile(place, (len(steps), 1)))

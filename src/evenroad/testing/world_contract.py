@@ -5,9 +5,9 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
+from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue
 from evenroad.world import World
 
@@ -28,11 +28,11 @@ class WorldContract:
     world: World
     free_between = True
 
-    def places(self) -> npt.NDArray[np.float64]:
+    def places(self) -> Floats:
         """Return 400 random configurations, (400, dim)."""
         return self.world.space.from_cube(np.random.default_rng(11).random((400, self.world.space.cube_dim)))
 
-    def motions(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    def motions(self) -> tuple[Floats, Floats]:
         """Return the two ends of 400 motions, short ones and long ones."""
         q = self.places()
         reach = np.random.default_rng(12).random(len(q)) ** 3

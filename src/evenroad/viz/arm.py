@@ -6,7 +6,6 @@ import os
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import PolyCollection
@@ -15,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from evenroad._arrays import Floats
 from evenroad._files import atomic_write
 from evenroad.roadmap import PlanResult, Status
 from evenroad.robot.kinematics import capsule_ends, link_poses
@@ -109,7 +109,7 @@ def draw_arm_view(axes: Axes, result: PlanResult, world: ArmWorld, pair: tuple[i
         _mark_collision(axes, result, world, pair)
 
 
-def _shown(result: PlanResult, world: ArmWorld) -> npt.NDArray[np.float64]:
+def _shown(result: PlanResult, world: ArmWorld) -> Floats:
     """Return configurations from start to goal, evenly along the path, (s, dim)."""
     if result.path is None:
         return np.stack([result.start, result.goal])
@@ -119,9 +119,7 @@ def _shown(result: PlanResult, world: ArmWorld) -> npt.NDArray[np.float64]:
     return dense[np.abs(lengths - wanted[:, np.newaxis]).argmin(axis=1)]
 
 
-def _bodies(
-    robot: Robot, ends: npt.NDArray[np.float64], pair: tuple[int, int]
-) -> list[npt.NDArray[np.float64]]:
+def _bodies(robot: Robot, ends: Floats, pair: tuple[int, int]) -> list[Floats]:
     return [
         stadium(a[list(pair)], b[list(pair)], capsule.radius)
         for (a, b), capsule in zip(ends, robot.capsules, strict=True)
@@ -138,7 +136,7 @@ def _tip(robot: Robot) -> int:
     return robot.links.index(tip)
 
 
-def _tip_path(path: npt.NDArray[np.float64], world: ArmWorld) -> npt.NDArray[np.float64]:
+def _tip_path(path: Floats, world: ArmWorld) -> Floats:
     return link_poses(world.robot, resample(path, world.space, _STEP)[0])[:, _tip(world.robot), :3, 3]
 
 
@@ -180,9 +178,7 @@ def _tint(share: float, strength: float) -> tuple[float, ...]:
     return tuple((1.0 - strength * (1.0 - colour)).tolist())
 
 
-def _limits(
-    world: ArmWorld, shown: npt.NDArray[np.float64]
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def _limits(world: ArmWorld, shown: Floats) -> tuple[Floats, Floats]:
     """Return corners, (3,) each, of the box that is shown: the arm, and of the obstacles what is near it."""
     ends = capsule_ends(world.robot, shown)
     radius = max(capsule.radius for capsule in world.robot.capsules)

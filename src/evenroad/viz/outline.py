@@ -5,26 +5,26 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad.robot.scene import Obstacle
 
 _ROUND = 32
 """Corners that stand for a circle."""
 
 
-def stadium(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64], radius: float) -> npt.NDArray[np.float64]:
+def stadium(a: Floats, b: Floats, radius: float) -> Floats:
     """Return the outline, (c, 2), of all points within `radius` of the segment from `a` to `b`, both (2,)."""
     heading = math.atan2(b[1] - a[1], b[0] - a[0])
     half = np.linspace(-0.5 * math.pi, 0.5 * math.pi, _ROUND // 2 + 1)
 
-    def cap(centre: npt.NDArray[np.float64], facing: float) -> npt.NDArray[np.float64]:
+    def cap(centre: Floats, facing: float) -> Floats:
         return centre + radius * np.column_stack([np.cos(half + facing), np.sin(half + facing)])
 
     return np.concatenate([cap(b, heading), cap(a, heading + math.pi)])
 
 
-def obstacle_outline(obstacle: Obstacle, axes: tuple[int, int]) -> npt.NDArray[np.float64]:
+def obstacle_outline(obstacle: Obstacle, axes: tuple[int, int]) -> Floats:
     """Return the outline, (c, 2), of an obstacle in the plane of two of the axes 0, 1, 2."""
     rotation, centre = np.reshape(obstacle.rotation, (3, 3)), np.array(obstacle.xyz)
     if obstacle.shape == "sphere":
@@ -36,16 +36,13 @@ def obstacle_outline(obstacle: Obstacle, axes: tuple[int, int]) -> npt.NDArray[n
     return _sum_of_segments(centre[list(axes)], sides)
 
 
-def obstacle_bounds(obstacle: Obstacle) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def obstacle_bounds(obstacle: Obstacle) -> tuple[Floats, Floats]:
     """Return the lower and the upper corner, (3,) each, of an obstacle's bounding box."""
     top, side = obstacle_outline(obstacle, (0, 1)), obstacle_outline(obstacle, (0, 2))
-    return (
-        np.append(top.min(axis=0), side[:, 1].min()),
-        np.append(top.max(axis=0), side[:, 1].max()),
-    )
+    return (np.append(top.min(axis=0), side[:, 1].min()), np.append(top.max(axis=0), side[:, 1].max()))
 
 
-def _sides(obstacle: Obstacle) -> npt.NDArray[np.float64]:
+def _sides(obstacle: Obstacle) -> Floats:
     """Return segments, as columns (3, s), whose Minkowski sum a box or (nearly) a cylinder is, in the body's frame."""
     if obstacle.shape == "box":
         return np.diag(obstacle.size)
@@ -56,9 +53,7 @@ def _sides(obstacle: Obstacle) -> npt.NDArray[np.float64]:
     return np.column_stack([rim, [0.0, 0.0, length]])
 
 
-def _sum_of_segments(
-    centre: npt.NDArray[np.float64], sides: npt.NDArray[np.float64]
-) -> npt.NDArray[np.float64]:
+def _sum_of_segments(centre: Floats, sides: Floats) -> Floats:
     """Return the outline, (2 s, 2), of the Minkowski sum of segments, (s, 2), around `centre`.
 
     Its sides are the segments in the order of their angles, there and back.

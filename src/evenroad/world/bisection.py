@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Bools, Ints
 from evenroad.errors import InvalidValue
 
 MOST_SEGMENTS = 2**30
@@ -30,10 +30,10 @@ def require_few_segments(resolution: object, segments: float) -> None:
         )
 
 
-def between_ends(
-    segments: npt.NDArray[np.int64], open_motions: npt.NDArray[np.bool_]
-) -> Iterator[tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]]:
+def between_ends(segments: Ints, open_motions: Bools) -> Iterator[tuple[Ints, Ints]]:
     """Yield the states of all motions level by level, as the motions' indices and the states' numbers.
+
+    State k of n segments lies a fraction k / n along its motion.  All levels together hold each state once.
 
     Parameters
     ----------
@@ -42,11 +42,6 @@ def between_ends(
     open_motions : bool array, shape (m,)
         Which motions are still of interest.  The caller may clear entries between two steps; no further
         states of those motions are then yielded.
-
-    Yields
-    ------
-    motion, state : int64 arrays of one length
-        State k of n lies a fraction k / n along its motion.  All levels together hold each state once.
     """
     level = 1
     while True:

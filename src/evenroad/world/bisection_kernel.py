@@ -7,19 +7,10 @@ from numba import njit
 
 @njit(cache=True, nogil=True)
 def next_between(level: int, multiple: int, segments: int) -> tuple[int, int, int]:
-    """Return the next state between the ends of a motion, with where it stands in the order.
+    """Return the next state between the ends of a motion of so many segments, with its place in the order.
 
-    Parameters
-    ----------
-    level, multiple : int
-        Where the state before stands; 1 and -1 for the first.
-    segments : int
-        In how many segments the motion is divided, below 2^31.
-
-    Returns
-    -------
-    level, multiple, state : int
-        State k of n lies a fraction k / n along the motion; 0 where there are no more.
+    `level` and `multiple` are the place of the state before; 1 and -1 for the first.  State k of n lies a fraction k /
+    n along the motion; it is 0 where there are no more.
     """
     while True:
         multiple += 2

@@ -4,28 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-import numpy.typing as npt
-
+from evenroad._arrays import Bools, Floats
 from evenroad.space import Space
 from evenroad.world.protocol import World
 
 
 @dataclass(eq=False)
 class Counting:
-    """Another world's answers, with a count of the questions.  Not for several threads at once.
+    """Another world's answers, with counts of what was asked.  Not for several threads at once.
 
-    Parameters
-    ----------
-    world : World
-        The world that answers.
-
-    Attributes
-    ----------
-    configurations : int
-        How many configurations `valid` was asked for.
-    motions : int
-        How many motions `motion_valid` was asked for; the states inside them are not configurations here.
+    `configurations` counts those that `valid` was asked for, `motions` those of `motion_valid`; the states inside of
+    motions are not configurations here.
     """
 
     world: World
@@ -43,13 +32,13 @@ class Counting:
         """The world's space."""
         return self.world.space
 
-    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def valid(self, q: Floats) -> Bools:
         """Return the world's `valid`; each row counts as a configuration."""
         answer = self.world.valid(q)
         self.configurations += len(answer)
         return answer
 
-    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return the world's `motion_valid`; each row counts as a motion."""
         answer = self.world.motion_valid(a, b)
         self.motions += len(answer)

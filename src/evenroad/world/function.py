@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad._checks import require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue, NotAvailable
@@ -16,9 +16,6 @@ from evenroad.space import Product, Space
 from evenroad.space.axes import as_row
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.bisection import between_ends, require_few_segments
-
-_PROBES = 4096
-"""Places whose verdicts are part of a fingerprint."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +52,7 @@ class FunctionWorld:
     """
 
     space: Space
-    is_valid: Callable[[npt.NDArray[np.float64]], Any]
+    is_valid: Callable[[Floats], Any]
     resolution: float | Sequence[float]
     vectorised: bool = True
     name: str | None = None
@@ -65,7 +62,7 @@ class FunctionWorld:
             raise InvalidValue(f"is_valid must be a function, got {self.is_valid!r}")
         object.__setattr__(self, "resolution", _as_resolution(self.resolution, self.space))
 
-    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def valid(self, q: Floats) -> Bools:
         """Return which configurations, (n, dim), the space contains and the function calls free: (n,).
 
         Raises
@@ -80,7 +77,7 @@ class FunctionWorld:
         self._clear_blocked(free, inside, batch[inside])
         return free
 
-    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
 
         Raises
@@ -114,13 +111,13 @@ class FunctionWorld:
             )
         return fingerprint_of("function", self.name, self.space, self.resolution)
 
-    def explain(self, q: npt.NDArray[np.float64]) -> str:
+    def explain(self, q: Floats) -> str:
         """Return in words why one configuration, (dim,), is not free."""
         if not self.space.contains(np.asarray(q, dtype=np.float64)[np.newaxis])[0]:
             return "it lies outside the bounds of the space"
         return f"{_name_of(self.is_valid)} does not call it free"
 
-    def _segments(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
+    def _segments(self, a: Floats, b: Floats) -> Ints:
         if isinstance(self.resolution, float):
             segments = np.ceil(self.space.distance(a, b) / self.resolution)
         else:
@@ -130,12 +127,7 @@ class FunctionWorld:
         require_few_segments(self.resolution, segments.max(initial=0.0))
         return segments.astype(np.int64)
 
-    def _clear_blocked(
-        self,
-        free: npt.NDArray[np.bool_],
-        owner: npt.NDArray[np.int64],
-        states: npt.NDArray[np.float64],
-    ) -> None:
+    def _clear_blocked(self, free: Bools, owner: Ints, states: Floats) -> None:
         """Set ``free[owner[i]]`` to False for every state i that the function does not call free."""
         if len(states) == 0:
             return
@@ -148,7 +140,7 @@ class FunctionWorld:
             if free[i]:
                 free[i] = self._ask_one(state)
 
-    def _ask(self, states: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def _ask(self, states: Floats) -> Bools:
         answer = np.asarray(self.is_valid(states))
         if answer.shape != (len(states),) or answer.dtype != np.bool_:
             raise InvalidValue(
@@ -158,7 +150,7 @@ class FunctionWorld:
             )
         return answer
 
-    def _ask_one(self, state: npt.NDArray[np.float64]) -> bool:
+    def _ask_one(self, state: Floats) -> bool:
         answer = self.is_valid(state)
         if not isinstance(answer, bool | np.bool_):
             raise InvalidValue(
@@ -167,12 +159,18 @@ class FunctionWorld:
         return bool(answer)
 
 
-def _golden(d: int) -> float:
-    """Return the golden ratio of d dimensions, the root above 1 of ``x**(d + 1) = x + 1`` (Roberts 2018)."""
-    x = 2.0
-    for _ in range(64):
-        x = (1.0 + x) ** (1.0 / (d + 1))
-    return x
+class TestedAtStates:
+    """Base of worlds that test motions as :class:`FunctionWorld` does; a subclass sets `_states`."""
+
+    _states: FunctionWorld
+
+    def valid(self, q: Floats) -> Bools:
+        """Return which configurations, (n, dim), lie in the space and are free: (n,)."""
+        return self._states.valid(q)
+
+    def motion_valid(self, a: Floats, b: Floats) -> Bools:
+        """Return which motions, two (m, dim) arrays, are free at all states: (m,)."""
+        return self._states.motion_valid(a, b)
 
 
 def _as_resolution(resolution: object, space: Space) -> float | tuple[float, ...]:
@@ -188,9 +186,7 @@ def _as_resolution(resolution: object, space: Space) -> float | tuple[float, ...
     return row
 
 
-def _in_fixed_order(
-    a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def _in_fixed_order(a: Floats, b: Floats) -> tuple[Floats, Floats]:
     """Return the ends with the smaller (in dictionary order) first.
 
     States are rounded: without a fixed order a motion and its reverse could be judged differently.

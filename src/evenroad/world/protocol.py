@@ -5,9 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
-import numpy as np
-import numpy.typing as npt
-
+from evenroad._arrays import Bools, Floats
 from evenroad.space import Space
 
 
@@ -24,11 +22,11 @@ class World(Protocol):
         """The space that the configurations live in."""
         ...
 
-    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def valid(self, q: Floats) -> Bools:
         """Return for each configuration, (n, dim), whether it is free: (n,)."""
         ...
 
-    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return for each pair of rows of two (m, dim) arrays whether the motion is free: (m,)."""
         ...
 
@@ -37,7 +35,7 @@ class World(Protocol):
 class Explains(Protocol):
     """A world that can say in words why a configuration is not free; planners put it into their answers."""
 
-    def explain(self, q: npt.NDArray[np.float64]) -> str:
+    def explain(self, q: Floats) -> str:
         """Return for one configuration, (dim,), that is not free, what it collides with."""
         ...
 
@@ -51,7 +49,7 @@ class Rechecks(Protocol):
         """What `recheck` shows: ``resolution`` (states closer than planned with) or ``certified`` (no gap)."""
         ...
 
-    def recheck(self, path: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def recheck(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, dim), are free by the strict check: (p - 1,)."""
         ...
 
@@ -80,7 +78,7 @@ class Connection:
         Nodes grown, and states and motions checked.
     """
 
-    path: npt.NDArray[np.float64]
+    path: Floats
     goal: int
     nodes: int
     configurations: int
@@ -96,18 +94,11 @@ class ConnectsItself(Protocol):
         """What results call this planner."""
         ...
 
-    def connect(
-        self,
-        start: npt.NDArray[np.float64],
-        goals: npt.NDArray[np.float64],
-        *,
-        most_motions: int,
-        seconds: float,
-    ) -> Connection:
+    def connect(self, start: Floats, goals: Floats, *, most_motions: int, seconds: float) -> Connection:
         """Join the start, (dim,), to the first of the goals, (g, dim), that can be reached within the budget."""
         ...
 
-    def shorten(self, path: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], int]:
+    def shorten(self, path: Floats) -> tuple[Floats, int]:
         """Return a path that is not longer and passes the strict check, and how many motions were checked."""
         ...
 
@@ -116,6 +107,6 @@ class ConnectsItself(Protocol):
 class Separates(Protocol):
     """A world that can prove that no path leads from one configuration to another."""
 
-    def may_connect(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> bool:
+    def may_connect(self, a: Floats, b: Floats) -> bool:
         """Return False where it is proved that no path leads from `a` to `b`, (dim,) each; True says nothing."""
         ...

@@ -138,9 +138,9 @@ def test_rules_share_a_set_and_its_validity(problems, monkeypatch):
     drawn = []
     uniform = SAMPLERS["uniform"]
 
-    def draw(n, d, run, rng):
+    def draw(family, n, d, run, rng):
         drawn.append(run)
-        return uniform.draw(n, d, run, rng)
+        return uniform.draw(family, n, d, run, rng)
 
     monkeypatch.setitem(SAMPLERS, "uniform", replace(uniform, draw=draw))
     for run in (100, 101):

@@ -31,17 +31,10 @@ SEED = 20261121
 
 @dataclass(frozen=True)
 class Cell:
-    """The pool of one family at one n and d.
+    """The pool of one family at one n and d: how its sets were made, and by which version.
 
-    Attributes
-    ----------
-    method, objective, version : str
-    steps : int
-        How its sets were made, and by which version.
-    hashes : tuple of str
-        ``PointSet.hash`` of every set, of the stored float32 values.
-    measures : dict of str to tuple of float
-        Measures of every set, of the stored values.
+    `hashes` are those of the sets (``PointSet.hash`` of the stored float32 values); `measures` has the values of every
+    set.
     """
 
     path: Path
@@ -90,14 +83,8 @@ class Bank:
     def cell(self, family: str, n: int, d: int) -> Cell:
         """Return the pool of one family at one n and d.
 
-        Raises
-        ------
-        UnknownName
-            If the bank has no such family.
-        NotAvailable
-            If the family has no set of this n and d; the text names the n (or the d) it has.
-        BrokenFile
-            If the index is damaged.
+        UnknownName if the bank has no such family, NotAvailable, with what there is, if the family has no such pool;
+        BrokenFile if the index is damaged.
         """
         counts = self.counts(family, d)
         if n not in counts:
@@ -165,7 +152,7 @@ def _parse_index(path: Path, mtime_ns: int) -> dict[str, Any]:
 def _load_checked(path: Path, shape: tuple[int, ...], hashes: tuple[str, ...]) -> npt.NDArray[np.float32]:
     try:
         sets = np.load(path, allow_pickle=False)
-    except Exception as error:  # no list is complete: see evenroad.points.npz
+    except Exception as error:  # no list is complete: see evenroad._npz
         raise BrokenFile(f"the bank's file {path} cannot be read: {shown(error)}") from error
     if not isinstance(sets, np.ndarray) or sets.dtype != np.float32 or sets.shape != shape:
         raise BrokenFile(f"the bank's file {path} is not a float32 array of shape {shape}")

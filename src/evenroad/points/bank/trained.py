@@ -26,7 +26,7 @@ ON_DEMAND_STEPS = 5000
 
 TRAINED_FAMILIES: dict[str, str] = {
     "hickernell": "sets annealed for the Hickernell L2 discrepancy",
-    "mpmc": "sets of the paper's message-passing network, trained for the same discrepancy; only those that ship",
+    "mpmc": "sets of the paper's message-passing network, for the same measure as hickernell; only those that ship",
 }
 """Name -> one line about the family."""
 

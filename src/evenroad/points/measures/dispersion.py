@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 from scipy.spatial import Voronoi, cKDTree
 
+from evenroad._arrays import Floats
 from evenroad._checks import require_count, require_positive
 from evenroad._rng import RngLike, generator
 from evenroad.errors import InvalidValue, NotAvailable, UnknownName
-from evenroad.points.measures.l2 import Array
 from evenroad.points.pointset import as_unit_points
 
 BUDGET = 4e8
@@ -129,7 +128,7 @@ def dispersion_lower_bound(
     d = coordinates.shape[1]
     tree = cKDTree(coordinates)
 
-    def emptiness(places: Array) -> Array:
+    def emptiness(places: Floats) -> Floats:
         return np.asarray(tree.query(places, p=NORMS[norm])[0])
 
     corners = np.round(draws.random((starts // 4 + 1, d)))
@@ -150,7 +149,7 @@ def dispersion_lower_bound(
     return float(heights.max())
 
 
-def _checked(points: object, exact: str | None) -> Array:
+def _checked(points: object, exact: str | None) -> Floats:
     coordinates = as_unit_points(points)
     n, d = coordinates.shape
     if n == 0:
@@ -162,26 +161,21 @@ def _checked(points: object, exact: str | None) -> Array:
     return coordinates
 
 
-def _dispersion_of_line(coordinates: Array) -> float:
+def _dispersion_of_line(coordinates: Floats) -> float:
     ordered = np.sort(coordinates)
     return float(max(ordered[0], 1.0 - ordered[-1], np.diff(ordered).max(initial=0.0) / 2.0))
 
 
-def _corners(d: int) -> npt.NDArray[np.float64]:
+def _corners(d: int) -> Floats:
     return np.array(np.meshgrid(*[[0.0, 1.0]] * d)).reshape(d, -1).T
 
 
-def _largest_hole(coordinates: Array) -> float:
-    """Return the largest r such that some place of [0, 1]^d has linf-distance r to the nearest point.
+def _largest_hole(coordinates: Floats) -> float:
+    """Return the largest linf-distance of a place of [0, 1]^d from the nearest of (n, d) points, d = 2 or 3.
 
     The unit cube is cut into slabs, taken in a fixed random order.  A slab is bisected only if it holds a larger
     hole than all before: a few of them, so the whole costs little more than one test of coverage (the
     randomised optimisation of Chan 1999).
-
-    Parameters
-    ----------
-    coordinates : ndarray, shape (n, d)
-        n >= 1 points, d = 2 or 3.
     """
     n, d = coordinates.shape
     ordered = coordinates[np.argsort(coordinates[:, -1], kind="stable")]

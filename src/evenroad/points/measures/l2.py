@@ -15,10 +15,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
-Array = npt.NDArray[np.float64]
+from evenroad._arrays import Floats
 
 TILE = 512
 """Points in a tile: small enough for the first cache, large enough to keep the vector units busy."""
@@ -27,8 +26,8 @@ TILE = 512
 class MaximumPairs(NamedTuple):
     """Pair factors ``ceiling_k - slope_k * max(x, y)``, positive on the cube; all of shape (d,)."""
 
-    ceiling: Array
-    slope: Array
+    ceiling: Floats
+    slope: Floats
 
 
 class DistancePairs(NamedTuple):
@@ -37,33 +36,27 @@ class DistancePairs(NamedTuple):
     `level`, `slope` and `curvature` have shape (d,); `own`, the part of one point, and its derivative (d, n).
     """
 
-    level: Array
-    slope: Array
-    curvature: Array
-    own: Array
-    own_slope: Array
+    level: Floats
+    slope: Floats
+    curvature: Floats
+    own: Floats
+    own_slope: Floats
 
 
 class ProductTerms(NamedTuple):
     """The three parts of a squared discrepancy at given points.
 
-    Attributes
-    ----------
-    constant : float
-        Double integral of the kernel.
-    linear, linear_slope : ndarray, shape (d, n)
-        Integral of the kernel over one argument, a factor a coordinate, and its derivative.
-    pairs : MaximumPairs or DistancePairs
-        The kernel at pairs of points.
+    `constant` is the double integral of the kernel; `linear` its integral over one argument, a factor a coordinate,
+    (d, n), and `linear_slope` the derivative of that; `pairs` is the kernel at pairs of points.
     """
 
     constant: float
-    linear: Array
-    linear_slope: Array
+    linear: Floats
+    linear_slope: Floats
     pairs: MaximumPairs | DistancePairs
 
 
-def star(columns: Array, weights: Array) -> ProductTerms:
+def star(columns: Floats, weights: Floats) -> ProductTerms:
     """3^-d - (2/n) sum_i prod_k (1 - x_ik^2)/2 + (1/n^2) sum_ij prod_k (1 - max(x_ik, x_jk)).
 
     Warnock (1972).
@@ -77,7 +70,7 @@ def star(columns: Array, weights: Array) -> ProductTerms:
     )
 
 
-def hickernell(columns: Array, weights: Array) -> ProductTerms:
+def hickernell(columns: Floats, weights: Floats) -> ProductTerms:
     """Sum the squared L2 star discrepancies of all 2^d - 1 projections in closed form (Joe 1997).
 
     (4/3)^d - (2/n) sum_i prod_k (3 - x_ik^2)/2 + (1/n^2) sum_ij prod_k (2 - max(x_ik, x_jk)); a projection
@@ -92,7 +85,7 @@ def hickernell(columns: Array, weights: Array) -> ProductTerms:
     )
 
 
-def centred(columns: Array, weights: Array) -> ProductTerms:
+def centred(columns: Floats, weights: Floats) -> ProductTerms:
     """Hickernell (1998), with z = x - 1/2.
 
     (13/12)^d - (2/n) sum_i prod_k (1 + |z_ik|/2 - z_ik^2/2)
@@ -114,7 +107,7 @@ def centred(columns: Array, weights: Array) -> ProductTerms:
     )
 
 
-def wrap_around(columns: Array, weights: Array) -> ProductTerms:
+def wrap_around(columns: Floats, weights: Floats) -> ProductTerms:
     """-(4/3)^d + (1/n^2) sum_ij prod_k (3/2 - t(1 - t)), t = |x_ik - x_jk| (Hickernell 1998, wrap-around).
 
     The kernel's integral over one argument is 4/3 everywhere, so the linear term is a constant.
@@ -128,7 +121,7 @@ def wrap_around(columns: Array, weights: Array) -> ProductTerms:
     )
 
 
-def mixture(columns: Array, weights: Array) -> ProductTerms:
+def mixture(columns: Floats, weights: Floats) -> ProductTerms:
     """Zhou, Fang and Ning (2013), with z = x - 1/2.
 
     (19/12)^d - (2/n) sum_i prod_k (5/3 - |z_ik|/4 - z_ik^2/4)
@@ -150,7 +143,7 @@ def mixture(columns: Array, weights: Array) -> ProductTerms:
     )
 
 
-def symmetric(columns: Array, weights: Array) -> ProductTerms:
+def symmetric(columns: Floats, weights: Floats) -> ProductTerms:
     """(4/3)^d - (2/n) sum_i prod_k (1 + 2x - 2x^2) + (2^d/n^2) sum_ij prod_k (1 - |x_ik - x_jk|).
 
     Hickernell (1998), symmetric discrepancy; without weights it is 4^d times the average-squared one.
@@ -164,7 +157,7 @@ def symmetric(columns: Array, weights: Array) -> ProductTerms:
     )
 
 
-def average_squared(columns: Array, weights: Array) -> ProductTerms:
+def average_squared(columns: Floats, weights: Floats) -> ProductTerms:
     """Mean of the squared L2 star discrepancy over all 2^d corners taken as the origin, in closed form.
 
     3^-d - (2/n) sum_i prod_k (1 + 2 x_ik - 2 x_ik^2)/4 + (1/n^2) sum_ij prod_k (1 - |x_ik - x_jk|)/2:
@@ -179,37 +172,28 @@ def average_squared(columns: Array, weights: Array) -> ProductTerms:
     )
 
 
-def _distances_alone(columns: Array, level: Array, slope: Array, curvature: Array) -> DistancePairs:
+def _distances_alone(columns: Floats, level: Floats, slope: Floats, curvature: Floats) -> DistancePairs:
     """Return pair factors without a part of one point."""
     nothing = np.zeros_like(columns)
     return DistancePairs(level, slope, curvature, nothing, nothing)
 
 
 def pair_sums(
-    columns: Array, pairs: MaximumPairs | DistancePairs, want_gradient: bool
-) -> tuple[Array, Array]:
+    columns: Floats, pairs: MaximumPairs | DistancePairs, want_gradient: bool
+) -> tuple[Floats, Floats]:
     """Sum the pair products of every point with all points, itself included: O(n^2 d) time, O(n d) memory.
 
     One compiled loop is for factors in max(x, y), where the gradient needs no division, and one for factors in
     |x - y|.  Points come in tiles that stay in the first caches, and fastmath lets the inner loops run as vectors;
     input is finite because ``as_unit_points`` refused everything else.
 
-    Parameters
-    ----------
-    columns : ndarray, shape (d, n)
-        The points, coordinate by coordinate, finite.
-    pairs : MaximumPairs or DistancePairs
-        The factors.
-    want_gradient : bool
-        False leaves the second result zero, in about half the time.
-
     Returns
     -------
     sums : ndarray, shape (n,)
         ``sum_j prod_k K_k(x_ik, x_jk)`` of every i.
     gradient : ndarray, shape (d, n)
-        Derivative of ``sums.sum()`` by every coordinate.  Where two points share a coordinate the kernels
-        have a kink; the gradient is then one of the one-sided ones.
+        Derivative of ``sums.sum()`` by every coordinate; zero, in about half the time, where it is not wanted.  Where
+        two points share a coordinate the kernels have a kink; the gradient is then one of the one-sided ones.
     """
     if isinstance(pairs, MaximumPairs):
         return _maximum_pair_sums(columns, *pairs, want_gradient)

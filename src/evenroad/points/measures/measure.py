@@ -9,9 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue, UnknownName, shown
 from evenroad.points.measures import l2
-from evenroad.points.measures.l2 import Array, ProductTerms
+from evenroad.points.measures.l2 import ProductTerms
 from evenroad.points.pointset import as_unit_points
 
 
@@ -39,7 +40,7 @@ class Measure:
 
     name: str
     title: str
-    terms: Callable[[Array, Array], ProductTerms]
+    terms: Callable[[Floats, Floats], ProductTerms]
     weighted: bool = True
     periodic: bool = False
     reflectable: bool = False
@@ -69,7 +70,7 @@ class Measure:
 
     def squared_with_gradient(
         self, points: object, weights: npt.ArrayLike | None = None
-    ) -> tuple[float, Array]:
+    ) -> tuple[float, Floats]:
         """Return the squared discrepancy and its gradient, shape (n, d); parameters as :meth:`squared`.
 
         Where two points share a coordinate most measures have a kink: the gradient is a one-sided one there.
@@ -80,7 +81,7 @@ class Measure:
 
     def rooted_with_gradient(
         self, points: object, weights: npt.ArrayLike | None = None
-    ) -> tuple[float, Array]:
+    ) -> tuple[float, Floats]:
         """Return the discrepancy and its gradient, shape (n, d); parameters as :meth:`squared`."""
         columns, gamma = self._checked(points, weights)
         value, gradient = rooted_of_columns(self, columns, gamma)
@@ -89,14 +90,14 @@ class Measure:
     def __str__(self) -> str:
         return self.name
 
-    def _checked(self, points: object, weights: npt.ArrayLike | None) -> tuple[Array, Array]:
+    def _checked(self, points: object, weights: npt.ArrayLike | None) -> tuple[Floats, Floats]:
         coordinates = as_unit_points(points)
         n, d = coordinates.shape
         if n == 0:
             raise InvalidValue(f"{self.name} needs at least one point, got an array of shape (0, {d})")
         return np.ascontiguousarray(coordinates.T), self._checked_weights(weights, d)
 
-    def _checked_weights(self, weights: npt.ArrayLike | None, d: int) -> Array:
+    def _checked_weights(self, weights: npt.ArrayLike | None, d: int) -> Floats:
         if weights is None:
             return np.ones(d)
         if not self.weighted:
@@ -116,8 +117,8 @@ class Measure:
 
 
 def squared_of_columns(
-    measure: Measure, columns: Array, weights: Array, want_gradient: bool
-) -> tuple[float, Array]:
+    measure: Measure, columns: Floats, weights: Floats, want_gradient: bool
+) -> tuple[float, Floats]:
     """Return the squared measure and its gradient at checked points of shape (d, n): for inner loops.
 
     The gradient has shape (d, n), and is zero where it is not wanted.  Rounding below zero is cut off.
@@ -135,7 +136,7 @@ def squared_of_columns(
     return max(value, 0.0), gradient
 
 
-def rooted_of_columns(measure: Measure, columns: Array, weights: Array) -> tuple[float, Array]:
+def rooted_of_columns(measure: Measure, columns: Floats, weights: Floats) -> tuple[float, Floats]:
     """Return the rooted measure and its gradient at checked points of shape (d, n): for inner loops.
 
     Where the measure is 0 the root has no gradient; zeros are returned.

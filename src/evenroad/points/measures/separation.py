@@ -9,9 +9,9 @@ import numpy as np
 from numba import njit
 from scipy.spatial import cKDTree
 
+from evenroad._arrays import Floats
 from evenroad._checks import require_count
 from evenroad.errors import InvalidValue
-from evenroad.points.measures.l2 import Array
 from evenroad.points.pointset import as_unit_points
 
 
@@ -78,7 +78,7 @@ def riesz_rooted(points: object, s: int | None = None, periodic: bool = True) ->
 
 def riesz_energy_with_gradient(
     points: object, s: int | None = None, periodic: bool = True
-) -> tuple[float, Array]:
+) -> tuple[float, Floats]:
     """Return :func:`riesz_energy` and its gradient, shape (n, d); infinite where the energy is."""
     columns, exponent = _checked(points, s)
     logarithm, gradient = log_riesz_of_columns(columns, exponent, periodic, want_gradient=True)
@@ -87,14 +87,16 @@ def riesz_energy_with_gradient(
 
 def riesz_rooted_with_gradient(
     points: object, s: int | None = None, periodic: bool = True
-) -> tuple[float, Array]:
+) -> tuple[float, Floats]:
     """Return :func:`riesz_rooted` and its gradient, shape (n, d)."""
     columns, exponent = _checked(points, s)
     logarithm, gradient = log_riesz_of_columns(columns, exponent, periodic, want_gradient=True)
     return _scaled(_exp(logarithm / exponent), gradient / exponent)
 
 
-def log_riesz_of_columns(columns: Array, s: int, periodic: bool, want_gradient: bool) -> tuple[float, Array]:
+def log_riesz_of_columns(
+    columns: Floats, s: int, periodic: bool, want_gradient: bool
+) -> tuple[float, Floats]:
     """Return log(riesz_energy) and its gradient, shape (d, n), at checked points of shape (d, n).
 
     Every power is taken relative to the largest of its row, and rows are joined in the log: nothing
@@ -113,7 +115,7 @@ def log_riesz_of_columns(columns: Array, s: int, periodic: bool, want_gradient: 
     return logarithm, pushes
 
 
-def _checked(points: object, s: int | None) -> tuple[Array, int]:
+def _checked(points: object, s: int | None) -> tuple[Floats, int]:
     coordinates = as_unit_points(points)
     n, d = coordinates.shape
     if n < 2:
@@ -126,7 +128,7 @@ def _exp(logarithm: float) -> float:
     return math.exp(logarithm) if logarithm < 709.0 else math.inf
 
 
-def _scaled(value: float, log_gradient: Array) -> tuple[float, Array]:
+def _scaled(value: float, log_gradient: Floats) -> tuple[float, Floats]:
     gradient = np.ascontiguousarray(log_gradient.T)
     if math.isinf(value):
         return value, np.where(gradient == 0.0, 0.0, np.copysign(np.inf, gradient))

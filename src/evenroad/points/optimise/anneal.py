@@ -11,10 +11,10 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from evenroad._arrays import Floats
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator
 from evenroad.errors import InvalidValue
-from evenroad.points.measures.l2 import Array
 from evenroad.points.optimise.objective import (
     Objective,
     objective_of_columns,
@@ -46,23 +46,19 @@ TINY = 1e-30
 
 @dataclass(frozen=True, eq=False)
 class Annealed:
-    """The best points that an annealing saw.
+    """The best points that an annealing saw, and the objective there.
 
     Attributes
     ----------
     points : ndarray, shape (n, d)
         Coordinates in (0, 1), read-only; they stay below 1 as float32.
-    value : float
-        The objective there.
-    objective : Objective
-        What was minimised.
-    steps : int
-        Gradient steps taken.
-    seconds : float
-        Wall time, compilation excluded as far as it was done before.
+    value, objective : float, Objective
+        What was minimised, and its value.
+    steps, seconds : int, float
+        Gradient steps taken; wall time, compilation excluded as far as it was done before.
     """
 
-    points: Array
+    points: Floats
     value: float
     objective: Objective
     steps: int
@@ -169,7 +165,7 @@ def noise_over_rate(objective: Objective, n: int, d: int) -> float:
     return min(HOTTEST, max(0.05, max(0.02 * d, 0.1) * math.sqrt(128.0 / n)))
 
 
-def _first_columns(n: int, d: int, start: npt.ArrayLike | None, draws: np.random.Generator) -> Array:
+def _first_columns(n: int, d: int, start: npt.ArrayLike | None, draws: np.random.Generator) -> Floats:
     if start is None:
         random = np.ascontiguousarray(draws.random((n, d)).T)
         # On a line points would have to pass each other: there one point a cell is the place to start.

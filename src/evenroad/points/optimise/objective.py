@@ -20,10 +20,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from evenroad._arrays import Floats
 from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue, UnknownName, shown
 from evenroad.points.measures import MEASURES
-from evenroad.points.measures.l2 import Array
 from evenroad.points.measures.measure import rooted_of_columns
 from evenroad.points.measures.separation import log_riesz_of_columns
 from evenroad.points.pointset import as_unit_points
@@ -44,23 +44,10 @@ _TOKEN = re.compile(
 
 @dataclass(frozen=True)
 class Term:
-    """One term: ``weight * name`` or ``weight * log(name)``.
+    """One term: ``weight * name`` or ``weight * log(name)``, weight > 0.
 
-    Attributes
-    ----------
-    name : str
-        A name of ``MEASURES``, meaning its rooted value, or of ``ENERGIES``.
-    weight : float
-        Positive factor.
-    logarithm : bool
-        Whether the natural log is taken.
-
-    Raises
-    ------
-    UnknownName
-        For another name.
-    InvalidValue
-        For a weight that is not a finite number > 0.
+    `name` is one of ``MEASURES``, meaning its rooted value, or of ``ENERGIES``; another is an UnknownName, a weight
+    that is not a finite number > 0 an InvalidValue.
     """
 
     name: str
@@ -109,7 +96,7 @@ class Objective:
         """Return the objective at `points`, (n, d) in [0, 1); InvalidValue for too few or bad points."""
         return self.with_gradient(points)[0]
 
-    def with_gradient(self, points: object) -> tuple[float, Array]:
+    def with_gradient(self, points: object) -> tuple[float, Floats]:
         """Return the objective and its gradient, shape (n, d), at `points`; errors as :meth:`value`."""
         coordinates = as_unit_points(points)
         require_points_for(self, coordinates.shape[0])
@@ -128,7 +115,7 @@ def require_points_for(objective: Objective, n: int) -> None:
         )
 
 
-def objective_of_columns(objective: Objective, columns: Array) -> tuple[float, Array]:
+def objective_of_columns(objective: Objective, columns: Floats) -> tuple[float, Floats]:
     """Return the objective and its gradient, shape (d, n), at checked points of shape (d, n)."""
     total, total_gradient = 0.0, np.zeros_like(columns)
     for term in objective.terms:
@@ -139,7 +126,7 @@ def objective_of_columns(objective: Objective, columns: Array) -> tuple[float, A
     return total, total_gradient
 
 
-def _term_of_columns(term: Term, columns: Array) -> tuple[float, Array]:
+def _term_of_columns(term: Term, columns: Floats) -> tuple[float, Floats]:
     d = columns.shape[0]
     if term.name in ENERGIES:
         s = 2 * d

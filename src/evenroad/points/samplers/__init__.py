@@ -27,14 +27,7 @@ SAMPLERS: dict[str, Callable[..., KnownSampler]] = {
 
 
 def make_sampler(name: str, **options: Any) -> KnownSampler:
-    """Return the sampler of this name.
-
-    Parameters
-    ----------
-    name : str
-        One of :data:`SAMPLERS`.
-    **options
-        The sampler's own parameters, e.g. ``scramble`` and ``start`` of ``halton``.
+    """Return the sampler of this name, one of :data:`SAMPLERS`, with its own parameters as options.
 
     Raises
     ------

@@ -13,8 +13,8 @@ from itertools import islice
 from math import gcd
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
@@ -149,11 +149,11 @@ def _smallest_equivalent(a: int, n: int) -> int:
     return min(a, n - a, inverse, n - inverse)
 
 
-def _powers(a: int, n: int, d: int) -> npt.NDArray[np.int64]:
+def _powers(a: int, n: int, d: int) -> Ints:
     return np.array([pow(a, k, n) for k in range(d)], dtype=np.int64)
 
 
-def _least_energy(candidates: npt.NDArray[np.int64], n: int, d: int) -> int:
+def _least_energy(candidates: Ints, n: int, d: int) -> int:
     """Return the smallest of the candidates whose energy is the least.
 
     A race: all partial sums grow together, point by point, and a candidate is out as soon as its sum exceeds the
@@ -182,7 +182,7 @@ def _least_energy(candidates: npt.NDArray[np.int64], n: int, d: int) -> int:
     return int(candidates[log_sums <= log_sums.min() + TIE][0])
 
 
-def _log_energies(vectors: npt.NDArray[np.float64], n: int, first: int, last: int) -> npt.NDArray[np.float64]:
+def _log_energies(vectors: Floats, n: int, first: int, last: int) -> Floats:
     """Return the log of the sum of distance^(-2d) over the points first .. last <= n/2 of every lattice.
 
     Point n - j is the mirror image of j, so half of the points are enough; n/2 is its own and counts half.
@@ -206,7 +206,7 @@ def _log_energies(vectors: npt.NDArray[np.float64], n: int, first: int, last: in
     return np.log(terms.sum(axis=1)) - d * np.log(shortest)
 
 
-def _integer_power(base: npt.NDArray[np.float64], exponent: int) -> npt.NDArray[np.float64]:
+def _integer_power(base: Floats, exponent: int) -> Floats:
     """Return base**exponent, exponent >= 1, by repeated squaring: several times faster than NumPy's power."""
     result = np.ones_like(base)
     while True:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
@@ -62,7 +62,7 @@ class Lattice:
         return PointSet(points, Origin(family=self.name, method="A_d* turned and shifted", seed=seed_of(rng)))
 
 
-def _unit_density_basis(d: int) -> npt.NDArray[np.float64]:
+def _unit_density_basis(d: int) -> Floats:
     """Return a lower-triangular basis (rows are vectors) of A_d* with determinant 1.
 
     The rows have the Gram matrix I - J/(d+1), an obtuse superbase of A_d*, scaled to unit density.
@@ -71,15 +71,13 @@ def _unit_density_basis(d: int) -> npt.NDArray[np.float64]:
     return np.linalg.cholesky(gram) * (d + 1) ** (0.5 / d)
 
 
-def _random_rotation(d: int, random: np.random.Generator) -> npt.NDArray[np.float64]:
+def _random_rotation(d: int, random: np.random.Generator) -> Floats:
     """Return a Haar-distributed orthogonal matrix: QR of a Gaussian one, signs fixed (Mezzadri 2007)."""
     q, r = np.linalg.qr(random.standard_normal((d, d)))
     return q * np.sign(np.diagonal(r))
 
 
-def _points_in_ball(
-    basis: npt.NDArray[np.float64], shift: npt.NDArray[np.float64], radius: float
-) -> npt.NDArray[np.float64]:
+def _points_in_ball(basis: Floats, shift: Floats, radius: float) -> Floats:
     """Return every (z + shift) @ basis, z integer, within `radius` of the origin, shape (m, d).
 
     The basis is lower triangular, so coordinate k depends on z_k .. z_d only: fix the last coefficient first and

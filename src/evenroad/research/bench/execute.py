@@ -18,8 +18,8 @@ from contextlib import contextmanager
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue
 from evenroad.research.bench.samplers import draw_set
@@ -29,28 +29,16 @@ from evenroad.research.problems import source_named
 from evenroad.roadmap import rule_named
 from evenroad.roadmap.search import FREE, EdgeStates
 
-Milestones = tuple[npt.NDArray[np.float64], str, float]
+Milestones = tuple[Floats, str, float]
 """The valid configurations of a set, which set it is, and the seconds that their validity took."""
 
 
 def run_task(task: Task, limit: float | None = None) -> Outcome:
-    """Run one task; whatever goes wrong is an outcome, too.
+    """Run one task; whatever goes wrong is an outcome, too: ``failed``, or ``timeout`` after `limit` seconds.
 
     What the next task is likely to need again is kept for the process: fixed problems, the last random one, and the
     valid milestones of the last set.  So tasks should come with the rules of one set, and the sets of one random
-    problem, side by side.
-
-    Parameters
-    ----------
-    task : Task
-        What to run.
-    limit : float, optional
-        Seconds after which the task is given up, where the platform can (see :func:`time_limit`).
-
-    Returns
-    -------
-    Outcome
-        Of status ``failed``, with a traceback, for any exception; ``timeout`` when it took too long.
+    problem, side by side.  Where the platform cannot (:func:`time_limit`), nothing is limited.
     """
     try:
         with time_limit(limit):
@@ -84,9 +72,7 @@ def _run(task: Task) -> Outcome:
     )
 
 
-def _search(
-    problem: Problem, milestones: npt.NDArray[np.float64], rule: str, search: str
-) -> tuple[Finding, EdgeStates]:
+def _search(problem: Problem, milestones: Floats, rule: str, search: str) -> tuple[Finding, EdgeStates]:
     configurations = np.concatenate([milestones, problem.start[np.newaxis], problem.goal[np.newaxis]])
     edges = rule_named(rule).edges(configurations, problem.world.space, ends=2)
     states = EdgeStates(problem.world, configurations, edges)

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._arrays import Bools, Floats, Ints, Ints32
 from evenroad.research.bench.store_file import (
     COLUMNS,
     checked_rows,
@@ -29,17 +30,12 @@ FAILURES = ("failed", "lost", "timeout")
 
 @dataclass(frozen=True, eq=False)
 class Labels:
-    """A column of texts.
+    """A column of texts: `codes`, (rows,) int32 and read-only, are places in `names`.
 
-    Attributes
-    ----------
-    codes : ndarray of int32, shape (rows,)
-        Place of each row's text in `names`; read-only.
-    names : tuple of str
-        The different texts, in alphabetical order; some may not occur after a selection.
+    `names` are in alphabetical order; some may not occur after a selection.
     """
 
-    codes: npt.NDArray[np.int32]
+    codes: Ints32
     names: tuple[str, ...]
 
     def __len__(self) -> int:
@@ -52,7 +48,7 @@ class Labels:
         """Return the texts, one a row."""
         return np.array(self.names, dtype=object)[self.codes]
 
-    def is_in(self, names: Iterable[str]) -> npt.NDArray[np.bool_]:
+    def is_in(self, names: Iterable[str]) -> Bools:
         """Return which rows have one of these texts; those that no row has are passed over."""
         wanted = set(names)
         return np.array([name in wanted for name in self.names], dtype=np.bool_)[self.codes]
@@ -66,36 +62,25 @@ class Labels:
 class Rows:
     """Columns of equal length, one row a task, in the order of the task's fields; never in that of arrival.
 
-    The fields are those of `Task` and `Outcome`, and:
-
-    Attributes
-    ----------
-    suite : Labels
-        Which suite asked first.
-    worker : Labels
-        Host and process that ran it.
-    instance, n, run, seed, valid, edges_checked : ndarray of int64
-    valid_at_solution : ndarray of int64
-        -1 where there is none.
-    length, seconds : ndarray of float64
-        NaN where there is none.
+    The fields are those of `Task` and `Outcome`; `suite` is the one that asked first, `worker` the host and process
+    that ran it.  `valid_at_solution` is -1, `length` and `seconds` are NaN where there is none.
     """
 
     suite: Labels
     problem: Labels
-    instance: npt.NDArray[np.int64]
+    instance: Ints
     sampler: Labels
-    n: npt.NDArray[np.int64]
+    n: Ints
     rule: Labels
     search: Labels
-    run: npt.NDArray[np.int64]
-    seed: npt.NDArray[np.int64]
+    run: Ints
+    seed: Ints
     status: Labels
-    valid: npt.NDArray[np.int64]
-    valid_at_solution: npt.NDArray[np.int64]
-    edges_checked: npt.NDArray[np.int64]
-    length: npt.NDArray[np.float64]
-    seconds: npt.NDArray[np.float64]
+    valid: Ints
+    valid_at_solution: Ints
+    edges_checked: Ints
+    length: Floats
+    seconds: Floats
     set_id: Labels
     error: Labels
     worker: Labels
@@ -104,16 +89,16 @@ class Rows:
         return len(self.n)
 
     @property
-    def solved(self) -> npt.NDArray[np.bool_]:
+    def solved(self) -> Bools:
         """Which rows have a path."""
         return self.status.is_in(["solved"])
 
     @property
-    def answered(self) -> npt.NDArray[np.bool_]:
+    def answered(self) -> Bools:
         """Which rows are answers, a path or none, and not failures of the run."""
         return ~self.status.is_in(FAILURES)
 
-    def where(self, chosen: npt.NDArray[np.bool_] | npt.NDArray[np.integer]) -> Rows:
+    def where(self, chosen: Bools | npt.NDArray[np.integer]) -> Rows:
         """Return the rows that a mask or row numbers choose, in that order."""
         selected: dict[str, Any] = {}
         for field in fields(self):
@@ -212,15 +197,7 @@ def read_sessions(path: str | os.PathLike[str]) -> tuple[Session, ...]:
 
 
 def _rows_from(columns: dict[str, npt.NDArray[np.generic]], texts: dict[int, str]) -> Rows:
-    """Return rows sorted by the fields of the task.
-
-    Parameters
-    ----------
-    columns : dict of str to ndarray
-        Every field of :class:`Rows`; texts as numbers.
-    texts : dict of int to str
-        What the numbers stand for.
-    """
+    """Return rows, sorted by the fields of the task, from columns whose texts are numbers."""
     in_order: dict[str, Any] = {}
     for field in fields(Rows):
         column = columns[field.name]

@@ -33,18 +33,10 @@ Callback = Callable[[int, int], object]
 
 @dataclass(frozen=True)
 class Report:
-    """How a run of a suite went.
+    """How a run of a suite went, in tasks.
 
-    Attributes
-    ----------
-    found : int
-        Tasks that the store had rows of before.
-    finished : int
-        Tasks that were run now, failures included.
-    failures : int
-        Of these, those that failed, took too long or lost their worker.
-    found_failures : int
-        The same of those that were found.
+    `found` had a row in the store before, `found_failures` of them a failure; `finished` were run now, and `failures`
+    of these failed, took too long or lost their worker.
     """
 
     found: int
@@ -249,17 +241,7 @@ LARGEST_CHUNK = 500
 
 @dataclass(frozen=True)
 class Done:
-    """A chunk that was run.
-
-    Attributes
-    ----------
-    outcomes : tuple of Outcome
-        One a task, in order.
-    seconds : tuple of float
-        Wall time of each, with the making of problems and sets.
-    worker : str
-        Host and process that ran it.
-    """
+    """A chunk that was run: outcomes, the wall time of each with problems and sets made, and by which worker."""
 
     outcomes: tuple[Outcome, ...]
     seconds: tuple[float, ...]

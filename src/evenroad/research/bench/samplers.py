@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import lru_cache
 
 import numpy as np
 
 from evenroad.errors import NotAvailable, UnknownName
-from evenroad.points import PointSet, draw
+from evenroad.points import PointSet, draw, make_sampler
 from evenroad.points.bank import open_bank
 from evenroad.points.randomise import permute_coordinates
 from evenroad.points.samplers.lattice import MAX_D
@@ -31,59 +31,54 @@ class RunSampler:
 
     Attributes
     ----------
+    family : str
+        Name of the sampler whose points these are.
     draw : callable
-        From (n, d, run, rng) to the set and its `set_id`.
+        From (family, n, d, run, rng) to the set and its `set_id`.
     why_not : callable
-        From (n, d) to why there is no such set, one sentence; "" if there is one.
-    about : str
-        One line for lists and tables.
+        From (family, n, d) to why there is no such set, one sentence; "" if there is one.
+    protocol : str
+        What lists say of the draw, beside what the sampler says of itself.
     """
 
-    draw: Callable[[int, int, int, np.random.Generator], Drawn]
-    why_not: Callable[[int, int], str]
-    about: str
+    family: str
+    draw: Callable[[str, int, int, int, np.random.Generator], Drawn]
+    why_not: Callable[[str, int, int], str]
+    protocol: str = ""
+
+    @property
+    def about(self) -> str:
+        """One line for lists and tables."""
+        return "; ".join(filter(None, (make_sampler(self.family).about, self.protocol)))
 
 
 def draw_set(name: str, n: int, d: int, run: int, rng: np.random.Generator) -> Drawn:
-    """Draw the set of one run.
-
-    Parameters
-    ----------
-    name : str
-        One of :data:`SAMPLERS`.
-    n, d : int
-        Number of points and dimension.
-    run : int
-        From 0; what block protocols go by.
-    rng : Generator
-        What all other draws come from.  It is spawned.
+    """Draw the set of one run, (n, d); `rng` is spawned, block protocols go by the number `run`, from 0, instead.
 
     Returns
     -------
     points : PointSet
-        Shape (n, d).
     set_id : str
         The number of the set in its pool, by which statistics cluster; ``grid`` for the only set that there is;
         empty for sets drawn afresh.
 
     Raises
     ------
-    UnknownName
-        If there is no such sampler; the text lists them.
-    NotAvailable
-        If the sampler has no such set.  Nothing is ever trained for a benchmark.
+    UnknownName, NotAvailable
+        If there is no such sampler, or it has no such set.  Nothing is ever trained for a benchmark.
     """
     reason = why_not(name, n, d)
     if reason:
         raise NotAvailable(reason)
-    return SAMPLERS[name].draw(n, d, run, rng)
+    sampler = SAMPLERS[name]
+    return sampler.draw(sampler.family, n, d, run, rng)
 
 
 def why_not(name: str, n: int, d: int) -> str:
     """Return why a sampler has no set of n points in d dimensions, or "" if it has; UnknownName as `draw_set`."""
     if name not in SAMPLERS:
         raise UnknownName.among("sampler", name, SAMPLERS)
-    return SAMPLERS[name].why_not(n, d)
+    return SAMPLERS[name].why_not(SAMPLERS[name].family, n, d)
 
 
 def _fresh(family: str, n: int, d: int, run: int, rng: np.random.Generator) -> Drawn:
@@ -107,8 +102,8 @@ def _stretch(family: str, n: int, d: int, number: int) -> PointSet:
     return sequence(scramble=False, start=number * STRETCH * n + 1).draw(STRETCH * n, d)
 
 
-def _grid(n: int, d: int, run: int, rng: np.random.Generator) -> Drawn:
-    return draw("sukharev", n, d), "grid"
+def _grid(family: str, n: int, d: int, run: int, rng: np.random.Generator) -> Drawn:
+    return draw(family, n, d), "grid"
 
 
 def _from_pool(family: str, n: int, d: int, run: int, rng: np.random.Generator) -> Drawn:
@@ -122,17 +117,17 @@ def _from_pool(family: str, n: int, d: int, run: int, rng: np.random.Generator) 
     return points, str(points.origin.replica)
 
 
-def _always(n: int, d: int) -> str:
+def _always(family: str, n: int, d: int) -> str:
     return ""
 
 
-def _lattice_exists(n: int, d: int) -> str:
+def _lattice_exists(family: str, n: int, d: int) -> str:
     return f"the lattice sampler goes up to d = {MAX_D}" if d > MAX_D else ""
 
 
-def _grid_exists(n: int, d: int) -> str:
+def _grid_exists(family: str, n: int, d: int) -> str:
     try:
-        draw("sukharev", n, d)
+        draw(family, n, d)
     except NotAvailable as error:
         return str(error).removesuffix(" (or allow fewer)")
     return ""
@@ -146,27 +141,19 @@ def _pool_exists(family: str, n: int, d: int) -> str:
     return ""
 
 
-def _pool(family: str, about: str) -> RunSampler:
-    return RunSampler(partial(_from_pool, family), partial(_pool_exists, family), about)
-
+_BLOCKS = "plain: run i takes the points i N + 1 .. (i + 1) N"
 
 SAMPLERS: dict[str, RunSampler] = {
-    "uniform": RunSampler(partial(_fresh, "uniform"), _always, "independent points"),
-    "halton paper-blocks": RunSampler(
-        partial(_block, "halton"), _always, "plain Halton; run i takes the points i N + 1 .. (i + 1) N"
-    ),
-    "halton scrambled": RunSampler(partial(_fresh, "halton"), _always, "Halton, randomly permuted digits"),
-    "sobol paper-blocks": RunSampler(
-        partial(_block, "sobol"), _always, "plain Sobol; run i takes the points i N + 1 .. (i + 1) N"
-    ),
-    "sobol scrambled": RunSampler(partial(_fresh, "sobol"), _always, "Sobol, scrambled, from index 0"),
-    "lattice": RunSampler(partial(_fresh, "lattice"), _lattice_exists, "A_d*, randomly turned and shifted"),
-    "sukharev": RunSampler(_grid, _grid_exists, "the grid of k^d cell centres; always the same set"),
-    "mpmc": _pool("mpmc", "a set of the pool trained by the message-passing network"),
-    "hickernell": _pool("hickernell", "a set of the pool annealed for the network's discrepancy"),
+    "uniform": RunSampler("uniform", _fresh, _always),
+    "halton paper-blocks": RunSampler("halton", _block, _always, _BLOCKS),
+    "halton scrambled": RunSampler("halton", _fresh, _always, "permuted anew in each run"),
+    "sobol paper-blocks": RunSampler("sobol", _block, _always, _BLOCKS),
+    "sobol scrambled": RunSampler("sobol", _fresh, _always, "scrambled anew in each run, from index 0"),
+    "lattice": RunSampler("lattice", _fresh, _lattice_exists),
+    "sukharev": RunSampler("sukharev", _grid, _grid_exists),
+    "mpmc": RunSampler("mpmc", _from_pool, _pool_exists),
+    "hickernell": RunSampler("hickernell", _from_pool, _pool_exists),
     # Drawn as from a pool, though it is none: so its rows keep their bits where it was constructed all along.
-    "even": RunSampler(
-        partial(_from_pool, "even"), _always, "our default: a randomly shifted Korobov lattice"
-    ),
+    "even": RunSampler("even", _from_pool, _always),
 }
 """Name -> how the set of a run is drawn, in the order of tables."""

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from evenroad._arrays import Ints, Ints32
 from evenroad.errors import UnknownName
 from evenroad.roadmap.cost import edge_costs
 from evenroad.roadmap.search import FINDERS, FREE, UNKNOWN, EdgeStates, join, length_along, search_problem
@@ -18,16 +18,9 @@ from evenroad.roadmap.search import FINDERS, FREE, UNKNOWN, EdgeStates, join, le
 
 @dataclass(frozen=True)
 class Finding:
-    """What a search says.
+    """What a search says: whether there is a path, and its length where a shortest one was looked for and found.
 
-    Attributes
-    ----------
-    solved : bool
-        Whether there is a path.
-    valid_at_solution : int or None
-        Of search ``stock``: valid milestones that had been added when there was one.
-    length : float
-        Of the shortest path along the roadmap; NaN where none was looked for or found.
+    `valid_at_solution`, of the search ``stock``: valid milestones that had been added when there was a path.
     """
 
     solved: bool
@@ -38,10 +31,7 @@ class Finding:
 def search_named(name: str) -> Callable[[EdgeStates], Finding]:
     """Return the search of this name: from a graph's states, whose last two nodes are start and goal, to what it says.
 
-    Raises
-    ------
-    UnknownName
-        If there is none; the text lists them.
+    UnknownName, with the known ones, if there is none.
     """
     if name not in SEARCHES:
         raise UnknownName.among("search", name, SEARCHES)
@@ -79,15 +69,10 @@ CHUNK = 64
 
 
 def is_connected(states: EdgeStates) -> bool:
-    """Return whether free edges join the last two nodes, start and goal.
+    """Return whether free edges join the last two nodes, start and goal; all nodes are taken as free.
 
     The components of start and goal grow in turns, always the one that fewer unknown edges leave, by asking about all
     of these.  A query without an answer ends when one of the two can grow no more, however large the graph.
-
-    Parameters
-    ----------
-    states : EdgeStates
-        All nodes are taken as free; what is asked is written down there.
     """
     label = np.arange(len(states.node_states), dtype=np.int32)
     join(label, states.edges[states.edge_states == FREE])
@@ -105,11 +90,6 @@ def milestones_until_connected(states: EdgeStates) -> int | None:
 
     Start and goal are there first, an edge comes with the later of its milestones.  Under ``k earlier``, whose edges
     among the first milestones do not depend on the others, this is where OMPL's PRM stops.
-
-    Parameters
-    ----------
-    states : EdgeStates
-        As for :func:`is_connected`, which is asked first: most queries without an answer end there.
     """
     if not is_connected(states):
         return None
@@ -132,12 +112,12 @@ def milestones_until_connected(states: EdgeStates) -> int | None:
     raise AssertionError("is_connected said that there is a path")
 
 
-def _leaving(states: EdgeStates, label: npt.NDArray[np.int32], node: int) -> npt.NDArray[np.int64]:
+def _leaving(states: EdgeStates, label: Ints32, node: int) -> Ints:
     """Return the unknown edges with one end in the component of this node and the other outside."""
     return _edges_leaving(states.edges, states.edge_states, label, label[node])
 
 
-def _first_to_connect(label: npt.NDArray[np.int32], edges: npt.NDArray[np.int32]) -> int:
+def _first_to_connect(label: Ints32, edges: Ints32) -> int:
     """Return the row of the edge that, joined after those before it, connects the last two nodes."""
     row = 0
     while label[-2] != label[-1]:

@@ -9,8 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad.points.pointset import PointSet
 from evenroad.world import World
 
@@ -20,25 +20,18 @@ PROTOCOL = 3
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """A world, a start and a goal.
+    """A world with a start and a goal, (dim,) each.
 
-    Attributes
-    ----------
-    world : World
-        Says which configurations and motions are free.
-    start, goal : ndarray, shape (dim,)
-        Configurations of the world's space.
-    set_dim : int
-        Dimension of the point sets, at most the space's `cube_dim`.  Where it is smaller, as for the paper's
-        SE(3) puzzles, the sets give the first coordinates of the cube and the others are drawn uniformly.
+    `set_dim` is the dimension of the point sets, at most the space's `cube_dim`.  Where it is smaller, as for the
+    paper's SE(3) puzzles, the sets give the first coordinates of the cube and the others are drawn uniformly.
     """
 
     world: World
-    start: npt.NDArray[np.float64]
-    goal: npt.NDArray[np.float64]
+    start: Floats
+    goal: Floats
     set_dim: int
 
-    def configurations(self, points: PointSet, rng: np.random.Generator) -> npt.NDArray[np.float64]:
+    def configurations(self, points: PointSet, rng: np.random.Generator) -> Floats:
         """Return the set's configurations, (n, dim); `rng` draws the coordinates that the set does not give."""
         missing = self.world.space.cube_dim - self.set_dim
         cube = points.points
@@ -49,21 +42,11 @@ class Problem:
 
 @dataclass(frozen=True)
 class ProblemSource:
-    """A named problem, or a named stream of random problems.
+    """A named problem, such as ``maze-3``, or a named stream of random problems.
 
-    Attributes
-    ----------
-    name : str
-        What tasks and tables call it, e.g. ``maze-3``.
-    set_dim : int
-        As in :class:`Problem`; known without making one.
-    make : callable
-        From the number of an instance (>= 0; a fixed problem takes no notice of it) to the problem.  The same number
-        gives the same problem in every process.
-    random : bool
-        Whether instances differ.
-    about : str
-        One line for lists and tables: geometry, protocol, source.
+    `make` gives the problem of a number >= 0, of which a fixed problem takes no notice: the same one in every process.
+    `random` says whether instances differ; `set_dim` is known without making one; `about` is one line for lists and
+    tables.
     """
 
     name: str

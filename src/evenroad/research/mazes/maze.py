@@ -40,18 +40,7 @@ class Maze:
 
 
 def load_maze(level: int) -> Maze:
-    """Return the maze of this level.
-
-    Parameters
-    ----------
-    level : int
-        1, 2 or 3: harder and harder for uniform points.
-
-    Raises
-    ------
-    UnknownName
-        For any other level.
-    """
+    """Return the maze of level 1, 2 or 3, harder and harder for uniform points; UnknownName for another level."""
     if level not in LEVELS:
         raise UnknownName.among("maze level", level, LEVELS)
     record = json.loads((FOLDER / "mazes.json").read_text(encoding="utf-8"))[str(level)]
@@ -115,17 +104,7 @@ class DrawnMaze:
 
 
 def draw_maze(design: MazeDesign, *, rng: RngLike = 0) -> DrawnMaze:
-    """Draw a maze.
-
-    Every room can be reached from every other by a disk that fits the doors.
-
-    Parameters
-    ----------
-    design : MazeDesign
-        How many rooms, how wide the doors, and so on.
-    rng : int, SeedSequence or Generator
-        A passed Generator is spawned.
-    """
+    """Draw a maze in which a disk that fits the doors can reach every room; a passed Generator is spawned."""
     random = generator(rng)
     xs = np.linspace(0, design.width, design.cols + 1).round().astype(int)
     ys = np.linspace(0, design.height, design.rows + 1).round().astype(int)

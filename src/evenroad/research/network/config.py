@@ -101,12 +101,7 @@ class NetworkConfig:
 def choose_device(name: str) -> torch.device:
     """Return the device of a name: ``auto`` (a GPU when there is one), ``cpu``, ``cuda`` or ``cuda:1``, ...
 
-    Raises
-    ------
-    InvalidValue
-        If it is no such name.
-    NotAvailable
-        If there is no such GPU.
+    InvalidValue if it is no such name, NotAvailable if there is no such GPU.
     """
     if name == "auto":
         return torch.device("cuda" if torch.cuda.is_available() else "cpu")

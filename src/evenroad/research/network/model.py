@@ -12,37 +12,28 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import torch
 from scipy.spatial import cKDTree
 from torch import nn
 from torch.autograd.function import once_differentiable
 from torch.nn import functional
 
+from evenroad._arrays import Floats, Ints
 from evenroad.errors import InvalidValue
-from evenroad.points.measures.l2 import Array
 from evenroad.points.optimise.objective import Objective, objective_of_columns
 from evenroad.points.pointset import BELOW_ONE
 from evenroad.research.network.config import NetworkConfig
 
-Indices = npt.NDArray[np.int64]
-
 
 @dataclass(frozen=True, eq=False)
 class Edges:
-    """Messages of a graph: message e goes from point ``sender[e]`` to point ``receiver[e]``.
+    """Messages of a graph, sorted by receiver: number e goes from point ``sender[e]`` to ``receiver[e]``, (m,) each."""
 
-    Attributes
-    ----------
-    sender, receiver : ndarray of int64, shape (m,)
-        Sorted by receiver.
-    """
-
-    sender: Indices
-    receiver: Indices
+    sender: Ints
+    receiver: Ints
 
 
-def nearest_edges(points: Array, k: int) -> Edges:
+def nearest_edges(points: Floats, k: int) -> Edges:
     """Send every point of (n, d) messages from its k nearest others, or from all others if n <= k."""
     n = len(points)
     k = min(k, n - 1)
@@ -54,7 +45,7 @@ def nearest_edges(points: Array, k: int) -> Edges:
     return Edges(found[other].astype(np.int64), np.repeat(np.arange(n), k))
 
 
-def radius_edges(points: Array, radius: float) -> Edges:
+def radius_edges(points: Floats, radius: float) -> Edges:
     """Send every point of (n, d) messages from all points at most `radius` away, itself included."""
     lists = cKDTree(points).query_ball_point(points, radius, return_sorted=True)
     found = [np.array(each, dtype=np.int64) for each in lists]
@@ -62,17 +53,10 @@ def radius_edges(points: Array, radius: float) -> Edges:
     return Edges(np.concatenate(found), np.repeat(np.arange(len(points)), degrees))
 
 
-def edges_of_sets(sets: Array, k: int, radius: float | None) -> Edges:
-    """Return the graphs of several sets as one; point i of set t has the number t n + i.
+def edges_of_sets(sets: Floats, k: int, radius: float | None) -> Edges:
+    """Return the graphs of several sets, (s, n, d), n >= 2, as one; point i of set t has the number t n + i.
 
-    Parameters
-    ----------
-    sets : ndarray, shape (s, n, d)
-        Starting points, n >= 2.
-    k : int
-        Number of nearest neighbours; used if `radius` is None.
-    radius : float or None
-        Distance up to which points are neighbours.
+    Points are joined to their `k` nearest; or, where `radius` is given, to all within it.
     """
     n = sets.shape[1]
     graphs = [nearest_edges(each, k) if radius is None else radius_edges(each, radius) for each in sets]
@@ -87,17 +71,12 @@ NORM_FLOOR = 1e-5
 
 
 class MessageLayer(nn.Module):
-    """Rewrite the description of every point from its own and its neighbours' (Rusch et al. 2024).
+    """Rewrite the `width` numbers that describe every point from its own and its neighbours' (Rusch et al. 2024).
 
         m_i  = sum over neighbours j of message(x_i, x_j)
         x_i' = instance_norm(relu(update(x_i, m_i)))
 
     Both `message` and `update` are linear -> ReLU -> linear on the two arguments side by side.
-
-    Parameters
-    ----------
-    width : int
-        Numbers that describe a point.
     """
 
     def __init__(self, width: int) -> None:
@@ -144,16 +123,8 @@ def instance_norm(points: torch.Tensor, n: int) -> torch.Tensor:
 class PointNetwork(nn.Module):
     """Turn random points into even ones (Rusch, Kirk, Bronstein, Lemieux, Rus 2024).
 
-    Parameters
-    ----------
-    d : int
-        Dimension of the points.
-    width, layers : int
-        As in :class:`~evenroad.research.network.NetworkConfig`.
-
-    Notes
-    -----
-    It is built without weights; :func:`draw_weights` draws them.
+    It is built without weights; :func:`draw_weights` draws them.  `width` and `layers` are those of
+    :class:`~evenroad.research.network.NetworkConfig`.
     """
 
     def __init__(self, d: int, width: int, layers: int) -> None:
@@ -163,19 +134,10 @@ class PointNetwork(nn.Module):
         self.decoder = nn.utils.skip_init(nn.Linear, width, d)
 
     def forward(self, starts: torch.Tensor, sender: torch.Tensor, receiver: torch.Tensor) -> torch.Tensor:
-        """Return the points that the network makes of `starts`.
+        """Return the points that the network makes of random `starts`, (sets, n, d) float32, as (sets, n, d) float64.
 
-        Parameters
-        ----------
-        starts : Tensor of float32, shape (sets, n, d)
-            Random points.
-        sender, receiver : Tensor of int64, shape (m,)
-            Their graph, as of :func:`edges_of_sets`.
-
-        Returns
-        -------
-        Tensor of float64, shape (sets, n, d)
-            In the open unit cube, and below 1 as float32 too.
+        They lie in the open unit cube, and below 1 as float32 too.  `sender` and `receiver`, (m,), are the graph of
+        :func:`edges_of_sets`.
         """
         sets, n, d = starts.shape
         points = self.encoder(starts.reshape(sets * n, d))
@@ -208,19 +170,7 @@ def draw_weights(network: PointNetwork, draws: np.random.Generator) -> None:
 
 
 def objective_of_sets(points: torch.Tensor, objective: Objective) -> torch.Tensor:
-    """Return the objective of every set, differentiable once.
-
-    Parameters
-    ----------
-    points : Tensor of float64, shape (sets, n, d)
-        In [0, 1), on any device.
-    objective : Objective
-        Any that ``points.optimise`` knows.
-
-    Returns
-    -------
-    Tensor of float64, shape (sets,)
-        On the device of the points.
+    """Return the objective of every set of points, (sets, n, d) float64 in [0, 1), as (sets,), differentiable once.
 
     Raises
     ------

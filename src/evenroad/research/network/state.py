@@ -19,9 +19,9 @@ import safetensors.torch
 import torch
 from safetensors import SafetensorError
 
+from evenroad._arrays import Floats
 from evenroad._files import atomic_write
 from evenroad.errors import BrokenFile, shown
-from evenroad.points.measures.l2 import Array
 from evenroad.points.optimise.objective import Objective
 from evenroad.research.network.config import NetworkConfig
 from evenroad.research.network.model import PointNetwork, build_network, edges_of_sets, objective_of_sets
@@ -32,15 +32,7 @@ FORMAT = 1
 
 @dataclass(frozen=True, eq=False)
 class MicroBatch:
-    """Sets that go through the network together: ``first``, ``first + 1``, ...
-
-    Attributes
-    ----------
-    first : int
-        Number of its first set.
-    starts : Tensor of float32, shape (sets, n, d)
-    sender, receiver : Tensor of int64, shape (m,)
-    """
+    """Sets that go through the network together: number `first`, ``first + 1``, ...; their starts and their graph."""
 
     first: int
     starts: torch.Tensor
@@ -52,22 +44,14 @@ class MicroBatch:
 class TrainingState:
     """All that changes during a training; a checkpoint holds it.
 
-    Attributes
-    ----------
-    network : PointNetwork
-    optimiser : torch.optim.Adam
-    best_points, best_values : ndarray, shapes (sets, n, d) and (sets,)
-        Best points of every set over all steps, and their objectives; ``inf`` before the first step.
-    best_mean : float
-        Smallest mean of the objective over the sets, of all steps.
-    step, last_improved : int
-        Number of steps done, and the step with the best mean.
+    `best_points` and `best_values`, (sets, n, d) and (sets,), are those of every set over all steps, ``inf`` before the
+    first; `best_mean` is the smallest mean of the objective over the sets, of step `last_improved`.
     """
 
     network: PointNetwork
     optimiser: torch.optim.Adam
-    best_points: Array
-    best_values: Array
+    best_points: Floats
+    best_values: Floats
     best_mean: float = math.inf
     step: int = 0
     last_improved: int = 0
@@ -126,7 +110,7 @@ def learning_rate(step: int, config: NetworkConfig) -> float:
     return config.rate * 0.5 * (1.0 + math.cos(math.pi * (step - 1) / config.steps))
 
 
-def _take_note(state: TrainingState, first: int, points: Array, values: Array) -> None:
+def _take_note(state: TrainingState, first: int, points: Floats, values: Floats) -> None:
     for index, value in enumerate(values, start=first):
         if value < state.best_values[index]:
             state.best_values[index] = value

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from evenroad._arrays import Floats
 from evenroad._checks import require_count, require_positive
 from evenroad.errors import InvalidValue
-from evenroad.points.measures.l2 import Array
 from evenroad.points.npz import save_points
 from evenroad.points.optimise import Objective, anneal, parse_objective
 from evenroad.points.optimise.anneal import Callback
@@ -35,7 +35,7 @@ def request_of(config: NetworkConfig) -> dict[str, Any]:
     return {"method": "network", **config.as_record()}
 
 
-def point_sets(config: NetworkConfig, best_points: Array) -> tuple[PointSet, ...]:
+def point_sets(config: NetworkConfig, best_points: Floats) -> tuple[PointSet, ...]:
     """Return the trained coordinates, shape (sets, n, d), as point sets with their origin."""
     return tuple(PointSet(each, origin_of(config, index)) for index, each in enumerate(best_points))
 

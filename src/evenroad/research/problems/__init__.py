@@ -52,13 +52,7 @@ PROBLEMS: dict[str, ProblemSource] = _by_name(MAZES, CORRIDORS, CHAINS, PUZZLES,
 
 
 def source_named(name: str) -> ProblemSource:
-    """Return the problem source of this name.
-
-    Raises
-    ------
-    UnknownName
-        If there is none; the text lists them.
-    """
+    """Return the problem source of this name; UnknownName, with the known ones, if there is none."""
     if name not in PROBLEMS:
         raise UnknownName.among("problem", name, PROBLEMS)
     return PROBLEMS[name]

@@ -63,18 +63,8 @@ TUNED_ON = (Family.BALLS, Family.BOXES)
 class FairProblem:
     """What decides a stream of random problems.
 
-    Attributes
-    ----------
-    stream : Stream
-        What its instances are for.
-    family : Family
-        Kind of world.
-    d : int
-        Dimension of the point sets.
-    difficulty : int
-        Success of uniform points [%] with k = 10 symmetrised.
-    size : float
-        Of the obstacles, as calibrated.
+    `d` is the dimension of the point sets, `difficulty` the success of uniform points [%] with k = 10 symmetrised, and
+    `size` that of the obstacles, as calibrated.
     """
 
     stream: Stream

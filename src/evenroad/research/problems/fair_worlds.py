@@ -7,8 +7,8 @@ from enum import IntEnum
 from functools import partial
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Bools, Floats
 from evenroad.geometry import rotation_from_heading, rotation_from_quaternion
 from evenroad.research.bench.task import Problem
 from evenroad.research.mazes import MazeDesign, draw_maze
@@ -17,9 +17,9 @@ from evenroad.space import SE2, SE3
 from evenroad.world import World
 from evenroad.world.solids import OrientedBox, SolidWorld
 
-Array = npt.NDArray[np.float64]
+Array = Floats
 
-FarApart = Callable[[Array, Array], npt.NDArray[np.bool_]]
+FarApart = Callable[[Array, Array], Bools]
 """Which pairs of rows of two (m, d) arrays of the cube may be a start and a goal, (m,)."""
 
 ENTROPY = 20_261_121
@@ -59,14 +59,10 @@ def instance_rng(
 def make_instance(
     stream: Stream, family: Family, d: int, difficulty: int, size: float, instance: int
 ) -> Problem:
-    """Return the problem of this number; the same arguments give the same one, in every process.
+    """Return the problem of number `instance` >= 0; the same arguments give the same one, in every process.
 
     Parameters
     ----------
-    stream : Stream
-        What it is for.
-    family : Family
-        Kind of world.
     d : int
         Dimension of the point sets: any with a number of obstacles for balls and boxes, 2 for mazes, 3 for SE(2) and
         6 for SE(3).
@@ -74,8 +70,6 @@ def make_instance(
         Success of uniform points in % that `size` is meant to give; part of the seed.
     size : float
         Of the obstacles: radius, half extent; width of the doors in mazes.
-    instance : int
-        Number, >= 0.
     """
     ways: dict[Family, tuple[Callable[..., World], FarApart]] = {
         Family.BALLS: (partial(draw_balls, d), far_on_torus),
@@ -98,28 +92,12 @@ BATCH = 32
 
 
 def draw_query(
-    draw_world: Callable[[np.random.Generator], World],
-    far_apart: FarApart,
-    rng: np.random.Generator,
+    draw_world: Callable[[np.random.Generator], World], far_apart: FarApart, rng: np.random.Generator
 ) -> tuple[World, Array, Array]:
-    """Draw a world, a start and a goal.
+    """Draw a world, a start and a goal, (dim,) each; `rng` is consumed.
 
     Start and goal are two uniform configurations: the first pair of which both are free, that is far apart, and
     between which the straight motion is blocked.  A world in which none of 512 pairs will do is replaced by the next.
-
-    Parameters
-    ----------
-    draw_world : callable
-        From a generator to a world.
-    far_apart : callable
-        From the rows of two (m, cube_dim) arrays of the space's unit cube to which are far enough apart: (m,).
-    rng : Generator
-        Is consumed.
-
-    Returns
-    -------
-    world : World
-    start, goal : ndarray, shape (dim,)
     """
     while True:
         world = draw_world(rng)
@@ -135,7 +113,7 @@ def draw_query(
                     return world, start, goal
 
 
-def far_on_torus(a: Array, b: Array) -> npt.NDArray[np.bool_]:
+def far_on_torus(a: Array, b: Array) -> Bools:
     """Return which rows of two (m, d) arrays in the unit cube are at least sqrt(d / 12) apart on the torus: (m,).
 
     That is the root of the mean square for two uniform points.  Measured in the cube instead, far ends would be
@@ -182,7 +160,7 @@ def draw_disk_world(door: float, rng: np.random.Generator) -> World:
     return draw_maze(design, rng=rng).map.world(ROBOT_RADIUS)
 
 
-def far_in_map(a: Array, b: Array) -> npt.NDArray[np.bool_]:
+def far_in_map(a: Array, b: Array) -> Bools:
     """Return which rows of the unit square are half the map's width, 320 pixels, apart in the map: (m,)."""
     return np.asarray(np.hypot(640.0 * (b[:, 0] - a[:, 0]), 480.0 * (b[:, 1] - a[:, 1])) >= 320.0)
 
@@ -231,7 +209,7 @@ def draw_clutter(dim: int, size: float, rng: np.random.Generator) -> SolidWorld:
     return SolidWorld(space, BODY[dim], obstacles, RESOLUTION[dim])
 
 
-def places_far_apart(dim: int, a: Array, b: Array) -> npt.NDArray[np.bool_]:
+def places_far_apart(dim: int, a: Array, b: Array) -> Bools:
     """Return which rows of the unit cube have places as far apart as :func:`far_on_torus` asks; turns are free."""
     return far_on_torus(a[:, :dim], b[:, :dim])
 

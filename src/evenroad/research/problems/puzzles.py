@@ -21,16 +21,9 @@ _NOT_TURNED = (1.0, 0.0, 0.0, 0.0)
 
 @dataclass(frozen=True)
 class Puzzle:
-    """A rigid body among boxes in space; it starts and ends not turned.
+    """A rigid body among boxes in space, as :class:`SolidWorld` takes them; it starts and ends not turned.
 
-    Attributes
-    ----------
-    low, high : tuple of 3 floats
-        Bounds of the translation.
-    start, goal : tuple of 3 floats
-        Translations.
-    body, obstacles : tuple of OrientedBox
-        As :class:`SolidWorld` takes them.
+    `low` and `high` bound the translation; `start` and `goal` are translations.
     """
 
     low: Triple

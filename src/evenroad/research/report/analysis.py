@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad._rng import generator
 from evenroad.research.bench.rows import Rows
 from evenroad.research.report.cells import Cell, cells_of
@@ -21,8 +21,6 @@ from evenroad.research.statistics.resampling import DRAWS
 
 TARGET = 0.9
 """Success rate that the samples needed are asked for."""
-
-Rates = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -68,12 +66,12 @@ def _has_enough(curve: Sequence[Cell]) -> bool:
     return min(len(cell.units) for cell in curve) >= FEW_UNITS
 
 
-def _needed(curve: Sequence[Cell], resampled: Rates | None) -> SamplesNeeded:
+def _needed(curve: Sequence[Cell], resampled: Floats | None) -> SamplesNeeded:
     rates, runs = [cell.rate for cell in curve], [cell.runs for cell in curve]
     return samples_needed([cell.n for cell in curve], rates, resampled, runs, target=TARGET)
 
 
-def resampled_curves(curves: Sequence[Sequence[Cell]]) -> list[Rates]:
+def resampled_curves(curves: Sequence[Sequence[Cell]]) -> list[Floats]:
     """Return bootstrap resamples of the success rates of each curve, shape (draws, cells of the curve).
 
     A unit is resampled for all numbers of samples together, since its results at different numbers are related: one
@@ -85,7 +83,7 @@ def resampled_curves(curves: Sequence[Sequence[Cell]]) -> list[Rates]:
     for place, curve in enumerate(curves):
         labels = np.unique(np.concatenate([cell.units.unit for cell in curve]))
         alike.setdefault(labels.tobytes(), []).append(place)
-    found: list[Rates] = [np.empty((0, 0))] * len(curves)
+    found: list[Floats] = [np.empty((0, 0))] * len(curves)
     for places in alike.values():
         # Curves with the same units are resampled together: much faster, with the same result.
         rates = _resampled([cell for place in places for cell in curves[place]])
@@ -95,7 +93,7 @@ def resampled_curves(curves: Sequence[Sequence[Cell]]) -> list[Rates]:
     return found
 
 
-def _resampled(cells: Sequence[Cell]) -> Rates:
+def _resampled(cells: Sequence[Cell]) -> Floats:
     labels, place = np.unique(np.concatenate([cell.units.unit for cell in cells]), return_inverse=True)
     column = np.repeat(np.arange(len(cells)), [len(cell.units) for cell in cells])
     solved, runs = np.zeros((2, len(labels), len(cells)))
@@ -113,21 +111,10 @@ def _resampled(cells: Sequence[Cell]) -> Rates:
 
 @dataclass(frozen=True)
 class Analysis:
-    """All results of a store.
+    """All results of a store; cells in the order of questions, samplers and numbers of samples.
 
-    Attributes
-    ----------
-    runs : Runs
-    cells : tuple of Cell
-        In the order of questions, samplers and numbers of samples.
-    comparisons : tuple of Comparison
-    needed : dict of (Question, sampler) to SamplesNeeded
-    verdicts : dict of source name to (ExpectedTable, tuple of Verdict)
-        Of the sources with a cell that the store has runs for.
-    pooled : dict of grouping to tuple of Pooled
-        Empty without a fair suite.
-    lazy : tuple of LazyChecks
-    failures : tuple of Failure
+    `verdicts` has, for each source with a cell that the store has runs for, its table and the verdicts; `pooled` is
+    empty without a fair suite.
     """
 
     runs: Runs

@@ -16,19 +16,10 @@ from functools import cache
 
 import numpy as np
 
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad.research.bench.samplers import PERMUTED_FROM
 from evenroad.research.problems import PROBLEMS
-from evenroad.research.report.runs import (
-    Floats,
-    Ints,
-    Mask,
-    Question,
-    Runs,
-    UnitSums,
-    combined,
-    first_rows,
-    sums_by_unit,
-)
+from evenroad.research.report.runs import Question, Runs, UnitSums, combined, first_rows, sums_by_unit
 from evenroad.research.statistics import Interval, clustered_rate, student_interval, wilson
 
 GRID = "grid"
@@ -39,16 +30,11 @@ BLOCKS = "paper-blocks"
 
 @dataclass(frozen=True)
 class Units:
-    """Independent units of a cell, each with its runs.
+    """Independent units of a cell, each with its runs; all arrays (units,).
 
-    Attributes
-    ----------
-    kind : str
-        ``sets`` of a pool, ``blocks`` of a sequence, ``instances`` of random worlds; ``runs`` where every unit has one
-        run.
-    unit : ndarray of int, shape (units,)
-        Codes.  Those of sets differ between numbers of points; all others mean the same in every cell of a question.
-    solved, runs : ndarray of int, shape (units,)
+    `kind` is ``sets`` of a pool, ``blocks`` of a sequence, ``instances`` of random worlds, or ``runs`` where every
+    unit has one run.  The codes in `unit` differ between numbers of points for sets; all others mean the same in every
+    cell of a question.
     """
 
     kind: str
@@ -63,25 +49,17 @@ class Units:
 
 @dataclass(frozen=True)
 class Grouping:
-    """The cell and the unit of every run.
+    """The cell and the unit of every run, as codes, (rows,); the others are of each cell, (cells,).
 
-    Attributes
-    ----------
-    cell, unit : ndarray of int, shape (rows,)
-        Codes.
-    kinds : tuple of str
-        Kind of the units of each cell.
-    pooled : ndarray of bool, shape (cells,)
-        Whether a pool gave one of its sets more than once; the grid is no pool.
-    permuted : ndarray of bool, shape (cells,)
-        Whether every run permutes the coordinates of such a set.
+    `kinds` are the kinds of the units; `pooled` says whether a pool gave one of its sets more than once (the grid is no
+    pool), and `permuted` whether every run permutes the coordinates of such a set.
     """
 
     cell: Ints
     unit: Ints
     kinds: tuple[str, ...]
-    pooled: Mask
-    permuted: Mask
+    pooled: Bools
+    permuted: Bools
 
     def also_by_set(self, c: int) -> bool:
         """Say whether runs of different units share sets: so it is with a pool in random worlds."""
@@ -134,14 +112,14 @@ def _units(kind: str, sums: UnitSums, c: int) -> Units:
     return Units(kind, sums.unit[entries], sums.sums[entries], sums.runs[entries])
 
 
-def _repeats(cell: Ints, cells: int, unit: Ints) -> Mask:
+def _repeats(cell: Ints, cells: int, unit: Ints) -> Bools:
     """Return which cells have a unit with more than one run."""
     place = combined(cell, unit)
     several = np.bincount(place)[place] > 1
     return np.bincount(cell[several], minlength=cells) > 0
 
 
-def _varies(column: Ints, cell: Ints, cells: int) -> Mask:
+def _varies(column: Ints, cell: Ints, cells: int) -> Bools:
     """Return in which cells a column has more than one value."""
     first = column[first_rows(cell)]
     return np.bincount(cell, weights=column != first[cell], minlength=cells) > 0

@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad.research.report.cells import Cell, cell_codes, grouping_of
-from evenroad.research.report.runs import Floats, Ints, Mask, Question, Runs, UnitSums, combined, sums_by_unit
+from evenroad.research.report.runs import Question, Runs, UnitSums, combined, sums_by_unit
 from evenroad.research.statistics import (
     Interval,
     bonett_price,
@@ -36,15 +37,11 @@ def pair_codes(runs: Runs) -> Ints:
     return combined(runs.question, runs.n, runs.instance, runs.run, runs.seed)
 
 
-def differences_from(runs: Runs, pair: Ints, reference: str) -> tuple[Mask, Ints]:
+def differences_from(runs: Runs, pair: Ints, reference: str) -> tuple[Bools, Ints]:
     """Compare every run with the same run of the reference sampler.
 
-    Returns
-    -------
-    paired : ndarray of bool, shape (rows,)
-        Whether there is such a run; False for runs of the reference itself.
-    difference : ndarray of int, shape (rows,)
-        1 if only this run is solved, -1 if only the reference's is, else 0; meaningless where not paired.
+    Returns whether there is such a run, (rows,), False for runs of the reference itself; and 1 if only this run is
+    solved, -1 if only the reference's is, else 0, (rows,), meaningless where there is none.
     """
     solved = runs.solved.astype(np.int64)
     if reference not in runs.samplers:
@@ -138,14 +135,8 @@ def _compare(
 ) -> Comparison:
     """Compare one cell.
 
-    Parameters
-    ----------
-    sums : UnitSums
-        Differences by unit; those of `cell` are in group `c`.
-    solved : ndarray of int, shape (units,)
-        Solved runs of each unit.
-    wins, losses : int
-        Pairs that only the cell, and only the reference, solved.
+    `sums` has the differences by unit, those of `cell` in group `c`; `solved`, (units,), its solved runs; `wins` and
+    `losses` count the pairs that only the cell, and only the reference, solved.
     """
     differences, counts = sums.sums[sums.of(c)], sums.runs[sums.of(c)]
     pairs = int(counts.sum())

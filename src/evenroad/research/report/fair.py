@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from evenroad._arrays import Ints
 from evenroad.research.problems import PROBLEMS
 from evenroad.research.report.cells import cell_codes, grouping_of
 from evenroad.research.report.comparisons import (
@@ -17,15 +18,7 @@ from evenroad.research.report.comparisons import (
     holm_of_tested,
     pair_codes,
 )
-from evenroad.research.report.runs import (
-    Ints,
-    Question,
-    Runs,
-    combined,
-    first_rows,
-    natural_key,
-    sums_by_unit,
-)
+from evenroad.research.report.runs import Question, Runs, combined, first_rows, natural_key, sums_by_unit
 from evenroad.research.statistics import (
     Interval,
     clustered_difference,
@@ -134,15 +127,11 @@ class Pooled:
 
 
 def pooled(runs: Runs) -> dict[str, tuple[Pooled, ...]]:
-    """Pool the fair suite by everything in :data:`GROUPINGS`.
+    """Pool the fair suite by everything in :data:`GROUPINGS`; groups in natural order, samplers in that of the tables.
 
     A run counts if uniform has the same run in the same world, so a sampler without sets for hard worlds gains nothing
-    by it.  Other searches repeat the outcomes of ``connect``, so they count only where rules are compared.
-
-    Returns
-    -------
-    dict of grouping to tuple of Pooled
-        Groups in natural order, samplers in that of the tables; empty without runs of the suite.
+    by it.  Other searches repeat the outcomes of ``connect``, so they count only where rules are compared.  Empty
+    without runs of the suite.
     """
     runs = fair_runs(runs)
     if not len(runs):
@@ -203,18 +192,11 @@ def _pooled_by(grouping: str, pairs: _Pairs) -> tuple[Pooled, ...]:
 
 @dataclass(frozen=True)
 class _Pairs:
-    """Runs that uniform has, too, and what they have in common with each other.
+    """Runs that uniform has, too, and what they have in common with each other; all arrays (rows,).
 
-    Attributes
-    ----------
-    difference : ndarray of int, shape (rows,)
-        1 if only this run is solved, -1 if only uniform's is, else 0.
-    world : ndarray of int, shape (rows,)
-        Code of the random world.
-    set : ndarray of int, shape (rows,)
-        Code of the set of a pool; -1 if it is drawn afresh.
-    shared : ndarray of int, shape (rows,)
-        Code of the set if it is used as it is; else a code of the world, below 0.
+    `difference` is 1 if only this run is solved, -1 if only uniform's is, else 0; `world` codes the random world,
+    `set` the set of a pool (-1 if it is drawn afresh), and `shared` the set if it is used as it is, else the world,
+    below 0.
     """
 
     runs: Runs
@@ -255,17 +237,10 @@ def _groups(grouping: str, runs: Runs) -> tuple[list[str], Ints]:
 
 @dataclass(frozen=True)
 class LazyChecks:
-    """Motions that two searches check on the same roadmaps in random worlds.
+    """Mean numbers of motions that two searches check on the same roadmaps in random worlds, of a rule and a sampler.
 
-    Attributes
-    ----------
-    rule, sampler : str
-    instances, pairs : int
-        Number of random worlds and of roadmaps.
-    connect, lazy : float
-        Mean number of motions checked.
-    ratio : Interval
-        Of the ratio lazy / connect, by a bootstrap over worlds.
+    `instances` and `pairs` count worlds and roadmaps; `ratio` is the interval of lazy / connect, by a bootstrap over
+    worlds.
     """
 
     rule: str

@@ -10,12 +10,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad.research.bench.rows import Labels, Rows
 from evenroad.research.bench.samplers import SAMPLERS
-
-Ints = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 TABLE_LIMIT = 2**25
 """Codes are numbered anew with a table of this length at most (128 MiB), beyond it by sorting."""
@@ -61,8 +58,8 @@ class Runs:
     instance: Ints
     run: Ints
     seed: Ints
-    solved: Mask
-    failed: Mask
+    solved: Bools
+    failed: Bools
     valid: Floats
     early: Floats
     edges_checked: Floats
@@ -72,7 +69,7 @@ class Runs:
         """Return the number of runs."""
         return len(self.n)
 
-    def where(self, chosen: Mask | Ints) -> Runs:
+    def where(self, chosen: Bools | Ints) -> Runs:
         """Return the runs that a mask or row numbers choose, in that order."""
         columns = {field.name: getattr(self, field.name) for field in fields(self)}
         arrays: dict[str, Any] = {
@@ -153,15 +150,7 @@ def natural_key(text: str) -> list[tuple[int, int, str]]:
 class UnitSums:
     """Sums per (group, unit), sorted by group and then unit.
 
-    Attributes
-    ----------
-    begins : ndarray, shape (groups + 1,)
-        Group g has the entries ``begins[g]`` up to ``begins[g + 1]``.
-    unit : ndarray, shape (entries,)
-    runs : ndarray, shape (entries,)
-        Rows of each.
-    sums : ndarray, shape (entries,)
-        Sum of the column.
+    Group g has the entries ``begins[g]`` up to ``begins[g + 1]``; `runs`, (entries,), counts the rows of each.
     """
 
     begins: Ints
@@ -211,17 +200,7 @@ def _without_gaps(code: Ints) -> Ints:
 
 
 def sums_by_unit(group: Ints, groups: int, unit: Ints, column: Ints) -> UnitSums:
-    """Return the sums of a column over the units of each group.
-
-    Parameters
-    ----------
-    group : ndarray of int, shape (rows,)
-        In [0, groups).
-    groups : int
-        Groups may be empty.
-    unit, column : ndarray of int, shape (rows,)
-        Units may have any numbers.
-    """
+    """Return the sums of a column over the units of each group; groups are in [0, groups), units any numbers."""
     place = combined(group, unit)
     first = first_rows(place)
     begins = np.searchsorted(group[first], np.arange(groups + 1))

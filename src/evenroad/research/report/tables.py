@@ -12,14 +12,9 @@ from evenroad.research.statistics import Interval
 
 @dataclass(frozen=True)
 class Entry:
-    """One entry of a table.
+    """One entry of a table: plain text, which each format escapes, and a mark.
 
-    Attributes
-    ----------
-    text : str
-        Plain text: each format escapes what it must.
-    mark : str
-        ``better``, ``worse`` or ``differs``: what a test has found. ``faint``: there is no result. Else empty.
+    ``better``, ``worse`` or ``differs``: what a test has found.  ``faint``: there is no result.
     """
 
     text: str
@@ -28,21 +23,10 @@ class Entry:
 
 @dataclass(frozen=True)
 class Table:
-    """A table.
+    """A table: its first columns, as many as `labels`, name the row and are set left, the others right.
 
-    Attributes
-    ----------
-    name : str
-        Unique in a report; links and labels are made of it.
-    title : str
-        One line above the table.
-    header : tuple of str
-    rows : tuple of tuple of Entry
-        Each as long as the header.
-    labels : int
-        Number of first columns that name the row; they are set left, the others right.
-    notes : tuple of str
-        Sentences below the table.
+    `name` is unique in a report, links and labels are made of it; `title` is the line above, `notes` are sentences
+    below.
     """
 
     name: str

@@ -111,16 +111,10 @@ def _cells_of(row: dict[str, Any]) -> list[ExpectedCell]:
 
 @dataclass(frozen=True)
 class Verdict:
-    """An expected cell beside ours.
+    """An expected cell beside ours, None if the store has no such runs.
 
-    Attributes
-    ----------
-    expected : ExpectedCell
-    ours : Cell or None
-        None if the store has no such runs.
-    p, p_corrected : float
-        p-value of Fisher's exact test on the counts, and the same after Holm's correction over all tested cells of the
-        source; NaN if there is nothing to test.
+    `p` is of Fisher's exact test on the counts, `p_corrected` the same after Holm's correction over all tested cells of
+    the source; NaN if there is nothing to test.
     """
 
     expected: ExpectedCell

@@ -32,11 +32,7 @@ class Report:
 
 
 def write_report(
-    store: str | os.PathLike[str],
-    out: str | os.PathLike[str],
-    *,
-    only: Sequence[str] = (),
-    command: str = "",
+    store: str | os.PathLike[str], out: str | os.PathLike[str], *, only: Sequence[str] = (), command: str = ""
 ) -> Report:
     """Write a report of a store into a folder: ``report.html``, PNG figures, CSV, ``tables.md`` and ``tables.tex``.
 

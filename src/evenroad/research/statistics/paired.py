@@ -6,30 +6,20 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import bdtr, ndtri, stdtr, stdtrit
 
+from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue
 from evenroad.research.statistics.rates import LEVEL, Interval, as_counts, require_share
 
 
-def mcnemar_exact(only_first: npt.ArrayLike, only_second: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    """Return the two-sided p-value of McNemar's exact test.
+def mcnemar_exact(only_first: npt.ArrayLike, only_second: npt.ArrayLike) -> Floats:
+    """Return the two-sided p-value of McNemar's exact test, in (0, 1]; 1 where no run tells the two apart.
 
-    Runs that both or neither solved say nothing of a difference; of the others, each is as likely to be the
-    first's as the second's if there is none: twice the smaller tail of a binomial with share 1/2, at most 1.
+    Runs that both or neither solved say nothing of a difference; of those that only the first or only the second
+    solved, counts >= 0, each is as likely to be the first's if there is none: twice the smaller tail of a binomial
+    with share 1/2.
 
-    Parameters
-    ----------
-    only_first, only_second : array_like of int
-        Runs that only the first, only the second solved, >= 0.
-
-    Returns
-    -------
-    ndarray of float64
-        p-values in (0, 1]; 1 where no run tells the two apart.
-
-    References
-    ----------
-    Q. McNemar (1947), Note on the sampling error of the difference between correlated proportions, Psychometrika
-    12, 153-157; the exact form as in A. Agresti (2002), Categorical Data Analysis, section 10.1.
+    Q. McNemar (1947), Note on the sampling error of the difference between correlated proportions, Psychometrika 12,
+    153-157; the exact form as in A. Agresti (2002), Categorical Data Analysis, section 10.1.
     """
     first, second = as_counts("only_first", only_first), as_counts("only_second", only_second)
     smaller, both = np.minimum(first, second), first + second
@@ -39,27 +29,16 @@ def mcnemar_exact(only_first: npt.ArrayLike, only_second: npt.ArrayLike) -> npt.
 def bonett_price(only_first: int, only_second: int, pairs: int, *, level: float = LEVEL) -> Interval:
     """Return the interval of the difference of two paired success rates, first minus second.
 
-    One is added to both counts and two to the number of pairs before Wald's formula, so that the interval has
-    a width where nothing was seen.
+    Of `pairs` >= 1 runs only the first solved `only_first`, only the second `only_second`.  One is added to both counts
+    and two to the number of pairs before Wald's formula, so that the interval has a width where nothing was seen.
 
-    Parameters
-    ----------
-    only_first, only_second : int
-        Pairs that only the first, only the second solved.
-    pairs : int
-        All pairs, >= 1.
-    level : float
-        Confidence, in (0, 1).
+    D. G. Bonett and R. M. Price (2012), Adjusted Wald confidence interval for a difference of binomial proportions
+    based on paired data, J. Educ. Behav. Stat. 37, 479-488 (their adjusted Wald interval).
 
     Raises
     ------
     InvalidValue
         If a count is negative or there are more of them than pairs.
-
-    References
-    ----------
-    D. G. Bonett and R. M. Price (2012), Adjusted Wald confidence interval for a difference of binomial proportions
-    based on paired data, J. Educ. Behav. Stat. 37, 479-488 (their adjusted Wald interval).
     """
     first = int(as_counts("only_first", only_first))
     second = int(as_counts("only_second", only_second))
@@ -78,29 +57,19 @@ def student_interval(
 ) -> Interval:
     """Return the interval of ``sum(sums) / sum(runs)``, a success rate or a paired difference, over units.
 
-    The ratio's linearised error with Student's quantile for as many units.  It needs no more than two units, but has
-    no width where all units say the same, and is everything that is possible where there is one unit only.
+    The ratio's linearised error with Student's quantile for as many units (W. G. Cochran 1977, Sampling Techniques,
+    section 6.4).  It needs no more than two units, but has no width where all units say the same, and is everything
+    that is possible where there is one unit only.
 
     Parameters
     ----------
     sums, runs : array_like of int, shape (units,)
         Of a rate: successes and runs per unit, runs >= 1; of a difference: as
-        :func:`~evenroad.research.statistics.clustered_difference`.
+        :func:`~evenroad.research.statistics.clustered_difference`.  Others are an InvalidValue.
     unit : str
         What a unit is, in the plural, for `Interval.kind`.
     lowest : float
         Smallest value that is possible: 0 for a rate, -1 for a difference; the largest is 1.
-    level : float
-        Confidence, in (0, 1).
-
-    Raises
-    ------
-    InvalidValue
-        If there is no unit, the shapes differ, or a unit has no run.
-
-    References
-    ----------
-    W. G. Cochran (1977), Sampling Techniques, section 6.4.
     """
     ratio, error, units = _ratio_and_error(sums, runs)
     kind = f"student over {unit}"

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import gammaln, ndtri
 
+from evenroad._arrays import Floats, Ints
 from evenroad.errors import InvalidValue
 
 LEVEL = 0.95
@@ -39,32 +40,19 @@ class Interval:
         return other if other.high - other.low > self.high - self.low else self
 
 
-def wilson(
-    solved: npt.ArrayLike, runs: npt.ArrayLike, *, level: float = LEVEL
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """Return Wilson's score interval of success rates from independent runs.
+def wilson(solved: npt.ArrayLike, runs: npt.ArrayLike, *, level: float = LEVEL) -> tuple[Floats, Floats]:
+    """Return the ends in [0, 1] of Wilson's score interval of success rates from independent runs.
+
+    E. B. Wilson (1927), Probable inference, the law of succession, and statistical inference, J. Am. Stat. Assoc. 22,
+    209-212, equation 4.
 
     Parameters
     ----------
     solved, runs : array_like of int
-        Successes and runs, of shapes that broadcast; runs >= 1.
+        Successes and runs >= 1, of shapes that broadcast; InvalidValue for a count that is negative or not whole, and
+        where ``solved > runs``.
     level : float
         Confidence, in (0, 1).
-
-    Returns
-    -------
-    low, high : ndarray of float64
-        Ends, in [0, 1].
-
-    Raises
-    ------
-    InvalidValue
-        If a count is negative, not whole, or ``solved > runs``.
-
-    References
-    ----------
-    E. B. Wilson (1927), Probable inference, the law of succession, and statistical inference, J. Am. Stat. Assoc.
-    22, 209-212, equation 4.
     """
     successes, trials = as_successes(solved, runs)
     z = float(ndtri(0.5 + 0.5 * require_share("level", level)))
@@ -77,7 +65,7 @@ def wilson(
     return low, high
 
 
-def as_counts(name: str, values: Any) -> npt.NDArray[np.int64]:
+def as_counts(name: str, values: Any) -> Ints:
     """Return `values` as int64, or raise InvalidValue unless all are whole numbers >= 0."""
     array = np.asarray(values)
     if array.dtype.kind not in "iub" and not (array.dtype.kind == "f" and np.all(array == np.trunc(array))):
@@ -87,7 +75,7 @@ def as_counts(name: str, values: Any) -> npt.NDArray[np.int64]:
     return array.astype(np.int64)
 
 
-def as_successes(solved: Any, runs: Any) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+def as_successes(solved: Any, runs: Any) -> tuple[Ints, Ints]:
     """Return both as int64, or raise InvalidValue unless 0 <= solved <= runs and runs >= 1 everywhere."""
     successes, trials = as_counts("solved", solved), as_counts("runs", runs)
     if np.any(trials < 1):
@@ -109,23 +97,15 @@ SAME = 1e-7
 
 
 def fisher_exact(first: tuple[int, int], second: tuple[int, int]) -> float:
-    """Return the two-sided p-value that two groups of runs have the same success rate.
+    """Return the two-sided p-value that two groups of runs, (solved, runs) each, have the same success rate.
 
-    Given the totals, all tables that are no likelier than the one seen are counted.
-
-    Parameters
-    ----------
-    first, second : tuple of two int
-        (solved, runs) of each group, runs >= 1.
+    Given the totals, all tables that are no likelier than the one seen are counted (R. A. Fisher 1922, On the
+    interpretation of chi-squared from contingency tables, J. R. Stat. Soc. 85, 87-94).
 
     Raises
     ------
     InvalidValue
-        If a pair is not one of counts with ``0 <= solved <= runs``.
-
-    References
-    ----------
-    R. A. Fisher (1922), On the interpretation of chi-squared from contingency tables, J. R. Stat. Soc. 85, 87-94.
+        If a pair is not one of counts with ``0 <= solved <= runs``, runs >= 1.
     """
     if len(first) != 2 or len(second) != 2:
         raise InvalidValue(f"each group must be (solved, runs), got {first!r} and {second!r}")
@@ -138,29 +118,21 @@ def fisher_exact(first: tuple[int, int], second: tuple[int, int]) -> float:
     return float(min(1.0, np.exp(log_chance[log_chance <= seen + SAME]).sum()))
 
 
-def _log_choose(n: int, k: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
-    ways: npt.NDArray[np.float64] = gammaln(n + 1) - gammaln(k + 1) - gammaln(n - k + 1)
+def _log_choose(n: int, k: Ints) -> Floats:
+    ways: Floats = gammaln(n + 1) - gammaln(k + 1) - gammaln(n - k + 1)
     return ways
 
 
-def holm(p_values: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    """Return p-values corrected so that all of a family may be read at one level.
+def holm(p_values: npt.ArrayLike) -> Floats:
+    """Return p-values, (m,) in [0, 1], corrected so that all of a family may be read at one level.
 
-    The i-th smallest of m (from 0) is multiplied by m - i; none falls below a smaller one's, none exceeds 1.
-
-    Parameters
-    ----------
-    p_values : array_like, shape (m,)
-        In [0, 1]; m may be 0.
+    The i-th smallest of m (from 0) is multiplied by m - i; none falls below a smaller one's, none exceeds 1 (S.  Holm
+    1979, A simple sequentially rejective multiple test procedure, Scand.  J.  Stat. 6, 65-70).  m may be 0.
 
     Raises
     ------
     InvalidValue
         If a value is not in [0, 1] (NaN included).
-
-    References
-    ----------
-    S. Holm (1979), A simple sequentially rejective multiple test procedure, Scand. J. Stat. 6, 65-70.
     """
     values = np.asarray(p_values, dtype=np.float64)
     if values.ndim != 1 or not np.all((values >= 0) & (values <= 1)):

@@ -10,6 +10,7 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad._checks import require_count
 from evenroad._rng import generator
 from evenroad.errors import InvalidValue
@@ -27,7 +28,7 @@ EXACT = 2**24
 
 def resampled_ratios(
     numerators: npt.ArrayLike, denominators: npt.ArrayLike, *, draws: int = DRAWS, seed: int = 0
-) -> npt.NDArray[np.float64]:
+) -> Floats:
     """Return the bootstrap distribution of ``sum(numerators) / sum(denominators)`` over units.
 
     Units are runs, sets or instances that are independent of each other.  With solved and runs per unit the ratio is a
@@ -88,9 +89,7 @@ def percentile_interval(values: npt.ArrayLike, *, level: float = LEVEL) -> tuple
     return float(ordered[math.floor(tail * last)]), float(ordered[math.ceil((1.0 - tail) * last)])
 
 
-def _ratios(
-    weights: npt.NDArray[np.float32], above: npt.NDArray[np.float64], below: npt.NDArray[np.float64]
-) -> npt.NDArray[np.float64]:
+def _ratios(weights: npt.NDArray[np.float32], above: Floats, below: Floats) -> Floats:
     sums = _sums(weights, above)
     of_all = below.sum(axis=0)
     if np.all(below == below[0]):
@@ -100,11 +99,11 @@ def _ratios(
     return np.where(totals > 0, sums / np.where(totals > 0, totals, 1.0), above.sum(axis=0) / of_all)
 
 
-def _sums(weights: npt.NDArray[np.float32], values: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def _sums(weights: npt.NDArray[np.float32], values: Floats) -> Floats:
     """Return weighted sums over units, in single precision where that is exact: it takes a third of the time."""
     exact = np.all(values == np.trunc(values)) and np.abs(values).max() * len(values) < EXACT
     single = weights @ values.astype(np.float32) if exact else weights.astype(np.float64) @ values
-    sums: npt.NDArray[np.float64] = single.astype(np.float64)
+    sums: Floats = single.astype(np.float64)
     return sums
 
 
@@ -225,7 +224,7 @@ def samples_needed(
     return SamplesNeeded(estimate, low, high, int(tried[0]), int(tried[-1]))
 
 
-def _isotonic(rates: npt.NDArray[np.float64], weights: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def _isotonic(rates: Floats, weights: Floats) -> Floats:
     """Return rows made non-decreasing: entry j is the max over i <= j of the min over k >= j of the mean of i..k."""
     m = rates.shape[1]
     total = np.concatenate([[0.0], np.cumsum(weights)])
@@ -238,9 +237,7 @@ def _isotonic(rates: npt.NDArray[np.float64], weights: npt.NDArray[np.float64]) 
     return result
 
 
-def _crossing(
-    counts: npt.NDArray[np.float64], rates: npt.NDArray[np.float64], target: float
-) -> npt.NDArray[np.float64]:
+def _crossing(counts: Floats, rates: Floats, target: float) -> Floats:
     """Return for every row of non-decreasing rates where it first reaches `target`, linear in log N between counts."""
     reached = rates >= target - 1e-12
     first = np.where(reached.any(axis=1), np.argmax(reached, axis=1), len(counts))

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import gammaln, ndtri, stdtrit
 
+from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue
 from evenroad.research.statistics.paired import bonett_price, student_interval
 from evenroad.research.statistics.rates import (
@@ -47,14 +48,9 @@ def clustered_rate(
     Parameters
     ----------
     solved, runs : array_like of int, shape (units,)
-        Successes and runs per unit; every unit has a run.
+        Successes and runs per unit, runs >= 1; other counts are an InvalidValue.
     unit : str
         What a unit is, in the plural, for `Interval.kind`: ``sets``, ``blocks`` or ``instances``.
-
-    Raises
-    ------
-    InvalidValue
-        If there is no unit, or the counts are impossible.
     """
     successes, trials = as_successes(solved, runs)
     worth = effective_runs(successes, trials, level=level)
@@ -153,7 +149,7 @@ def sign_flip_test(sums: npt.ArrayLike) -> float:
     return float(min(1.0, chance[total].sum()))
 
 
-def _as_if_one_pair_a_unit(shares: npt.NDArray[np.float64], unit: str, level: float) -> Interval:
+def _as_if_one_pair_a_unit(shares: Floats, unit: str, level: float) -> Interval:
     """Return Bonett and Price's interval for as many pairs as units; `shares` add up to the difference."""
     units = len(shares)
     wins, losses = (units * float(np.maximum(sign * shares, 0.0).sum()) for sign in (1, -1))
@@ -202,19 +198,8 @@ def effective_runs(solved: npt.ArrayLike, runs: npt.ArrayLike, *, level: float =
 
 
 def sets_difference(over_sets: Interval, rate: float, solved: int, runs: int) -> Interval:
-    """Return the interval of a pool's success rate minus that of independent runs.
+    """Return the interval of a pool's success `rate`, with the interval `over_sets`, minus that of independent runs.
 
-    Parameters
-    ----------
-    over_sets : Interval
-        Of the pool's rate.
-    rate : float
-        The pool's success rate.
-    solved, runs : int
-        Successes among independent runs.
-
-    References
-    ----------
     R. G. Newcombe (1998), Interval estimation for the difference between independent proportions, Statistics in
     Medicine 17, 873-890, method 10.
     """
@@ -231,14 +216,8 @@ def sets_test(solved: npt.ArrayLike, runs: npt.ArrayLike, other_solved: int, oth
 
     Fisher's exact test, with one outcome a set: the pool's rate times its sets, rounded.  Less would be claimed where
     runs of a set are nearly independent, but how nearly is not known well enough from a few sets.  No sign flips: one
-    outcome a set against the other's rate is skewed, and flips reject too often.
-
-    Parameters
-    ----------
-    solved, runs : array_like of int, shape (sets,)
-        As :func:`effective_runs`.
-    other_solved, other_runs : int
-        Of the independent runs.
+    outcome a set against the other's rate is skewed, and flips reject too often.  `solved` and `runs` are per set,
+    (sets,).
     """
     successes, trials = as_successes(solved, runs)
     rate = float(successes.sum() / trials.sum())
@@ -247,19 +226,11 @@ def sets_test(solved: npt.ArrayLike, runs: npt.ArrayLike, other_solved: int, oth
 
 @dataclass(frozen=True)
 class Spread:
-    """Success rates of single sets of a pool.
+    """Success rates of single sets of a pool, each set with the same weight.
 
-    Attributes
-    ----------
-    sets : int
-        Sets that were drawn at least once.
-    mean, lowest, highest : float
-        Of the sets' own success rates; the mean gives every set the same weight.
-    sd : float
-        Standard deviation over sets (n - 1 below; 0 for one set).
-    sd_by_chance : float
-        What it would be if all sets were alike, by the binomial noise of so few runs a set: an `sd` well above
-        says that some sets are better than others on this problem.
+    `sd` is the standard deviation over the sets that were drawn (n - 1 below; 0 for one set), and `sd_by_chance` what
+    it would be if all sets were alike, by the binomial noise of so few runs a set: an `sd` well above it says that
+    some sets are better than others on this problem.
     """
 
     sets: int
@@ -271,12 +242,7 @@ class Spread:
 
 
 def spread_over_sets(solved: npt.ArrayLike, runs: npt.ArrayLike) -> Spread:
-    """Return the spread of success rates over the sets of a pool.
-
-    Parameters
-    ----------
-    solved, runs : array_like of int, shape (sets,)
-        Successes and runs per set, runs >= 1.
+    """Return the spread over the sets of a pool, by their successes and runs, (sets,) each, runs >= 1.
 
     Raises
     ------

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad._files import atomic_write, one_at_a_time
 from evenroad._progress import LineProgress
 from evenroad.points.bank.bank import DATA, INDEX, SEED, Bank, cell_name
@@ -50,7 +50,7 @@ LARGEST_RADIUS = 0.35
 """The radius within which points send each other messages holds so many neighbours on average, but is at most the
 paper's 0.35.  In d = 10 hardly any point is so near, and the network moves each point by itself."""
 
-MEASURED: dict[str, Callable[[npt.NDArray[np.float64]], float]] = {
+MEASURED: dict[str, Callable[[Floats], float]] = {
     "hickernell_rooted": MEASURES["hickernell"].rooted,
     "star_rooted": MEASURES["star"].rooted,
     "average_squared_rooted": MEASURES["average_squared"].rooted,
@@ -61,22 +61,10 @@ MEASURED: dict[str, Callable[[npt.NDArray[np.float64]], float]] = {
 
 @dataclass(frozen=True)
 class Recipe:
-    """One cell of the bank: how its sets are made.
+    """One cell of the bank: how the `sets` sets of n points in d dimensions are made.
 
-    Attributes
-    ----------
-    family : str
-        Name of the family.
-    d, n : int
-        Dimension and number of points.
-    sets : int
-        Size of the pool.
-    objective : str
-        It is made small; see :func:`evenroad.points.optimise.parse_objective`.
-    steps : int
-        Steps of the optimiser.
-    method : str
-        ``annealed`` (noisy Adam on the coordinates) or ``network`` (MPMC; needs the extra ``[train]``).
+    `objective` is made small in so many `steps`, by the method ``annealed`` (noisy Adam on the coordinates) or
+    ``network`` (needs the extra ``[train]``).
     """
 
     family: str

@@ -80,16 +80,8 @@ def read_set(path: Path, origin: Origin, shape: tuple[int, int]) -> PointSet | N
 class SetTask:
     """All that a process needs to anneal one set, as plain values that can be sent to it.
 
-    Attributes
-    ----------
-    n, d, objective, steps
-        As for :func:`~evenroad.points.optimise.anneal`; the objective is text.
-    entropy, spawn_key
-        They make the set's own seed sequence.
-    family, seed, replica
-        They go into the origin of the set.
-    path : str or None
-        The file of the finished set.
+    `n`, `d`, `objective` (as text) and `steps` are those of :func:`~evenroad.points.optimise.anneal`; `entropy` and
+    `spawn_key` make the set's own seed sequence; `family`, `seed` and `replica` go into its origin; `path` is its file.
     """
 
     n: int

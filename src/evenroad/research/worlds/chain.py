@@ -6,12 +6,13 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad._checks import require_count
 from evenroad.errors import InvalidValue
-from evenroad.space.batch import as_batch, as_batch_pair
+from evenroad.research.worlds.compiled import CompiledWorld, comes_first
+from evenroad.space.batch import as_batch
 from evenroad.space.chain import ChainSpace, chain_distance
 from evenroad.world.bisection_kernel import next_between
 
@@ -25,7 +26,7 @@ _REASONS = {SELF: "two links of the chain cross", WALL: "a link crosses the horn
 
 
 @dataclass(frozen=True)
-class ChainWorld:
+class ChainWorld(CompiledWorld):
     """A planar chain of equal links that must cross neither itself nor the walls of :func:`horn`.
 
     OMPL's kinematic chain benchmark.  A configuration is free if no two of the segments (the links, and a piece of
@@ -46,7 +47,7 @@ class ChainWorld:
 
     links: int = 10
     _space: ChainSpace = field(init=False, repr=False, compare=False)
-    _walls: npt.NDArray[np.float64] = field(init=False, repr=False, compare=False)
+    _walls: Floats = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         links = require_count("links", self.links, at_least=2)
@@ -63,7 +64,7 @@ class ChainWorld:
         return self._space
 
     @property
-    def walls(self) -> npt.NDArray[np.float64]:
+    def walls(self) -> Floats:
         """The walls, (4, 2 (links - 1)): a column x, y, dx, dy for each segment; read-only."""
         return self._walls
 
@@ -73,45 +74,29 @@ class ChainWorld:
         return 0.01 * math.sqrt(self.links) * 2.0 * math.pi
 
     @property
-    def start(self) -> npt.NDArray[np.float64]:
+    def start(self) -> Floats:
         """The chain bent to a half circle inside the horn: (0, pi / links, .., pi / links)."""
         return np.array([0.0] + [math.pi / self.links] * (self.links - 1))
 
     @property
-    def goal(self) -> npt.NDArray[np.float64]:
+    def goal(self) -> Floats:
         """The chain stretched out to the other side: (pi - .001, 0, .., 0)."""
         return np.array([math.pi - 0.001] + [0.0] * (self.links - 1))
 
-    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-        """Return which configurations, (n, links), are free: (n,).
+    def _valid(self, q: Floats) -> Bools:
+        return verdicts(q, self._walls, _END_PIECE) == FREE
 
-        Raises
-        ------
-        InvalidValue
-            If `q` has another shape or an entry that is not finite.
-        """
-        return verdicts(as_batch("q", q, self.links), self._walls, _END_PIECE) == FREE
+    def _motion_valid(self, a: Floats, b: Floats) -> Bools:
+        ends = self._space.wrapped(a), self._space.wrapped(b)
+        return motions_are_free(*ends, self.resolution, self._walls, _END_PIECE)
 
-    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-        """Return which motions from each row of `a` to that of `b`, two (m, links) arrays, are free: (m,).
-
-        Raises
-        ------
-        InvalidValue
-            If the two differ in length, or as `valid`.
-        """
-        first, second = as_batch_pair(a, b, self.links)
-        return motions_are_free(
-            self._space.wrapped(first), self._space.wrapped(second), self.resolution, self._walls, _END_PIECE
-        )
-
-    def explain(self, q: npt.NDArray[np.float64]) -> str:
+    def explain(self, q: Floats) -> str:
         """Return in words why the configuration `q`, (links,), is not free."""
         batch = as_batch("q", np.asarray(q, dtype=np.float64)[np.newaxis], self.links)
         return _REASONS[int(verdicts(batch, self._walls, _END_PIECE)[0])]
 
 
-def horn(links: int) -> npt.NDArray[np.float64]:
+def horn(links: int) -> Floats:
     """Return the walls for a chain of so many links, (4, 2 (links - 1)): a column x, y, dx, dy for each segment.
 
     The scene "horn" of OMPL's kinematic chain benchmark.  With ``eps = ln(10) / links`` and s = 1, then -1: a chain of
@@ -136,9 +121,7 @@ _TOUCHING = float(np.finfo(np.float32).eps)
 
 
 @njit(cache=True, nogil=True)
-def verdicts(
-    q: npt.NDArray[np.float64], walls: npt.NDArray[np.float64], end_piece: float
-) -> npt.NDArray[np.int64]:
+def verdicts(q: Floats, walls: Floats, end_piece: float) -> Ints:
     """Return the verdict on each configuration, (n, links)."""
     found = np.empty(len(q), dtype=np.int64)
     chain = np.empty((4, q.shape[1] + 1))
@@ -148,13 +131,7 @@ def verdicts(
 
 
 @njit(cache=True, nogil=True)
-def motions_are_free(
-    a: npt.NDArray[np.float64],
-    b: npt.NDArray[np.float64],
-    resolution: float,
-    walls: npt.NDArray[np.float64],
-    end_piece: float,
-) -> npt.NDArray[np.bool_]:
+def motions_are_free(a: Floats, b: Floats, resolution: float, walls: Floats, end_piece: float) -> Bools:
     """Return which motions are free at both ends and at states between them, in bisection order.
 
     Both (m, links), angles in [-pi, pi).  The number of segments is the distance of the ends over `resolution`,
@@ -165,7 +142,7 @@ def motions_are_free(
     chain, state, difference = np.empty((4, links + 1)), np.empty(links), np.empty(links)
     for row in range(len(a)):
         first, second = a[row], b[row]
-        if _comes_after(first, second):
+        if not comes_first(first, second):
             # States are rounded: in one fixed order a motion and its reverse have the same.
             first, second = second, first
         for k in range(links):
@@ -198,15 +175,6 @@ def _way_is_free(start, difference, segments, walls, end_piece, chain, state):  
             return False
         level, multiple, number = next_between(level, multiple, segments)
     return True
-
-
-@njit(cache=True, nogil=True)
-def _comes_after(a, b):  # type: ignore[no-untyped-def]
-    """Return whether a comes after b in dictionary order."""
-    for k in range(len(a)):
-        if a[k] != b[k]:
-            return a[k] > b[k]
-    return False
 
 
 @njit(cache=True, nogil=True)

@@ -7,19 +7,19 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad._checks import require_count, require_positive
 from evenroad.errors import InvalidValue, UnknownName
+from evenroad.research.worlds.compiled import CompiledWorld, is_in_cube
 from evenroad.space import Box
-from evenroad.space.batch import as_batch, as_batch_pair
 
 _SIDES = ("comment", "demo")
 
 
 @dataclass(frozen=True)
-class Corridor:
+class Corridor(CompiledWorld):
     """The corridor of width `lam` along d edges of the unit cube, from (0, .., 0) to (1, .., 1).
 
     A configuration is free iff it lies in [0, 1]^d and there is a k with ``x_i <= lam`` for all i < k and
@@ -52,7 +52,7 @@ class Corridor:
     lam: float
     checked: int | None = None
     side: Literal["comment", "demo"] = "comment"
-    _axes: npt.NDArray[np.int64] = field(init=False, repr=False, compare=False)
+    _axes: Ints = field(init=False, repr=False, compare=False)
     _space: Box = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -86,12 +86,12 @@ class Corridor:
         return 0.001 * math.sqrt(self.d)
 
     @property
-    def start(self) -> npt.NDArray[np.float64]:
+    def start(self) -> Floats:
         """One end of the corridor, (0, .., 0)."""
         return np.zeros(self.d)
 
     @property
-    def goal(self) -> npt.NDArray[np.float64]:
+    def goal(self) -> Floats:
         """The other end, (1, .., 1)."""
         return np.ones(self.d)
 
@@ -105,26 +105,11 @@ class Corridor:
         m = len(self._axes)
         return m * (1.0 - self.lam) * self.lam ** (m - 1) + self.lam**m
 
-    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-        """Return which configurations, (n, d), are free: (n,).
+    def _valid(self, q: Floats) -> Bools:
+        return points_are_free(q, self.lam, self._axes)
 
-        Raises
-        ------
-        InvalidValue
-            If `q` has another shape or an entry that is not finite.
-        """
-        return points_are_free(as_batch("q", q, self.d), self.lam, self._axes)
-
-    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-        """Return which straight motions from a row of `a` to that of `b`, two (m, d) arrays, are free: (m,).
-
-        Raises
-        ------
-        InvalidValue
-            If the two differ in length, or as `valid`.
-        """
-        first, second = as_batch_pair(a, b, self.d)
-        return motions_are_free(first, second, self.resolution, self.lam, self._axes)
+    def _motion_valid(self, a: Floats, b: Floats) -> Bools:
+        return motions_are_free(a, b, self.resolution, self.lam, self._axes)
 
 
 def hypercube_legacy6(side: Literal["comment", "demo"] = "demo") -> Corridor:
@@ -133,9 +118,7 @@ def hypercube_legacy6(side: Literal["comment", "demo"] = "demo") -> Corridor:
 
 
 @njit(cache=True, nogil=True)
-def points_are_free(
-    q: npt.NDArray[np.float64], width: float, axes: npt.NDArray[np.int64]
-) -> npt.NDArray[np.bool_]:
+def points_are_free(q: Floats, width: float, axes: Ints) -> Bools:
     """Return which rows of `q`, (n, d), lie in the unit cube and in the corridor along `axes`."""
     free = np.empty(len(q), dtype=np.bool_)
     for row in range(len(q)):
@@ -144,13 +127,7 @@ def points_are_free(
 
 
 @njit(cache=True, nogil=True)
-def motions_are_free(
-    a: npt.NDArray[np.float64],
-    b: npt.NDArray[np.float64],
-    resolution: float,
-    width: float,
-    axes: npt.NDArray[np.int64],
-) -> npt.NDArray[np.bool_]:
+def motions_are_free(a: Floats, b: Floats, resolution: float, width: float, axes: Ints) -> Bools:
     """Return which motions are free at both ends and at states at most `resolution` apart, in bisection order."""
     free = np.empty(len(a), dtype=np.bool_)
     for row in range(len(a)):
@@ -165,13 +142,7 @@ def motions_are_free(
 
 
 @njit(cache=True, nogil=True)
-def _way_is_free(
-    a: npt.NDArray[np.float64],
-    b: npt.NDArray[np.float64],
-    resolution: float,
-    width: float,
-    axes: npt.NDArray[np.int64],
-) -> bool:
+def _way_is_free(a: Floats, b: Floats, resolution: float, width: float, axes: Ints) -> bool:
     squared = 0.0
     for k in range(len(a)):
         squared += (b[k] - a[k]) * (b[k] - a[k])
@@ -194,23 +165,7 @@ def _way_is_free(
 
 
 @njit(cache=True, nogil=True)
-def is_in_cube(q: npt.NDArray[np.float64]) -> bool:
-    """Return whether `q`, (d,), lies in the closed unit cube."""
-    inside = True
-    for coordinate in q:
-        inside &= 0.0 <= coordinate <= 1.0
-    return inside
-
-
-@njit(cache=True, nogil=True)
-def _is_in_corridor(
-    a: npt.NDArray[np.float64],
-    b: npt.NDArray[np.float64],
-    from_a: float,
-    from_b: float,
-    width: float,
-    axes: npt.NDArray[np.int64],
-) -> bool:
+def _is_in_corridor(a: Floats, b: Floats, from_a: float, from_b: float, width: float, axes: Ints) -> bool:
     """Test ``from_a a + from_b b``: along `axes`, past the first coordinate > width none is < 1 - width."""
     past_the_corner = False
     for axis in axes:

@@ -6,18 +6,18 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue
-from evenroad.research.worlds.corridor import is_in_cube
+from evenroad.research.worlds.compiled import ROUNDING, CompiledWorld, comes_first, is_in_cube
 from evenroad.space import Box
-from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch
+from evenroad.space.batch import as_cube_batch
 
 
 @dataclass(frozen=True, eq=False)
-class PeriodicBalls:
+class PeriodicBalls(CompiledWorld):
     """A point robot in [0, 1]^d among open balls of one radius that repeat with period 1 along every axis.
 
     With centres drawn uniformly the free set is stationary: no place of the cube, at its faces or in the middle, is
@@ -37,7 +37,7 @@ class PeriodicBalls:
         If the centres are no such array, or the radius is not such a number.
     """
 
-    centres: npt.NDArray[np.float64]
+    centres: Floats
     radius: float
     _space: Box = field(init=False, repr=False)
 
@@ -60,47 +60,15 @@ class PeriodicBalls:
         """The unit cube with the Euclidean metric."""
         return self._space
 
-    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-        """Return which configurations, (n, d), are in the cube and in no ball: (n,).
+    def _valid(self, q: Floats) -> Bools:
+        return points_are_free(q, self.centres, self.radius**2)
 
-        Raises
-        ------
-        InvalidValue
-            If `q` has another shape or an entry that is not finite.
-        """
-        return points_are_free(as_batch("q", q, self.d), self.centres, self.radius**2)
-
-    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-        """Return which straight motions from a row of `a` to that of `b`, two (m, d) arrays, are free: (m,).
-
-        Raises
-        ------
-        InvalidValue
-            If the two differ in length, or as `valid`.
-        """
-        return motions_are_free(*as_batch_pair(a, b, self.d), self.centres, self.radius**2)
-
-
-ROUNDING = 1e-9
-"""What bounds leave for rounding, so that they never decide what the exact test would decide otherwise."""
-
-
-@njit(cache=True, nogil=True, inline="always")
-def comes_first(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> bool:
-    """Return whether `a` is not after `b` in the order of words.
-
-    Motions are tested from the end that comes first: one and its reverse then give the same bits.
-    """
-    for k in range(len(a)):
-        if a[k] != b[k]:
-            return bool(a[k] < b[k])
-    return True
+    def _motion_valid(self, a: Floats, b: Floats) -> Bools:
+        return motions_are_free(a, b, self.centres, self.radius**2)
 
 
 @njit(cache=True, nogil=True)
-def points_are_free(
-    q: npt.NDArray[np.float64], centres: npt.NDArray[np.float64], squared_radius: float
-) -> npt.NDArray[np.bool_]:
+def points_are_free(q: Floats, centres: Floats, squared_radius: float) -> Bools:
     """Return which rows of `q`, (n, d), lie in the unit cube and in no ball."""
     free = np.empty(len(q), dtype=np.bool_)
     for row in range(len(q)):
@@ -109,12 +77,7 @@ def points_are_free(
 
 
 @njit(cache=True, nogil=True)
-def motions_are_free(
-    a: npt.NDArray[np.float64],
-    b: npt.NDArray[np.float64],
-    centres: npt.NDArray[np.float64],
-    squared_radius: float,
-) -> npt.NDArray[np.bool_]:
+def motions_are_free(a: Floats, b: Floats, centres: Floats, squared_radius: float) -> Bools:
     """Return which straight motions stay in the unit cube and meet no ball."""
     free = np.empty(len(a), dtype=np.bool_)
     d = a.shape[1]
@@ -133,9 +96,7 @@ def motions_are_free(
 
 
 @njit(cache=True, nogil=True)
-def _is_outside_all(
-    q: npt.NDArray[np.float64], centres: npt.NDArray[np.float64], squared_radius: float
-) -> bool:
+def _is_outside_all(q: Floats, centres: Floats, squared_radius: float) -> bool:
     for i in range(len(centres)):
         squared = 0.0
         for k in range(len(q)):
@@ -149,13 +110,7 @@ def _is_outside_all(
 
 @njit(cache=True, nogil=True)
 def _misses_all(
-    a: npt.NDArray[np.float64],
-    b: npt.NDArray[np.float64],
-    centres: npt.NDArray[np.float64],
-    squared_radius: float,
-    step: npt.NDArray[np.float64],
-    times: npt.NDArray[np.float64],
-    axes: npt.NDArray[np.int64],
+    a: Floats, b: Floats, centres: Floats, squared_radius: float, step: Floats, times: Floats, axes: Ints
 ) -> bool:
     """Return whether ``a + t (b - a)``, t in [0, 1], stays out of every ball; the last three are room to work in.
 

@@ -8,17 +8,16 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad._checks import require_count
 from evenroad.errors import InvalidValue
-from evenroad.research.worlds.corridor import is_in_cube
-from evenroad.research.worlds.periodic_balls import ROUNDING, comes_first
-from evenroad.research.worlds.periodic_balls import PeriodicBalls as PeriodicBalls
+from evenroad.research.worlds.compiled import ROUNDING, CompiledWorld, comes_first, is_in_cube
 from evenroad.space import Box
-from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch
+from evenroad.space.batch import as_cube_batch
 
 
 @dataclass(frozen=True, eq=False)
-class PeriodicBoxes:
+class PeriodicBoxes(CompiledWorld):
     """A point robot in [0, 1]^d among open boxes in some of the coordinates, with period 1 along every axis.
 
     A configuration is in a box if each of the box's own m coordinates is closer to the centre than the half extent;
@@ -45,9 +44,9 @@ class PeriodicBoxes:
     """
 
     d: int
-    axes: npt.NDArray[np.int64]
-    centres: npt.NDArray[np.float64]
-    half_extents: npt.NDArray[np.float64]
+    axes: Ints
+    centres: Floats
+    half_extents: Floats
     _space: Box = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -74,28 +73,14 @@ class PeriodicBoxes:
         """The unit cube with the Euclidean metric."""
         return self._space
 
-    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-        """Return which configurations, (n, d), are in the cube and in no box: (n,).
+    def _valid(self, q: Floats) -> Bools:
+        return points_are_free(q, self.axes, self.centres, self.half_extents)
 
-        Raises
-        ------
-        InvalidValue
-            If `q` has another shape or an entry that is not finite.
-        """
-        return points_are_free(as_batch("q", q, self.d), self.axes, self.centres, self.half_extents)
-
-    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-        """Return which straight motions from a row of `a` to that of `b`, two (m, d) arrays, are free: (m,).
-
-        Raises
-        ------
-        InvalidValue
-            If the two differ in length, or as `valid`.
-        """
-        return motions_are_free(*as_batch_pair(a, b, self.d), self.axes, self.centres, self.half_extents)
+    def _motion_valid(self, a: Floats, b: Floats) -> Bools:
+        return motions_are_free(a, b, self.axes, self.centres, self.half_extents)
 
 
-def _as_axes(values: npt.ArrayLike, d: int) -> npt.NDArray[np.int64]:
+def _as_axes(values: npt.ArrayLike, d: int) -> Ints:
     """Return the axes as a read-only (n, m) array, or raise InvalidValue."""
     axes = np.asarray(values)
     if axes.ndim != 2 or axes.shape[1] == 0 or not np.issubdtype(axes.dtype, np.integer):
@@ -115,12 +100,7 @@ def _as_axes(values: npt.ArrayLike, d: int) -> npt.NDArray[np.int64]:
 
 
 @njit(cache=True, nogil=True)
-def points_are_free(
-    q: npt.NDArray[np.float64],
-    axes: npt.NDArray[np.int64],
-    centres: npt.NDArray[np.float64],
-    half_extents: npt.NDArray[np.float64],
-) -> npt.NDArray[np.bool_]:
+def points_are_free(q: Floats, axes: Ints, centres: Floats, half_extents: Floats) -> Bools:
     """Return which rows of `q`, (n, d), lie in the unit cube and in no box."""
     free = np.empty(len(q), dtype=np.bool_)
     for row in range(len(q)):
@@ -129,13 +109,7 @@ def points_are_free(
 
 
 @njit(cache=True, nogil=True)
-def motions_are_free(
-    a: npt.NDArray[np.float64],
-    b: npt.NDArray[np.float64],
-    axes: npt.NDArray[np.int64],
-    centres: npt.NDArray[np.float64],
-    half_extents: npt.NDArray[np.float64],
-) -> npt.NDArray[np.bool_]:
+def motions_are_free(a: Floats, b: Floats, axes: Ints, centres: Floats, half_extents: Floats) -> Bools:
     """Return which straight motions stay in the unit cube and meet no box."""
     free = np.empty(len(a), dtype=np.bool_)
     # Each axis can be within the box in three spans of time, and an intersection has fewer spans than both together.
@@ -159,12 +133,7 @@ def motions_are_free(
 
 
 @njit(cache=True, nogil=True)
-def _is_outside_all(
-    q: npt.NDArray[np.float64],
-    axes: npt.NDArray[np.int64],
-    centres: npt.NDArray[np.float64],
-    half_extents: npt.NDArray[np.float64],
-) -> bool:
+def _is_outside_all(q: Floats, axes: Ints, centres: Floats, half_extents: Floats) -> bool:
     for box in range(len(axes)):
         inside = True
         for j in range(axes.shape[1]):
@@ -177,14 +146,14 @@ def _is_outside_all(
 
 @njit(cache=True, nogil=True)
 def _misses(
-    a: npt.NDArray[np.float64],
-    b: npt.NDArray[np.float64],
-    axes: npt.NDArray[np.int64],
-    centre: npt.NDArray[np.float64],
-    half_extent: npt.NDArray[np.float64],
-    spans: npt.NDArray[np.float64],
-    narrowed: npt.NDArray[np.float64],
-    on_axis: npt.NDArray[np.float64],
+    a: Floats,
+    b: Floats,
+    axes: Ints,
+    centre: Floats,
+    half_extent: Floats,
+    spans: Floats,
+    narrowed: Floats,
+    on_axis: Floats,
 ) -> bool:
     """Return whether ``a + t (b - a)``, 0 <= t <= 1, is never within one box; the last three are room to work in."""
     for j in range(len(axes)):
@@ -212,7 +181,7 @@ def _misses(
 
 
 @njit(cache=True, nogil=True)
-def _times_within(begin: float, step: float, half_extent: float, spans: npt.NDArray[np.float64]) -> int:
+def _times_within(begin: float, step: float, half_extent: float, spans: Floats) -> int:
     """Write the spans of time in which ``begin + t step`` is closer than `half_extent` to an integer; return how many.
 
     `begin` and ``begin + step`` lie in [-1, 1], so that only -1, 0 and 1 can be near.

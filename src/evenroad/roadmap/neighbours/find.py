@@ -5,18 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from evenroad._arrays import Bools, Floats, Ints32
 from evenroad.roadmap.neighbours.kdtree import k_nearest, pairs_within
 from evenroad.space import Space
 from evenroad.space.flat import FlatMetric
 from evenroad.space.protocol import all_distances
 
 
-def nearest(
-    q: npt.NDArray[np.float64], k: int, space: Space | None = None, *, earlier: bool = False
-) -> npt.NDArray[np.int32]:
+def nearest(q: Floats, k: int, space: Space | None = None, *, earlier: bool = False) -> Ints32:
     """Return the k nearest other rows of every row, nearest first, ties to the lower index.
 
     Parameters
@@ -42,7 +40,7 @@ def nearest(
     return k_nearest(points, k, period, earlier=earlier)
 
 
-def within(q: npt.NDArray[np.float64], radius: float, space: Space | None = None) -> npt.NDArray[np.int32]:
+def within(q: Floats, radius: float, space: Space | None = None) -> Ints32:
     """Return every pair of rows i < j at distance <= `radius`, shape (m, 2), in no particular order."""
     metric = flat_metric(space)
     if space is not None and metric is None:
@@ -56,9 +54,7 @@ def flat_metric(space: Space | None) -> FlatMetric | None:
     return getattr(space, "flat", None)
 
 
-def in_metric(
-    q: npt.NDArray[np.float64], metric: FlatMetric | None
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def in_metric(q: Floats, metric: FlatMetric | None) -> tuple[Floats, Floats]:
     """Return coordinates and periods in which the metric is Euclidean, wrapping ones in [0, period)."""
     points = np.array(q, dtype=np.float64, order="C")
     if metric is None:
@@ -76,9 +72,7 @@ BLOCK = 1 << 16
 """Distances held at once."""
 
 
-def k_nearest_in(
-    space: Space, q: npt.NDArray[np.float64], k: int, *, earlier: bool = False
-) -> npt.NDArray[np.int32]:
+def k_nearest_in(space: Space, q: Floats, k: int, *, earlier: bool = False) -> Ints32:
     """Return what `kdtree.k_nearest` returns, by the distances of all pairs: O(n^2) time, O(n k) memory."""
     n = len(q)
     k = min(k, n - 1)
@@ -101,7 +95,7 @@ def k_nearest_in(
     return nearest
 
 
-def pairs_within_in(space: Space, q: npt.NDArray[np.float64], radius: float) -> npt.NDArray[np.int32]:
+def pairs_within_in(space: Space, q: Floats, radius: float) -> Ints32:
     """Return every pair i < j with ``space.distance`` <= `radius`, shape (m, 2), ascending."""
     found = [np.empty((0, 2), dtype=np.int32)]
     for rows, distance in _blocks(space, q):
@@ -111,9 +105,7 @@ def pairs_within_in(space: Space, q: npt.NDArray[np.float64], radius: float) -> 
     return np.concatenate(found)
 
 
-def _blocks(
-    space: Space, q: npt.NDArray[np.float64], *, earlier: bool = False
-) -> Iterator[tuple[slice, npt.NDArray[np.float64]]]:
+def _blocks(space: Space, q: Floats, *, earlier: bool = False) -> Iterator[tuple[slice, Floats]]:
     """Yield row ranges with their distances to all configurations, (rows, n), or to those up to the range's end."""
     n = len(q)
     step = max(1, BLOCK // max(n, 1))
@@ -123,22 +115,14 @@ def _blocks(
 
 
 class Surroundings:
-    """Milestones, ready to be asked which of them are near a configuration, in O(n).
+    """Milestones, (n, dim), ready to be asked which of them are near a configuration, in O(n)."""
 
-    Parameters
-    ----------
-    q : ndarray, shape (n, dim)
-        Their configurations.
-    space : Space
-        Whose metric counts.
-    """
-
-    def __init__(self, q: npt.NDArray[np.float64], space: Space) -> None:
+    def __init__(self, q: Floats, space: Space) -> None:
         self._q, self._space = q, space
         self._metric = flat_metric(space)
         self._points, self._period = in_metric(q, self._metric)
 
-    def distances(self, newcomer: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def distances(self, newcomer: Floats) -> Floats:
         """Return the distance of a configuration, (dim,), from each milestone, (n,)."""
         if self._metric is None:
             return self._space.distance(np.broadcast_to(newcomer, self._q.shape), self._q)
@@ -146,12 +130,7 @@ class Surroundings:
         return _distances(self._points, self._period, point)
 
 
-def nearest_of(
-    distances: npt.NDArray[np.float64],
-    usable: npt.NDArray[np.bool_],
-    k: int | None = None,
-    radius: float | None = None,
-) -> npt.NDArray[np.int32]:
+def nearest_of(distances: Floats, usable: Bools, k: int | None = None, radius: float | None = None) -> Ints32:
     """Return the rows that are usable, the `k` nearest of them, at most `radius` away, nearest first.
 
     Ties go to the lower row; without a `k` all rows come, in their order.

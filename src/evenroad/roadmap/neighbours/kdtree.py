@@ -7,17 +7,12 @@ index.  Axes may wrap: a gap is then the shorter of the two ways round.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from evenroad._arrays import Floats, Ints32
 
-def k_nearest(
-    points: npt.NDArray[np.float64],
-    k: int,
-    period: npt.NDArray[np.float64] | None = None,
-    *,
-    earlier: bool = False,
-) -> npt.NDArray[np.int32]:
+
+def k_nearest(points: Floats, k: int, period: Floats | None = None, *, earlier: bool = False) -> Ints32:
     """Return the k nearest other points of every point, nearest first, ties to the lower index.
 
     Parameters
@@ -46,9 +41,7 @@ def k_nearest(
     return _k_nearest(points, period, order, boxes, lowest, k, earlier, LEAF_SIZE)
 
 
-def pairs_within(
-    points: npt.NDArray[np.float64], radius: float, period: npt.NDArray[np.float64] | None = None
-) -> npt.NDArray[np.int32]:
+def pairs_within(points: Floats, radius: float, period: Floats | None = None) -> Ints32:
     """Return every pair i < j at distance <= `radius`, shape (m, 2), in no particular order.
 
     `points` and `period` are those of :func:`k_nearest`.

@@ -11,8 +11,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats, Ints32
 from evenroad._checks import require_count, require_positive
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.roadmap.neighbours.find import flat_metric
@@ -43,9 +43,7 @@ class RadiusStar:
         n = max(n, 2)
         return self.gamma * (math.log(n) / n) ** (1 / d)
 
-    def edges(
-        self, q: npt.NDArray[np.float64], space: Space | None = None, *, ends: int = 0
-    ) -> npt.NDArray[np.int32]:
+    def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
         """Return the pairs within the radius of this many; see :class:`Rule`."""
         return Radius(self.radius(len(q), manifold_dimension(q, space))).edges(q, space)
 
@@ -65,9 +63,7 @@ class KStar:
         """Return k for n >= 2 configurations in d dimensions."""
         return math.ceil(math.e * (1 + 1 / d) * math.log(max(n, 2)))
 
-    def edges(
-        self, q: npt.NDArray[np.float64], space: Space | None = None, *, ends: int = 0
-    ) -> npt.NDArray[np.int32]:
+    def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
         """Return the symmetrised pairs for the k of this many; see :class:`Rule`."""
         return KNearest(self.k(len(q), manifold_dimension(q, space))).edges(q, space)
 
@@ -152,9 +148,7 @@ class TheoryRadius:
             )
         return radius
 
-    def edges(
-        self, q: npt.NDArray[np.float64], space: Space | None = None, *, ends: int = 0
-    ) -> npt.NDArray[np.int32]:
+    def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
         """Return the pairs within the radius; see :class:`Rule`."""
         if space is None:
             raise InvalidValue("the theory radius depends on the space: give one")

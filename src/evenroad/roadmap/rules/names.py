@@ -46,12 +46,7 @@ _FORMS: dict[str, tuple[str, Callable[..., Rule]]] = {
 def rule_named(name: str) -> Rule:
     """Return the rule whose ``str()`` is `name`, for example ``k=10 earlier``.
 
-    Raises
-    ------
-    UnknownName
-        If there is no such rule; the text lists the forms.
-    InvalidValue
-        If the rule does not take such a number.
+    UnknownName, with the known forms, if there is no such rule; InvalidValue if it does not take such a number.
     """
     for pattern, make in _FORMS.values():
         match = re.fullmatch(pattern, name.strip())

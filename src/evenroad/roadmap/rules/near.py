@@ -13,6 +13,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._arrays import Floats, Ints32
 from evenroad._checks import require_count, require_positive
 from evenroad.roadmap.neighbours import nearest, within
 from evenroad.space import Space
@@ -20,14 +21,9 @@ from evenroad.space import Space
 
 @dataclass(frozen=True)
 class Reach:
-    """How one more configuration is joined to milestones that are there already.
+    """How one more configuration is joined to milestones: to its `k` nearest ones, or to those within `radius`.
 
-    Attributes
-    ----------
-    k : int or None
-        To this many nearest ones.
-    radius : float or None
-        To those at most this far, in the units of the space.  With both None: to all.
+    With both None: to all.
     """
 
     k: int | None = None
@@ -37,9 +33,7 @@ class Reach:
 class Rule(Protocol):
     """Chooses candidate edges among configurations, before anything is checked; ``str()`` is its name."""
 
-    def edges(
-        self, q: npt.NDArray[np.float64], space: Space | None = None, *, ends: int = 0
-    ) -> npt.NDArray[np.int32]:
+    def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
         """Return the pairs i < j to try, shape (m, 2), in ascending order, each once.
 
         Parameters
@@ -59,7 +53,7 @@ class Rule(Protocol):
         ...
 
 
-def ascending(pairs: npt.NDArray[np.integer], n: int) -> npt.NDArray[np.int32]:
+def ascending(pairs: npt.NDArray[np.integer], n: int) -> Ints32:
     """Return the distinct unordered pairs of numbers below `n`, smaller first, sorted, as int32 (m, 2)."""
     if not len(pairs):
         return np.empty((0, 2), dtype=np.int32)
@@ -73,7 +67,7 @@ def plain(number: float) -> str:
     return short if float(short) == number else repr(number)
 
 
-def manifold_dimension(q: npt.NDArray[np.float64], space: Space | None) -> int:
+def manifold_dimension(q: Floats, space: Space | None) -> int:
     """Return the dimension d of the formulas: that of the space's cube, else the number of coordinates."""
     return q.shape[1] if space is None else space.cube_dim
 
@@ -85,9 +79,7 @@ class Complete:
     def __str__(self) -> str:
         return "complete"
 
-    def edges(
-        self, q: npt.NDArray[np.float64], space: Space | None = None, *, ends: int = 0
-    ) -> npt.NDArray[np.int32]:
+    def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
         """Return all pairs; see :class:`Rule`."""
         return np.stack(np.triu_indices(len(q), k=1), axis=1).astype(np.int32)
 
@@ -108,9 +100,7 @@ class KNearest:
     def __str__(self) -> str:
         return f"k={self.k} symmetrised"
 
-    def edges(
-        self, q: npt.NDArray[np.float64], space: Space | None = None, *, ends: int = 0
-    ) -> npt.NDArray[np.int32]:
+    def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
         """Return the symmetrised k-nearest pairs; see :class:`Rule`."""
         return ascending(_arcs(nearest(q, self.k, space)), len(q))
 
@@ -131,9 +121,7 @@ class KMutual:
     def __str__(self) -> str:
         return f"k={self.k} mutual"
 
-    def edges(
-        self, q: npt.NDArray[np.float64], space: Space | None = None, *, ends: int = 0
-    ) -> npt.NDArray[np.int32]:
+    def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
         """Return the pairs that are near each other both ways; see :class:`Rule`."""
         n = len(q)
         arcs = _arcs(nearest(q, self.k, space)).astype(np.int64)
@@ -162,9 +150,7 @@ class KEarlier:
     def __str__(self) -> str:
         return f"k={self.k} earlier"
 
-    def edges(
-        self, q: npt.NDArray[np.float64], space: Space | None = None, *, ends: int = 0
-    ) -> npt.NDArray[np.int32]:
+    def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
         """Return the pairs of each configuration with its k nearest earlier ones; see :class:`Rule`."""
         n = len(q)
         inserted = np.concatenate([np.arange(n - ends, n), np.arange(n - ends)])
@@ -176,7 +162,7 @@ class KEarlier:
         return Reach(k=self.k)
 
 
-def _arcs(neighbours: npt.NDArray[np.int32]) -> npt.NDArray[np.int32]:
+def _arcs(neighbours: Ints32) -> Ints32:
     """Return (row, neighbour) for every entry that is not -1, shape (m, 2)."""
     n, k = neighbours.shape
     arcs = np.stack([np.repeat(np.arange(n, dtype=np.int32), k), neighbours.ravel()], axis=1)
@@ -195,9 +181,7 @@ class Radius:
     def __str__(self) -> str:
         return f"radius={plain(self.r)}"
 
-    def edges(
-        self, q: npt.NDArray[np.float64], space: Space | None = None, *, ends: int = 0
-    ) -> npt.NDArray[np.int32]:
+    def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
         """Return the pairs within the radius; see :class:`Rule`."""
         return ascending(within(q, self.r, space), len(q))
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._arrays import Bools, Floats, Ints32
 from evenroad.roadmap.stopwatch import Stopwatch
 from evenroad.world import World
 
@@ -47,19 +48,14 @@ def in_time(rows: npt.NDArray[np.integer], deadline: float) -> Iterator[npt.NDAr
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """What is known of nodes and edges.
+    """What is known of nodes and edges: `UNKNOWN`, `FREE` or `BLOCKED`, (nodes,) and (m,) int8.
 
-    Attributes
-    ----------
-    nodes, edges : ndarray of int8, shape (nodes,) and (m,)
-        `UNKNOWN`, `FREE` or `BLOCKED`.
-    confirmed : ndarray of bool, shape (m,)
-        Which free edges have passed the strict check of a world that has one.
+    `confirmed`, (m,), says which free edges have passed the strict check of a world that has one.
     """
 
     nodes: npt.NDArray[np.int8]
     edges: npt.NDArray[np.int8]
-    confirmed: npt.NDArray[np.bool_]
+    confirmed: Bools
 
     @classmethod
     def nothing(cls, nodes: int, edges: int) -> Known:
@@ -68,39 +64,33 @@ class Known:
 
 
 class EdgeStates:
-    """The states of nodes and edges, filled in as the world is asked; nothing is ever asked twice.
+    """The states of nodes and edges, filled in as the world checks them; nothing is ever checked twice.
 
     Parameters
     ----------
-    world : World
-        Who is asked.
-    configurations : ndarray, shape (nodes, dim)
-        Of the nodes.
-    edges : ndarray of int32, shape (m, 2)
-        Pairs of nodes; motions are asked in this direction.
+    configurations, edges : ndarray, shapes (nodes, dim) and (m, 2)
+        The graph; motions are checked from the first node of an edge to the second.
     watch : Stopwatch, optional
         Gets the seconds of the world's answers, as the phases ``validity`` and ``motions``.
     most_motions : int, optional
         How many motions may be checked.
     deadline : float
         When nothing may be checked any more, on the clock of ``time.perf_counter``.
-
     known : Known, optional
-        What is known already, to be added to in place; default: nothing.
+        What is known already, to be added to in place; its arrays are `node_states`, `edge_states` and `confirmed`
+        here.
 
     Attributes
     ----------
-    node_states, edge_states, confirmed
-        The arrays of `known`; to be filled in by callers who know more.
     configurations_checked, motions_checked : int
-        How much was asked here.
+        How much was checked here.
     """
 
     def __init__(
         self,
         world: World,
-        configurations: npt.NDArray[np.float64],
-        edges: npt.NDArray[np.int32],
+        configurations: Floats,
+        edges: Ints32,
         watch: Stopwatch | None = None,
         most_motions: int | None = None,
         deadline: float = math.inf,
@@ -150,7 +140,7 @@ class EdgeStates:
         if len(unknown) < wanted:
             raise BudgetSpent
 
-    def open_edges(self) -> npt.NDArray[np.int32]:
+    def open_edges(self) -> Ints32:
         """Return the edges that are not known to be blocked, nor their nodes, shape (m', 2)."""
         open_nodes = (self.node_states[self.edges] != BLOCKED).all(axis=1)
         return self.edges[open_nodes & (self.edge_states != BLOCKED)]

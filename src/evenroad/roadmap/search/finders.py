@@ -10,11 +10,12 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from evenroad._arrays import Floats, Ints, Ints32
 from evenroad.roadmap.search.edge_states import BLOCKED, FREE, UNKNOWN, EdgeStates
 from evenroad.roadmap.search.graph import Graph
 from evenroad.roadmap.search.shortest import FixedPoint, best_path
 
-Found = tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]
+Found = tuple[Ints32, Ints32]
 """The nodes of a path, start first, and its edges; both empty when there is none."""
 
 NOT_FOUND: Found = np.empty(0, dtype=np.int32), np.empty(0, dtype=np.int32)
@@ -25,15 +26,13 @@ class SearchProblem:
     """From which node to which goals in which graph; the arrays are those of :func:`best_path`."""
 
     graph: Graph
-    weights: npt.NDArray[np.int64]
-    bounds: npt.NDArray[np.int64]
+    weights: Ints
+    bounds: Ints
     start: int
-    goals: npt.NDArray[np.int64]
+    goals: Ints
 
 
-def search_problem(
-    states: EdgeStates, costs: npt.NDArray[np.float64], goals: int = 1, *, bound: float = 1.0
-) -> SearchProblem:
+def search_problem(states: EdgeStates, costs: Floats, goals: int = 1, *, bound: float = 1.0) -> SearchProblem:
     """Return the search over all edges of `states`, (m,) `costs`, from the start to the nearest goal.
 
     Parameters
@@ -105,13 +104,7 @@ def find_any(problem: SearchProblem, states: EdgeStates) -> Found:
 class _Tree:
     """Nodes joined to its roots by free edges; grows towards the nodes of the least `nearness`."""
 
-    def __init__(
-        self,
-        graph: Graph,
-        states: EdgeStates,
-        roots: npt.NDArray[np.int64],
-        nearness: npt.NDArray[np.float64],
-    ) -> None:
+    def __init__(self, graph: Graph, states: EdgeStates, roots: Ints, nearness: Floats) -> None:
         self.graph, self.states, self.nearness = graph, states, nearness
         self.member = np.zeros(graph.nodes, dtype=np.bool_)
         self.parent_edge = np.full(graph.nodes, -1, dtype=np.int32)
@@ -217,7 +210,7 @@ def _best(problem: SearchProblem, edge_states: npt.NDArray[np.int8], states: Edg
     )
 
 
-def _all_free(nodes: npt.NDArray[np.int32], along: npt.NDArray[np.int32], states: EdgeStates) -> bool:
+def _all_free(nodes: Ints32, along: Ints32, states: EdgeStates) -> bool:
     """Ask along a path, nodes before edges, until something is blocked; an empty path is free."""
     for node in nodes[states.node_states[nodes] == UNKNOWN]:
         states.ask_nodes(node[np.newaxis])
@@ -230,7 +223,7 @@ def _all_free(nodes: npt.NDArray[np.int32], along: npt.NDArray[np.int32], states
     return True
 
 
-def _way_back(parent_edge: npt.NDArray[np.int32], edges: npt.NDArray[np.int32], node: int) -> Found:
+def _way_back(parent_edge: Ints32, edges: Ints32, node: int) -> Found:
     """Return the nodes and edges from the root of a tree to a node in it."""
     nodes, along = [node], []
     while (edge := int(parent_edge[nodes[-1]])) >= 0:

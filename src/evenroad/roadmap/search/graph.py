@@ -5,28 +5,25 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
+
+from evenroad._arrays import Bools, Ints, Ints32
 
 
 @dataclass(frozen=True, eq=False)
 class Rows:
     """For each node the arcs that leave it, side by side.
 
-    Attributes
-    ----------
-    first : ndarray of int64, shape (nodes + 1,)
-        The arcs that leave node v are the slots first[v] .. first[v + 1] - 1.
-    other, edge : ndarray of int32, shape (slots,)
-        For each slot the node that the arc leads to, and its edge.
+    Those of node v are the slots ``first[v] .. first[v + 1] - 1``; for each slot, `other` is the node that the arc
+    leads to and `edge` its edge.
     """
 
-    first: npt.NDArray[np.int64]
-    other: npt.NDArray[np.int32]
-    edge: npt.NDArray[np.int32]
+    first: Ints
+    other: Ints32
+    edge: Ints32
 
     @classmethod
-    def of(cls, nodes: int, edges: npt.NDArray[np.int32], *, numbered_from: int = 0) -> Rows:
+    def of(cls, nodes: int, edges: Ints32, *, numbered_from: int = 0) -> Rows:
         """Return the rows of undirected edges, (m, 2), whose numbers begin with `numbered_from`."""
         return cls(*_rows(nodes, np.array(edges, dtype=np.int32), numbered_from))
 
@@ -35,12 +32,7 @@ class Rows:
 class Graph:
     """Undirected edges, by node: fixed ones, and links of one query beside them.
 
-    Attributes
-    ----------
-    nodes : int
-        Number of nodes.
-    fixed, links : Rows
-        Of all nodes, or of the first ones only: the others have no arcs there.
+    Both may be rows of the first nodes only: the others have no arcs there.
     """
 
     nodes: int
@@ -48,23 +40,23 @@ class Graph:
     links: Rows
 
     @classmethod
-    def of(cls, nodes: int, edges: npt.NDArray[np.int32]) -> Graph:
+    def of(cls, nodes: int, edges: Ints32) -> Graph:
         """Return the graph of these edges, without links."""
         return cls(nodes, Rows.of(nodes, edges), _NO_LINKS)
 
-    def with_links(self, nodes: int, edges: npt.NDArray[np.int32], numbered_from: int) -> Graph:
+    def with_links(self, nodes: int, edges: Ints32, numbered_from: int) -> Graph:
         """Return this graph with so many nodes, and links instead of those that it has; O(nodes)."""
         return replace(self, nodes=nodes, links=Rows.of(nodes, edges, numbered_from=numbered_from))
 
 
-def components(nodes: int, edges: npt.NDArray[np.int32]) -> npt.NDArray[np.int32]:
+def components(nodes: int, edges: Ints32) -> Ints32:
     """Return a label for every node, shape (nodes,): the lowest node of its connected component."""
     label = np.arange(nodes, dtype=np.int32)
     join(label, edges)
     return label
 
 
-def join(label: npt.NDArray[np.int32], edges: npt.NDArray[np.int32]) -> npt.NDArray[np.bool_]:
+def join(label: Ints32, edges: Ints32) -> Bools:
     """Join components along edges, one after the other, in place; return for each edge whether it joined two.
 
     `label` holds for every node the lowest node of its component, before and after.

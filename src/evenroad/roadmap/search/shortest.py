@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from evenroad._arrays import Floats, Ints, Ints32
 from evenroad.roadmap.search.edge_states import BLOCKED, FREE
 from evenroad.roadmap.search.graph import Graph
 
@@ -40,11 +41,11 @@ class FixedPoint:
         # Nothing but zero lengths, or what is next to it: any quantum does.
         return cls(longest / 2.0**bits if longest > _NEXT_TO_ZERO else 1.0)
 
-    def weights(self, lengths: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
+    def weights(self, lengths: Floats) -> Ints:
         """Return lengths rounded up, at least 1, so that no cycle is free."""
         return np.maximum(np.ceil(lengths / self.quantum), 1.0).astype(np.int64)
 
-    def bounds(self, distances: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
+    def bounds(self, distances: Floats) -> Ints:
         """Return lower bounds, rounded down by a little more than the rounding of a distance."""
         within = np.minimum(distances, self.quantum * MOST)
         least = np.floor(within / self.quantum * (1.0 - 2.0**-45)) - 2.0
@@ -53,13 +54,13 @@ class FixedPoint:
 
 def best_path(
     graph: Graph,
-    weights: npt.NDArray[np.int64],
+    weights: Ints,
     edge_states: npt.NDArray[np.int8],
     node_states: npt.NDArray[np.int8],
-    bounds: npt.NDArray[np.int64],
+    bounds: Ints,
     start: int,
-    goals: npt.NDArray[np.int64],
-) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]:
+    goals: Ints,
+) -> tuple[Ints32, Ints32]:
     """Return the one shortest path from start to the nearest goal over nodes and edges that are not `BLOCKED`.
 
     The goals are one virtual node: each has an edge of length 0 to it, and the path to it is the answer.  Among
@@ -108,27 +109,16 @@ def best_path(
 
 
 def shortest_path(
-    nodes: int,
-    edges: npt.NDArray[np.int32],
-    lengths: npt.NDArray[np.float64],
-    bounds: npt.NDArray[np.float64],
-    start: int,
-    goal: int,
-) -> tuple[npt.NDArray[np.int32], float]:
-    """Return the shortest path from start to goal over edges that are all free, and its length.
+    nodes: int, edges: Ints32, lengths: Floats, bounds: Floats, start: int, goal: int
+) -> tuple[Ints32, float]:
+    """Return the shortest path from start to goal over edges, (m, 2), that are all free, and its length.
 
     Parameters
     ----------
-    nodes : int
-        Number of nodes.
-    edges : ndarray of int32, shape (m, 2)
-        Undirected edges.
     lengths : ndarray, shape (m,)
         Length of each edge, >= 0.
     bounds : ndarray, shape (nodes,)
         Consistent lower bound of the way from each node to the goal, e.g. its distance in the space.
-    start, goal : int
-        Node numbers.
 
     Returns
     -------
@@ -151,7 +141,7 @@ def shortest_path(
     return path, length_along(lengths, along) if path.size else np.inf
 
 
-def length_along(lengths: npt.NDArray[np.float64], along: npt.NDArray[np.int32]) -> float:
+def length_along(lengths: Floats, along: Ints32) -> float:
     """Return the sum of the lengths of the edges `along` a path, from its start on."""
     total = 0.0
     for length in lengths[along].tolist():

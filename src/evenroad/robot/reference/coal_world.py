@@ -8,8 +8,8 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Bools, Floats
 from evenroad.geometry.shapes import Mesh, Shape
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot.reference.engine_world import EngineWorld
@@ -44,7 +44,7 @@ class CoalWorld(EngineWorld):
         ):
             object.__setattr__(self, name, value)
 
-    def explain(self, q: npt.NDArray[np.float64]) -> str:
+    def explain(self, q: Floats) -> str:
         """Return in words why one configuration, (dim,), is not free."""
         batch = np.asarray(q, dtype=np.float64)[np.newaxis]
         if not self.space.contains(batch)[0]:
@@ -52,22 +52,22 @@ class CoalWorld(EngineWorld):
         bodies = next(self._contacts(self._poses(batch)[:, 0]), None)
         return "it is free" if bodies is None else f"{bodies[0]!r} touches {bodies[1]!r}"
 
-    def _free(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def _free(self, q: Floats) -> Bools:
         poses = self._poses(q)
         contacts = (next(self._contacts(poses[:, row]), None) for row in range(len(q)))
         return np.array([contact is None for contact in contacts], dtype=np.bool_)
 
-    def contacts(self, q: npt.NDArray[np.float64]) -> set[tuple[str, str]]:
+    def contacts(self, q: Floats) -> set[tuple[str, str]]:
         """Return all that touches in one configuration, (dim,): a link and an obstacle, or a pair of links."""
         return set(self._contacts(self._poses(np.asarray(q, dtype=np.float64)[np.newaxis])[:, 0]))
 
-    def _poses(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def _poses(self, q: Floats) -> Floats:
         """Return the pose of every shape of the robot, (shapes, n, 4, 4)."""
         links = link_poses(self.robot, q)
         number = {link: i for i, link in enumerate(self.robot.links)}
         return np.stack([links[:, number[shape.link]] @ shape.pose.matrix for shape in self._shapes])
 
-    def _contacts(self, poses: npt.NDArray[np.float64]) -> Iterator[tuple[str, str]]:
+    def _contacts(self, poses: Floats) -> Iterator[tuple[str, str]]:
         """Yield two bodies that touch after the other two, for the poses of all shapes, (shapes, 4, 4)."""
         coal, solids = self._coal, self._solids
         places = [_transform(coal, pose) for pose in poses]
@@ -94,7 +94,7 @@ def tests_of(robot: Robot, scene: Scene, shapes: Sequence[Shape]) -> list[tuple[
     return tests
 
 
-def _transform(coal: Any, pose: npt.NDArray[np.float64]) -> Any:
+def _transform(coal: Any, pose: Floats) -> Any:
     return coal.Transform3s(np.ascontiguousarray(pose[:3, :3]), pose[:3, 3].copy())
 
 

@@ -7,9 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-import numpy as np
-import numpy.typing as npt
-
+from evenroad._arrays import Bools, Floats
 from evenroad.errors import InvalidValue
 from evenroad.geometry.shapes import Shape, along_z
 from evenroad.robot.arm_world import joint_space
@@ -18,11 +16,11 @@ from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
 from evenroad.robot.urdf import read_urdf
 from evenroad.space import JointSpace
-from evenroad.world import FunctionWorld
+from evenroad.world.function import FunctionWorld, TestedAtStates
 
 
 @dataclass(frozen=True, eq=False)
-class EngineWorld(ABC):
+class EngineWorld(TestedAtStates, ABC):
     """A robot's shapes among a scene's, checked state by state; subclasses say by whom.
 
     Parameters
@@ -65,45 +63,16 @@ class EngineWorld(ABC):
         """The ranges of the group's joints."""
         return self._states.space  # type: ignore[return-value]
 
-    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-        """Return which configurations, (n, dim) [rad or m], are within the limits and touch nothing: (n,).
-
-        Raises
-        ------
-        InvalidValue
-            If `q` has another shape or an entry that is not finite.
-        """
-        return self._states.valid(q)
-
-    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-        """Return which motions, two (m, dim) arrays, are free at states at most `resolution` apart: (m,).
-
-        Raises
-        ------
-        InvalidValue
-            As `valid`, or if the two differ in length.
-        """
-        return self._states.motion_valid(a, b)
-
     @abstractmethod
-    def _free(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def _free(self, q: Floats) -> Bools:
         """Return which configurations within the limits, (n, dim), touch nothing: (n,)."""
 
 
 def original_shapes(source: str | os.PathLike[str], robot: Robot) -> tuple[Shape, ...]:
-    """Return the collision shapes that a robot's URDF gives, before any capsule was fitted to them.
+    """Return the collision shapes that the URDF `source`, or a shipped robot, gives, before capsules were fitted.
 
-    Parameters
-    ----------
-    source : str or path-like
-        The URDF, or the name of a shipped robot, from which `robot` was loaded.
-    robot : Robot
-        Its links that have no shape in the URDF, because their capsules were given, keep those.
-
-    Raises
-    ------
-    BrokenFile, InvalidValue, UnknownName
-        As :func:`evenroad.robot.load_model`.
+    Links of `robot` that have no shape there, because their capsules were given, keep those.  Raises as
+    :func:`evenroad.robot.load_model`.
     """
     shapes = read_urdf(find_robot(source)[0]).shapes
     there = {shape.link for shape in shapes}

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad._rng import generator
 from evenroad.errors import NotAvailable
 from evenroad.robot.pairs import TOUCHING
@@ -32,18 +32,10 @@ SAMPLES = 100
 class MeshCheck:
     """What the original shapes say about a path.
 
-    Attributes
-    ----------
-    verdict : {"free", "in collision", "not checked"}
-        Of all states, ends included, at most a tenth of the resolution apart.
-    states : int
-        How many states were asked for; 0 where nothing was checked.
-    message : str
-        Why it was not checked; or which motion of the path is in collision where, and which bodies touch.
-    configuration : tuple of floats, or None
-        The first state in collision [rad or m].
-    always_touching : tuple of pairs of str
-        Pairs of links that were left out: their shapes touch in each of 100 random configurations.
+    Of so many `states`, ends included, at most a tenth of the resolution apart; 0 where nothing was checked.
+    `message` says why not, or which motion is in collision where, and which bodies touch; `configuration` is the first
+    state in collision [rad or m].  Pairs in `always_touching` were left out: their shapes touch in each of 100 random
+    configurations.
     """
 
     verdict: Verdict
@@ -75,7 +67,7 @@ def recheck(
     source: str | os.PathLike[str],
     robot: Robot,
     scene: Scene,
-    path: npt.NDArray[np.float64],
+    path: Floats,
     resolution: float = 0.05,
     unseen: Sequence[tuple[str, str]] = (),
 ) -> MeshCheck:
@@ -144,5 +136,5 @@ def _named(pairs: Sequence[tuple[str, str]]) -> str:
     return ", ".join(f"{first!r} with {second!r}" for first, second in pairs)
 
 
-def _numbers(row: Sequence[float] | npt.NDArray[np.float64]) -> str:
+def _numbers(row: Sequence[float] | Floats) -> str:
     return "(" + ", ".join(f"{value:.4g}" for value in row) + ")"

@@ -13,6 +13,8 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from evenroad._arrays import Bools, Floats
+
 BLOCKED = 0
 """Every point of the closed cell is nearer than `radius` to an obstacle."""
 UNDECIDED = 1
@@ -36,7 +38,7 @@ class DiskTables(NamedTuple):
         In pixels.
     """
 
-    frame: npt.NDArray[np.float64]
+    frame: Floats
     cells: npt.NDArray[np.uint8]
     above: npt.NDArray[np.uint16]
     below: npt.NDArray[np.uint16]
@@ -48,7 +50,7 @@ _LARGEST_RUN = 65535
 
 
 @njit(cache=True, nogil=True)
-def vertical_runs(padded: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.uint16], npt.NDArray[np.uint16]]:
+def vertical_runs(padded: Bools) -> tuple[npt.NDArray[np.uint16], npt.NDArray[np.uint16]]:
     """Return how many rows up, and how many down, the nearest occupied cell of the same column is.
 
     Both are 0 in an occupied cell.  Runs end at 65535: the nearest obstacle of a point is never that far in

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from evenroad._arrays import Bools, Ints32
 from evenroad.world.gridmap.cells import BLOCKED, FREE, UNDECIDED, DiskTables
 
 _AROUND = 3
@@ -22,7 +23,7 @@ PARTS = 16
 
 
 @njit(cache=True, nogil=True)
-def find_gates(cells: npt.NDArray[np.uint8]) -> npt.NDArray[np.bool_]:
+def find_gates(cells: npt.NDArray[np.uint8]) -> Bools:
     """Return the cells around places where a way may lead through cells that are not surely free.
 
     From every component of surely free cells the undecided ones are visited outwards.  Along a wall they are a strip
@@ -80,7 +81,7 @@ def find_gates(cells: npt.NDArray[np.uint8]) -> npt.NDArray[np.bool_]:
 
 
 @njit(cache=True, nogil=True)
-def label_components(disk: DiskTables, gates: npt.NDArray[np.bool_]) -> npt.NDArray[np.int32]:
+def label_components(disk: DiskTables, gates: Bools) -> Ints32:
     """Return the component of each cell and, at gates, of each part of a cell; 0 where no disk is free.
 
     Cells that are not surely blocked hang together over their sides, and so do the parts of a cell at a gate.  A disk

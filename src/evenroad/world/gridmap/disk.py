@@ -9,8 +9,8 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Bools, Floats, Ints, Ints32
 from evenroad._checks import require_positive
 from evenroad.space import Rectangle
 from evenroad.space.batch import as_batch, as_batch_pair
@@ -37,12 +37,12 @@ class Grid(Protocol):
     """What a disk needs to know of a map; a GridMap does."""
 
     @property
-    def occupied(self) -> npt.NDArray[np.bool_]:
+    def occupied(self) -> Bools:
         """Which cells are obstacles, (rows, cols)."""
         ...
 
     @property
-    def unknown(self) -> npt.NDArray[np.bool_]:
+    def unknown(self) -> Bools:
         """Which cells the map says nothing of, (rows, cols): for pictures."""
         ...
 
@@ -97,7 +97,7 @@ class DiskWorld:
         """What is shown of a motion called free: ``exact``."""
         return "exact"
 
-    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def valid(self, q: Floats) -> Bools:
         """Return whether the disk is free at each map point, (n, 2) -> (n,); False outside the map.
 
         Raises
@@ -107,7 +107,7 @@ class DiskWorld:
         """
         return points_are_free(as_batch("q", q, 2), self._tables)
 
-    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return whether the disk can move straight from each row of `a` to that of `b`: two (m, 2) -> (m,).
 
         Raises
@@ -117,7 +117,7 @@ class DiskWorld:
         """
         return motions_are_free(*as_batch_pair(a, b, 2), self._tables)
 
-    def clearance(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def clearance(self, q: Floats) -> Floats:
         """Return the distance from each map point, (n, 2), to the nearest obstacle, (n,), in map units.
 
         It is measured from the disk's centre, so the disk is free where it is at least `radius`; it is 0 in
@@ -126,7 +126,7 @@ class DiskWorld:
         _, distance = nearest_obstacle_points(as_batch("q", q, 2), self._tables)
         return distance * self.grid.frame.resolution
 
-    def nearest_obstacle(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def nearest_obstacle(self, q: Floats) -> Floats:
         """Return the obstacle point nearest to each map point, (n, 2) -> (n, 2), in map units.
 
         A point in an obstacle or outside the map is its own; of several equally near ones, always the same
@@ -140,7 +140,7 @@ class DiskWorld:
         nearest[away] = self.grid.frame.to_map(pixels[away])
         return nearest
 
-    def may_connect(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> bool:
+    def may_connect(self, a: Floats, b: Floats) -> bool:
         """Return False where it is proved that no way leads from map point `a`, (2,), to `b`, (2,).
 
         Places none of whose points is free separate the others into components, in one of which every way stays.
@@ -150,7 +150,7 @@ class DiskWorld:
         first, second = self.component(a), self.component(b)
         return first == second and first != 0
 
-    def component(self, q: npt.NDArray[np.float64]) -> int:
+    def component(self, q: Floats) -> int:
         """Return the number, from 1 on, of the component that a map point, (2,), lies in; 0 where no disk is free."""
         column, row = self.grid.frame.to_pixels(as_batch("q", np.reshape(q, (1, -1)), 2))[0]
         rows, cols = self.grid.occupied.shape
@@ -163,7 +163,7 @@ class DiskWorld:
         part = int(PARTS * (row % 1.0)) * PARTS + int(PARTS * (column % 1.0))
         return int(labels[(rows + 2) * (cols + 2) + parts[cell] * PARTS**2 + part])
 
-    def cells_of(self, component: int) -> npt.NDArray[np.bool_]:
+    def cells_of(self, component: int) -> Bools:
         """Return the cells of the map, (rows, cols), that have a part in a component."""
         labels, parts = self._components
         inside = (labels[: parts.size] == component).reshape(parts.shape)
@@ -172,17 +172,17 @@ class DiskWorld:
         return inside[1:-1, 1:-1]
 
     @cached_property
-    def _gates(self) -> npt.NDArray[np.bool_]:
+    def _gates(self) -> Bools:
         return find_gates(self._tables.cells)
 
     @cached_property
-    def _components(self) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int64]]:
+    def _components(self) -> tuple[Ints32, Ints]:
         """Labels as `label_components` returns them, and the number of each cell among those at gates, or -1."""
         parts = np.full(self._gates.shape, -1)
         parts[self._gates] = np.arange(np.count_nonzero(self._gates))
         return label_components(self._tables, self._gates), parts
 
-    def nearest_free(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64] | None:
+    def nearest_free(self, q: Floats) -> Floats | None:
         """Return a free map point, (2,), near the map point `q`, (2,), or None if there is none.
 
         It is the nearest of the surely free cells, and of a lattice of quarter pixels in those that are partly free.
@@ -197,12 +197,7 @@ class DiskWorld:
         return "cells"
 
     def connect(
-        self,
-        start: npt.NDArray[np.float64],
-        goals: npt.NDArray[np.float64],
-        *,
-        most_motions: int = 2**31 - 1,
-        seconds: float = math.inf,
+        self, start: Floats, goals: Floats, *, most_motions: int = 2**31 - 1, seconds: float = math.inf
     ) -> Connection:
         """Find a way from a free map point, (2,), to the one of several, (g, 2), that is nearest on the lattice.
 
@@ -215,7 +210,7 @@ class DiskWorld:
         way, goal, nodes, motions = find_way(first, last, self._tables, self._gates, most_motions)
         return Connection(way, int(goal), nodes, 0, motions)
 
-    def shorten(self, path: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], int]:
+    def shorten(self, path: Floats) -> tuple[Floats, int]:
         """Return a path of free motions, (q, 2), that is not longer than `path`, (p, 2), and how many were tested."""
         points = as_batch("path", path, 2)
         return straighten(points, self._tables, _SPREADS) if len(points) > 1 else (points.copy(), 0)
@@ -226,7 +221,7 @@ class DiskWorld:
         digest.update(self.grid.occupied.tobytes())
         return digest.hexdigest()
 
-    def explain(self, q: npt.NDArray[np.float64]) -> str:
+    def explain(self, q: Floats) -> str:
         """Return in words how near an obstacle is to a disk at the map point `q`, (2,)."""
         centre = np.asarray(q, dtype=np.float64)[np.newaxis]
         distance = float(self.clearance(centre)[0])

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad._checks import require_count, require_positive
 from evenroad.errors import InvalidValue
 from evenroad.space import Rectangle
@@ -70,7 +70,7 @@ class MapFrame:
             edge_v=(-height * sine, height * cosine),
         )
 
-    def coefficients(self) -> npt.NDArray[np.float64]:
+    def coefficients(self) -> Floats:
         """Return the eight numbers with which the kernels turn map coordinates into pixels.
 
         They are origin x, y; the map directions of increasing column (x, y) and of increasing row (x, y);
@@ -83,7 +83,7 @@ class MapFrame:
             return np.array([*self.origin, 1.0, 0.0, 0.0, 1.0, self.resolution, 0.0])
         return np.array([*self.origin, cosine, sine, sine, -cosine, self.resolution, float(self.rows)])
 
-    def to_pixels(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def to_pixels(self, q: Floats) -> Floats:
         """Return the pixel coordinates (column, row), (n, 2), of the map points `q`, (n, 2)."""
         x0, y0, column_x, column_y, row_x, row_y, scale, first_row = self.coefficients()
         # Points that are absurdly far away may overflow: infinite, or NaN, is as good an "outside" as any.
@@ -93,7 +93,7 @@ class MapFrame:
             row = first_row + (row_x * x + row_y * y) / scale
         return np.column_stack([column, row])
 
-    def to_map(self, pixels: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def to_map(self, pixels: Floats) -> Floats:
         """Return the map points, (n, 2), at pixel coordinates (column, row), (n, 2)."""
         x0, y0, column_x, column_y, row_x, row_y, scale, first_row = self.coefficients()
         column, row = pixels[:, 0] * scale, (pixels[:, 1] - first_row) * scale

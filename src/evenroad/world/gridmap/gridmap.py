@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Bools, Floats
 from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue
 from evenroad.space import Rectangle
@@ -38,9 +38,9 @@ class GridMap:
         `occupied`.
     """
 
-    occupied: npt.NDArray[np.bool_]
+    occupied: Bools
     frame: MapFrame = None  # type: ignore[assignment]
-    unknown: npt.NDArray[np.bool_] = None  # type: ignore[assignment]
+    unknown: Bools = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "occupied", _as_cells("occupied", self.occupied))
@@ -62,7 +62,7 @@ class GridMap:
         """The image's rectangle in map units, turned as the map is."""
         return self.frame.rectangle
 
-    def contains(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def contains(self, q: Floats) -> Bools:
         """Return whether each map point, (n, 2), lies in the map's closed rectangle, (n,)."""
         pixels = self.frame.to_pixels(as_batch("q", q, 2))
         size = self.frame.cols, self.frame.rows
@@ -109,7 +109,7 @@ class GridMap:
         return DiskWorld(self, radius)
 
 
-def _as_cells(name: str, value: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+def _as_cells(name: str, value: Bools) -> Bools:
     """Return a read-only copy of an array of cells."""
     cells = np.array(value, order="C")
     if cells.ndim != 2 or cells.size == 0 or cells.dtype != np.bool_:

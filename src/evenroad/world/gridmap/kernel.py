@@ -15,14 +15,14 @@ import math
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from evenroad._arrays import Bools, Floats
 from evenroad.world.gridmap.cells import BLOCKED, FREE, UNDECIDED, DiskTables
 
 
 @njit(cache=True, nogil=True)
-def points_are_free(q: npt.NDArray[np.float64], disk: DiskTables) -> npt.NDArray[np.bool_]:
+def points_are_free(q: Floats, disk: DiskTables) -> Bools:
     """Return for each finite map point, (n, 2), whether the disk there is free, (n,)."""
     free = np.empty(len(q), np.bool_)
     for i in range(len(q)):
@@ -32,9 +32,7 @@ def points_are_free(q: npt.NDArray[np.float64], disk: DiskTables) -> npt.NDArray
 
 
 @njit(cache=True, nogil=True)
-def motions_are_free(
-    a: npt.NDArray[np.float64], b: npt.NDArray[np.float64], disk: DiskTables
-) -> npt.NDArray[np.bool_]:
+def motions_are_free(a: Floats, b: Floats, disk: DiskTables) -> Bools:
     """Return for each pair of finite map points, (m, 2), whether the disk can move straight, (m,)."""
     free = np.empty(len(a), np.bool_)
     for i in range(len(a)):
@@ -130,14 +128,7 @@ def way_is_free(ax: float, ay: float, bx: float, by: float, disk: DiskTables) ->
 
 @njit(cache=True, nogil=True)
 def _passes_a_corner(
-    row: int,
-    col: int,
-    ax: float,
-    ay: float,
-    dx: float,
-    dy: float,
-    squared_length: float,
-    disk: DiskTables,
+    row: int, col: int, ax: float, ay: float, dx: float, dy: float, squared_length: float, disk: DiskTables
 ) -> bool:
     """Say whether a corner that faces cell (row, col) is nearer than the radius to the whole segment.
 
@@ -173,9 +164,7 @@ def _is_too_close(x: float, y: float, dx: float, dy: float, squared_length: floa
 
 
 @njit(cache=True, nogil=True)
-def nearest_obstacle_points(
-    q: npt.NDArray[np.float64], disk: DiskTables
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def nearest_obstacle_points(q: Floats, disk: DiskTables) -> tuple[Floats, Floats]:
     """Return the nearest obstacle point to each map point, (n, 2), and its distance, (n,), both in pixels.
 
     The points are pixel coordinates of the map itself, not of the padded grid.  A point on or in an obstacle,

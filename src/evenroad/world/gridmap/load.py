@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
+from evenroad._arrays import Bools
 from evenroad._checks import require_positive
 from evenroad._yaml import read_mapping
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
@@ -32,20 +33,9 @@ _MODES = ("trinary", "scale", "raw")
 class RosMapMeta:
     """What a map_server YAML file says, checked.
 
-    Attributes
-    ----------
-    image : Path
-        The image file; a relative name is relative to the YAML file.
-    resolution : float
-        Metres per pixel, > 0.
-    origin : tuple of three floats
-        x and y in metres of the lower-left corner of the lower-left pixel, and yaw in radians.
-    negate : bool
-        White, not black, is occupied.
-    occupied_thresh, free_thresh : float
-        In [0, 1], free_thresh < occupied_thresh.
-    mode : str
-        trinary, scale or raw.
+    `resolution` is metres per pixel; `origin` x and y [m] of the lower-left corner of the lower-left pixel, and yaw
+    [rad]; `negate` says that white, not black, is occupied; ``0 <= free_thresh < occupied_thresh <= 1``; `mode` is
+    trinary, scale or raw.
     """
 
     image: Path
@@ -141,9 +131,7 @@ def read_ros_meta(path: str | os.PathLike[str]) -> RosMapMeta:
     return _checked_meta(document, file)
 
 
-def classify_pixels(
-    image: Image.Image, meta: RosMapMeta
-) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
+def classify_pixels(image: Image.Image, meta: RosMapMeta) -> tuple[Bools, Bools]:
     """Return which pixels are occupied and which are unknown, two (rows, cols) arrays; the rest is free.
 
     `image` is one of `open_image`.  The rules are those of `load_ros_map`.

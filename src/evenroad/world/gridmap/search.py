@@ -12,9 +12,9 @@ import math
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from evenroad._arrays import Bools, Floats
 from evenroad.world.gridmap.cells import BLOCKED, FREE, DiskTables
 from evenroad.world.gridmap.kernel import point_is_free, to_padded, way_is_free
 
@@ -39,8 +39,8 @@ _LINKS = 24
 
 @njit(cache=True, nogil=True)
 def find_way(
-    start: Any, goals: Any, disk: DiskTables, gates: npt.NDArray[np.bool_], most: int
-) -> tuple[npt.NDArray[np.float64], int, int, int]:
+    start: Any, goals: Any, disk: DiskTables, gates: Bools, most: int
+) -> tuple[Floats, int, int, int]:
     """Find a way over the half lattice from a free point, (2,), to the nearest on it of others, (g, 2).
 
     A* over whole-number costs with buckets for the queue; a step between surely free cells that share a side or a
@@ -146,7 +146,7 @@ def find_way(
 
 
 @njit(cache=True, nogil=True)
-def straighten(way: Any, disk: DiskTables, spreads: Any) -> tuple[npt.NDArray[np.float64], int]:
+def straighten(way: Any, disk: DiskTables, spreads: Any) -> tuple[Floats, int]:
     """Return a shorter way of free motions between the same ends, and how many motions were tested.
 
     First from each point on to the farthest that is found to be in sight; then rounds of points spread evenly along
@@ -171,7 +171,7 @@ def straighten(way: Any, disk: DiskTables, spreads: Any) -> tuple[npt.NDArray[np
 
 
 @njit(cache=True, nogil=True)
-def _links(x: float, y: float, disk: DiskTables, gates: npt.NDArray[np.bool_]) -> tuple[Any, int]:
+def _links(x: float, y: float, disk: DiskTables, gates: Bools) -> tuple[Any, int]:
     """Return the lattice points near (x, y) that can be reached straight, and how many were tried."""
     px, py = to_padded(x, y, disk.frame)
     rows, cols = disk.cells.shape
@@ -212,7 +212,7 @@ def _is_centre(r: int, c: int, disk: DiskTables) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def _is_at_gate(r: int, c: int, gates: npt.NDArray[np.bool_]) -> bool:
+def _is_at_gate(r: int, c: int, gates: Bools) -> bool:
     """Say whether a point of the half lattice lies in a cell of a gate, or between two."""
     return gates[r // 2, c // 2] or gates[(r - 1) // 2, (c - 1) // 2]
 
@@ -261,7 +261,7 @@ def _to_map(column: float, row: float, frame: Any) -> tuple[float, float]:
 
 
 @njit(cache=True, nogil=True)
-def _skip_ahead(way: Any, disk: DiskTables) -> tuple[npt.NDArray[np.float64], int]:
+def _skip_ahead(way: Any, disk: DiskTables) -> tuple[Floats, int]:
     kept = [0]
     motions = 0
     at, last = 0, len(way) - 1
@@ -320,7 +320,7 @@ def _spread(points: Any, most: int) -> Any:
 
 
 @njit(cache=True, nogil=True)
-def _best_selection(points: Any, disk: DiskTables) -> tuple[npt.NDArray[np.float64], int]:
+def _best_selection(points: Any, disk: DiskTables) -> tuple[Floats, int]:
     """Return the shortest selection of the points, in their order, whose motions are free."""
     count = len(points)
     length = np.full(count, np.inf)

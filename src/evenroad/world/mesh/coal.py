@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats, Ints
 from evenroad._extras import require_extra
 from evenroad.errors import BrokenFile
 from evenroad.geometry.mesh import TriangleMesh
@@ -45,24 +45,16 @@ def tree_of(coal: Any, mesh: TriangleMesh) -> Any:
 
 
 class Collider:
-    """A body and obstacles as trees of bounding boxes over their triangles.
+    """A body and obstacles as trees of bounding boxes over their triangles: surfaces, which have no inside.
 
-    Parameters
-    ----------
-    body, obstacles : TriangleMesh
-        Surfaces: a body inside of a closed obstacle meets nothing.
-
-    Raises
-    ------
-    NotAvailable
-        If coal is not installed.
+    Raises NotAvailable if coal is not installed.
     """
 
     def __init__(self, body: TriangleMesh, obstacles: TriangleMesh) -> None:
         coal = self._coal = require_coal()
         self._body, self._obstacles = tree_of(coal, body), tree_of(coal, obstacles)
 
-    def first_triangles(self, poses: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
+    def first_triangles(self, poses: Floats) -> Ints:
         """Return for each pose of the body, (n, 7), a triangle of the obstacles that it meets, or -1."""
         coal = self._coal
         here, there = coal.Transform3s.Identity(), coal.Transform3s.Identity()

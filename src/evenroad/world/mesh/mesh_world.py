@@ -6,18 +6,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Bools, Floats
 from evenroad.errors import InvalidValue
 from evenroad.geometry.mesh import TriangleMesh, merged
 from evenroad.space.batch import as_batch
-from evenroad.world.function import FunctionWorld
+from evenroad.world.function import FunctionWorld, TestedAtStates
 from evenroad.world.mesh.coal import Collider
 from evenroad.world.solids.poses import RigidSpace, as_poses, body_dimension
 
 
 @dataclass(frozen=True, eq=False)
-class MeshWorld:
+class MeshWorld(TestedAtStates):
     """A rigid body of triangles that moves among obstacles of triangles, checked by coal.
 
     A pose is free if it lies in the space and no triangle of the body meets one of an obstacle.  Meshes are
@@ -69,27 +69,7 @@ class MeshWorld:
         ):
             object.__setattr__(self, name, value)
 
-    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-        """Return which poses, (n, dim), lie in the space and are free: (n,).
-
-        Raises
-        ------
-        InvalidValue
-            If `q` has another shape or an entry that is not finite.
-        """
-        return self._states.valid(q)
-
-    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-        """Return which motions from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
-
-        Raises
-        ------
-        InvalidValue
-            As `valid`; if the two differ in length; or if a motion has more than 2^30 states.
-        """
-        return self._states.motion_valid(a, b)
-
-    def explain(self, q: npt.NDArray[np.float64]) -> str:
+    def explain(self, q: Floats) -> str:
         """Return in words why the pose `q`, (dim,), is not free."""
         pose = as_batch("q", np.asarray(q, dtype=np.float64)[np.newaxis], self.space.dim)
         if not self.space.contains(pose)[0]:
@@ -100,5 +80,5 @@ class MeshWorld:
         name = self.obstacles[obstacle].name
         return f"the body meets obstacle {obstacle}{f' ({name})' if name else ''}"
 
-    def _is_free(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def _is_free(self, q: Floats) -> Bools:
         return self._collider.first_triangles(as_poses(q, self.space)) < 0

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad.world.bisection_kernel import next_between
 from evenroad.world.solids.oriented_box import BoxTable
 from evenroad.world.solids.overlap import first_contact
@@ -17,13 +17,7 @@ _SMALL_ANGLE = 1e-8
 
 
 @njit(cache=True, nogil=True)
-def contacts(
-    poses: npt.NDArray[np.float64],
-    body: BoxTable,
-    reach: float,
-    obstacles: BoxTable,
-    planar: bool,
-) -> npt.NDArray[np.int64]:
+def contacts(poses: Floats, body: BoxTable, reach: float, obstacles: BoxTable, planar: bool) -> Ints:
     """Return for each pose, (n, 7), the first obstacle that the body meets, or -1; its points reach so far."""
     found = np.empty(len(poses), dtype=np.int64)
     near = np.empty(len(obstacles.centre), dtype=np.int64)
@@ -36,15 +30,15 @@ def contacts(
 
 @njit(cache=True, nogil=True)
 def motions_are_free(
-    a: npt.NDArray[np.float64],
-    b: npt.NDArray[np.float64],
+    a: Floats,
+    b: Floats,
     step: float,
     rotation_step: float,
     body: BoxTable,
     reach: float,
     obstacles: BoxTable,
     planar: bool,
-) -> npt.NDArray[np.bool_]:
+) -> Bools:
     """Return which motions between poses, (m, 7), are free at both ends and at states between, in bisection order.
 
     Neighbouring states are at most `step` and, as quaternions, `rotation_step` radians apart.

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad._checks import as_row
 from evenroad.errors import InvalidValue
 from evenroad.geometry.mesh import TriangleMesh
@@ -94,12 +94,12 @@ class OrientedBox:
         return len(self.centre)
 
     @property
-    def matrix(self) -> npt.NDArray[np.float64]:
+    def matrix(self) -> Floats:
         """The rotation as a matrix, (dim, dim)."""
         return np.array(self.rotation).reshape(self.dim, self.dim)
 
     @property
-    def corners(self) -> npt.NDArray[np.float64]:
+    def corners(self) -> Floats:
         """The corners, (2^dim, dim)."""
         signs = np.array(np.meshgrid(*[(-1.0, 1.0)] * self.dim, indexing="ij")).reshape(self.dim, -1).T
         return np.array(self.centre) + (signs * np.array(self.half_extents)) @ self.matrix.T
@@ -138,24 +138,16 @@ def surface_of(box: OrientedBox) -> TriangleMesh:
 
 
 class BoxTable(NamedTuple):
-    """Boxes in space, one a row; read-only.
+    """Boxes in space for compiled code, as arrays (n, 3), axes (n, 3, 3) with a column an axis of the box.
 
-    Attributes
-    ----------
-    centre : float64 array, shape (m, 3)
-    half : float64 array, shape (m, 3)
-        Half extents.
-    axes : float64 array, shape (m, 3, 3)
-        ``axes[i, :, k]`` is the direction of the k-th own axis of box i.
-    low, high : float64 array, shape (m, 3)
-        Corners of the smallest boxes that are not turned and hold them.
+    `low` and `high` are corners of the boxes' bounding boxes.
     """
 
-    centre: npt.NDArray[np.float64]
-    half: npt.NDArray[np.float64]
-    axes: npt.NDArray[np.float64]
-    low: npt.NDArray[np.float64]
-    high: npt.NDArray[np.float64]
+    centre: Floats
+    half: Floats
+    axes: Floats
+    low: Floats
+    high: Floats
 
 
 def box_table(boxes: Sequence[OrientedBox]) -> BoxTable:

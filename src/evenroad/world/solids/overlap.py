@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from evenroad._arrays import Floats, Ints
 from evenroad.world.solids.oriented_box import BoxTable
 
 _PARALLEL = 1e-14
@@ -15,12 +14,7 @@ faces' axes separate boxes with such edges as well, but for gaps of 1e-7 of thei
 
 @njit(cache=True, nogil=True)
 def first_contact(
-    pose: npt.NDArray[np.float64],
-    body: BoxTable,
-    obstacles: BoxTable,
-    near: npt.NDArray[np.int64],
-    planar: bool,
-    work: npt.NDArray[np.float64],
+    pose: Floats, body: BoxTable, obstacles: BoxTable, near: Ints, planar: bool, work: Floats
 ) -> int:
     """Return the first obstacle among `near` that a box of the body meets at a pose, (7,), or -1.
 

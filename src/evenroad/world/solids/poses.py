@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue
 from evenroad.space import SO3, Box, Circle, Product, Space
 
@@ -37,7 +37,7 @@ def rotates(space: Space) -> bool:
     return isinstance(space, Product)
 
 
-def as_poses(q: npt.NDArray[np.float64], space: Space) -> npt.NDArray[np.float64]:
+def as_poses(q: Floats, space: Space) -> Floats:
     """Return configurations (n, dim) of such a space as (n, 7): x, y, z, then the quaternion's w, x, y, z.
 
     The quaternions of a space that contains `q` are of norm 1; others are not, and are not looked at.
@@ -54,9 +54,7 @@ def as_poses(q: npt.NDArray[np.float64], space: Space) -> npt.NDArray[np.float64
     return poses
 
 
-def as_pose_pair(
-    a: npt.NDArray[np.float64], b: npt.NDArray[np.float64], space: Space
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def as_pose_pair(a: Floats, b: Floats, space: Space) -> tuple[Floats, Floats]:
     """Return start and end poses whose quaternions have signs such that the shorter arc is the space's path."""
     first, second = as_poses(a, space), as_poses(b, space)
     if rotates(space) and body_dimension(space) == 3:
@@ -71,7 +69,7 @@ def as_pose_pair(
     return first, second
 
 
-def _heading(q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def _heading(q: Floats) -> Floats:
     """Return the headings of planar poses in [-pi, pi), as `Circle` gives them."""
     heading = q[:, 2]
     wrapped = np.mod(heading + np.pi, 2.0 * np.pi) - np.pi

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad._checks import require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
@@ -80,7 +80,7 @@ class SolidWorld:
         """Return the SHA-256 (hex) of space, body, obstacles and resolution: equal for worlds of the same verdicts."""
         return fingerprint_of("solid", self.space, self.body, self.obstacles, self.resolution)
 
-    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def valid(self, q: Floats) -> Bools:
         """Return which poses, (n, dim), lie in the space and are free: (n,).
 
         Raises
@@ -94,7 +94,7 @@ class SolidWorld:
         free[inside] = self._contacts(batch[inside]) < 0
         return free
 
-    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return which motions from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
 
         Raises
@@ -111,7 +111,7 @@ class SolidWorld:
         )
         return free
 
-    def explain(self, q: npt.NDArray[np.float64]) -> str:
+    def explain(self, q: Floats) -> str:
         """Return in words why the pose `q`, (dim,), is not free."""
         pose = as_batch("q", np.asarray(q, dtype=np.float64)[np.newaxis], self.space.dim)
         if not self.space.contains(pose)[0]:
@@ -124,7 +124,7 @@ class SolidWorld:
     def _planar(self) -> bool:
         return body_dimension(self.space) == 2
 
-    def _contacts(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
+    def _contacts(self, q: Floats) -> Ints:
         return contacts(as_poses(q, self.space), self._body, self._reach, self._obstacles, self._planar)
 
 

@@ -35,15 +35,7 @@ COUNTS_DRAWN = (32, 64, 128, 256)
 
 
 def draw_curves(cells: Sequence[Cell], title: str) -> Figure:
-    """Return three panels of the same success rates, over samples, checked edges and seconds.
-
-    Parameters
-    ----------
-    cells : sequence of Cell
-        Of one question; samplers and numbers of samples ascending.
-    title : str
-        Above the panels.
-    """
+    """Return three panels of the success rates of one question's cells, over samples, checked edges and seconds."""
     # A fixed layout: solving for one takes longer than drawing, and a report has many of these.
     figure = new_figure(12.5, 4.4, layout=None)
     figure.subplots_adjust(left=0.05, right=0.845, bottom=0.125, top=0.9, wspace=0.07)
@@ -73,13 +65,7 @@ def maze_questions(questions: Sequence[Question]) -> tuple[Question, ...]:
 
 
 def draw_maze_success(cells: Sequence[Cell]) -> Figure:
-    """Return the paper's figure of success against samples, with a panel for each maze.
-
-    Parameters
-    ----------
-    cells : sequence of Cell
-        Of :func:`maze_questions`.
-    """
+    """Return the paper's figure of success against samples, with a panel for each of the :func:`maze_questions`."""
     questions = list(dict.fromkeys(cell.question for cell in cells))
     figure = new_figure(12.5, 4.6)
     panels = figure.subplots(1, len(questions), sharey=True, squeeze=False)[0]
@@ -92,13 +78,7 @@ def draw_maze_success(cells: Sequence[Cell]) -> Figure:
 
 
 def draw_fair_gains(pooled: Mapping[str, Sequence[Pooled]]) -> Figure:
-    """Return differences from uniform in random worlds, with a panel for each grouping.
-
-    Parameters
-    ----------
-    pooled : mapping of str to sequence of Pooled
-        Of :func:`~evenroad.research.report.fair.pooled`: grouping -> groups and samplers.
-    """
+    """Return differences from uniform in random worlds, with a panel for each grouping of the pooled suite."""
     shown = [grouping for grouping in GROUPINGS_DRAWN if grouping in pooled]
     figure = new_figure(13.5, 4.8)
     panels = figure.subplots(1, len(shown), squeeze=False)[0]

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib import colormaps
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
+from evenroad._arrays import Floats
 from evenroad.errors import NotAvailable
 from evenroad.geometry import rotation_from_quaternion
 from evenroad.points import draw
@@ -85,7 +85,7 @@ def find_path(problem: Problem) -> PlanResult:
     return result
 
 
-def poses_along(space: Space, path: npt.NDArray[np.float64], count: int) -> npt.NDArray[np.float64]:
+def poses_along(space: Space, path: Floats, count: int) -> Floats:
     """Return configurations at even distances along a path, its ends included, (count, dim).
 
     Parameters
@@ -128,7 +128,7 @@ def draw_chain(problem: Problem, world: ChainWorld, title: str) -> Figure:
     return figure
 
 
-def _joints(pose: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def _joints(pose: Floats) -> Floats:
     """Return base, joints and tip in the plane, (links + 1, 2)."""
     headings = np.cumsum(pose)
     steps = np.stack([np.cos(headings), np.sin(headings)], axis=1) / len(pose)
@@ -166,7 +166,7 @@ def draw_solids(problem: Problem, world: SolidWorld, title: str) -> Figure:
     return figure
 
 
-def _draw_body(axes: Axes3D, body: Iterable[OrientedBox], poses: npt.NDArray[np.float64]) -> None:
+def _draw_body(axes: Axes3D, body: Iterable[OrientedBox], poses: Floats) -> None:
     boxes = list(body)
     between = colormaps["autumn"](np.linspace(0.75, 0.0, len(poses)))
     for number, (pose, shade) in enumerate(zip(poses, between, strict=True)):
@@ -189,12 +189,12 @@ def _draw_body(axes: Axes3D, body: Iterable[OrientedBox], poses: npt.NDArray[np.
         )
 
 
-def _faces(corners: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def _faces(corners: Floats) -> Floats:
     """Return the faces of a box, (6, 4, 3)."""
     return corners[np.array(FACES)]
 
 
-def _set_view(axes: Axes3D, points: npt.NDArray[np.float64], elevation: float, turn: float) -> None:
+def _set_view(axes: Axes3D, points: Floats, elevation: float, turn: float) -> None:
     low, high = points.min(axis=0), points.max(axis=0)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
     axes.set_box_aspect(high - low, zoom=1.05)
