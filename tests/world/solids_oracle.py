@@ -30,23 +30,35 @@ def placed(q, dim):
 
 
 def gap(world, q):
-    """By how much the body stays apart from obstacles along the best of the separating axes, (n,); < 0: it meets."""
+    """By how much the body stays apart from obstacles along the best of the separating axes, (n,); < 0: it meets.
+
+    Of obstacles whose balls are far, the distance of the balls.
+    """
     dim = len(world.body[0].centre)
     rotation, place = placed(np.asarray(q, dtype=float), dim)
     least = np.full(len(q), np.inf)
     for part in world.body:
-        own = np.einsum("nij,cj->nci", rotation, corners(part)) + place[:, None]
-        own_axes = np.einsum("nij,jk->nki", rotation, np.array(part.rotation).reshape(dim, dim))
+        middle = place + rotation @ np.array(part.centre)
         for obstacle in world.obstacles:
-            other = corners(obstacle)
-            other_axes = np.array(obstacle.rotation).reshape(dim, dim).T
-            candidates = [own_axes, np.broadcast_to(other_axes, (len(q), dim, dim))]
-            if dim == 3:
-                across = np.cross(own_axes[:, :, None], other_axes[None, None]).reshape(len(q), 9, 3)
-                length = np.linalg.norm(across, axis=2, keepdims=True)
-                candidates.append(np.where(length > 1e-6, across / np.maximum(length, 1e-6), own_axes[:, :1]))
-            axes = np.concatenate(candidates, axis=1)
-            mine, theirs = np.einsum("nci,nai->nac", own, axes), np.einsum("ci,nai->nac", other, axes)
-            between = np.maximum(mine.min(2) - theirs.max(2), theirs.min(2) - mine.max(2))
-            least = np.minimum(least, between.max(axis=1))
+            between = np.linalg.norm(middle - np.array(obstacle.centre), axis=1)
+            between -= np.linalg.norm(part.half_extents) + np.linalg.norm(obstacle.half_extents)
+            close = between < 1e-3
+            between[close] = _along_axes(part, obstacle, rotation[close], place[close])
+            least = np.minimum(least, between)
     return least
+
+
+def _along_axes(part, obstacle, rotation, place):
+    dim = len(part.centre)
+    own = np.einsum("nij,cj->nci", rotation, corners(part)) + place[:, None]
+    own_axes = np.einsum("nij,jk->nki", rotation, np.array(part.rotation).reshape(dim, dim))
+    other = corners(obstacle)
+    other_axes = np.array(obstacle.rotation).reshape(dim, dim).T
+    axes = [own_axes, np.broadcast_to(other_axes, own_axes.shape)]
+    if dim == 3:
+        across = np.cross(own_axes[:, :, None], other_axes[None, None]).reshape(-1, 9, 3)
+        length = np.linalg.norm(across, axis=2, keepdims=True)
+        axes.append(np.where(length > 1e-6, across / np.maximum(length, 1e-6), own_axes[:, :1]))
+    axes = np.concatenate(axes, axis=1)
+    mine, theirs = axes @ own.transpose(0, 2, 1), axes @ other.T
+    return np.maximum(mine.min(2) - theirs.max(2), theirs.min(2) - mine.max(2)).max(axis=1)
