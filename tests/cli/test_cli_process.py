@@ -45,6 +45,30 @@ raise SystemExit(main())
     assert (done.returncode, done.stderr) == (130, "evenroad: interrupted; what was finished is kept\n")
 
 
+def test_a_second_interrupt_that_is_only_seen_while_leaving_changes_nothing():
+    """Files were being closed when it came: the next who looks for signals is the call that turns them off."""
+    code = """
+import signal, sys
+import evenroad.cli.verbs
+class Late:
+    seen = False
+    def __call__(self, *what):
+        if not self.seen:
+            self.seen = True
+            raise KeyboardInterrupt
+        return set_handler(*what)
+def run(arguments):
+    signal.signal = Late()
+    raise KeyboardInterrupt
+set_handler, evenroad.cli.verbs.run = signal.signal, run
+code = evenroad.cli.main()
+assert signal.getsignal(signal.SIGINT) == signal.SIG_IGN
+raise SystemExit(code)
+"""
+    done = python("-c", code)
+    assert (done.returncode, done.stderr) == (130, "evenroad: interrupted; what was finished is kept\n")
+
+
 @pytest.fixture
 def read_only(tmp_path):
     """The environment of a copy of the package that cannot be written, even by root, for a user without a home."""

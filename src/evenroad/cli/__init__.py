@@ -24,6 +24,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         if arguments is None:
             # This process is leaving: one more Ctrl-C could only break that, with a traceback.
-            signal.signal(signal.SIGINT, signal.SIG_IGN)
+            try:
+                signal.signal(signal.SIGINT, signal.SIG_IGN)
+            except KeyboardInterrupt:
+                # It had come while files were closed, and is only seen here.
+                signal.signal(signal.SIGINT, signal.SIG_IGN)
         print("evenroad: interrupted; what was finished is kept", file=sys.stderr)
         return INTERRUPTED
