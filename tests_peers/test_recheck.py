@@ -5,7 +5,6 @@ import json
 import numpy as np
 import pytest
 import trimesh
-from evenroad.robot.reference.bodies import original_geometries
 from tests.robot.mesh_arms import write_fork_arm, write_plate_arm
 
 from evenroad.cli import main
@@ -13,6 +12,7 @@ from evenroad.errors import BrokenFile
 from evenroad.robot import ArmWorld, Obstacle, Scene, link_poses, load_robot
 from evenroad.robot.load import load_model
 from evenroad.robot.reference.coal_world import CoalWorld
+from evenroad.robot.reference.engine_world import original_shapes
 from evenroad.robot.reference.recheck import has_meshes, recheck, unseen_pairs
 from evenroad.space.path import resample
 
@@ -124,7 +124,7 @@ def test_a_graze_between_the_states_of_the_planner_is_found(arm):
     corner = link_poses(robot, between[np.newaxis])[0, robot.links.index("fork")]
     place = corner[:3, :3] @ (0.05, 0.0, 0.02) + corner[:3, 3]
     scene = Scene("needle", (Obstacle.of("needle", "sphere", (1e-3,), tuple(place)),))
-    assert CoalWorld(robot, scene, original_geometries(arm, robot)).valid(coarse).all()
+    assert CoalWorld(robot, scene, original_shapes(arm, robot)).valid(coarse).all()
     check = recheck(arm, robot, scene, path, resolution=0.951)
     assert check.verdict == "in collision"
     assert "'fork' touches 'needle'" in check.message

@@ -45,6 +45,47 @@ raise SystemExit(main())
     assert (done.returncode, done.stderr) == (130, "evenroad: interrupted; what was finished is kept\n")
 
 
+@pytest.mark.parametrize("goes_on", ["time.sleep(10)", "raise RuntimeError('no compiled object yet')"])
+def test_an_interrupt_in_a_callback_of_compiled_code_is_not_lost(goes_on):
+    """While numba compiles, LLVM calls Python, and drops what that raises."""
+    code = f"""
+import ctypes, signal, sys, time
+import evenroad.cli.verbs
+def run(arguments):
+    ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(signal.SIGINT))()
+    {goes_on}
+    return 0
+evenroad.cli.verbs.run = run
+raise SystemExit(evenroad.cli.main())
+"""
+    done = python("-c", code)
+    assert (done.returncode, done.stderr) == (130, "evenroad: interrupted; what was finished is kept\n")
+
+
+def test_a_second_interrupt_that_is_only_seen_while_leaving_changes_nothing():
+    """Files were being closed when it came: the next who looks for signals is the call that turns them off."""
+    code = """
+import signal, sys
+import evenroad.cli.verbs
+class Late:
+    seen = False
+    def __call__(self, *what):
+        if not self.seen:
+            self.seen = True
+            raise KeyboardInterrupt
+        return set_handler(*what)
+def run(arguments):
+    signal.signal = Late()
+    raise KeyboardInterrupt
+set_handler, evenroad.cli.verbs.run = signal.signal, run
+code = evenroad.cli.main()
+assert signal.getsignal(signal.SIGINT) == signal.SIG_IGN
+raise SystemExit(code)
+"""
+    done = python("-c", code)
+    assert (done.returncode, done.stderr) == (130, "evenroad: interrupted; what was finished is kept\n")
+
+
 @pytest.fixture
 def read_only(tmp_path):
     """The environment of a copy of the package that cannot be written, even by root, for a user without a home."""

@@ -2,28 +2,70 @@
 
 from __future__ import annotations
 
+import _thread
 import gc
 import signal
 import sys
+import threading
 from collections.abc import Sequence
 
 INTERRUPTED = 130
 """Exit code after Ctrl-C."""
 
+SOON = 0.05
+"""Seconds after which an interrupt that was dropped comes again."""
+
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run ``evenroad`` and return its exit code: 0 solved, 1 any other answer, 2 bad input, 130 interrupted."""
-    if arguments is None:
-        # A process of our own: imports make very many objects and no garbage, and looking for some takes time.
-        gc.set_threshold(100_000, 50, 50)
+    if arguments is not None:
+        try:
+            return _run(arguments)
+        except KeyboardInterrupt:
+            return _interrupted()
+    # A process of our own: imports make very many objects and no garbage, and looking for some takes time.
+    gc.set_threshold(100_000, 50, 50)
+    hook = _Unraisable()
+    sys.unraisablehook = hook
     try:
-        # Inside, since Ctrl-C may well come while this loads.
-        from evenroad.cli.verbs import run
-
-        return run(sys.argv[1:] if arguments is None else arguments)
-    except KeyboardInterrupt:
-        if arguments is None:
-            # This process is leaving: one more Ctrl-C could only break that, with a traceback.
+        return _run(sys.argv[1:])
+    except (KeyboardInterrupt, Exception) as error:
+        # A compiler that was interrupted in a callback goes on without what the callback was to do.
+        if not isinstance(error, KeyboardInterrupt) and not hook.interrupted:
+            raise
+        # This process is leaving: one more Ctrl-C could only break that, with a traceback.
+        try:
             signal.signal(signal.SIGINT, signal.SIG_IGN)
-        print("evenroad: interrupted; what was finished is kept", file=sys.stderr)
-        return INTERRUPTED
+        except KeyboardInterrupt:
+            # It had come while files were closed, and is only seen here.
+            signal.signal(signal.SIGINT, signal.SIG_IGN)
+        return _interrupted()
+
+
+def _run(arguments: Sequence[str]) -> int:
+    # Here, since Ctrl-C may well come while this loads.
+    from evenroad.cli.verbs import run
+
+    return run(arguments)
+
+
+def _interrupted() -> int:
+    print("evenroad: interrupted; what was finished is kept", file=sys.stderr)
+    return INTERRUPTED
+
+
+class _Unraisable:
+    """Brings back a Ctrl-C that came in a callback of compiled code, such as the compiler's, which drops exceptions."""
+
+    def __init__(self) -> None:
+        self.interrupted = False
+
+    def __call__(self, dropped: sys.UnraisableHookArgs) -> None:
+        if dropped.exc_type is not KeyboardInterrupt:
+            sys.__unraisablehook__(dropped)
+            return
+        self.interrupted = True
+        # Later: raised here, it would be dropped again.
+        again = threading.Timer(SOON, _thread.interrupt_main)
+        again.daemon = True
+        again.start()
