@@ -23,7 +23,7 @@ from evenroad.cli.plan_table import print_plan
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record, save_json, save_path_csv
 from evenroad.roadmap import Budget, Status, find_path
-from evenroad.roadmap.attempt import PROVED
+from evenroad.roadmap.answer import PROVED
 from evenroad.world import GridMap, load_map
 from evenroad.world.gridmap.load import map_files
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy.typing as npt
 
 from evenroad.points.pointset import Origin
+from evenroad.roadmap.answer import connected, gave_up, proved_apart, refusal
 from evenroad.roadmap.anytime import plan_anytime
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
@@ -54,17 +55,17 @@ def find_path(
     query = Query(*read_places(start, goal, world.space), shorten=shorten, budget=budget)
     if isinstance(world, ConnectsItself):
         attempt = Attempt(world, query, NO_POINTS, "none", world.planner)
-        if (refusal := attempt.refused()) is not None:
-            return refusal
+        if (refused := refusal(attempt)) is not None:
+            return refused
         connection = attempt.connect(world)
         if connection.goal >= 0:
-            return attempt.connected(connection)
+            return connected(attempt, connection)
         if isinstance(world, Separates) and not any(
             world.may_connect(query.start, goal) for goal in query.goals[attempt.goals]
         ):
-            return attempt.proved_apart()
+            return proved_apart(attempt)
         left = attempt.left()
         if left is None:
-            return attempt.gave_up(connection)
+            return gave_up(attempt, connection)
         budget = replace(budget, seconds=left)
     return plan_anytime(world, query.start, query.goals, budget=budget, shorten=shorten)
