@@ -132,7 +132,9 @@ class Growth:
         cost = float(np.sum(self.last.costs[self.last.found[1]])) if self.last.solved else None
         if cost is not None and (self.best is None or cost < min(self._costs())):
             self.best = self.last
-        self.stages.append(Stage(points.n, len(self.milestones), attempt.motions_checked, cost))
+        self.stages.append(
+            Stage(points.n, len(self.milestones), attempt.motions_checked, cost, attempt.elapsed())
+        )
         return not self.last.spent and time.perf_counter() < attempt.deadline
 
     def is_done(self, until: str) -> bool:

@@ -26,7 +26,10 @@ from evenroad.roadmap.search import (
 from evenroad.roadmap.search.edge_states import Known, in_time
 from evenroad.roadmap.search.finders import NOT_FOUND
 from evenroad.roadmap.stopwatch import Stopwatch
-from evenroad.world import Connection, ConnectsItself, World
+from evenroad.world import Connection, ConnectsAnew, ConnectsItself, World
+
+_LONG = 1e8
+"""Seconds that stand for no limit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,6 +93,7 @@ class Attempt:
     spent: bool = False
 
     def __post_init__(self) -> None:
+        self.began = time.perf_counter()
         self.deadline = self.query.budget.deadline()
         self.goals = np.arange(len(self.query.goals))
 
@@ -167,16 +171,25 @@ class Attempt:
                 return Searched(states, costs, NOT_FOUND, spent=True)
         return Searched(states, costs, found)
 
-    def connect(self, world: ConnectsItself) -> Connection:
-        """Let the world join the start to one of the free goals, within what is left of the budget."""
-        budget = self.query.budget
+    def connect(self, world: ConnectsItself, variant: int = 0) -> Connection:
+        """Let the world join the start to one of the free goals, within what is left of the budget.
+
+        A variant >= 1 has it do so in another way; only a world that is `ConnectsAnew` can.
+        """
+        start, goals, motions = self.query.start, self.query.goals[self.goals], self.query.budget.motions
+        most = 2**31 - 1 if motions is None else max(motions - self.motions_checked, 1)
+        seconds = min(max(self.deadline - time.perf_counter(), 1e-3), _LONG)
         with self.watch("search"):
-            return world.connect(
-                self.query.start,
-                self.query.goals[self.goals],
-                most_motions=2**31 - 1 if budget.motions is None else budget.motions,
-                seconds=max(self.deadline - time.perf_counter(), 1e-3),
-            )
+            if variant and isinstance(world, ConnectsAnew):
+                found = world.connect_anew(start, goals, variant=variant, most_motions=most, seconds=seconds)
+            else:
+                found = world.connect(start, goals, most_motions=most, seconds=seconds)
+        self.motions_checked += found.motions
+        return found
+
+    def elapsed(self) -> float:
+        """Return the seconds since the query began."""
+        return time.perf_counter() - self.began
 
     def left(self) -> float | None:
         """Return the seconds that are left, or None when the time or the motions are spent."""
