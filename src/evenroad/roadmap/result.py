@@ -20,6 +20,7 @@ class Status(StrEnum):
     NOT_CONNECTED = "not_connected"
     BUDGET_SPENT = "budget_spent"
     MESH_COLLISION = "mesh_collision"
+    NOT_CERTIFIED = "not_certified"
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +73,8 @@ class PlanResult:
     ----------
     status : Status
         ``solved``, ``start_invalid``, ``goal_invalid`` (all goals), ``not_connected``, ``budget_spent``; or
-        ``mesh_collision``: the path is free in its world, but the robot's meshes touch something.
+        ``mesh_collision``: the path is free in its world, but the robot's meshes touch something; or
+        ``not_certified``: a proof was asked for, and the path is free only at the states that were tested.
     message : str
         One sentence for people: what happened and, without a path, what to try.
     start : ndarray, shape (dim,)
