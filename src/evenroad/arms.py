@@ -195,7 +195,8 @@ def finished(
     """Return a plan with the name of its goal, after its last checks, and what the meshes say (see `ask_meshes`)."""
     name = "" if result.goal_index is None else query.goal_names[result.goal_index]
     if name and len(query.goals) > 1:
-        result = replace(result, message=f"{result.message}: {name!r}")
+        to = f"to goal {result.goal_index}"
+        result = replace(result, message=result.message.replace(to, f"{to} ({name})", 1))
     if certified:
         result = require_certified(query.world, result)
     return ask_meshes(query, result)

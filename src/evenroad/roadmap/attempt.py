@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad.points.pointset import Origin
+from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.cost import BOUND, edge_costs
 from evenroad.roadmap.neighbours.find import Surroundings, nearest_of
 from evenroad.roadmap.proof import confirm
@@ -191,7 +192,14 @@ class Attempt:
         """Return the seconds since the query began."""
         return time.perf_counter() - self.began
 
-    def left(self) -> float | None:
-        """Return the seconds that are left, or None when the time or the motions are spent."""
-        left = self.deadline - time.perf_counter()
-        return left if left > 0.0 and self.query.budget.motions is None else None
+    def left(self) -> Budget | None:
+        """Return what is left of the budget, or None when nothing is."""
+        budget = self.query.budget
+        seconds = self.deadline - time.perf_counter()
+        if seconds <= 0.0 or (budget.motions is not None and budget.motions <= self.motions_checked):
+            return None
+        return replace(
+            budget,
+            seconds=None if budget.seconds is None else seconds,
+            motions=None if budget.motions is None else budget.motions - self.motions_checked,
+        )

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy.typing as npt
 
 from evenroad.points.pointset import Origin
@@ -74,7 +72,7 @@ def find_path(
         left = attempt.left()
         if left is None:
             return with_reasons(world, gave_up(attempt, connection))
-        budget = replace(budget, seconds=left)
+        budget = left
     until = "budget" if improve else "solved"
     grown = plan_anytime(world, query.start, query.goals, until=until, budget=budget, shorten=shorten)
     return with_reasons(world, grown)

@@ -16,7 +16,7 @@ DIRECTIONS = 128
 """Short motions that are tried from a place."""
 
 SHORT = 0.1
-"""How far each goes, as a share of the way to an even point of the space."""
+"""How long they are, as a share of the distance to an even point of the space at the median."""
 
 HEMMED = 0.1
 """A place is hemmed in from which no more than this share of them is free."""
@@ -47,18 +47,18 @@ def why_hemmed(world: World, name: str, place: npt.NDArray[np.float64]) -> str |
     """Return in words how few short motions leave a free place, (dim,), and what touches; None where enough do."""
     samples = world.space.from_cube(as_points(DIRECTIONS, world.space).points)
     here = np.broadcast_to(place, samples.shape)
-    ends = world.space.interpolate(here, samples, SHORT)
+    distances = world.space.distance(here, samples)
+    step = SHORT * float(np.median(distances))
+    ends = world.space.interpolate(here, samples, np.minimum(1.0, step / np.maximum(distances, step)))
     free = world.motion_valid(here, ends)
     number = int(np.count_nonzero(free))
     if number > HEMMED * DIRECTIONS:
         return None
-    distances = world.space.distance(here, samples)
     away = distances[world.valid(samples)].min(initial=np.inf)
-    steps = SHORT * distances
     can = "cannot leave its place" if number == 0 else "can hardly leave its place"
     text = (
-        f"{name} {can}: {number} of {DIRECTIONS} motions from it by {steps.min():.2g} to {steps.max():.2g}"
-        f" are free{_what_touches(world, here[~free], ends[~free])}"
+        f"{name} {can}: {number} of {DIRECTIONS} motions of length {step:.2g} from it are free"
+        f"{_what_touches(world, here[~free], ends[~free])}"
     )
     return f"{text}; the nearest free sample is {away:.3g} away" if np.isfinite(away) else text
 

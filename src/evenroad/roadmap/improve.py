@@ -63,7 +63,7 @@ def _by_rounds(attempt: Attempt, world: ConnectsAnew, first: PlanResult, stage: 
             best = result
             stages.append(Stage(nodes, nodes, attempt.motions_checked, best.cost, attempt.elapsed()))
     counts |= {"nodes": nodes, "edges_checked": attempt.motions_checked, "rounds": done}
-    message = f"{best.message}, the best of {done + 1}"
+    message = f"{best.message}, the best of {done + 1}" if done else best.message
     return replace(best, message=message, counts=counts, stages=tuple(stages), seconds=attempt.watch.seconds)
 
 
@@ -78,7 +78,7 @@ def _by_growth(attempt: Attempt, first: PlanResult, stage: Stage) -> PlanResult:
         query.start,
         query.goals,
         until="budget",
-        budget=replace(query.budget, seconds=left),
+        budget=left,
         shorten=query.shorten,
     )
     stages = [stage, *(replace(each, seconds=before + each.seconds) for each in grown.stages)]
