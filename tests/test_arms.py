@@ -8,6 +8,7 @@ import pytest
 import evenroad as er
 from evenroad import arms
 from evenroad.cli import main
+from evenroad.robot import Obstacle
 from evenroad.robot.reference.recheck import MeshCheck
 from tests.robot.mesh_arms import write_fork_arm
 
@@ -15,7 +16,7 @@ from tests.robot.mesh_arms import write_fork_arm
 def test_names_files_and_values_give_the_path_that_the_command_gives(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     line = ["plan", "box-reach.yaml", "--robot", "ur5", "--start", "home", "--goal", "inside", "--no-picture"]
-    assert main([*line, "--sampler", "even", "--out", "a"]) == 0
+    assert main([*line, "--out", "a"]) == 0
     expected = json.loads((tmp_path / "a.json").read_text())["path"]
     scene, robot = er.load_scene("box-reach"), er.load_robot("ur5")
     goal = [scene.states["inside"][joint] for joint in robot.group]
@@ -27,8 +28,17 @@ def test_names_files_and_values_give_the_path_that_the_command_gives(tmp_path, m
         result = er.plan_arm(*asked)
         assert result.solved
         assert result.path.tolist() == expected
-    points = er.draw("even", 512, 6)
-    assert er.plan_arm(robot, scene, "home", "inside", points).path.tolist() == expected
+
+
+def test_with_points_the_path_is_that_of_the_command_with_so_many(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    line = ["plan", "box-reach.yaml", "--robot", "ur5", "--start", "home", "--goal", "inside", "--no-picture"]
+    assert main([*line, "-n", "512", "--out", "a"]) == 0
+    expected = json.loads((tmp_path / "a.json").read_text())["path"]
+    for points in (512, er.draw("even", 512, 6)):
+        result = er.plan_arm("ur5", "box-reach", "home", "inside", points)
+        assert result.planner == "prm lazy"
+        assert result.path.tolist() == expected
 
 
 def test_options_of_files_do_not_go_with_a_robot_that_is_a_value():
@@ -53,3 +63,98 @@ def test_meshes_have_the_last_word(tmp_path, monkeypatch):
     assert result.status == "mesh_collision"
     assert not result.solved
     assert "not for the shapes that they stand for: in collision at (0, 0, 0)" in result.message
+
+
+def test_without_points_trees_plan_and_the_path_is_proved():
+    query = arms.arm_query("ur5", "box-reach", "home", "inside")
+    result = er.plan_arm("ur5", "box-reach", "home", "inside", certified=True)
+    assert result.solved
+    assert result.planner == "trees"
+    assert result.proof == "certified"
+    assert query.world.recheck(result.path).all()
+    assert result.counts["nodes"] > 2
+
+
+def test_of_several_goals_one_is_reached_and_named():
+    scene = er.load_scene("box-reach")
+    q = [scene.states["home"][joint] for joint in er.load_robot("ur5").group]
+    near = np.array(q) + 0.1
+    result = er.plan_arm("ur5", scene, "home", ["inside", near], improve=True, seconds=0.2)
+    assert result.goal_index == 1
+    assert np.array_equal(result.path[-1], near)
+    assert result.message.endswith("to goal 1")
+    result = er.plan_arm("ur5", scene, "home", [near, "inside", near], 64)
+    assert result.goals.shape == (3, 6)
+    other_way = er.plan_arm("ur5", scene, near, ["inside", "home"])
+    assert "to goal 1 (home)" in other_way.message
+    assert er.plan_arm("ur5", scene, "home", np.stack([near, near])).goals.shape == (2, 6)
+
+
+def test_more_rounds_never_give_a_longer_path_and_the_same_rounds_the_same():
+    def after(rounds):
+        budget = er.Budget(seconds=None, rounds=rounds)
+        return er.plan_arm("ur5", "box-reach", "home", "inside", budget=budget, improve=True)
+
+    first = er.plan_arm("ur5", "box-reach", "home", "inside")
+    results = [after(rounds) for rounds in (1, 10, 60, 60)]
+    costs = [first.cost, *(result.cost for result in results)]
+    assert costs == sorted(costs, reverse=True)
+    assert costs[-1] < 0.97 * first.cost
+    assert np.array_equal(results[2].path, results[3].path)
+    world = arms.arm_query("ur5", "box-reach", "home", "inside").world
+    assert world.recheck(results[3].path).all()
+
+
+def test_a_motion_that_cannot_be_proved_is_named(monkeypatch):
+    doubt = np.array([True, False, True, True, True])
+    monkeypatch.setattr(er.ArmWorld, "recheck", lambda self, path: doubt[: len(path) - 1])
+    result = er.plan_arm("ur5", "box-reach", "home", "inside", certified=True)
+    assert result.status == "not_certified"
+    assert "motion 2 of 5 is not proved free, from (" in result.message
+    assert not result.solved
+    assert result.proof == "resolution"
+
+
+def test_joint_values_within_a_micro_radian_of_a_limit_are_brought_to_it():
+    robot = er.load_robot("ur5")
+    low, high = arms.arm_query("ur5", "box-reach", "home", "inside").world.bounds[:2]
+    home = [er.load_scene("box-reach").states["home"][joint] for joint in robot.group]
+    for limit, off in ((high[0], 9e-7), (low[0], -9e-7)):
+        beyond = [limit + off, *home[1:]]
+        for place in (beyond, ",".join(map(repr, map(float, beyond)))):
+            query = arms.arm_query("ur5", "box-reach", place, place)
+            assert query.start[0] == limit
+            assert query.start[1:].tolist() == home[1:]
+    query = arms.arm_query("ur5", "box-reach", [high[0] + 2e-6, *home[1:]], "home")
+    assert query.start[0] == high[0] + 2e-6
+    assert er.plan_arm("ur5", "box-reach", query.start, "home").status == "start_invalid"
+    with pytest.raises(er.InvalidValue, match="outside its limits"):
+        arms.arm_query("ur5", "box-reach", f"{float(high[0]) + 2e-6},0,0,0,0,0", "home")
+
+
+def test_what_speaks_of_points_is_refused_without_them():
+    with pytest.raises(er.InvalidValue, match="rule says how points are joined"):
+        er.plan_arm("ur5", "box-reach", "home", "inside", rule=er.KNearest(5))
+    with pytest.raises(er.InvalidValue, match="improve goes without points"):
+        er.plan_arm("ur5", "box-reach", "home", "inside", 64, improve=True)
+
+
+def test_a_goal_that_an_arm_cannot_leave_is_explained():
+    robot, scene = er.load_robot("ur5"), er.load_scene("box-reach")
+    home = [scene.states["home"][joint] for joint in robot.group]
+    goal = [1.0, *home[1:]]
+    # Balls around the forearm, which stands upright; they leave it a centimetre.
+    posts = [
+        Obstacle.of(f"ball{i}", "sphere", (0.05,), (-0.014 + 0.102 * x, 0.009 + 0.102 * y, 0.7))
+        for i, (x, y) in enumerate(
+            zip(np.cos(np.arange(8) * np.pi / 4), np.sin(np.arange(8) * np.pi / 4), strict=False)
+        )
+    ]
+    start = [0.0, -1.0, *home[2:]]
+    for points in (None, 64):
+        result = er.plan_arm("ur5", er.Scene("balls", tuple(posts)), start, goal, points, seconds=0.2)
+        assert not result.solved
+        assert "the goal can" in result.message
+        assert "leave its place: " in result.message
+        assert "'forearm_link' touches 'ball" in result.message
+        assert "the start can" not in result.message

@@ -12,8 +12,11 @@ import numpy.typing as npt
 from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue
 from evenroad.points import PointSet, draw
-from evenroad.roadmap import PlanResult, Rule, Status
+from evenroad.roadmap import Budget, PlanResult, Rule, Status
+from evenroad.roadmap.find_path import SECONDS, find_path
+from evenroad.roadmap.hemmed import with_reasons
 from evenroad.roadmap.plan import plan
+from evenroad.roadmap.proof import require_certified
 from evenroad.robot import (
     ArmWorld,
     Robot,
@@ -26,6 +29,7 @@ from evenroad.robot import (
     load_scene,
 )
 from evenroad.robot.reference.recheck import MeshCheck, has_meshes, recheck, unseen_pairs
+from evenroad.robot.states import clipped
 
 PathLike = str | os.PathLike[str]
 Place = str | npt.ArrayLike
@@ -46,8 +50,12 @@ class ArmQuery:
     ----------
     world : ArmWorld
         The robot, held where named states have the joints that are not planned for, within the scene's ranges.
-    start, goal : ndarray, shape (dim,)
-        Configurations [rad or m].
+    start : ndarray, shape (dim,)
+        A configuration [rad or m].
+    goals : ndarray, shape (g, dim)
+        Configurations of which one is to be reached.
+    goal_names : tuple of str
+        What the caller called each of them: its text; of numbers, nothing.
     source : path-like or None
         The URDF's file or shipped name; None for a robot that was given as a value.
     model : RobotModel or None
@@ -56,7 +64,8 @@ class ArmQuery:
 
     world: ArmWorld
     start: npt.NDArray[np.float64]
-    goal: npt.NDArray[np.float64]
+    goals: npt.NDArray[np.float64]
+    goal_names: tuple[str, ...]
     source: PathLike | None = None
     model: RobotModel | None = None
 
@@ -65,9 +74,13 @@ def plan_arm(
     robot: PathLike | Robot,
     scene: PathLike | Scene,
     start: Place,
-    goal: Place,
-    points: int | PointSet = 512,
+    goal: Place | Sequence[Place],
+    points: int | PointSet | None = None,
     *,
+    seconds: float = SECONDS,
+    budget: Budget | None = None,
+    improve: bool = False,
+    certified: bool = False,
     rng: RngLike = 0,
     rule: Rule | None = None,
     shorten: bool = True,
@@ -77,7 +90,7 @@ def plan_arm(
     group: str | Sequence[str] | None = None,
     bodies: PathLike | None = None,
 ) -> PlanResult:
-    """Plan for an arm among obstacles, as ``evenroad plan --robot`` does.
+    """Plan for an arm among obstacles, as ``evenroad plan --robot`` does: until there is a path or the time is over.
 
     Parameters
     ----------
@@ -85,14 +98,27 @@ def plan_arm(
         A URDF file, the name of a shipped robot (``ur5``, ``arm7``), or a robot.
     scene : str, path-like or Scene
         A scene file, the name of a shipped one (``box-reach``, ...), or a scene.
-    start, goal : str or array_like, shape (dim,)
+    start : str or array_like, shape (dim,)
         Numbers in the order of the group [rad or m], or a text: the name of a state, ``0,-1.57,...`` or ``name=value``.
-    points : int or PointSet
-        The set to plan with, or how many points of the sampler ``even`` to draw.
+        A value that is outside of its joint's limits by no more than 1e-6 is brought to the limit.
+    goal : str, array_like, or a sequence of such
+        As `start`; of several the path ends at the first that is reached, with points or `improve` at the cheapest.
+    points : int or PointSet, optional
+        Plan on a roadmap (ps-PRM) of this set, or of exactly so many points of the sampler ``even``.  Default: no
+        roadmap, but trees that grow from both ends until they meet.
+    seconds : float
+        How long to plan at most, > 0.
+    budget : Budget, optional
+        In place of `seconds`, where other limits are wanted.
+    improve : bool
+        Use up the time, and return the best of all paths; not with points.
+    certified : bool
+        Check once more that every motion is proved free throughout for the robot's capsules; where one is not, the
+        status is ``not_certified`` and the message says which.
     rng : int, SeedSequence or Generator
         For points that are drawn.
     rule : Rule, optional
-        Which pairs to try; default: that of :func:`evenroad.roadmap.default_rule`.
+        Which pairs of points to try; default: that of :func:`evenroad.roadmap.default_rule`.
     shorten : bool
         Also shortcut the path (the raw one is kept).
     resolution : float
@@ -105,7 +131,8 @@ def plan_arm(
     Returns
     -------
     PlanResult
-        ``mesh_collision`` is the status of a path that is free for the capsules, but not for the URDF's meshes.
+        ``mesh_collision`` is the status of a path that is free for the capsules, but not for the URDF's meshes;
+        ``proof`` says what was shown of the path, for the capsules.
 
     Raises
     ------
@@ -129,17 +156,57 @@ def plan_arm(
         group=group,
         bodies=bodies,
     )
-    if not isinstance(points, PointSet):
-        points = draw("even", points, query.world.space.cube_dim, rng=rng)
-    result = plan(query.world, query.start, query.goal, points, rule=rule, search=SEARCH, shorten=shorten)
-    return ask_meshes(query, result)[0]
+    budget = Budget(seconds=seconds) if budget is None else budget
+    if points is None:
+        if rule is not None:
+            raise InvalidValue(f"rule says how points are joined, so it goes with points=N, got {rule!r}")
+        result = find_path(
+            query.world, query.start, query.goals, budget=budget, shorten=shorten, improve=improve
+        )
+    else:
+        if improve:
+            raise InvalidValue("improve goes without points: a roadmap of exactly so many has one best path")
+        if not isinstance(points, PointSet):
+            points = draw("even", points, query.world.space.cube_dim, rng=rng)
+        result = plan_on_points(query, points, rule=rule, shorten=shorten, budget=budget)
+    return finished(query, result, certified=certified)[0]
+
+
+def plan_on_points(
+    query: ArmQuery, points: PointSet, *, rule: Rule | None, shorten: bool, budget: Budget
+) -> PlanResult:
+    """Plan on a roadmap of these points; where they do not suffice, the message says what hems in start and goals."""
+    result = plan(
+        query.world,
+        query.start,
+        query.goals,
+        points,
+        rule=rule,
+        search=SEARCH,
+        shorten=shorten,
+        budget=budget,
+    )
+    return with_reasons(query.world, result)
+
+
+def finished(
+    query: ArmQuery, result: PlanResult, *, certified: bool = False
+) -> tuple[PlanResult, MeshCheck | None]:
+    """Return a plan with the name of its goal, after its last checks, and what the meshes say (see `ask_meshes`)."""
+    name = "" if result.goal_index is None else query.goal_names[result.goal_index]
+    if name and len(query.goals) > 1:
+        to = f"to goal {result.goal_index}"
+        result = replace(result, message=result.message.replace(to, f"{to} ({name})", 1))
+    if certified:
+        result = require_certified(query.world, result)
+    return ask_meshes(query, result)
 
 
 def arm_query(
     robot: PathLike | Robot,
     scene: PathLike | Scene,
     start: Place,
-    goal: Place,
+    goal: Place | Sequence[Place],
     *,
     resolution: float = RESOLUTION,
     degrees: bool = False,
@@ -156,9 +223,15 @@ def arm_query(
     else:
         source, model = robot, load_model(robot, srdf=srdf, group=group, bodies=bodies)
         robot = model.robot
-    robot = at_states(in_scene(robot, scene), [end for end in (start, goal) if isinstance(end, str)], scene)
-    first, last = (_configuration(robot, scene, end, degrees) for end in (start, goal))
-    return ArmQuery(ArmWorld(robot, scene, resolution=resolution), first, last, source, model)
+    goals = _places(goal)
+    texts = [place for place in (start, *goals) if isinstance(place, str)]
+    robot = at_states(in_scene(robot, scene), texts, scene)
+    dim = len(robot.group)
+    first = _configuration(robot, scene, "start", start, degrees)
+    others = [_configuration(robot, scene, "goal", place, degrees) for place in goals]
+    names = tuple(place.strip() if isinstance(place, str) else "" for place in goals)
+    world = ArmWorld(robot, scene, resolution=resolution)
+    return ArmQuery(world, first, np.reshape(others, (-1, dim)), names, source, model)
 
 
 def ask_meshes(query: ArmQuery, result: PlanResult) -> tuple[PlanResult, MeshCheck | None]:
@@ -171,7 +244,7 @@ def ask_meshes(query: ArmQuery, result: PlanResult) -> tuple[PlanResult, MeshChe
     meshes : MeshCheck or None
         What they say; None where there is no path or there are no meshes.
     """
-    if result.path is None or query.source is None or query.model is None:
+    if not result.solved or result.path is None or query.source is None or query.model is None:
         return result, None
     unseen = unseen_pairs(query.model)
     if not (has_meshes(query.model) or unseen):
@@ -187,8 +260,27 @@ def ask_meshes(query: ArmQuery, result: PlanResult) -> tuple[PlanResult, MeshChe
     return replace(result, status=Status.MESH_COLLISION, message=message), meshes
 
 
-def _configuration(robot: Robot, scene: Scene, place: Place, degrees: bool) -> npt.NDArray[np.float64]:
+def _places(goal: Place | Sequence[Place]) -> list[Place]:
+    """Return one goal or several as a list."""
+    if isinstance(goal, str):
+        return [goal]
+    if isinstance(goal, np.ndarray):
+        return list(goal) if goal.ndim == 2 else [goal]
+    several = isinstance(goal, Sequence) and any(isinstance(each, str) or np.ndim(each) > 0 for each in goal)
+    return list(goal) if several else [goal]  # type: ignore[arg-type, list-item]
+
+
+def _configuration(
+    robot: Robot, scene: Scene, name: str, place: Place, degrees: bool
+) -> npt.NDArray[np.float64]:
+    """Return a configuration, (dim,), from a text or numbers; `name` says what it is in an error."""
     if isinstance(place, str):
         return configuration(robot, place, scene, degrees=degrees)
-    # Whoever reads it as a start or a goal says what is wrong with it.
-    return np.asarray(place, dtype=np.float64)
+    dim = len(robot.group)
+    try:
+        q = np.array(place, dtype=np.float64)
+    except (TypeError, ValueError):
+        q = np.empty(0)
+    if q.shape != (dim,) or not np.isfinite(q).all():
+        raise InvalidValue(f"{name} must be {dim} finite numbers, {','.join(robot.group)}, got {place!r}")
+    return clipped(robot, q)

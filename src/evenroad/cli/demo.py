@@ -30,7 +30,7 @@ class Demo:
         return PlanDisk(
             world=maze.path,
             start=tuple(map(str, maze.start)),
-            goal=tuple(map(str, maze.goal)),
+            goal=(tuple(map(str, maze.goal)),),
             robot_radius=maze.robot_radius,
             n=self.n,
             out=self.out,

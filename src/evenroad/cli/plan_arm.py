@@ -5,20 +5,21 @@ from __future__ import annotations
 from dataclasses import asdict
 from pathlib import Path
 
-from evenroad import roadmap
-from evenroad.arms import SEARCH, ArmQuery, arm_query, ask_meshes
+from evenroad.arms import SEARCH, ArmQuery, arm_query, finished, plan_on_points
 from evenroad.cli.plan_options import ArmOptions
 from evenroad.cli.plan_parts import (
+    chosen_budget,
     chosen_rule,
     common_query,
     draw_points,
     load_compiled_code,
     output_files,
+    wants_points,
 )
 from evenroad.cli.plan_table import print_plan
 from evenroad.cli.robot_tables import bodiless_rows
 from evenroad.io import plan_record, save_json, save_path_csv
-from evenroad.roadmap import default_rule
+from evenroad.roadmap import default_rule, find_path
 from evenroad.robot import RobotModel, find_robot, find_scene, held_values
 from evenroad.robot.reference.recheck import MeshCheck
 
@@ -28,11 +29,12 @@ def plan_arm(plan: ArmOptions) -> int:
 
     Links without a body are named, with a warning where the URDF draws them: their collisions go unseen.
     """
+    budget = chosen_budget(plan)
     query = arm_query(
         plan.robot,
         plan.world,
         " ".join(plan.start),
-        " ".join(plan.goal),
+        [" ".join(words) for words in plan.goal],
         resolution=plan.resolution,
         degrees=plan.deg,
         srdf=plan.srdf,
@@ -41,12 +43,15 @@ def plan_arm(plan: ArmOptions) -> int:
     )
     assert query.model is not None
     files = output_files(plan, _inputs(plan), ("json", "csv"), "file")
-    world, start, goal = query.world, query.start, query.goal
+    world, start, goals = query.world, query.start, query.goals
     rule = chosen_rule(plan, default_rule(world.space).k)
-    points = draw_points(plan, world.space.cube_dim)
-    load_compiled_code(world, start, goal, points, rule, SEARCH)
-    result = roadmap.plan(world, start, goal, points, rule=rule, search=SEARCH, shorten=not plan.raw)
-    result, meshes = ask_meshes(query, result)
+    points = draw_points(plan, world.space.cube_dim) if wants_points(plan) else None
+    load_compiled_code(world, start, goals, points, rule, SEARCH)
+    if points is None:
+        result = find_path(world, start, goals, budget=budget, shorten=not plan.raw, improve=plan.improve)
+    else:
+        result = plan_on_points(query, points, rule=rule, shorten=not plan.raw, budget=budget)
+    result, meshes = finished(query, result, certified=plan.certified)
     record = plan_record(result, _asked(plan, query)) | {
         "no_body": list(query.model.bodiless),
         "drawn_only": list(query.model.drawn_only),
@@ -77,6 +82,7 @@ def _asked(plan: ArmOptions, query: ArmQuery) -> dict[str, object]:
         "srdf": None if plan.srdf is None else str(plan.srdf),
         "bodies": None if plan.bodies is None else str(plan.bodies),
         "joints": list(robot.group),
+        "goal_names": list(query.goal_names),
         "held": held_values(robot),
         "resolution": query.world.resolution,
         **common_query(plan),

@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from evenroad import roadmap
-from evenroad._checks import require_positive
 from evenroad._rng import generator
 from evenroad.cli.plan_options import DiskOptions
 from evenroad.cli.plan_parts import (
+    chosen_budget,
     chosen_rule,
     common_query,
     draw_points,
@@ -22,8 +22,9 @@ from evenroad.cli.plan_parts import (
 from evenroad.cli.plan_table import print_plan
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record, save_json, save_path_csv
-from evenroad.roadmap import Budget, Status, find_path
-from evenroad.roadmap.attempt import PROVED
+from evenroad.roadmap import Status, find_path
+from evenroad.roadmap.answer import PROVED
+from evenroad.roadmap.proof import require_certified
 from evenroad.world import GridMap, load_map
 from evenroad.world.gridmap.load import map_files
 
@@ -32,7 +33,9 @@ def plan_disk(plan: DiskOptions) -> int:
     """Plan, write, report; return 0 when solved, else 1."""
     rule = chosen_rule(plan, default_k=10)
     generator(plan.seed)
-    start, goal = (_position(name, getattr(plan, name)) for name in ("start", "goal"))
+    budget = chosen_budget(plan)
+    start = _position("start", plan.start)
+    goals = [_position("goal", goal) for goal in plan.goal]
     if plan.world.suffix in (".yaml", ".yml"):
         # Here, so that whoever plans on an image does not wait for robots to load.
         from evenroad.robot.scene_file import is_scene
@@ -42,8 +45,7 @@ def plan_disk(plan: DiskOptions) -> int:
     gridmap = load_map(plan.world, unknown_is_free=plan.unknown_is_free)
     suffixes = ("json", "csv") if plan.csv else ("json",)
     files = output_files(plan, map_files(plan.world), suffixes, "map")
-    budget = Budget(seconds=require_positive("time", plan.time))
-    for name, value in (("start", start), ("goal", goal)):
+    for name, value in (("start", start), *(("goal", goal) for goal in goals)):
         _require_on_map(gridmap, name, value)
     if wants_points(plan):
         # Points are drawn over the rectangle: most of one that is mostly unknown is not worth any.
@@ -51,16 +53,18 @@ def plan_disk(plan: DiskOptions) -> int:
             plan.robot_radius, clearance=plan.clearance
         )
         points = draw_points(plan, 2)
-        load_compiled_code(world, start, goal, points, rule)
-        result = roadmap.plan(world, start, goal, points, rule=rule, shorten=not plan.raw)
-        if result.status is Status.NOT_CONNECTED and not world.may_connect(np.array(start), np.array(goal)):
+        load_compiled_code(world, start, goals, points, rule)
+        result = roadmap.plan(world, start, goals, points, rule=rule, shorten=not plan.raw, budget=budget)
+        apart = [not world.may_connect(result.start, goal) for goal in result.goals]
+        if result.status is Status.NOT_CONNECTED and all(apart):
             # No number of points would help.
             result = replace(result, message=PROVED)
     else:
         world = gridmap.world(plan.robot_radius, clearance=plan.clearance)
-        # Once for nothing: else the times would be those of loading compiled code.
-        find_path(world, start, start, budget=Budget(samples=1))
-        result = find_path(world, start, goal, budget=budget, shorten=not plan.raw)
+        load_compiled_code(world, start, goals, None, rule)
+        result = find_path(world, start, goals, budget=budget, shorten=not plan.raw, improve=plan.improve)
+    if plan.certified:
+        result = require_certified(world, result)
     query = {
         "map": str(plan.world),
         "robot_radius": plan.robot_radius,
@@ -72,7 +76,7 @@ def plan_disk(plan: DiskOptions) -> int:
     if "csv" in files:
         # An earlier run's path must not pass for this one's.
         files["csv"].unlink(missing_ok=True)
-        if result.path is None:
+        if result.path is None or not result.solved:
             del files["csv"]
         else:
             save_path_csv(files["csv"], result.path, ("x", "y"))

@@ -17,13 +17,18 @@ class PlanOptions:
     """The file of the world."""
     start: tuple[str, ...]
     """Where to start."""
-    goal: tuple[str, ...]
-    """As start."""
+    goal: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]]
+    """As start.  Required; given more than once, the path ends at one of the goals: the first that is reached, with
+    points or --improve the cheapest."""
     n: Annotated[int | None, tyro.conf.arg(aliases=["-n"])] = None
-    """Plan with exactly so many points.  Default: a disk is planned for without points, until there is a path or a
-    proof that there is none (with points where another option speaks of them: 512); an arm with 512."""
-    time: float = 5.0
-    """Disk without points: seconds to plan at most, > 0."""
+    """Plan on a roadmap of exactly so many points (ps-PRM).  Default: no points, but until there is a path or a proof
+    that there is none, or the time is over; where another option speaks of points: 512."""
+    time: float | None = None
+    """Seconds to plan at most, > 0 (default 5; with points 60)."""
+    improve: bool = False
+    """Use up the time: plan again in other ways, and keep the shortest path.  Not with points."""
+    certified: bool = False
+    """The path must be proved free throughout; else the answer says which of its motions is not."""
     k: Annotated[int | None, tyro.conf.arg(aliases=["-k"])] = None
     """Connect each milestone with its k nearest, symmetrised (default 10; 20 from six joints on)."""
     connect_radius: float | None = None

@@ -6,16 +6,19 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import numpy.typing as npt
 
 from evenroad import roadmap
-from evenroad._checks import require_count
+from evenroad._checks import require_count, require_positive
 from evenroad._files import require_writable_folder
 from evenroad._rng import generator
 from evenroad.cli.plan_options import PlanOptions
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points import SAMPLERS, PointSet, make_sampler
-from evenroad.roadmap import KNearest, Radius, Rule
+from evenroad.roadmap import Budget, KNearest, Radius, Rule
+from evenroad.roadmap.find_path import SECONDS
+from evenroad.world import ConnectsItself, Rechecks
 
 if TYPE_CHECKING:
     from evenroad.world import World
@@ -45,6 +48,17 @@ def wants_points(plan: PlanOptions) -> bool:
     )
 
 
+def chosen_budget(plan: PlanOptions) -> Budget:
+    """Return how long to plan, and refuse what does not go with the points or the goals that were asked for."""
+    if plan.improve and wants_points(plan):
+        raise InvalidValue("--improve goes without points: a roadmap of exactly so many has one best path")
+    if not plan.goal:
+        raise InvalidValue("give --goal, where the path is to end")
+    if plan.time is not None:
+        return Budget(seconds=require_positive("time", plan.time))
+    return Budget() if wants_points(plan) else Budget(seconds=SECONDS)
+
+
 def draw_points(plan: PlanOptions, d: int) -> PointSet:
     """Draw the set of n points in d dimensions that was asked for."""
     n = require_count("n", DEFAULT_N if plan.n is None else plan.n)
@@ -58,13 +72,22 @@ def draw_points(plan: PlanOptions, d: int) -> PointSet:
 def load_compiled_code(
     world: World,
     start: npt.ArrayLike,
-    goal: npt.ArrayLike,
-    points: PointSet,
+    goals: npt.ArrayLike,
+    points: PointSet | None,
     rule: Rule,
     search: str = "full",
 ) -> None:
-    """Plan once with a few of the points: else the times of the plan would be those of loading compiled code."""
-    roadmap.plan(world, start, goal, PointSet(points.points[:_FEW]), rule=rule, search=search)
+    """Plan once for nothing, with a few of the points: else the times would be those of loading compiled code."""
+    if points is None:
+        roadmap.find_path(world, start, start, budget=Budget(samples=1))
+    else:
+        few = PointSet(points.points[:_FEW])
+        roadmap.plan(world, start, goals, few, rule=rule, search=search)
+    stay = np.array([start, start], dtype=np.float64)
+    if isinstance(world, Rechecks):
+        world.recheck(stay)
+    if isinstance(world, ConnectsItself):
+        world.shorten(stay)
 
 
 def output_files(
@@ -88,7 +111,7 @@ def output_files(
 
 def common_query(plan: PlanOptions) -> dict[str, Any]:
     """Return the options that every plan has, for the record."""
-    names = ("n", "sampler", "plain", "skip", "allow_fewer", "seed", "raw")
+    names = ("n", "time", "improve", "certified", "sampler", "plain", "skip", "allow_fewer", "seed", "raw")
     return {name: getattr(plan, name) for name in names}
 
 

@@ -13,6 +13,7 @@ from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points.pointset import PointSet
 from evenroad.points.samplers import Sampler, make_sampler
+from evenroad.roadmap.answer import answer, refusal
 from evenroad.roadmap.attempt import Attempt, Searched
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.cost import EdgeCost
@@ -93,8 +94,8 @@ def plan_anytime(
     sampler = make_sampler("sobol") if sampler is None else sampler
     points = _draw(sampler, min(first, budget.samples), world, rng, None)
     attempt = Attempt(world, query, points.origin, str(rule), "prm anytime", grows=True)
-    if (refusal := attempt.refused()) is not None:
-        return refusal
+    if (refused := refusal(attempt)) is not None:
+        return refused
     growth = Growth(attempt, rule)
     while growth.take(points) and not growth.is_done(until) and points.n < budget.samples:
         points = _draw(sampler, min(2 * points.n, budget.samples), world, rng, points)
@@ -131,7 +132,9 @@ class Growth:
         cost = float(np.sum(self.last.costs[self.last.found[1]])) if self.last.solved else None
         if cost is not None and (self.best is None or cost < min(self._costs())):
             self.best = self.last
-        self.stages.append(Stage(points.n, len(self.milestones), attempt.motions_checked, cost))
+        self.stages.append(
+            Stage(points.n, len(self.milestones), attempt.motions_checked, cost, attempt.elapsed())
+        )
         return not self.last.spent and time.perf_counter() < attempt.deadline
 
     def is_done(self, until: str) -> bool:
@@ -146,7 +149,7 @@ class Growth:
     def result(self, points: int) -> PlanResult:
         """Return the result: the best path of all stages, with the graph of the last one."""
         self.attempt.spent = True
-        result = self.attempt.result(self.last, points, best=self.best)
+        result = answer(self.attempt, self.last, points, best=self.best)
         counts = result.counts | {"edges_checked": self.attempt.motions_checked}
         return replace(result, counts=counts, stages=tuple(self.stages))
 

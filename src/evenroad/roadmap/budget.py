@@ -21,6 +21,9 @@ class Budget:
         Motions checked, >= 1, without those of the shortcut.  None: no limit.
     samples : int
         Points drawn by a planner that grows, valid or not, >= 1.
+    rounds : int or None
+        How often a planner that improves plans again, >= 1; with it and without `seconds` the path is the same on
+        every machine.  None: no limit.
 
     Raises
     ------
@@ -31,6 +34,7 @@ class Budget:
     seconds: float | None = 60.0
     motions: int | None = None
     samples: int = 1 << 16
+    rounds: int | None = None
 
     def __post_init__(self) -> None:
         if self.seconds is not None:
@@ -38,6 +42,8 @@ class Budget:
         if self.motions is not None:
             require_count("motions", self.motions)
         require_count("samples", self.samples)
+        if self.rounds is not None:
+            require_count("rounds", self.rounds)
 
     def text(self, *, samples: bool) -> str:
         """Return the limits in words, with the number of samples only for a planner that grows."""

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy.typing as npt
 
 from evenroad.points.pointset import Origin
+from evenroad.roadmap.answer import connected, gave_up, proved_apart, refusal
 from evenroad.roadmap.anytime import plan_anytime
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
+from evenroad.roadmap.hemmed import with_reasons
+from evenroad.roadmap.improve import improved
 from evenroad.roadmap.query import Query, read_places
 from evenroad.roadmap.result import PlanResult
 from evenroad.world import ConnectsItself, Separates, World
@@ -27,6 +28,7 @@ def find_path(
     *,
     budget: Budget | None = None,
     shorten: bool = True,
+    improve: bool = False,
 ) -> PlanResult:
     """Plan until there is a path, it is proved that there is none, or the budget is spent.
 
@@ -39,11 +41,14 @@ def find_path(
         As in :func:`plan`.
     budget : Budget, optional
         Default: five seconds.
+    improve : bool
+        Go on after the first path, until the budget is spent, and return the best of all.
 
     Returns
     -------
     PlanResult
-        ``not_connected`` is proved; without path and proof the status is ``budget_spent``.
+        ``not_connected`` is proved; without path and proof the status is ``budget_spent``, and the message says
+        where start or goal can hardly leave their places.
 
     Raises
     ------
@@ -54,17 +59,20 @@ def find_path(
     query = Query(*read_places(start, goal, world.space), shorten=shorten, budget=budget)
     if isinstance(world, ConnectsItself):
         attempt = Attempt(world, query, NO_POINTS, "none", world.planner)
-        if (refusal := attempt.refused()) is not None:
-            return refusal
+        if (refused := refusal(attempt)) is not None:
+            return refused
         connection = attempt.connect(world)
         if connection.goal >= 0:
-            return attempt.connected(connection)
+            result = connected(attempt, connection)
+            return improved(attempt, result) if improve else result
         if isinstance(world, Separates) and not any(
             world.may_connect(query.start, goal) for goal in query.goals[attempt.goals]
         ):
-            return attempt.proved_apart()
+            return proved_apart(attempt)
         left = attempt.left()
         if left is None:
-            return attempt.gave_up(connection)
-        budget = replace(budget, seconds=left)
-    return plan_anytime(world, query.start, query.goals, budget=budget, shorten=shorten)
+            return with_reasons(world, gave_up(attempt, connection))
+        budget = left
+    until = "budget" if improve else "solved"
+    grown = plan_anytime(world, query.start, query.goals, until=until, budget=budget, shorten=shorten)
+    return with_reasons(world, grown)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy.typing as npt
 
 from evenroad.points.pointset import PointSet
+from evenroad.roadmap.answer import answer, refusal
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.cost import EdgeCost
@@ -54,8 +55,8 @@ def fmt(
     points = as_points(points, world.space)
     rule = default_rule(world.space) if rule is None else rule
     attempt = Attempt(world, query, points.origin, str(rule), "fmt*")
-    if (refusal := attempt.refused()) is not None:
-        return refusal
+    if (refused := refusal(attempt)) is not None:
+        return refused
     milestones = world.space.from_cube(points.points)
     milestones = milestones[attempt.valid(milestones)]
     states = attempt.candidates(rule, milestones)
@@ -68,4 +69,4 @@ def fmt(
         return found
 
     searched = attempt.search(grow, states)
-    return attempt.result(searched, points.n, reached=reached)
+    return answer(attempt, searched, points.n, reached=reached)

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import PointSet
+from evenroad.roadmap.answer import answer, refusal
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.cost import BOUND, EdgeCost, edge_costs
@@ -256,12 +257,12 @@ class WorldRoadmap:
         rule, planner = f"{roadmap.rule} of all points", query.planner(self.lazy_milestones)
         with self._lock:
             attempt = Attempt(self.world, query, roadmap.points.origin, rule, planner)
-            if (refusal := attempt.refused()) is not None:
-                return refusal
+            if (refused := refusal(attempt)) is not None:
+                return refused
             with attempt.watch("neighbours"):
                 states, costs, problem = self._link(attempt)
             searched = attempt.search(query.find, states, costs, problem)
-            return attempt.result(searched, roadmap.points.n, keep_graph=keep_graph)
+            return answer(attempt, searched, roadmap.points.n, keep_graph=keep_graph)
 
     def _link(self, attempt: Attempt) -> tuple[EdgeStates, npt.NDArray[np.float64], SearchProblem]:
         """Put start and goals behind the milestones, and their links behind the edges."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy.typing as npt
 
 from evenroad.points.pointset import PointSet
+from evenroad.roadmap.answer import answer, refusal
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.cost import EdgeCost
@@ -87,11 +88,11 @@ def plan(
     points = as_points(points, world.space)
     rule = default_rule(world.space) if rule is None else rule
     attempt = Attempt(world, query, points.origin, str(rule), query.planner(lazy_milestones))
-    if (refusal := attempt.refused()) is not None:
-        return refusal
+    if (refused := refusal(attempt)) is not None:
+        return refused
     milestones = world.space.from_cube(points.points)
     if not lazy_milestones:
         milestones = milestones[attempt.valid(milestones)]
     states = attempt.candidates(rule, milestones)
     states.node_states[len(milestones) if lazy_milestones else 0 :] = FREE
-    return attempt.result(attempt.search(query.find, states), points.n)
+    return answer(attempt, attempt.search(query.find, states), points.n)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 
+from evenroad.roadmap.result import PlanResult, Status
 from evenroad.roadmap.search import BLOCKED, EdgeStates, Found
 from evenroad.world import Proves, Rechecks, World
 
@@ -45,3 +48,26 @@ def confirm(states: EdgeStates, found: Found) -> bool:
     states.confirmed[along] = passed
     states.edge_states[along[~passed]] = BLOCKED
     return bool(passed.all())
+
+
+def require_certified(world: World, result: PlanResult) -> PlanResult:
+    """Return the plan if all motions of its path are proved free, by a check of its own, else ``not_certified``.
+
+    The message then names the first motion that is not; the path stays in the result.
+    """
+    if result.path is None or result.proof == "exact":
+        return result
+    if not (isinstance(world, Rechecks) and world.proof == "certified"):
+        message = (
+            "the path is free at the states that were tested; motions of this world cannot be proved free"
+        )
+        return replace(result, status=Status.NOT_CERTIFIED, message=message)
+    failed = np.flatnonzero(~world.recheck(result.path))
+    if not len(failed):
+        return replace(result, proof="certified")
+    first, last = ("(" + ", ".join(f"{x:.6g}" for x in result.path[failed[0] + i]) + ")" for i in (0, 1))
+    message = (
+        f"motion {failed[0] + 1} of {len(result.path) - 1} is not proved free, from {first} to {last}:"
+        " it may touch, or pass too near to contact to tell"
+    )
+    return replace(result, status=Status.NOT_CERTIFIED, message=message, proof="resolution")

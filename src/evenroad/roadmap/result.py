@@ -20,6 +20,7 @@ class Status(StrEnum):
     NOT_CONNECTED = "not_connected"
     BUDGET_SPENT = "budget_spent"
     MESH_COLLISION = "mesh_collision"
+    NOT_CERTIFIED = "not_certified"
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,22 +44,25 @@ class SearchedGraph:
 
 @dataclass(frozen=True)
 class Stage:
-    """One stage of a plan that grows.
+    """One stage of a plan that grows, or a round of one that improves in which a better path was found.
 
     Attributes
     ----------
     points, valid : int
-        N so far, and how many of them are valid.
+        N so far, and how many of them are valid; of a round, the nodes of all trees so far, all valid.
     edges_checked : int
         Motions checked up to the end of this stage.
     cost : float or None
-        Of this stage's path along the roadmap; None when there was none.
+        Of this stage's path along the roadmap, of a round's path after shortcutting; None when there was none.
+    seconds : float
+        Wall time from the start of the query to the end of this stage.
     """
 
     points: int
     valid: int
     edges_checked: int
     cost: float | None
+    seconds: float = 0.0
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -69,7 +73,8 @@ class PlanResult:
     ----------
     status : Status
         ``solved``, ``start_invalid``, ``goal_invalid`` (all goals), ``not_connected``, ``budget_spent``; or
-        ``mesh_collision``: the path is free in its world, but the robot's meshes touch something.
+        ``mesh_collision``: the path is free in its world, but the robot's meshes touch something; or
+        ``not_certified``: a proof was asked for, and the path is free only at the states that were tested.
     message : str
         One sentence for people: what happened and, without a path, what to try.
     start : ndarray, shape (dim,)
@@ -90,8 +95,9 @@ class PlanResult:
     counts : dict of str to int
         ``points`` (N), ``valid`` (milestones known to be valid), ``configurations_checked`` (without those inside
         of motions), ``edges_considered``, ``edges_checked``, ``edges_free`` (known to be),
-        ``shortcut_motions`` and, when not connected, ``start_component`` and ``goal_component`` (milestones that
-        start and goals can reach over what is not known to be blocked).
+        ``shortcut_motions``, ``nodes`` (of trees), ``rounds`` (of a planner that improves) and, when not connected,
+        ``start_component`` and ``goal_component`` (milestones that start and goals can reach over what is not known
+        to be blocked).
     seconds : dict of str to float
         Wall time of each phase: ``validity``, ``neighbours``, ``motions``, ``search``, ``shortcut``.
     origin : Origin
@@ -102,9 +108,10 @@ class PlanResult:
         To how many of the nearest milestones start and goals were linked besides (to all, up to 256); None: to none.
     planner : str
         Who searched: ``prm full``, ``prm lazy``, ``prm any`` (some path, not the shortest), each with
-        ``+ lazy milestones`` where those were checked late; ``prm anytime``, ``fmt*``.
+        ``+ lazy milestones`` where those were checked late; ``prm anytime``, ``fmt*``; or the world itself, with
+        ``trees`` or ``cells``.
     stages : tuple of Stage
-        How a plan that grows came about; empty for all others.
+        How a plan that grows or improves came about, its cost over time; empty for all others.
     roadmap : SearchedGraph or None
         What was searched; None when start or goal is invalid, and where a reused roadmap was asked.
     """

@@ -21,6 +21,7 @@ from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
 from evenroad.robot.kernel.selftest import lanes_failure
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
+from evenroad.robot.tree_sequences import shifted_cube_points
 from evenroad.robot.trees import MOST_MOTIONS, SECONDS, connect, shorten
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch, as_batch_pair
@@ -232,6 +233,19 @@ class ArmWorld:
         See :func:`evenroad.robot.trees.connect`.
         """
         return connect(self, start, goals, most_motions=most_motions, seconds=seconds)
+
+    def connect_anew(
+        self,
+        start: npt.NDArray[np.float64],
+        goals: npt.NDArray[np.float64],
+        *,
+        variant: int,
+        most_motions: int = MOST_MOTIONS,
+        seconds: float = SECONDS,
+    ) -> Connection:
+        """As `connect`, with trees that another even sequence drives for each variant >= 1."""
+        sequence = shifted_cube_points(self._space.dim, variant)
+        return connect(self, start, goals, most_motions=most_motions, seconds=seconds, sequence=sequence)
 
     def shorten(self, path: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], int]:
         """Return a path that is not longer and whose new motions are proved free, and how many were looked at.

@@ -134,15 +134,22 @@ def configuration(robot: Robot, text: str, scene: Scene | None = None, *, degree
         q = _from_pairs(robot, text, degrees)
     else:
         q = _from_list(robot, text, states, degrees)
-    require_within_limits(robot, q, text)
+    q = clipped(robot, q)
+    joints = {joint.name: joint for joint in robot.joints}
+    for joint, value in zip(robot.group, q.tolist(), strict=True):
+        require_within(joints[joint], value, repr(text))
     return q
 
 
-def require_within_limits(robot: Robot, q: Floats, text: str) -> None:
-    """Raise InvalidValue unless a configuration, (dim,), is within the limits of its joints."""
+def clipped(robot: Robot, q: Floats) -> Floats:
+    """Return a configuration of the group, (dim,), with what exceeds a limit by up to 1e-6 brought to it [rad or m].
+
+    Joint values that are read from a robot, or written with few digits, often do; all others stay as they are.
+    """
     joints = {joint.name: joint for joint in robot.joints}
-    for name, value in zip(robot.group, q.tolist(), strict=True):
-        require_within(joints[name], value, repr(text))
+    low, high = np.array([(joints[name].lower, joints[name].upper) for name in robot.group]).T
+    nearest = np.clip(q, low, high)
+    return np.where(np.abs(q - nearest) <= _SLACK, nearest, q)
 
 
 def _from_pairs(robot: Robot, text: str, degrees: bool) -> Floats:

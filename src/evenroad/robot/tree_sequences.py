@@ -21,6 +21,16 @@ def cube_points(dim: int) -> Floats:
     return _read_only(reversed_halton(_SAMPLES, dim))
 
 
+def shifted_cube_points(dim: int, shift: int) -> Floats:
+    """Return the points of `cube_points`, (2048, dim), moved on the torus: as even, and others for each shift >= 1."""
+    # Multiples of the powers of the generalised golden ratio, of x^(dim + 1) = x + 1: no two shifts are close.
+    ratio = 2.0
+    for _ in range(64):
+        ratio = (1.0 + ratio) ** (1.0 / (dim + 1))
+    moved = (cube_points(dim) + shift * ratio ** -np.arange(1.0, dim + 1.0)) % 1.0
+    return _read_only(moved)
+
+
 @cache
 def ball_points(dim: int) -> Floats:
     """Return 2048 points spread evenly in the unit ball, (2048, dim)."""

@@ -202,7 +202,7 @@ def _legend(result: PlanResult, world: ArmWorld) -> list[Patch | Line2D]:
         tip = style.without_math(world.robot.links[_tip(world.robot)])
         handles.append(Patch(facecolor=_tint(0.5, 0.25), edgecolor=_tint(0.5, 0.45), label="along the path"))
         handles.append(Line2D([], [], color=style.PATH, linewidth=1.8, label=f"path of {tip}"))
-    elif result.status is not Status.NOT_CONNECTED:
+    elif result.status in (Status.START_INVALID, Status.GOAL_INVALID):
         handles.append(Patch(facecolor=style.COLLISION, alpha=0.35, label="in collision"))
     if world.scene.obstacles:
         handles.append(

@@ -10,6 +10,7 @@ from evenroad.world.mesh import MeshWorld as MeshWorld
 from evenroad.world.mesh import TriangleMesh as TriangleMesh
 from evenroad.world.mesh import load_mesh as load_mesh
 from evenroad.world.protocol import Connection as Connection
+from evenroad.world.protocol import ConnectsAnew as ConnectsAnew
 from evenroad.world.protocol import ConnectsItself as ConnectsItself
 from evenroad.world.protocol import Explains as Explains
 from evenroad.world.protocol import Proves as Proves

@@ -104,6 +104,23 @@ class ConnectsItself(Protocol):
 
 
 @runtime_checkable
+class ConnectsAnew(ConnectsItself, Protocol):
+    """A world whose own planner finds other paths when it is asked again; a planner that improves asks it often."""
+
+    def connect_anew(
+        self,
+        start: Floats,
+        goals: Floats,
+        *,
+        variant: int,
+        most_motions: int,
+        seconds: float,
+    ) -> Connection:
+        """As `connect`, planned in another way for each variant >= 1; the same one gives the same path."""
+        ...
+
+
+@runtime_checkable
 class Separates(Protocol):
     """A world that can prove that no path leads from one configuration to another."""
 

@@ -78,14 +78,14 @@ def _motion_is_free(a, b, step, rotation_step, body, obstacles, near, planar, st
 
 @njit(cache=True, nogil=True)
 def motions_are_proved(
-    a: npt.NDArray[np.float64],
-    b: npt.NDArray[np.float64],
+    a: Floats,
+    b: Floats,
     tolerance: float,
     body: BoxTable,
-    reaches: npt.NDArray[np.float64],
+    reaches: Floats,
     obstacles: BoxTable,
     planar: bool,
-) -> npt.NDArray[np.bool_]:
+) -> Bools:
     """Return which motions between poses, (m, 7), are proved free, with no gap between states.
 
     If boxes enlarged on all sides by what half an interval moves their points meet nothing at its middle, the boxes

@@ -60,7 +60,7 @@ class SolidWorld:
     resolution: float | Sequence[float]
     _body: BoxTable = field(init=False, repr=False)
     _obstacles: BoxTable = field(init=False, repr=False)
-    _reaches: npt.NDArray[np.float64] = field(init=False, repr=False)
+    _reaches: Floats = field(init=False, repr=False)
     _steps: tuple[float, float] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -120,7 +120,7 @@ class SolidWorld:
         """``certified``: what `recheck` calls free is proved to be, everywhere between its ends."""
         return "certified"
 
-    def recheck(self, path: Floats) -> npt.NDArray[np.bool_]:
+    def recheck(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, dim), are proved free: (p - 1,).
 
         Stricter than testing states, however many: no stretch of a motion is left open.  A motion is refused, too, that

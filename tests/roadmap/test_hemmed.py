@@ -1,0 +1,59 @@
+"""A start or a goal that cannot leave its place is said to be one."""
+
+from types import SimpleNamespace
+
+import numpy as np
+
+from evenroad.roadmap import Budget, find_path, plan
+from evenroad.roadmap.hemmed import with_reasons
+from evenroad.space import Box
+from evenroad.world import FunctionWorld
+
+
+class Named(FunctionWorld):
+    def explain(self, q):
+        return f"the ring stands {'left' if q[0] < 0.8 else 'right'} of it"
+
+
+def ring(q):
+    """Free but between two circles around (0.8, 0.5), and on their left side twice as thick."""
+    away = np.hypot(q[:, 0] - 0.8, q[:, 1] - 0.5)
+    return (away < 0.02) | (away > 0.06)
+
+
+WORLD = Named(Box((0, 0), (1, 1)), ring, 0.002)
+START, GOAL = (0.2, 0.5), (0.8, 0.5)
+
+
+def test_the_end_that_is_shut_in_is_named_with_what_touches_most_often():
+    result = find_path(WORLD, START, GOAL, budget=Budget(samples=64))
+    assert result.status == "budget_spent"
+    assert "the goal cannot leave its place: 0 of 128 motions of length 0.04" in result.message
+    assert "the ring stands left of it in" in result.message
+    assert "the nearest free sample is 0.0" in result.message
+    assert "the start" not in result.message
+    back = find_path(WORLD, GOAL, START, budget=Budget(samples=64))
+    assert "the start cannot leave its place" in back.message
+    assert "the goal" not in back.message
+
+
+def test_of_several_goals_each_is_named_by_its_number():
+    goals = np.array([GOAL, (0.8, 0.51)])
+    result = find_path(WORLD, START, goals, budget=Budget(samples=64))
+    assert "goal 0 cannot leave its place" in result.message
+    assert "goal 1 cannot leave its place" in result.message
+
+
+def test_nothing_is_said_of_a_path_or_of_ends_that_move_freely():
+    solved = plan(WORLD, START, (0.2, 0.6), 16)
+    assert with_reasons(WORLD, solved) is solved
+    wall = FunctionWorld(Box((0, 0), (1, 1)), lambda q: np.abs(q[:, 0] - 0.5) > 0.1, 0.01)
+    apart = plan(wall, START, (0.9, 0.5), 64)
+    assert with_reasons(wall, apart) is apart
+
+
+def test_a_world_without_words_counts_only():
+    mute = SimpleNamespace(space=WORLD.space, valid=WORLD.valid, motion_valid=WORLD.motion_valid)
+    message = with_reasons(mute, plan(mute, START, GOAL, 16)).message
+    assert "the goal cannot leave its place: 0 of 128 motions of length 0.04" in message
+    assert " from it are free; the nearest free sample" in message

@@ -1,0 +1,104 @@
+"""More time buys better paths, never worse ones."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from evenroad.errors import InvalidValue
+from evenroad.roadmap import Budget, find_path
+from evenroad.space import Box
+from evenroad.world import Connection, FunctionWorld, GridMap
+
+HEIGHTS = (0.9, 0.7, 0.8, 0.3, 0.6)
+"""Over which height each variant of the planner goes."""
+
+
+class Detours:
+    """The unit square, with a planner of its own that goes over a point above the middle, and does not shorten."""
+
+    planner = "detours"
+
+    def __init__(self):
+        self.free = FunctionWorld(Box((0, 0), (1, 1)), lambda q: np.ones(len(q), dtype=bool), 0.1)
+        self.space, self.valid, self.motion_valid = self.free.space, self.free.valid, self.free.motion_valid
+        self.asked = []
+
+    def connect(self, start, goals, *, most_motions, seconds):
+        return self.connect_anew(start, goals, variant=0, most_motions=most_motions, seconds=seconds)
+
+    def connect_anew(self, start, goals, *, variant, most_motions, seconds):
+        self.asked.append(variant)
+        if variant == 2:
+            return Connection(np.empty((0, 2)), -1, 3, 1, 2)
+        path = np.stack([start, [0.5, HEIGHTS[variant % len(HEIGHTS)]], goals[0]])
+        return Connection(path, 0, 3, 1, 2)
+
+    def shorten(self, path):
+        return path, 1
+
+
+def over(height):
+    return 2 * np.hypot(0.4, height - 0.1)
+
+
+def improved(**limits):
+    world = Detours()
+    return world, find_path(
+        world, (0.1, 0.1), (0.9, 0.1), budget=Budget(seconds=None, **limits), improve=True
+    )
+
+
+@pytest.mark.parametrize(("rounds", "best"), [(1, 0.7), (2, 0.7), (3, 0.3), (4, 0.3)])
+def test_the_best_of_so_many_rounds_is_kept(rounds, best):
+    world, result = improved(rounds=rounds)
+    assert world.asked == list(range(rounds + 1))
+    assert result.cost == pytest.approx(over(best))
+    assert result.counts["rounds"] == rounds
+    assert result.counts["nodes"] == 3 * (rounds + 1)
+    assert result.counts["edges_checked"] == 2 * (rounds + 1)
+    assert f"the best of {rounds + 1}" in result.message
+
+
+def test_stages_hold_the_cost_over_time_of_what_was_better():
+    stages = improved(rounds=9)[1].stages
+    assert [stage.cost for stage in stages] == pytest.approx([over(0.9), over(0.7), over(0.3)])
+    assert [stage.points for stage in stages] == [3, 6, 12]
+    assert all(a.seconds <= b.seconds for a, b in pairwise(stages))
+
+
+def test_motions_bound_the_rounds():
+    assert improved(motions=5)[0].asked == [0, 1, 2]
+
+
+def test_a_straight_path_is_not_improved_on():
+    world = Detours()
+    result = find_path(world, (0.3, 0.9), (0.7, 0.9), budget=Budget(seconds=None, rounds=50), improve=True)
+    assert world.asked == [0]
+    assert result.cost == pytest.approx(0.4)
+    assert "the best of" not in result.message
+
+
+def test_without_improve_the_first_path_is_the_answer():
+    world = Detours()
+    result = find_path(world, (0.1, 0.1), (0.9, 0.1))
+    assert world.asked == [0]
+    assert result.stages == ()
+
+
+@pytest.mark.parametrize("rounds", [0, -1, 1.5, True])
+def test_rounds_are_a_number_of_times(rounds):
+    with pytest.raises(InvalidValue, match="rounds must be an integer >= 1"):
+        Budget(rounds=rounds)
+
+
+def test_on_a_map_a_roadmap_grows_beside_the_first_path():
+    occupied = np.zeros((60, 60), dtype=bool)
+    occupied[10:50, 30] = True
+    world = GridMap(occupied).world(1.0)
+    first = find_path(world, (5, 30), (55, 33))
+    best = find_path(world, (5, 30), (55, 33), budget=Budget(seconds=None, samples=512), improve=True)
+    assert best.cost <= first.cost
+    assert world.motion_valid(best.path[:-1], best.path[1:]).all()
+    assert best.stages[0].cost == first.cost
+    assert [stage.points for stage in best.stages[1:]] == [64, 128, 256, 512]
