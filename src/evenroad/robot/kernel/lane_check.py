@@ -8,71 +8,53 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
 from llvmlite import ir
 from numba import carray, cfunc, types
+from numba.core import cgutils
 from numba.extending import intrinsic
 
 from evenroad.robot.kernel.contact import blocked_lanes
 from evenroad.robot.kernel.forward_kinematics import write_values
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-Singles = npt.NDArray[np.float32]
-
-_ANY_LENGTH = 1 << 40
+ANY_LENGTH = 1 << 40
 """The arrays' lengths are not passed on: nothing reads beyond what the tables say."""
 
-_SIGNATURE = types.int64(
-    types.CPointer(types.float32),
-    types.CPointer(types.float64),
-    types.CPointer(types.int64),
-    types.CPointer(types.float32),
-    types.int64,
-)
+DOUBLES = types.CPointer(types.float64)
+SINGLES = types.CPointer(types.float32)
+INTEGERS = types.CPointer(types.int64)
 
 
-@cfunc(_SIGNATURE, cache=True)
+@cfunc(types.int64(SINGLES, DOUBLES, INTEGERS, SINGLES, types.int64), cache=True)
 def _blocked(scratch: Any, states: Any, ints: Any, table: Any, enough: int) -> int:
-    memory, integers = carray(scratch, _ANY_LENGTH), carray(ints, _ANY_LENGTH)
-    floats = carray(table, _ANY_LENGTH)
-    write_values(memory, carray(states, _ANY_LENGTH), integers, floats)
+    memory, integers = carray(scratch, ANY_LENGTH), carray(ints, ANY_LENGTH)
+    floats = carray(table, ANY_LENGTH)
+    write_values(memory, carray(states, ANY_LENGTH), integers, floats)
     return blocked_lanes(memory, integers, floats, enough)
 
 
 def check_address() -> int:
-    """Return the address that `blocked_states` takes: good for this process."""
+    """Return the address, good for this process, of the check of sixteen configurations.
+
+    `call_at` takes with it: scratch memory as ``forward_kinematics.scratch_memory`` makes it; states, sixteen numbers
+    a coordinate; integers and floats of the tables; 1 to stop at the first state that is blocked, 16 to find all.  It
+    returns the mask of those that touch something, as ``contact.blocked_lanes`` does.
+    """
     return int(_blocked.address)
 
 
 @intrinsic
-def blocked_states(
-    typing_context: Any, address: Any, scratch: Any, states: Any, ints: Any, table: Any, enough: Any
-) -> Any:
-    """Return the mask of sixteen configurations that touch something; see ``contact.blocked_lanes``.
+def call_at(typing_context: Any, address: Any, arguments: Any) -> Any:
+    """Return the integer that the function at an address gives for a tuple of arguments; of arrays it takes pointers.
 
-    Parameters
-    ----------
-    address : int
-        What `check_address` returns.
-    scratch : float32 array
-        As ``place.scratch_memory`` makes it.
-    states : float64 array
-        Sixteen numbers a coordinate.
-    ints, table : arrays
-        The tables.
-    enough : int
-        1 to stop at the first that is blocked, 16 to find all.
+    Nothing checks that the arguments are those of the function: integers are of 64 bits, floats double.
     """
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        pointers = [
-            context.make_array(kind)(context, builder, arg).data
-            for kind, arg in zip(sig.args[1:5], args[1:5], strict=True)
+        values = [
+            context.make_array(kind)(context, builder, value).data if isinstance(kind, types.Array) else value
+            for kind, value in zip(sig.args[1], cgutils.unpack_tuple(builder, args[1]), strict=True)
         ]
-        kind = ir.FunctionType(ir.IntType(64), [*(pointer.type for pointer in pointers), ir.IntType(64)])
-        function = builder.inttoptr(args[0], kind.as_pointer())
-        return builder.call(function, [*pointers, args[5]])
+        kind = ir.FunctionType(ir.IntType(64), [value.type for value in values])
+        return builder.call(builder.inttoptr(args[0], kind.as_pointer()), values)
 
-    return types.int64(types.int64, scratch, states, ints, table, types.int64), lower
+    return types.int64(types.int64, arguments), lower
