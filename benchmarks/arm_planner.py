@@ -33,6 +33,7 @@ from evenroad.roadmap.shortcut import path_length, shortcut
 from evenroad.robot import trees
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.kernel import lane_check, layout
+from evenroad.robot.kernel.addresses import call_at
 from evenroad.robot.kernel.forward_kinematics import scratch_memory, unpacked
 from evenroad.robot.trees import connect, shorten
 from evenroad.world.protocol import Connection
@@ -110,7 +111,7 @@ def _again(states: Any, tables: Any, table: Any, enough: Any, lanes: Any, addres
             current = table[i]
             radii[:] = tables[current]
         room[:] = states[i]
-        blocked += lane_check.call_at(address, (scratch, room, ints, radii, enough[i]))
+        blocked += call_at(address, (scratch, room, ints, radii, enough[i]))
     return blocked
 
 

@@ -7,8 +7,8 @@ import numpy.typing as npt
 from numba import njit
 
 from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel.addresses import call_at
 from evenroad.robot.kernel.forward_kinematics import scratch_memory, unpacked
-from evenroad.robot.kernel.lane_check import call_at
 from evenroad.robot.kernel.motion import enter
 from evenroad.robot.kernel.motion_checks import COUNTS, NO_END, checks_of, motion_free, motion_proved
 

@@ -8,20 +8,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from llvmlite import ir
 from numba import carray, cfunc, types
-from numba.core import cgutils
-from numba.extending import intrinsic
 
+from evenroad.robot.kernel.addresses import DOUBLES, INTEGERS, SINGLES
 from evenroad.robot.kernel.contact import blocked_lanes
 from evenroad.robot.kernel.forward_kinematics import write_values
 
 ANY_LENGTH = 1 << 40
 """The arrays' lengths are not passed on: nothing reads beyond what the tables say."""
-
-DOUBLES = types.CPointer(types.float64)
-SINGLES = types.CPointer(types.float32)
-INTEGERS = types.CPointer(types.int64)
 
 
 @cfunc(types.int64(SINGLES, DOUBLES, INTEGERS, SINGLES, types.int64), cache=True)
@@ -40,21 +34,3 @@ def check_address() -> int:
     returns the mask of those that touch something, as ``contact.blocked_lanes`` does.
     """
     return int(_blocked.address)
-
-
-@intrinsic
-def call_at(typing_context: Any, address: Any, arguments: Any) -> Any:
-    """Return the integer that the function at an address gives for a tuple of arguments; of arrays it takes pointers.
-
-    Nothing checks that the arguments are those of the function: integers are of 64 bits, floats double.
-    """
-
-    def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        values = [
-            context.make_array(kind)(context, builder, value).data if isinstance(kind, types.Array) else value
-            for kind, value in zip(sig.args[1], cgutils.unpack_tuple(builder, args[1]), strict=True)
-        ]
-        kind = ir.FunctionType(ir.IntType(64), [value.type for value in values])
-        return builder.call(builder.inttoptr(args[0], kind.as_pointer()), values)
-
-    return types.int64(types.int64, arguments), lower

@@ -15,8 +15,17 @@ import numpy.typing as npt
 from numba import carray, cfunc, types
 
 from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel.addresses import (
+    DOUBLES,
+    INTEGERS,
+    address_of,
+    call_at,
+    doubles_at,
+    integers_at,
+    singles_at,
+)
 from evenroad.robot.kernel.forward_kinematics import scratch_memory, unpacked
-from evenroad.robot.kernel.lane_check import ANY_LENGTH, DOUBLES, INTEGERS, SINGLES, call_at, check_address
+from evenroad.robot.kernel.lane_check import ANY_LENGTH, check_address
 from evenroad.robot.kernel.layout import inner, quick
 from evenroad.robot.kernel.motion import span
 
@@ -28,9 +37,13 @@ Singles = npt.NDArray[np.float32]
 MOTIONS, CONFIGURATIONS, BATCHES, COUNTS = range(4)
 """What is counted, and how many things that is."""
 
-NO_END, START, BOTH_ENDS, COARSE, PROOF = range(5)
+NO_END, START, BOTH_ENDS, COARSE, PROOF, STATES = range(6)
 """What a motion is checked for: that its states are free where neither end, its start or both are known to be; that no
-more than sixteen states between free ends are, which before a proof is enough; that it is free throughout."""
+more than sixteen states between free ends are, which before a proof is enough; that it is free throughout.  The last is
+for no motion but sixteen states."""
+
+_DESK = 15
+"""Length of the desk: eleven entries of `_World`, the memory of a motion, dim, capsules and pairs of capsules."""
 
 _UP = np.float32(1.0 + 3e-7)
 """What sums of single precision are multiplied by to be no less than the true ones."""
@@ -40,45 +53,67 @@ _STACK = 640
 
 
 class Checks(NamedTuple):
-    """A world's tables and the memory that its checks need; made by `checks_of` for one call.
+    """A world's checks as their callers hold them, made by `checks_of` for one call: few arrays are soon compiled.
 
     Attributes
     ----------
-    addresses : two ints
-        Of the check of sixteen configurations and of that of a motion.
+    address : int
+        Of the check of a motion.
     resolution : float
         Largest distance between neighbouring states of a motion.
+    desk : int64 array
+        What that check reads: addresses and sizes of a world's tables and of memory, see `_World`.
+    memory : float64 array
+        Keeps that memory.
+    states : float64 array
+        Sixteen configurations for `blocked`, sixteen numbers a coordinate.
     bounds : float64 array, shape (3, dim)
         Low, high and period of each coordinate.
-    ints, table : arrays
-        The tables of the lanes.
-    enlarged : float32 array
-        A copy of `table` with radii for proofs.
-    arms, pair_arms : float64 arrays, shapes (dim, capsules) and (dim, capsule pairs)
-        How fast each coordinate moves a capsule, and the two of a pair against each other, at most [m/rad].
-    states, scratch : arrays
-        As ``forward_kinematics.scratch_memory`` makes them.
-    room : float64 array
-        Memory of one motion.
-    levels : int64 array, shape (640,)
-        How often stretches that are still to be proved were halved.
     counts : int64 array, shape (3,)
         Motions asked for, configurations and batches tested.
     """
 
-    addresses: tuple[int, int]
+    address: int
     resolution: float
+    desk: Ints
+    memory: Floats
+    states: Floats
     bounds: Floats
+    counts: Ints
+
+
+class _World(NamedTuple):
+    """What the check of a motion reads, in the order of the desk.
+
+    Attributes
+    ----------
+    check : int
+        Address of the check of sixteen configurations.
+    bounds, states, counts : arrays
+        As in `Checks`.
+    ints, table : arrays
+        The tables of the lanes.
+    arms, pair_arms : float64 arrays, shapes (dim, capsules) and (dim, capsule pairs)
+        How fast each coordinate moves a capsule, and the two of a pair against each other, at most [m/rad].
+    scratch : float32 array
+        As ``forward_kinematics.scratch_memory`` makes it.
+    enlarged : float32 array
+        A copy of `table` with radii for proofs.
+    levels : int64 array, shape (640,)
+        How often stretches that are still to be proved were halved.
+    """
+
+    check: int
+    bounds: Floats
+    states: Floats
+    counts: Ints
     ints: Ints
     table: Singles
-    enlarged: Singles
     arms: Floats
     pair_arms: Floats
-    states: Floats
     scratch: Singles
-    room: Floats
+    enlarged: Singles
     levels: Ints
-    counts: Ints
 
 
 class _Motion(NamedTuple):
@@ -120,34 +155,46 @@ def checks_of(
     pair_arms: Floats,
     counts: Ints,
 ) -> Checks:
-    """Return the checks of a world, from what `Checks` says of it and ``ArmTables.lanes``."""
-    dim = bounds.shape[1]
+    """Return the checks of a world.
+
+    Parameters
+    ----------
+    addresses : two ints
+        As `addresses` gives them.
+    resolution, bounds, counts
+        As in `Checks`.
+    tables : int64 array
+        ``ArmTables.lanes``; it, and the two that follow, must outlive what is returned.
+    arms, pair_arms : float64 arrays
+        ``RobotTables.speeds_by_joint``.
+    """
+    dim, capsules, pairs = bounds.shape[1], arms.shape[1], pair_arms.shape[1]
     ints, table = unpacked(tables)
     states, _, scratch = scratch_memory(dim, ints, table)
-    room = np.empty(3 * dim + LANES + arms.shape[1] + pair_arms.shape[1] + _STACK)
-    levels = np.empty(_STACK, dtype=np.int64)
-    return Checks(
-        addresses,
-        resolution,
-        bounds,
-        ints,
-        table,
-        table.copy(),
-        arms,
-        pair_arms,
-        states,
-        scratch,
-        room,
-        levels,
-        counts,
+    own = 3 * dim + LANES + capsules + pairs + _STACK
+    memory = np.empty(own + _STACK + (len(table) + 1) // 2)
+    enlarged = memory[own + _STACK :].view(np.float32)
+    # A loop, and addresses out of an intrinsic: what numpy has for both takes seconds to compile.
+    for place in range(len(table)):
+        enlarged[place] = table[place]
+    desk = np.empty(_DESK, dtype=np.int64)
+    desk[0], desk[1], desk[2], desk[3] = (
+        addresses[0],
+        address_of(bounds),
+        address_of(states),
+        address_of(counts),
     )
+    desk[4], desk[5] = address_of(ints), address_of(table)
+    desk[6], desk[7] = address_of(arms), address_of(pair_arms)
+    desk[8], desk[9], desk[10] = address_of(scratch), address_of(enlarged), address_of(memory[own:])
+    desk[11], desk[12], desk[13], desk[14] = address_of(memory), dim, capsules, pairs
+    return Checks(addresses[1], resolution, desk, memory, states, bounds, counts)
 
 
 @quick
-def blocked(c: Checks, table: Singles, enough: int) -> int:
+def blocked(c: Checks) -> int:
     """Return the mask of the sixteen configurations in ``c.states`` that touch something."""
-    c.counts[BATCHES] += 1
-    return call_at(c.addresses[0], (c.scratch, c.states, c.ints, table, enough))
+    return call_at(c.address, (c.states, c.states, STATES, 0.0, 0, 1.0, c.desk))
 
 
 @quick
@@ -189,28 +236,28 @@ def motion_proved(a: Floats, b: Floats, tolerance: float, most_batches: int, c: 
 
 @quick
 def _checked(a: Floats, b: Floats, kind: int, tolerance: float, most_batches: int, c: Checks) -> bool:
-    arguments = (
-        a, b, kind, tolerance, most_batches,
-        c.addresses[0], c.addresses[1], c.resolution, c.bounds.shape[1], c.bounds, c.ints, c.table, c.enlarged,
-        c.arms, c.arms.shape[1], c.pair_arms, c.pair_arms.shape[1],
-        c.states, c.scratch, c.room, c.levels, c.counts,
-    )  # fmt: skip
-    return call_at(c.addresses[1], arguments) != 0
+    return call_at(c.address, (a, b, kind, tolerance, most_batches, c.resolution, c.desk)) != 0
 
 
 @quick
-def _write_states(m: _Motion, c: Checks) -> None:
+def _blocked(w: _World, table: Singles, enough: int) -> int:
+    w.counts[BATCHES] += 1
+    return call_at(w.check, (w.scratch, w.states, w.ints, table, enough))
+
+
+@quick
+def _write_states(m: _Motion, w: _World) -> None:
     """Write the configurations at the sixteen shares of a motion."""
     for k in range(len(m.start)):
         start, way = m.start[k], m.way[k]
-        states = c.states[k * LANES : (k + 1) * LANES]
+        states = w.states[k * LANES : (k + 1) * LANES]
         # A length that the compiler does not know: it then makes vectors of the loop instead of unrolling it.
         for lane in range(len(states)):
             states[lane] = start + m.share[lane] * way
 
 
 @quick
-def _are_free(m: _Motion, segments: int, first: int, last: int, sixteen_do: bool, c: Checks) -> bool:
+def _are_free(m: _Motion, segments: int, first: int, last: int, sixteen_do: bool, w: _World) -> bool:
     """Return whether the states of a motion from number `first` to `last`, of 0 to `segments`, are free."""
     count = last - first + 1
     if count <= 0:
@@ -225,14 +272,14 @@ def _are_free(m: _Motion, segments: int, first: int, last: int, sixteen_do: bool
         m.share[lane] = (first + number) / max(segments, 1)
     place = -1
     while True:
-        _write_states(m, c)
+        _write_states(m, w)
         if place < 0:
             if last == segments:
                 for k in range(len(m.end)):
                     # Exactly the end, so that a motion is free only where its end is.
-                    c.states[k * LANES + LANES - 1] = m.end[k]
-            c.counts[CONFIGURATIONS] += min(count, LANES)
-        if blocked(c, c.table, 1) != 0:
+                    w.states[k * LANES + LANES - 1] = m.end[k]
+            w.counts[CONFIGURATIONS] += min(count, LANES)
+        if _blocked(w, w.table, 1) != 0:
             return False
         if rest == 0 or sixteen_do:
             return True
@@ -251,33 +298,33 @@ def _are_free(m: _Motion, segments: int, first: int, last: int, sixteen_do: bool
             while (gap + 1) * (count - 1) // (LANES - 1) - (gap + 1) <= rank:
                 gap += 1
             m.share[lane] = (first + rank + 1 + gap) / segments
-        c.counts[CONFIGURATIONS] += min(LANES, rest - stretch * LANES)
+        w.counts[CONFIGURATIONS] += min(LANES, rest - stretch * LANES)
 
 
 @quick
-def _is_proved(m: _Motion, tolerance: float, most_batches: int, c: Checks) -> bool:
+def _is_proved(m: _Motion, tolerance: float, most_batches: int, w: _World) -> bool:
     """Return whether a motion is proved free throughout; see `motion_proved`."""
-    fastest = max(_write_speeds(c.arms, m.way, m.speeds), _write_speeds(c.pair_arms, m.way, m.pair_speeds))
+    fastest = max(_write_speeds(w.arms, m.way, m.speeds), _write_speeds(w.pair_arms, m.way, m.pair_speeds))
     for lane in range(LANES):
         # The first stretch is the last to be pushed and the first to be looked at.
-        m.centres[lane], c.levels[lane] = 1.0 - (lane + 0.5) / LANES, 0
+        m.centres[lane], w.levels[lane] = 1.0 - (lane + 0.5) / LANES, 0
     waiting, enlarged_for = LANES, -1
     half = 0.0
     for _ in range(most_batches):
-        level = c.levels[waiting - 1]
+        level = w.levels[waiting - 1]
         if level != enlarged_for:
             half = 0.5 / (LANES << level)
-            _enlarge(half, m, c)
+            _enlarge(half, m, w)
             enlarged_for = level
         count = 0
-        while count < LANES and count < waiting and c.levels[waiting - 1 - count] == level:
+        while count < LANES and count < waiting and w.levels[waiting - 1 - count] == level:
             m.share[count] = m.centres[waiting - 1 - count]
             count += 1
         for lane in range(count, LANES):
             m.share[lane] = m.share[count - 1]
-        _write_states(m, c)
-        c.counts[CONFIGURATIONS] += count
-        near = blocked(c, c.enlarged, LANES) & ((1 << count) - 1)
+        _write_states(m, w)
+        w.counts[CONFIGURATIONS] += count
+        near = _blocked(w, w.enlarged, LANES) & ((1 << count) - 1)
         waiting -= count
         if near != 0 and (half * fastest < tolerance or waiting + 2 * LANES > _STACK):
             return False
@@ -285,7 +332,7 @@ def _is_proved(m: _Motion, tolerance: float, most_batches: int, c: Checks) -> bo
             if (near >> lane) & 1:
                 for side in range(2):
                     m.centres[waiting] = m.share[lane] + (0.5 - side) * half
-                    c.levels[waiting] = level + 1
+                    w.levels[waiting] = level + 1
                     waiting += 1
         if waiting == 0:
             return True
@@ -315,9 +362,9 @@ def _wider(length: np.float32, margin: float) -> np.float32:
 
 
 @quick
-def _enlarge(half: float, m: _Motion, c: Checks) -> None:
+def _enlarge(half: float, m: _Motion, w: _World) -> None:
     """Write lengths that are larger by what `half` of a motion can move the bodies: all that a test is decided by."""
-    ints, table, wide = c.ints, c.table, c.enlarged
+    ints, table, wide = w.ints, w.table, w.enlarged
     place = ints[at.CAPSULE_FLOATS] + 6
     for i in range(len(m.speeds)):
         wide[place] = _wider(table[place], half * m.speeds[i])
@@ -346,57 +393,52 @@ def _enlarge(half: float, m: _Motion, c: Checks) -> None:
 
 
 @cfunc(
-    types.int64(
-        DOUBLES, DOUBLES, types.int64, types.float64, types.int64,
-        types.int64, types.int64, types.float64, types.int64, DOUBLES, INTEGERS, SINGLES, SINGLES,
-        DOUBLES, types.int64, DOUBLES, types.int64,
-        DOUBLES, SINGLES, DOUBLES, INTEGERS, INTEGERS,
-    ),
+    types.int64(DOUBLES, DOUBLES, types.int64, types.float64, types.int64, types.float64, INTEGERS),
     cache=True,
     error_model="numpy",
-)  # fmt: skip
+)
 def _motion_check(
-    a: Any, b: Any, kind: int, tolerance: float, most_batches: int,
-    check: int, motion: int, resolution: float, dim: int, bounds: Any, ints: Any, table: Any, enlarged: Any,
-    arms: Any, capsules: int, pair_arms: Any, pairs: int,
-    states: Any, scratch: Any, room: Any, levels: Any, counts: Any,
-) -> int:  # fmt: skip
-    """Return 1 where a motion is what `kind` says, else 0."""
-    c = Checks(
-        (check, motion),
-        resolution,
-        carray(bounds, (3, dim)),
-        carray(ints, ANY_LENGTH),
-        carray(table, ANY_LENGTH),
-        carray(enlarged, ANY_LENGTH),
-        carray(arms, (dim, capsules)),
-        carray(pair_arms, (dim, pairs)),
-        carray(states, dim * LANES),
-        carray(scratch, ANY_LENGTH),
-        carray(room, ANY_LENGTH),
-        carray(levels, _STACK),
-        carray(counts, COUNTS),
+    a: Any, b: Any, kind: int, tolerance: float, most_batches: int, resolution: float, desk: Any
+) -> int:
+    """Return 1 where a motion is what `kind` says, else 0; for STATES the mask of those that touch something."""
+    d = carray(desk, _DESK)
+    dim, capsules, pairs = d[12], d[13], d[14]
+    w = _World(
+        d[0],
+        carray(doubles_at(d[1]), (np.int64(3), dim)),
+        carray(doubles_at(d[2]), dim * LANES),
+        carray(integers_at(d[3]), COUNTS),
+        carray(integers_at(d[4]), ANY_LENGTH),
+        carray(singles_at(d[5]), ANY_LENGTH),
+        carray(doubles_at(d[6]), (dim, capsules)),
+        carray(doubles_at(d[7]), (dim, pairs)),
+        carray(singles_at(d[8]), ANY_LENGTH),
+        carray(singles_at(d[9]), ANY_LENGTH),
+        carray(integers_at(d[10]), _STACK),
     )
+    if kind == STATES:
+        return _blocked(w, w.table, LANES)
+    room = carray(doubles_at(d[11]), ANY_LENGTH)
     first, second, third = dim, 2 * dim, 3 * dim
     fourth = third + LANES
     fifth = fourth + capsules
     sixth = fifth + pairs
     m = _Motion(
-        c.room[:first],
-        c.room[first:second],
-        c.room[second:third],
-        c.room[third:fourth],
-        c.room[fourth:fifth],
-        c.room[fifth:sixth],
-        c.room[sixth : sixth + _STACK],
+        room[:first],
+        room[first:second],
+        room[second:third],
+        room[third:fourth],
+        room[fourth:fifth],
+        room[fifth:sixth],
+        room[sixth : sixth + _STACK],
     )
     begin, end = carray(a, dim), carray(b, dim)
     for k in range(dim):
         m.start[k], m.end[k] = begin[k], end[k]
-    segments = span(m.start, m.end, c.bounds, resolution, m.way)
-    c.counts[MOTIONS] += 1
+    segments = span(m.start, m.end, w.bounds, resolution, m.way)
+    w.counts[MOTIONS] += 1
     if kind == PROOF:
-        return 1 if _is_proved(m, tolerance, most_batches, c) else 0
+        return 1 if _is_proved(m, tolerance, most_batches, w) else 0
     exchanged = False
     for k in range(dim):
         exchanged |= m.start[k] != begin[k]
@@ -405,4 +447,4 @@ def _motion_check(
         first_state = 1
     if kind >= BOTH_ENDS or (kind == START and exchanged):
         last_state = segments - 1
-    return 1 if _are_free(m, segments, first_state, last_state, kind == COARSE, c) else 0
+    return 1 if _are_free(m, segments, first_state, last_state, kind == COARSE, w) else 0

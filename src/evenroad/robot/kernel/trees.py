@@ -254,7 +254,7 @@ def _begin(ends: Floats, trees: Trees, memory: Memory, checks: Checks) -> None:
             canonical(memory.here, checks.bounds)
             for k in range(dim):
                 checks.states[k * LANES + lane] = memory.here[k]
-        free = inside & ~blocked(checks, checks.table, LANES)
+        free = inside & ~blocked(checks)
         checks.counts[CONFIGURATIONS] += some
         for lane in range(some):
             if (free >> lane) & 1:
@@ -308,7 +308,7 @@ def _candidates(
         for k in range(dim):
             checks.states[k * LANES + 2 * candidate] = here[k] + 0.5 * memory.way[k]
             checks.states[k * LANES + 2 * candidate + 1] = target[k]
-    touching = blocked(checks, checks.table, LANES)
+    touching = blocked(checks)
     state[CONFIGURATIONS] += LANES
     kept = 0
     for candidate in range(STEPS_AT_ONCE):
