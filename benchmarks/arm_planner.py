@@ -30,8 +30,10 @@ from numba import njit
 
 from benchmarks.arm_problems import KINDS, REPORTING, TUNING, Pool, Problem, arm, problems
 from evenroad.roadmap.shortcut import path_length, shortcut
+from evenroad.robot import trees
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.kernel import lane_check, layout
+from evenroad.robot.kernel.addresses import call_at
 from evenroad.robot.kernel.forward_kinematics import scratch_memory, unpacked
 from evenroad.robot.trees import connect, shorten
 from evenroad.world.protocol import Connection
@@ -82,12 +84,14 @@ class Log:
 
     def filled_by(self, task: Callable[[], Any]) -> None:
         """Run a task whose batches are noted."""
-        own = lane_check.check_address
-        lane_check.check_address = lambda: int(ctypes.cast(self._callback, ctypes.c_void_p).value or 0)
+        own = trees.lanes
+        batch, (_, of_motion) = own()
+        noting = int(ctypes.cast(self._callback, ctypes.c_void_p).value or 0)
+        trees.lanes = lambda: (batch, (noting, of_motion))  # type: ignore[assignment]
         try:
             task()
         finally:
-            lane_check.check_address = own
+            trees.lanes = own
 
     def time_again(self) -> float:
         """Return how long the batches take by themselves, bodies as large as they were [ms]."""
@@ -107,7 +111,7 @@ def _again(states: Any, tables: Any, table: Any, enough: Any, lanes: Any, addres
             current = table[i]
             radii[:] = tables[current]
         room[:] = states[i]
-        blocked += lane_check.blocked_states(address, scratch, room, ints, radii, enough[i])
+        blocked += call_at(address, (scratch, room, ints, radii, enough[i]))
     return blocked
 
 

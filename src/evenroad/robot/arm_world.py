@@ -12,6 +12,7 @@ import numpy.typing as npt
 from evenroad._checks import require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue, NotAvailable, UnknownName
+from evenroad.robot import trees
 from evenroad.robot.fingerprint import fingerprint
 from evenroad.robot.kernel import scalar
 from evenroad.robot.kernel.certify import motions_certified
@@ -138,10 +139,8 @@ class ArmWorld:
         tables = self.tables
         if self.backend == "scalar":
             return scalar.configurations_free(configurations, self.bounds, tables.ints, tables.floats)
-        # Imported late: where the vector type cannot even be defined, all else still works.
-        from evenroad.robot.kernel import batch as lanes_batch
-
-        return lanes_batch.configurations_free(configurations, self.bounds, tables.lanes)
+        batch, (address, _) = trees.lanes()
+        return batch.configurations_free(configurations, address, self.bounds, tables.lanes)
 
     def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
         """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
@@ -157,9 +156,7 @@ class ArmWorld:
         resolution, bounds, tables = self.resolution, self.bounds, self.tables
         if self.backend == "scalar":
             return scalar.motions_free(first, second, resolution, bounds, tables.ints, tables.floats)
-        from evenroad.robot.kernel import batch as lanes_batch
-
-        return lanes_batch.motions_free(first, second, resolution, bounds, tables.lanes)
+        return trees.lanes()[0].motions_free(first, second, 0.0, *trees.lane_arguments(self))
 
     @property
     def proof(self) -> str:
@@ -201,6 +198,8 @@ class ArmWorld:
             As `motion_valid`.
         """
         first, second = as_batch_pair(a, b, self._space.dim)
+        if self.backend == "lanes" and self.fixed_contact is None:
+            return trees.lanes()[0].motions_free(first, second, tolerance, *trees.lane_arguments(self))
         proved = self.motion_valid(first, second)
         rows, tables = np.flatnonzero(proved), self.tables
         proved[rows] = motions_certified(

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import time
+from functools import cache
+from types import ModuleType
 
 import numpy as np
 import numpy.typing as npt
@@ -107,7 +109,7 @@ def shorten(world: PlansWithTrees, path: npt.ArrayLike, *, proved: bool = False)
     from evenroad.robot.kernel import shorten as kernel
 
     counts = np.zeros(3, dtype=np.int64)
-    shorter, _ = kernel.shorten_path(waypoints, proved, share_pairs(), counts, *_world_arguments(world))
+    shorter, _ = kernel.shorten_path(waypoints, proved, share_pairs(), counts, *lane_arguments(world))
     return shorter, int(counts[0])
 
 
@@ -122,7 +124,7 @@ def _grown(world: PlansWithTrees, ends: Floats, samples: Floats, most: int, seco
         order = np.argsort(distances, kind="stable")
         ends = ends[np.concatenate([[0], 1 + order])]
         ends.setflags(write=False)
-    dim, ball, arguments = ends.shape[1], ball_points(ends.shape[1]), _world_arguments(world)
+    dim, ball, arguments = ends.shape[1], ball_points(ends.shape[1]), lane_arguments(world)
     capacity = -(-max(_CAPACITY, 2 * len(ends) + kernel.ROOM) // 16) * 16
     nodes, columns, links = _room(capacity, dim)
     sizes, state = np.zeros(2, dtype=np.int64), np.zeros(kernel.STATE, dtype=np.int64)
@@ -169,14 +171,22 @@ def _fill_columns(columns: npt.NDArray[np.float32], nodes: Floats, sizes: npt.ND
         by_tree[tree, :, :size] = nodes[tree, :size].T
 
 
-def _world_arguments(
-    world: PlansWithTrees,
-) -> tuple[int, float, Floats, npt.NDArray[np.int64], Floats, Floats]:
-    """Return what compiled planners take of a world."""
-    from evenroad.robot.kernel.lane_check import check_address
+@cache
+def lanes() -> tuple[ModuleType, tuple[int, int]]:
+    """Return the module of batches in lanes, and the addresses of the checks that it takes."""
+    # Imported late: where the vector type cannot even be defined, all else still works.
+    from evenroad.robot.kernel import batch
+    from evenroad.robot.kernel.motion_checks import addresses
 
+    return batch, addresses()
+
+
+def lane_arguments(
+    world: PlansWithTrees,
+) -> tuple[tuple[int, int], float, Floats, npt.NDArray[np.int64], Floats, Floats]:
+    """Return what compiled functions take of a world."""
     arms = world.robot_tables.speeds_by_joint
-    return check_address(), world.resolution, world.bounds, world.tables.lanes, *arms
+    return lanes()[1], world.resolution, world.bounds, world.tables.lanes, *arms
 
 
 def _stacked(start: npt.ArrayLike, goals: npt.ArrayLike, dim: int) -> Floats:

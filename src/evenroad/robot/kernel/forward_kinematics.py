@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel.addresses import address_of
 from evenroad.robot.kernel.lanes import ONE, ZERO, absolute, load, sine_and_cosine, spread, store
 from evenroad.robot.kernel.layout import inlined, inner
 
@@ -60,7 +61,7 @@ def scratch_memory(dim: int, ints: Ints, table: Singles) -> tuple[Floats, Floats
     frames, capsules, bodies, length = scratch_places(ints)
     doubles = dim * LANES
     raw = np.empty(doubles + length // 2 + LANES + dim)
-    skip = (64 - raw.ctypes.data % 64) % 64 // 8
+    skip = (64 - address_of(raw) % 64) % 64 // 8
     states, scratch = (
         raw[skip : skip + doubles],
         raw[skip + doubles : skip + doubles + length // 2].view(np.float32),

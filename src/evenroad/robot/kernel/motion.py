@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.robot.kernel.layout import inner
+from evenroad.robot.kernel.layout import inner, quick
 
 Floats = npt.NDArray[np.float64]
 
@@ -71,3 +71,26 @@ def span(start: Floats, end: Floats, bounds: Floats, resolution: float, directio
             direction[k] -= period * np.rint(direction[k] / period)
         squared += direction[k] * direction[k]
     return math.ceil(math.sqrt(squared) / resolution)
+
+
+@quick
+def canonical(q: Floats, bounds: Floats) -> None:
+    """Bring `q` into bounds: wrapping coordinates into their ranges, the others cut."""
+    enter(q, bounds, q)
+    for k in range(len(q)):
+        if bounds[2, k] == np.inf:
+            q[k] = min(max(q[k], bounds[0, k]), bounds[1, k])
+
+
+@quick
+def distance_and_way(a: Floats, b: Floats, bounds: Floats, way: Floats) -> float:
+    """Write the short way from `a` to `b` and return its length."""
+    squared = 0.0
+    for k in range(len(a)):
+        apart = b[k] - a[k]
+        period = bounds[2, k]
+        if period != np.inf:
+            apart -= period * np.rint(apart / period)
+        way[k] = apart
+        squared += apart * apart
+    return np.sqrt(squared)

@@ -27,8 +27,9 @@ def lanes_failure() -> str | None:
     """Return why the lanes are of no use here; None where they compile and give the verdicts that they should."""
     try:
         from evenroad.robot.kernel.batch import configurations_free
+        from evenroad.robot.kernel.lane_check import check_address
 
-        free = configurations_free(small_batch(), small_bounds(), small_tables().lanes)
+        free = configurations_free(small_batch(), check_address(), small_bounds(), small_tables().lanes)
     except Exception as error:
         # Whatever goes wrong in compiling for a machine we have not seen, there is the other way.
         first_line = next(iter(str(error).strip().splitlines()), "")

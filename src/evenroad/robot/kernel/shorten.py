@@ -7,15 +7,8 @@ import numpy.typing as npt
 from numba import njit
 
 from evenroad.robot.kernel.layout import quick
-from evenroad.robot.kernel.motion import enter
-from evenroad.robot.kernel.tree_checks import (
-    Checks,
-    canonical,
-    checks_of,
-    distance_and_way,
-    motion_free,
-    motion_proved,
-)
+from evenroad.robot.kernel.motion import canonical, distance_and_way, enter
+from evenroad.robot.kernel.motion_checks import COARSE, Checks, checks_of, motion_free, motion_proved
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -43,7 +36,7 @@ def shorten_path(
     given_proved: bool,
     pairs: Floats,
     counts: Ints,
-    address: int,
+    addresses: tuple[int, int],
     resolution: float,
     bounds: Floats,
     tables: Ints,
@@ -62,10 +55,10 @@ def shorten_path(
         Shares of the path's length, from 0 to 1: between which places a straight motion is tried.
     counts : int64 array, shape (3,)
         Added to: motions asked for, configurations and batches tested.
-    address, resolution, bounds, tables, arms, pair_arms
-        As ``tree_checks.checks_of`` takes them.
+    addresses, resolution, bounds, tables, arms, pair_arms
+        As ``motion_checks.checks_of`` takes them.
     """
-    checks = checks_of(address, resolution, bounds, tables, arms, pair_arms, counts)
+    checks = checks_of(addresses, resolution, bounds, tables, arms, pair_arms, counts)
     dim = path.shape[1]
     room = len(path) + len(pairs) + MOST_CUTS + 4
     points, proved, places = np.empty((room, dim)), np.empty(room, dtype=np.bool_), np.empty(room)
@@ -156,7 +149,7 @@ def _joined(
 @quick
 def _is_shortcut(a: Floats, b: Floats, checks: Checks) -> bool:
     """Return whether the motion between two free configurations is free and proved."""
-    return motion_free(a, b, True, True, checks) and motion_proved(a, b, TOLERANCE, BATCHES, checks)
+    return motion_free(a, b, COARSE, checks) and motion_proved(a, b, TOLERANCE, BATCHES, checks)
 
 
 @quick

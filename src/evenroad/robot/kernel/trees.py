@@ -15,17 +15,17 @@ import numpy.typing as npt
 from numba import njit
 
 from evenroad.robot.kernel.layout import LANES, inner, quick
-from evenroad.robot.kernel.motion import enter
-from evenroad.robot.kernel.tree_checks import (
+from evenroad.robot.kernel.motion import canonical, distance_and_way, enter
+from evenroad.robot.kernel.motion_checks import (
     BATCHES,
+    BOTH_ENDS,
     CONFIGURATIONS,
     COUNTS,
     MOTIONS,
+    START,
     Checks,
     blocked,
-    canonical,
     checks_of,
-    distance_and_way,
     motion_free,
     motion_proved,
 )
@@ -144,7 +144,7 @@ def grow(
     ball: Floats,
     most_motions: int,
     slice_batches: int,
-    address: int,
+    addresses: tuple[int, int],
     resolution: float,
     bounds: Floats,
     tables: Ints,
@@ -169,13 +169,13 @@ def grow(
         After so many motions the budget is spent.
     slice_batches : int
         After about so many batches of sixteen checks the call returns, for the caller to look at the clock.
-    address, resolution, bounds, tables, arms, pair_arms
-        As ``tree_checks.checks_of`` takes them.
+    addresses, resolution, bounds, tables, arms, pair_arms
+        As ``motion_checks.checks_of`` takes them.
     """
     trees = Trees(nodes, columns, links, sizes, np.empty(bounds.shape[1], dtype=np.float32))
     for k in range(bounds.shape[1]):
         trees.periods[k] = min(bounds[2, k], 1e30)
-    checks = checks_of(address, resolution, bounds, tables, arms, pair_arms, state[:COUNTS])
+    checks = checks_of(addresses, resolution, bounds, tables, arms, pair_arms, state[:COUNTS])
     memory = _memory(bounds)
     if state[BEGUN] == 0:
         _begin(ends, trees, memory, checks)
@@ -254,7 +254,7 @@ def _begin(ends: Floats, trees: Trees, memory: Memory, checks: Checks) -> None:
             canonical(memory.here, checks.bounds)
             for k in range(dim):
                 checks.states[k * LANES + lane] = memory.here[k]
-        free = inside & ~blocked(checks, checks.table, LANES)
+        free = inside & ~blocked(checks)
         checks.counts[CONFIGURATIONS] += some
         for lane in range(some):
             if (free >> lane) & 1:
@@ -308,7 +308,7 @@ def _candidates(
         for k in range(dim):
             checks.states[k * LANES + 2 * candidate] = here[k] + 0.5 * memory.way[k]
             checks.states[k * LANES + 2 * candidate + 1] = target[k]
-    touching = blocked(checks, checks.table, LANES)
+    touching = blocked(checks)
     state[CONFIGURATIONS] += LANES
     kept = 0
     for candidate in range(STEPS_AT_ONCE):
@@ -326,7 +326,7 @@ def _candidates(
 @quick
 def _extended(trees: Trees, tree: int, origin: int, target: Floats, checks: Checks) -> int:
     """Return the number of a new node at `target`, or -1 where the motion there from `origin` is blocked."""
-    if not motion_free(trees.nodes[tree, origin], target, False, False, checks):
+    if not motion_free(trees.nodes[tree, origin], target, START, checks):
         return -1
     return add_node(trees, tree, target, origin)
 
@@ -345,7 +345,7 @@ def _reach(trees: Trees, tree: int, found: int, other: int, memory: Memory, chec
         for k in range(len(here)):
             target[k] = there[k] if step == steps else here[k] + step / steps * way[k]
         canonical(target, checks.bounds)
-        if not motion_free(trees.nodes[tree, found], target, step == steps, False, checks):
+        if not motion_free(trees.nodes[tree, found], target, BOTH_ENDS if step == steps else START, checks):
             return -1
         if step == steps:
             return found
