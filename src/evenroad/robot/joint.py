@@ -35,7 +35,7 @@ class Joint:
     name : str
         Name of the joint.
     kind : {"revolute", "continuous", "prismatic", "fixed"}
-        Turns about, or slides along, its axis; or neither.
+        Rotates about, or slides along, its axis; or neither.
     parent, child : str
         Names of the links it joins.
     xyz : tuple of 3 floats

@@ -110,5 +110,5 @@ def ends_at(robot: KinematicTree, poses: Floats) -> Floats:
     """Return the end points of all capsules, (n, capsules, 2, 3), where the links have these poses."""
     link = [robot.links.index(capsule.link) for capsule in robot.capsules]
     ends = np.array([[capsule.a, capsule.b] for capsule in robot.capsules]).reshape(-1, 2, 3)
-    turned = np.einsum("nkij,kej->nkei", poses[:, link][..., :3, :3], ends)
-    return turned + poses[:, link][:, :, np.newaxis, :3, 3]
+    rotated = np.einsum("nkij,kej->nkei", poses[:, link][..., :3, :3], ends)
+    return rotated + poses[:, link][:, :, np.newaxis, :3, 3]

@@ -183,8 +183,8 @@ def _from_list(robot: Robot, text: str, states: Mapping[str, object], degrees: b
 def _value(robot: Robot, name: str, word: str, degrees: bool) -> float:
     if not _is_number(word):
         raise InvalidValue(f"joint {name!r} must be a finite number, got {word!r}")
-    turns = next(joint.kind for joint in robot.joints if joint.name == name) != "prismatic"
-    return math.radians(float(word)) if degrees and turns else float(word)
+    is_angle = next(joint.kind for joint in robot.joints if joint.name == name) != "prismatic"
+    return math.radians(float(word)) if degrees and is_angle else float(word)
 
 
 def _is_number(word: str) -> bool:

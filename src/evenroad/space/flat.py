@@ -94,10 +94,10 @@ def _all_distances(a, b, scale, period):  # type: ignore[no-untyped-def]
         for j in range(len(b)):
             squares = 0.0
             for k in range(len(scale)):
-                apart = b[j, k] - a[i, k]
+                difference = b[j, k] - a[i, k]
                 if period[k] != np.inf:
-                    apart -= period[k] * np.rint(apart / period[k])
-                squares += (scale[k] * apart) ** 2
+                    difference -= period[k] * np.rint(difference / period[k])
+                squares += (scale[k] * difference) ** 2
             distances[i, j] = np.sqrt(squares)
     return distances
 

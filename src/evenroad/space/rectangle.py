@@ -1,4 +1,4 @@
-"""Rectangle: a rectangle in the plane, possibly turned, with the Euclidean metric."""
+"""Rectangle: a rectangle in the plane, possibly rotated, with the Euclidean metric."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _LARGEST_COSINE = 1e-9
 """Edges count as perpendicular up to this cosine: room for the rounding of a yaw, not for a slanted frame."""
 
 _ROUNDING = 1e-9
-"""Share of an edge by which a point may be outside: room for the rounding of a turned frame far from the origin."""
+"""Share of an edge by which a point may be outside: room for the rounding of a rotated frame far from the origin."""
 
 
 @dataclass(frozen=True)

@@ -18,19 +18,19 @@ def _problem(make: Callable[[], Puzzle], set_dim: int, instance: int) -> Problem
 
 
 def _sources(name: str, make: Callable[[], Puzzle], about: str) -> tuple[ProblemSource, ProblemSource]:
-    """Return the puzzle with sets that give the translation, as published, and with sets that give the turn, too."""
+    """Return the puzzle with sets that give the translation, as published, and with sets that also give the rotation."""
     return (
         ProblemSource(
             name,
             3,
             partial(_problem, make, 3),
-            about=f"{about}; the sets give translations, turns are uniform",
+            about=f"{about}; the sets give translations, rotations are uniform",
         ),
         ProblemSource(
             f"{name}-6d",
             6,
             partial(_problem, make, 6),
-            about=f"{about}; the sets give translations and turns",
+            about=f"{about}; the sets give translations and rotations",
         ),
     )
 

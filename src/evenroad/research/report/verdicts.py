@@ -146,7 +146,7 @@ def verdicts_of(table: ExpectedTable, cells: Sequence[Cell]) -> tuple[Verdict, .
     The test takes runs for independent.  Where they share sets of a pool they are not, and it says "differs" too
     readily.
     """
-    ours = {(c.question.problem, c.sampler, c.question.rule, c.n, c.question.search): c for c in cells}
+    ours = {(c.setting.problem, c.sampler, c.setting.rule, c.n, c.setting.search): c for c in cells}
     found = [_ours_for(expected, ours) for expected in table.cells]
     p_values = [_p_value(expected, cell) for expected, cell in zip(table.cells, found, strict=True)]
     corrected = holm_of_tested(p_values).tolist()

@@ -136,13 +136,13 @@ def motions_are_free(a: Floats, b: Floats, resolution: float, width: float, axes
             and is_in_cube(b[row])
             and _is_in_corridor(a[row], b[row], 1.0, 0.0, width, axes)
             and _is_in_corridor(a[row], b[row], 0.0, 1.0, width, axes)
-            and _way_is_free(a[row], b[row], resolution, width, axes)
+            and _motion_is_free(a[row], b[row], resolution, width, axes)
         )
     return free
 
 
 @njit(cache=True, nogil=True)
-def _way_is_free(a: Floats, b: Floats, resolution: float, width: float, axes: Ints) -> bool:
+def _motion_is_free(a: Floats, b: Floats, resolution: float, width: float, axes: Ints) -> bool:
     squared = 0.0
     for k in range(len(a)):
         squared += (b[k] - a[k]) * (b[k] - a[k])

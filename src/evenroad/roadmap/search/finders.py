@@ -97,7 +97,7 @@ def find_any(problem: SearchProblem, states: EdgeStates) -> Found:
             return NOT_FOUND
         meeting = np.flatnonzero(trees[0].member & trees[1].member)
         if meeting.size:
-            there, back = (tree.way_from_root(int(meeting[0])) for tree in trees)
+            there, back = (tree.path_from_root(int(meeting[0])) for tree in trees)
             return np.concatenate([there[0], back[0][-2::-1]]), np.concatenate([there[1], back[1][::-1]])
 
 
@@ -140,9 +140,9 @@ class _Tree:
         self._take_up(targets[free])
         return True
 
-    def way_from_root(self, node: int) -> Found:
+    def path_from_root(self, node: int) -> Found:
         """Return the nodes and edges from a root of the tree to a node in it."""
-        return _way_back(self.parent_edge, self.states.edges, node)
+        return _path_back(self.parent_edge, self.states.edges, node)
 
     def _take_up(self, nodes: npt.NDArray[np.integer]) -> None:
         self.member[nodes] = True
@@ -169,7 +169,7 @@ def march(problem: SearchProblem, states: EdgeStates) -> tuple[Found, int]:
     while frontier:
         _, node = heapq.heappop(frontier)
         if node in goals:
-            return _way_back(parent_edge, states.edges, node), int(np.count_nonzero(stage))
+            return _path_back(parent_edge, states.edges, node), int(np.count_nonzero(stage))
         fresh, offers = _best_offers(node, graph.first, graph.other, graph.edge, weights, cost, stage)
         states.ask_edges(offers)
         free = states.edge_states[offers] == FREE
@@ -223,7 +223,7 @@ def _all_free(nodes: Ints32, along: Ints32, states: EdgeStates) -> bool:
     return True
 
 
-def _way_back(parent_edge: Ints32, edges: Ints32, node: int) -> Found:
+def _path_back(parent_edge: Ints32, edges: Ints32, node: int) -> Found:
     """Return the nodes and edges from the root of a tree to a node in it."""
     nodes, along = [node], []
     while (edge := int(parent_edge[nodes[-1]])) >= 0:

@@ -23,7 +23,7 @@ from evenroad.world.gridmap.kernel import (
     nearest_obstacle_points,
     points_are_free,
 )
-from evenroad.world.gridmap.search import find_way, straighten
+from evenroad.world.gridmap.search import find_path, straighten
 from evenroad.world.protocol import Connection
 
 _SPREADS = (32, 96)
@@ -207,7 +207,7 @@ class DiskWorld:
         """
         first = as_batch("start", np.reshape(start, (1, -1)), 2)[0]
         last = as_batch("goals", goals, 2)
-        way, goal, nodes, motions = find_way(first, last, self._tables, self._gates, most_motions)
+        way, goal, nodes, motions = find_path(first, last, self._tables, self._gates, most_motions)
         return Connection(way, int(goal), nodes, 0, motions)
 
     def shorten(self, path: Floats) -> tuple[Floats, int]:

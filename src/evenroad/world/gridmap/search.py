@@ -16,7 +16,7 @@ from numba import njit
 
 from evenroad._arrays import Bools, Floats
 from evenroad.world.gridmap.cells import BLOCKED, FREE, DiskTables
-from evenroad.world.gridmap.kernel import point_is_free, to_padded, way_is_free
+from evenroad.world.gridmap.kernel import motion_is_free, point_is_free, to_padded
 
 _BUCKETS = 64
 """More than the largest step of the key of A*, twice the dearest step: a key names its bucket."""
@@ -38,7 +38,7 @@ _LINKS = 24
 
 
 @njit(cache=True, nogil=True)
-def find_way(
+def find_path(
     start: Any, goals: Any, disk: DiskTables, gates: Bools, most: int
 ) -> tuple[Floats, int, int, int]:
     """Find a way over the half lattice from a free point, (2,), to the nearest on it of others, (g, 2).
@@ -249,8 +249,8 @@ def _free_between(ax: float, ay: float, bx: float, by: float, disk: DiskTables) 
     if not point_is_free(ax, ay, disk) or not point_is_free(bx, by, disk):
         return False
     if bx < ax or (bx == ax and by < ay):
-        return way_is_free(bx, by, ax, ay, disk)
-    return way_is_free(ax, ay, bx, by, disk)
+        return motion_is_free(bx, by, ax, ay, disk)
+    return motion_is_free(ax, ay, bx, by, disk)
 
 
 @njit(cache=True, nogil=True)

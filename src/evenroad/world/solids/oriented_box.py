@@ -40,7 +40,7 @@ class OrientedBox:
     rotation : sequence of 4 or 9 floats, optional
         From the box's own axes to those of the frame that `centre` is in, the rows of the matrix one after the
         other (:func:`evenroad.geometry.rotation_from_heading` and
-        :func:`evenroad.geometry.rotation_from_quaternion` make them); default: not turned.
+        :func:`evenroad.geometry.rotation_from_quaternion` make them); default: not rotated.
     name : str
         What explanations call it.
 
@@ -68,7 +68,7 @@ class OrientedBox:
 
     @classmethod
     def spanning(cls, low: Sequence[float], high: Sequence[float], name: str = "") -> OrientedBox:
-        """Return the box, not turned, that reaches from `low` to `high`; equal numbers make it flat.
+        """Return the box, not rotated, that reaches from `low` to `high`; equal numbers make it flat.
 
         Raises
         ------
