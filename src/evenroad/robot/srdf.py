@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.robot.joint import Joint
 from evenroad.robot.urdf import Urdf
+from evenroad.robot.urdf_xml import read_xml
 
 
 @dataclass(frozen=True)
@@ -42,14 +43,7 @@ def read_srdf(path: Path, urdf: Urdf) -> Srdf:
     InvalidValue
         If a joint of a state has a value that is not a finite number.
     """
-    try:
-        root = ElementTree.fromstring(path.read_bytes())
-    except OSError as error:
-        raise BrokenFile(f"cannot read the SRDF {path}: {error.strerror or error}") from error
-    except (ElementTree.ParseError, ValueError, LookupError) as error:
-        raise BrokenFile(f"{path} is not XML: {error}") from error
-    if root.tag != "robot":
-        raise BrokenFile(f"{path} is not an SRDF: its outermost element is <{root.tag}>, not <robot>")
+    root = read_xml(path, "SRDF", "an SRDF")
     elements = {_attribute(group, "name", path): group for group in root.findall("group")}
     virtual = frozenset(_attribute(joint, "name", path) for joint in root.findall("virtual_joint"))
     passive = frozenset(

@@ -97,12 +97,3 @@ class Sobol(_Sequence):
             return self._set(engine.random(n), rng)
         # From index 0 SciPy warns unless n is a power of two; users of a roadmap choose n freely.
         return self._set(engine.random_base2((n - 1).bit_length())[:n], rng)
-
-
-def paper_block(sampler: Halton | Sobol, run: int, n: int) -> Halton | Sobol:
-    """Return the plain sequence for one run of the paper: points (run-1) n + 1 .. run n, with run >= 1.
-
-    Chahine et al. (2025), section 4.1: every run goes on where the previous one ended.
-    """
-    run, n = require_count("run", run), require_count("n", n)
-    return type(sampler)(scramble=False, start=(run - 1) * n + 1)

@@ -18,7 +18,7 @@ def _problem(make: Callable[[], Puzzle], set_dim: int, instance: int) -> Problem
 
 
 def _sources(name: str, make: Callable[[], Puzzle], about: str) -> tuple[ProblemSource, ProblemSource]:
-    """Return the puzzle with sets that give the translation, as published, and with sets that also give the rotation."""
+    """Return the puzzle with sets that give the translation, as published, and with sets that give the rotation too."""
     return (
         ProblemSource(
             name,
