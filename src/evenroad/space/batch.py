@@ -1,11 +1,15 @@
-"""Reading a caller's configurations: a float64 batch of known width, or an error that names what is wrong."""
+"""Reading what callers give: batches of configurations and rows of parameters, with errors that name what is wrong."""
 
 from __future__ import annotations
+
+import math
+from collections.abc import Sequence
 
 import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._checks import as_batch as as_batch
+from evenroad._checks import as_row
 from evenroad.errors import InvalidValue
 
 
@@ -56,3 +60,33 @@ def as_fractions(t: object, n: int) -> Floats:
     if not ((fraction >= 0.0) & (fraction <= 1.0)).all():
         raise InvalidValue("t must lie in [0, 1]")
     return np.broadcast_to(fraction, (n,))[:, np.newaxis]
+
+
+def as_bounds(low: Sequence[float], high: Sequence[float]) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Return `low` and `high` as rows of one length with ``low < high`` on every axis.
+
+    Raises
+    ------
+    InvalidValue
+        Naming the first axis whose bounds are not such.
+    """
+    lows = as_row("low", low)
+    highs = as_row("high", high, len(lows))
+    for k, (least, most) in enumerate(zip(lows, highs, strict=True)):
+        if not (least < most and math.isfinite(most - least)):
+            raise InvalidValue(f"low must be less than high on every axis; axis {k} has {least!r}, {most!r}")
+    return lows, highs
+
+
+def as_weights(weights: Sequence[float] | None, length: int) -> tuple[float, ...]:
+    """Return `weights` as `length` floats > 0; None stands for ones.
+
+    Raises
+    ------
+    InvalidValue
+        If they are not `length` finite numbers > 0.
+    """
+    row = (1.0,) * length if weights is None else as_row("weights", weights, length)
+    if min(row) <= 0.0:
+        raise InvalidValue(f"weights must be > 0, got {weights!r}")
+    return row

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from evenroad.errors import InvalidValue
-from evenroad.space.axes import as_bounds, as_weights
+from evenroad.space.batch import as_bounds, as_weights
 from evenroad.space.flat import FlatSpace
 
 

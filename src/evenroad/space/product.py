@@ -10,8 +10,7 @@ import numpy as np
 
 from evenroad._arrays import Bools, Floats
 from evenroad.errors import InvalidValue, UnknownName
-from evenroad.space.axes import as_weights
-from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions
+from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions, as_weights
 from evenroad.space.flat import FlatMetric
 from evenroad.space.joints import Box, Circle
 from evenroad.space.protocol import Space, all_distances

@@ -60,8 +60,8 @@ JOIN names of_worker ON of_worker.id = worker;
 
 
 COLUMNS = (
-    "key", "protocol", "suite", "problem", "instance", "sampler", "n", "rule", "search", "run", "seed", "status", "valid",
-    "valid_at_solution", "edges_checked", "length", "seconds", "set_id", "error", "worker", "finished",
+    "key", "protocol", "suite", "problem", "instance", "sampler", "n", "rule", "search", "run", "seed", "status",
+    "valid", "valid_at_solution", "edges_checked", "length", "seconds", "set_id", "error", "worker", "finished",
 )  # fmt: skip
 """Columns of a row, in the order of the table, without its checksum."""
 

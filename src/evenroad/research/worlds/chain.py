@@ -14,7 +14,7 @@ from evenroad.errors import InvalidValue
 from evenroad.research.worlds.compiled import CompiledWorld, comes_first
 from evenroad.space.batch import as_batch
 from evenroad.space.chain import ChainSpace, chain_distance
-from evenroad.world.bisection_kernel import next_between
+from evenroad.world.bisection import next_between
 
 _END_PIECE = 0.001
 """Length by which the last link is longer than the others, as one more segment."""

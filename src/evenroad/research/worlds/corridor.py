@@ -147,7 +147,7 @@ def _motion_is_free(a: Floats, b: Floats, resolution: float, width: float, axes:
     for k in range(len(a)):
         squared += (b[k] - a[k]) * (b[k] - a[k])
     segments = math.ceil(math.sqrt(squared) / resolution)
-    # As evenroad.world.bisection_kernel, but written out: a state takes so little here that a call for each shows.
+    # As evenroad.world.bisection, but written out: a state takes so little here that a call for each shows.
     level = 1
     while (1 << (level - 1)) < segments:
         before = 0

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints
-from evenroad.world.bisection_kernel import next_between
+from evenroad.world.bisection import next_between
 from evenroad.world.solids.oriented_box import BoxTable
 from evenroad.world.solids.overlap import first_contact
 

@@ -9,11 +9,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints
-from evenroad._checks import require_positive
+from evenroad._checks import as_row, require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
 from evenroad.space import Box, Product
-from evenroad.space.axes import as_row
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.bisection import require_few_segments
 from evenroad.world.solids.kernel import contacts, motions_are_free
