@@ -42,10 +42,7 @@ def require_positive(name: str, value: object, *, or_zero: bool = False) -> floa
 def as_row(name: str, values: Sequence[float], length: int | None = None) -> tuple[float, ...]:
     """Return `values` as a tuple of finite floats, `length` of them or else at least one.
 
-    Raises
-    ------
-    InvalidValue
-        Naming `values` and what is allowed.
+    Raises InvalidValue naming `values` and what is allowed.
     """
     wanted = "one finite number or more" if length is None else f"{length} finite number(s)"
     try:

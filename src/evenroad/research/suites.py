@@ -37,10 +37,7 @@ class Suite:
 def chosen_names(only: Iterable[str], known: Iterable[str]) -> tuple[str, ...]:
     """Return those of the `known` problem names that `only` asks for, in the order of `known`; all if it is empty.
 
-    Raises
-    ------
-    UnknownName
-        If one of `only` is not known; the text lists those that are.
+    Raises UnknownName if one of `only` is not known; the text lists those that are.
     """
     known, wanted = tuple(known), tuple(only)
     for name in wanted:

@@ -92,10 +92,7 @@ def require_within(joint: Joint, value: float, what: str) -> None:
 def with_direct_mimics(joints: Sequence[Joint], path: Path) -> list[Joint]:
     """Return the joints with every mimic following a joint that is no mimic itself.
 
-    Raises
-    ------
-    BrokenFile
-        If a mimic follows a fixed joint, or mimics follow each other in a circle.
+    Raises BrokenFile if a mimic follows a fixed joint, or mimics follow each other in a circle.
     """
     by_name = {joint.name: joint for joint in joints}
 

@@ -32,12 +32,8 @@ class KinematicTree(Protocol):
 def joint_values(robot: KinematicTree, q: npt.ArrayLike) -> dict[str, Floats]:
     """Return the value of every movable joint, joint -> (n,), for configurations of the group, (n, dim).
 
-    Joints outside of the group are held (see :class:`Robot`); mimics follow.
-
-    Raises
-    ------
-    InvalidValue
-        If `q` is not of that shape.
+    Joints outside of the group are held (see :class:`Robot`); mimics follow.  Raises InvalidValue if `q` is not of
+    that shape.
     """
     batch = np.asarray(q, dtype=np.float64)
     if batch.ndim != 2 or batch.shape[1] != len(robot.group):

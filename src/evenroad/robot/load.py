@@ -105,10 +105,7 @@ def load_model(
 def find_robot(source: PathLike) -> tuple[Path, Path | None]:
     """Return the URDF, and for a shipped robot its SRDF if it has one.
 
-    Raises
-    ------
-    UnknownName
-        If there is neither such a file nor such a robot.
+    Raises UnknownName if there is neither such a file nor such a robot.
     """
     path = Path(source)
     if path.is_file() or path.suffix or len(path.parts) > 1:

@@ -133,10 +133,7 @@ class Scene:
     def with_(self, *obstacles: Obstacle, allowed: Sequence[tuple[str, str]] = ()) -> Scene:
         """Return the scene with more obstacles, and more (link, obstacle) contacts that are not tested.
 
-        Raises
-        ------
-        InvalidValue
-            If the scene has an obstacle of such a name already.
+        Raises InvalidValue if the scene has an obstacle of such a name already.
         """
         return replace(
             self, obstacles=(*self.obstacles, *obstacles), allowed=self.allowed | frozenset(allowed)
@@ -145,10 +142,7 @@ class Scene:
     def without(self, *names: str) -> Scene:
         """Return the scene without the obstacles of these names, and without what was allowed to touch them.
 
-        Raises
-        ------
-        UnknownName
-            If there is no such obstacle.
+        Raises UnknownName if there is no such obstacle.
         """
         known = [obstacle.name for obstacle in self.obstacles]
         for name in names:

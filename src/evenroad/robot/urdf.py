@@ -192,13 +192,9 @@ def _numbers(element: Element | None, attribute: str, default: tuple[float, ...]
 def in_tree_order(links: Sequence[str], joints: Sequence[Joint], where: str) -> list[Joint]:
     """Return the joints so that every joint's parent is the root or the child of an earlier one.
 
-    Depth first, children in the order given.  `where` names the file in errors.
-
-    Raises
-    ------
-    BrokenFile
-        If links or joints share a name, a joint joins links that there are not, a link has two parents, there
-        is more than one root, or the joints form a cycle; the text names them.
+    Depth first, children in the order given. `where` names the file in errors.  Raises BrokenFile if links or joints
+    share a name, a joint joins links that there are not, a link has two parents, there is more than one root, or the
+    joints form a cycle; the text names them.
     """
     _require_distinct("link", list(links), where)
     _require_distinct("joint", [joint.name for joint in joints], where)

@@ -180,12 +180,8 @@ def find_mesh(name: str, urdf: Path, link: str) -> Path:
 
     ``package://PACKAGE/FILE`` is looked for in the folder of the URDF and those above it, either inside of a folder
     PACKAGE or in one, and where ROS keeps packages (``ROS_PACKAGE_PATH``, ``AMENT_PREFIX_PATH``); ``file://`` is
-    absolute; all else is relative to the URDF.
-
-    Raises
-    ------
-    BrokenFile
-        If there is none; the text says where it was looked for.
+    absolute; all else is relative to the URDF.  Raises BrokenFile if there is none; the text says where it was looked
+    for.
     """
     places = list(_candidates(name, urdf.absolute().parent))
     for place in places:

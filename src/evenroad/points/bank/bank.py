@@ -55,10 +55,7 @@ class Cell:
     def load(self) -> npt.NDArray[np.float32]:
         """Return the sets, shape (sets, n, d), float32 in [0, 1), checked against the index.
 
-        Raises
-        ------
-        BrokenFile
-            If the file is missing or damaged, or a set does not have the hash of the index.
+        Raises BrokenFile if the file is missing or damaged, or a set does not have the hash of the index.
         """
         return _load_checked(self.path, (self.sets, self.n, self.d), self.hashes)
 

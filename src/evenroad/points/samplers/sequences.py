@@ -79,10 +79,8 @@ class Sobol(_Sequence):
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
         """Return points start .. start + n - 1 of the sequence, shape (n, d); see :class:`~evenroad.points.Sampler`.
 
-        Raises
-        ------
-        InvalidValue
-            Also if start + n exceeds 2**30 points, or d exceeds the 21201 dimensions of the direction numbers.
+        Raises InvalidValue also if start + n exceeds 2**30 points, or d exceeds the 21201 dimensions of the direction
+        numbers.
         """
         from scipy.stats import qmc
 

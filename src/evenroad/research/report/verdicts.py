@@ -84,13 +84,7 @@ class ExpectedTable:
 
 @cache
 def load_expected(name: str) -> ExpectedTable:
-    """Read one of :data:`SOURCES`.
-
-    Raises
-    ------
-    UnknownName
-        If there is no such source.
-    """
+    """Read one of :data:`SOURCES`; UnknownName if there is no such source."""
     if name not in SOURCES:
         raise UnknownName.among("source of expected results", name, SOURCES)
     record = tomllib.loads((FOLDER / f"{name}.toml").read_text(encoding="utf-8"))

@@ -244,10 +244,7 @@ class Spread:
 def spread_over_sets(solved: npt.ArrayLike, runs: npt.ArrayLike) -> Spread:
     """Return the spread over the sets of a pool, by their successes and runs, (sets,) each, runs >= 1.
 
-    Raises
-    ------
-    InvalidValue
-        If there is no set, or the counts are impossible.
+    Raises InvalidValue if there is no set, or the counts are impossible.
     """
     successes, trials = as_successes(solved, runs)
     if successes.ndim != 1 or len(successes) == 0:

@@ -60,10 +60,7 @@ def claim_folder(folder: Path, request: dict[str, Any], name: str = REQUEST_FILE
 def read_set(path: Path, origin: Origin, shape: tuple[int, int]) -> PointSet | None:
     """Return a finished set; None if its file is missing or damaged.
 
-    Raises
-    ------
-    InvalidValue
-        If the file holds a set of another shape, method, objective, seed or replica.
+    Raises InvalidValue if the file holds a set of another shape, method, objective, seed or replica.
     """
     try:
         points = load_points(path)

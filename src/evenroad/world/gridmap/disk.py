@@ -98,23 +98,11 @@ class DiskWorld:
         return "exact"
 
     def valid(self, q: Floats) -> Bools:
-        """Return whether the disk is free at each map point, (n, 2) -> (n,); False outside the map.
-
-        Raises
-        ------
-        InvalidValue
-            If `q` has another shape or an entry that is not finite.
-        """
+        """Return whether the disk is free at each map point, (n, 2) -> (n,); False outside the map."""
         return points_are_free(as_batch("q", q, 2), self._tables)
 
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
-        """Return whether the disk can move straight from each row of `a` to that of `b`: two (m, 2) -> (m,).
-
-        Raises
-        ------
-        InvalidValue
-            If the two differ in length, or as `valid`.
-        """
+        """Return whether the disk can move straight from each row of `a` to that of `b`: two (m, 2) -> (m,)."""
         return motions_are_free(*as_batch_pair(a, b, 2), self._tables)
 
     def clearance(self, q: Floats) -> Floats:

@@ -80,13 +80,7 @@ class SolidWorld:
         return fingerprint_of("solid", self.space, self.body, self.obstacles, self.resolution)
 
     def valid(self, q: Floats) -> Bools:
-        """Return which poses, (n, dim), lie in the space and are free: (n,).
-
-        Raises
-        ------
-        InvalidValue
-            If `q` has another shape or an entry that is not finite.
-        """
+        """Return which poses, (n, dim), lie in the space and are free: (n,)."""
         batch = as_batch("q", q, self.space.dim)
         free = self.space.contains(batch)
         inside = np.flatnonzero(free)
@@ -94,13 +88,7 @@ class SolidWorld:
         return free
 
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
-        """Return which motions from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
-
-        Raises
-        ------
-        InvalidValue
-            As `valid`, or if the two differ in length.
-        """
+        """Return which motions from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,)."""
         first, second = as_batch_pair(a, b, self.space.dim)
         free = self.space.contains(first) & self.space.contains(second)
         inside = np.flatnonzero(free)

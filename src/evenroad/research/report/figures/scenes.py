@@ -49,10 +49,7 @@ def scenes_among(problems: Sequence[str]) -> tuple[str, ...]:
 def draw_scene(name: str) -> Figure:
     """Return the picture of a problem's world with a found path.
 
-    Raises
-    ------
-    NotAvailable
-        If there is no picture of such a world.
+    Raises NotAvailable if there is no picture of such a world.
     """
     problem = PROBLEMS[name].make(0)
     match problem.world:
