@@ -56,10 +56,8 @@ Room = tuple[int, int]
 class MazeDesign:
     """A rectangular maze: a random spanning tree of rooms, with doors in a share of the remaining walls.
 
-    Attributes
+    Parameters
     ----------
-    cols, rows : int
-        Rooms, >= 1.
     wall : int
         Thickness of the walls [pixels], >= 2; odd ones are drawn one pixel thinner.
     door : int
@@ -67,12 +65,7 @@ class MazeDesign:
     loops : float
         Share of the walls outside the spanning tree that get a door too, in [0, 1].
     width, height : int
-        Of the picture [pixels].
-
-    Raises
-    ------
-    InvalidValue
-        If a number is out of range, or walls are as thick as rooms.
+        Of the picture [pixels].  Walls as thick as rooms, and numbers out of range, are an InvalidValue.
     """
 
     cols: int

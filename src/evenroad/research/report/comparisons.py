@@ -59,21 +59,16 @@ class Comparison:
 
     Attributes
     ----------
-    cell : Cell
-    reference : str
-    pairs : int
     only_cell, only_reference : int
         Pairs that only one of the two solved.
     interval : Interval
         Of the difference of success rates, cell minus reference.
     test : str
         ``McNemar`` where runs are independent, else ``Fisher over sets``, ``sign flips over blocks`` or ``sign flips
-        over instances``.  ``sign flips over instances, Student over sets``: both were done, and the larger p counts.
-        ``too few sets to test`` (or runs, blocks, instances): there are fewer than six.
-    p : float
-        NaN if it was not tested.
-    p_corrected : float
-        By Holm's method over all tested comparisons of the setting.
+        over instances``; ``.., Student over sets`` where both were done, and the larger p counts; ``too few sets to
+        test`` (or runs, blocks, instances) where there are fewer than six.
+    p, p_corrected : float
+        NaN if it was not tested; by Holm's method over all tested comparisons of the setting.
     """
 
     cell: Cell

@@ -91,17 +91,14 @@ class Pooled:
     ----------
     group : str
         ``all``, ``balls``, ``5d``, ``50 %``, ``256``, ``k=10 symmetrised, connect``, ...
-    sampler : str
     instances, pairs, sets : int
         Number of random worlds, of runs, and of sets of the sampler's pool; no sets if it draws afresh or is the grid.
-    rate, reference_rate : float
-        Success rates over the pairs.
     interval : Interval
-        Of their difference, over worlds.  In fewer than 5 dimensions a pool's sets are used as they are: the interval
-        is over sets where that is wider.
+        Of the difference of success rates, over worlds.  In fewer than 5 dimensions a pool's sets are used as they are:
+        the interval is over sets where that is wider.
     p, p_corrected : float
-        p-value of sign flips over worlds, or of Student's test over sets where that is done and larger; and the same
-        after Holm's correction over the groups and samplers of a table.
+        Of sign flips over worlds, or of Student's test over sets where that is done and larger; and the same after
+        Holm's correction over the groups and samplers of a table.
     """
 
     group: str

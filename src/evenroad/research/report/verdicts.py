@@ -26,24 +26,11 @@ LEVEL = 0.05
 
 @dataclass(frozen=True)
 class ExpectedCell:
-    """One cell of a published or measured table.
+    """One cell of a published or measured table; numbers that the source does not give are NaN, or None for `runs`.
 
-    Attributes
-    ----------
-    problem, sampler, rule, n
-        Those of our cell that it is compared with.
-    success : float
-        Success rate, in percent; NaN if the source gives none.
-    v, v_sd : float
-        Mean number of milestones and its standard deviation over runs; NaN if the source gives none.
-    v_counts : str
-        ``all``: `v` counts all valid milestones; ``early``: those that were added until there was a path.
-    v_add : int
-        What the source adds to `v` for start and goal.
-    runs : int or None
-        Number of runs; None if the source does not say it, and then there is nothing to test.
-    note : str
-        What a reader must know of this cell.
+    `success` is in percent; `v` and `v_sd` are the mean number of milestones and its standard deviation over runs,
+    where `v_counts` says what is counted (``all`` valid milestones, or ``early``: those added until there was a path)
+    and `v_add` what the source adds for start and goal.  `note` is what a reader must know of this cell.
     """
 
     problem: str
