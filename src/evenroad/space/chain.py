@@ -21,8 +21,8 @@ class ChainSpace(FlatSpace):
     A configuration is the (joints,) angles of each link against the one before, the first against the x axis, in
     radians; any angle is taken, given back are angles in [-pi, pi).  The distance of two configurations is the sum,
     over all links, of how far the far ends of the link are apart in the plane: the metric of OMPL's kinematic
-    chain benchmark.  Ways turn every joint the short way round at an even speed, which in this metric is neither
-    the shortest way nor an even one.
+    chain benchmark.  Motions turn every joint the short way round at an even speed, which in this metric is neither
+    the shortest motion nor an even one.
 
     Parameters
     ----------

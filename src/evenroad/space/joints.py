@@ -15,7 +15,7 @@ from evenroad.space.flat import FlatSpace
 
 @dataclass(frozen=True)
 class Box(FlatSpace):
-    """The box ``[low_1, high_1] x ... x [low_dim, high_dim]``; straight lines are its shortest ways.
+    """The box ``[low_1, high_1] x ... x [low_dim, high_dim]``; straight lines are its shortest paths.
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ _COMBINATIONS = ("sum", "l2")
 class Product:
     """The space of tuples of one configuration from each part, their coordinates one after the other.
 
-    A shortest way of the product is a shortest way in every part at once, each at its own even speed.
+    A shortest path of the product is a shortest path in every part at once, each at its own even speed.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ class Product:
         ]
 
     def interpolate(self, a: Floats, b: Floats, t: Floats | float) -> Floats:
-        """Return the points a fraction `t`, scalar or (n,) in [0, 1], of the way in every part, (n, dim)."""
+        """Return the points a fraction `t`, scalar or (n,) in [0, 1], of the motion in every part, (n, dim)."""
         first, second = as_batch_pair(a, b, self.dim)
         fraction = as_fractions(t, len(first))[:, 0]
         return np.hstack(

@@ -77,7 +77,7 @@ def best_path(
     edge_states, node_states : ndarray of int8, shape (m,) and (nodes,)
         `UNKNOWN`, `FREE` or `BLOCKED`.
     bounds : ndarray of int64, shape (nodes,)
-        Lower bounds of the way from each node to the nearest goal.
+        Lower bounds of the path from each node to the nearest goal.
     start : int
         Node number.
     goals : ndarray of int64, shape (g,)
@@ -118,7 +118,7 @@ def shortest_path(
     lengths : ndarray, shape (m,)
         Length of each edge, >= 0.
     bounds : ndarray, shape (nodes,)
-        Consistent lower bound of the way from each node to the goal, e.g. its distance in the space.
+        Consistent lower bound of the path from each node to the goal, e.g. its distance in the space.
 
     Returns
     -------

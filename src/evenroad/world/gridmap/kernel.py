@@ -115,7 +115,7 @@ def motion_is_free(ax: float, ay: float, bx: float, by: float, disk: DiskTables)
         # Rounding may put a grid line a hair before the place that a leap ended at: never go back.
         t = max(t, min(next_column, next_row))
         if state > FREE:
-            # The slack holds at the point of leaving, so that much way beyond it is free as well.
+            # The slack holds at the point of leaving, so as much of the motion beyond it is free as well.
             t += (state - FREE) * per_pixel
             col, row = int(ax + t * dx), int(ay + t * dy)
         elif next_column <= next_row:

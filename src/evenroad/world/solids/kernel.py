@@ -98,7 +98,7 @@ def _angle(a, b):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def _obstacles_near(a, b, reach, obstacles, near):  # type: ignore[no-untyped-def]
-    """Write the obstacles that balls of radius `reach` on the way from a to b might meet; return their number."""
+    """Write the obstacles that balls of radius `reach` on the motion from a to b might meet; return their number."""
     count = 0
     for i in range(len(obstacles.centre)):
         is_near = True
