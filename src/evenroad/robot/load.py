@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from evenroad._checks import require_positive
+from evenroad._checks import require_known, require_positive
 from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.geometry.fit import fit_capsules
@@ -204,8 +204,7 @@ def read_bodies(path: Path, links: Sequence[str]) -> dict[str, tuple[Capsule, ..
     """
     bodies = {}
     for link, entries in read_mapping(path, "file of bodies").items():
-        if link not in links:
-            raise UnknownName.among(f"link in {path}:", link, links)
+        require_known(f"link in {path}:", link, links)
         if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
             raise BrokenFile(f"link {link!r} in {path} must have a list of capsules and spheres")
         if not entries:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad._checks import require_known
+from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import NO_ROTATION, Pose, Vector
 from evenroad.geometry.shapes import PRIMITIVES, Capsule, Shape, along_z, shape_of
 
@@ -146,8 +147,7 @@ class Scene:
         """
         known = [obstacle.name for obstacle in self.obstacles]
         for name in names:
-            if name not in known:
-                raise UnknownName.among(f"obstacle of scene {self.name!r}", name, known)
+            require_known(f"obstacle of scene {self.name!r}", name, known)
         return replace(
             self,
             obstacles=tuple(obstacle for obstacle in self.obstacles if obstacle.name not in names),

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
+from evenroad._checks import require_known
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.robot.joint import Joint
 from evenroad.robot.urdf import Urdf
@@ -101,7 +102,7 @@ class _Groups:
             link = by_child[link].parent
         return names
 
-    def _part(self, part: ElementTree.Element, what: str, attribute: str, known: Iterable[str]) -> str:
+    def _part(self, part: ElementTree.Element, what: str, attribute: str, known: Collection[str]) -> str:
         return _known(what, _attribute(part, attribute, self.path), known, self.path)
 
 
@@ -134,9 +135,8 @@ def _attribute(element: ElementTree.Element, name: str, path: Path) -> str:
     return value
 
 
-def _known(what: str, name: str, known: Iterable[str], path: Path) -> str:
-    if name not in known:
-        raise UnknownName.among(f"{what} in {path}:", name, known)
+def _known(what: str, name: str, known: Collection[str], path: Path) -> str:
+    require_known(f"{what} in {path}:", name, known)
     return name
 
 

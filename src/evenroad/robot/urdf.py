@@ -11,7 +11,8 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from evenroad.errors import BrokenFile, InvalidValue, UnknownName
+from evenroad._checks import require_known
+from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import PRIMITIVES, Mesh, Shape, shape_of
 from evenroad.robot.joint import Joint, Kind, Mimic, with_direct_mimics, within_limits_of_mimics
@@ -95,8 +96,7 @@ def read_urdf(path: Path) -> Urdf:
 def _joint(element: Element, path: Path) -> Joint:
     name, kind = element.attrib["name"], element.attrib["type"]
     where = f"joint {name!r} in {path}"
-    if kind not in _KINDS:
-        raise UnknownName.among(f"type of {where}:", kind, _KINDS)
+    require_known(f"type of {where}:", kind, _KINDS)
     origin, follows = _pose(element), element.find("mimic")
     lower, upper, velocity = _limits(element.find("limit"), kind, where)
     mimic = None

@@ -9,7 +9,8 @@ from typing import Literal
 import numpy as np
 
 from evenroad._arrays import Bools, Floats
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad._checks import require_known
+from evenroad.errors import InvalidValue
 from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions, as_weights
 from evenroad.space.flat import FlatMetric
 from evenroad.space.joints import Box, Circle
@@ -51,8 +52,7 @@ class Product:
         parts = tuple(self.parts)
         if not parts:
             raise InvalidValue("parts must be one space or more, got none")
-        if self.combine not in _COMBINATIONS:
-            raise UnknownName.among("combination", self.combine, _COMBINATIONS)
+        require_known("combination", self.combine, _COMBINATIONS)
         weights = as_weights(self.weights, len(parts))
         object.__setattr__(self, "parts", parts)
         object.__setattr__(self, "weights", weights)

@@ -20,7 +20,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.errors import BrokenFile, NotAvailable, UnknownName, shown
+from evenroad._checks import require_known
+from evenroad.errors import BrokenFile, NotAvailable, shown
 from evenroad.points.pointset import PointSet
 
 DATA = Path(__file__).parent / "data"
@@ -73,8 +74,7 @@ class Bank:
     def counts(self, family: str, d: int) -> list[int]:
         """Return the n that a family has in d dimensions, ascending; empty when it has none."""
         index = _index(self.folder)
-        if family not in index:
-            raise UnknownName.among("family in the bank:", family, index)
+        require_known("family in the bank:", family, index)
         return sorted(int(n) for n in index[family].get(str(d), {}))
 
     def cell(self, family: str, n: int, d: int) -> Cell:

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._checks import require_count
+from evenroad._checks import require_count, require_known
 from evenroad._rng import RngLike, generator
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad.errors import InvalidValue
 from evenroad.world import GridMap, load_map
 from evenroad.world.gridmap.disk import DiskWorld
 
@@ -41,8 +41,7 @@ class Maze:
 
 def load_maze(level: int) -> Maze:
     """Return the maze of level 1, 2 or 3, harder and harder for uniform points; UnknownName for another level."""
-    if level not in LEVELS:
-        raise UnknownName.among("maze level", level, LEVELS)
+    require_known("maze level", level, LEVELS)
     record = json.loads((FOLDER / "mazes.json").read_text(encoding="utf-8"))[str(level)]
     start, goal = tuple(record["start"]), tuple(record["goal"])
     return Maze(level, FOLDER / record["image"], start, goal, record["robot_radius"])

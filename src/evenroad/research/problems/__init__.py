@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from functools import partial
 
-from evenroad.errors import UnknownName
+from evenroad._checks import require_known
 from evenroad.research.bench.task import Problem, ProblemSource
 from evenroad.research.problems.cubicles import cubicles
 from evenroad.research.problems.fair import FAIR
@@ -53,6 +53,5 @@ PROBLEMS: dict[str, ProblemSource] = _by_name(MAZES, CORRIDORS, CHAINS, PUZZLES,
 
 def source_named(name: str) -> ProblemSource:
     """Return the problem source of this name; UnknownName, with the known ones, if there is none."""
-    if name not in PROBLEMS:
-        raise UnknownName.among("problem", name, PROBLEMS)
+    require_known("problem", name, PROBLEMS)
     return PROBLEMS[name]

@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from evenroad.errors import UnknownName
+from evenroad._checks import require_known
 from evenroad.research.report.cells import Cell
 from evenroad.research.report.comparisons import holm_of_tested
 from evenroad.research.statistics import fisher_exact
@@ -72,8 +72,7 @@ class ExpectedTable:
 @cache
 def load_expected(name: str) -> ExpectedTable:
     """Read one of :data:`SOURCES`; UnknownName if there is no such source."""
-    if name not in SOURCES:
-        raise UnknownName.among("source of expected results", name, SOURCES)
+    require_known("source of expected results", name, SOURCES)
     record = tomllib.loads((FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
     cells = tuple(cell for row in record["rows"] for cell in _cells_of(row))
     return ExpectedTable(record["name"], record["title"], record["source"], record["about"], cells)

@@ -10,8 +10,8 @@ import numpy as np
 from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints
-from evenroad._checks import require_count, require_positive
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad._checks import require_count, require_known, require_positive
+from evenroad.errors import InvalidValue
 from evenroad.research.worlds.compiled import CompiledWorld, is_in_cube
 from evenroad.space import Box
 
@@ -63,8 +63,7 @@ class Corridor(CompiledWorld):
         checked = d if self.checked is None else require_count("checked", self.checked)
         if checked > d:
             raise InvalidValue(f"checked must be at most d = {d}, got {self.checked!r}")
-        if self.side not in _SIDES:
-            raise UnknownName.among("side", self.side, _SIDES)
+        require_known("side", self.side, _SIDES)
         axes = np.arange(checked) if self.side == "comment" else np.arange(checked)[::-1].copy()
         axes.setflags(write=False)
         for name, value in (("d", d), ("lam", lam), ("_axes", axes), ("_space", Box([0.0] * d, [1.0] * d))):
