@@ -148,7 +148,7 @@ class _Tree:
         self.member[nodes] = True
         for rows in (self.graph.fixed, self.graph.links):
             self._size = _add_arcs(
-                nodes, rows.first, rows.other, rows.edge, self.nearness, self.member, self._keys, self._edges,
+                nodes, rows, self.nearness, self.member, self._keys, self._edges,
                 self._targets, self._size,
             )  # fmt: skip
 
@@ -170,7 +170,7 @@ def march(problem: SearchProblem, states: EdgeStates) -> tuple[Found, int]:
         _, node = heapq.heappop(frontier)
         if node in goals:
             return _path_back(parent_edge, states.edges, node), int(np.count_nonzero(stage))
-        fresh, offers = _best_offers(node, graph.first, graph.other, graph.edge, weights, cost, stage)
+        fresh, offers = _best_offers(node, graph, weights, cost, stage)
         states.ask_edges(offers)
         free = states.edge_states[offers] == FREE
         fresh, offers = fresh[free], offers[free]
@@ -234,15 +234,15 @@ def _path_back(parent_edge: Ints32, edges: Ints32, node: int) -> Found:
 
 
 @njit(cache=True, nogil=True)
-def _add_arcs(nodes, first, other, edge, nearness, member, keys, edges, targets, size):  # type: ignore[no-untyped-def]
+def _add_arcs(nodes, rows, nearness, member, keys, edges, targets, size):  # type: ignore[no-untyped-def]
     """Put the arcs that lead from nodes out of the tree into its heap; return the heap's size."""
     for node in nodes:
-        if node + 1 >= first.shape[0]:
+        if node + 1 >= rows.first.shape[0]:
             continue
-        for slot in range(first[node], first[node + 1]):
-            target = other[slot]
+        for slot in range(rows.first[node], rows.first[node + 1]):
+            target = rows.other[slot]
             if not member[target]:
-                size = _push(keys, edges, targets, size, nearness[target], edge[slot], target)
+                size = _push(keys, edges, targets, size, nearness[target], rows.edge[slot], target)
     return size
 
 
@@ -300,8 +300,9 @@ def _drop_first(keys, edges, targets, size):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def _best_offers(node, first, other, edge, weights, cost, stage):  # type: ignore[no-untyped-def]
+def _best_offers(node, rows, weights, cost, stage):  # type: ignore[no-untyped-def]
     """Return the unvisited neighbours of a node, and the edge from the open node that is the best for each."""
+    first, other, edge = rows
     fresh = np.empty(first[node + 1] - first[node], dtype=np.int32)
     offers = np.empty_like(fresh)
     count = 0
