@@ -23,7 +23,7 @@ from matplotlib.ticker import NullFormatter
 from evenroad.points import PointSet, draw
 from evenroad.points.bank import open_bank
 from evenroad.points.measures import MEASURES
-from evenroad.points.samplers.sequences import Halton, Sobol, paper_block
+from evenroad.points.samplers.sequences import Halton, Sobol
 
 D = 10
 COUNTS = (128, 256, 512, 1024)
@@ -43,11 +43,11 @@ FAMILIES: dict[str, Callable[[int, int], list[PointSet]]] = {
     "uniform": _drawn("uniform"),
     "halton from index 0": lambda n, d: [Halton(scramble=False).draw(n, d)],
     "halton paper-blocks": lambda n, d: [
-        paper_block(Halton(), run, n).draw(n, d) for run in range(1, DRAWS + 1)
+        Halton(scramble=False, start=run * n + 1).draw(n, d) for run in range(DRAWS)
     ],
     "halton scrambled": _drawn("halton"),
     "sobol paper-blocks": lambda n, d: [
-        paper_block(Sobol(), run, n).draw(n, d) for run in range(1, DRAWS + 1)
+        Sobol(scramble=False, start=run * n + 1).draw(n, d) for run in range(DRAWS)
     ],
     "sobol scrambled": _drawn("sobol"),
     "lattice": _drawn("lattice"),

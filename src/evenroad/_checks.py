@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad.errors import InvalidValue, shown
+from evenroad.errors import InvalidValue, UnknownName, shown
 
 LARGEST_COUNT = 2**31 - 1
 """Nodes of a roadmap are numbered by int32: nothing that is counted here can sensibly be larger."""
@@ -39,13 +39,16 @@ def require_positive(name: str, value: object, *, or_zero: bool = False) -> floa
     return number
 
 
+def require_known(what: str, name: object, known: Container[object]) -> None:
+    """Raise UnknownName, which lists the known ones, unless this is a known name of something (`sampler`, ...)."""
+    if name not in known:
+        raise UnknownName.among(what, name, known)
+
+
 def as_row(name: str, values: Sequence[float], length: int | None = None) -> tuple[float, ...]:
     """Return `values` as a tuple of finite floats, `length` of them or else at least one.
 
-    Raises
-    ------
-    InvalidValue
-        Naming `values` and what is allowed.
+    Raises InvalidValue naming `values` and what is allowed.
     """
     wanted = "one finite number or more" if length is None else f"{length} finite number(s)"
     try:

@@ -21,10 +21,7 @@ Arrays = dict[str, npt.NDArray[Any]]
 def write_npz(path: Path, arrays: Mapping[str, npt.ArrayLike], *, compressed: bool = False) -> None:
     """Write arrays by their names, atomically; texts become arrays of no axes.
 
-    Raises
-    ------
-    BrokenFile
-        If the file cannot be written; whatever was at `path` is then untouched.
+    Raises BrokenFile if the file cannot be written; whatever was at `path` is then untouched.
     """
     save = np.savez_compressed if compressed else np.savez
     with atomic_write(path) as file:

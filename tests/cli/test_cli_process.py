@@ -106,7 +106,7 @@ def read_only(tmp_path):
 
 
 LOAD_COMPILED = (
-    "import evenroad; from evenroad.world.bisection_kernel import next_between; print(next_between(1, -1, 4))"
+    "import evenroad; from evenroad.world.bisection import next_between; print(next_between(1, -1, 4))"
 )
 
 

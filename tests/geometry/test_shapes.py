@@ -15,7 +15,6 @@ from evenroad.geometry import (
     Sphere,
     TriangleMesh,
     fit_capsules,
-    point_distance,
     rotation_from_rpy,
     shape_of,
 )
@@ -69,12 +68,6 @@ def test_point_clouds_are_read_only_copies_and_equal_only_to_themselves():
     with pytest.raises(ValueError, match="read-only"):
         cloud.points[0] = 1.0
     assert cloud != PointCloud(np.zeros((2, 3)))
-
-
-@pytest.mark.parametrize("shape", [PointCloud(np.zeros((1, 3))), Mesh(FLAT)], ids=str)
-def test_distances_from_shapes_without_a_formula_are_refused(shape):
-    with pytest.raises(InvalidValue, match="are not known"):
-        point_distance(np.zeros(3), shape)
 
 
 def test_no_capsules_are_fitted_to_a_point_cloud():

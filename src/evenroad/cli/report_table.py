@@ -9,7 +9,7 @@ from evenroad.research.report import Report
 from evenroad.research.report.analysis import Analysis
 from evenroad.research.report.comparisons import REFERENCES
 from evenroad.research.report.fair import is_fair, pooled_rules
-from evenroad.research.report.runs import Question
+from evenroad.research.report.runs import Setting
 from evenroad.research.report.sections.suites import verdict_counts
 from evenroad.research.report.tables import difference
 
@@ -17,9 +17,9 @@ from evenroad.research.report.tables import difference
 def print_report(report: Report) -> None:
     """Print how many samples each problem takes, the verdicts, the fair suite in short, and where the page is."""
     analysis = report.analysis
-    questions = [question for question in analysis.runs.questions if not is_fair(question)]
-    if questions:
-        print_table(_needed_table(analysis, questions))
+    settings = [setting for setting in analysis.runs.settings if not is_fair(setting)]
+    if settings:
+        print_table(_needed_table(analysis, settings))
     if "all" in analysis.pooled:
         print_table(_fair_table(analysis))
     for table, verdicts in analysis.verdicts.values():
@@ -30,7 +30,7 @@ def print_report(report: Report) -> None:
     print(f"{report.files[0]} and {len(report.files) - 1} more files")
 
 
-def _needed_table(analysis: Analysis, questions: list[Question]) -> Table:
+def _needed_table(analysis: Analysis, settings: list[Setting]) -> Table:
     # In a narrow terminal every row stays on its line, and the numbers of runs are left to the page.
     shows_runs = table_width() >= WIDTH
     table = Table(
@@ -45,24 +45,24 @@ def _needed_table(analysis: Analysis, questions: list[Question]) -> Table:
     for name in ("runs",) * shows_runs + REFERENCES:
         table.add_column(name.replace(" ", "\n"), justify="right", no_wrap=True)
     table.add_column("fewest", no_wrap=True)
-    for question in questions:
-        needed = [analysis.needed.get((question, sampler)) for sampler in REFERENCES]
+    for setting in settings:
+        needed = [analysis.needed.get((setting, sampler)) for sampler in REFERENCES]
         short = ["–" if each is None or not each.has_interval else each.short for each in needed]
-        runs = [str(sum(cell.runs for cell in analysis.cells_of(question)))] * shows_runs
-        table.add_row(question.problem, question.rule, *runs, *short, _fewest(analysis, question))
+        runs = [str(sum(cell.runs for cell in analysis.cells_of(setting)))] * shows_runs
+        table.add_row(setting.problem, setting.rule, *runs, *short, _fewest(analysis, setting))
     return table
 
 
-def _fewest(analysis: Analysis, question: Question) -> str:
+def _fewest(analysis: Analysis, setting: Setting) -> str:
     """Name the sampler that needs the fewest samples, of those that have an interval and cells for every N."""
     tried: dict[str, set[int]] = {}
-    for cell in analysis.cells_of(question):
+    for cell in analysis.cells_of(setting):
         tried.setdefault(cell.sampler, set()).add(cell.n)
     every = set().union(*tried.values())
     mine = [
         (needed, sampler)
         for (asked, sampler), needed in analysis.needed.items()
-        if asked == question and needed.has_interval and tried[sampler] == every
+        if asked == setting and needed.has_interval and tried[sampler] == every
     ]
     if not mine:
         return "–"
@@ -74,7 +74,7 @@ def _fewest(analysis: Analysis, question: Question) -> str:
 
 
 def _fair_table(analysis: Analysis) -> Table:
-    title = f"Fair suite, {pooled_rules(analysis.runs.questions)}: success minus uniform's [points]"
+    title = f"Fair suite, {pooled_rules(analysis.runs.settings)}: success minus uniform's [points]"
     table = Table(title=title, title_justify="left", box=None, pad_edge=False)
     table.add_column("sampler", no_wrap=True)
     for name in ("worlds", "runs", "difference"):

@@ -1,6 +1,5 @@
 """Geometry: poses, shapes, meshes, distances, and capsules fitted to shapes; it knows nothing of robots."""
 
-from evenroad.geometry.distance import point_distance as point_distance
 from evenroad.geometry.distance import segment_distance as segment_distance
 from evenroad.geometry.fit import fit_capsules as fit_capsules
 from evenroad.geometry.fit_points import union_volume as union_volume

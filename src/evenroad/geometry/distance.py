@@ -5,8 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad.errors import InvalidValue
-from evenroad.geometry.shapes import Shape
 
 
 def segment_distance(first: Floats, second: Floats) -> Floats:
@@ -41,26 +39,3 @@ def _clamped(numerator: Floats, denominator: Floats) -> Floats:
     """Return numerator / denominator within [0, 1]; 0 where the denominator is."""
     safe = np.where(denominator > 0.0, denominator, 1.0)
     return np.where(denominator > 0.0, np.clip(numerator / safe, 0.0, 1.0), 0.0)
-
-
-def point_distance(point: Floats, shape: Shape) -> float:
-    """Return the distance of a point (3,) from a box, sphere, cylinder or capsule along z; 0 inside [m].
-
-    Raises
-    ------
-    InvalidValue
-        If the shape is a mesh or a point cloud.
-    """
-    local = shape.pose.local(point)
-    if shape.kind == "box":
-        return float(np.linalg.norm(np.maximum(np.abs(local) - 0.5 * np.array(shape.size), 0.0)))
-    if shape.kind == "sphere":
-        return max(float(np.linalg.norm(local)) - shape.size[0], 0.0)
-    if shape.kind not in ("cylinder", "capsule"):
-        raise InvalidValue(f"distances from a {shape.kind} are not known")
-    radius, length = shape.size
-    above = max(abs(local[2]) - 0.5 * length, 0.0)
-    aside = float(np.hypot(local[0], local[1]))
-    if shape.kind == "capsule":
-        return max(float(np.hypot(aside, above)) - radius, 0.0)
-    return float(np.hypot(max(aside - radius, 0.0), above))

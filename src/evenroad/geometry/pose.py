@@ -92,10 +92,7 @@ def rotations_from_quaternions(quaternions: Floats) -> Floats:
 def rotation_from_z(axis: Sequence[float]) -> Floats:
     """Return a rotation (3, 3) that takes the z axis to the direction `axis`.
 
-    Raises
-    ------
-    InvalidValue
-        If `axis` has no direction.
+    Raises InvalidValue if `axis` has no direction.
     """
     z = np.array(axis, dtype=np.float64)
     length = float(np.linalg.norm(z))
@@ -113,11 +110,8 @@ def rotation_from_z(axis: Sequence[float]) -> Floats:
 def as_rotation(rotation: Sequence[float] | None, dim: int = 3) -> tuple[float, ...]:
     """Return `rotation` as the (dim * dim,) rows of a rotation matrix; None is the identity.
 
-    Raises
-    ------
-    InvalidValue
-        If it is not so many finite numbers, its rows are not perpendicular and of length 1 up to 1e-6, or it
-        is a reflection.
+    Raises InvalidValue if it is not so many finite numbers, its rows are not perpendicular and of length 1 up to 1e-6,
+    or it is a reflection.
     """
     if rotation is None:
         return tuple(1.0 if i == j else 0.0 for i in range(dim) for j in range(dim))

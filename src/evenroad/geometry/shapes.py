@@ -15,8 +15,8 @@ from typing import ClassVar
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad._checks import as_row, require_positive
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad._checks import as_row, require_known, require_positive
+from evenroad.errors import InvalidValue
 from evenroad.geometry.mesh import TriangleMesh, load_mesh, scaled, volume_of
 from evenroad.geometry.pose import IDENTITY, Pose, Vector, rotation_from_z
 
@@ -248,8 +248,7 @@ def shape_of(kind: str, size: Sequence[float], pose: Pose = IDENTITY, link: str 
     InvalidValue
         If it has other dimensions, or one that is not a finite number > 0.
     """
-    if kind not in PRIMITIVES:
-        raise UnknownName.among("shape", kind, PRIMITIVES)
+    require_known("shape", kind, PRIMITIVES)
     shape = PRIMITIVES[kind]
     count = sum(count for _, count in shape.dimensions)
     if len(size) != count:

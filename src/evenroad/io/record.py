@@ -1,13 +1,17 @@
-"""A plan as a JSON record: what was asked, what came out, and what it was made with."""
+"""A plan on disk: a JSON record of what was asked, what came out and what made it; and its path as CSV."""
 
 from __future__ import annotations
 
 import json
 import os
 import platform
+from collections.abc import Sequence
 from dataclasses import asdict
 from importlib import metadata
 from typing import Any
+
+import numpy as np
+import numpy.typing as npt
 
 from evenroad import __version__
 from evenroad._files import atomic_write
@@ -61,3 +65,13 @@ def save_json(path: str | os.PathLike[str], record: dict[str, Any]) -> None:
     text = json.dumps(record, indent=2, allow_nan=False) + "\n"
     with atomic_write(path) as file:
         file.write(text.encode())
+
+
+def save_path_csv(path: str | os.PathLike[str], waypoints: npt.ArrayLike, names: Sequence[str]) -> None:
+    """Write waypoints, shape (p, dim), under a header of column names, atomically; floats round-trip."""
+    rows = [
+        ",".join(names),
+        *(",".join(map(repr, row)) for row in np.asarray(waypoints, dtype=float).tolist()),
+    ]
+    with atomic_write(path) as file:
+        file.write(("\n".join(rows) + "\n").encode())

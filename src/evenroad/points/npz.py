@@ -20,10 +20,7 @@ _ORIGIN_TYPES = {name: get_args(kind) or (kind,) for name, kind in get_type_hint
 def save_points(path: Path, points: PointSet) -> None:
     """Write a point set as ``.npz`` (arrays `points`, `origin`, `hash`), atomically.
 
-    Raises
-    ------
-    BrokenFile
-        If the file cannot be written; whatever was at `path` is then untouched.
+    Raises BrokenFile if the file cannot be written; whatever was at `path` is then untouched.
     """
     write_npz(path, dict(points=points.points, origin=json.dumps(asdict(points.origin)), hash=points.hash))
 
@@ -59,10 +56,7 @@ def read_points(path: Path) -> PointSet:
 def load_points(path: Path) -> PointSet:
     """Read a point set written by :func:`save_points`, checking names, types, shape, range and hash.
 
-    Raises
-    ------
-    BrokenFile
-        If the file is missing, is no such npz, or any of the checks fails; the text says which.
+    Raises BrokenFile if the file is missing, is no such npz, or any of the checks fails; the text says which.
     """
     arrays = read_npz(path, "point set", ("points", "origin", "hash"))
     if arrays["points"].dtype != np.float64:

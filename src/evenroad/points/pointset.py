@@ -125,11 +125,8 @@ class PointSet:
 def as_unit_points(points: object) -> Floats:
     """Return `points` as a C-contiguous float64 array of shape (n, d), checked to lie in [0, 1).
 
-    Raises
-    ------
-    InvalidValue
-        Naming the dtype where it is not one of real numbers, the shape, or the first bad coordinate and its
-        place.
+    Raises InvalidValue naming the dtype where it is not one of real numbers, the shape, or the first bad coordinate
+    and its place.
     """
     try:
         given = np.asarray(points)

@@ -12,8 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
-from evenroad._checks import require_count
-from evenroad.errors import UnknownName
+from evenroad._checks import require_count, require_known
 from evenroad.research.bench.samplers import SAMPLERS, why_not
 from evenroad.research.bench.task import Task
 from evenroad.research.problems import PROBLEMS
@@ -37,15 +36,11 @@ class Suite:
 def chosen_names(only: Iterable[str], known: Iterable[str]) -> tuple[str, ...]:
     """Return those of the `known` problem names that `only` asks for, in the order of `known`; all if it is empty.
 
-    Raises
-    ------
-    UnknownName
-        If one of `only` is not known; the text lists those that are.
+    Raises UnknownName if one of `only` is not known; the text lists those that are.
     """
     known, wanted = tuple(known), tuple(only)
     for name in wanted:
-        if name not in known:
-            raise UnknownName.among("problem of this suite", name, known)
+        require_known("problem of this suite", name, known)
     return tuple(name for name in known if not wanted or name in wanted)
 
 

@@ -27,10 +27,7 @@ _IN_WORLD = _ROADMAP | {"fingerprint", "lazy_milestones", "node_states", "edge_s
 def save_roadmap(path: Path, roadmap: Roadmap) -> None:
     """Write a roadmap without any world, atomically: points, rule, node order and edges.
 
-    Raises
-    ------
-    BrokenFile
-        If the file cannot be written; whatever was at `path` is then untouched.
+    Raises BrokenFile if the file cannot be written; whatever was at `path` is then untouched.
     """
     _write(path, _arrays(roadmap))
 

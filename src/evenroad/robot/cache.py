@@ -25,10 +25,8 @@ _FORMAT = 6
 def key_of(urdf: Path, srdf: Path | None, bodies: Path | None, group: str | Sequence[str] | None) -> str:
     """Return the hash of all that decides the robot: the content of its files, meshes included, and the group.
 
-    Raises
-    ------
-    BrokenFile, InvalidValue
-        If a file is missing, or the URDF broken: a cached robot is never returned for files that are gone.
+    Raises BrokenFile, InvalidValue if a file is missing, or the URDF broken: a cached robot is never returned for
+    files that are gone.
     """
     digest = hashlib.sha256(f"{_FORMAT}|{__version__}|{urdf.name}|{group!r}".encode())
     for part in _parts(urdf, srdf, bodies):

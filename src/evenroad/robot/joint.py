@@ -35,7 +35,7 @@ class Joint:
     name : str
         Name of the joint.
     kind : {"revolute", "continuous", "prismatic", "fixed"}
-        Turns about, or slides along, its axis; or neither.
+        Rotates about, or slides along, its axis; or neither.
     parent, child : str
         Names of the links it joins.
     xyz : tuple of 3 floats
@@ -92,10 +92,7 @@ def require_within(joint: Joint, value: float, what: str) -> None:
 def with_direct_mimics(joints: Sequence[Joint], path: Path) -> list[Joint]:
     """Return the joints with every mimic following a joint that is no mimic itself.
 
-    Raises
-    ------
-    BrokenFile
-        If a mimic follows a fixed joint, or mimics follow each other in a circle.
+    Raises BrokenFile if a mimic follows a fixed joint, or mimics follow each other in a circle.
     """
     by_name = {joint.name: joint for joint in joints}
 

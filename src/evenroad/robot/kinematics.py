@@ -32,12 +32,8 @@ class KinematicTree(Protocol):
 def joint_values(robot: KinematicTree, q: npt.ArrayLike) -> dict[str, Floats]:
     """Return the value of every movable joint, joint -> (n,), for configurations of the group, (n, dim).
 
-    Joints outside of the group are held (see :class:`Robot`); mimics follow.
-
-    Raises
-    ------
-    InvalidValue
-        If `q` is not of that shape.
+    Joints outside of the group are held (see :class:`Robot`); mimics follow.  Raises InvalidValue if `q` is not of
+    that shape.
     """
     batch = np.asarray(q, dtype=np.float64)
     if batch.ndim != 2 or batch.shape[1] != len(robot.group):
@@ -110,5 +106,5 @@ def ends_at(robot: KinematicTree, poses: Floats) -> Floats:
     """Return the end points of all capsules, (n, capsules, 2, 3), where the links have these poses."""
     link = [robot.links.index(capsule.link) for capsule in robot.capsules]
     ends = np.array([[capsule.a, capsule.b] for capsule in robot.capsules]).reshape(-1, 2, 3)
-    turned = np.einsum("nkij,kej->nkei", poses[:, link][..., :3, :3], ends)
-    return turned + poses[:, link][:, :, np.newaxis, :3, 3]
+    rotated = np.einsum("nkij,kej->nkei", poses[:, link][..., :3, :3], ends)
+    return rotated + poses[:, link][:, :, np.newaxis, :3, 3]

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from evenroad._checks import require_positive
+from evenroad._checks import require_known, require_positive
 from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.geometry.fit import fit_capsules
@@ -105,10 +105,7 @@ def load_model(
 def find_robot(source: PathLike) -> tuple[Path, Path | None]:
     """Return the URDF, and for a shipped robot its SRDF if it has one.
 
-    Raises
-    ------
-    UnknownName
-        If there is neither such a file nor such a robot.
+    Raises UnknownName if there is neither such a file nor such a robot.
     """
     path = Path(source)
     if path.is_file() or path.suffix or len(path.parts) > 1:
@@ -207,8 +204,7 @@ def read_bodies(path: Path, links: Sequence[str]) -> dict[str, tuple[Capsule, ..
     """
     bodies = {}
     for link, entries in read_mapping(path, "file of bodies").items():
-        if link not in links:
-            raise UnknownName.among(f"link in {path}:", link, links)
+        require_known(f"link in {path}:", link, links)
         if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
             raise BrokenFile(f"link {link!r} in {path} must have a list of capsules and spheres")
         if not entries:

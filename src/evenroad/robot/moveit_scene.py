@@ -10,8 +10,9 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from evenroad._checks import require_known
 from evenroad._yaml import numbers
-from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
+from evenroad.errors import BrokenFile, EvenroadError, InvalidValue
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import Shape, shape_of
 from evenroad.robot.scene import Obstacle, Scene
@@ -115,8 +116,7 @@ def _obstacles(
 
 
 def _known(kind: str, name: str, path: Path) -> str:
-    if kind not in _SIZES:
-        raise UnknownName.among(f"shape of object {name!r} in {path}:", kind, _SIZES)
+    require_known(f"shape of object {name!r} in {path}:", kind, _SIZES)
     return kind
 
 

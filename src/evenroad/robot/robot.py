@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad._checks import require_known
+from evenroad.errors import InvalidValue
 from evenroad.geometry.fit import fit_capsules
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import Capsule, Shape, without_pose
@@ -81,8 +82,7 @@ class Robot:
         InvalidValue
             If the tool has no body, or a name in common with the robot.
         """
-        if at not in self.links:
-            raise UnknownName.among(f"link of {self.name!r}", at, self.links)
+        require_known(f"link of {self.name!r}", at, self.links)
         if not isinstance(tool, Robot):
             capsules = [capsule for shape in tool for capsule in fit_capsules(shape)]
             tool = Robot("tool", ("tool",), (), tuple(replace(c, link="tool") for c in capsules), (), ())
@@ -207,8 +207,7 @@ def with_group(robot: Robot, group: Sequence[str], held: Mapping[str, float] | N
     free = {joint.name: joint for joint in robot.joints if joint.kind != "fixed" and joint.mimic is None}
     held = dict(held or {})
     for name in (*group, *held):
-        if name not in free:
-            raise UnknownName.among("joint", name, free)
+        require_known("joint", name, free)
     for name, value in held.items():
         if name in group:
             raise InvalidValue(f"joint {name!r} is in the group: it is planned for and cannot be held")
@@ -232,8 +231,7 @@ def in_scene(robot: Robot, scene: Scene) -> Robot:
     joints = {joint.name: joint for joint in robot.joints}
     limits = {}
     for name, (lower, upper) in scene.limits.items():
-        if name not in joints:
-            raise UnknownName.among(f"joint in the limits of scene {scene.name!r}:", name, joints)
+        require_known(f"joint in the limits of scene {scene.name!r}:", name, joints)
         limits[name] = (max(lower, joints[name].lower), min(upper, joints[name].upper))
     return with_limits(robot, limits)
 
@@ -252,8 +250,7 @@ def with_limits(robot: Robot, limits: Mapping[str, tuple[float, float]]) -> Robo
     """
     names = [joint.name for joint in robot.joints]
     for name, (lower, upper) in limits.items():
-        if name not in names:
-            raise UnknownName.among("joint", name, names)
+        require_known("joint", name, names)
         if not lower < upper:
             raise InvalidValue(
                 f"limits of joint {name!r} must satisfy lower < upper, got {lower!r}, {upper!r}"

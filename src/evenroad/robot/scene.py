@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad._checks import require_known
+from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import NO_ROTATION, Pose, Vector
 from evenroad.geometry.shapes import PRIMITIVES, Capsule, Shape, along_z, shape_of
 
@@ -133,10 +134,7 @@ class Scene:
     def with_(self, *obstacles: Obstacle, allowed: Sequence[tuple[str, str]] = ()) -> Scene:
         """Return the scene with more obstacles, and more (link, obstacle) contacts that are not tested.
 
-        Raises
-        ------
-        InvalidValue
-            If the scene has an obstacle of such a name already.
+        Raises InvalidValue if the scene has an obstacle of such a name already.
         """
         return replace(
             self, obstacles=(*self.obstacles, *obstacles), allowed=self.allowed | frozenset(allowed)
@@ -145,15 +143,11 @@ class Scene:
     def without(self, *names: str) -> Scene:
         """Return the scene without the obstacles of these names, and without what was allowed to touch them.
 
-        Raises
-        ------
-        UnknownName
-            If there is no such obstacle.
+        Raises UnknownName if there is no such obstacle.
         """
         known = [obstacle.name for obstacle in self.obstacles]
         for name in names:
-            if name not in known:
-                raise UnknownName.among(f"obstacle of scene {self.name!r}", name, known)
+            require_known(f"obstacle of scene {self.name!r}", name, known)
         return replace(
             self,
             obstacles=tuple(obstacle for obstacle in self.obstacles if obstacle.name not in names),

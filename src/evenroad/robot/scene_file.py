@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-from evenroad._checks import require_positive
+from evenroad._checks import require_known, require_positive
 from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.geometry.pose import Pose
@@ -89,8 +89,7 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
     )
     allowed: set[tuple[str, str]] = set()
     for obstacle, links in _mapping(document.get("allowed"), f"allowed in {path}").items():
-        if obstacle not in entries:
-            raise UnknownName.among(f"obstacle in 'allowed' of {path}:", obstacle, entries)
+        require_known(f"obstacle in 'allowed' of {path}:", obstacle, entries)
         if not isinstance(links, list) or not all(isinstance(link, str) for link in links):
             raise InvalidValue(
                 f"allowed contacts of {obstacle!r} in {path} must be a list of links, got {links!r}"

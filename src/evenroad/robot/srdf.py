@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
+from evenroad._checks import require_known
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.robot.joint import Joint
 from evenroad.robot.urdf import Urdf
+from evenroad.robot.urdf_xml import read_xml
 
 
 @dataclass(frozen=True)
@@ -42,14 +44,7 @@ def read_srdf(path: Path, urdf: Urdf) -> Srdf:
     InvalidValue
         If a joint of a state has a value that is not a finite number.
     """
-    try:
-        root = ElementTree.fromstring(path.read_bytes())
-    except OSError as error:
-        raise BrokenFile(f"cannot read the SRDF {path}: {error.strerror or error}") from error
-    except (ElementTree.ParseError, ValueError, LookupError) as error:
-        raise BrokenFile(f"{path} is not XML: {error}") from error
-    if root.tag != "robot":
-        raise BrokenFile(f"{path} is not an SRDF: its outermost element is <{root.tag}>, not <robot>")
+    root = read_xml(path, "SRDF", "an SRDF")
     elements = {_attribute(group, "name", path): group for group in root.findall("group")}
     virtual = frozenset(_attribute(joint, "name", path) for joint in root.findall("virtual_joint"))
     passive = frozenset(
@@ -107,7 +102,7 @@ class _Groups:
             link = by_child[link].parent
         return names
 
-    def _part(self, part: ElementTree.Element, what: str, attribute: str, known: Iterable[str]) -> str:
+    def _part(self, part: ElementTree.Element, what: str, attribute: str, known: Collection[str]) -> str:
         return _known(what, _attribute(part, attribute, self.path), known, self.path)
 
 
@@ -140,9 +135,8 @@ def _attribute(element: ElementTree.Element, name: str, path: Path) -> str:
     return value
 
 
-def _known(what: str, name: str, known: Iterable[str], path: Path) -> str:
-    if name not in known:
-        raise UnknownName.among(f"{what} in {path}:", name, known)
+def _known(what: str, name: str, known: Collection[str], path: Path) -> str:
+    require_known(f"{what} in {path}:", name, known)
     return name
 
 

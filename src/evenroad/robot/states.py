@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad._checks import require_known
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.robot.joint import Joint, require_within
 from evenroad.robot.kinematics import held_values
@@ -94,8 +95,7 @@ def _outside_group(robot: Robot, name: str, values: Mapping[str, float]) -> dict
     """Return a state's values of movable joints outside of the group, without those of fixed joints and mimics."""
     known = [joint.name for joint in robot.joints]
     for joint in values:
-        if joint not in known:
-            raise UnknownName.among(f"joint of the state {name!r}:", joint, known)
+        require_known(f"joint of the state {name!r}:", joint, known)
     return {joint: values[joint] for joint in held_values(robot) if joint in values}
 
 
@@ -159,8 +159,7 @@ def _from_pairs(robot: Robot, text: str, degrees: bool) -> Floats:
     while pair := _PAIR.match(text, place):
         place = pair.end()
         name, number = pair.groups()
-        if name not in robot.group:
-            raise UnknownName.among(f"joint of {robot.name!r}", name, robot.group)
+        require_known(f"joint of {robot.name!r}", name, robot.group)
         if name in values:
             raise InvalidValue(f"joint {name!r} is given twice")
         values[name] = _value(robot, name, number, degrees)
@@ -190,8 +189,8 @@ def _from_list(robot: Robot, text: str, states: Mapping[str, object], degrees: b
 def _value(robot: Robot, name: str, word: str, degrees: bool) -> float:
     if not _is_number(word):
         raise InvalidValue(f"joint {name!r} must be a finite number, got {word!r}")
-    turns = next(joint.kind for joint in robot.joints if joint.name == name) != "prismatic"
-    return math.radians(float(word)) if degrees and turns else float(word)
+    is_angle = next(joint.kind for joint in robot.joints if joint.name == name) != "prismatic"
+    return math.radians(float(word)) if degrees and is_angle else float(word)
 
 
 def _is_number(word: str) -> bool:

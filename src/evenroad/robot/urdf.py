@@ -11,7 +11,8 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from evenroad.errors import BrokenFile, InvalidValue, UnknownName
+from evenroad._checks import require_known
+from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import PRIMITIVES, Mesh, Shape, shape_of
 from evenroad.robot.joint import Joint, Kind, Mimic, with_direct_mimics, within_limits_of_mimics
@@ -95,8 +96,7 @@ def read_urdf(path: Path) -> Urdf:
 def _joint(element: Element, path: Path) -> Joint:
     name, kind = element.attrib["name"], element.attrib["type"]
     where = f"joint {name!r} in {path}"
-    if kind not in _KINDS:
-        raise UnknownName.among(f"type of {where}:", kind, _KINDS)
+    require_known(f"type of {where}:", kind, _KINDS)
     origin, follows = _pose(element), element.find("mimic")
     lower, upper, velocity = _limits(element.find("limit"), kind, where)
     mimic = None
@@ -192,13 +192,9 @@ def _numbers(element: Element | None, attribute: str, default: tuple[float, ...]
 def in_tree_order(links: Sequence[str], joints: Sequence[Joint], where: str) -> list[Joint]:
     """Return the joints so that every joint's parent is the root or the child of an earlier one.
 
-    Depth first, children in the order given.  `where` names the file in errors.
-
-    Raises
-    ------
-    BrokenFile
-        If links or joints share a name, a joint joins links that there are not, a link has two parents, there
-        is more than one root, or the joints form a cycle; the text names them.
+    Depth first, children in the order given. `where` names the file in errors.  Raises BrokenFile if links or joints
+    share a name, a joint joins links that there are not, a link has two parents, there is more than one root, or the
+    joints form a cycle; the text names them.
     """
     _require_distinct("link", list(links), where)
     _require_distinct("joint", [joint.name for joint in joints], where)

@@ -66,14 +66,7 @@ def read_urdf_xml(path: Path) -> ElementTree.Element:
     InvalidValue
         If an attribute does not hold the numbers that it must.
     """
-    try:
-        root = ElementTree.fromstring(path.read_bytes())
-    except OSError as error:
-        raise BrokenFile(f"cannot read the robot {path}: {error.strerror or error}") from error
-    except (ElementTree.ParseError, ValueError, LookupError) as error:
-        raise BrokenFile(f"{path} is not XML: {error}") from error
-    if root.tag != "robot":
-        raise BrokenFile(f"{path} is not a URDF: its outermost element is <{root.tag}>, not <robot>")
+    root = read_xml(path, "robot", "a URDF")
     if any("xacro" in str(element.tag) for element in root.iter()):
         raise BrokenFile(f"{path} is a xacro file; make a URDF of it first: xacro {path.name} > robot.urdf")
     for name in _IGNORED:
@@ -94,6 +87,19 @@ def read_urdf_xml(path: Path) -> ElementTree.Element:
             raise BrokenFile(
                 f"joint {joint.attrib['name']!r} in {path} mimics {mimic.attrib['joint']!r}, which is no joint"
             )
+    return root
+
+
+def read_xml(path: Path, what: str, kind: str) -> ElementTree.Element:
+    """Return the ``<robot>`` element of a file; `what` and `kind` name it in errors, each a BrokenFile."""
+    try:
+        root = ElementTree.fromstring(path.read_bytes())
+    except OSError as error:
+        raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
+    except (ElementTree.ParseError, ValueError, LookupError) as error:
+        raise BrokenFile(f"{path} is not XML: {error}") from error
+    if root.tag != "robot":
+        raise BrokenFile(f"{path} is not {kind}: its outermost element is <{root.tag}>, not <robot>")
     return root
 
 
@@ -174,12 +180,8 @@ def find_mesh(name: str, urdf: Path, link: str) -> Path:
 
     ``package://PACKAGE/FILE`` is looked for in the folder of the URDF and those above it, either inside of a folder
     PACKAGE or in one, and where ROS keeps packages (``ROS_PACKAGE_PATH``, ``AMENT_PREFIX_PATH``); ``file://`` is
-    absolute; all else is relative to the URDF.
-
-    Raises
-    ------
-    BrokenFile
-        If there is none; the text says where it was looked for.
+    absolute; all else is relative to the URDF.  Raises BrokenFile if there is none; the text says where it was looked
+    for.
     """
     places = list(_candidates(name, urdf.absolute().parent))
     for place in places:

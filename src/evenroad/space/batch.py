@@ -1,21 +1,22 @@
-"""Reading a caller's configurations: a float64 batch of known width, or an error that names what is wrong."""
+"""Reading what callers give: batches of configurations and rows of parameters, with errors that name what is wrong."""
 
 from __future__ import annotations
+
+import math
+from collections.abc import Sequence
 
 import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._checks import as_batch as as_batch
+from evenroad._checks import as_row
 from evenroad.errors import InvalidValue
 
 
 def as_batch_pair(a: object, b: object, dim: int) -> tuple[Floats, Floats]:
     """Return the two ends `a` and `b` of a batch of motions, both checked by `as_batch`, of one length.
 
-    Raises
-    ------
-    InvalidValue
-        As `as_batch`, or if the two have different lengths.
+    Raises InvalidValue as `as_batch`, or if the two have different lengths.
     """
     first, second = as_batch("a", a, dim), as_batch("b", b, dim)
     if len(first) != len(second):
@@ -26,10 +27,7 @@ def as_batch_pair(a: object, b: object, dim: int) -> tuple[Floats, Floats]:
 def as_cube_batch(u: object, cube_dim: int) -> Floats:
     """Return `u` checked by `as_batch` and to lie in the closed unit cube.
 
-    Raises
-    ------
-    InvalidValue
-        As `as_batch`, or naming the first entry outside [0, 1] and its place.
+    Raises InvalidValue as `as_batch`, or naming the first entry outside [0, 1] and its place.
     """
     unit = as_batch("u", u, cube_dim)
     outside = (unit < 0.0) | (unit > 1.0)
@@ -42,10 +40,7 @@ def as_cube_batch(u: object, cube_dim: int) -> Floats:
 def as_fractions(t: object, n: int) -> Floats:
     """Return the fractions `t` of `n` motions, a scalar or (n,) in [0, 1], as a column (n, 1).
 
-    Raises
-    ------
-    InvalidValue
-        If `t` has another shape, is no number, or lies outside [0, 1].
+    Raises InvalidValue if `t` has another shape, is no number, or lies outside [0, 1].
     """
     try:
         fraction = np.asarray(t, dtype=np.float64)
@@ -56,3 +51,27 @@ def as_fractions(t: object, n: int) -> Floats:
     if not ((fraction >= 0.0) & (fraction <= 1.0)).all():
         raise InvalidValue("t must lie in [0, 1]")
     return np.broadcast_to(fraction, (n,))[:, np.newaxis]
+
+
+def as_bounds(low: Sequence[float], high: Sequence[float]) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Return `low` and `high` as rows of one length with ``low < high`` on every axis.
+
+    Raises InvalidValue naming the first axis whose bounds are not such.
+    """
+    lows = as_row("low", low)
+    highs = as_row("high", high, len(lows))
+    for k, (least, most) in enumerate(zip(lows, highs, strict=True)):
+        if not (least < most and math.isfinite(most - least)):
+            raise InvalidValue(f"low must be less than high on every axis; axis {k} has {least!r}, {most!r}")
+    return lows, highs
+
+
+def as_weights(weights: Sequence[float] | None, length: int) -> tuple[float, ...]:
+    """Return `weights` as `length` floats > 0; None stands for ones.
+
+    Raises InvalidValue if they are not `length` finite numbers > 0.
+    """
+    row = (1.0,) * length if weights is None else as_row("weights", weights, length)
+    if min(row) <= 0.0:
+        raise InvalidValue(f"weights must be > 0, got {weights!r}")
+    return row

@@ -18,11 +18,11 @@ from evenroad.space.flat import FlatSpace
 class ChainSpace(FlatSpace):
     """Angles of a chain of `joints` links, each ``1 / joints`` long, that lies in the plane and starts at the origin.
 
-    A configuration is the (joints,) turns of each link against the one before, the first against the x axis, in
+    A configuration is the (joints,) angles of each link against the one before, the first against the x axis, in
     radians; any angle is taken, given back are angles in [-pi, pi).  The distance of two configurations is the sum,
     over all links, of how far the far ends of the link are apart in the plane: the metric of OMPL's kinematic
-    chain benchmark.  Ways turn every joint the short way round at an even speed, which in this metric is neither
-    the shortest way nor an even one.
+    chain benchmark.  Motions turn every joint the short way round at an even speed, which in this metric is neither
+    the shortest motion nor an even one.
 
     Parameters
     ----------
@@ -78,13 +78,13 @@ def _distances(a, b):  # type: ignore[no-untyped-def]
 @njit(cache=True, nogil=True)
 def chain_distance(a: Floats, b: Floats) -> float:
     """Return the distance of two configurations, (joints,): compiled, for compiled callers."""
-    heading_a, heading_b, apart_x, apart_y, total = 0.0, 0.0, 0.0, 0.0, 0.0
+    heading_a, heading_b, offset_x, offset_y, total = 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(len(a)):
         heading_a += a[k]
         heading_b += b[k]
-        apart_x += math.cos(heading_a) - math.cos(heading_b)
-        apart_y += math.sin(heading_a) - math.sin(heading_b)
-        total += math.sqrt(apart_x * apart_x + apart_y * apart_y)
+        offset_x += math.cos(heading_a) - math.cos(heading_b)
+        offset_y += math.sin(heading_a) - math.sin(heading_b)
+        total += math.sqrt(offset_x * offset_x + offset_y * offset_y)
     return total / len(a)
 
 
@@ -110,7 +110,7 @@ def _all_distances(a, b):  # type: ignore[no-untyped-def]
         for j in range(len(b)):
             total = 0.0
             for k in range(joints):
-                apart_x, apart_y = a[i, k] - b[j, k], a[i, joints + k] - b[j, joints + k]
-                total += math.sqrt(apart_x * apart_x + apart_y * apart_y)
+                offset_x, offset_y = a[i, k] - b[j, k], a[i, joints + k] - b[j, joints + k]
+                total += math.sqrt(offset_x * offset_x + offset_y * offset_y)
             distances[i, j] = total / joints
     return distances

@@ -64,7 +64,7 @@ class FlatMetric:
     def difference(self, a: Floats, b: Floats) -> Floats:
         """Return ``b - a`` the short way round, not scaled, for two (n, dim) arrays as (n, dim).
 
-        Opposite places of a wrapping coordinate keep the sign of ``b - a``, so that the way between two of
+        Opposite places of a wrapping coordinate keep the sign of ``b - a``, so that the motion between two of
         them is one and the same in both directions and, within one period, does not cross its ends.
         """
         difference = b - a
@@ -94,10 +94,10 @@ def _all_distances(a, b, scale, period):  # type: ignore[no-untyped-def]
         for j in range(len(b)):
             squares = 0.0
             for k in range(len(scale)):
-                apart = b[j, k] - a[i, k]
+                difference = b[j, k] - a[i, k]
                 if period[k] != np.inf:
-                    apart -= period[k] * np.rint(apart / period[k])
-                squares += (scale[k] * apart) ** 2
+                    difference -= period[k] * np.rint(difference / period[k])
+                squares += (scale[k] * difference) ** 2
             distances[i, j] = np.sqrt(squares)
     return distances
 
@@ -167,9 +167,9 @@ class FlatSpace:
         return self._flat.all_distances(self._canonical(first), self._canonical(second))
 
     def interpolate(self, a: Floats, b: Floats, t: Floats | float) -> Floats:
-        """Return the points a fraction `t`, scalar or (n,) in [0, 1], of the short way from `a` to `b`.
+        """Return the points a fraction `t`, scalar or (n,) in [0, 1], of the short motion from `a` to `b`.
 
-        Exact at both ends and never beyond them.  Of the two ways between opposite places of a wrapping
+        Exact at both ends and never beyond them.  Of the two motions between opposite places of a wrapping
         axis, the one that does not cross the ends of its range is taken, in either direction.
         """
         first, second = as_batch_pair(a, b, self.dim)

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from evenroad.errors import InvalidValue
-from evenroad.space.axes import as_bounds, as_weights
+from evenroad.space.batch import as_bounds, as_weights
 from evenroad.space.flat import FlatSpace
 
 
 @dataclass(frozen=True)
 class Box(FlatSpace):
-    """The box ``[low_1, high_1] x ... x [low_dim, high_dim]``; straight lines are its shortest ways.
+    """The box ``[low_1, high_1] x ... x [low_dim, high_dim]``; straight lines are its shortest paths.
 
     Parameters
     ----------

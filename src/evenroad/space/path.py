@@ -66,10 +66,7 @@ def resample(path: Floats, space: Space, step: float) -> tuple[Floats, Ints]:
 def place_at(path: Floats, space: Space, t: npt.ArrayLike) -> Floats:
     """Return where on a path a robot is after shares `t` of its length, (n,) in [0, 1], as (n, dim).
 
-    Raises
-    ------
-    InvalidValue
-        If a share lies outside [0, 1].
+    Raises InvalidValue if a share lies outside [0, 1].
     """
     shares = np.atleast_1d(np.asarray(t, dtype=np.float64))
     if not ((shares >= 0.0) & (shares <= 1.0)).all():

@@ -9,9 +9,9 @@ from typing import Literal
 import numpy as np
 
 from evenroad._arrays import Bools, Floats
-from evenroad.errors import InvalidValue, UnknownName
-from evenroad.space.axes import as_weights
-from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions
+from evenroad._checks import require_known
+from evenroad.errors import InvalidValue
+from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions, as_weights
 from evenroad.space.flat import FlatMetric
 from evenroad.space.joints import Box, Circle
 from evenroad.space.protocol import Space, all_distances
@@ -24,7 +24,7 @@ _COMBINATIONS = ("sum", "l2")
 class Product:
     """The space of tuples of one configuration from each part, their coordinates one after the other.
 
-    A shortest way of the product is a shortest way in every part at once, each at its own even speed.
+    A shortest path of the product is a shortest path in every part at once, each at its own even speed.
 
     Parameters
     ----------
@@ -52,8 +52,7 @@ class Product:
         parts = tuple(self.parts)
         if not parts:
             raise InvalidValue("parts must be one space or more, got none")
-        if self.combine not in _COMBINATIONS:
-            raise UnknownName.among("combination", self.combine, _COMBINATIONS)
+        require_known("combination", self.combine, _COMBINATIONS)
         weights = as_weights(self.weights, len(parts))
         object.__setattr__(self, "parts", parts)
         object.__setattr__(self, "weights", weights)
@@ -114,7 +113,7 @@ class Product:
         ]
 
     def interpolate(self, a: Floats, b: Floats, t: Floats | float) -> Floats:
-        """Return the points a fraction `t`, scalar or (n,) in [0, 1], of the way in every part, (n, dim)."""
+        """Return the points a fraction `t`, scalar or (n,) in [0, 1], of the motion in every part, (n, dim)."""
         first, second = as_batch_pair(a, b, self.dim)
         fraction = as_fractions(t, len(first))[:, 0]
         return np.hstack(

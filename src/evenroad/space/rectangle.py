@@ -1,4 +1,4 @@
-"""Rectangle: a rectangle in the plane, possibly turned, with the Euclidean metric."""
+"""Rectangle: a rectangle in the plane, possibly rotated, with the Euclidean metric."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from evenroad._arrays import Bools, Floats
+from evenroad._checks import as_row
 from evenroad.errors import InvalidValue
 from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions
 from evenroad.space.flat import FlatMetric
@@ -16,7 +17,7 @@ _LARGEST_COSINE = 1e-9
 """Edges count as perpendicular up to this cosine: room for the rounding of a yaw, not for a slanted frame."""
 
 _ROUNDING = 1e-9
-"""Share of an edge by which a point may be outside: room for the rounding of a turned frame far from the origin."""
+"""Share of an edge by which a point may be outside: room for the rounding of a rotated frame far from the origin."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class Rectangle:
 
     def __post_init__(self) -> None:
         for name in ("corner", "edge_u", "edge_v"):
-            object.__setattr__(self, name, _as_pair(name, getattr(self, name)))
+            object.__setattr__(self, name, as_row(name, getattr(self, name), 2))
         lengths = math.hypot(*self.edge_u), math.hypot(*self.edge_v)
         if min(lengths) == 0.0 or not math.isfinite(lengths[0] * lengths[1]):
             raise InvalidValue(
@@ -102,13 +103,3 @@ class Rectangle:
         column = as_fractions(t, len(first))
         # This form, unlike a + t (b - a), is exact at both ends.
         return (1.0 - column) * first + column * second
-
-
-def _as_pair(name: str, value: object) -> tuple[float, float]:
-    try:
-        x, y = (float(entry) for entry in value)  # type: ignore[attr-defined]
-    except (TypeError, ValueError):
-        raise InvalidValue(f"{name} must be two finite numbers, got {value!r}") from None
-    if not (math.isfinite(x) and math.isfinite(y)):
-        raise InvalidValue(f"{name} must be two finite numbers, got {value!r}")
-    return x, y

@@ -127,10 +127,10 @@ def _all_angles(a, b):  # type: ignore[no-untyped-def]
     angles = np.empty((len(a), len(b)))
     for i in range(len(a)):
         for j in range(len(b)):
-            apart, together = 0.0, 0.0
+            chord, together = 0.0, 0.0
             for k in range(4):
-                apart += (a[i, k] - b[j, k]) ** 2
+                chord += (a[i, k] - b[j, k]) ** 2
                 together += (a[i, k] + b[j, k]) ** 2
             # The nearer of b and -b is the one with the shorter chord.
-            angles[i, j] = 2.0 * math.atan2(math.sqrt(min(apart, together)), math.sqrt(max(apart, together)))
+            angles[i, j] = 2.0 * math.atan2(math.sqrt(min(chord, together)), math.sqrt(max(chord, together)))
     return angles

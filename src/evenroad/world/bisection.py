@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from numba import njit
 
 from evenroad._arrays import Bools, Ints
 from evenroad.errors import InvalidValue
@@ -60,3 +61,23 @@ def between_ends(segments: Ints, open_motions: Bools) -> Iterator[tuple[Ints, In
             if wanted.any():
                 yield motion[wanted], state[wanted]
         level += 1
+
+
+@njit(cache=True, nogil=True)
+def next_between(level: int, multiple: int, segments: int) -> tuple[int, int, int]:
+    """Return the next state between the ends of a motion of so many segments, with its place in the order.
+
+    `level` and `multiple` are the place of the state before; 1 and -1 for the first.  State k of n lies a fraction k /
+    n along the motion; it is 0 where there are no more.
+    """
+    while True:
+        multiple += 2
+        if multiple >= 1 << level:
+            level, multiple = level + 1, 1
+        if 1 << (level - 1) >= segments:
+            return level, multiple, 0
+        state = (multiple * segments) >> level
+        # Rounded down, an odd multiple may fall on an even one beside it, which has another level.
+        before, after = ((multiple - 1) * segments) >> level, ((multiple + 1) * segments) >> level
+        if before < state < after:
+            return level, multiple, state

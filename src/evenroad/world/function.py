@@ -9,11 +9,10 @@ from typing import Any
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints
-from evenroad._checks import require_positive
+from evenroad._checks import as_row, require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.space import Product, Space
-from evenroad.space.axes import as_row
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.bisection import between_ends, require_few_segments
 

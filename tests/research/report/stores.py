@@ -28,7 +28,7 @@ def solved(yes=True, **others):
 
 
 def made_up(problem="maze-1", runs=40, rates=RATES, counts=COUNTS, seed=0, **others):
-    """Return (task, outcome) of every cell of one question; `hickernell` draws from a pool of 16 sets."""
+    """Return (task, outcome) of every cell of one setting; `hickernell` draws from a pool of 16 sets."""
     rng = np.random.default_rng(seed)
     rows = []
     for sampler, chances in rates.items():

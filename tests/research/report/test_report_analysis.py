@@ -149,11 +149,11 @@ def test_runs_without_a_counterpart_are_left_out(tmp_path):
     assert (only.pairs, only.only_cell) == (2, 2)
 
 
-def test_holms_family_is_one_question(tmp_path):
+def test_holms_family_is_one_setting(tmp_path):
     rows = made_up("maze-1", runs=10) + made_up("maze-2", runs=10)
     runs = runs_from(tmp_path / "a.db", rows)
     found = comparisons_of(runs, cells_of(runs))
-    mine = [each for each in found if each.cell.question.problem == "maze-2"]
+    mine = [each for each in found if each.cell.setting.problem == "maze-2"]
     assert [each.p_corrected for each in mine] == pytest.approx(holm([each.p for each in mine]).tolist())
 
 

@@ -1,6 +1,5 @@
 """Figures: what is drawn, not how it looks."""
 
-import numpy as np
 import pytest
 
 from evenroad.errors import NotAvailable
@@ -12,10 +11,9 @@ from evenroad.research.report.figures.charts import (
     draw_curves,
     draw_fair_gains,
     draw_maze_success,
-    maze_questions,
+    maze_settings,
 )
-from evenroad.research.report.figures.scenes import draw_scene, poses_along, scenes_among
-from evenroad.space import Box
+from evenroad.research.report.figures.scenes import draw_scene, scenes_among
 from tests.research.report.stores import made_up, runs_from
 
 
@@ -41,10 +39,10 @@ def test_mazes_under_one_rule_share_a_picture(tmp_path):
         + made_up("maze-2", runs=5, rule="k=4 symmetrised")
     )
     runs = runs_from(tmp_path / "a.db", rows)
-    mazes = maze_questions(runs.questions)
+    mazes = maze_settings(runs.settings)
     assert {(each.problem, each.search) for each in mazes} <= {("maze-1", "connect"), ("maze-2", "connect")}
     assert len({each.rule for each in mazes}) == 1
-    figure = draw_maze_success([cell for cell in cells_of(runs) if cell.question in mazes])
+    figure = draw_maze_success([cell for cell in cells_of(runs) if cell.setting in mazes])
     assert [axes.get_title().split(",")[0] for axes in figure.axes] == ["maze-1", "maze-2"]
     for axes in figure.axes:
         places = [tuple(points.get_xdata()) for points, _, _ in axes.containers]
@@ -68,13 +66,7 @@ def test_gains_in_random_worlds_are_drawn_with_their_intervals_and_dimensions_wi
 
 
 def test_one_maze_alone_has_no_picture_of_all(tmp_path):
-    assert maze_questions(runs_from(tmp_path / "a.db", made_up("maze-1", runs=2)).questions) == ()
-
-
-def test_poses_along_a_path_are_evenly_spaced_and_keep_its_ends():
-    path = np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 0.0], [3.0, 1.0]])
-    poses = poses_along(Box([0.0, 0.0], [4.0, 4.0]), path, 5)
-    assert poses == pytest.approx(np.array([[0, 0], [1, 0], [2, 0], [3, 0], [3, 1]]))
+    assert maze_settings(runs_from(tmp_path / "a.db", made_up("maze-1", runs=2)).settings) == ()
 
 
 def test_another_protocol_in_the_same_scene_shows_the_same_scene():

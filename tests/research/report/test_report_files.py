@@ -176,7 +176,7 @@ def _without_pictures(monkeypatch):
 @pytest.mark.usefixtures("_without_pictures")
 def test_a_report_can_be_of_some_problems_only(store, tmp_path):
     report = write_report(store, tmp_path / "out", only=["maze-1"])
-    assert {cell.question.problem for cell in report.analysis.cells} == {"maze-1"}
+    assert {cell.setting.problem for cell in report.analysis.cells} == {"maze-1"}
     assert not (tmp_path / "out" / "expected.csv").exists()
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from evenroad.research.report.fair import lazy_checks, pooled, pooled_rules
-from evenroad.research.report.runs import Question
+from evenroad.research.report.runs import Setting
 from evenroad.research.report.sections.suites import lazy_table
 from tests.research.report.stores import runs_from, solved, task
 
@@ -81,6 +81,6 @@ def test_without_lazy_runs_there_is_nothing_to_compare(tmp_path):
     ],
 )
 def test_rules_that_are_pooled_are_named_in_short(rules, text):
-    questions = [Question("fair-se2-50", rule, "connect") for rule in rules]
-    others = [Question("fair-se2-50", "k=6 other", "lazy"), Question("maze-1", "k=7 other", "connect")]
-    assert pooled_rules(questions + others) == text
+    settings = [Setting("fair-se2-50", rule, "connect") for rule in rules]
+    others = [Setting("fair-se2-50", "k=6 other", "lazy"), Setting("maze-1", "k=7 other", "connect")]
+    assert pooled_rules(settings + others) == text

@@ -8,7 +8,7 @@ import pytest
 from evenroad.cli.report_table import _fewest
 from evenroad.research.report.analysis import needed_of, resampled_curves
 from evenroad.research.report.cells import cells_of
-from evenroad.research.report.sections.questions import success_table
+from evenroad.research.report.sections.settings import success_table
 from tests.research.report.stores import analysis_from, from_pool, runs_from, solved, task
 
 FRESH = ("",)
@@ -26,12 +26,12 @@ def test_a_grid_of_one_run_for_each_number_of_samples_has_no_interval_and_does_n
     rows = _curve("sukharev", (0, 0, 1), counts=(64, 256, 1024), runs=1, ids=("grid",))
     rows += _curve("uniform", (0.1, 0.5, 1.0), counts=(64, 256, 1024))
     analysis = analysis_from(tmp_path / "a.db", rows)
-    (question,) = analysis.runs.questions
-    alone = analysis.needed[question, "sukharev"]
+    (setting,) = analysis.runs.settings
+    alone = analysis.needed[setting, "sukharev"]
     assert not alone.has_interval
     assert str(alone) == "891 [–]"
-    assert _fewest(analysis, question).endswith(": uniform")
-    table = success_table(analysis, question, "name")
+    assert _fewest(analysis, setting).endswith(": uniform")
+    table = success_table(analysis, setting, "name")
     assert table.rows[-1][-1].text == "891 [–]"
     assert any(note.startswith("[–]: fewer than 10 runs") for note in table.notes)
 
@@ -46,12 +46,12 @@ def test_a_pool_of_four_sets_has_no_interval(tmp_path):
 def test_only_samplers_with_cells_for_every_number_of_samples_are_compared(tmp_path):
     rows = _curve("uniform", (0.1, 0.5, 0.95)) + _curve("lattice", (1.0, 1.0), counts=(256, 512))
     analysis = analysis_from(tmp_path / "a.db", rows)
-    assert _fewest(analysis, analysis.runs.questions[0]).endswith(": uniform")
+    assert _fewest(analysis, analysis.runs.settings[0]).endswith(": uniform")
 
 
 def test_nobody_is_named_where_no_one_has_an_interval(tmp_path):
     analysis = analysis_from(tmp_path / "a.db", _curve("uniform", (1, 1, 1), runs=9))
-    assert _fewest(analysis, analysis.runs.questions[0]) == "–"
+    assert _fewest(analysis, analysis.runs.settings[0]) == "–"
 
 
 def test_runs_are_resampled_together_for_all_numbers_of_samples(tmp_path):

@@ -8,7 +8,7 @@ import pytest
 from evenroad.research.report.cells import cells_of
 from evenroad.research.report.comparisons import comparisons_of
 from evenroad.research.report.fair import pooled
-from evenroad.research.report.sections.questions import paired_tables, spread_table, success_table
+from evenroad.research.report.sections.settings import paired_tables, spread_table, success_table
 from evenroad.research.report.sections.suites import expected_table
 from evenroad.research.statistics import mcnemar_exact, sign_flip_test, student_interval, student_test, wilson
 from tests.research.report.stores import analysis_from, from_pool, runs_from, solved, task
@@ -57,8 +57,8 @@ def test_what_could_not_be_tested_is_named_and_not_among_what_is_corrected_for(t
         + from_pool("maze-1", "mpmc", 128, EASY)
         + from_pool("maze-1", "korobov", 128, (0.9,), ids=FRESH),
     )
-    (table,) = paired_tables(analysis, analysis.runs.questions[0], "name")
-    assert "over the 1 comparisons of this question that were tested; McNemar." in table.notes[0]
+    (table,) = paired_tables(analysis, analysis.runs.settings[0], "name")
+    assert "over the 1 comparisons of this setting that were tested; McNemar." in table.notes[0]
     assert table.notes[1] == "mpmc, N = 128: too few sets to test."
     assert [row[1].mark for row in table.rows] == ["", "better"]
 
@@ -66,11 +66,11 @@ def test_what_could_not_be_tested_is_named_and_not_among_what_is_corrected_for(t
 def test_the_page_says_which_runs_are_independent_given_the_pool_only(tmp_path):
     problem = "hypercube-legacy6"
     analysis = analysis_from(tmp_path / "a.db", _uniform(problem) + from_pool(problem, "mpmc", 128, EASY))
-    question = analysis.runs.questions[0]
+    setting = analysis.runs.settings[0]
     said = "mpmc: the intervals hold for the sets of the pool; every run permutes the coordinates of one of them."
-    assert said in success_table(analysis, question, "name").notes
-    assert said in paired_tables(analysis, question, "name")[0].notes
-    (row,) = spread_table(analysis, question, "name").rows
+    assert said in success_table(analysis, setting, "name").notes
+    assert said in paired_tables(analysis, setting, "name")[0].notes
+    (row,) = spread_table(analysis, setting, "name").rows
     assert [entry.text for entry in row[:4]] == ["mpmc", "128", "4", "80"]
 
 

@@ -20,7 +20,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.errors import BrokenFile, NotAvailable, UnknownName, shown
+from evenroad._checks import require_known
+from evenroad.errors import BrokenFile, NotAvailable, shown
 from evenroad.points.pointset import PointSet
 
 DATA = Path(__file__).parent / "data"
@@ -55,10 +56,7 @@ class Cell:
     def load(self) -> npt.NDArray[np.float32]:
         """Return the sets, shape (sets, n, d), float32 in [0, 1), checked against the index.
 
-        Raises
-        ------
-        BrokenFile
-            If the file is missing or damaged, or a set does not have the hash of the index.
+        Raises BrokenFile if the file is missing or damaged, or a set does not have the hash of the index.
         """
         return _load_checked(self.path, (self.sets, self.n, self.d), self.hashes)
 
@@ -76,8 +74,7 @@ class Bank:
     def counts(self, family: str, d: int) -> list[int]:
         """Return the n that a family has in d dimensions, ascending; empty when it has none."""
         index = _index(self.folder)
-        if family not in index:
-            raise UnknownName.among("family in the bank:", family, index)
+        require_known("family in the bank:", family, index)
         return sorted(int(n) for n in index[family].get(str(d), {}))
 
     def cell(self, family: str, n: int, d: int) -> Cell:

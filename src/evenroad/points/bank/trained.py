@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from evenroad import __version__
-from evenroad._checks import require_count
+from evenroad._checks import require_count, require_known
 from evenroad._files import cache_folder, require_writable_folder
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import BrokenFile, NotAvailable, UnknownName
@@ -60,8 +60,7 @@ class Trained:
     symmetries = frozenset({Symmetry.PERMUTATION})
 
     def __post_init__(self) -> None:
-        if self.family not in TRAINED_FAMILIES:
-            raise UnknownName.among("trained family", self.family, TRAINED_FAMILIES)
+        require_known("trained family", self.family, TRAINED_FAMILIES)
 
     @property
     def name(self) -> str:

@@ -7,9 +7,9 @@ from numba import njit
 from scipy.spatial import Voronoi, cKDTree
 
 from evenroad._arrays import Floats
-from evenroad._checks import require_count, require_positive
+from evenroad._checks import require_count, require_known, require_positive
 from evenroad._rng import RngLike, generator
-from evenroad.errors import InvalidValue, NotAvailable, UnknownName
+from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.points.pointset import as_unit_points
 
 BUDGET = 4e8
@@ -121,8 +121,7 @@ def dispersion_lower_bound(
         For another norm.
     """
     coordinates = _checked(points, None)
-    if norm not in NORMS:
-        raise UnknownName.among("norm", norm, NORMS)
+    require_known("norm", norm, NORMS)
     starts, rounds = require_count("starts", starts), require_count("rounds", rounds)
     draws = generator(rng)
     d = coordinates.shape[1]

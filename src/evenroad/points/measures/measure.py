@@ -10,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats
-from evenroad.errors import InvalidValue, UnknownName, shown
+from evenroad._checks import require_known
+from evenroad.errors import InvalidValue, shown
 from evenroad.points.measures import l2
 from evenroad.points.measures.l2 import ProductTerms
 from evenroad.points.pointset import as_unit_points
@@ -182,6 +183,5 @@ MEASURES: dict[str, Measure] = {
 
 def measure_named(name: str) -> Measure:
     """Return the measure of this name, or raise UnknownName with the known ones."""
-    if name not in MEASURES:
-        raise UnknownName.among("measure", name, MEASURES)
+    require_known("measure", name, MEASURES)
     return MEASURES[name]

@@ -53,10 +53,7 @@ class Korobov:
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
         """Return n lattice points, shape (n, d), in the order of i; see :class:`~evenroad.points.Sampler`.
 
-        Raises
-        ------
-        InvalidValue
-            Also if n > 2**26.
+        Raises InvalidValue also if n > 2**26.
         """
         n, d = require_count("n", n), require_count("d", d)
         multiplier = korobov_generator(n, d)

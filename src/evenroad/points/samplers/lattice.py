@@ -36,10 +36,7 @@ class Lattice:
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
         """Return n lattice points of the unit cube, shape (n, d); see :class:`~evenroad.points.Sampler`.
 
-        Raises
-        ------
-        InvalidValue
-            Also if d > 12.
+        Raises InvalidValue also if d > 12.
         """
         n, d = require_count("n", n), require_count("d", d)
         if d > MAX_D:

@@ -49,10 +49,7 @@ class Sukharev:
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
         """Return the k^d cell centres ((i + 1/2) / k per axis), first axis slowest; `rng` is not used.
 
-        Raises
-        ------
-        NotAvailable
-            If n is no k^d and `allow_fewer` is off; the text names the two nearest.
+        Raises NotAvailable if n is no k^d and `allow_fewer` is off; the text names the two nearest.
         """
         n, d = require_count("n", n), require_count("d", d)
         k = _floor_root(n, d)

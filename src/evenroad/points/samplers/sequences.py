@@ -79,10 +79,8 @@ class Sobol(_Sequence):
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
         """Return points start .. start + n - 1 of the sequence, shape (n, d); see :class:`~evenroad.points.Sampler`.
 
-        Raises
-        ------
-        InvalidValue
-            Also if start + n exceeds 2**30 points, or d exceeds the 21201 dimensions of the direction numbers.
+        Raises InvalidValue also if start + n exceeds 2**30 points, or d exceeds the 21201 dimensions of the direction
+        numbers.
         """
         from scipy.stats import qmc
 
@@ -97,12 +95,3 @@ class Sobol(_Sequence):
             return self._set(engine.random(n), rng)
         # From index 0 SciPy warns unless n is a power of two; users of a roadmap choose n freely.
         return self._set(engine.random_base2((n - 1).bit_length())[:n], rng)
-
-
-def paper_block(sampler: Halton | Sobol, run: int, n: int) -> Halton | Sobol:
-    """Return the plain sequence for one run of the paper: points (run-1) n + 1 .. run n, with run >= 1.
-
-    Chahine et al. (2025), section 4.1: every run goes on where the previous one ended.
-    """
-    run, n = require_count("run", run), require_count("n", n)
-    return type(sampler)(scramble=False, start=(run - 1) * n + 1)

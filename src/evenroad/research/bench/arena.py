@@ -55,21 +55,8 @@ CREATE TABLE progress (runid INTEGER, time REAL, PRIMARY KEY (runid, time));
 def write_arena(store: str | os.PathLike[str], out: str | os.PathLike[str]) -> int:
     """Write a Planner Arena database of all rows of a store, atomically; return how many runs it has.
 
-    Parameters
-    ----------
-    store : path
-        What ``evenroad bench`` wrote.
-    out : path
-        The database to write; replaced if it exists.
-
-    Raises
-    ------
-    BrokenFile
-        If the store cannot be read, or `out` not be written.
-    NotAvailable
-        If the store has no rows.
-    InvalidValue
-        If both are the same file.
+    BrokenFile if the store cannot be read, or `out` not be written; NotAvailable if the store has no rows, InvalidValue
+    if both are the same file.
     """
     target = Path(out)
     require_writable_folder(target)

@@ -115,18 +115,8 @@ class Rows:
 def read_rows(path: str | os.PathLike[str], *, problems: Sequence[str] | None = None) -> Rows:
     """Read finished rows of today's protocol, in the order of the tasks' fields; a million takes ten seconds.
 
-    Parameters
-    ----------
-    path : path
-        The store; it may be in use by a running benchmark.
-    problems : sequence of str, optional
-        Only rows of these problems.
-
-    Raises
-    ------
-    BrokenFile
-        If there is no such file, it is not a store, one of another version, or damaged anywhere, also where rows
-        are not asked for.
+    The store may be in use by a running benchmark.  With `problems`, only their rows.  Raises BrokenFile if there is no
+    such file, it is not a store, one of another version, or damaged anywhere, also where rows are not asked for.
     """
     target = Path(path)
     connection = connect(target)

@@ -8,6 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from evenroad._checks import require_known
 from evenroad.errors import NotAvailable, UnknownName
 from evenroad.points import PointSet, draw, make_sampler
 from evenroad.points.bank import open_bank
@@ -76,8 +77,7 @@ def draw_set(name: str, n: int, d: int, run: int, rng: np.random.Generator) -> D
 
 def why_not(name: str, n: int, d: int) -> str:
     """Return why a sampler has no set of n points in d dimensions, or "" if it has; UnknownName as `draw_set`."""
-    if name not in SAMPLERS:
-        raise UnknownName.among("sampler", name, SAMPLERS)
+    require_known("sampler", name, SAMPLERS)
     return SAMPLERS[name].why_not(SAMPLERS[name].family, n, d)
 
 

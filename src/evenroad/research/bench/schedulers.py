@@ -19,13 +19,11 @@ ADDRESS = re.compile(r"(tcp|tls|wss?)://([^\s/:\[\]]+|\[[0-9a-fA-F:.]+\]):\d{1,5
 
 
 def dask_workers(address: str) -> Workers:
-    """Return the workers of a running Dask scheduler; needs the extra ``dask``.
+    """Return the workers of a running Dask scheduler, e.g. ``tcp://host:8786``; needs the extra ``dask``.
 
-    Parameters
-    ----------
-    address : str
-        Of the scheduler, e.g. ``tcp://host:8786``.  The cluster may be a LocalCluster, one over SSH, or one that
-        dask-jobqueue keeps on Slurm; evenroad must be installed there in the same version.
+    The cluster may be a LocalCluster, one over SSH, or one that dask-jobqueue keeps on Slurm; evenroad must be
+    installed there in the same version.  A chunk whose worker dies is sent to another one by the scheduler itself,
+    three times.  Tasks run in threads of the workers, so the limit on a task's seconds does not hold there.
 
     Raises
     ------
@@ -34,11 +32,6 @@ def dask_workers(address: str) -> Workers:
     NotAvailable
         If the package is missing, Dask has no certificates for ``tls://``, no scheduler answers within seconds, it
         has no workers, or they have another version of evenroad.
-
-    Notes
-    -----
-    A chunk whose worker dies is sent to another one by the scheduler itself, three times.  Tasks run in threads of
-    the workers, so the limit on a task's seconds does not hold there.
     """
     # Not left to Dask: a client that cannot read its address takes a quarter of a minute to go away, with a traceback.
     if not ADDRESS.fullmatch(address):

@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 from evenroad._arrays import Ints, Ints32
-from evenroad.errors import UnknownName
+from evenroad._checks import require_known
 from evenroad.roadmap.cost import edge_costs
 from evenroad.roadmap.search import FINDERS, FREE, UNKNOWN, EdgeStates, join, length_along, search_problem
 
@@ -33,8 +33,7 @@ def search_named(name: str) -> Callable[[EdgeStates], Finding]:
 
     UnknownName, with the known ones, if there is none.
     """
-    if name not in SEARCHES:
-        raise UnknownName.among("search", name, SEARCHES)
+    require_known("search", name, SEARCHES)
     return SEARCHES[name]
 
 

@@ -65,10 +65,7 @@ class Store:
     def finished(self) -> dict[str, bool]:
         """Return the keys of the tasks that have a row, and whether it is an answer, not a failure of the run.
 
-        Raises
-        ------
-        BrokenFile
-            If the store is damaged.
+        Raises BrokenFile if the store is damaged.
         """
         texts = {number: text for text, number in self._names.items()}
         with sqlite_errors(self.path):
@@ -112,11 +109,8 @@ class Store:
     def commit(self) -> None:
         """Write what was added.
 
-        Raises
-        ------
-        BrokenFile
-            If the disk is full, or another process locks the file.  Earlier rows are kept, and those that were to be
-            written wait for another commit or for :meth:`close`.
+        Raises BrokenFile if the disk is full, or another process locks the file. Earlier rows are kept, and those that
+        were to be written wait for another commit or for :meth:`close`.
         """
         if self._waiting:
             try:
@@ -149,10 +143,7 @@ class Store:
     def close(self) -> None:
         """Commit; rows that the store cannot take are left in a file beside it.
 
-        Raises
-        ------
-        BrokenFile
-            If the store cannot be written; the text says where the rows are.
+        Raises BrokenFile if the store cannot be written; the text says where the rows are.
         """
         try:
             # What failed is not tried again: a locked file would be waited for once more.
@@ -197,14 +188,10 @@ class Store:
 def open_store(path: str | os.PathLike[str]) -> Iterator[Store]:
     """Open a store for writing, or make one; what was added is committed when the block ends, however it does.
 
-    Between the commits, and after the block, it is one file that can be copied.  While it is open there is a lock
-    beside it, STORE.lock.  Rows that cannot be committed are left in STORE.rescue, which the next opening takes in.
-
-    Raises
-    ------
-    BrokenFile
-        If the folder cannot be written, another process writes to this store, the file is not a store, it has
-        another schema version, or it could not be written in the end; the text then says where the rows are.
+    Between the commits, and after the block, it is one file that can be copied. While it is open there is a lock
+    beside it, STORE.lock. Rows that cannot be committed are left in STORE.rescue, which the next opening takes in.
+    Raises BrokenFile if the folder cannot be written, another process writes to this store, the file is not a store,
+    it has another schema version, or it could not be written in the end; the text then says where the rows are.
     """
     target = Path(path)
     require_writable_folder(target)
@@ -267,10 +254,7 @@ def leave_rows(store: Path, rows: Sequence[Row]) -> str:
 def waiting_rows(store: Path) -> list[Row]:
     """Return the rows in the rescue file of a store; none where there is no such file.
 
-    Raises
-    ------
-    BrokenFile
-        If the file is something else.
+    Raises BrokenFile if the file is something else.
     """
     path = rescue_file(store)
     try:

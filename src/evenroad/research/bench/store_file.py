@@ -60,28 +60,9 @@ JOIN names of_worker ON of_worker.id = worker;
 
 
 COLUMNS = (
-    "key",
-    "protocol",
-    "suite",
-    "problem",
-    "instance",
-    "sampler",
-    "n",
-    "rule",
-    "search",
-    "run",
-    "seed",
-    "status",
-    "valid",
-    "valid_at_solution",
-    "edges_checked",
-    "length",
-    "seconds",
-    "set_id",
-    "error",
-    "worker",
-    "finished",
-)
+    "key", "protocol", "suite", "problem", "instance", "sampler", "n", "rule", "search", "run", "seed", "status",
+    "valid", "valid_at_solution", "edges_checked", "length", "seconds", "set_id", "error", "worker", "finished",
+)  # fmt: skip
 """Columns of a row, in the order of the table, without its checksum."""
 
 NAMED = ("suite", "problem", "sampler", "rule", "search", "status", "set_id", "error", "worker")
@@ -123,10 +104,7 @@ def damaged(path: Path, what: object) -> BrokenFile:
 def connect(path: Path) -> sqlite3.Connection:
     """Open the file of a store for reading, and writing where that is permitted.
 
-    Raises
-    ------
-    BrokenFile
-        If there is no such file, it is not a store, one of another version, or SQLite finds it damaged.
+    Raises BrokenFile if there is no such file, it is not a store, one of another version, or SQLite finds it damaged.
     """
     # Not Path.is_file, which raises where a name is too long.
     if not os.path.isfile(path):
@@ -189,10 +167,7 @@ def checked_rows(
 ) -> Iterator[tuple[Any, ...]]:
     """Yield the columns of every row of a store, texts as numbers, and then its checksum.
 
-    Raises
-    ------
-    BrokenFile
-        If a row is not as it was written: its checksum or its task's key is not that of its fields.
+    Raises BrokenFile if a row is not as it was written: its checksum or its task's key is not that of its fields.
     """
     for row in connection.execute(f"SELECT {', '.join(COLUMNS)}, checksum FROM rows"):
         blob, protocol, _, _, instance, _, n, _, _, run, seed, *_ = row
@@ -211,12 +186,8 @@ def checked_rows(
 def only_writer(store: Path) -> Iterator[None]:
     """Hold the lock of a store; the lock goes with the process, and its file, STORE.lock, with the block.
 
-    A lock of SQLite's own would keep readers out, too.
-
-    Raises
-    ------
-    BrokenFile
-        If another process holds it, or its file cannot be made.
+    A lock of SQLite's own would keep readers out, too.  Raises BrokenFile if another process holds it, or its file
+    cannot be made.
     """
     try:
         import fcntl

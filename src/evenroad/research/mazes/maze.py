@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._checks import require_count
+from evenroad._checks import require_count, require_known
 from evenroad._rng import RngLike, generator
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad.errors import InvalidValue
 from evenroad.world import GridMap, load_map
 from evenroad.world.gridmap.disk import DiskWorld
 
@@ -41,8 +41,7 @@ class Maze:
 
 def load_maze(level: int) -> Maze:
     """Return the maze of level 1, 2 or 3, harder and harder for uniform points; UnknownName for another level."""
-    if level not in LEVELS:
-        raise UnknownName.among("maze level", level, LEVELS)
+    require_known("maze level", level, LEVELS)
     record = json.loads((FOLDER / "mazes.json").read_text(encoding="utf-8"))[str(level)]
     start, goal = tuple(record["start"]), tuple(record["goal"])
     return Maze(level, FOLDER / record["image"], start, goal, record["robot_radius"])
@@ -56,10 +55,8 @@ Room = tuple[int, int]
 class MazeDesign:
     """A rectangular maze: a random spanning tree of rooms, with doors in a share of the remaining walls.
 
-    Attributes
+    Parameters
     ----------
-    cols, rows : int
-        Rooms, >= 1.
     wall : int
         Thickness of the walls [pixels], >= 2; odd ones are drawn one pixel thinner.
     door : int
@@ -67,12 +64,7 @@ class MazeDesign:
     loops : float
         Share of the walls outside the spanning tree that get a door too, in [0, 1].
     width, height : int
-        Of the picture [pixels].
-
-    Raises
-    ------
-    InvalidValue
-        If a number is out of range, or walls are as thick as rooms.
+        Of the picture [pixels].  Walls as thick as rooms, and numbers out of range, are an InvalidValue.
     """
 
     cols: int

@@ -172,10 +172,7 @@ def draw_weights(network: PointNetwork, draws: np.random.Generator) -> None:
 def objective_of_sets(points: torch.Tensor, objective: Objective) -> torch.Tensor:
     """Return the objective of every set of points, (sets, n, d) float64 in [0, 1), as (sets,), differentiable once.
 
-    Raises
-    ------
-    InvalidValue
-        If a point, a value or a gradient is not finite: the training has diverged.
+    Raises InvalidValue if a point, a value or a gradient is not finite: the training has diverged.
     """
     return _ObjectiveOfSets.apply(points, objective)
 

@@ -120,10 +120,7 @@ def _take_note(state: TrainingState, first: int, points: Floats, values: Floats)
 def save_checkpoint(folder: Path, config: NetworkConfig, state: TrainingState) -> None:
     """Write a training's state into `folder`, in place of the checkpoint that is there.
 
-    Raises
-    ------
-    BrokenFile
-        If it cannot be written; the checkpoint before is then still whole.
+    Raises BrokenFile if it cannot be written; the checkpoint before is then still whole.
     """
     data = safetensors.torch.save(tensors_of(state))
     digest = hashlib.sha256(data).hexdigest()
@@ -152,10 +149,7 @@ def save_checkpoint(folder: Path, config: NetworkConfig, state: TrainingState) -
 def load_checkpoint(folder: Path, config: NetworkConfig, state: TrainingState) -> bool:
     """Put the checkpoint of `folder` into a fresh state; return False if there is none.
 
-    Raises
-    ------
-    BrokenFile
-        If it is damaged, incomplete, or of another config; then the state has not changed.
+    Raises BrokenFile if it is damaged, incomplete, or of another config; then the state has not changed.
     """
     path = folder / CHECKPOINT_FILE
     if not path.exists():

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from functools import partial
 
-from evenroad.errors import UnknownName
+from evenroad._checks import require_known
 from evenroad.research.bench.task import Problem, ProblemSource
 from evenroad.research.problems.cubicles import cubicles
 from evenroad.research.problems.fair import FAIR
@@ -18,19 +18,19 @@ def _problem(make: Callable[[], Puzzle], set_dim: int, instance: int) -> Problem
 
 
 def _sources(name: str, make: Callable[[], Puzzle], about: str) -> tuple[ProblemSource, ProblemSource]:
-    """Return the puzzle with sets that give the translation, as published, and with sets that give the turn, too."""
+    """Return the puzzle with sets that give the translation, as published, and with sets that give the rotation too."""
     return (
         ProblemSource(
             name,
             3,
             partial(_problem, make, 3),
-            about=f"{about}; the sets give translations, turns are uniform",
+            about=f"{about}; the sets give translations, rotations are uniform",
         ),
         ProblemSource(
             f"{name}-6d",
             6,
             partial(_problem, make, 6),
-            about=f"{about}; the sets give translations and turns",
+            about=f"{about}; the sets give translations and rotations",
         ),
     )
 
@@ -53,6 +53,5 @@ PROBLEMS: dict[str, ProblemSource] = _by_name(MAZES, CORRIDORS, CHAINS, PUZZLES,
 
 def source_named(name: str) -> ProblemSource:
     """Return the problem source of this name; UnknownName, with the known ones, if there is none."""
-    if name not in PROBLEMS:
-        raise UnknownName.among("problem", name, PROBLEMS)
+    require_known("problem", name, PROBLEMS)
     return PROBLEMS[name]

@@ -83,8 +83,8 @@ _PILLARS: tuple[tuple[Range, Range, Range], ...] = (
 
 _ARM = ((-22.0, -46.0, -13.24), (-3.0, 31.5, 13.24))
 _FOOT = ((-3.0, 15.0, -13.24), (24.4, 31.4, 13.24))
-_TURN = (1.2, 1.7)
-"""Degrees by which the body is turned about z, and before that about x."""
+_ANGLES_OF_BODY = (1.2, 1.7)
+"""Degrees by which the body is rotated about z, and before that about x."""
 
 
 def cubicles() -> Puzzle:
@@ -105,13 +105,15 @@ def cubicles() -> Puzzle:
 
 
 def _body() -> tuple[OrientedBox, ...]:
-    about_z, about_x = (math.radians(angle) for angle in _TURN)
+    about_z, about_x = (math.radians(angle) for angle in _ANGLES_OF_BODY)
     c, s = math.cos(about_z), math.sin(about_z)
     d, t = math.cos(about_x), math.sin(about_x)
-    turn = np.array([[c, -s * d, s * t], [s, c * d, -c * t], [0.0, t, d]])
+    rotation = np.array([[c, -s * d, s * t], [s, c * d, -c * t], [0.0, t, d]])
     boxes = (OrientedBox.spanning(low, high) for low, high in (_ARM, _FOOT))
     return tuple(
-        OrientedBox((turn @ box.centre).tolist(), box.half_extents, turn.ravel().tolist(), name="body")
+        OrientedBox(
+            (rotation @ box.centre).tolist(), box.half_extents, rotation.ravel().tolist(), name="body"
+        )
         for box in boxes
     )
 

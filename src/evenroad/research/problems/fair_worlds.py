@@ -17,9 +17,7 @@ from evenroad.space import SE2, SE3
 from evenroad.world import World
 from evenroad.world.solids import OrientedBox, SolidWorld
 
-Array = Floats
-
-FarApart = Callable[[Array, Array], Bools]
+FarApart = Callable[[Floats, Floats], Bools]
 """Which pairs of rows of two (m, d) arrays of the cube may be a start and a goal, (m,)."""
 
 ENTROPY = 20_261_121
@@ -93,7 +91,7 @@ BATCH = 32
 
 def draw_query(
     draw_world: Callable[[np.random.Generator], World], far_apart: FarApart, rng: np.random.Generator
-) -> tuple[World, Array, Array]:
+) -> tuple[World, Floats, Floats]:
     """Draw a world, a start and a goal, (dim,) each; `rng` is consumed.
 
     Start and goal are two uniform configurations: the first pair of which both are free, that is far apart, and
@@ -113,7 +111,7 @@ def draw_query(
                     return world, start, goal
 
 
-def far_on_torus(a: Array, b: Array) -> Bools:
+def far_on_torus(a: Floats, b: Floats) -> Bools:
     """Return which rows of two (m, d) arrays in the unit cube are at least sqrt(d / 12) apart on the torus: (m,).
 
     That is the root of the mean square for two uniform points.  Measured in the cube instead, far ends would be
@@ -160,7 +158,7 @@ def draw_disk_world(door: float, rng: np.random.Generator) -> World:
     return draw_maze(design, rng=rng).map.world(ROBOT_RADIUS)
 
 
-def far_in_map(a: Array, b: Array) -> Bools:
+def far_in_map(a: Floats, b: Floats) -> Bools:
     """Return which rows of the unit square are half the map's width, 320 pixels, apart in the map: (m,)."""
     return np.asarray(np.hypot(640.0 * (b[:, 0] - a[:, 0]), 480.0 * (b[:, 1] - a[:, 1])) >= 320.0)
 
@@ -185,36 +183,36 @@ BODY_REACH = {2: 0.15, 3: 0.22}
 """How far the body reaches from its reference point, at most."""
 
 RESOLUTION = {2: (0.01, 0.05), 3: (0.02, 0.08)}
-"""Way, and turn [rad] as the space measures it, between states that are tested on a motion."""
+"""Distance, and rotation [rad] as the space measures it, between states that are tested on a motion."""
 
-TURN_WEIGHT = {2: 0.15, 3: 0.3}
+ROTATION_WEIGHT = {2: 0.15, 3: 0.3}
 """What a radian of the space's metric counts: about the way that it moves the far end of the body."""
 
 
 def draw_clutter(dim: int, size: float, rng: np.random.Generator) -> SolidWorld:
-    """Return a body in the unit square or cube among boxes turned at random, half extents in [.4, 1.6] times `size`."""
+    """Return a body in the unit square or cube among randomly rotated boxes, half extents in [.4, 1.6] times `size`."""
     margin = BODY_REACH[dim] + 1.6 * size * np.sqrt(dim)
     count = rng.poisson(DENSITY[dim] * (1.0 + 2.0 * margin) ** dim)
     centres = -margin + (1.0 + 2.0 * margin) * rng.random((count, dim))
     half_extents = size * (0.4 + 1.2 * rng.random((count, dim)))
-    turns = [_random_turn(dim, rng) for _ in range(count)]
+    rotations = [_random_rotation(dim, rng) for _ in range(count)]
     obstacles = [
-        OrientedBox(centre, extents, turn)
-        for centre, extents, turn in zip(centres.tolist(), half_extents.tolist(), turns, strict=True)
+        OrientedBox(centre, extents, rotation)
+        for centre, extents, rotation in zip(centres.tolist(), half_extents.tolist(), rotations, strict=True)
     ]
-    weights = (1.0, TURN_WEIGHT[dim])
+    weights = (1.0, ROTATION_WEIGHT[dim])
     space = (
         SE2([0.0] * 2, [1.0] * 2, weights=weights) if dim == 2 else SE3([0.0] * 3, [1.0] * 3, weights=weights)
     )
     return SolidWorld(space, BODY[dim], obstacles, RESOLUTION[dim])
 
 
-def places_far_apart(dim: int, a: Array, b: Array) -> Bools:
-    """Return which rows of the unit cube have places as far apart as :func:`far_on_torus` asks; turns are free."""
+def places_far_apart(dim: int, a: Floats, b: Floats) -> Bools:
+    """Return which rows of the unit cube have places as far apart as :func:`far_on_torus` asks; rotations are free."""
     return far_on_torus(a[:, :dim], b[:, :dim])
 
 
-def _random_turn(dim: int, rng: np.random.Generator) -> tuple[float, ...]:
+def _random_rotation(dim: int, rng: np.random.Generator) -> tuple[float, ...]:
     if dim == 2:
         return rotation_from_heading(float(rng.uniform(-np.pi, np.pi)))
     return rotation_from_quaternion(rng.standard_normal(4).tolist())

@@ -16,12 +16,12 @@ Triple = tuple[float, float, float]
 _SHARE = 0.01
 """Resolution of motions, as a share of the extents of the translations and of the rotations: OMPL's default."""
 
-_NOT_TURNED = (1.0, 0.0, 0.0, 0.0)
+_NOT_ROTATED = (1.0, 0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
 class Puzzle:
-    """A rigid body among boxes in space, as :class:`SolidWorld` takes them; it starts and ends not turned.
+    """A rigid body among boxes in space, as :class:`SolidWorld` takes them; it starts and ends not rotated.
 
     `low` and `high` bound the translation; `start` and `goal` are translations.
     """
@@ -38,7 +38,7 @@ def problem_of(puzzle: Puzzle, set_dim: int) -> Problem:
     """Return the puzzle by OMPL's rules: distance ``|dt| + arccos |q . q'|``, a hundredth of both extents as steps."""
     resolution = (_SHARE * math.dist(puzzle.low, puzzle.high), _SHARE * math.pi / 2.0)
     world = SolidWorld(SE3(puzzle.low, puzzle.high), puzzle.body, puzzle.obstacles, resolution)
-    start, goal = (np.array([*place, *_NOT_TURNED]) for place in (puzzle.start, puzzle.goal))
+    start, goal = (np.array([*place, *_NOT_ROTATED]) for place in (puzzle.start, puzzle.goal))
     return Problem(world, start, goal, set_dim)
 
 
@@ -49,7 +49,7 @@ _CORNER = (-16.99, -17.906, -24.839)
 """The bars' common corner, from the body's reference point."""
 
 _TILT = math.atan2(2.63, 54.94)
-"""By which the body's axes are turned about -y."""
+"""By which the body's axes are rotated about -y."""
 
 _BARS = (
     ((0.0, 0.0, 0.0), (55.0, _SECTION, _SECTION)),
@@ -78,11 +78,11 @@ def twistycool() -> Puzzle:
 
 def _bar(low: tuple[float, float, float], high: tuple[float, float, float]) -> OrientedBox:
     cosine, sine = math.cos(_TILT), math.sin(_TILT)
-    turn = (cosine, 0.0, -sine, 0.0, 1.0, 0.0, sine, 0.0, cosine)
+    rotation = (cosine, 0.0, -sine, 0.0, 1.0, 0.0, sine, 0.0, cosine)
     middle = [(least + most) / 2.0 for least, most in zip(low, high, strict=True)]
     half = [(most - least) / 2.0 for least, most in zip(low, high, strict=True)]
-    centre = [_CORNER[i] + sum(turn[3 * i + j] * middle[j] for j in range(3)) for i in range(3)]
-    return OrientedBox(centre, half, turn, name="bar")
+    centre = [_CORNER[i] + sum(rotation[3 * i + j] * middle[j] for j in range(3)) for i in range(3)]
+    return OrientedBox(centre, half, rotation, name="bar")
 
 
 def _obstacles() -> tuple[OrientedBox, ...]:

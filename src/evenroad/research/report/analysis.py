@@ -14,7 +14,7 @@ from evenroad.research.bench.rows import Rows
 from evenroad.research.report.cells import Cell, cells_of
 from evenroad.research.report.comparisons import Comparison, comparisons_of
 from evenroad.research.report.fair import LazyChecks, Pooled, lazy_checks, pooled
-from evenroad.research.report.runs import Question, Runs, runs_of
+from evenroad.research.report.runs import Runs, Setting, runs_of
 from evenroad.research.report.verdicts import SOURCES, ExpectedTable, Verdict, load_expected, verdicts_of
 from evenroad.research.statistics import FEW_UNITS, SamplesNeeded, resampled_ratios, samples_needed
 from evenroad.research.statistics.resampling import DRAWS
@@ -45,20 +45,20 @@ def failures_of(rows: Rows) -> tuple[Failure, ...]:
     return tuple(sorted(found, key=lambda each: (-each.runs, each.problem, each.sampler, each.message)))
 
 
-def needed_of(cells: Sequence[Cell]) -> dict[tuple[Question, str], SamplesNeeded]:
-    """Return for every question and sampler the number of samples at which 90 % of the runs succeed.
+def needed_of(cells: Sequence[Cell]) -> dict[tuple[Setting, str], SamplesNeeded]:
+    """Return for every setting and sampler the number of samples at which 90 % of the runs succeed.
 
     It has an interval if every cell of the curve has at least 10 units.
     """
-    curves: dict[Question, dict[str, list[Cell]]] = {}
+    curves: dict[Setting, dict[str, list[Cell]]] = {}
     for cell in cells:
-        curves.setdefault(cell.question, {}).setdefault(cell.sampler, []).append(cell)
+        curves.setdefault(cell.setting, {}).setdefault(cell.sampler, []).append(cell)
     found = {}
-    for question, of_sampler in curves.items():
+    for setting, of_sampler in curves.items():
         sure = [curve for curve in of_sampler.values() if _has_enough(curve)]
         resampled = iter(resampled_curves(sure))
         for sampler, curve in of_sampler.items():
-            found[question, sampler] = _needed(curve, next(resampled) if _has_enough(curve) else None)
+            found[setting, sampler] = _needed(curve, next(resampled) if _has_enough(curve) else None)
     return found
 
 
@@ -111,7 +111,7 @@ def _resampled(cells: Sequence[Cell]) -> Floats:
 
 @dataclass(frozen=True)
 class Analysis:
-    """All results of a store; cells in the order of questions, samplers and numbers of samples.
+    """All results of a store; cells in the order of settings, samplers and numbers of samples.
 
     `verdicts` has, for each source with a cell that the store has runs for, its table and the verdicts; `pooled` is
     empty without a fair suite.
@@ -120,15 +120,15 @@ class Analysis:
     runs: Runs
     cells: tuple[Cell, ...]
     comparisons: tuple[Comparison, ...]
-    needed: dict[tuple[Question, str], SamplesNeeded]
+    needed: dict[tuple[Setting, str], SamplesNeeded]
     verdicts: dict[str, tuple[ExpectedTable, tuple[Verdict, ...]]]
     pooled: dict[str, tuple[Pooled, ...]]
     lazy: tuple[LazyChecks, ...]
     failures: tuple[Failure, ...]
 
-    def cells_of(self, question: Question) -> tuple[Cell, ...]:
-        """Return the cells of one question."""
-        return tuple(cell for cell in self.cells if cell.question == question)
+    def cells_of(self, setting: Setting) -> tuple[Cell, ...]:
+        """Return the cells of one setting."""
+        return tuple(cell for cell in self.cells if cell.setting == setting)
 
 
 def analyse(rows: Rows) -> Analysis:

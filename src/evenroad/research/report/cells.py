@@ -1,4 +1,4 @@
-"""Cells: the runs of one question, sampler and number of samples, counted by what is independent.
+"""Cells: the runs of one setting, sampler and number of samples, counted by what is independent.
 
 Runs of a cell are not always independent of each other, so intervals and tests count units:
 
@@ -19,7 +19,7 @@ import numpy as np
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad.research.bench.samplers import PERMUTED_FROM
 from evenroad.research.problems import PROBLEMS
-from evenroad.research.report.runs import Question, Runs, UnitSums, combined, first_rows, sums_by_unit
+from evenroad.research.report.runs import Runs, Setting, UnitSums, combined, first_rows, sums_by_unit
 from evenroad.research.statistics import Interval, clustered_rate, student_interval, wilson
 
 GRID = "grid"
@@ -34,7 +34,7 @@ class Units:
 
     `kind` is ``sets`` of a pool, ``blocks`` of a sequence, ``instances`` of random worlds, or ``runs`` where every
     unit has one run.  The codes in `unit` differ between numbers of points for sets; all others mean the same in every
-    cell of a question.
+    cell of a setting.
     """
 
     kind: str
@@ -70,15 +70,15 @@ def grouping_of(runs: Runs, cell: Ints) -> Grouping:
     """Find the unit of every run; `cell` holds the cells' codes, without gaps."""
     first = first_rows(cell)
     cells = len(first)
-    question = runs.question[first]
+    setting = runs.setting[first]
     has_set = np.bincount(cell, weights=runs.set > 0, minlength=cells) > 0
     grid = np.bincount(cell, weights=runs.set == _code_of(runs.sets, GRID), minlength=cells) > 0
-    permuted = runs.by_question(_is_permuted)[first] & ~grid
+    permuted = runs.by_setting(_is_permuted)[first] & ~grid
     random_worlds = _varies(runs.instance, cell, cells)
     by_set = has_set & ~random_worlds & ~permuted
     several = np.bincount(cell, minlength=cells) > 1
     for c in np.flatnonzero(by_set & grid & several):
-        by_set[c] = not _leaves_to_chance(runs.questions[question[c]].problem)
+        by_set[c] = not _leaves_to_chance(runs.settings[setting[c]].problem)
     in_blocks = np.array([name.endswith(BLOCKS) for name in runs.samplers])[runs.sampler[first]]
     by_block = in_blocks & ~random_worlds
     unit = np.select(
@@ -129,8 +129,8 @@ def _code_of(names: tuple[str, ...], name: str) -> int:
     return names.index(name) if name in names else -1
 
 
-def _is_permuted(question: Question) -> bool:
-    source = PROBLEMS.get(question.problem)
+def _is_permuted(setting: Setting) -> bool:
+    source = PROBLEMS.get(setting.problem)
     return source is not None and source.set_dim >= PERMUTED_FROM
 
 
@@ -168,7 +168,7 @@ class Cell:
         Whether the interval holds for the sets of this pool only: every run permutes the coordinates of one of them.
     """
 
-    question: Question
+    setting: Setting
     sampler: str
     n: int
     runs: int
@@ -192,7 +192,7 @@ class Cell:
 
 
 def cells_of(runs: Runs) -> tuple[Cell, ...]:
-    """Count all cells, in the order of questions, samplers and numbers of samples."""
+    """Count all cells, in the order of settings, samplers and numbers of samples."""
     if not len(runs):
         return ()
     cell = cell_codes(runs)
@@ -221,7 +221,7 @@ def cells_of(runs: Runs) -> tuple[Cell, ...]:
             intervals[c] = intervals[c].or_wider(over_sets)
     return tuple(
         Cell(
-            question=runs.questions[runs.question[row]],
+            setting=runs.settings[runs.setting[row]],
             sampler=runs.samplers[runs.sampler[row]],
             n=int(runs.n[row]),
             runs=int(totals[c]),
@@ -239,7 +239,7 @@ def cells_of(runs: Runs) -> tuple[Cell, ...]:
 
 def cell_codes(runs: Runs) -> Ints:
     """Return for every run the place of its cell in what :func:`cells_of` returns."""
-    return combined(runs.question, runs.sampler, runs.n)
+    return combined(runs.setting, runs.sampler, runs.n)
 
 
 def _moments(runs: Runs, cell: Ints, cells: int, column: Floats) -> tuple[Floats, Floats]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad.research.report.cells import Cell, cell_codes, grouping_of
-from evenroad.research.report.runs import Question, Runs, UnitSums, combined, sums_by_unit
+from evenroad.research.report.runs import Runs, Setting, UnitSums, combined, sums_by_unit
 from evenroad.research.statistics import (
     Interval,
     bonett_price,
@@ -34,7 +34,7 @@ FEW_TO_TEST = 6
 
 def pair_codes(runs: Runs) -> Ints:
     """Return a code for every run; the same run of another sampler has the same code."""
-    return combined(runs.question, runs.n, runs.instance, runs.run, runs.seed)
+    return combined(runs.setting, runs.n, runs.instance, runs.run, runs.seed)
 
 
 def differences_from(runs: Runs, pair: Ints, reference: str) -> tuple[Bools, Ints]:
@@ -59,21 +59,16 @@ class Comparison:
 
     Attributes
     ----------
-    cell : Cell
-    reference : str
-    pairs : int
     only_cell, only_reference : int
         Pairs that only one of the two solved.
     interval : Interval
         Of the difference of success rates, cell minus reference.
     test : str
         ``McNemar`` where runs are independent, else ``Fisher over sets``, ``sign flips over blocks`` or ``sign flips
-        over instances``.  ``sign flips over instances, Student over sets``: both were done, and the larger p counts.
-        ``too few sets to test`` (or runs, blocks, instances): there are fewer than six.
-    p : float
-        NaN if it was not tested.
-    p_corrected : float
-        By Holm's method over all tested comparisons of the question.
+        over instances``; ``.., Student over sets`` where both were done, and the larger p counts; ``too few sets to
+        test`` (or runs, blocks, instances) where there are fewer than six.
+    p, p_corrected : float
+        NaN if it was not tested; by Holm's method over all tested comparisons of the setting.
     """
 
     cell: Cell
@@ -103,7 +98,7 @@ class Comparison:
 
 
 def comparisons_of(runs: Runs, cells: Sequence[Cell]) -> tuple[Comparison, ...]:
-    """Compare every cell with every reference that has the same runs; p-values are corrected within a question."""
+    """Compare every cell with every reference that has the same runs; p-values are corrected within a setting."""
     if not len(runs):
         return ()
     cell = cell_codes(runs)
@@ -178,9 +173,9 @@ def also_over_sets(interval: Interval, p: float, by_set: UnitSums, group: int) -
 
 
 def _corrected(found: list[Comparison]) -> tuple[Comparison, ...]:
-    families: dict[Question, list[int]] = {}
+    families: dict[Setting, list[int]] = {}
     for place, each in enumerate(found):
-        families.setdefault(each.cell.question, []).append(place)
+        families.setdefault(each.cell.setting, []).append(place)
     values = np.empty(len(found))
     for family in families.values():
         values[family] = holm_of_tested([found[place].p for place in family])

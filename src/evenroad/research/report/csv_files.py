@@ -29,8 +29,8 @@ def cells_csv(analysis: Analysis) -> bytes:
     )
     rows = []
     for cell in analysis.cells:
-        needed = analysis.needed[cell.question, cell.sampler]
-        early = cell.question.search == STOPS_EARLY
+        needed = analysis.needed[cell.setting, cell.sampler]
+        early = cell.setting.search == STOPS_EARLY
         paper_v = (cell.mean_early + PAPER_ADDS, cell.sd_early) if early else ("", "")
         units = (cell.units.kind, len(cell.units), len(cell.sets))
         means = (cell.mean_valid, cell.sd_valid, *paper_v, cell.mean_edges, cell.mean_seconds)
@@ -87,7 +87,7 @@ def fair_csv(analysis: Analysis) -> bytes:
 
 
 def _names(cell: Cell) -> tuple[object, ...]:
-    return cell.question.problem, cell.sampler, cell.n, cell.question.rule, cell.question.search
+    return cell.setting.problem, cell.sampler, cell.n, cell.setting.rule, cell.setting.search
 
 
 def _fields(interval: Interval) -> tuple[object, ...]:

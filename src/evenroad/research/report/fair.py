@@ -18,7 +18,7 @@ from evenroad.research.report.comparisons import (
     holm_of_tested,
     pair_codes,
 )
-from evenroad.research.report.runs import Question, Runs, combined, first_rows, natural_key, sums_by_unit
+from evenroad.research.report.runs import Runs, Setting, combined, first_rows, natural_key, sums_by_unit
 from evenroad.research.statistics import (
     Interval,
     clustered_difference,
@@ -38,9 +38,9 @@ BY_RULE = "rule"
 """The grouping that pools every search."""
 
 
-def is_fair(question: Question) -> bool:
-    """Say whether a question belongs to the fair suite."""
-    return question.problem.startswith(PREFIX)
+def is_fair(setting: Setting) -> bool:
+    """Say whether a setting belongs to the fair suite."""
+    return setting.problem.startswith(PREFIX)
 
 
 def generator_of(problem: str) -> str:
@@ -61,20 +61,20 @@ def difficulty_of(problem: str) -> str:
     return f"{found.group(1)} %" if found else "-"
 
 
-GROUPINGS: dict[str, Callable[[Question, int], str]] = {
-    "all": lambda question, n: "all",
-    "generator": lambda question, n: generator_of(question.problem),
-    "dimension": lambda question, n: dimension_of(question.problem),
-    "difficulty": lambda question, n: difficulty_of(question.problem),
-    "samples": lambda question, n: str(n),
-    BY_RULE: lambda question, n: f"{question.rule}, {question.search}",
+GROUPINGS: dict[str, Callable[[Setting, int], str]] = {
+    "all": lambda setting, n: "all",
+    "generator": lambda setting, n: generator_of(setting.problem),
+    "dimension": lambda setting, n: dimension_of(setting.problem),
+    "difficulty": lambda setting, n: difficulty_of(setting.problem),
+    "samples": lambda setting, n: str(n),
+    BY_RULE: lambda setting, n: f"{setting.rule}, {setting.search}",
 }
-"""What the fair suite is pooled by: name -> group of a question and a number of samples."""
+"""What the fair suite is pooled by: name -> group of a setting and a number of samples."""
 
 
-def pooled_rules(questions: Iterable[Question]) -> str:
+def pooled_rules(settings: Iterable[Setting]) -> str:
     """Return the connection rules that are pooled, in short: ``k=4, 6, 10, 20 symmetrised``."""
-    rules = {each.rule for each in questions if is_fair(each) and each.search == CONNECT}
+    rules = {each.rule for each in settings if is_fair(each) and each.search == CONNECT}
     names = sorted(rules, key=natural_key)
     parts = [re.fullmatch(r"k=(\d+) (.+)", name) for name in names]
     kinds = {part.group(2) if part else "" for part in parts}
@@ -91,17 +91,14 @@ class Pooled:
     ----------
     group : str
         ``all``, ``balls``, ``5d``, ``50 %``, ``256``, ``k=10 symmetrised, connect``, ...
-    sampler : str
     instances, pairs, sets : int
         Number of random worlds, of runs, and of sets of the sampler's pool; no sets if it draws afresh or is the grid.
-    rate, reference_rate : float
-        Success rates over the pairs.
     interval : Interval
-        Of their difference, over worlds.  In fewer than 5 dimensions a pool's sets are used as they are: the interval
-        is over sets where that is wider.
+        Of the difference of success rates, over worlds.  In fewer than 5 dimensions a pool's sets are used as they are:
+        the interval is over sets where that is wider.
     p, p_corrected : float
-        p-value of sign flips over worlds, or of Student's test over sets where that is done and larger; and the same
-        after Holm's correction over the groups and samplers of a table.
+        Of sign flips over worlds, or of Student's test over sets where that is done and larger; and the same after
+        Holm's correction over the groups and samplers of a table.
     """
 
     group: str
@@ -138,19 +135,19 @@ def pooled(runs: Runs) -> dict[str, tuple[Pooled, ...]]:
         return {}
     paired, difference = differences_from(runs, pair_codes(runs), REFERENCE)
     every = _pairs_of(runs.where(paired), difference[paired])
-    connecting = every.where(np.flatnonzero(every.runs.by_question(lambda each: each.search == CONNECT)))
+    connecting = every.where(np.flatnonzero(every.runs.by_setting(lambda each: each.search == CONNECT)))
     chosen = {grouping: every if grouping == BY_RULE else connecting for grouping in GROUPINGS}
     return {grouping: _pooled_by(grouping, pairs) for grouping, pairs in chosen.items() if len(pairs.runs)}
 
 
 def fair_runs(runs: Runs) -> Runs:
     """Return the runs of the fair suite."""
-    return runs.where(np.flatnonzero(runs.by_question(is_fair)) if len(runs) else np.zeros(0, dtype=np.int64))
+    return runs.where(np.flatnonzero(runs.by_setting(is_fair)) if len(runs) else np.zeros(0, dtype=np.int64))
 
 
 def world_codes(runs: Runs) -> Ints:
     """Return a code for every run; runs in the same random world have the same code."""
-    return combined(runs.question_codes(lambda question: question.problem), runs.instance)
+    return combined(runs.setting_codes(lambda setting: setting.problem), runs.instance)
 
 
 def _pooled_by(grouping: str, pairs: _Pairs) -> tuple[Pooled, ...]:
@@ -217,10 +214,10 @@ def _pairs_of(runs: Runs, difference: Ints) -> _Pairs:
     has_set = grouping.pooled[cell] & (runs.set > 0)
     # Problems of one dimension share their sets; a problem that is not known here shares none.
     dims = {
-        question: PROBLEMS[question.problem].set_dim if question.problem in PROBLEMS else -1 - place
-        for place, question in enumerate(runs.questions)
+        setting: PROBLEMS[setting.problem].set_dim if setting.problem in PROBLEMS else -1 - place
+        for place, setting in enumerate(runs.settings)
     }
-    code = combined(runs.sampler, runs.by_question(dims.__getitem__), runs.n, runs.set)
+    code = combined(runs.sampler, runs.by_setting(dims.__getitem__), runs.n, runs.set)
     as_it_is = has_set & ~grouping.permuted[cell]
     return _Pairs(runs, difference, world, np.where(has_set, code, -1), np.where(as_it_is, code, -1 - world))
 
@@ -228,8 +225,8 @@ def _pairs_of(runs: Runs, difference: Ints) -> _Pairs:
 def _groups(grouping: str, runs: Runs) -> tuple[list[str], Ints]:
     """Return the names of the groups and every row's number among them."""
     name_of = GROUPINGS[grouping]
-    code = combined(runs.question, runs.n)
-    labels = [name_of(runs.questions[runs.question[row]], int(runs.n[row])) for row in first_rows(code)]
+    code = combined(runs.setting, runs.n)
+    labels = [name_of(runs.settings[runs.setting[row]], int(runs.n[row])) for row in first_rows(code)]
     names = sorted(set(labels), key=natural_key)
     number = {name: place for place, name in enumerate(names)}
     return names, np.array([number[label] for label in labels])[code]
@@ -258,15 +255,15 @@ def lazy_checks(runs: Runs) -> tuple[LazyChecks, ...]:
     runs = runs.where(~runs.failed)
     if not len(runs):
         return ()
-    search = runs.by_question(lambda question: question.search)
-    roadmap = runs.question_codes(lambda question: (question.problem, question.rule))
+    search = runs.by_setting(lambda setting: setting.search)
+    roadmap = runs.setting_codes(lambda setting: (setting.problem, setting.rule))
     pair = combined(roadmap, runs.sampler, runs.n, runs.instance, runs.run, runs.seed)
     connect_row = np.full(int(pair.max()) + 1, -1)
     connects = np.flatnonzero(search == CONNECT)
     connect_row[pair[connects]] = connects
     lazy = np.flatnonzero((search == LAZY) & (connect_row[pair] >= 0))
     connect = connect_row[pair[lazy]]
-    place = combined(runs.question_codes(lambda question: question.rule)[lazy], runs.sampler[lazy])
+    place = combined(runs.setting_codes(lambda setting: setting.rule)[lazy], runs.sampler[lazy])
     world = world_codes(runs)[lazy]
     found = []
     for code, first in enumerate(lazy[first_rows(place)]):
@@ -277,7 +274,7 @@ def lazy_checks(runs: Runs) -> tuple[LazyChecks, ...]:
         if sums[1].any():
             found.append(
                 LazyChecks(
-                    runs.questions[runs.question[first]].rule,
+                    runs.settings[runs.setting[first]].rule,
                     runs.samplers[runs.sampler[first]],
                     len(sums[0]),
                     len(rows),

@@ -16,11 +16,11 @@ from evenroad.research.report.figures.charts import (
     draw_fair_gains,
     draw_maze_success,
     draw_point_sets,
-    maze_questions,
+    maze_settings,
 )
 from evenroad.research.report.figures.scenes import draw_scene, scenes_among
-from evenroad.research.report.runs import Question
-from evenroad.research.report.sections.questions import paired_tables, spread_table, success_table
+from evenroad.research.report.runs import Setting
+from evenroad.research.report.sections.settings import paired_tables, spread_table, success_table
 from evenroad.research.report.sections.suites import (
     expected_table,
     failure_table,
@@ -69,9 +69,9 @@ class Section:
 
 def sections_of(analysis: Analysis) -> tuple[Section, ...]:
     """Return the sections of the page, those without results left out."""
-    questions = [question for question in analysis.runs.questions if not is_fair(question)]
-    sections = [_expected(analysis), _fair(analysis), *(_question(analysis, each) for each in questions)]
-    sections += [_mazes(analysis, questions), _scenes(questions), _point_sets()]
+    settings = [setting for setting in analysis.runs.settings if not is_fair(setting)]
+    sections = [_expected(analysis), _fair(analysis), *(_setting(analysis, each) for each in settings)]
+    sections += [_mazes(analysis, settings), _scenes(settings), _point_sets()]
     if analysis.failures:
         sections.append(Section("failures", "Failures", tables=(failure_table(analysis.failures),)))
     return tuple(section for section in sections if section is not None)
@@ -89,7 +89,7 @@ def _expected(analysis: Analysis) -> Section | None:
 def _fair(analysis: Analysis) -> Section | None:
     if not analysis.pooled:
         return None
-    rules = pooled_rules(analysis.runs.questions)
+    rules = pooled_rules(analysis.runs.settings)
     tables = [fair_table(grouping, found, rules) for grouping, found in analysis.pooled.items()]
     if analysis.lazy:
         tables.append(lazy_table(analysis.lazy))
@@ -97,29 +97,29 @@ def _fair(analysis: Analysis) -> Section | None:
     return Section("fair", "Fair suite: random worlds, starts and goals", "", (picture,), tuple(tables))
 
 
-def _question(analysis: Analysis, question: Question) -> Section:
-    name = slug(str(question))
-    picture = Picture(name, str(question), as_png(draw_curves(analysis.cells_of(question), str(question))))
+def _setting(analysis: Analysis, setting: Setting) -> Section:
+    name = slug(str(setting))
+    picture = Picture(name, str(setting), as_png(draw_curves(analysis.cells_of(setting), str(setting))))
     tables = (
-        success_table(analysis, question, f"{name}-success"),
-        *paired_tables(analysis, question, name),
-        spread_table(analysis, question, f"{name}-sets"),
+        success_table(analysis, setting, f"{name}-success"),
+        *paired_tables(analysis, setting, name),
+        spread_table(analysis, setting, f"{name}-sets"),
     )
-    return Section(name, str(question), "", (picture,), tuple(each for each in tables if each is not None))
+    return Section(name, str(setting), "", (picture,), tuple(each for each in tables if each is not None))
 
 
-def _mazes(analysis: Analysis, questions: list[Question]) -> Section | None:
-    mazes = maze_questions(questions)
+def _mazes(analysis: Analysis, settings: list[Setting]) -> Section | None:
+    mazes = maze_settings(settings)
     if not mazes:
         return None
-    cells = [cell for cell in analysis.cells if cell.question in mazes]
+    cells = [cell for cell in analysis.cells if cell.setting in mazes]
     picture = Picture("maze-success", "Success on the mazes", as_png(draw_maze_success(cells)))
     text = "The paper's figure, on our mazes; the paper's own are not published."
     return Section("maze-success", "Success on the mazes", text, (picture,))
 
 
-def _scenes(questions: list[Question]) -> Section | None:
-    problems = scenes_among([question.problem for question in questions])
+def _scenes(settings: list[Setting]) -> Section | None:
+    problems = scenes_among([setting.problem for setting in settings])
     if not problems:
         return None
     pictures = tuple(

@@ -21,7 +21,7 @@ WIDE = 2**31
 
 
 @dataclass(frozen=True, order=True)
-class Question:
+class Setting:
     """What one success table is about: a problem, a connection rule and a search."""
 
     problem: str
@@ -39,8 +39,8 @@ class Runs:
 
     Attributes
     ----------
-    questions, samplers, sets : tuple
-        The names that the codes in `question`, `sampler` and `set` stand for; code 0 of a set is "drawn afresh".
+    settings, samplers, sets : tuple
+        The names that the codes in `setting`, `sampler` and `set` stand for; code 0 of a set is "drawn afresh".
     solved, failed : ndarray of bool
         The run found a path; it gave no answer (exception, time limit, dead worker).
     valid, early : ndarray of float64
@@ -48,10 +48,10 @@ class Runs:
         are equal if there is no path or the search does not stop early.
     """
 
-    questions: tuple[Question, ...]
+    settings: tuple[Setting, ...]
     samplers: tuple[str, ...]
     sets: tuple[str, ...]
-    question: Ints
+    setting: Ints
     sampler: Ints
     set: Ints
     n: Ints
@@ -77,27 +77,27 @@ class Runs:
         }
         return replace(self, **arrays)
 
-    def by_question(self, property_of: Callable[[Question], Any]) -> npt.NDArray[Any]:
-        """Return a property of every run's question, shape (rows,)."""
-        return np.array([property_of(question) for question in self.questions])[self.question]
+    def by_setting(self, property_of: Callable[[Setting], Any]) -> npt.NDArray[Any]:
+        """Return a property of every run's setting, shape (rows,)."""
+        return np.array([property_of(setting) for setting in self.settings])[self.setting]
 
-    def question_codes(self, property_of: Callable[[Question], Any]) -> Ints:
-        """Return a code for every run, in the order of a property of its question."""
-        values = sorted({property_of(question) for question in self.questions})
-        return self.by_question(lambda question: values.index(property_of(question)))
+    def setting_codes(self, property_of: Callable[[Setting], Any]) -> Ints:
+        """Return a code for every run, in the order of a property of its setting."""
+        values = sorted({property_of(setting) for setting in self.settings})
+        return self.by_setting(lambda setting: values.index(property_of(setting)))
 
 
 def runs_of(rows: Rows) -> Runs:
-    """Return the runs of a store, with questions and samplers in the order of the tables."""
+    """Return the runs of a store, with settings and samplers in the order of the tables."""
     samplers, sampler = _recoded(rows.sampler, sorted(rows.sampler.present(), key=sampler_place))
     sets, set_code = _recoded(rows.set_id, ["", *(name for name in rows.set_id.present() if name)])
-    questions, question = _questions(rows)
+    settings, setting = _settings(rows)
     valid = rows.valid.astype(np.float64)
     return Runs(
-        questions=questions,
+        settings=settings,
         samplers=samplers,
         sets=sets,
-        question=question,
+        setting=setting,
         sampler=sampler,
         set=set_code,
         n=rows.n,
@@ -120,14 +120,14 @@ def _recoded(labels: Labels, names: list[str]) -> tuple[tuple[str, ...], Ints]:
     return tuple(names), new_codes[labels.codes]
 
 
-def _questions(rows: Rows) -> tuple[tuple[Question, ...], Ints]:
-    """Return the questions, sorted so that ``k=4`` comes before ``k=10``, and every row's place among them."""
+def _settings(rows: Rows) -> tuple[tuple[Setting, ...], Ints]:
+    """Return the settings, sorted so that ``k=4`` comes before ``k=10``, and every row's place among them."""
     columns = (rows.problem, rows.rule, rows.search)
     code = combined(*(column.codes.astype(np.int64) for column in columns))
-    found = [Question(*(column[int(row)] for column in columns)) for row in first_rows(code)]
+    found = [Setting(*(column[int(row)] for column in columns)) for row in first_rows(code)]
     order = sorted(
         range(len(found)),
-        key=lambda place: [natural_key(getattr(found[place], f.name)) for f in fields(Question)],
+        key=lambda place: [natural_key(getattr(found[place], f.name)) for f in fields(Setting)],
     )
     rank = np.empty(len(found), dtype=np.int64)
     rank[order] = np.arange(len(found))

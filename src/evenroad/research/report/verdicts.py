@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from evenroad.errors import UnknownName
+from evenroad._checks import require_known
 from evenroad.research.report.cells import Cell
 from evenroad.research.report.comparisons import holm_of_tested
 from evenroad.research.statistics import fisher_exact
@@ -26,24 +26,11 @@ LEVEL = 0.05
 
 @dataclass(frozen=True)
 class ExpectedCell:
-    """One cell of a published or measured table.
+    """One cell of a published or measured table; numbers that the source does not give are NaN, or None for `runs`.
 
-    Attributes
-    ----------
-    problem, sampler, rule, n
-        Those of our cell that it is compared with.
-    success : float
-        Success rate, in percent; NaN if the source gives none.
-    v, v_sd : float
-        Mean number of milestones and its standard deviation over runs; NaN if the source gives none.
-    v_counts : str
-        ``all``: `v` counts all valid milestones; ``early``: those that were added until there was a path.
-    v_add : int
-        What the source adds to `v` for start and goal.
-    runs : int or None
-        Number of runs; None if the source does not say it, and then there is nothing to test.
-    note : str
-        What a reader must know of this cell.
+    `success` is in percent; `v` and `v_sd` are the mean number of milestones and its standard deviation over runs,
+    where `v_counts` says what is counted (``all`` valid milestones, or ``early``: those added until there was a path)
+    and `v_add` what the source adds for start and goal.  `note` is what a reader must know of this cell.
     """
 
     problem: str
@@ -84,15 +71,8 @@ class ExpectedTable:
 
 @cache
 def load_expected(name: str) -> ExpectedTable:
-    """Read one of :data:`SOURCES`.
-
-    Raises
-    ------
-    UnknownName
-        If there is no such source.
-    """
-    if name not in SOURCES:
-        raise UnknownName.among("source of expected results", name, SOURCES)
+    """Read one of :data:`SOURCES`; UnknownName if there is no such source."""
+    require_known("source of expected results", name, SOURCES)
     record = tomllib.loads((FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
     cells = tuple(cell for row in record["rows"] for cell in _cells_of(row))
     return ExpectedTable(record["name"], record["title"], record["source"], record["about"], cells)
@@ -146,7 +126,7 @@ def verdicts_of(table: ExpectedTable, cells: Sequence[Cell]) -> tuple[Verdict, .
     The test takes runs for independent.  Where they share sets of a pool they are not, and it says "differs" too
     readily.
     """
-    ours = {(c.question.problem, c.sampler, c.question.rule, c.n, c.question.search): c for c in cells}
+    ours = {(c.setting.problem, c.sampler, c.setting.rule, c.n, c.setting.search): c for c in cells}
     found = [_ours_for(expected, ours) for expected in table.cells]
     p_values = [_p_value(expected, cell) for expected, cell in zip(table.cells, found, strict=True)]
     corrected = holm_of_tested(p_values).tolist()

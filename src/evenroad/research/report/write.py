@@ -10,8 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from evenroad import __version__
+from evenroad._checks import require_known
 from evenroad._files import atomic_write, remove_abandoned_parts, require_writable_folder
-from evenroad.errors import BrokenFile, NotAvailable, UnknownName
+from evenroad.errors import BrokenFile, NotAvailable
 from evenroad.research.bench.rows import Rows
 from evenroad.research.bench.store import Session, read_rows, read_sessions
 from evenroad.research.bench.task import PROTOCOL
@@ -89,8 +90,7 @@ def _rows(store: Path, only: Sequence[str]) -> Rows:
         raise NotAvailable(f"{store} has no rows to report: run a benchmark into it first")
     present = rows.problem.present()
     for name in only:
-        if name not in present:
-            raise UnknownName.among(f"problem in {store}:", name, present)
+        require_known(f"problem in {store}:", name, present)
     return rows.where(rows.problem.is_in(only)) if only else rows
 
 

@@ -35,10 +35,7 @@ def bonett_price(only_first: int, only_second: int, pairs: int, *, level: float 
     D. G. Bonett and R. M. Price (2012), Adjusted Wald confidence interval for a difference of binomial proportions
     based on paired data, J. Educ. Behav. Stat. 37, 479-488 (their adjusted Wald interval).
 
-    Raises
-    ------
-    InvalidValue
-        If a count is negative or there are more of them than pairs.
+    Raises InvalidValue if a count is negative or there are more of them than pairs.
     """
     first = int(as_counts("only_first", only_first))
     second = int(as_counts("only_second", only_second))

@@ -100,12 +100,8 @@ def fisher_exact(first: tuple[int, int], second: tuple[int, int]) -> float:
     """Return the two-sided p-value that two groups of runs, (solved, runs) each, have the same success rate.
 
     Given the totals, all tables that are no likelier than the one seen are counted (R. A. Fisher 1922, On the
-    interpretation of chi-squared from contingency tables, J. R. Stat. Soc. 85, 87-94).
-
-    Raises
-    ------
-    InvalidValue
-        If a pair is not one of counts with ``0 <= solved <= runs``, runs >= 1.
+    interpretation of chi-squared from contingency tables, J. R. Stat. Soc. 85, 87-94).  Raises InvalidValue if a pair
+    is not one of counts with ``0 <= solved <= runs``, runs >= 1.
     """
     if len(first) != 2 or len(second) != 2:
         raise InvalidValue(f"each group must be (solved, runs), got {first!r} and {second!r}")
@@ -126,13 +122,9 @@ def _log_choose(n: int, k: Ints) -> Floats:
 def holm(p_values: npt.ArrayLike) -> Floats:
     """Return p-values, (m,) in [0, 1], corrected so that all of a family may be read at one level.
 
-    The i-th smallest of m (from 0) is multiplied by m - i; none falls below a smaller one's, none exceeds 1 (S.  Holm
-    1979, A simple sequentially rejective multiple test procedure, Scand.  J.  Stat. 6, 65-70).  m may be 0.
-
-    Raises
-    ------
-    InvalidValue
-        If a value is not in [0, 1] (NaN included).
+    The i-th smallest of m (from 0) is multiplied by m - i; none falls below a smaller one's, none exceeds 1 (S. Holm
+    1979, A simple sequentially rejective multiple test procedure, Scand. J. Stat. 6, 65-70). m may be 0.  Raises
+    InvalidValue if a value is not in [0, 1] (NaN included).
     """
     values = np.asarray(p_values, dtype=np.float64)
     if values.ndim != 1 or not np.all((values >= 0) & (values <= 1)):

@@ -29,35 +29,21 @@ EXACT = 2**24
 def resampled_ratios(
     numerators: npt.ArrayLike, denominators: npt.ArrayLike, *, draws: int = DRAWS, seed: int = 0
 ) -> Floats:
-    """Return the bootstrap distribution of ``sum(numerators) / sum(denominators)`` over units.
+    """Return the bootstrap distribution of ``sum(numerators) / sum(denominators)`` over units, (draws,) or (draws, m).
 
     Units are runs, sets or instances that are independent of each other.  With solved and runs per unit the ratio is a
     success rate; with the differences of two samplers' solved runs and the pairs it is the paired difference of their
-    rates (both samplers keep the same units in a resample: that is the pairing).
+    rates (both samplers keep the same units in a resample: that is the pairing).  It is that of all units where a
+    resample's denominators are 0.  B. Efron and R. J. Tibshirani (1993), An Introduction to the Bootstrap, sections 6.4
+    and 8.3.
 
     Parameters
     ----------
     numerators, denominators : array_like, shape (units,) or (units, m)
-        Per unit; denominators >= 0, with a positive sum.  The m columns are resampled together: a unit that a resample
-        has twice counts twice in each.
-    draws : int
-        Number of resamples.
+        Per unit; denominators >= 0, with a positive sum; others are an InvalidValue.  The m columns are resampled
+        together: a unit that a resample has twice counts twice in each.
     seed : int
         The same seed and number of units give the same resamples, so that samplers are compared on equal ones.
-
-    Returns
-    -------
-    ndarray, shape (draws,) or (draws, m)
-        The ratio of all units where a resample's denominators are 0.
-
-    Raises
-    ------
-    InvalidValue
-        If there is no unit, the shapes differ, or the denominators of a column have no positive sum.
-
-    References
-    ----------
-    B. Efron and R. J. Tibshirani (1993), An Introduction to the Bootstrap, sections 6.4 and 8.3.
     """
     above = np.asarray(numerators, dtype=np.float64)
     below = np.asarray(denominators, dtype=np.float64)

@@ -106,21 +106,12 @@ def clustered_difference(
 
 
 def sign_flip_test(sums: npt.ArrayLike) -> float:
-    """Return the two-sided p-value that units' differences are as likely to have either sign.
+    """Return the two-sided p-value that units' differences are as likely to have either sign (Fisher 1935, section 21).
 
-    The exact distribution of ``|sum of +-s_u|`` over all choices of signs.  With one pair a unit (all s_u are
-    -1, 0 or 1) this is McNemar's exact test; with more it keeps the pairs of a unit together.  Exact where the two
-    samplers are exchangeable inside a unit, which holds for draws in one random world; for runs of a pool's
-    sets it is the usual large-sample test of a mean.
-
-    Parameters
-    ----------
-    sums : array_like of int, shape (units,)
-        As for :func:`clustered_difference`.
-
-    References
-    ----------
-    R. A. Fisher (1935), The Design of Experiments, section 21.
+    The exact distribution of ``|sum of +-s_u|`` over all choices of signs, of the `sums` of
+    :func:`clustered_difference`.  With one pair a unit (all s_u are -1, 0 or 1) this is McNemar's exact test; with
+    more it keeps the pairs of a unit together.  Exact where the two samplers are exchangeable inside a unit, which
+    holds for draws in one random world; for runs of a pool's sets it is the usual large-sample test of a mean.
     """
     values = np.asarray(sums)
     if values.ndim != 1 or np.any(values != np.trunc(values)):
@@ -160,28 +151,15 @@ def _as_if_one_pair_a_unit(shares: Floats, unit: str, level: float) -> Interval:
 
 
 def effective_runs(solved: npt.ArrayLike, runs: npt.ArrayLike, *, level: float = LEVEL) -> int:
-    """Return how many independent runs the runs of some units are worth.
+    """Return how many independent runs the runs of some units are worth, by successes and runs >= 1 per unit, (units,).
 
     A rate p of variance v, estimated from the units, is as sure as p (1 - p) / v runs make it, at most all runs; fewer
     by the ratio of the normal and Student's quantile, squared.  At least as many as units, which is what units with one
     outcome each are worth; and as many as units where p is 0 or 1, as nothing is known of v: there the number jumps.
 
-    Parameters
-    ----------
-    solved, runs : array_like of int, shape (units,)
-        Successes and runs per unit; every unit has a run.
-    level : float
-        Confidence of what is made of it, in (0, 1).
-
-    Raises
-    ------
-    InvalidValue
-        If there is no unit, or the counts are impossible.
-
-    References
-    ----------
     E. L. Korn and B. I. Graubard (1998), Confidence intervals for proportions with small expected number of positive
-    counts estimated from survey data, Survey Methodology 24, 193-201.
+    counts estimated from survey data, Survey Methodology 24, 193-201.  Raises InvalidValue if there is no unit, or the
+    counts are impossible.
     """
     successes, trials = as_successes(solved, runs)
     if successes.ndim != 1 or len(successes) == 0:
@@ -244,10 +222,7 @@ class Spread:
 def spread_over_sets(solved: npt.ArrayLike, runs: npt.ArrayLike) -> Spread:
     """Return the spread over the sets of a pool, by their successes and runs, (sets,) each, runs >= 1.
 
-    Raises
-    ------
-    InvalidValue
-        If there is no set, or the counts are impossible.
+    Raises InvalidValue if there is no set, or the counts are impossible.
     """
     successes, trials = as_successes(solved, runs)
     if successes.ndim != 1 or len(successes) == 0:

@@ -29,14 +29,9 @@ def set_name(index: int) -> str:
 def claim_folder(folder: Path, request: dict[str, Any], name: str = REQUEST_FILE) -> None:
     """Write the request into the file `name` of `folder`; if it is there, check that it is the same.
 
-    Temporary files that killed trainings left in the folder are removed.
-
-    Raises
-    ------
-    InvalidValue
-        If the folder belongs to another request; the text names the first difference.
-    BrokenFile
-        If the folder is missing or cannot be written, or the request in it cannot be read.
+    Temporary files that killed trainings left in the folder are removed.  Raises InvalidValue, with the first
+    difference, if the folder belongs to another request; BrokenFile if it is missing or cannot be written, or the
+    request not read.
     """
     path = folder / name
     remove_abandoned_parts(folder)
@@ -60,10 +55,7 @@ def claim_folder(folder: Path, request: dict[str, Any], name: str = REQUEST_FILE
 def read_set(path: Path, origin: Origin, shape: tuple[int, int]) -> PointSet | None:
     """Return a finished set; None if its file is missing or damaged.
 
-    Raises
-    ------
-    InvalidValue
-        If the file holds a set of another shape, method, objective, seed or replica.
+    Raises InvalidValue if the file holds a set of another shape, method, objective, seed or replica.
     """
     try:
         points = load_points(path)

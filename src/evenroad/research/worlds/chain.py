@@ -14,7 +14,7 @@ from evenroad.errors import InvalidValue
 from evenroad.research.worlds.compiled import CompiledWorld, comes_first
 from evenroad.space.batch import as_batch
 from evenroad.space.chain import ChainSpace, chain_distance
-from evenroad.world.bisection_kernel import next_between
+from evenroad.world.bisection import next_between
 
 _END_PIECE = 0.001
 """Length by which the last link is longer than the others, as one more segment."""
@@ -146,13 +146,13 @@ def motions_are_free(a: Floats, b: Floats, resolution: float, walls: Floats, end
             # States are rounded: in one fixed order a motion and its reverse have the same.
             first, second = second, first
         for k in range(links):
-            turn = second[k] - first[k]
+            angle = second[k] - first[k]
             # rint takes one half to zero: of two opposite ways the one that does not cross -pi is taken.
-            difference[k] = turn - 2.0 * math.pi * np.rint(turn / (2.0 * math.pi))
+            difference[k] = angle - 2.0 * math.pi * np.rint(angle / (2.0 * math.pi))
         free[row] = (
             _verdict(first, walls, end_piece, chain) == FREE
             and _verdict(second, walls, end_piece, chain) == FREE
-            and _way_is_free(
+            and _motion_is_free(
                 first,
                 difference,
                 math.ceil(chain_distance(first, second) / resolution),
@@ -166,7 +166,7 @@ def motions_are_free(a: Floats, b: Floats, resolution: float, walls: Floats, end
 
 
 @njit(cache=True, nogil=True)
-def _way_is_free(start, difference, segments, walls, end_piece, chain, state):  # type: ignore[no-untyped-def]
+def _motion_is_free(start, difference, segments, walls, end_piece, chain, state):  # type: ignore[no-untyped-def]
     level, multiple, number = next_between(1, -1, segments)
     while number > 0:
         for k in range(len(start)):
@@ -203,13 +203,13 @@ def _crosses_any(x, y, along_x, along_y, others, count):  # type: ignore[no-unty
     crossings = 0
     # Without branches, so that compilers can take several segments at a time.
     for j in range(count):
-        apart_x, apart_y = others[0, j] - x, others[1, j] - y
+        offset_x, offset_y = others[0, j] - x, others[1, j] - y
         other_x, other_y = others[2, j], others[3, j]
         cross = along_x * other_y - other_x * along_y
         # The lines meet at the shares s / cross and t / cross of the two; a positive cross product is compared.
         size = abs(cross)
-        s = math.copysign(1.0, cross) * (apart_x * other_y - apart_y * other_x)
-        t = math.copysign(1.0, cross) * (apart_x * along_y - apart_y * along_x)
+        s = math.copysign(1.0, cross) * (offset_x * other_y - offset_y * other_x)
+        t = math.copysign(1.0, cross) * (offset_x * along_y - offset_y * along_x)
         # Never so where the two are parallel, for then the size is about zero.
         crossings += (s >= _TOUCHING) & (s < size - _TOUCHING) & (t >= _TOUCHING) & (t < size - _TOUCHING)
     return crossings > 0

@@ -10,8 +10,8 @@ import numpy as np
 from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints
-from evenroad._checks import require_count, require_positive
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad._checks import require_count, require_known, require_positive
+from evenroad.errors import InvalidValue
 from evenroad.research.worlds.compiled import CompiledWorld, is_in_cube
 from evenroad.space import Box
 
@@ -63,8 +63,7 @@ class Corridor(CompiledWorld):
         checked = d if self.checked is None else require_count("checked", self.checked)
         if checked > d:
             raise InvalidValue(f"checked must be at most d = {d}, got {self.checked!r}")
-        if self.side not in _SIDES:
-            raise UnknownName.among("side", self.side, _SIDES)
+        require_known("side", self.side, _SIDES)
         axes = np.arange(checked) if self.side == "comment" else np.arange(checked)[::-1].copy()
         axes.setflags(write=False)
         for name, value in (("d", d), ("lam", lam), ("_axes", axes), ("_space", Box([0.0] * d, [1.0] * d))):
@@ -136,18 +135,18 @@ def motions_are_free(a: Floats, b: Floats, resolution: float, width: float, axes
             and is_in_cube(b[row])
             and _is_in_corridor(a[row], b[row], 1.0, 0.0, width, axes)
             and _is_in_corridor(a[row], b[row], 0.0, 1.0, width, axes)
-            and _way_is_free(a[row], b[row], resolution, width, axes)
+            and _motion_is_free(a[row], b[row], resolution, width, axes)
         )
     return free
 
 
 @njit(cache=True, nogil=True)
-def _way_is_free(a: Floats, b: Floats, resolution: float, width: float, axes: Ints) -> bool:
+def _motion_is_free(a: Floats, b: Floats, resolution: float, width: float, axes: Ints) -> bool:
     squared = 0.0
     for k in range(len(a)):
         squared += (b[k] - a[k]) * (b[k] - a[k])
     segments = math.ceil(math.sqrt(squared) / resolution)
-    # As evenroad.world.bisection_kernel, but written out: a state takes so little here that a call for each shows.
+    # As evenroad.world.bisection, but written out: a state takes so little here that a call for each shows.
     level = 1
     while (1 << (level - 1)) < segments:
         before = 0

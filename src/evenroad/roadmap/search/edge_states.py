@@ -30,10 +30,7 @@ class BudgetSpent(Exception):
 def in_time(rows: npt.NDArray[np.integer], deadline: float) -> Iterator[npt.NDArray[np.integer]]:
     """Yield `rows` in batches, all at once if there is no deadline.
 
-    Raises
-    ------
-    BudgetSpent
-        When the deadline (on the clock of ``time.perf_counter``) has passed and there are rows left.
+    Raises BudgetSpent when the deadline (on the clock of ``time.perf_counter``) has passed and there are rows left.
     """
     size = _FIRST_BATCH if math.isfinite(deadline) else max(len(rows), 1)
     first = 0
@@ -106,10 +103,7 @@ class EdgeStates:
     def ask_nodes(self, nodes: npt.NDArray[np.integer]) -> None:
         """Ask the world about those of the nodes that are not known yet.
 
-        Raises
-        ------
-        BudgetSpent
-            If the time was over before; what was asked is kept.
+        Raises BudgetSpent if the time was over before; what was asked is kept.
         """
         unknown = nodes[self.node_states[nodes] == UNKNOWN]
         for rows in in_time(unknown, self.deadline):
@@ -121,10 +115,7 @@ class EdgeStates:
     def ask_edges(self, edges: npt.NDArray[np.integer]) -> None:
         """Ask the world about those of the edges that are not known yet, as many as the budget allows.
 
-        Raises
-        ------
-        BudgetSpent
-            If there were more of them; what was asked is kept.
+        Raises BudgetSpent if there were more of them; what was asked is kept.
         """
         unknown = edges[self.edge_states[edges] == UNKNOWN]
         wanted = len(unknown)

@@ -97,7 +97,7 @@ def find_any(problem: SearchProblem, states: EdgeStates) -> Found:
             return NOT_FOUND
         meeting = np.flatnonzero(trees[0].member & trees[1].member)
         if meeting.size:
-            there, back = (tree.way_from_root(int(meeting[0])) for tree in trees)
+            there, back = (tree.path_from_root(int(meeting[0])) for tree in trees)
             return np.concatenate([there[0], back[0][-2::-1]]), np.concatenate([there[1], back[1][::-1]])
 
 
@@ -140,15 +140,15 @@ class _Tree:
         self._take_up(targets[free])
         return True
 
-    def way_from_root(self, node: int) -> Found:
+    def path_from_root(self, node: int) -> Found:
         """Return the nodes and edges from a root of the tree to a node in it."""
-        return _way_back(self.parent_edge, self.states.edges, node)
+        return _path_back(self.parent_edge, self.states.edges, node)
 
     def _take_up(self, nodes: npt.NDArray[np.integer]) -> None:
         self.member[nodes] = True
         for rows in (self.graph.fixed, self.graph.links):
             self._size = _add_arcs(
-                nodes, rows.first, rows.other, rows.edge, self.nearness, self.member, self._keys, self._edges,
+                nodes, rows, self.nearness, self.member, self._keys, self._edges,
                 self._targets, self._size,
             )  # fmt: skip
 
@@ -169,8 +169,8 @@ def march(problem: SearchProblem, states: EdgeStates) -> tuple[Found, int]:
     while frontier:
         _, node = heapq.heappop(frontier)
         if node in goals:
-            return _way_back(parent_edge, states.edges, node), int(np.count_nonzero(stage))
-        fresh, offers = _best_offers(node, graph.first, graph.other, graph.edge, weights, cost, stage)
+            return _path_back(parent_edge, states.edges, node), int(np.count_nonzero(stage))
+        fresh, offers = _best_offers(node, graph, weights, cost, stage)
         states.ask_edges(offers)
         free = states.edge_states[offers] == FREE
         fresh, offers = fresh[free], offers[free]
@@ -223,7 +223,7 @@ def _all_free(nodes: Ints32, along: Ints32, states: EdgeStates) -> bool:
     return True
 
 
-def _way_back(parent_edge: Ints32, edges: Ints32, node: int) -> Found:
+def _path_back(parent_edge: Ints32, edges: Ints32, node: int) -> Found:
     """Return the nodes and edges from the root of a tree to a node in it."""
     nodes, along = [node], []
     while (edge := int(parent_edge[nodes[-1]])) >= 0:
@@ -234,15 +234,15 @@ def _way_back(parent_edge: Ints32, edges: Ints32, node: int) -> Found:
 
 
 @njit(cache=True, nogil=True)
-def _add_arcs(nodes, first, other, edge, nearness, member, keys, edges, targets, size):  # type: ignore[no-untyped-def]
+def _add_arcs(nodes, rows, nearness, member, keys, edges, targets, size):  # type: ignore[no-untyped-def]
     """Put the arcs that lead from nodes out of the tree into its heap; return the heap's size."""
     for node in nodes:
-        if node + 1 >= first.shape[0]:
+        if node + 1 >= rows.first.shape[0]:
             continue
-        for slot in range(first[node], first[node + 1]):
-            target = other[slot]
+        for slot in range(rows.first[node], rows.first[node + 1]):
+            target = rows.other[slot]
             if not member[target]:
-                size = _push(keys, edges, targets, size, nearness[target], edge[slot], target)
+                size = _push(keys, edges, targets, size, nearness[target], rows.edge[slot], target)
     return size
 
 
@@ -300,8 +300,9 @@ def _drop_first(keys, edges, targets, size):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def _best_offers(node, first, other, edge, weights, cost, stage):  # type: ignore[no-untyped-def]
+def _best_offers(node, rows, weights, cost, stage):  # type: ignore[no-untyped-def]
     """Return the unvisited neighbours of a node, and the edge from the open node that is the best for each."""
+    first, other, edge = rows
     fresh = np.empty(first[node + 1] - first[node], dtype=np.int32)
     offers = np.empty_like(fresh)
     count = 0

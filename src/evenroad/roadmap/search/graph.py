@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -10,9 +11,8 @@ from numba import njit
 from evenroad._arrays import Bools, Ints, Ints32
 
 
-@dataclass(frozen=True, eq=False)
-class Rows:
-    """For each node the arcs that leave it, side by side.
+class Rows(NamedTuple):
+    """For each node the arcs that leave it, side by side; compiled code takes it as it is.
 
     Those of node v are the slots ``first[v] .. first[v + 1] - 1``; for each slot, `other` is the node that the arc
     leads to and `edge` its edge.

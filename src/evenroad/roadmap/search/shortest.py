@@ -77,7 +77,7 @@ def best_path(
     edge_states, node_states : ndarray of int8, shape (m,) and (nodes,)
         `UNKNOWN`, `FREE` or `BLOCKED`.
     bounds : ndarray of int64, shape (nodes,)
-        Lower bounds of the way from each node to the nearest goal.
+        Lower bounds of the path from each node to the nearest goal.
     start : int
         Node number.
     goals : ndarray of int64, shape (g,)
@@ -90,21 +90,8 @@ def best_path(
     edges : ndarray of int32, shape (max(p - 1, 0),)
         The edges along it.
     """
-    fixed, links = graph.fixed, graph.links
     return _a_star(
-        graph.nodes,
-        fixed.first,
-        fixed.other,
-        fixed.edge,
-        links.first,
-        links.other,
-        links.edge,
-        weights,
-        edge_states,
-        node_states,
-        bounds,
-        start,
-        goals,
+        graph.nodes, graph.fixed, graph.links, weights, edge_states, node_states, bounds, start, goals
     )
 
 
@@ -118,7 +105,7 @@ def shortest_path(
     lengths : ndarray, shape (m,)
         Length of each edge, >= 0.
     bounds : ndarray, shape (nodes,)
-        Consistent lower bound of the way from each node to the goal, e.g. its distance in the space.
+        Consistent lower bound of the path from each node to the goal, e.g. its distance in the space.
 
     Returns
     -------
@@ -150,21 +137,7 @@ def length_along(lengths: Floats, along: Ints32) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _a_star(  # type: ignore[no-untyped-def]
-    nodes,
-    first,
-    other,
-    edge,
-    link_first,
-    link_other,
-    link_edge,
-    weights,
-    edge_states,
-    node_states,
-    bounds,
-    start,
-    goals,
-):
+def _a_star(nodes, fixed, links, weights, edge_states, node_states, bounds, start, goals):  # type: ignore[no-untyped-def]
     unseen = np.iinfo(np.int64).max
     is_goal = np.zeros(nodes, dtype=np.bool_)
     is_goal[goals] = True
@@ -194,16 +167,16 @@ def _a_star(  # type: ignore[no-untyped-def]
             ):
                 reached_goal = node
             continue
-        fixed_slot = first[node] if node + 1 < first.shape[0] else 0
-        fixed_end = first[node + 1] if node + 1 < first.shape[0] else 0
-        link_slot = link_first[node] if node + 1 < link_first.shape[0] else 0
-        link_end = link_first[node + 1] if node + 1 < link_first.shape[0] else 0
+        fixed_slot = fixed.first[node] if node + 1 < fixed.first.shape[0] else 0
+        fixed_end = fixed.first[node + 1] if node + 1 < fixed.first.shape[0] else 0
+        link_slot = links.first[node] if node + 1 < links.first.shape[0] else 0
+        link_end = links.first[node + 1] if node + 1 < links.first.shape[0] else 0
         while fixed_slot < fixed_end or link_slot < link_end:
             if fixed_slot < fixed_end:
-                e, neighbour = edge[fixed_slot], other[fixed_slot]
+                e, neighbour = fixed.edge[fixed_slot], fixed.other[fixed_slot]
                 fixed_slot += 1
             else:
-                e, neighbour = link_edge[link_slot], link_other[link_slot]
+                e, neighbour = links.edge[link_slot], links.other[link_slot]
                 link_slot += 1
             if edge_states[e] == BLOCKED or node_states[neighbour] == BLOCKED:
                 continue

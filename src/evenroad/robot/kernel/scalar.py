@@ -15,7 +15,7 @@ from numba import njit
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.layout import inner
 from evenroad.robot.kernel.motion import enter, span
-from evenroad.world.bisection_kernel import next_between
+from evenroad.world.bisection import next_between
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

@@ -87,11 +87,8 @@ def capsule_shapes(robot: Robot) -> tuple[Shape, ...]:
 def sound_shapes(robot: Robot, shapes: Sequence[Shape] | None) -> tuple[Shape, ...]:
     """Return the shapes to test: those given, or the robot's capsules.
 
-    Raises
-    ------
-    InvalidValue
-        If there is none, one is of a link that is not there, or a link with capsules has none: its checks would
-        all pass.
+    Raises InvalidValue if there is none, one is of a link that is not there, or a link with capsules has none: its
+    checks would all pass.
     """
     chosen = capsule_shapes(robot) if shapes is None else tuple(shapes)
     links = {shape.link for shape in chosen}

@@ -1,4 +1,4 @@
-"""Per-cell knowledge about a disk on a grid of occupied cells: most questions end with one look at it.
+"""Per-cell knowledge about a disk on a grid of occupied cells: most checks end with one look at it.
 
 The grid is *padded*: one ring of occupied cells surrounds the map, which for a point of the map is exactly
 the outside.  Lengths are in pixels.  `radius` is the disk's.

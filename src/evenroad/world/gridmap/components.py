@@ -24,7 +24,7 @@ PARTS = 16
 
 @njit(cache=True, nogil=True)
 def find_gates(cells: npt.NDArray[np.uint8]) -> Bools:
-    """Return the cells around places where a way may lead through cells that are not surely free.
+    """Return the cells around places where a path may lead through cells that are not surely free.
 
     From every component of surely free cells the undecided ones are visited outwards.  Along a wall they are a strip
     of one or two.  Where they lie deeper, where two components meet, or where none comes to, there is a gate.

@@ -23,11 +23,11 @@ from evenroad.world.gridmap.kernel import (
     nearest_obstacle_points,
     points_are_free,
 )
-from evenroad.world.gridmap.search import find_way, straighten
+from evenroad.world.gridmap.search import find_path, straighten
 from evenroad.world.protocol import Connection
 
 _SPREADS = (32, 96)
-"""Points that a way is offered to be straightened with, in the coarse rounds and in the fine ones."""
+"""Points that a path is offered to be straightened with, in the coarse rounds and in the fine ones."""
 
 _SMALLEST_RADIUS = 1e-150
 """In pixels: its square is still above 0, so that a disk of any size touches what its centre lies on."""
@@ -98,23 +98,11 @@ class DiskWorld:
         return "exact"
 
     def valid(self, q: Floats) -> Bools:
-        """Return whether the disk is free at each map point, (n, 2) -> (n,); False outside the map.
-
-        Raises
-        ------
-        InvalidValue
-            If `q` has another shape or an entry that is not finite.
-        """
+        """Return whether the disk is free at each map point, (n, 2) -> (n,); False outside the map."""
         return points_are_free(as_batch("q", q, 2), self._tables)
 
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
-        """Return whether the disk can move straight from each row of `a` to that of `b`: two (m, 2) -> (m,).
-
-        Raises
-        ------
-        InvalidValue
-            If the two differ in length, or as `valid`.
-        """
+        """Return whether the disk can move straight from each row of `a` to that of `b`: two (m, 2) -> (m,)."""
         return motions_are_free(*as_batch_pair(a, b, 2), self._tables)
 
     def clearance(self, q: Floats) -> Floats:
@@ -134,17 +122,17 @@ class DiskWorld:
         """
         centres = as_batch("q", q, 2)
         pixels, distance = nearest_obstacle_points(centres, self._tables)
-        # A centre that is its own nearest point is returned as it came, without the way through pixels.
+        # A centre that is its own nearest point is returned as it came, without the detour through pixels.
         nearest = centres.copy()
         away = distance > 0.0
         nearest[away] = self.grid.frame.to_map(pixels[away])
         return nearest
 
     def may_connect(self, a: Floats, b: Floats) -> bool:
-        """Return False where it is proved that no way leads from map point `a`, (2,), to `b`, (2,).
+        """Return False where it is proved that no path leads from map point `a`, (2,), to `b`, (2,).
 
-        Places none of whose points is free separate the others into components, in one of which every way stays.
-        Where both ends are in the same one, there is a way unless it leads through a passage that is narrower than
+        Places none of whose points is free separate the others into components, in one of which every path stays.
+        Where both ends are in the same one, there is a path unless it leads through a passage that is narrower than
         the disk by less than about a tenth of a pixel.
         """
         first, second = self.component(a), self.component(b)
@@ -199,7 +187,7 @@ class DiskWorld:
     def connect(
         self, start: Floats, goals: Floats, *, most_motions: int = 2**31 - 1, seconds: float = math.inf
     ) -> Connection:
-        """Find a way from a free map point, (2,), to the one of several, (g, 2), that is nearest on the lattice.
+        """Find a path from a free map point, (2,), to the one of several, (g, 2), that is nearest on the lattice.
 
         It leads over cell centres, and over half cells where it is narrow; it is found wherever `may_connect` holds
         but for passages hardly wider than the disk.  `most_motions` bounds the motions that are tested.  The time is
@@ -207,8 +195,8 @@ class DiskWorld:
         """
         first = as_batch("start", np.reshape(start, (1, -1)), 2)[0]
         last = as_batch("goals", goals, 2)
-        way, goal, nodes, motions = find_way(first, last, self._tables, self._gates, most_motions)
-        return Connection(way, int(goal), nodes, 0, motions)
+        path, goal, nodes, motions = find_path(first, last, self._tables, self._gates, most_motions)
+        return Connection(path, int(goal), nodes, 0, motions)
 
     def shorten(self, path: Floats) -> tuple[Floats, int]:
         """Return a path of free motions, (q, 2), that is not longer than `path`, (p, 2), and how many were tested."""

@@ -22,7 +22,7 @@ class MapFrame:
 
     * ``y_up=False``, a bare image: x to the right, y DOWN, `origin` is the image's top-left corner;
     * ``y_up=True``, a ROS map: `origin` is the lower-left corner of the lower-left pixel, y up along the
-      image's left side, the whole image turned by `yaw` (anticlockwise) about `origin`.
+      image's left side, the whole image rotated by `yaw` (anticlockwise) about `origin`.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class MapFrame:
         if len(self.origin) != 2 or not all(math.isfinite(value) for value in (*self.origin, self.yaw)):
             raise InvalidValue(f"origin and yaw must be finite, got {self.origin!r} and {self.yaw!r}")
         if self.yaw != 0.0 and not self.y_up:
-            raise InvalidValue(f"a frame with y down cannot be turned: yaw must be 0, got {self.yaw!r}")
+            raise InvalidValue(f"a frame with y down cannot be rotated: yaw must be 0, got {self.yaw!r}")
 
     @property
     def rectangle(self) -> Rectangle:

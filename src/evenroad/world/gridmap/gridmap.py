@@ -59,7 +59,7 @@ class GridMap:
 
     @property
     def space(self) -> Rectangle:
-        """The image's rectangle in map units, turned as the map is."""
+        """The image's rectangle in map units, rotated as the map is."""
         return self.frame.rectangle
 
     def contains(self, q: Floats) -> Bools:

@@ -42,9 +42,9 @@ def motions_are_free(a: Floats, b: Floats, disk: DiskTables) -> Bools:
             free[i] = False
         elif bx < ax or (bx == ax and by < ay):
             # One direction for both orders: a motion and its reverse round alike.
-            free[i] = way_is_free(bx, by, ax, ay, disk)
+            free[i] = motion_is_free(bx, by, ax, ay, disk)
         else:
-            free[i] = way_is_free(ax, ay, bx, by, disk)
+            free[i] = motion_is_free(ax, ay, bx, by, disk)
     return free
 
 
@@ -82,7 +82,7 @@ def point_is_free(x: float, y: float, disk: DiskTables) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def way_is_free(ax: float, ay: float, bx: float, by: float, disk: DiskTables) -> bool:
+def motion_is_free(ax: float, ay: float, bx: float, by: float, disk: DiskTables) -> bool:
     """Follow the segment from a to b (ax <= bx), both free, cell by cell; parameter t runs from 0 to 1.
 
     Every piece of the segment from one t to the next lies in the closed cell that is looked at and the pieces
@@ -115,7 +115,7 @@ def way_is_free(ax: float, ay: float, bx: float, by: float, disk: DiskTables) ->
         # Rounding may put a grid line a hair before the place that a leap ended at: never go back.
         t = max(t, min(next_column, next_row))
         if state > FREE:
-            # The slack holds at the point of leaving, so that much way beyond it is free as well.
+            # The slack holds at the point of leaving, so as much of the motion beyond it is free as well.
             t += (state - FREE) * per_pixel
             col, row = int(ax + t * dx), int(ay + t * dy)
         elif next_column <= next_row:

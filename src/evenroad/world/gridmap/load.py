@@ -14,7 +14,7 @@ import numpy.typing as npt
 from PIL import Image
 
 from evenroad._arrays import Bools
-from evenroad._checks import require_positive
+from evenroad._checks import require_known, require_positive
 from evenroad._yaml import read_mapping
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.world.gridmap.frame import MapFrame
@@ -123,8 +123,7 @@ def read_ros_meta(path: str | os.PathLike[str]) -> RosMapMeta:
     file = Path(path)
     document = read_mapping(file, "map")
     for key in document:
-        if key not in _KNOWN:
-            raise UnknownName.among(f"key in {file}:", key, _KNOWN)
+        require_known(f"key in {file}:", key, _KNOWN)
     missing = [key for key in _REQUIRED if key not in document]
     if missing:
         raise BrokenFile(f"{file} lacks {', '.join(missing)}; a map needs {', '.join(_REQUIRED)}")
@@ -169,8 +168,7 @@ def _checked_meta(document: dict[str, Any], file: Path) -> RosMapMeta:
         raise InvalidValue(f"image in {file} must be the name of a file, got {image!r}")
     if "mode" not in document:
         mode = "trinary"
-    if mode not in _MODES:
-        raise UnknownName.among(f"mode in {file}:", mode, _MODES)
+    require_known(f"mode in {file}:", mode, _MODES)
     if negate not in (0, 1) or isinstance(negate, float):
         raise InvalidValue(f"negate in {file} must be 0, 1, true or false, got {negate!r}")
     if not isinstance(origin, list) or len(origin) != 3:

@@ -1,6 +1,6 @@
-"""The compiled planner of a disk on a grid: a way over a lattice of points, and straightening it.
+"""The compiled planner of a disk on a grid: a path over a lattice of points, and straightening it.
 
-Ways are made of map points, so that what is tested is what is returned.  They lead over the *half lattice*, the points
+Paths are made of map points, so that what is tested is what is returned.  They lead over the *half lattice*, the points
 ``(column / 2, row / 2)`` of the padded pixel plane (see `cells`): over the centres of surely free cells, and over all
 of its points at *gates*, where components of such cells come close to each other (see `components`).  The narrowest
 place of a gate is the middle between two corners or sides of squares, which is a point of the half lattice.
@@ -16,7 +16,7 @@ from numba import njit
 
 from evenroad._arrays import Bools, Floats
 from evenroad.world.gridmap.cells import BLOCKED, FREE, DiskTables
-from evenroad.world.gridmap.kernel import point_is_free, to_padded, way_is_free
+from evenroad.world.gridmap.kernel import motion_is_free, point_is_free, to_padded
 
 _BUCKETS = 64
 """More than the largest step of the key of A*, twice the dearest step: a key names its bucket."""
@@ -38,17 +38,17 @@ _LINKS = 24
 
 
 @njit(cache=True, nogil=True)
-def find_way(
+def find_path(
     start: Any, goals: Any, disk: DiskTables, gates: Bools, most: int
 ) -> tuple[Floats, int, int, int]:
-    """Find a way over the half lattice from a free point, (2,), to the nearest on it of others, (g, 2).
+    """Find a path over the half lattice from a free point, (2,), to the nearest on it of others, (g, 2).
 
     A* over whole-number costs with buckets for the queue; a step between surely free cells that share a side or a
     corner needs no check, every other one is tested exactly.
 
     Returns
     -------
-    way : (p, 2)
+    path : (p, 2)
         Map points, start and goal included; (0, 2) when there is none.
     goal : int
         Which goal, or -1.
@@ -109,8 +109,8 @@ def find_way(
         closed[node] = True
         expanded += 1
         if ends[node] >= 0:
-            way = _trace(node, came, wide, start, goals[ends[node]], disk)
-            return way, ends[node], expanded, motions
+            path = _trace(node, came, wide, start, goals[ends[node]], disk)
+            return path, ends[node], expanded, motions
         r, c = divmod(node, wide)
         x, y = 0.5 * c, 0.5 * r
         sure = _is_centre(r, c, disk)
@@ -146,13 +146,13 @@ def find_way(
 
 
 @njit(cache=True, nogil=True)
-def straighten(way: Any, disk: DiskTables, spreads: Any) -> tuple[Floats, int]:
-    """Return a shorter way of free motions between the same ends, and how many motions were tested.
+def straighten(path: Any, disk: DiskTables, spreads: Any) -> tuple[Floats, int]:
+    """Return a shorter path of free motions between the same ends, and how many motions were tested.
 
     First from each point on to the farthest that is found to be in sight; then rounds of points spread evenly along
-    the way, of which the shortest selection that stays free is kept.
+    the path, of which the shortest selection that stays free is kept.
     """
-    points, motions = _skip_ahead(way, disk)
+    points, motions = _skip_ahead(path, disk)
     for most in spreads:
         for _ in range(8):
             before = _length(points)
@@ -165,7 +165,7 @@ def straighten(way: Any, disk: DiskTables, spreads: Any) -> tuple[Floats, int]:
             points = shorter
             if before - after < 1e-3 * before:
                 break
-    # Points on the way, or nearly so, are not needed.
+    # Points on the path, or nearly so, are not needed.
     points, tried = _skip_ahead(points, disk)
     return points, motions + tried
 
@@ -224,14 +224,14 @@ def _trace(node: int, came: Any, wide: int, start: Any, goal: Any, disk: DiskTab
     while came[at] >= 0:
         at -= STEPS[came[at], 1] * wide + STEPS[came[at], 0]
         count += 1
-    way = np.empty((count, 2))
-    way[0, 0], way[0, 1], way[-1, 0], way[-1, 1] = start[0], start[1], goal[0], goal[1]
+    path = np.empty((count, 2))
+    path[0, 0], path[0, 1], path[-1, 0], path[-1, 1] = start[0], start[1], goal[0], goal[1]
     at = node
     for i in range(count - 2, 0, -1):
-        way[i, 0], way[i, 1] = _to_map(0.5 * (at % wide), 0.5 * (at // wide), disk.frame)
+        path[i, 0], path[i, 1] = _to_map(0.5 * (at % wide), 0.5 * (at // wide), disk.frame)
         if came[at] >= 0:
             at -= STEPS[came[at], 1] * wide + STEPS[came[at], 0]
-    return way
+    return path
 
 
 @njit(cache=True, nogil=True)
@@ -249,8 +249,8 @@ def _free_between(ax: float, ay: float, bx: float, by: float, disk: DiskTables) 
     if not point_is_free(ax, ay, disk) or not point_is_free(bx, by, disk):
         return False
     if bx < ax or (bx == ax and by < ay):
-        return way_is_free(bx, by, ax, ay, disk)
-    return way_is_free(ax, ay, bx, by, disk)
+        return motion_is_free(bx, by, ax, ay, disk)
+    return motion_is_free(ax, ay, bx, by, disk)
 
 
 @njit(cache=True, nogil=True)
@@ -261,25 +261,25 @@ def _to_map(column: float, row: float, frame: Any) -> tuple[float, float]:
 
 
 @njit(cache=True, nogil=True)
-def _skip_ahead(way: Any, disk: DiskTables) -> tuple[Floats, int]:
+def _skip_ahead(path: Any, disk: DiskTables) -> tuple[Floats, int]:
     kept = [0]
     motions = 0
-    at, last = 0, len(way) - 1
+    at, last = 0, len(path) - 1
     while at < last:
-        # Steps of the way itself are free; farther ones are tried at 2, 4, 8, ... until one is not, then halved.
+        # Steps of the path itself are free; farther ones are tried at 2, 4, 8, ... until one is not, then halved.
         near, far = at + 1, at + 1
         stride = 2
         while near < last:
             far = min(at + stride, last)
             motions += 1
-            if not _free_between(way[at, 0], way[at, 1], way[far, 0], way[far, 1], disk):
+            if not _free_between(path[at, 0], path[at, 1], path[far, 0], path[far, 1], disk):
                 break
             near = far
             stride *= 2
         while far - near > 1:
             middle = (near + far) // 2
             motions += 1
-            if _free_between(way[at, 0], way[at, 1], way[middle, 0], way[middle, 1], disk):
+            if _free_between(path[at, 0], path[at, 1], path[middle, 0], path[middle, 1], disk):
                 near = middle
             else:
                 far = middle
@@ -287,7 +287,7 @@ def _skip_ahead(way: Any, disk: DiskTables) -> tuple[Floats, int]:
         kept.append(at)
     points = np.empty((len(kept), 2))
     for i in range(len(kept)):
-        points[i] = way[kept[i]]
+        points[i] = path[kept[i]]
     return points, motions
 
 

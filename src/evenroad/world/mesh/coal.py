@@ -14,23 +14,14 @@ from evenroad.geometry.pose import rotations_from_quaternions
 
 
 def require_coal() -> Any:
-    """Return the module coal.
-
-    Raises
-    ------
-    NotAvailable
-        If it is not installed.
-    """
+    """Return the module coal; NotAvailable if it is not installed."""
     return require_extra("coal", "mesh", "checking meshes")
 
 
 def tree_of(coal: Any, mesh: TriangleMesh) -> Any:
     """Return coal's tree of oriented boxes over the triangles of a mesh; its surface as it is, nothing made convex.
 
-    Raises
-    ------
-    BrokenFile
-        If coal leaves triangles out.
+    Raises BrokenFile if coal leaves triangles out.
     """
     tree = coal.BVHModelOBBRSS()
     tree.beginModel(len(mesh.triangles), len(mesh.vertices))

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints
-from evenroad.world.bisection_kernel import next_between
+from evenroad.world.bisection import next_between
 from evenroad.world.solids.oriented_box import BoxTable
 from evenroad.world.solids.overlap import first_contact
 
@@ -159,7 +159,7 @@ def _angle(a, b):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def _obstacles_near(a, b, reach, obstacles, near):  # type: ignore[no-untyped-def]
-    """Write the obstacles that balls of radius `reach` on the way from a to b might meet; return their number."""
+    """Write the obstacles that balls of radius `reach` on the motion from a to b might meet; return their number."""
     count = 0
     for i in range(len(obstacles.centre)):
         is_near = True

@@ -40,7 +40,7 @@ class OrientedBox:
     rotation : sequence of 4 or 9 floats, optional
         From the box's own axes to those of the frame that `centre` is in, the rows of the matrix one after the
         other (:func:`evenroad.geometry.rotation_from_heading` and
-        :func:`evenroad.geometry.rotation_from_quaternion` make them); default: not turned.
+        :func:`evenroad.geometry.rotation_from_quaternion` make them); default: not rotated.
     name : str
         What explanations call it.
 
@@ -68,12 +68,9 @@ class OrientedBox:
 
     @classmethod
     def spanning(cls, low: Sequence[float], high: Sequence[float], name: str = "") -> OrientedBox:
-        """Return the box, not turned, that reaches from `low` to `high`; equal numbers make it flat.
+        """Return the box, not rotated, that reaches from `low` to `high`; equal numbers make it flat.
 
-        Raises
-        ------
-        InvalidValue
-            If the two are not 2 or 3 finite numbers each with ``low <= high``.
+        Raises InvalidValue if the two are not 2 or 3 finite numbers each with ``low <= high``.
         """
         lows = as_row("low", low)
         highs = as_row("high", high, len(lows))
@@ -108,10 +105,7 @@ class OrientedBox:
 def shell(box: OrientedBox) -> tuple[OrientedBox, ...]:
     """Return the surface of a box in space, as six rectangles: a body that fits may be inside.
 
-    Raises
-    ------
-    InvalidValue
-        If the box lies in the plane.
+    Raises InvalidValue if the box lies in the plane.
     """
     if box.dim != 3:
         raise InvalidValue("only boxes in space have a shell of rectangles")
@@ -125,13 +119,7 @@ def shell(box: OrientedBox) -> tuple[OrientedBox, ...]:
 
 
 def surface_of(box: OrientedBox) -> TriangleMesh:
-    """Return the surface of a box in space as 12 triangles.
-
-    Raises
-    ------
-    InvalidValue
-        If the box lies in the plane.
-    """
+    """Return the surface of a box in space as 12 triangles; InvalidValue if the box lies in the plane."""
     if box.dim != 3:
         raise InvalidValue("only boxes in space have a surface of triangles")
     return TriangleMesh(box.corners, _FACES_OF_A_BOX, box.name)

@@ -17,10 +17,7 @@ RigidSpace: TypeAlias = Product | Box
 def body_dimension(space: Space) -> int:
     """Return 2 or 3: the dimension of the bodies that move in `space`.
 
-    Raises
-    ------
-    InvalidValue
-        If `space` is none of ``SE2(..)``, ``SE3(..)`` and a `Box` of 2 or 3 axes.
+    Raises InvalidValue if `space` is none of ``SE2(..)``, ``SE3(..)`` and a `Box` of 2 or 3 axes.
     """
     if isinstance(space, Box) and space.dim in (2, 3):
         return space.dim

@@ -9,11 +9,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints
-from evenroad._checks import require_positive
+from evenroad._checks import as_row, require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
 from evenroad.space import Box, Product
-from evenroad.space.axes import as_row
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.bisection import require_few_segments
 from evenroad.world.solids.kernel import contacts, motions_are_free, motions_are_proved
@@ -85,13 +84,7 @@ class SolidWorld:
         return fingerprint_of("solid", self.space, self.body, self.obstacles, self.resolution)
 
     def valid(self, q: Floats) -> Bools:
-        """Return which poses, (n, dim), lie in the space and are free: (n,).
-
-        Raises
-        ------
-        InvalidValue
-            If `q` has another shape or an entry that is not finite.
-        """
+        """Return which poses, (n, dim), lie in the space and are free: (n,)."""
         batch = as_batch("q", q, self.space.dim)
         free = self.space.contains(batch)
         inside = np.flatnonzero(free)
@@ -99,13 +92,7 @@ class SolidWorld:
         return free
 
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
-        """Return which motions from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
-
-        Raises
-        ------
-        InvalidValue
-            As `valid`, or if the two differ in length.
-        """
+        """Return which motions from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,)."""
         first, second = as_batch_pair(a, b, self.space.dim)
         free = self.space.contains(first) & self.space.contains(second)
         inside = np.flatnonzero(free)

@@ -14,7 +14,7 @@ from evenroad.research.bench.samplers import draw_set, why_not
 from evenroad.research.report.cells import Cell
 from evenroad.research.report.fair import Pooled
 from evenroad.research.report.figures.canvas import add_legend, look_of, new_figure
-from evenroad.research.report.runs import Question, sampler_place
+from evenroad.research.report.runs import Setting, sampler_place
 from evenroad.research.statistics import Interval
 
 DODGE = 0.025
@@ -35,7 +35,7 @@ COUNTS_DRAWN = (32, 64, 128, 256)
 
 
 def draw_curves(cells: Sequence[Cell], title: str) -> Figure:
-    """Return three panels of the success rates of one question's cells, over samples, checked edges and seconds."""
+    """Return three panels of the success rates of one setting's cells, over samples, checked edges and seconds."""
     # A fixed layout: solving for one takes longer than drawing, and a report has many of these.
     figure = new_figure(12.5, 4.4, layout=None)
     figure.subplots_adjust(left=0.05, right=0.845, bottom=0.125, top=0.9, wspace=0.07)
@@ -57,21 +57,21 @@ def draw_curves(cells: Sequence[Cell], title: str) -> Figure:
     return figure
 
 
-def maze_questions(questions: Sequence[Question]) -> tuple[Question, ...]:
+def maze_settings(settings: Sequence[Setting]) -> tuple[Setting, ...]:
     """Return the mazes with the rule and search of the first maze; empty if they are fewer than two."""
-    mazes = [question for question in questions if question.problem.startswith(MAZES)]
+    mazes = [setting for setting in settings if setting.problem.startswith(MAZES)]
     alike = [each for each in mazes if (each.rule, each.search) == (mazes[0].rule, mazes[0].search)]
     return tuple(alike) if len(alike) > 1 else ()
 
 
 def draw_maze_success(cells: Sequence[Cell]) -> Figure:
-    """Return the paper's figure of success against samples, with a panel for each of the :func:`maze_questions`."""
-    questions = list(dict.fromkeys(cell.question for cell in cells))
+    """Return the paper's figure of success against samples, with a panel for each of the :func:`maze_settings`."""
+    settings = list(dict.fromkeys(cell.setting for cell in cells))
     figure = new_figure(12.5, 4.6)
-    panels = figure.subplots(1, len(questions), sharey=True, squeeze=False)[0]
-    for axes, question in zip(panels, questions, strict=True):
-        _draw_by_samples(axes, [cell for cell in cells if cell.question == question], _samplers(cells))
-        axes.set_title(f"{question.problem}, {question.rule}", fontsize=10)
+    panels = figure.subplots(1, len(settings), sharey=True, squeeze=False)[0]
+    for axes, setting in zip(panels, settings, strict=True):
+        _draw_by_samples(axes, [cell for cell in cells if cell.setting == setting], _samplers(cells))
+        axes.set_title(f"{setting.problem}, {setting.rule}", fontsize=10)
     panels[0].set_ylabel("success [%]")
     add_legend(figure, _samplers(cells).index)
     return figure
@@ -116,7 +116,7 @@ def _samplers(cells: Sequence[Cell]) -> list[str]:
 
 
 def _draw_by_samples(axes: Axes, cells: Sequence[Cell], samplers: Sequence[str]) -> None:
-    """Draw the success of one question against samples; every sampler's error bars have a place of their own."""
+    """Draw the success of one setting against samples; every sampler's error bars have a place of their own."""
     for place, sampler in enumerate(samplers):
         curve = [cell for cell in cells if cell.sampler == sampler]
         if curve:

@@ -21,7 +21,7 @@ from evenroad.research.report.figures.canvas import new_figure
 from evenroad.research.worlds.chain import ChainWorld
 from evenroad.roadmap import KNearest, PlanResult, plan
 from evenroad.robot import ArmWorld
-from evenroad.space import Space
+from evenroad.space.path import place_at
 from evenroad.viz import draw_plan, style
 from evenroad.viz.arm import draw_arm_plan
 from evenroad.world.gridmap.disk import DiskWorld
@@ -49,10 +49,7 @@ def scenes_among(problems: Sequence[str]) -> tuple[str, ...]:
 def draw_scene(name: str) -> Figure:
     """Return the picture of a problem's world with a found path.
 
-    Raises
-    ------
-    NotAvailable
-        If there is no picture of such a world.
+    Raises NotAvailable if there is no picture of such a world.
     """
     problem = PROBLEMS[name].make(0)
     match problem.world:
@@ -85,24 +82,6 @@ def find_path(problem: Problem) -> PlanResult:
     return result
 
 
-def poses_along(space: Space, path: Floats, count: int) -> Floats:
-    """Return configurations at even distances along a path, its ends included, (count, dim).
-
-    Parameters
-    ----------
-    space : Space
-    path : ndarray, shape (p, dim), p >= 2
-    count : int
-        At least 2.
-    """
-    lengths = space.distance(path[:-1], path[1:])
-    ends = np.concatenate([[0.0], np.cumsum(lengths)])
-    along = np.linspace(0.0, ends[-1], count)
-    leg = np.clip(np.searchsorted(ends, along, side="right") - 1, 0, len(lengths) - 1)
-    shares = (along - ends[leg]) / np.where(lengths[leg] > 0, lengths[leg], 1.0)
-    return space.interpolate(path[leg], path[leg + 1], np.clip(shares, 0.0, 1.0))
-
-
 def draw_chain(problem: Problem, world: ChainWorld, title: str) -> Figure:
     """Return the horn with the chain at start, goal and, from light to dark, along a path."""
     figure = new_figure(8.0, 5.2)
@@ -115,7 +94,9 @@ def draw_chain(problem: Problem, world: ChainWorld, title: str) -> Figure:
     result = find_path(problem)
     if result.path is not None:
         shades = colormaps["Blues"](np.linspace(0.25, 0.75, CHAIN_POSES))
-        for pose, shade in zip(poses_along(world.space, result.path, CHAIN_POSES), shades, strict=True):
+        for pose, shade in zip(
+            place_at(result.path, world.space, np.linspace(0.0, 1.0, CHAIN_POSES)), shades, strict=True
+        ):
             axes.plot(*_joints(pose).T, color=shade, linewidth=1.0, zorder=2)
     for pose, colour, name in ((problem.start, style.START, "start"), (problem.goal, style.GOAL, "goal")):
         axes.plot(*_joints(pose).T, "o-", color=colour, linewidth=2.2, markersize=3.5, zorder=5, label=name)
@@ -146,9 +127,9 @@ def draw_solids(problem: Problem, world: SolidWorld, title: str) -> Figure:
     result = find_path(problem)
     poses = np.stack([problem.start, problem.goal])
     if result.path is not None:
-        poses = poses_along(world.space, result.path, BODY_POSES)
+        poses = place_at(result.path, world.space, np.linspace(0.0, 1.0, BODY_POSES))
     obstacles = np.concatenate([_faces(box.corners) for box in world.obstacles])
-    for place, (elevation, turn) in enumerate(((68.0, -90.0), (24.0, -62.0)), 1):
+    for place, (elevation, azimuth) in enumerate(((68.0, -90.0), (24.0, -62.0)), 1):
         axes = figure.add_subplot(1, 2, place, projection="3d")
         axes.add_collection3d(
             Poly3DCollection(
@@ -161,7 +142,7 @@ def draw_solids(problem: Problem, world: SolidWorld, title: str) -> Figure:
             )
         )
         _draw_body(axes, world.body, poses)
-        _set_view(axes, obstacles.reshape(-1, 3), elevation, turn)
+        _set_view(axes, obstacles.reshape(-1, 3), elevation, azimuth)
     figure.suptitle(f"{title}: {result.message}\n{result.origin}, {result.rule}", fontsize=9)
     return figure
 
@@ -172,10 +153,10 @@ def _draw_body(axes: Axes3D, body: Iterable[OrientedBox], poses: Floats) -> None
     for number, (pose, shade) in enumerate(zip(poses, between, strict=True)):
         ends = {0: style.START, len(poses) - 1: style.GOAL}
         colour = ends.get(number, shade)
-        turn, place = np.eye(3), pose[:3]
+        rotation, place = np.eye(3), pose[:3]
         if len(pose) == 7:
-            turn = np.array(rotation_from_quaternion(pose[3:].tolist())).reshape(3, 3)
-        faces = np.concatenate([_faces(box.corners @ turn.T + place) for box in boxes])
+            rotation = np.array(rotation_from_quaternion(pose[3:].tolist())).reshape(3, 3)
+        faces = np.concatenate([_faces(box.corners @ rotation.T + place) for box in boxes])
         strong = number in ends
         axes.add_collection3d(
             Poly3DCollection(
@@ -194,9 +175,9 @@ def _faces(corners: Floats) -> Floats:
     return corners[np.array(FACES)]
 
 
-def _set_view(axes: Axes3D, points: Floats, elevation: float, turn: float) -> None:
+def _set_view(axes: Axes3D, points: Floats, elevation: float, azimuth: float) -> None:
     low, high = points.min(axis=0), points.max(axis=0)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
     axes.set_box_aspect(high - low, zoom=1.05)
-    axes.view_init(elev=elevation, azim=turn)
+    axes.view_init(elev=elevation, azim=azimuth)
     axes.set_axis_off()

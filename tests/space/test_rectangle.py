@@ -60,8 +60,8 @@ def test_interpolation_hits_both_ends_to_the_last_bit():
         ((1.0, 0.0), (1.0, 1.0), "perpendicular"),
         ((1.0, math.nan), (0.0, 1.0), "finite"),
         ((1.0, math.inf), (0.0, 1.0), "finite"),
-        ((1.0,), (0.0, 1.0), "two"),
-        ("ab", (0.0, 1.0), "two"),
+        ((1.0,), (0.0, 1.0), "2 finite"),
+        ("ab", (0.0, 1.0), "2 finite"),
     ],
 )
 def test_edges_that_do_not_span_a_rectangle_are_refused(edge_u, edge_v, text):

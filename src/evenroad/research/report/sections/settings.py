@@ -1,4 +1,4 @@
-"""Tables of one question: success, differences from a reference, spread over the sets of a pool."""
+"""Tables of one setting: success, differences from a reference, spread over the sets of a pool."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from evenroad.research.problems import PROBLEMS
 from evenroad.research.report.analysis import Analysis
 from evenroad.research.report.cells import Cell
 from evenroad.research.report.comparisons import REFERENCES, SIGNIFICANT, Comparison
-from evenroad.research.report.runs import Question
+from evenroad.research.report.runs import Setting
 from evenroad.research.report.tables import (
     NOTHING,
     Entry,
@@ -30,23 +30,23 @@ def pool_notes(cells: Iterable[Cell]) -> tuple[str, ...]:
     return (f"{samplers}: {said}",) if samplers else ()
 
 
-def success_table(analysis: Analysis, question: Question, name: str) -> Table:
-    """Return the success rates of one question, with intervals, and the N at which a sampler reaches 90 %."""
-    cells = {(cell.sampler, cell.n): cell for cell in analysis.cells_of(question)}
+def success_table(analysis: Analysis, setting: Setting, name: str) -> Table:
+    """Return the success rates of one setting, with intervals, and the N at which a sampler reaches 90 %."""
+    cells = {(cell.sampler, cell.n): cell for cell in analysis.cells_of(setting)}
     counts = sorted({n for _, n in cells})
     reasons: dict[str, list[str]] = {}
     rows = []
     for sampler in analysis.runs.samplers:
         mine = tuple(cells[sampler, n] for n in counts if (sampler, n) in cells)
-        entries = [_success_entry(cells.get((sampler, n)), question, sampler, n, reasons) for n in counts]
+        entries = [_success_entry(cells.get((sampler, n)), setting, sampler, n, reasons) for n in counts]
         if mine:
             runs = count_range(tuple(cell.runs for cell in mine))
-            rows.append(row(sampler, runs, *entries, str(analysis.needed[question, sampler])))
+            rows.append(row(sampler, runs, *entries, str(analysis.needed[setting, sampler])))
         elif any(entry.text == "no set" for entry in entries):
             rows.append(row(sampler, 0, *entries, NOTHING))
     return Table(
         name=name,
-        title=f"{question}: success [%]",
+        title=f"{setting}: success [%]",
         header=("sampler", "runs", *(f"N = {n}" for n in counts), "N for 90 %"),
         rows=tuple(rows),
         notes=(
@@ -60,13 +60,13 @@ def success_table(analysis: Analysis, question: Question, name: str) -> Table:
 
 
 def _success_entry(
-    cell: Cell | None, question: Question, sampler: str, n: int, reasons: dict[str, list[str]]
+    cell: Cell | None, setting: Setting, sampler: str, n: int, reasons: dict[str, list[str]]
 ) -> Entry:
     if cell is not None:
         failed = f" ({cell.failures} failed)" if cell.failures else ""
         return Entry(with_interval(cell.rate, cell.interval) + failed)
-    if question.problem in PROBLEMS and sampler in SAMPLERS:
-        reason = why_not(sampler, n, PROBLEMS[question.problem].set_dim)
+    if setting.problem in PROBLEMS and sampler in SAMPLERS:
+        reason = why_not(sampler, n, PROBLEMS[setting.problem].set_dim)
         if reason:
             reasons.setdefault(sampler, []).append(reason)
             return Entry("no set", "faint")
@@ -98,20 +98,20 @@ def _failures(cells: tuple[Cell, ...]) -> tuple[str, ...]:
     return (f"{failed} failed runs count as not solved.",) if failed else ()
 
 
-def paired_tables(analysis: Analysis, question: Question, name: str) -> tuple[Table, ...]:
-    """Return a table of differences for each reference sampler that the question has."""
-    mine = [each for each in analysis.comparisons if each.cell.question == question]
+def paired_tables(analysis: Analysis, setting: Setting, name: str) -> tuple[Table, ...]:
+    """Return a table of differences for each reference sampler that the setting has."""
+    mine = [each for each in analysis.comparisons if each.cell.setting == setting]
     tables = []
     for reference in REFERENCES:
         against = [each for each in mine if each.reference == reference]
         if against:
             slug = f"{name}-from-{reference.replace(' ', '-')}"
             tested = sum(each.is_tested for each in mine)
-            tables.append(_paired_table(against, reference, slug, str(question), tested))
+            tables.append(_paired_table(against, reference, slug, str(setting), tested))
     return tuple(tables)
 
 
-def _paired_table(found: list[Comparison], reference: str, name: str, question: str, family: int) -> Table:
+def _paired_table(found: list[Comparison], reference: str, name: str, setting: str, family: int) -> Table:
     by_place = {(each.cell.sampler, each.cell.n): each for each in found}
     counts = sorted({n for _, n in by_place})
     samplers = list(dict.fromkeys(each.cell.sampler for each in found))
@@ -121,12 +121,12 @@ def _paired_table(found: list[Comparison], reference: str, name: str, question: 
     tests = sorted({each.test for each in found if each.is_tested})
     return Table(
         name=name,
-        title=f"{question}: difference from {reference} [points]",
+        title=f"{setting}: difference from {reference} [points]",
         header=("sampler", *(f"N = {n}" for n in counts)),
         rows=rows,
         notes=(
             f"Over the same runs. Marked: p < {SIGNIFICANT:g} after Holm's correction over the {family} comparisons of"
-            f" this question that were tested; {', '.join(tests) or 'none here'}. Intervals: 95 %, not corrected.",
+            f" this setting that were tested; {', '.join(tests) or 'none here'}. Intervals: 95 %, not corrected.",
             *_untested(found),
             *pool_notes(each.cell for each in found),
         ),
@@ -145,10 +145,10 @@ def _comparison_entry(each: Comparison | None) -> Entry:
     return NOTHING if each is None else change_entry(each.difference, each.interval, each.significant)
 
 
-def spread_table(analysis: Analysis, question: Question, name: str) -> Table | None:
+def spread_table(analysis: Analysis, setting: Setting, name: str) -> Table | None:
     """Return the spread of success over the sets of each pool; None where no set was drawn twice."""
     rows = []
-    for cell in analysis.cells_of(question):
+    for cell in analysis.cells_of(setting):
         if len(cell.sets) < 2 or cell.sets.runs.max() < 2:
             continue
         spread = spread_over_sets(cell.sets.solved, cell.sets.runs)
@@ -158,7 +158,7 @@ def spread_table(analysis: Analysis, question: Question, name: str) -> Table | N
         return None
     return Table(
         name=name,
-        title=f"{question}: success of single sets [%]",
+        title=f"{setting}: success of single sets [%]",
         header=("family", "N", "sets", "runs", "mean", "lowest", "highest", "sd", "sd by chance"),
         rows=tuple(rows),
         notes=(

@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 
-from evenroad.world.bisection import between_ends
-from evenroad.world.bisection_kernel import next_between
+from evenroad.world.bisection import between_ends, next_between
 
 
 @pytest.mark.parametrize("segments", [0, 1, 2, 3, 4, 5, 7, 8, 9, 31, 100, 1023])
