@@ -20,6 +20,7 @@ from evenroad.cli.plan_parts import (
     wants_points,
 )
 from evenroad.cli.plan_table import print_plan
+from evenroad.cli.progress import say_if_compiling
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record, save_json, save_path_csv
 from evenroad.roadmap import Status, find_path
@@ -47,6 +48,7 @@ def plan_disk(plan: DiskOptions) -> int:
     files = output_files(plan, map_files(plan.world), suffixes, "map")
     for name, value in (("start", start), *(("goal", goal) for goal in goals)):
         _require_on_map(gridmap, name, value)
+    say_if_compiling("evenroad.world.gridmap.search", "find_way", 15)
     if wants_points(plan):
         # Points are drawn over the rectangle: most of one that is mostly unknown is not worth any.
         world = (gridmap.cropped() if gridmap.unknown.any() else gridmap).world(
