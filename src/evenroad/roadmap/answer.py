@@ -13,7 +13,7 @@ from evenroad.roadmap.result import PlanResult, SearchedGraph, Status
 from evenroad.roadmap.search import BLOCKED, FREE, EdgeStates, components, length_along
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.space.path import motion_lengths
-from evenroad.world import Connection, ConnectsItself, Explains, Rechecks
+from evenroad.world import Connection, ConnectsItself, Explains, Rechecks, Separates
 
 PROVED = "proved: there is no path; start and goal lie in two components of the free space"
 
@@ -96,6 +96,14 @@ def gave_up(attempt: Attempt, connection: Connection) -> PlanResult:
 def proved_apart(attempt: Attempt) -> PlanResult:
     """Return the result of a world in which no path can join the start to a goal."""
     return _result(attempt, Status.NOT_CONNECTED, PROVED)
+
+
+def are_apart(attempt: Attempt) -> bool:
+    """Return whether the world can prove that no path leads from the start to any goal."""
+    world, query = attempt.world, attempt.query
+    return isinstance(world, Separates) and not any(
+        world.may_connect(query.start, goal) for goal in query.goals[attempt.goals]
+    )
 
 
 def _counts_of(attempt: Attempt, connection: Connection) -> dict[str, int]:

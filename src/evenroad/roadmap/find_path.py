@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy.typing as npt
 
 from evenroad.points.pointset import Origin
-from evenroad.roadmap.answer import connected, gave_up, proved_apart, refusal
+from evenroad.roadmap.answer import are_apart, connected, gave_up, proved_apart, refusal
 from evenroad.roadmap.anytime import plan_anytime
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
@@ -13,7 +13,7 @@ from evenroad.roadmap.hemmed import with_reasons
 from evenroad.roadmap.improve import improved
 from evenroad.roadmap.query import Query, read_places
 from evenroad.roadmap.result import PlanResult
-from evenroad.world import ConnectsItself, Separates, World
+from evenroad.world import ConnectsItself, World
 
 SECONDS = 5.0
 """Wall time of a budget that is not given."""
@@ -65,9 +65,7 @@ def find_path(
         if connection.goal >= 0:
             result = connected(attempt, connection)
             return improved(attempt, result) if improve else result
-        if isinstance(world, Separates) and not any(
-            world.may_connect(query.start, goal) for goal in query.goals[attempt.goals]
-        ):
+        if are_apart(attempt):
             return proved_apart(attempt)
         left = attempt.left()
         if left is None:
