@@ -57,8 +57,9 @@ def plan_disk(plan: DiskOptions) -> int:
         points = draw_points(plan, 2)
         load_compiled_code(world, start, goals, points, rule)
         result = roadmap.plan(world, start, goals, points, rule=rule, shorten=not plan.raw, budget=budget)
-        apart = [not world.may_connect(result.start, goal) for goal in result.goals]
-        if result.status is Status.NOT_CONNECTED and all(apart):
+        if result.status is Status.NOT_CONNECTED and not any(
+            world.may_connect(result.start, goal) for goal in result.goals
+        ):
             # No number of points would help.
             result = replace(result, message=PROVED)
     else:

@@ -13,7 +13,7 @@ from evenroad.roadmap.hemmed import with_reasons
 from evenroad.roadmap.improve import improved
 from evenroad.roadmap.query import Query, read_places
 from evenroad.roadmap.result import PlanResult
-from evenroad.world import ConnectsItself, World
+from evenroad.world import World
 
 SECONDS = 5.0
 """Wall time of a budget that is not given."""
@@ -57,11 +57,12 @@ def find_path(
     """
     budget = Budget(seconds=SECONDS) if budget is None else budget
     query = Query(*read_places(start, goal, world.space), shorten=shorten, budget=budget)
-    if isinstance(world, ConnectsItself):
-        attempt = Attempt(world, query, NO_POINTS, "none", world.planner)
+    attempt = Attempt(world, query, NO_POINTS, "none", "none")
+    if attempt.own_planner is not None:
+        attempt.planner = attempt.own_planner.planner
         if (refused := refusal(attempt)) is not None:
             return refused
-        connection = attempt.connect(world)
+        connection = attempt.connect(attempt.own_planner)
         if connection.goal >= 0:
             result = connected(attempt, connection)
             return improved(attempt, result) if improve else result
