@@ -105,6 +105,24 @@ def _problem(pool: Pool, kind: str, seed: int) -> Problem:
             return Problem(kind, seed, robot, scene, ends[0], ends[1])
 
 
+def queries(pool: Pool, kind: str, seed: int, count: int) -> tuple[ArmWorld, Vector]:
+    """Return a scene of a kind, and starts and goals in it from different places of the tool, (count, 2, dim)."""
+    rng = np.random.default_rng([KINDS.index(kind), seed])
+    while True:
+        obstacles, regions = _SCENES[kind](rng)
+        world = ArmWorld(pool.robot, Scene(f"{kind}{seed}", (_table(), *obstacles), _on_table(pool.robot)))
+        inside = [pool.within(region) for region in regions]
+        free = [q[world.valid(q)] for q in inside]
+        free = [q for q in free if len(q) > 0]
+        if len(free) > 1:
+            break
+    pairs = []
+    for _ in range(count):
+        first, second = rng.choice(len(free), size=2, replace=False)
+        pairs.append([free[i][rng.integers(len(free[i]))] for i in (first, second)])
+    return world, np.array(pairs)
+
+
 def _on_table(robot: Robot) -> frozenset[tuple[str, str]]:
     bodied = [link for link in robot.links if any(capsule.link == link for capsule in robot.capsules)]
     return frozenset((link, "table") for link in bodied[:2])

@@ -4,9 +4,10 @@ import evenroad as er
 from evenroad.arms import arm_query
 
 # Or plan_arm("my_arm.urdf", "my_scene.yaml", [0, -1.57, ...], "tucked", srdf="my_arm.srdf", group="arm")
-for n in (512, 1024, 2048, 4096):
-    result = er.plan_arm("ur5", "box-reach", "home", "inside", n)
-    print(n, result.message)
-    if result.solved:
-        break
+result = er.plan_arm("ur5", "box-reach", "home", "inside")
+print(result.message, "proof:", result.proof)
+
+# Half a second more buys a shorter path.
+result = er.plan_arm("ur5", "box-reach", "home", "inside", seconds=0.5, improve=True)
+print(result.message, [f"{stage.seconds:.3f} s: {stage.cost:.2f}" for stage in result.stages])
 er.save_arm_picture("box-reach.png", result, arm_query("ur5", "box-reach", "home", "inside").world)

@@ -154,7 +154,7 @@ def test_a_goal_that_an_arm_cannot_leave_is_explained():
     for points in (None, 64):
         result = er.plan_arm("ur5", er.Scene("balls", tuple(posts)), start, goal, points, seconds=0.2)
         assert not result.solved
-        assert "the goal can" in result.message
+        assert "The goal can" in result.message
         assert "leave its place: " in result.message
         assert "'forearm_link' touches 'ball" in result.message
-        assert "the start can" not in result.message
+        assert "The start can" not in result.message

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
+from typing import Any
 
 VARIABLE = "NUMBA_CACHE_DIR"
 """Names the folder of the user's choice; numba reads it."""
@@ -61,3 +62,15 @@ def _writable(folder: Path) -> bool:
     except OSError:
         return False
     return folder.is_dir() and os.access(folder, os.W_OK)
+
+
+def is_kept(function: Any) -> bool:
+    """Return whether code of a function of numba's is loaded or kept for this machine; True where nobody can tell."""
+    if function.signatures:
+        return True
+    try:
+        machine = function.targetctx.codegen().magic_tuple()
+        return any(key[1] == machine for key in function._cache._cache_file._load_index())
+    except Exception:
+        # Inner parts of numba, of which each version has its own.
+        return True

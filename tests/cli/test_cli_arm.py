@@ -7,7 +7,9 @@ import pytest
 import trimesh
 from PIL import Image
 
+from evenroad.cli import main
 from evenroad.robot import ArmWorld, in_scene, load_robot, load_scene
+from evenroad.robot.certified import CertifiedWorld
 from tests.robot.urdf_texts import SPHERE, joint, link, two_joints, urdf
 
 JOINTS = load_robot("ur5").group
@@ -15,7 +17,8 @@ JOINTS = load_robot("ur5").group
 
 def arm_arguments(scene="box-reach.yaml", robot="ur5", start="home", goal="inside", **options):
     extra = [each for key, value in options.items() for each in (f"--{key.replace('_', '-')}", value)]
-    return ["plan", scene, "--robot", robot, "--start", start, "--goal", goal, *extra]
+    goals = goal if isinstance(goal, tuple) else (goal,)
+    return ["plan", scene, "--robot", robot, "--start", start, "--goal", *goals, *extra]
 
 
 @pytest.fixture
@@ -56,6 +59,85 @@ def test_a_solved_plan_writes_json_csv_and_picture_and_the_path_is_free(run, tmp
     assert "solved" in out
     assert "shoulder_pan_joint, shoulder_lift_joint" in out
     assert max(map(len, out.splitlines())) <= 100
+
+
+def test_without_a_number_of_points_trees_plan_and_say_what_is_proved(run, tmp_path):
+    code, out, err = run(*arm_arguments())
+    assert (code, err) == (0, "")
+    record = json.loads((tmp_path / "box-reach.json").read_text())
+    assert record["planner"] == "trees"
+    assert record["proof"] == "certified"
+    assert record["rule"] == "none"
+    assert record["counts"]["nodes"] > 2
+    assert f"trees: {record['counts']['nodes']} nodes, {record['counts']['edges_checked']} motions" in out
+    assert "certified: the robot's capsules touch nothing anywhere along the" in out
+    assert "milestones" not in out
+    with Image.open(tmp_path / "box-reach.png") as picture:
+        assert picture.size[0] > 1500
+
+
+def test_goals_given_more_than_once_are_several_and_the_one_reached_is_named(run, tmp_path):
+    code, _, _ = run(*arm_arguments(goal=("inside", "--goal", "0,-1.5,0,-1.57,0,0"), out="a"), "--no-picture")
+    assert code == 0
+    record = json.loads((tmp_path / "a.json").read_text())
+    assert len(record["query"]["goals"]) == 2
+    assert record["query"]["goal_names"] == ["inside", "0,-1.5,0,-1.57,0,0"]
+    reached = record["goal_index"]
+    assert record["path"][-1] == record["query"]["goals"][reached] == record["query"]["goal"]
+    assert f"to goal {reached} ({record['query']['goal_names'][reached]})" in record["message"]
+
+
+def test_more_time_gives_a_path_that_is_no_longer_and_the_cost_over_time(run, tmp_path):
+    assert run(*arm_arguments(out="first"), "--no-picture")[0] == 0
+    code, out, _ = run(*arm_arguments(out="best", time=0.2), "--improve", "--no-picture")
+    assert code == 0
+    first, best = (json.loads((tmp_path / f"{name}.json").read_text()) for name in ("first", "best"))
+    assert best["cost"] <= first["cost"] == best["stages"][0]["cost"]
+    assert best["stages"][-1]["cost"] == best["cost"]
+    assert best["counts"]["rounds"] >= 1
+    assert f"in {best['counts']['rounds']} rounds" in " ".join(out.split())
+
+
+@pytest.mark.parametrize("options", [(), ("-n", 512)])
+def test_a_certified_path_is_proved_by_a_check_of_its_own(run, tmp_path, options):
+    assert run(*arm_arguments(out="a"), *options, "--certified", "--no-picture")[0] == 0
+    assert (tmp_path / "a.csv").exists()
+    world = ArmWorld(in_scene(load_robot("ur5"), load_scene("box-reach")), load_scene("box-reach"))
+    path = np.array(json.loads((tmp_path / "a.json").read_text())["path"])
+    assert CertifiedWorld(world, 1e-6).motion_valid(path[:-1], path[1:]).all()
+
+
+def test_a_path_with_a_motion_that_is_not_proved_is_none_where_a_proof_was_asked_for(
+    run, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(ArmWorld, "recheck", lambda self, path: np.arange(len(path) - 1) != 1)
+    code, out, _ = run(*arm_arguments(out="a"), "--certified", "--no-picture")
+    assert code == 1
+    assert "not_certified: motion 2 of" in out
+    assert not (tmp_path / "a.csv").exists()
+
+
+def test_a_goal_is_missed(run):
+    code, out, err = run("plan", "box-reach.yaml", "--robot", "ur5", "--start", "home")
+    assert (code, out) == (2, "")
+    assert err == "evenroad: error: give --goal, where the path is to end\n"
+
+
+def test_improving_does_not_go_with_points(run):
+    code, _, err = run(*arm_arguments(), "--improve", "-n", 64)
+    assert code == 2
+    assert "--improve goes without points" in err
+
+
+def test_what_is_compiled_is_said_once(run, monkeypatch, capsys):
+    from evenroad.cli import progress
+
+    monkeypatch.setattr(progress, "is_kept", lambda function: False)
+    assert main([str(word) for word in arm_arguments(out="a")] + ["--no-picture"]) == 0
+    assert capsys.readouterr().err == "evenroad: compiling for this machine, once: about 20 s\n"
+    monkeypatch.setattr(progress, "is_kept", lambda function: True)
+    assert main([str(word) for word in arm_arguments(out="a")] + ["--no-picture"]) == 0
+    assert capsys.readouterr().err == ""
 
 
 def test_a_urdf_of_ones_own_is_planned_for(run, desk):
@@ -209,6 +291,27 @@ BAD = {
     "bodies that are missing": ({"bodies": "none.yaml"}, "cannot read the file of bodies none.yaml"),
     "a clearance": ({"clearance": 1}, "--clearance goes with --robot-radius only"),
     "a resolution of zero": ({"resolution": 0}, "resolution must be a finite number > 0"),
+    "no time": ({"time": 0}, "time must be a finite number > 0, got 0"),
+    "less than no time": ({"time": -2}, "time must be a finite number > 0, got -2"),
+    "a time that is not a number": ({"time": "nan"}, "time must be a finite number > 0, got nan"),
+    "endless time": ({"time": "inf"}, "time must be a finite number > 0, got inf"),
+    "points of a negative number": ({"n": -5}, "n must be an integer >= 1, got -5"),
+    "a pose that is no rotation": (
+        {"scene": "turned.yaml"},
+        "obstacle 'ball' in turned.yaml.*quaternion",
+    ),
+    "a MoveIt scene with a pose that is no rotation": ({"scene": "turned.scene"}, "turned.scene.*quaternion"),
+    "a MoveIt scene with a mesh": (
+        {"scene": "mesh.scene"},
+        "shape of object 'cup' in mesh.scene: 'mesh'; known: box, cylinder, sphere",
+    ),
+    "a planning scene with a mesh": (
+        {"scene": "cup.yaml"},
+        "object 'cup' in cup.yaml must consist of box, sphere, cylinder: it has a mesh",
+    ),
+    "a MoveIt scene that is missing": ({"scene": "none.scene"}, "there is no scene file none.scene"),
+    "a second goal that is unknown": ({"goal": ("right", "--goal", "up")}, "unknown state 'up'"),
+    "a goal that is empty": ({"goal": ""}, "a configuration of 'arm' must not be empty"),
     "both robots": ({"robot_radius": 1}, "exactly one of them, not both"),
     "no points": ({"n": 0}, "n must be an integer >= 1, got 0"),
     "a name that would overwrite the robot": (
@@ -237,6 +340,13 @@ def test_bad_input_gets_one_line_and_exit_code_2_and_nothing_is_written(case, ru
             "states: {left: {a: 0, b: 0}, right: {a: 0, b: 0}}\n",
         ),
         ("map.yaml", ROOM),
+        (
+            "turned.yaml",
+            "obstacles: {ball: {shape: sphere, radius: 1, quaternion: [0, 0, 0, 0]}}\nstates: {left: {a: 0, b: 0}}\n",
+        ),
+        ("turned.scene", "s\n* ball\n1\nsphere\n1\n0 0 0\n0 0 0 0\n0 0 0 0\n.\n"),
+        ("mesh.scene", "s\n* cup\n1\nmesh\n3 1\n0 0 0\n0 0 0 1\n0 0 0 0\n.\n"),
+        ("cup.yaml", "world: {collision_objects: [{id: cup, meshes: [{resource: gone.stl}]}]}\n"),
     ):
         (desk / name).write_text(text)
     before = sorted(path for path in desk.rglob("*") if ".cache" not in path.parts)

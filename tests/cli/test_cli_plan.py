@@ -172,6 +172,30 @@ def test_without_a_number_of_points_the_hardest_maze_is_solved(run, tmp_path):
     assert "milestones" not in out
 
 
+def test_the_nearest_of_several_goals_is_reached_on_a_map(run, room, tmp_path):
+    for extra in ((), ("-n", 64), ("--improve", "--time", 0.2)):
+        code, out, _ = run(
+            *plan_arguments(room, (5, 5), (5, 25), 2, out="a"), "--goal", 20, 6, *extra, "--no-picture"
+        )
+        assert code == 0
+        record = json.loads((tmp_path / "a.json").read_text())
+        assert record["query"]["goals"] == [[5, 25], [20, 6]]
+        assert record["goal_index"] == 1
+        assert record["path"][-1] == record["query"]["goal"] == [20, 6]
+        assert "to goal 1" in out
+
+
+def test_a_disks_path_is_proved_without_being_asked_and_improves_with_time(run, room, tmp_path):
+    line = plan_arguments(room, (5, 5), (5, 25), 2)
+    assert run(*line, "--out", "first", "--no-picture")[0] == 0
+    code, out, _ = run(*line, "--improve", "--time", 0.5, "--certified", "--out", "best", "--no-picture")
+    assert code == 0
+    assert "exact: no motion touches anything" in out
+    first, best = (json.loads((tmp_path / f"{name}.json").read_text()) for name in ("first", "best"))
+    assert best["proof"] == "exact"
+    assert best["cost"] <= first["cost"] == best["stages"][0]["cost"]
+
+
 def test_that_there_is_no_path_is_proved_where_it_can_be(run, room, tmp_path):
     # The gap is 10 wide.
     assert run(*plan_arguments(room, (12, 7), (12, 23), 5, out="a"))[0] == 0

@@ -28,20 +28,20 @@ START, GOAL = (0.2, 0.5), (0.8, 0.5)
 def test_the_end_that_is_shut_in_is_named_with_what_touches_most_often():
     result = find_path(WORLD, START, GOAL, budget=Budget(samples=64))
     assert result.status == "budget_spent"
-    assert "the goal cannot leave its place: 0 of 128 motions of length 0.04" in result.message
+    assert "The goal cannot leave its place: 0 of 128 motions of length 0.04" in result.message
     assert "the ring stands left of it in" in result.message
     assert "the nearest free sample is 0.0" in result.message
-    assert "the start" not in result.message
+    assert "The start" not in result.message
     back = find_path(WORLD, GOAL, START, budget=Budget(samples=64))
-    assert "the start cannot leave its place" in back.message
-    assert "the goal" not in back.message
+    assert "The start cannot leave its place" in back.message
+    assert "The goal" not in back.message
 
 
 def test_of_several_goals_each_is_named_by_its_number():
     goals = np.array([GOAL, (0.8, 0.51)])
     result = find_path(WORLD, START, goals, budget=Budget(samples=64))
-    assert "goal 0 cannot leave its place" in result.message
-    assert "goal 1 cannot leave its place" in result.message
+    assert "Goal 0 cannot leave its place" in result.message
+    assert "Goal 1 cannot leave its place" in result.message
 
 
 def test_nothing_is_said_of_a_path_or_of_ends_that_move_freely():
@@ -55,5 +55,5 @@ def test_nothing_is_said_of_a_path_or_of_ends_that_move_freely():
 def test_a_world_without_words_counts_only():
     mute = SimpleNamespace(space=WORLD.space, valid=WORLD.valid, motion_valid=WORLD.motion_valid)
     message = with_reasons(mute, plan(mute, START, GOAL, 16)).message
-    assert "the goal cannot leave its place: 0 of 128 motions of length 0.04" in message
+    assert "The goal cannot leave its place: 0 of 128 motions of length 0.04" in message
     assert " from it are free; the nearest free sample" in message

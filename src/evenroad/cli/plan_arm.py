@@ -17,6 +17,7 @@ from evenroad.cli.plan_parts import (
     wants_points,
 )
 from evenroad.cli.plan_table import print_plan
+from evenroad.cli.progress import say_if_compiling
 from evenroad.cli.robot_tables import bodiless_rows
 from evenroad.io import plan_record, save_json, save_path_csv
 from evenroad.roadmap import default_rule, find_path
@@ -30,6 +31,10 @@ def plan_arm(plan: ArmOptions) -> int:
     Links without a body are named, with a warning where the URDF draws them: their collisions go unseen.
     """
     budget = chosen_budget(plan)
+    if wants_points(plan):
+        say_if_compiling("evenroad.robot.kernel.batch", "motions_free", 30)
+    else:
+        say_if_compiling("evenroad.robot.kernel.trees", "grow", 20)
     query = arm_query(
         plan.robot,
         plan.world,

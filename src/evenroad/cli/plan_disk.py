@@ -20,6 +20,7 @@ from evenroad.cli.plan_parts import (
     wants_points,
 )
 from evenroad.cli.plan_table import print_plan
+from evenroad.cli.progress import say_if_compiling
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record, save_json, save_path_csv
 from evenroad.roadmap import Status, find_path
@@ -47,6 +48,7 @@ def plan_disk(plan: DiskOptions) -> int:
     files = output_files(plan, map_files(plan.world), suffixes, "map")
     for name, value in (("start", start), *(("goal", goal) for goal in goals)):
         _require_on_map(gridmap, name, value)
+    say_if_compiling("evenroad.world.gridmap.search", "find_way", 15)
     if wants_points(plan):
         # Points are drawn over the rectangle: most of one that is mostly unknown is not worth any.
         world = (gridmap.cropped() if gridmap.unknown.any() else gridmap).world(
@@ -55,8 +57,9 @@ def plan_disk(plan: DiskOptions) -> int:
         points = draw_points(plan, 2)
         load_compiled_code(world, start, goals, points, rule)
         result = roadmap.plan(world, start, goals, points, rule=rule, shorten=not plan.raw, budget=budget)
-        apart = [not world.may_connect(result.start, goal) for goal in result.goals]
-        if result.status is Status.NOT_CONNECTED and all(apart):
+        if result.status is Status.NOT_CONNECTED and not any(
+            world.may_connect(result.start, goal) for goal in result.goals
+        ):
             # No number of points would help.
             result = replace(result, message=PROVED)
     else:

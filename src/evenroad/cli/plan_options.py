@@ -45,7 +45,7 @@ class PlanOptions:
     seed: int = 0
     """Seed of everything random; the same command gives the same path."""
     raw: bool = False
-    """Leave the path as it runs along the roadmap, without shortcutting it."""
+    """Leave the path as it was found, without shortcutting it."""
     out: Path | None = None
     """Where results go: OUT.json, OUT.png and, for an arm, OUT.csv. Default: the world's stem in the current folder,
     with -plan added where that would overwrite an input."""

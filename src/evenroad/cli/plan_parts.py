@@ -80,14 +80,14 @@ def load_compiled_code(
     """Plan once for nothing, with a few of the points: else the times would be those of loading compiled code."""
     if points is None:
         roadmap.find_path(world, start, start, budget=Budget(samples=1))
-    else:
-        few = PointSet(points.points[:_FEW])
-        roadmap.plan(world, start, goals, few, rule=rule, search=search)
+        return
+    few = PointSet(points.points[:_FEW])
+    roadmap.plan(world, start, goals, few, rule=rule, search=search)
     stay = np.array([start, start], dtype=np.float64)
     if isinstance(world, Rechecks):
         world.recheck(stay)
-    if isinstance(world, ConnectsItself):
-        world.shorten(stay)
+        if isinstance(world, ConnectsItself):
+            world.shorten(stay)
 
 
 def output_files(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import sys
 import time
 from collections.abc import Iterator
@@ -11,9 +12,22 @@ from typing import Protocol
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from evenroad._compiled import is_kept
 from evenroad._progress import LineProgress
+from evenroad.errors import NotAvailable
 
 REDRAW_SECONDS = 0.2
+
+
+def say_if_compiling(module: str, function: str, seconds: int) -> None:
+    """Say on standard error that a first run takes so long, where code of this function is yet to be compiled."""
+    try:
+        compiled = getattr(importlib.import_module(module), function)
+    except (ImportError, NotAvailable):
+        # Where sixteen lanes cannot be had, others plan.
+        return
+    if not is_kept(compiled):
+        print(f"evenroad: compiling for this machine, once: about {seconds} s", file=sys.stderr, flush=True)
 
 
 class Advance(Protocol):

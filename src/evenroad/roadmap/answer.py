@@ -13,7 +13,7 @@ from evenroad.roadmap.result import PlanResult, SearchedGraph, Status
 from evenroad.roadmap.search import BLOCKED, FREE, EdgeStates, components, length_along
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.space.path import motion_lengths
-from evenroad.world import Connection, ConnectsItself, Explains, Rechecks
+from evenroad.world import Connection, Explains, Rechecks, Separates
 
 PROVED = "proved: there is no path; start and goal lie in two components of the free space"
 
@@ -98,6 +98,14 @@ def proved_apart(attempt: Attempt) -> PlanResult:
     return _result(attempt, Status.NOT_CONNECTED, PROVED)
 
 
+def are_apart(attempt: Attempt) -> bool:
+    """Return whether the world can prove that no path leads from the start to any goal."""
+    world, query = attempt.world, attempt.query
+    return isinstance(world, Separates) and not any(
+        world.may_connect(query.start, goal) for goal in query.goals[attempt.goals]
+    )
+
+
 def _counts_of(attempt: Attempt, connection: Connection) -> dict[str, int]:
     return dict(
         nodes=connection.nodes,
@@ -145,8 +153,8 @@ def _with_path(
     path, length, cost = raw, raw_cost, query.edge_cost
     if query.shorten:
         with attempt.watch("shortcut"):
-            if by_world and isinstance(world, ConnectsItself):
-                path, counts["shortcut_motions"] = world.shorten(raw)
+            if by_world and attempt.own_planner is not None:
+                path, counts["shortcut_motions"] = attempt.own_planner.shorten(raw)
             else:
                 path, counts["shortcut_motions"] = shortcut(raw, world, cost, attempt.deadline)
             measure = world.space.distance if cost is None else cost

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -97,6 +98,11 @@ class Attempt:
         self.began = time.perf_counter()
         self.deadline = self.query.budget.deadline()
         self.goals = np.arange(len(self.query.goals))
+
+    @cached_property
+    def own_planner(self) -> ConnectsItself | None:
+        """The world, if it connects itself; asked once, for the question takes as long as some checks."""
+        return self.world if isinstance(self.world, ConnectsItself) else None
 
     @property
     def start_and_goals(self) -> npt.NDArray[np.float64]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy.typing as npt
 
 from evenroad.points.pointset import Origin
-from evenroad.roadmap.answer import connected, gave_up, proved_apart, refusal
+from evenroad.roadmap.answer import are_apart, connected, gave_up, proved_apart, refusal
 from evenroad.roadmap.anytime import plan_anytime
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
@@ -13,7 +13,7 @@ from evenroad.roadmap.hemmed import with_reasons
 from evenroad.roadmap.improve import improved
 from evenroad.roadmap.query import Query, read_places
 from evenroad.roadmap.result import PlanResult
-from evenroad.world import ConnectsItself, Separates, World
+from evenroad.world import World
 
 SECONDS = 5.0
 """Wall time of a budget that is not given."""
@@ -57,17 +57,16 @@ def find_path(
     """
     budget = Budget(seconds=SECONDS) if budget is None else budget
     query = Query(*read_places(start, goal, world.space), shorten=shorten, budget=budget)
-    if isinstance(world, ConnectsItself):
-        attempt = Attempt(world, query, NO_POINTS, "none", world.planner)
+    attempt = Attempt(world, query, NO_POINTS, "none", "none")
+    if attempt.own_planner is not None:
+        attempt.planner = attempt.own_planner.planner
         if (refused := refusal(attempt)) is not None:
             return refused
-        connection = attempt.connect(world)
+        connection = attempt.connect(attempt.own_planner)
         if connection.goal >= 0:
             result = connected(attempt, connection)
             return improved(attempt, result) if improve else result
-        if isinstance(world, Separates) and not any(
-            world.may_connect(query.start, goal) for goal in query.goals[attempt.goals]
-        ):
+        if are_apart(attempt):
             return proved_apart(attempt)
         left = attempt.left()
         if left is None:

@@ -40,7 +40,8 @@ def with_reasons(world: World, result: PlanResult) -> PlanResult:
         if world.valid(goal[np.newaxis])[0]
     ]
     reasons = [text for name, place in places if (text := why_hemmed(world, name, place)) is not None]
-    return replace(result, message=". ".join([result.message, *reasons])) if reasons else result
+    sentences = [result.message, *(text[0].upper() + text[1:] for text in reasons)]
+    return replace(result, message=". ".join(sentences)) if reasons else result
 
 
 def why_hemmed(world: World, name: str, place: npt.NDArray[np.float64]) -> str | None:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import PointSet
-from evenroad.roadmap.answer import answer, refusal
+from evenroad.roadmap.answer import answer, are_apart, connected, refusal
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.cost import BOUND, EdgeCost, edge_costs
@@ -24,7 +24,7 @@ from evenroad.roadmap.rules import KNearest, Rule
 from evenroad.roadmap.search import BLOCKED, FREE, UNKNOWN, EdgeStates, FixedPoint, Graph, SearchProblem
 from evenroad.roadmap.search.edge_states import Known
 from evenroad.space import Space
-from evenroad.world import World
+from evenroad.world import ConnectsItself, World
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,11 +217,13 @@ class WorldRoadmap:
         shorten: bool = False,
         keep_graph: bool = False,
         links: int | None = LINKS,
+        connect: bool = True,
         budget: Budget | None = None,
     ) -> PlanResult:
         """Find a short free path from start to goal.
 
         Both are joined to one another, to milestones as the rule's :class:`Reach` says, and to as many as `links` says.
+        Where one of them is cut off from the other, the world joins them itself if it can.
 
         Parameters
         ----------
@@ -229,13 +231,16 @@ class WorldRoadmap:
             As in :func:`plan`; by default lazily.  What is known is never asked again.
         shorten : bool
             Also shortcut the path, which takes longer than finding it.
+        connect : bool
+            Let a world that connects itself look for a path where the roadmap has none; not with an `edge_cost`.
         keep_graph : bool
             Put the searched graph into the result, for pictures.
 
         Returns
         -------
         PlanResult
-            Its counts ``edges_checked`` and ``configurations_checked`` are those of this query.
+            Its counts ``edges_checked`` and ``configurations_checked`` are those of this query.  `planner` says who
+            found the path: ``prm lazy``, or ``prm lazy, then trees``.
 
         Raises
         ------
@@ -262,7 +267,25 @@ class WorldRoadmap:
             with attempt.watch("neighbours"):
                 states, costs, problem = self._link(attempt)
             searched = attempt.search(query.find, states, costs, problem)
+            if connect and not (searched.solved or searched.spent) and isinstance(self.world, ConnectsItself):
+                joined = self._connect(attempt, self.world, states)
+                if joined is not None:
+                    return joined
             return answer(attempt, searched, roadmap.points.n, keep_graph=keep_graph)
+
+    def _connect(self, attempt: Attempt, world: ConnectsItself, states: EdgeStates) -> PlanResult | None:
+        """Return the result of the world's own planner, or None where it finds nothing."""
+        query = attempt.query
+        if query.edge_cost is not None or are_apart(attempt):
+            return None
+        attempt.motions_checked += states.motions_checked
+        connection = attempt.connect(world)
+        if connection.goal < 0:
+            attempt.spent = True
+            return None
+        attempt.planner = f"{attempt.planner}, then {world.planner}"
+        result = connected(attempt, connection)
+        return replace(result, counts=result.counts | {"edges_checked": attempt.motions_checked})
 
     def _link(self, attempt: Attempt) -> tuple[EdgeStates, npt.NDArray[np.float64], SearchProblem]:
         """Put start and goals behind the milestones, and their links behind the edges."""

@@ -125,7 +125,11 @@ def _obstacle(name: str, entry: dict[str, Any], path: Path) -> Obstacle:
     if "rpy" in entry and "quaternion" in entry:
         raise InvalidValue(f"{where} must have one of rpy and quaternion, got both")
     if "quaternion" in entry:
-        pose = Pose.from_quaternion(xyz, numbers(entry["quaternion"], 4, f"quaternion of {where}"))
+        quaternion = numbers(entry["quaternion"], 4, f"quaternion of {where}")
+        try:
+            pose = Pose.from_quaternion(xyz, quaternion)
+        except InvalidValue as error:
+            raise InvalidValue(f"{where}: {error}") from None
     else:
         pose = Pose.from_rpy(xyz, numbers(entry.get("rpy", [0, 0, 0]), 3, f"rpy of {where}"))
     cell = entry.get("cell", False)
