@@ -5,7 +5,7 @@
 Each kind of world: so many different shortened paths as asked for, shared out among the planners and some worlds, with
 the paths along the roadmap that they came from.  "touch" counts those of which some state touches; "nearest" is the
 least clearance of any: [mm] for arms, in units of the map or space for others.  "sampled" worlds ask the verdicts of
-rigid bodies state by state, as a user's function would be: what they promise is the resolution.
+rigid bodies state by state, as a user's function is: their paths are looked at with the oracle's density, no more.
 """
 
 from __future__ import annotations
