@@ -279,13 +279,13 @@ def test_a_single_place_makes_no_difference_to_how_a_fingerprint_is_computed():
 def test_the_strict_check_of_a_path_asks_for_states_twenty_times_as_dense():
     asked = Asked()
     world = FunctionWorld(Box([0.0], [10.0]), asked, 1.0)
-    path = np.array([[0.0], [3.0], [3.0], [4.5]])
+    path = np.array([[0.0], [3.0], [3.0], [5.0]])
     assert world.motion_valid(path[:-1], path[1:]).all()
     asked.batches.clear()
     assert world.recheck(path).all()
     states = np.unique(np.round(np.concatenate(asked.batches), 9))
     np.testing.assert_allclose(np.diff(states), 0.05)
-    assert (states[0], states[-1]) == (0.0, 4.5)
+    assert (states[0], states[-1]) == (0.0, 5.0)
 
 
 def test_a_wall_between_two_states_is_found_by_the_strict_check_alone():
