@@ -13,6 +13,9 @@ from evenroad.errors import InvalidValue, UnknownName, shown
 LARGEST_COUNT = 2**31 - 1
 """Nodes of a roadmap are numbered by int32: nothing that is counted here can sensibly be larger."""
 
+FARTHEST = 1e9
+"""Lengths and places of bodies [m]: their squares and cubes then are numbers, in single precision, too."""
+
 
 def require_count(name: str, value: object, at_least: int = 1) -> int:
     """Return `value` as an int >= `at_least`, or raise InvalidValue naming it (`n`, `d`, `k`, ...)."""
@@ -25,8 +28,8 @@ def require_count(name: str, value: object, at_least: int = 1) -> int:
     return int(value)
 
 
-def require_positive(name: str, value: object, *, or_zero: bool = False) -> float:
-    """Return `value` as a finite float > 0 (or >= 0), or raise InvalidValue naming it."""
+def require_positive(name: str, value: object, *, or_zero: bool = False, at_most: float = math.inf) -> float:
+    """Return `value` as a finite float > 0 (or >= 0) and <= `at_most`, or raise InvalidValue naming it."""
     allowed = "a finite number >= 0" if or_zero else "a finite number > 0"
     if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
         raise InvalidValue(f"{name} must be {allowed}, got {shown(value)}")
@@ -36,6 +39,8 @@ def require_positive(name: str, value: object, *, or_zero: bool = False) -> floa
         number = math.inf
     if not math.isfinite(number) or number < 0 or (number == 0 and not or_zero):
         raise InvalidValue(f"{name} must be {allowed}, got {shown(value)}")
+    if number > at_most:
+        raise InvalidValue(f"{name} must be at most {at_most:g}, got {shown(value)}")
     return number
 
 
@@ -45,8 +50,10 @@ def require_known(what: str, name: object, known: Container[object]) -> None:
         raise UnknownName.among(what, name, known)
 
 
-def as_row(name: str, values: Sequence[float], length: int | None = None) -> tuple[float, ...]:
-    """Return `values` as a tuple of finite floats, `length` of them or else at least one.
+def as_row(
+    name: str, values: Sequence[float], length: int | None = None, *, within: float = math.inf
+) -> tuple[float, ...]:
+    """Return `values` as a tuple of finite floats from -`within` to `within`, `length` of them or else at least one.
 
     Raises InvalidValue naming `values` and what is allowed.
     """
@@ -57,6 +64,8 @@ def as_row(name: str, values: Sequence[float], length: int | None = None) -> tup
         raise InvalidValue(f"{name} must be {wanted}, got {values!r}") from None
     if len(row) == 0 or (length is not None and len(row) != length) or not all(map(math.isfinite, row)):
         raise InvalidValue(f"{name} must be {wanted}, got {values!r}")
+    if max(map(abs, row)) > within:
+        raise InvalidValue(f"{name} must lie between -{within:g} and {within:g}, got {values!r}")
     return row
 
 

@@ -115,14 +115,20 @@ def clearance(robot, scene, q, samples=None):
         for obstacle in scene.obstacles:
             if (capsule.link, obstacle.name) in scene.allowed:
                 continue
-            for place in places:
-                point = 0.5 * (a + b) + 0.5 * place * (b - a)
-                least = np.minimum(least, obstacle_distance(point, obstacle) - radius)
+            # Where even a ball around the capsule is farther than something else, it changes nothing.
+            middle = obstacle_distance(0.5 * (a + b), obstacle) - length / 2 - radius
+            near = np.flatnonzero(middle < least)
+            for place in places if near.size else ():
+                point = 0.5 * (a[near] + b[near]) + 0.5 * place * (b[near] - a[near])
+                least[near] = np.minimum(least[near], obstacle_distance(point, obstacle) - radius)
     for first, second in robot.pairs:
         for capsule, (a, b) in ends.items():
             if capsule.link == first:
                 for other, (c, d) in ends.items():
                     if other.link == second:
-                        apart = segment_distance(a, b, c, d) - capsule.radius - other.radius
-                        least = np.minimum(least, apart)
+                        radii = capsule.radius + other.radius
+                        middle = np.linalg.norm(a + b - c - d, axis=1) - np.linalg.norm(b - a, axis=1)
+                        near = np.flatnonzero(0.5 * (middle - np.linalg.norm(d - c, axis=1)) - radii < least)
+                        apart = segment_distance(a[near], b[near], c[near], d[near]) - radii
+                        least[near] = np.minimum(least[near], apart)
     return least

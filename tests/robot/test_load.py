@@ -1,7 +1,9 @@
 import json
 import os
+import re
 import subprocess
 import sys
+from importlib import resources
 
 import numpy as np
 import pytest
@@ -333,3 +335,15 @@ def test_altering_a_joint_that_is_not_there_is_refused(alter):
 def test_a_url_like_name_is_no_shipped_robot(tmp_path):
     with pytest.raises(BrokenFile, match=r"cannot read the robot no/where\.urdf"):
         load_robot("no/where.urdf")
+
+
+@pytest.mark.parametrize("huge", ["1e10", "1e155", "1e308"])
+@pytest.mark.parametrize("attribute", ["radius", "length", "xyz"])
+def test_a_length_whose_powers_are_no_numbers_is_refused(tmp_path, monkeypatch, attribute, huge):
+    monkeypatch.setenv("EVENROAD_CACHE", str(tmp_path / "cache"))
+    text = (resources.files("evenroad.robot") / "data" / "ur5.urdf").read_text()
+    (tmp_path / "huge.urdf").write_text(
+        re.sub(rf'{attribute}="[^" ]*', f'{attribute}="{huge}', text, count=1)
+    )
+    with pytest.raises(InvalidValue, match=r"must (be at most|lie between -1e\+09 and) 1e\+09"):
+        load_robot(tmp_path / "huge.urdf")

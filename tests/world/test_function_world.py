@@ -16,6 +16,7 @@ from evenroad.space import SE2, SE3, Box, Circle, JointSpace, Product
 from evenroad.testing import WorldContract
 from evenroad.world import Explains, FunctionWorld
 from evenroad.world.bisection import between_ends
+from evenroad.world.protocol import Rechecks
 
 SQUARE = Box([0.0, 0.0], [1.0, 1.0])
 
@@ -273,3 +274,24 @@ def test_a_single_place_makes_no_difference_to_how_a_fingerprint_is_computed():
     one = FunctionWorld(Box((0, 0), (1, 1)), lambda q: bool(q[0] > 0.5), 0.1, vectorised=False, name="half")
     many = FunctionWorld(Box((0, 0), (1, 1)), lambda q: q[:, 0] > 0.5, 0.1, name="half")
     assert one.fingerprint() == many.fingerprint()
+
+
+def test_the_strict_check_of_a_path_asks_for_states_twenty_times_as_dense():
+    asked = Asked()
+    world = FunctionWorld(Box([0.0], [10.0]), asked, 1.0)
+    path = np.array([[0.0], [3.0], [3.0], [5.0]])
+    assert world.motion_valid(path[:-1], path[1:]).all()
+    asked.batches.clear()
+    assert world.recheck(path).all()
+    states = np.unique(np.round(np.concatenate(asked.batches), 9))
+    np.testing.assert_allclose(np.diff(states), 0.05)
+    assert (states[0], states[-1]) == (0.0, 5.0)
+
+
+def test_a_wall_between_two_states_is_found_by_the_strict_check_alone():
+    world = FunctionWorld(SQUARE, lambda q: np.abs(q[:, 0] - 0.55) > 0.02, 0.1)
+    path = np.array([[0.0, 0.5], [1.0, 0.5], [1.0, 0.1], [1.5, 0.1]])
+    assert world.motion_valid(path[:-1], path[1:]).tolist() == [True, True, False]
+    assert world.recheck(path).tolist() == [False, True, False]
+    assert world.recheck(path[:1]).shape == (0,)
+    assert (world.proof, isinstance(world, Rechecks)) == ("resolution", True)

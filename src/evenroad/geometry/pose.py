@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats
-from evenroad._checks import as_row
+from evenroad._checks import FARTHEST, as_row
 from evenroad.errors import InvalidValue
 
 Vector = tuple[float, float, float]
@@ -154,7 +154,7 @@ class Pose:
     rotation: tuple[float, ...] = NO_ROTATION
 
     def __post_init__(self) -> None:
-        x, y, z = as_row("xyz", self.xyz, 3)
+        x, y, z = as_row("xyz", self.xyz, 3, within=FARTHEST)
         object.__setattr__(self, "xyz", (x, y, z))
         if self.rotation is not NO_ROTATION:
             rotation = self.rotation.ravel() if isinstance(self.rotation, np.ndarray) else self.rotation
@@ -227,5 +227,5 @@ IDENTITY = Pose()
 
 
 def _three(xyz: Sequence[float]) -> Vector:
-    x, y, z = as_row("xyz", xyz, 3)
+    x, y, z = as_row("xyz", xyz, 3, within=FARTHEST)
     return x, y, z

@@ -15,7 +15,7 @@ from typing import ClassVar
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad._checks import as_row, require_known, require_positive
+from evenroad._checks import FARTHEST, as_row, require_known, require_positive
 from evenroad.errors import InvalidValue
 from evenroad.geometry.mesh import TriangleMesh, load_mesh, scaled, volume_of
 from evenroad.geometry.pose import IDENTITY, Pose, Vector, rotation_from_z
@@ -65,7 +65,7 @@ class Box(Shape):
     def __post_init__(self) -> None:
         extents = as_row("the size of a box", self.extents, 3)
         for extent in extents:
-            require_positive("the size of a box", extent)
+            require_positive("the size of a box", extent, at_most=FARTHEST)
         object.__setattr__(self, "extents", extents)
 
     @property
@@ -89,7 +89,9 @@ class Sphere(Shape):
     radius: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "radius", require_positive("the radius of a sphere", self.radius))
+        object.__setattr__(
+            self, "radius", require_positive("the radius of a sphere", self.radius, at_most=FARTHEST)
+        )
 
     @property
     def size(self) -> tuple[float, ...]:
@@ -114,7 +116,7 @@ class Cylinder(Shape):
 
     def __post_init__(self) -> None:
         for name in ("radius", "length"):
-            number = require_positive(f"the {name} of a cylinder", getattr(self, name))
+            number = require_positive(f"the {name} of a cylinder", getattr(self, name), at_most=FARTHEST)
             object.__setattr__(self, name, number)
 
     @property
@@ -144,8 +146,12 @@ class Capsule(Shape):
 
     def __post_init__(self) -> None:
         for name in ("a", "b"):
-            object.__setattr__(self, name, as_row(f"the end {name} of a capsule", getattr(self, name), 3))
-        object.__setattr__(self, "radius", require_positive("the radius of a capsule", self.radius))
+            object.__setattr__(
+                self, name, as_row(f"the end {name} of a capsule", getattr(self, name), 3, within=FARTHEST)
+            )
+        object.__setattr__(
+            self, "radius", require_positive("the radius of a capsule", self.radius, at_most=FARTHEST)
+        )
 
     @classmethod
     def along_z(cls, radius: float, length: float, pose: Pose = IDENTITY, link: str = WORLD) -> Capsule:

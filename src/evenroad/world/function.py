@@ -14,7 +14,10 @@ from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.space import Product, Space
 from evenroad.space.batch import as_batch, as_batch_pair
-from evenroad.world.bisection import between_ends, require_few_segments
+from evenroad.world.bisection import MOST_SEGMENTS, between_ends, require_few_segments
+
+FINER = 20
+"""How many times as densely `FunctionWorld.recheck` looks at states."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,7 +29,8 @@ class FunctionWorld:
     for granted.  What lies between two states is not seen, so the resolution should be small beside the
     thinnest obstacle.  The ends come first, then halves, quarters and so on (van der Corput's order), and a
     motion is given up at the first state found blocked.  All motions of a batch advance together, so that
-    a vectorised function is called few times, with many states.
+    a vectorised function is called few times, with many states.  A path that is handed out is looked at more closely
+    (`recheck`): shortcutting tries so many motions that it would find the gaps between states.
 
     Parameters
     ----------
@@ -84,11 +88,30 @@ class FunctionWorld:
         InvalidValue
             As `valid`; if the two differ in length; or if a motion has more than 2^30 states.
         """
-        first, second = as_batch_pair(a, b, self.space.dim)
+        return self._motions_free(*as_batch_pair(a, b, self.space.dim), finer=1)
+
+    @property
+    def proof(self) -> str:
+        """``resolution``: a function says nothing of what lies between two states, `recheck` or not."""
+        return "resolution"
+
+    def recheck(self, path: Floats) -> Bools:
+        """Return which motions of a path, (p, dim), are free at a twentieth of the resolution: (p - 1,).
+
+        Raises
+        ------
+        InvalidValue
+            As `motion_valid`.
+        """
+        waypoints = as_batch("path", path, self.space.dim)
+        return self._motions_free(waypoints[:-1], waypoints[1:], finer=FINER)
+
+    def _motions_free(self, first: Floats, second: Floats, finer: int) -> Bools:
+        """Return which motions are free at states `finer` times as dense as the resolution says."""
         free = self.valid(first)
         free[free] = self.valid(second[free])
         segments = np.zeros(len(free), dtype=np.int64)
-        segments[free] = self._segments(first[free], second[free])
+        segments[free] = np.minimum(finer * self._segments(first[free], second[free]), MOST_SEGMENTS)
         start, end = _in_fixed_order(first, second)
         for motion, state in between_ends(segments, free):
             fraction = state / segments[motion]
