@@ -220,26 +220,6 @@ def grow(
                 break
 
 
-@njit(cache=True, nogil=True)
-def path_of(nodes: Floats, links: Ints, state: Ints) -> Floats:
-    """Return the path that `grow` found, shape (p, dim)."""
-    counts = np.zeros(2, dtype=np.int64)
-    for tree in range(2):
-        node = state[START_NODE + tree]
-        while node >= 0:
-            counts[tree] += 1
-            node = links[PARENT, tree, node]
-    path = np.empty((counts[0] + counts[1], nodes.shape[2]))
-    for tree in range(2):
-        node, row, step = state[START_NODE + tree], counts[0] - 1 + tree, 2 * tree - 1
-        while node >= 0:
-            for k in range(path.shape[1]):
-                path[row, k] = nodes[tree, node, k]
-            row += step
-            node = links[PARENT, tree, node]
-    return path
-
-
 @quick
 def _begin(ends: Floats, trees: Trees, memory: Memory, checks: Checks) -> None:
     """Plant the trees: the start in the first, the goals in the second; leave out what is not free."""
