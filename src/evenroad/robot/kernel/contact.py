@@ -83,42 +83,62 @@ def _meeting_obstacles(
     # From the outermost bodies inwards: those meet obstacles most often.
     for body in range(ints[at.BODIES] - 1, ints[at.FIXED_BODIES] - 1, -1):
         row = ints[at.BODY_INTS] + at.BODY_INT_ROW * body
-        many = ints[row + 2] - ints[row + 1] > FEW
+        first, last = ints[row + 1], ints[row + 2] - 1
+        # Of many capsules, those of all are tested against sixteen obstacles that are near the body; of few, each
+        # against all obstacles.
+        many = last - first >= FEW
         around = ZERO, ZERO, ZERO, ZERO, ZERO, ZERO
-        if many:
-            around = _box_around(scratch, bodies + BODY * body, 3 * LANES)
-            near = 0
-            for block in range(blocks):
-                near |= _near_obstacles(around, block, ints, table)
-            if near == 0:
-                continue
-        for i in range(ints[row + 2] - 1, ints[row + 1] - 1, -1):
-            here = capsules + CAPSULE * i
-            if not many:
-                around = _box_around(scratch, here, 6 * LANES)
-            for block in range(blocks):
-                near = ints[ints[at.TESTED] + i * blocks + block]
-                near &= _near_obstacles(around, block, ints, table)
-                if many and _more_than_two(near):
-                    near &= _near_obstacles(_box_around(scratch, here, 6 * LANES), block, ints, table)
-                if near == 0:
-                    continue
-                cx, cy, cz = load(scratch, here), load(scratch, here + LANES), load(scratch, here + 2 * LANES)
-                ux = load(scratch, here + 6 * LANES)
-                uy = load(scratch, here + 7 * LANES)
-                uz = load(scratch, here + 8 * LANES)
-                box = ints[at.BLOCK_FLOATS] + at.BLOCK_FLOAT_ROW * block
+        for group in range(blocks if many else last - first + 1):
+            near_body = ALL
+            if many:
+                here = bodies + BODY * body
+                if group == 0:
+                    around = _box_around(scratch, here, 3 * LANES)
+                near = _near_obstacles(around, group, ints, table)
+                near_body = 0
                 while near != 0:
                     lane = lowest_bit(near)
                     near &= near - 1
-                    gap_x = absolute(cx - table[box + lane]) - ux - table[box + 3 * LANES + lane]
-                    gap_y = absolute(cy - table[box + LANES + lane]) - uy - table[box + 4 * LANES + lane]
-                    gap_z = absolute(cz - table[box + 2 * LANES + lane]) - uz - table[box + 5 * LANES + lane]
-                    if below_zero(larger(larger(gap_x, gap_y), gap_z)) & ~blocked != 0:
+                    if _near_one(scratch, here, 3 * LANES, group, lane, ints, table) & ~blocked != 0:
+                        near_body |= 1 << lane
+                if near_body == 0:
+                    continue
+            else:
+                around = _box_around(scratch, capsules + CAPSULE * (last - group), 6 * LANES)
+            for item in range(last - first + 1 if many else blocks):
+                i, block = (last - item, group) if many else (last - group, item)
+                here = capsules + CAPSULE * i
+                near = ints[ints[at.TESTED] + i * blocks + block]
+                if not many:
+                    near &= _near_obstacles(around, block, ints, table)
+                else:
+                    near &= near_body
+                    if _more_than_two(near):
+                        near &= _near_obstacles(_box_around(scratch, here, 6 * LANES), block, ints, table)
+                while near != 0:
+                    lane = lowest_bit(near)
+                    near &= near - 1
+                    if _near_one(scratch, here, 6 * LANES, block, lane, ints, table) & ~blocked != 0:
                         blocked |= _meeting_one(scratch, here, i, block * LANES + lane, ints, table)
                         if blocked == ALL or (blocked != 0 and enough == 1):
                             return blocked
     return blocked
+
+
+@inlined
+def _near_one(
+    scratch: Singles, here: int, extents: int, block: int, obstacle: int, ints: Ints, table: Singles
+) -> int:
+    """Return the mask of lanes in which the box around a body or a capsule meets that of an obstacle of a block."""
+    box = ints[at.BLOCK_FLOATS] + at.BLOCK_FLOAT_ROW * block + obstacle
+    gap_x = (
+        absolute(load(scratch, here) - table[box]) - load(scratch, here + extents) - table[box + 3 * LANES]
+    )
+    gap_y = absolute(load(scratch, here + LANES) - table[box + LANES])
+    gap_y = gap_y - load(scratch, here + extents + LANES) - table[box + 4 * LANES]
+    gap_z = absolute(load(scratch, here + 2 * LANES) - table[box + 2 * LANES])
+    gap_z = gap_z - load(scratch, here + extents + 2 * LANES) - table[box + 5 * LANES]
+    return below_zero(larger(larger(gap_x, gap_y), gap_z))
 
 
 @inlined
