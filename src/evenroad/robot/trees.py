@@ -115,6 +115,7 @@ def shorten(world: PlansWithTrees, path: npt.ArrayLike, *, proved: bool = False)
 
 def _grown(world: PlansWithTrees, ends: Floats, samples: Floats, most: int, seconds: float) -> Connection:
     # Imported late: where the vector type cannot even be defined, all else still works.
+    from evenroad.robot.kernel import tree_nodes, tree_steps
     from evenroad.robot.kernel import trees as kernel
 
     order = None
@@ -127,7 +128,7 @@ def _grown(world: PlansWithTrees, ends: Floats, samples: Floats, most: int, seco
     dim, ball, arguments = ends.shape[1], ball_points(ends.shape[1]), lane_arguments(world)
     capacity = -(-max(_CAPACITY, 2 * len(ends) + kernel.ROOM) // 16) * 16
     nodes, columns, links = _room(capacity, dim)
-    sizes, state = np.zeros(2, dtype=np.int64), np.zeros(kernel.STATE, dtype=np.int64)
+    sizes, state = np.zeros(2, dtype=np.int64), np.zeros(tree_steps.STATE, dtype=np.int64)
     if not kernel.grow.overloads:
         # Compiled, or loaded, before the clock runs; no motion is looked at.
         kernel.grow(ends, nodes, columns, links, sizes, state, samples, ball, 0, _SLICE, *arguments)
@@ -146,10 +147,10 @@ def _grown(world: PlansWithTrees, ends: Floats, samples: Floats, most: int, seco
     path, goal = np.empty((0, dim)), -1
     if ended == kernel.SOLVED:
         here, there = (
-            _to_root(links[kernel.PARENT, tree], state[kernel.START_NODE + tree]) for tree in (0, 1)
+            _to_root(links[tree_nodes.PARENT, tree], state[tree_steps.START_NODE + tree]) for tree in (0, 1)
         )
         path = np.concatenate([nodes[0, here[::-1]], nodes[1, there]])
-        goal = int(links[kernel.PROVED, 1, there[-1]]) - 1
+        goal = int(links[tree_nodes.PROVED, 1, there[-1]]) - 1
         goal = goal if order is None else int(order[goal])
     motions, configurations, _ = state[:3].tolist()
     return Connection(path, goal, int(sizes[0] + sizes[1]), configurations, motions)

@@ -10,7 +10,8 @@ from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import call_at
 from evenroad.robot.kernel.forward_kinematics import scratch_memory, unpacked
 from evenroad.robot.kernel.motion import enter
-from evenroad.robot.kernel.motion_checks import COUNTS, NO_END, checks_of, motion_free, motion_proved
+from evenroad.robot.kernel.motion_checks import NO_END, checks_of, motion_free, motion_proved
+from evenroad.robot.kernel.motion_states import COUNTS
 
 LANES = at.LANES
 Floats = npt.NDArray[np.float64]

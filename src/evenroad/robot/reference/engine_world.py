@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from evenroad.errors import InvalidValue
 from evenroad.geometry.shapes import Shape, along_z
-from evenroad.robot.arm_world import joint_space
+from evenroad.robot.known_robots import joint_space
 from evenroad.robot.load import find_robot
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
