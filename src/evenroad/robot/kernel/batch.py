@@ -9,7 +9,7 @@ from numba import njit
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import call_at
 from evenroad.robot.kernel.forward_kinematics import scratch_memory, unpacked
-from evenroad.robot.kernel.motion import enter
+from evenroad.robot.kernel.motion import enter, wrapped
 from evenroad.robot.kernel.motion_checks import NO_END, checks_of, motion_free, motion_proved
 from evenroad.robot.kernel.motion_states import COUNTS
 
@@ -29,20 +29,25 @@ def configurations_free(q: Floats, address: int, bounds: Floats, tables: Ints) -
     """
     n, dim = q.shape
     ints, table = unpacked(tables)
-    states, state, scratch = scratch_memory(dim, ints, table)
-    free = np.empty(n, dtype=np.bool_)
+    states, _, scratch = scratch_memory(dim, ints, table)
+    inside, free = np.empty(LANES, dtype=np.bool_), np.empty(n, dtype=np.bool_)
     for first in range(0, n, LANES):
         count = min(LANES, n - first)
-        for lane in range(LANES):
-            # Lanes to spare repeat the last row.
-            row = first + min(lane, count - 1)
-            free[row] = enter(q[row], bounds, state)
-            for k in range(dim):
+        inside[:] = True
+        for k in range(dim):
+            low, high, period = bounds[0, k], bounds[1, k], bounds[2, k]
+            for lane in range(LANES):
+                # Lanes to spare repeat the last row.
+                value = q[first + min(lane, count - 1), k]
+                if period != np.inf:
+                    value = wrapped(value, low, high, period)
+                within = low <= value <= high
+                inside[lane] &= within
                 # What is out of bounds may be too large for single precision.
-                states[k * LANES + lane] = state[k] if free[row] else bounds[0, k]
+                states[k * LANES + lane] = value if within else low
         blocked = call_at(address, (scratch, states, ints, table, LANES))
         for lane in range(count):
-            free[first + lane] &= (blocked >> lane) & 1 == 0
+            free[first + lane] = inside[lane] and (blocked >> lane) & 1 == 0
     return free
 
 
