@@ -5,20 +5,19 @@ What `lane_check` says of the check of sixteen configurations holds for a motion
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from numba import carray, cfunc, types
+from numba import cfunc, types
 
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import (
-    DOUBLES,
-    INTEGERS,
     address_of,
     call_at,
     doubles_at,
     integers_at,
+    matrix_at,
     singles_at,
 )
 from evenroad.robot.kernel.forward_kinematics import scratch_memory, unpacked
@@ -172,46 +171,47 @@ def _checked(a: Floats, b: Floats, kind: int, tolerance: float, most_batches: in
 
 
 @cfunc(
-    types.int64(DOUBLES, DOUBLES, types.int64, types.float64, types.int64, types.float64, INTEGERS),
+    types.int64(
+        types.int64, types.int64, types.int64, types.float64, types.int64, types.float64, types.int64
+    ),
     cache=True,
     error_model="numpy",
+    _nrt=False,
 )
 def _motion_check(
-    a: Any, b: Any, kind: int, tolerance: float, most_batches: int, resolution: float, desk: Any
+    a: int, b: int, kind: int, tolerance: float, most_batches: int, resolution: float, desk: int
 ) -> int:
     """Return 1 where a motion is what `kind` says, else 0; for STATES the mask of those that touch something."""
-    d = carray(desk, _DESK)
+    d = integers_at(desk, (_DESK,))
     dim, capsules, pairs = d[12], d[13], d[14]
     w = World(
         d[0],
-        carray(doubles_at(d[1]), (np.int64(3), dim)),
-        carray(doubles_at(d[2]), dim * LANES),
-        carray(integers_at(d[3]), COUNTS),
-        carray(integers_at(d[4]), ANY_LENGTH),
-        carray(singles_at(d[5]), ANY_LENGTH),
-        carray(doubles_at(d[6]), (dim, capsules)),
-        carray(doubles_at(d[7]), (dim, pairs)),
-        carray(singles_at(d[8]), ANY_LENGTH),
-        carray(singles_at(d[9]), ANY_LENGTH),
-        carray(integers_at(d[10]), MOST_WAITING),
+        matrix_at(d[1], (3, dim)),
+        doubles_at(d[2], (dim * LANES,)),
+        integers_at(d[3], (COUNTS,)),
+        integers_at(d[4], (ANY_LENGTH,)),
+        singles_at(d[5], (ANY_LENGTH,)),
+        matrix_at(d[6], (dim, capsules)),
+        matrix_at(d[7], (dim, pairs)),
+        singles_at(d[8], (ANY_LENGTH,)),
+        singles_at(d[9], (ANY_LENGTH,)),
+        integers_at(d[10], (MOST_WAITING,)),
     )
     if kind == STATES:
         return blocked_states(w, w.table, LANES)
-    room = carray(doubles_at(d[11]), ANY_LENGTH)
-    first, second, third = dim, 2 * dim, 3 * dim
-    fourth = third + LANES
-    fifth = fourth + capsules
-    sixth = fifth + pairs
+    # Bytes; eight for each double.
+    room, row = d[11], 8 * dim
+    speeds = room + 3 * row + 8 * LANES
     m = Motion(
-        room[:first],
-        room[first:second],
-        room[second:third],
-        room[third:fourth],
-        room[fourth:fifth],
-        room[fifth:sixth],
-        room[sixth : sixth + MOST_WAITING],
+        doubles_at(room, (dim,)),
+        doubles_at(room + row, (dim,)),
+        doubles_at(room + 2 * row, (dim,)),
+        doubles_at(room + 3 * row, (LANES,)),
+        doubles_at(speeds, (capsules,)),
+        doubles_at(speeds + 8 * capsules, (pairs,)),
+        doubles_at(speeds + 8 * (capsules + pairs), (MOST_WAITING,)),
     )
-    begin, end = carray(a, dim), carray(b, dim)
+    begin, end = doubles_at(a, (dim,)), doubles_at(b, (dim,))
     for k in range(dim):
         m.start[k], m.end[k] = begin[k], end[k]
     segments = span(m.start, m.end, w.bounds, resolution, m.way)
