@@ -9,20 +9,22 @@ from numba import njit
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import call_at
 from evenroad.robot.kernel.forward_kinematics import scratch_memory, unpacked
+from evenroad.robot.kernel.layout import quick
 from evenroad.robot.kernel.motion import enter, wrapped
-from evenroad.robot.kernel.motion_checks import NO_END, checks_of, motion_free, motion_proved
+from evenroad.robot.kernel.motion_checks import NO_END, Checks, checks_of, motion_free, motion_proved
 from evenroad.robot.kernel.motion_states import COUNTS
 
 LANES = at.LANES
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
+Flags = npt.NDArray[np.bool_]
 
 _MOST_BATCHES = 1 << 11
 """A motion that needs more batches of sixteen stretches is not proved: some ten milliseconds; usual ones need a few."""
 
 
 @njit(cache=True, nogil=True)
-def configurations_free(q: Floats, address: int, bounds: Floats, tables: Ints) -> npt.NDArray[np.bool_]:
+def configurations_free(q: Floats, address: int, bounds: Floats, tables: Ints) -> Flags:
     """Return which rows of `q`, (n, dim), are within `bounds`, (3, dim), and free: (n,).
 
     `address` is that of the check of sixteen configurations, `tables` are ``ArmTables.lanes``.
@@ -62,7 +64,7 @@ def motions_free(
     tables: Ints,
     arms: Floats,
     pair_arms: Floats,
-) -> npt.NDArray[np.bool_]:
+) -> Flags:
     """Return which motions, from rows of `a` to those of `b`, are free at both ends and at states between.
 
     Parameters
@@ -79,13 +81,19 @@ def motions_free(
     checks = checks_of(
         addresses, resolution, bounds, tables, arms, pair_arms, np.zeros(COUNTS, dtype=np.int64)
     )
-    start, end = np.empty(dim), np.empty(dim)
     free = np.empty(m, dtype=np.bool_)
-    for row in range(m):
+    _write_verdicts(a, b, tolerance, np.empty(dim), np.empty(dim), checks, free)
+    return free
+
+
+@quick
+def _write_verdicts(
+    a: Floats, b: Floats, tolerance: float, start: Floats, end: Floats, checks: Checks, free: Flags
+) -> None:
+    for row in range(len(free)):
         free[row] = (
-            enter(a[row], bounds, start)
-            and enter(b[row], bounds, end)
+            enter(a[row], checks.bounds, start)
+            and enter(b[row], checks.bounds, end)
             and motion_free(start, end, NO_END, checks)
             and (tolerance <= 0.0 or motion_proved(start, end, tolerance, _MOST_BATCHES, checks))
         )
-    return free

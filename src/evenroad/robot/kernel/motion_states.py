@@ -88,10 +88,8 @@ def write_states(m: Motion, w: World) -> None:
     """Write the configurations at the sixteen shares of a motion."""
     for k in range(len(m.start)):
         start, way = m.start[k], m.way[k]
-        states = w.states[k * LANES : (k + 1) * LANES]
-        # A length that the compiler does not know: it then makes vectors of the loop instead of unrolling it.
-        for lane in range(len(states)):
-            states[lane] = start + m.share[lane] * way
+        for lane in range(LANES):
+            w.states[k * LANES + lane] = start + m.share[lane] * way
 
 
 @quick
