@@ -29,13 +29,14 @@ import numpy.typing as npt
 from numba import njit
 
 from benchmarks.arm_problems import KINDS, REPORTING, TUNING, Pool, Problem, arm, problems
-from evenroad.roadmap.shortcut import path_length, shortcut
+from evenroad.roadmap.shortcut import shortcut
 from evenroad.robot import trees
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.kernel import lane_check, layout
 from evenroad.robot.kernel.addresses import call_at
 from evenroad.robot.kernel.forward_kinematics import scratch_memory, unpacked
 from evenroad.robot.trees import connect, shorten
+from evenroad.space.path import path_length
 from evenroad.world.protocol import Connection
 
 Path = npt.NDArray[np.float64]

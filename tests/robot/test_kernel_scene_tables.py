@@ -7,22 +7,30 @@ import numpy as np
 import pytest
 from numba import njit
 
+from evenroad.geometry.shapes import Capsule
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.kernel import layout, scene_tables
-from evenroad.robot.kernel.obstacles import distance_to_obstacle, obstacle_arrays
+from evenroad.robot.kernel.scalar import squared_distance_to_obstacle
 from evenroad.robot.scene import Obstacle, Scene
 from tests.robot.kernel_arms import STRAIGHT, random_rotation, random_scene, random_tree, seven_joint_arm, ur5
 from tests.robot.oracle import obstacle_distance
 
+LONG = replace(
+    ur5(), capsules=(*ur5().capsules, Capsule((0.0, 0.0, 0.0), (0.0, 0.0, 9.0), 0.1, link="wrist3"))
+)
+"""A robot that reaches far: nothing of an obstacle is cut off."""
+
 
 @njit(cache=True)
-def distance(point, kind, size, rotation, translation):
-    return distance_to_obstacle(point, kind, size, rotation, translation)
+def squared_distance(point, form, floats, data):
+    return squared_distance_to_obstacle(point[0], point[1], point[2], form, floats, data)
 
 
 def point_to_obstacle(point, obstacle):
-    arrays = obstacle_arrays(Scene("one", (obstacle,)))
-    return distance(point, arrays.kinds[0], arrays.sizes[0], arrays.rotations[0], arrays.translations[0])
+    tables = ArmWorld(LONG, Scene("one", (obstacle,))).tables
+    form, data = tables.ints[tables.ints[layout.OBSTACLE_INTS]], tables.ints[layout.OBSTACLE_FLOATS]
+    apart = math.sqrt(squared_distance(point, form, tables.floats, data))
+    return max(apart - tables.floats[data + 15], 0.0)
 
 
 QUARTER = (0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._checks import require_positive
 from evenroad._fingerprint import fingerprint_of
-from evenroad.errors import InvalidValue, NotAvailable, UnknownName
+from evenroad.errors import NotAvailable, UnknownName
 from evenroad.robot import trees
 from evenroad.robot.fingerprint import fingerprint
 from evenroad.robot.kernel import scalar
 from evenroad.robot.kernel.certify import motions_certified
 from evenroad.robot.kernel.obstacles import obstacle_arrays, tested_contacts
-from evenroad.robot.kernel.robot_tables import RobotTables, robot_tables
+from evenroad.robot.kernel.robot_tables import RobotTables
 from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
 from evenroad.robot.kernel.selftest import lanes_failure
+from evenroad.robot.known_robots import prepared
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
 from evenroad.robot.tree_sequences import shifted_cube_points
@@ -95,7 +95,7 @@ class ArmWorld:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "resolution", require_positive("resolution", self.resolution))
-        space, bounds, longest, of_robot = _prepared(self.robot)
+        space, bounds, longest, of_robot = prepared(self.robot)
         require_few_segments(self.resolution, longest / self.resolution)
         tested = tested_contacts(of_robot.capsules, self.robot.links, self.scene)
         object.__setattr__(self, "_space", space)
@@ -296,40 +296,6 @@ class ArmWorld:
         return None
 
 
-@dataclass(frozen=True, eq=False)
-class _Known:
-    """A robot as a key: by the values that its space and its tables are made of."""
-
-    robot: Robot
-    key: tuple[object, ...]
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Known) and self.key == other.key
-
-    def __hash__(self) -> int:
-        return hash(self.key)
-
-
-def _prepared(robot: Robot) -> tuple[JointSpace, npt.NDArray[np.float64], float, RobotTables]:
-    """Return what is a robot's in every scene: its space, bounds, the longest motion and its tables; kept."""
-    values = (robot.name, robot.links, robot.joints, robot.capsules, robot.pairs, robot.group)
-    known = _Known(robot, (*values, tuple(sorted(robot.held.items()))))
-    try:
-        return _kept(known)
-    except TypeError:
-        # Of lists in place of tuples: no key.
-        return _kept.__wrapped__(known)
-
-
-@lru_cache(maxsize=32)
-def _kept(known: _Known) -> tuple[JointSpace, npt.NDArray[np.float64], float, RobotTables]:
-    space = joint_space(known.robot)
-    low, high = np.array(space.low), np.array(space.high)
-    bounds = np.stack([low, high, space.flat.period])
-    bounds.setflags(write=False)
-    return space, bounds, float(np.linalg.norm(high - low)), robot_tables(known.robot)
-
-
 def _chosen(backend: str) -> str:
     """Return which of the two backends `backend` stands for here."""
     if backend not in _BACKENDS:
@@ -340,38 +306,6 @@ def _chosen(backend: str) -> str:
     if failure is not None and backend == "lanes":
         raise NotAvailable(f"the lanes do not work on this machine ({failure}); backend='scalar' does")
     return "lanes" if failure is None else "scalar"
-
-
-def joint_space(robot: Robot) -> JointSpace:
-    """Return the space of a robot's group: ranges in radians and metres, continuous joints on [-pi, pi) wrap.
-
-    Raises
-    ------
-    InvalidValue
-        If the group is empty, names a joint twice, or holds a joint that is fixed, a mimic, or without range.
-    UnknownName
-        If it names a joint that is not there.
-    """
-    if not robot.group or len(set(robot.group)) < len(robot.group):
-        raise InvalidValue(f"the group must name one joint or more, each once, got {robot.group!r}")
-    joints = {joint.name: joint for joint in robot.joints}
-    low, high, wrapping = [], [], []
-    for name in robot.group:
-        if name not in joints:
-            raise UnknownName.among("joint", name, joints)
-        joint = joints[name]
-        if joint.kind == "fixed" or joint.mimic is not None:
-            raise InvalidValue(f"joint {name!r} is fixed or follows another: it cannot be planned for")
-        turns_on = joint.kind == "continuous"
-        bounds = (-math.pi, math.pi) if turns_on else (joint.lower, joint.upper)
-        if not (math.isfinite(bounds[0]) and math.isfinite(bounds[1]) and bounds[0] < bounds[1]):
-            raise InvalidValue(
-                f"joint {name!r} must have limits, lower below upper, got {joint.lower!r}, {joint.upper!r}"
-            )
-        low.append(bounds[0])
-        high.append(bounds[1])
-        wrapping.append(turns_on)
-    return JointSpace(low, high, wrapping)
 
 
 def _read_only(array: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:

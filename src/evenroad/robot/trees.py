@@ -115,6 +115,7 @@ def shorten(world: PlansWithTrees, path: npt.ArrayLike, *, proved: bool = False)
 
 def _grown(world: PlansWithTrees, ends: Floats, samples: Floats, most: int, seconds: float) -> Connection:
     # Imported late: where the vector type cannot even be defined, all else still works.
+    from evenroad.robot.kernel import tree_nodes, tree_steps
     from evenroad.robot.kernel import trees as kernel
 
     order = None
@@ -127,8 +128,8 @@ def _grown(world: PlansWithTrees, ends: Floats, samples: Floats, most: int, seco
     dim, ball, arguments = ends.shape[1], ball_points(ends.shape[1]), lane_arguments(world)
     capacity = -(-max(_CAPACITY, 2 * len(ends) + kernel.ROOM) // 16) * 16
     nodes, columns, links = _room(capacity, dim)
-    sizes, state = np.zeros(2, dtype=np.int64), np.zeros(kernel.STATE, dtype=np.int64)
-    if not kernel.grow.signatures:
+    sizes, state = np.zeros(2, dtype=np.int64), np.zeros(tree_steps.STATE, dtype=np.int64)
+    if not kernel.grow.overloads:
         # Compiled, or loaded, before the clock runs; no motion is looked at.
         kernel.grow(ends, nodes, columns, links, sizes, state, samples, ball, 0, _SLICE, *arguments)
     deadline = time.perf_counter() + seconds
@@ -145,14 +146,23 @@ def _grown(world: PlansWithTrees, ends: Floats, samples: Floats, most: int, seco
             break
     path, goal = np.empty((0, dim)), -1
     if ended == kernel.SOLVED:
-        path = kernel.path_of(nodes, links, state)
-        node = state[kernel.GOAL_NODE]
-        while links[kernel.PARENT, 1, node] >= 0:
-            node = links[kernel.PARENT, 1, node]
-        goal = int(links[kernel.PROVED, 1, node]) - 1
+        here, there = (
+            _to_root(links[tree_nodes.PARENT, tree], state[tree_steps.START_NODE + tree]) for tree in (0, 1)
+        )
+        path = np.concatenate([nodes[0, here[::-1]], nodes[1, there]])
+        goal = int(links[tree_nodes.PROVED, 1, there[-1]]) - 1
         goal = goal if order is None else int(order[goal])
     motions, configurations, _ = state[:3].tolist()
     return Connection(path, goal, int(sizes[0] + sizes[1]), configurations, motions)
+
+
+def _to_root(parents: npt.NDArray[np.int64], node: int) -> list[int]:
+    """Return the nodes from one to the root of its tree."""
+    way = []
+    while node >= 0:
+        way.append(node)
+        node = int(parents[node])
+    return way
 
 
 def _room(capacity: int, dim: int) -> tuple[Floats, npt.NDArray[np.float32], npt.NDArray[np.int64]]:

@@ -9,10 +9,7 @@ from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
-
-DOUBLES = types.CPointer(types.float64)
-SINGLES = types.CPointer(types.float32)
-INTEGERS = types.CPointer(types.int64)
+from numba.np.arrayobj import populate_array
 
 
 @intrinsic
@@ -33,20 +30,36 @@ def call_at(typing_context: Any, address: Any, arguments: Any) -> Any:
     return types.int64(types.int64, arguments), lower
 
 
-def _pointer(kind: types.CPointer) -> Callable[..., Any]:
-    """Return an intrinsic that takes an address for a pointer of this kind."""
+def _array(number: types.Type, dimensions: int) -> Callable[..., Any]:
+    """Return an intrinsic that takes the memory at an address for an array of a shape, a tuple of integers."""
+    kind = types.Array(number, dimensions, "C")
 
     @intrinsic
-    def pointer(typing_context: Any, address: Any) -> Any:
+    def array(typing_context: Any, address: Any, shape: Any) -> Any:
         def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-            return builder.inttoptr(args[0], context.get_value_type(kind))
+            made = context.make_array(kind)(context, builder)
+            lengths = cgutils.unpack_tuple(builder, args[1], dimensions)
+            strides = [context.get_constant(types.intp, number.bitwidth // 8)]
+            for length in lengths[:0:-1]:
+                strides.insert(0, builder.mul(strides[0], length))
+            # As numba's own carray: of no counted memory.
+            populate_array(
+                made,
+                data=builder.inttoptr(args[0], context.get_data_type(number).as_pointer()),
+                shape=lengths,
+                strides=strides,
+                itemsize=context.get_constant(types.intp, number.bitwidth // 8),
+                meminfo=None,
+            )
+            return made._getvalue()
 
-        return kind(types.int64), lower
+        return kind(types.int64, types.UniTuple(types.int64, dimensions)), lower
 
-    return pointer
+    return array
 
 
-doubles_at, singles_at, integers_at = _pointer(DOUBLES), _pointer(SINGLES), _pointer(INTEGERS)
+doubles_at, matrix_at = _array(types.float64, 1), _array(types.float64, 2)
+singles_at, integers_at = _array(types.float32, 1), _array(types.int64, 1)
 
 
 @intrinsic

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel.capsule_contact import meeting_one, touching
 from evenroad.robot.kernel.forward_kinematics import (
     BODY,
     CAPSULE,
@@ -23,7 +24,6 @@ from evenroad.robot.kernel.forward_kinematics import (
     scratch_places,
 )
 from evenroad.robot.kernel.lanes import (
-    ONE,
     ZERO,
     absolute,
     below_zero,
@@ -31,16 +31,13 @@ from evenroad.robot.kernel.lanes import (
     largest_lane,
     load,
     lowest_bit,
-    smaller,
     smallest_lane,
-    square_root,
 )
 from evenroad.robot.kernel.layout import inlined, inner
 
 LANES = at.LANES
 ALL = (1 << LANES) - 1
 _HALF = np.float32(0.5)
-_LEAST = np.float32(at.LEAST_SQUARE)
 
 Ints = npt.NDArray[np.int64]
 Singles = npt.NDArray[np.float32]
@@ -83,42 +80,62 @@ def _meeting_obstacles(
     # From the outermost bodies inwards: those meet obstacles most often.
     for body in range(ints[at.BODIES] - 1, ints[at.FIXED_BODIES] - 1, -1):
         row = ints[at.BODY_INTS] + at.BODY_INT_ROW * body
-        many = ints[row + 2] - ints[row + 1] > FEW
+        first, last = ints[row + 1], ints[row + 2] - 1
+        # Of many capsules, those of all are tested against sixteen obstacles that are near the body; of few, each
+        # against all obstacles.
+        many = last - first >= FEW
         around = ZERO, ZERO, ZERO, ZERO, ZERO, ZERO
-        if many:
-            around = _box_around(scratch, bodies + BODY * body, 3 * LANES)
-            near = 0
-            for block in range(blocks):
-                near |= _near_obstacles(around, block, ints, table)
-            if near == 0:
-                continue
-        for i in range(ints[row + 2] - 1, ints[row + 1] - 1, -1):
-            here = capsules + CAPSULE * i
-            if not many:
-                around = _box_around(scratch, here, 6 * LANES)
-            for block in range(blocks):
-                near = ints[ints[at.TESTED] + i * blocks + block]
-                near &= _near_obstacles(around, block, ints, table)
-                if many and _more_than_two(near):
-                    near &= _near_obstacles(_box_around(scratch, here, 6 * LANES), block, ints, table)
-                if near == 0:
-                    continue
-                cx, cy, cz = load(scratch, here), load(scratch, here + LANES), load(scratch, here + 2 * LANES)
-                ux = load(scratch, here + 6 * LANES)
-                uy = load(scratch, here + 7 * LANES)
-                uz = load(scratch, here + 8 * LANES)
-                box = ints[at.BLOCK_FLOATS] + at.BLOCK_FLOAT_ROW * block
+        for group in range(blocks if many else last - first + 1):
+            near_body = ALL
+            if many:
+                here = bodies + BODY * body
+                if group == 0:
+                    around = _box_around(scratch, here, 3 * LANES)
+                near = _near_obstacles(around, group, ints, table)
+                near_body = 0
                 while near != 0:
                     lane = lowest_bit(near)
                     near &= near - 1
-                    gap_x = absolute(cx - table[box + lane]) - ux - table[box + 3 * LANES + lane]
-                    gap_y = absolute(cy - table[box + LANES + lane]) - uy - table[box + 4 * LANES + lane]
-                    gap_z = absolute(cz - table[box + 2 * LANES + lane]) - uz - table[box + 5 * LANES + lane]
-                    if below_zero(larger(larger(gap_x, gap_y), gap_z)) & ~blocked != 0:
-                        blocked |= _meeting_one(scratch, here, i, block * LANES + lane, ints, table)
+                    if _near_one(scratch, here, 3 * LANES, group, lane, ints, table) & ~blocked != 0:
+                        near_body |= 1 << lane
+                if near_body == 0:
+                    continue
+            else:
+                around = _box_around(scratch, capsules + CAPSULE * (last - group), 6 * LANES)
+            for item in range(last - first + 1 if many else blocks):
+                i, block = (last - item, group) if many else (last - group, item)
+                here = capsules + CAPSULE * i
+                near = ints[ints[at.TESTED] + i * blocks + block]
+                if not many:
+                    near &= _near_obstacles(around, block, ints, table)
+                else:
+                    near &= near_body
+                    if _more_than_two(near):
+                        near &= _near_obstacles(_box_around(scratch, here, 6 * LANES), block, ints, table)
+                while near != 0:
+                    lane = lowest_bit(near)
+                    near &= near - 1
+                    if _near_one(scratch, here, 6 * LANES, block, lane, ints, table) & ~blocked != 0:
+                        blocked |= meeting_one(scratch, here, i, block * LANES + lane, ints, table)
                         if blocked == ALL or (blocked != 0 and enough == 1):
                             return blocked
     return blocked
+
+
+@inlined
+def _near_one(
+    scratch: Singles, here: int, extents: int, block: int, obstacle: int, ints: Ints, table: Singles
+) -> int:
+    """Return the mask of lanes in which the box around a body or a capsule meets that of an obstacle of a block."""
+    box = ints[at.BLOCK_FLOATS] + at.BLOCK_FLOAT_ROW * block + obstacle
+    gap_x = (
+        absolute(load(scratch, here) - table[box]) - load(scratch, here + extents) - table[box + 3 * LANES]
+    )
+    gap_y = absolute(load(scratch, here + LANES) - table[box + LANES])
+    gap_y = gap_y - load(scratch, here + extents + LANES) - table[box + 4 * LANES]
+    gap_z = absolute(load(scratch, here + 2 * LANES) - table[box + 2 * LANES])
+    gap_z = gap_z - load(scratch, here + extents + 2 * LANES) - table[box + 5 * LANES]
+    return below_zero(larger(larger(gap_x, gap_y), gap_z))
 
 
 @inlined
@@ -153,50 +170,6 @@ def _near_obstacles(around: Any, block: int, ints: Ints, table: Singles) -> int:
     return below_zero(larger(larger(gap_x, gap_y), gap_z))
 
 
-@inlined
-def _meeting_one(scratch: Singles, here: int, capsule: int, obstacle: int, ints: Ints, table: Singles) -> int:
-    """Return the mask of lanes in which a sphere along a capsule reaches into an obstacle."""
-    data = ints[at.OBSTACLE_FLOATS] + at.OBSTACLE_FLOAT_ROW * obstacle
-    kind = ints[ints[at.OBSTACLE_INTS] + obstacle]
-    # Centre and half segment as the obstacle sees them.
-    cx = load(scratch, here) - table[data]
-    cy = load(scratch, here + LANES) - table[data + 1]
-    cz = load(scratch, here + 2 * LANES) - table[data + 2]
-    ex, ey = load(scratch, here + 3 * LANES), load(scratch, here + 4 * LANES)
-    ez = load(scratch, here + 5 * LANES)
-    if kind != at.ALIGNED:
-        cx, cy, cz = _in_frame_of(cx, cy, cz, data + 6, table)
-        ex, ey, ez = _in_frame_of(ex, ey, ez, data + 6, table)
-    width_x, width_y, width_z = table[data + 3], table[data + 4], table[data + 5]
-    reach = table[ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * capsule + 6] + table[data + 15]
-    square_reach = reach * reach
-    row = ints[at.CAPSULE_INTS] + at.CAPSULE_INT_ROW * capsule
-    samples = ints[at.SAMPLES]
-    meeting = 0
-    for sample in range(ints[row + 1], ints[row + 2]):
-        along = table[samples + sample]
-        x, y, z = cx + ex * along, cy + ey * along, cz + ez * along
-        dz = larger(absolute(z) - width_z, ZERO)
-        if kind == at.CYLINDER:
-            aside = larger(square_root(x * x + y * y) - width_x, ZERO)
-            meeting |= below_zero(aside * aside + dz * dz - square_reach)
-        else:
-            dx = larger(absolute(x) - width_x, ZERO)
-            dy = larger(absolute(y) - width_y, ZERO)
-            meeting |= below_zero(dx * dx + dy * dy + dz * dz - square_reach)
-    return meeting
-
-
-@inlined
-def _in_frame_of(x: Any, y: Any, z: Any, data: int, table: Singles) -> Any:
-    """Return a vector in the frame whose rotation to the root's is at `data` of the table."""
-    return (
-        x * table[data] + y * table[data + 3] + z * table[data + 6],
-        x * table[data + 1] + y * table[data + 4] + z * table[data + 7],
-        x * table[data + 2] + y * table[data + 5] + z * table[data + 8],
-    )
-
-
 @inner
 def _meeting_themselves(
     scratch: Singles, capsules: int, bodies: int, ints: Ints, table: Singles, blocked: int, enough: int
@@ -228,13 +201,13 @@ def _meeting_themselves(
                 x = load(scratch, a) - load(scratch, b)
                 y = load(scratch, a + LANES) - load(scratch, b + LANES)
                 z = load(scratch, a + 2 * LANES) - load(scratch, b + 2 * LANES)
-                touching = below_zero(x * x + y * y + z * z - near * near)
-                if touching & ~blocked == 0:
+                in_touch = below_zero(x * x + y * y + z * z - near * near)
+                if in_touch & ~blocked == 0:
                     continue
                 if table[data + 2] + table[data + 3] > ZERO:
                     # Not both are balls.
-                    touching = _touching(scratch, a, b, data, table)
-                blocked |= touching
+                    in_touch = touching(scratch, a, b, data, table)
+                blocked |= in_touch
                 if blocked == ALL or (blocked != 0 and enough == 1):
                     return blocked
     return blocked
@@ -259,36 +232,3 @@ def _ball_near(
     y = load(scratch, a + LANES) - load(scratch, b + LANES)
     z = load(scratch, a + 2 * LANES) - load(scratch, b + 2 * LANES)
     return below_zero(x * x + y * y + z * z - near * near) & ~blocked != 0
-
-
-@inlined
-def _touching(scratch: Singles, a: int, b: int, data: int, table: Singles) -> int:
-    """Return the mask of lanes in which two capsules touch, whose pair's row is at `data`.
-
-    The steps are those of the double-precision ``scalar._squared_distance_of_pair``.
-    """
-    rx = load(scratch, a) - load(scratch, b)
-    ry = load(scratch, a + LANES) - load(scratch, b + LANES)
-    rz = load(scratch, a + 2 * LANES) - load(scratch, b + 2 * LANES)
-    ex, fx = load(scratch, a + 3 * LANES), load(scratch, b + 3 * LANES)
-    ey, fy = load(scratch, a + 4 * LANES), load(scratch, b + 4 * LANES)
-    ez, fz = load(scratch, a + 5 * LANES), load(scratch, b + 5 * LANES)
-    ef = ex * fx + ey * fy + ez * fz
-    er = ex * rx + ey * ry + ez * rz
-    fr = fx * rx + fy * ry + fz * rz
-    reach, one_by_ee, one_by_ff = table[data + 1], table[data + 2], table[data + 3]
-    along_f, along_r = ef * one_by_ee, er * one_by_ee
-    # What of f and r is across e.
-    gx, gy, gz = fx - ex * along_f, fy - ey * along_f, fz - ez * along_f
-    qx, qy, qz = rx - ex * along_r, ry - ey * along_r, rz - ez * along_r
-    t = _cut((gx * qx + gy * qy + gz * qz) / larger(gx * gx + gy * gy + gz * gz, _LEAST))
-    s = _cut(along_f * t - along_r)
-    t = _cut((ef * s + fr) * one_by_ff)
-    x, y, z = rx + ex * s - fx * t, ry + ey * s - fy * t, rz + ez * s - fz * t
-    return below_zero(x * x + y * y + z * z - reach * reach)
-
-
-@inlined
-def _cut(place: Any) -> Any:
-    """Return `place` cut to [-1, 1]."""
-    return larger(smaller(place, ONE), -ONE)

@@ -6,11 +6,9 @@ function of it that checks something, would cost seconds.  Called by its address
 
 from __future__ import annotations
 
-from typing import Any
+from numba import cfunc, types
 
-from numba import carray, cfunc, types
-
-from evenroad.robot.kernel.addresses import DOUBLES, INTEGERS, SINGLES
+from evenroad.robot.kernel.addresses import doubles_at, integers_at, singles_at
 from evenroad.robot.kernel.contact import blocked_lanes
 from evenroad.robot.kernel.forward_kinematics import write_values
 
@@ -18,11 +16,11 @@ ANY_LENGTH = 1 << 40
 """The arrays' lengths are not passed on: nothing reads beyond what the tables say."""
 
 
-@cfunc(types.int64(SINGLES, DOUBLES, INTEGERS, SINGLES, types.int64), cache=True)
-def _blocked(scratch: Any, states: Any, ints: Any, table: Any, enough: int) -> int:
-    memory, integers = carray(scratch, ANY_LENGTH), carray(ints, ANY_LENGTH)
-    floats = carray(table, ANY_LENGTH)
-    write_values(memory, carray(states, ANY_LENGTH), integers, floats)
+@cfunc(types.int64(*[types.int64] * 5), cache=True, error_model="numpy", _nrt=False)
+def _blocked(scratch: int, states: int, ints: int, table: int, enough: int) -> int:
+    memory, integers = singles_at(scratch, (ANY_LENGTH,)), integers_at(ints, (ANY_LENGTH,))
+    floats = singles_at(table, (ANY_LENGTH,))
+    write_values(memory, doubles_at(states, (ANY_LENGTH,)), integers, floats)
     return blocked_lanes(memory, integers, floats, enough)
 
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.robot.kernel.layout import inner, quick
+from evenroad.robot.kernel.layout import inlined, inner, quick
 
 Floats = npt.NDArray[np.float64]
 
@@ -30,12 +30,20 @@ def enter(q: Floats, bounds: Floats, into: Floats) -> bool:
         value, low, high, period = q[k], bounds[0, k], bounds[1, k], bounds[2, k]
         if period == np.inf:
             inside &= low <= value <= high
-        elif not low <= value < high:
-            value = low + (value - low) % period
-            if value >= high:
-                value = low
+        else:
+            value = wrapped(value, low, high, period)
         into[k] = value
     return inside
+
+
+@inlined
+def wrapped(value: float, low: float, high: float, period: float) -> float:
+    """Return a coordinate that repeats after `period` in its range, [low, high)."""
+    if not low <= value < high:
+        value = low + (value - low) % period
+        if value >= high:
+            value = low
+    return value
 
 
 @inner

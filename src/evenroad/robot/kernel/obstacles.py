@@ -1,4 +1,4 @@
-"""Obstacles as arrays: what compiled code takes of a scene, checked; and their distances from points."""
+"""Obstacles as arrays: what compiled code takes of a scene, checked."""
 
 from __future__ import annotations
 
@@ -164,26 +164,3 @@ def is_straight(rotation: Floats) -> bool:
     for entry in range(9):
         farthest = max(farthest, abs(rotation[entry] - np.rint(rotation[entry])))
     return farthest < 1e-14
-
-
-@inner
-def distance_to_obstacle(
-    point: Floats, kind: int, size: Floats, rotation: Floats, translation: Floats
-) -> float:
-    """Return the distance of a point (3,) from an obstacle, 0 inside [m]."""
-    local = np.zeros(3)
-    for axis in range(3):
-        for entry in range(3):
-            local[axis] += rotation[3 * entry + axis] * (point[entry] - translation[entry])
-    if kind == BOX:
-        squared = 0.0
-        for axis in range(3):
-            squared += max(abs(local[axis]) - 0.5 * size[axis], 0.0) ** 2
-        return math.sqrt(squared)
-    aside = math.sqrt(local[0] ** 2 + local[1] ** 2)
-    if kind == SPHERE:
-        return max(math.sqrt(aside**2 + local[2] ** 2) - size[0], 0.0)
-    above = max(abs(local[2]) - 0.5 * size[1], 0.0)
-    if kind == CAPSULE:
-        return max(math.sqrt(aside**2 + above**2) - size[0], 0.0)
-    return math.sqrt(max(aside - size[0], 0.0) ** 2 + above**2)

@@ -119,29 +119,33 @@ def _meets_obstacle(ints: Ints, floats: Floats, margins: Floats, capsules: Float
                 gap = max(gap, away - widths)
             if gap >= radius + margins[i]:
                 continue
-            reach = radius + margins[i] + floats[ints[at.OBSTACLE_FLOATS] + at.OBSTACLE_FLOAT_ROW * k + 15]
+            form, data = (
+                ints[ints[at.OBSTACLE_INTS] + k],
+                ints[at.OBSTACLE_FLOATS] + at.OBSTACLE_FLOAT_ROW * k,
+            )
+            reach = radius + margins[i] + floats[data + 15]
             for sample in range(ints[row + 1], ints[row + 2]):
                 along = floats[ints[at.SAMPLES] + sample]
                 x = capsules[i, 0] + along * capsules[i, 3]
                 y = capsules[i, 1] + along * capsules[i, 4]
                 z = capsules[i, 2] + along * capsules[i, 5]
-                if _squared_distance_to_obstacle(x, y, z, k, ints, floats) < reach * reach:
+                if squared_distance_to_obstacle(x, y, z, form, floats, data) < reach * reach:
                     return i, k
     return -1, -1
 
 
 @inner
-def _squared_distance_to_obstacle(
-    x: float, y: float, z: float, obstacle: int, ints: Ints, floats: Floats
-) -> float:
-    """Return the squared distance of a point from an obstacle, without the rounding of its edges [m^2]."""
-    data = ints[at.OBSTACLE_FLOATS] + at.OBSTACLE_FLOAT_ROW * obstacle
+def squared_distance_to_obstacle(x: float, y: float, z: float, form: int, floats: Floats, data: int) -> float:
+    """Return the squared distance of a point from an obstacle, without the rounding of its edges [m^2].
+
+    `form` says which kind it is (ALIGNED, ROTATED or CYLINDER), `data` where its row begins in `floats`.
+    """
     dx, dy, dz = x - floats[data], y - floats[data + 1], z - floats[data + 2]
     u = abs(dx * floats[data + 6] + dy * floats[data + 9] + dz * floats[data + 12])
     v = abs(dx * floats[data + 7] + dy * floats[data + 10] + dz * floats[data + 13])
     w = abs(dx * floats[data + 8] + dy * floats[data + 11] + dz * floats[data + 14])
     w = max(w - floats[data + 5], 0.0)
-    if ints[ints[at.OBSTACLE_INTS] + obstacle] == at.CYLINDER:
+    if form == at.CYLINDER:
         aside = max(math.sqrt(u * u + v * v) - floats[data + 3], 0.0)
         return aside * aside + w * w
     u, v = max(u - floats[data + 3], 0.0), max(v - floats[data + 4], 0.0)

@@ -11,15 +11,9 @@ from numba import njit
 
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.layout import inner
-from evenroad.robot.kernel.obstacles import (
-    BOX,
-    CYLINDER,
-    SPHERE,
-    ObstacleArrays,
-    distance_to_obstacle,
-    is_straight,
-)
+from evenroad.robot.kernel.obstacles import BOX, CYLINDER, SPHERE, ObstacleArrays, is_straight
 from evenroad.robot.kernel.robot_tables import PADDING, RobotTables
+from evenroad.robot.kernel.scalar import squared_distance_to_obstacle
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -106,12 +100,15 @@ def _pack(
     tested: Bools,
 ) -> tuple[Ints, Floats, Ints, float, Ints, int, int]:
     """Return what `ArmTables` holds, and by how much the lanes' obstacles are larger at most [m]."""
-    origin = np.zeros(3)
-    kept = np.empty(len(kinds), dtype=np.int64)
+    # Rows of all obstacles, of which those that the robot can reach are kept.
+    kept, forms = np.empty(len(kinds), dtype=np.int64), np.empty(len(kinds), dtype=np.int64)
+    rows = np.empty((len(kinds), at.OBSTACLE_FLOAT_ROW))
     count = 0
     for k in range(len(kinds)):
-        if distance_to_obstacle(origin, kinds[k], sizes[k], rotations[k], translations[k]) <= reach:
-            kept[count] = k
+        form = _write_obstacle(rows[count], kinds[k], sizes[k], rotations[k], translations[k], reach)
+        far = reach + rows[count, 15]
+        if squared_distance_to_obstacle(0.0, 0.0, 0.0, form, rows[count], 0) <= far * far:
+            kept[count], forms[count] = k, form
             count += 1
     blocks = (count + at.LANES - 1) // at.LANES
     capsules = robot_ints[at.CAPSULES]
@@ -131,20 +128,12 @@ def _pack(
     ints[at.INTEGERS] = length
     added = 0.0
     for row in range(count):
-        k = kept[row]
         data = first_float + at.OBSTACLE_FLOAT_ROW * row
-        ints[first_int + row] = _write_obstacle(
-            floats[data : data + at.OBSTACLE_FLOAT_ROW],
-            kinds[k],
-            sizes[k],
-            rotations[k],
-            translations[k],
-            reach,
-        )
+        ints[first_int + row] = forms[row]
+        for entry in range(at.OBSTACLE_FLOAT_ROW):
+            floats[data + entry] = singles[data + entry] = rows[row, entry]
         box = block_floats + row // at.LANES * at.BLOCK_FLOAT_ROW + row % at.LANES
         padding = _write_bounds(floats, data, box, ints[first_int + row])
-        for entry in range(at.OBSTACLE_FLOAT_ROW):
-            singles[data + entry] = floats[data + entry]
         singles[data + 15] = floats[data + 15] + padding
         added = max(added, (floats[data + 15] + padding) - floats[data + 15])
         for axis in range(3):
@@ -160,9 +149,7 @@ def _pack(
         for row in range(count):
             if tested[i, kept[row]]:
                 ints[first_int + count + i * blocks + row // at.LANES] |= 1 << (row % at.LANES)
-    capsule, obstacle = _fixed_contact(
-        ints, robot_floats, kept, kinds, sizes, rotations, translations, tested
-    )
+    capsule, obstacle = _fixed_contact(ints, floats, kept, tested)
     return ints, floats, lanes, added, kept, capsule, obstacle
 
 
@@ -175,28 +162,27 @@ def _write_obstacle(
     A box along the axes loses what lies far beyond `reach`, where the robot never comes: a floor of a hundred metres
     would else cost digits, of which single precision has seven.
     """
-    half = np.zeros(3)
-    row[15] = 0.0
+    a, b, c, row[15] = 0.0, 0.0, 0.5 * size[1], 0.0
     if kind == BOX:
-        for axis in range(3):
-            half[axis] = 0.5 * size[axis]
+        a, b, c = 0.5 * size[0], 0.5 * size[1], 0.5 * size[2]
     elif kind == CYLINDER:
-        half[0], half[1], half[2] = size[0], size[0], 0.5 * size[1]
+        a = b = size[0]
     else:
-        half[2] = 0.5 * size[1]
         row[15] = size[0]
     aligned = kind == SPHERE or (kind != CYLINDER and is_straight(rotation))
     for axis in range(3):
-        row[axis], row[3 + axis] = translation[axis], half[axis]
+        row[axis] = translation[axis]
         for entry in range(3):
             row[6 + 3 * axis + entry] = rotation[3 * axis + entry]
+    row[3], row[4], row[5] = a, b, c
     if not aligned:
         return at.CYLINDER if kind == CYLINDER else at.ROTATED
     for axis in range(3):
-        extent = 0.0
+        extent = abs(np.rint(rotation[3 * axis])) * a
+        extent += abs(np.rint(rotation[3 * axis + 1])) * b
+        extent += abs(np.rint(rotation[3 * axis + 2])) * c
         for entry in range(3):
             row[6 + 3 * axis + entry] = 1.0 if axis == entry else 0.0
-            extent += abs(np.rint(rotation[3 * axis + entry])) * half[entry]
         row[3 + axis] = extent if kind != SPHERE else 0.0
         if kind == BOX:
             low = max(translation[axis] - extent, -2.0 * reach)
@@ -225,31 +211,24 @@ def _write_bounds(floats: Floats, data: int, box: int, kind: int) -> float:
 
 
 @inner
-def _fixed_contact(
-    ints: Ints,
-    floats: Floats,
-    kept: Ints,
-    kinds: Ints,
-    sizes: Floats,
-    rotations: Floats,
-    translations: Floats,
-    tested: Bools,
-) -> tuple[int, int]:
+def _fixed_contact(ints: Ints, floats: Floats, kept: Ints, tested: Bools) -> tuple[int, int]:
     """Return a capsule that does not move and an obstacle that a sphere of it touches, or -1, -1."""
-    centre = np.empty(3)
     for i in range(ints[at.FIXED_CAPSULES]):
         row = ints[at.CAPSULE_INTS] + at.CAPSULE_INT_ROW * i
         data = ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i
-        for k in kept[: ints[at.OBSTACLES]]:
-            if not tested[i, k]:
+        for k in range(ints[at.OBSTACLES]):
+            if not tested[i, kept[k]]:
                 continue
+            form, place = (
+                ints[ints[at.OBSTACLE_INTS] + k],
+                ints[at.OBSTACLE_FLOATS] + at.OBSTACLE_FLOAT_ROW * k,
+            )
+            near = floats[data + 6] + floats[place + 15]
             for sample in range(ints[row + 1], ints[row + 2]):
                 along = floats[ints[at.SAMPLES] + sample]
-                for axis in range(3):
-                    centre[axis] = floats[data + axis] + along * floats[data + 3 + axis]
-                if (
-                    distance_to_obstacle(centre, kinds[k], sizes[k], rotations[k], translations[k])
-                    < floats[data + 6]
-                ):
-                    return i, k
+                x = floats[data] + along * floats[data + 3]
+                y = floats[data + 1] + along * floats[data + 4]
+                z = floats[data + 2] + along * floats[data + 5]
+                if squared_distance_to_obstacle(x, y, z, form, floats, place) < near * near:
+                    return i, kept[k]
     return -1, -1

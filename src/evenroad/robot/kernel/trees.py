@@ -8,20 +8,14 @@ configuration deep in a shelf few directions are free; this finds them at a sixt
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from evenroad.robot.kernel.layout import LANES, inner, quick
+from evenroad.robot.kernel.layout import LANES, quick
 from evenroad.robot.kernel.motion import canonical, distance_and_way, enter
 from evenroad.robot.kernel.motion_checks import (
-    BATCHES,
     BOTH_ENDS,
-    CONFIGURATIONS,
-    COUNTS,
-    MOTIONS,
     START,
     Checks,
     blocked,
@@ -29,15 +23,25 @@ from evenroad.robot.kernel.motion_checks import (
     motion_free,
     motion_proved,
 )
+from evenroad.robot.kernel.motion_states import BATCHES, CONFIGURATIONS, COUNTS, MOTIONS
 from evenroad.robot.kernel.tree_nodes import (
     PARENT,
     PROVED,
-    TRIED,
     Trees,
     add_node,
-    least_tried,
     nearest,
     remove_branch,
+)
+from evenroad.robot.kernel.tree_steps import (
+    BEGUN,
+    GOAL_NODE,
+    GROWING,
+    START_NODE,
+    STEPS_AT_ONCE,
+    STRAIGHT,
+    Memory,
+    candidates,
+    memory_of,
 )
 
 Floats = npt.NDArray[np.float64]
@@ -47,24 +51,6 @@ Singles = npt.NDArray[np.float32]
 PAUSED, FULL, SPENT, NOT_FREE, SOLVED = range(5)
 """What a call of `grow` ends with: its slice used up, no room in the trees, the budget spent, start or goals not free,
 a path found."""
-
-NEXT_SAMPLE, NEXT_STEP, GROWING, STRAIGHT, START_NODE, GOAL_NODE, BEGUN, STATE = range(COUNTS, COUNTS + 8)
-"""What is kept from call to call, behind the counts: places in the two sequences, the tree that grows, how many goals
-were tried straight on, where the trees met, and whether they have roots."""
-
-STEPS_AT_ONCE = LANES // 2
-EXTENSIONS = 3
-"""A node is extended so often before it gets ball steps."""
-
-LONGEST_STEP = 1.5
-"""No step is longer [rad]."""
-
-STEP_SHARE = 1.0 / 5.8
-"""A step is this share of the ranges of the joints (root of the mean square) where that is less."""
-
-LARGEST_BALL = 2.0
-BALL_SHARE = 1.5
-"""Ball steps are within this many steps, but for the largest [rad]."""
 
 MOST_STEPS = 64
 """So many steps at most are made in one go towards the other tree."""
@@ -78,58 +64,6 @@ MOST_STRAIGHT = 16
 PROOF_TOLERANCE = 1e-6
 PROOF_BATCHES = 1024
 """Limits of the proof of a motion of the trees [m]."""
-
-
-class Memory(NamedTuple):
-    """Room that a call needs, and lengths of steps.
-
-    Attributes
-    ----------
-    step : float
-        No step of a tree is longer.
-    radii : float64 array, shape (dim,)
-        Of the ball of steps, along each coordinate.
-    origins : int64 array, shape (8,)
-        The nodes that candidates begin at.
-    targets : float64 array, shape (8, dim)
-        Where they lead.
-    here, there, way, target : float64 arrays, shape (dim,)
-    lanes : float32 array, shape (16 + dim,)
-    """
-
-    step: float
-    radii: Floats
-    origins: Ints
-    targets: Floats
-    here: Floats
-    there: Floats
-    way: Floats
-    target: Floats
-    lanes: Singles
-
-
-@inner
-def _memory(bounds: Floats) -> Memory:
-    dim = bounds.shape[1]
-    squares = 0.0
-    for k in range(dim):
-        squares += (bounds[1, k] - bounds[0, k]) ** 2 / dim
-    step = min(LONGEST_STEP, STEP_SHARE * np.sqrt(squares))
-    radii = np.empty(dim)
-    for k in range(dim):
-        radii[k] = min(LARGEST_BALL, BALL_SHARE * step, 0.5 * (bounds[1, k] - bounds[0, k]))
-    room = np.empty((STEPS_AT_ONCE + 4, dim))
-    return Memory(
-        step,
-        radii,
-        np.empty(STEPS_AT_ONCE, dtype=np.int64),
-        room[4:],
-        room[0],
-        room[1],
-        room[2],
-        room[3],
-        np.empty(LANES + dim, dtype=np.float32),
-    )
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -176,7 +110,7 @@ def grow(
     for k in range(bounds.shape[1]):
         trees.periods[k] = min(bounds[2, k], 1e30)
     checks = checks_of(addresses, resolution, bounds, tables, arms, pair_arms, state[:COUNTS])
-    memory = _memory(bounds)
+    memory = memory_of(bounds)
     if state[BEGUN] == 0:
         _begin(ends, trees, memory, checks)
         state[BEGUN] = 1
@@ -202,7 +136,7 @@ def grow(
             if sizes[tree] > sizes[1 - tree]:
                 tree = 1 - tree
             state[GROWING] = tree
-            count = _candidates(trees, tree, state, sequence, ball, memory, checks)
+            count = candidates(trees, tree, state, sequence, ball, memory, checks)
             found, other = -1, -1
         # A goal straight on is a round of its own, without a candidate.
         for candidate in range(-1 if found >= 0 else 0, count):
@@ -218,26 +152,6 @@ def grow(
                     return SOLVED
                 # Nodes may have been removed: the other candidates know old numbers.
                 break
-
-
-@njit(cache=True, nogil=True)
-def path_of(nodes: Floats, links: Ints, state: Ints) -> Floats:
-    """Return the path that `grow` found, shape (p, dim)."""
-    counts = np.zeros(2, dtype=np.int64)
-    for tree in range(2):
-        node = state[START_NODE + tree]
-        while node >= 0:
-            counts[tree] += 1
-            node = links[PARENT, tree, node]
-    path = np.empty((counts[0] + counts[1], nodes.shape[2]))
-    for tree in range(2):
-        node, row, step = state[START_NODE + tree], counts[0] - 1 + tree, 2 * tree - 1
-        while node >= 0:
-            for k in range(path.shape[1]):
-                path[row, k] = nodes[tree, node, k]
-            row += step
-            node = links[PARENT, tree, node]
-    return path
 
 
 @quick
@@ -266,61 +180,6 @@ def _begin(ends: Floats, trees: Trees, memory: Memory, checks: Checks) -> None:
                 trees.links[PROVED, min(row, 1), root] = row
         if trees.sizes[0] == 0:
             return
-
-
-@quick
-def _candidates(
-    trees: Trees, tree: int, state: Ints, sequence: Floats, ball: Floats, memory: Memory, checks: Checks
-) -> int:
-    """Write where the tree may go next and return how many candidates these are: one extension, or ball steps."""
-    dim, bounds = trees.nodes.shape[2], checks.bounds
-    number, shift = state[NEXT_SAMPLE] % len(sequence), state[NEXT_SAMPLE] // len(sequence)
-    state[NEXT_SAMPLE] += 1
-    for k in range(dim):
-        share = sequence[number, k]
-        if shift > 0:
-            # Shifts of an even sequence of their own: multiples of the golden ratio, one more for each coordinate.
-            share = (share + shift * (k + 1) * 0.6180339887498949) % 1.0
-        memory.target[k] = min(bounds[0, k] + share * (bounds[1, k] - bounds[0, k]), bounds[1, k])
-    closest = nearest(trees, tree, memory.target, memory.lanes)
-    tried = trees.links[TRIED, tree]
-    if tried[closest] < EXTENSIONS:
-        tried[closest] += 1
-        here = trees.nodes[tree, closest]
-        length = distance_and_way(here, memory.target, bounds, memory.way)
-        share = min(1.0, memory.step / max(length, 1e-300))
-        for k in range(dim):
-            memory.targets[0, k] = here[k] + share * memory.way[k]
-        canonical(memory.targets[0], bounds)
-        memory.origins[0] = closest
-        return 1
-    for candidate in range(STEPS_AT_ONCE):
-        origin = closest if candidate % 2 else least_tried(trees, tree)
-        tried[origin] += 1
-        memory.origins[candidate] = origin
-        here, target = trees.nodes[tree, origin], memory.targets[candidate]
-        row = state[NEXT_STEP] % len(ball)
-        state[NEXT_STEP] += 1
-        for k in range(dim):
-            target[k] = here[k] + memory.radii[k] * ball[row, k]
-        canonical(target, bounds)
-        distance_and_way(here, target, bounds, memory.way)
-        for k in range(dim):
-            checks.states[k * LANES + 2 * candidate] = here[k] + 0.5 * memory.way[k]
-            checks.states[k * LANES + 2 * candidate + 1] = target[k]
-    touching = blocked(checks)
-    state[CONFIGURATIONS] += LANES
-    kept = 0
-    for candidate in range(STEPS_AT_ONCE):
-        if (touching >> (2 * candidate)) & 3:
-            # A motion that was asked for, and is blocked.
-            state[MOTIONS] += 1
-            continue
-        memory.origins[kept] = memory.origins[candidate]
-        for k in range(dim):
-            memory.targets[kept, k] = memory.targets[candidate, k]
-        kept += 1
-    return kept
 
 
 @quick

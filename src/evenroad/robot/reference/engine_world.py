@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from evenroad._arrays import Bools, Floats
 from evenroad.errors import InvalidValue
 from evenroad.geometry.shapes import Shape, along_z
-from evenroad.robot.arm_world import joint_space
+from evenroad.robot.known_robots import joint_space
 from evenroad.robot.load import find_robot
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene

@@ -1,0 +1,144 @@
+"""Where a tree may go next: an extension towards the next sample, or ball steps that passed the sieve."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.robot.kernel.layout import LANES, inner, quick
+from evenroad.robot.kernel.motion import canonical, distance_and_way
+from evenroad.robot.kernel.motion_checks import Checks, blocked
+from evenroad.robot.kernel.motion_states import CONFIGURATIONS, COUNTS, MOTIONS
+from evenroad.robot.kernel.tree_nodes import TRIED, Trees, least_tried, nearest
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+Singles = npt.NDArray[np.float32]
+
+NEXT_SAMPLE, NEXT_STEP, GROWING, STRAIGHT, START_NODE, GOAL_NODE, BEGUN, STATE = range(COUNTS, COUNTS + 8)
+"""What is kept from call to call, behind the counts: places in the two sequences, the tree that grows, how many goals
+were tried straight on, where the trees met, and whether they have roots."""
+
+STEPS_AT_ONCE = LANES // 2
+EXTENSIONS = 3
+"""A node is extended so often before it gets ball steps."""
+
+LONGEST_STEP = 1.5
+"""No step is longer [rad]."""
+
+STEP_SHARE = 1.0 / 5.8
+"""A step is this share of the ranges of the joints (root of the mean square) where that is less."""
+
+LARGEST_BALL = 2.0
+BALL_SHARE = 1.5
+"""Ball steps are within this many steps, but for the largest [rad]."""
+
+
+class Memory(NamedTuple):
+    """Room that a call needs, and lengths of steps.
+
+    Attributes
+    ----------
+    step : float
+        No step of a tree is longer.
+    radii : float64 array, shape (dim,)
+        Of the ball of steps, along each coordinate.
+    origins : int64 array, shape (8,)
+        The nodes that candidates begin at.
+    targets : float64 array, shape (8, dim)
+        Where they lead.
+    here, there, way, target : float64 arrays, shape (dim,)
+    lanes : float32 array, shape (16 + dim,)
+    """
+
+    step: float
+    radii: Floats
+    origins: Ints
+    targets: Floats
+    here: Floats
+    there: Floats
+    way: Floats
+    target: Floats
+    lanes: Singles
+
+
+@inner
+def memory_of(bounds: Floats) -> Memory:
+    """Return room, and steps as long as the ranges of the joints, (3, dim), ask for."""
+    dim = bounds.shape[1]
+    squares = 0.0
+    for k in range(dim):
+        squares += (bounds[1, k] - bounds[0, k]) ** 2 / dim
+    step = min(LONGEST_STEP, STEP_SHARE * np.sqrt(squares))
+    radii = np.empty(dim)
+    for k in range(dim):
+        radii[k] = min(LARGEST_BALL, BALL_SHARE * step, 0.5 * (bounds[1, k] - bounds[0, k]))
+    room = np.empty((STEPS_AT_ONCE + 4, dim))
+    return Memory(
+        step,
+        radii,
+        np.empty(STEPS_AT_ONCE, dtype=np.int64),
+        room[4:],
+        room[0],
+        room[1],
+        room[2],
+        room[3],
+        np.empty(LANES + dim, dtype=np.float32),
+    )
+
+
+@quick
+def candidates(
+    trees: Trees, tree: int, state: Ints, sequence: Floats, ball: Floats, memory: Memory, checks: Checks
+) -> int:
+    """Write where the tree may go next and return how many candidates these are: one extension, or ball steps."""
+    dim, bounds = trees.nodes.shape[2], checks.bounds
+    number, shift = state[NEXT_SAMPLE] % len(sequence), state[NEXT_SAMPLE] // len(sequence)
+    state[NEXT_SAMPLE] += 1
+    for k in range(dim):
+        share = sequence[number, k]
+        if shift > 0:
+            # Shifts of an even sequence of their own: multiples of the golden ratio, one more for each coordinate.
+            share = (share + shift * (k + 1) * 0.6180339887498949) % 1.0
+        memory.target[k] = min(bounds[0, k] + share * (bounds[1, k] - bounds[0, k]), bounds[1, k])
+    closest = nearest(trees, tree, memory.target, memory.lanes)
+    tried = trees.links[TRIED, tree]
+    if tried[closest] < EXTENSIONS:
+        tried[closest] += 1
+        here = trees.nodes[tree, closest]
+        length = distance_and_way(here, memory.target, bounds, memory.way)
+        share = min(1.0, memory.step / max(length, 1e-300))
+        for k in range(dim):
+            memory.targets[0, k] = here[k] + share * memory.way[k]
+        canonical(memory.targets[0], bounds)
+        memory.origins[0] = closest
+        return 1
+    for candidate in range(STEPS_AT_ONCE):
+        origin = closest if candidate % 2 else least_tried(trees, tree)
+        tried[origin] += 1
+        memory.origins[candidate] = origin
+        here, target = trees.nodes[tree, origin], memory.targets[candidate]
+        row = state[NEXT_STEP] % len(ball)
+        state[NEXT_STEP] += 1
+        for k in range(dim):
+            target[k] = here[k] + memory.radii[k] * ball[row, k]
+        canonical(target, bounds)
+        distance_and_way(here, target, bounds, memory.way)
+        for k in range(dim):
+            checks.states[k * LANES + 2 * candidate] = here[k] + 0.5 * memory.way[k]
+            checks.states[k * LANES + 2 * candidate + 1] = target[k]
+    touching = blocked(checks)
+    state[CONFIGURATIONS] += LANES
+    kept = 0
+    for candidate in range(STEPS_AT_ONCE):
+        if (touching >> (2 * candidate)) & 3:
+            # A motion that was asked for, and is blocked.
+            state[MOTIONS] += 1
+            continue
+        memory.origins[kept] = memory.origins[candidate]
+        for k in range(dim):
+            memory.targets[kept, k] = memory.targets[candidate, k]
+        kept += 1
+    return kept
