@@ -5,6 +5,7 @@ from __future__ import annotations
 import heapq
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -101,6 +102,14 @@ def find_any(problem: SearchProblem, states: EdgeStates) -> Found:
             return np.concatenate([there[0], back[0][-2::-1]]), np.concatenate([there[1], back[1][::-1]])
 
 
+class _Heap(NamedTuple):
+    """A binary heap of edges that lead out of a tree, by the nearness of the nodes that they lead to."""
+
+    keys: Floats
+    edges: Ints32
+    targets: Ints32
+
+
 class _Tree:
     """Nodes joined to its roots by free edges; grows towards the nodes of the least `nearness`."""
 
@@ -109,24 +118,16 @@ class _Tree:
         self.member = np.zeros(graph.nodes, dtype=np.bool_)
         self.parent_edge = np.full(graph.nodes, -1, dtype=np.int32)
         self.asked = self._size = 0
-        # A binary heap of edges that lead out of the tree; every arc enters it once at most.
+        # Every arc enters the heap once at most.
         arcs = len(graph.fixed.edge) + len(graph.links.edge)
-        self._keys, self._edges = np.empty(arcs), np.empty(arcs, dtype=np.int32)
-        self._targets = np.empty(arcs, dtype=np.int32)
+        self._heap = _Heap(np.empty(arcs), np.empty(arcs, dtype=np.int32), np.empty(arcs, dtype=np.int32))
         self._take_up(roots)
 
     def grow(self) -> bool:
         """Ask about the most promising edges, the more the longer it takes; return whether there were any."""
         states, most = self.states, min(16 + self.asked // 4, _LARGEST_BATCH)
         edges, targets, self._size = _next_edges(
-            most,
-            self._keys,
-            self._edges,
-            self._targets,
-            self._size,
-            self.member,
-            states.edge_states,
-            states.node_states,
+            most, self._heap, self._size, self.member, states.edge_states, states.node_states
         )
         if not len(edges):
             return False
@@ -147,10 +148,7 @@ class _Tree:
     def _take_up(self, nodes: npt.NDArray[np.integer]) -> None:
         self.member[nodes] = True
         for rows in (self.graph.fixed, self.graph.links):
-            self._size = _add_arcs(
-                nodes, rows, self.nearness, self.member, self._keys, self._edges,
-                self._targets, self._size,
-            )  # fmt: skip
+            self._size = _add_arcs(nodes, rows, self.nearness, self.member, self._heap, self._size)
 
 
 def march(problem: SearchProblem, states: EdgeStates) -> tuple[Found, int]:
@@ -234,7 +232,7 @@ def _path_back(parent_edge: Ints32, edges: Ints32, node: int) -> Found:
 
 
 @njit(cache=True, nogil=True)
-def _add_arcs(nodes, rows, nearness, member, keys, edges, targets, size):  # type: ignore[no-untyped-def]
+def _add_arcs(nodes, rows, nearness, member, heap, size):  # type: ignore[no-untyped-def]
     """Put the arcs that lead from nodes out of the tree into its heap; return the heap's size."""
     for node in nodes:
         if node + 1 >= rows.first.shape[0]:
@@ -242,12 +240,12 @@ def _add_arcs(nodes, rows, nearness, member, keys, edges, targets, size):  # typ
         for slot in range(rows.first[node], rows.first[node + 1]):
             target = rows.other[slot]
             if not member[target]:
-                size = _push(keys, edges, targets, size, nearness[target], rows.edge[slot], target)
+                size = _push(heap, size, nearness[target], rows.edge[slot], target)
     return size
 
 
 @njit(cache=True, nogil=True)
-def _next_edges(most, keys, edges, targets, size, member, edge_states, node_states):  # type: ignore[no-untyped-def]
+def _next_edges(most, heap, size, member, edge_states, node_states):  # type: ignore[no-untyped-def]
     """Take up to `most` edges to different nodes outside of the tree out of its heap, not known to be blocked."""
     found = np.empty(most, dtype=np.int32)
     leading_to = np.empty(most, dtype=np.int32)
@@ -256,8 +254,8 @@ def _next_edges(most, keys, edges, targets, size, member, edge_states, node_stat
     chosen = np.zeros(member.shape[0], dtype=np.bool_)
     waiting = [(0.0, np.int32(0), np.int32(0)) for _ in range(0)]
     while size > 0 and count < most:
-        key, e, target = keys[0], edges[0], targets[0]
-        size = _drop_first(keys, edges, targets, size)
+        key, e, target = heap.keys[0], heap.edges[0], heap.targets[0]
+        size = _drop_first(heap, size)
         if member[target] or edge_states[e] == BLOCKED or node_states[target] == BLOCKED:
             continue
         if chosen[target]:
@@ -267,12 +265,13 @@ def _next_edges(most, keys, edges, targets, size, member, edge_states, node_stat
         found[count], leading_to[count] = e, target
         count += 1
     for key, e, target in waiting:
-        size = _push(keys, edges, targets, size, key, e, target)
+        size = _push(heap, size, key, e, target)
     return found[:count].copy(), leading_to[:count].copy(), size
 
 
 @njit(cache=True, nogil=True)
-def _push(keys, edges, targets, size, key, edge, target):  # type: ignore[no-untyped-def]
+def _push(heap, size, key, edge, target):  # type: ignore[no-untyped-def]
+    keys, edges, targets = heap
     hole = size
     while hole > 0 and keys[(hole - 1) // 2] > key:
         above = (hole - 1) // 2
@@ -283,7 +282,8 @@ def _push(keys, edges, targets, size, key, edge, target):  # type: ignore[no-unt
 
 
 @njit(cache=True, nogil=True)
-def _drop_first(keys, edges, targets, size):  # type: ignore[no-untyped-def]
+def _drop_first(heap, size):  # type: ignore[no-untyped-def]
+    keys, edges, targets = heap
     size -= 1
     key, edge, target = keys[size], edges[size], targets[size]
     hole = 0
