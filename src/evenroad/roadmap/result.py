@@ -55,14 +55,14 @@ class Stage:
     cost : float or None
         Of this stage's path along the roadmap, of a round's path after shortcutting; None when there was none.
     seconds : float
-        Wall time from the start of the query to the end of this stage.
+        Wall time from the start of the query to the end of this stage; two stages are equal without it.
     """
 
     points: int
     valid: int
     edges_checked: int
     cost: float | None
-    seconds: float = 0.0
+    seconds: float = field(default=0.0, compare=False)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
