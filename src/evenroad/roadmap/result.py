@@ -55,7 +55,7 @@ class Stage:
     cost : float or None
         Of this stage's path along the roadmap, of a round's path after shortcutting; None when there was none.
     seconds : float
-        Wall time from the start of the query to the end of this stage; two stages are equal without it.
+        Wall time from the start of the query to the end of this stage; not compared.
     """
 
     points: int
