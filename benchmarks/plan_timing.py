@@ -50,10 +50,11 @@ def main() -> None:
     )
     maze = load_maze(3)
     ends = ["--start", *map(str, maze.start), "--goal", *map(str, maze.goal)]
-    disk = [str(maze.path), *ends, "--robot-radius", str(maze.robot_radius), "-n", "1024"]
-    arm = ["box-reach.yaml", "--robot", "ur5", "--start", "home", "--goal", "inside", "-n", "512"]
-    for name, options in {"level 3": disk, "--robot ur5": arm}.items():
+    disk = [str(maze.path), *ends, "--robot-radius", str(maze.robot_radius)]
+    arm = ["box-reach.yaml", "--robot", "ur5", "--start", "home", "--goal", "inside"]
+    for name, options, n in (("level 3", disk, "1024"), ("--robot ur5", arm, "512")):
         end_to_end(name, options)
+        end_to_end(f"{name} -n {n}", [*options, "-n", n])
 
 
 def end_to_end(name: str, options: list[str]) -> None:

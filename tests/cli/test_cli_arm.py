@@ -294,6 +294,7 @@ BAD = {
     "no time": ({"time": 0}, "time must be a finite number > 0, got 0"),
     "less than no time": ({"time": -2}, "time must be a finite number > 0, got -2"),
     "a time that is not a number": ({"time": "nan"}, "time must be a finite number > 0, got nan"),
+    "a time in words": ({"time": "soon"}, "time must be a finite number > 0, got 'soon'"),
     "endless time": ({"time": "inf"}, "time must be a finite number > 0, got inf"),
     "points of a negative number": ({"n": -5}, "n must be an integer >= 1, got -5"),
     "a pose that is no rotation": (

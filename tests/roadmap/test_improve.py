@@ -22,13 +22,14 @@ class Detours:
     def __init__(self):
         self.free = FunctionWorld(Box((0, 0), (1, 1)), lambda q: np.ones(len(q), dtype=bool), 0.1)
         self.space, self.valid, self.motion_valid = self.free.space, self.free.valid, self.free.motion_valid
-        self.asked = []
+        self.asked, self.most = [], []
 
     def connect(self, start, goals, *, most_motions, seconds):
         return self.connect_anew(start, goals, variant=0, most_motions=most_motions, seconds=seconds)
 
     def connect_anew(self, start, goals, *, variant, most_motions, seconds):
         self.asked.append(variant)
+        self.most.append(most_motions)
         if variant == 2:
             return Connection(np.empty((0, 2)), -1, 3, 1, 2)
         path = np.stack([start, [0.5, HEIGHTS[variant % len(HEIGHTS)]], goals[0]])
@@ -69,6 +70,12 @@ def test_stages_hold_the_cost_over_time_of_what_was_better():
 
 def test_motions_bound_the_rounds():
     assert improved(motions=5)[0].asked == [0, 1, 2]
+
+
+def test_a_round_gives_up_sooner_than_the_first_path():
+    most = improved(rounds=3)[0].most
+    assert most[0] > 10**9
+    assert most[1:] == [1000] * 3
 
 
 def test_a_straight_path_is_not_improved_on():

@@ -22,6 +22,7 @@ from evenroad.cli.robot_tables import bodiless_rows
 from evenroad.io import plan_record, save_json, save_path_csv
 from evenroad.roadmap import default_rule, find_path
 from evenroad.robot import RobotModel, find_robot, find_scene, held_values
+from evenroad.robot.kernel.selftest import lanes_failure
 from evenroad.robot.reference.recheck import MeshCheck
 
 
@@ -31,10 +32,7 @@ def plan_arm(plan: ArmOptions) -> int:
     Links without a body are named, with a warning where the URDF draws them: their collisions go unseen.
     """
     budget = chosen_budget(plan)
-    if wants_points(plan):
-        say_if_compiling("evenroad.robot.kernel.batch", "motions_free", 30)
-    else:
-        say_if_compiling("evenroad.robot.kernel.trees", "grow", 20)
+    _say_if_compiling(plan)
     query = arm_query(
         plan.robot,
         plan.world,
@@ -77,6 +75,14 @@ def plan_arm(plan: ArmOptions) -> int:
 
         save_arm_picture(files["png"], result, world)
     return 0 if result.solved else 1
+
+
+def _say_if_compiling(plan: ArmOptions) -> None:
+    kernel, points = "evenroad.robot.kernel", wants_points(plan)
+    said = say_if_compiling(f"{kernel}.batch", "configurations_free", 30 if points else 20)
+    # Where the lanes do not work, the trees are never compiled.
+    if not (said or points) and lanes_failure() is None:
+        say_if_compiling(f"{kernel}.trees", "grow", 15)
 
 
 def _asked(plan: ArmOptions, query: ArmQuery) -> dict[str, object]:

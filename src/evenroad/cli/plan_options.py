@@ -23,7 +23,7 @@ class PlanOptions:
     n: Annotated[int | None, tyro.conf.arg(aliases=["-n"])] = None
     """Plan on a roadmap of exactly so many points (ps-PRM).  Default: no points, but until there is a path or a proof
     that there is none, or the time is over; where another option speaks of points: 512."""
-    time: float | None = None
+    time: Annotated[str | None, tyro.conf.arg(metavar="SECONDS")] = None
     """Seconds to plan at most, > 0 (default 5; with points 60)."""
     improve: bool = False
     """Use up the time: plan again in other ways, and keep the shortest path.  Not with points."""

@@ -55,8 +55,16 @@ def chosen_budget(plan: PlanOptions) -> Budget:
     if not plan.goal:
         raise InvalidValue("give --goal, where the path is to end")
     if plan.time is not None:
-        return Budget(seconds=require_positive("time", plan.time))
+        return Budget(seconds=require_positive("time", _number(plan.time)))
     return Budget() if wants_points(plan) else Budget(seconds=SECONDS)
+
+
+def _number(text: str) -> float | str:
+    """Return a text as a number, or as it is where it is none, for an error that shows it."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def draw_points(plan: PlanOptions, d: int) -> PointSet:
@@ -112,7 +120,7 @@ def output_files(
 def common_query(plan: PlanOptions) -> dict[str, Any]:
     """Return the options that every plan has, for the record."""
     names = ("n", "time", "improve", "certified", "sampler", "plain", "skip", "allow_fewer", "seed", "raw")
-    return {name: getattr(plan, name) for name in names}
+    return {name: getattr(plan, name) for name in names} | {"time": chosen_budget(plan).seconds}
 
 
 def _named(stem: Path, suffixes: Sequence[str]) -> dict[str, Path]:

@@ -19,15 +19,20 @@ from evenroad.errors import NotAvailable
 REDRAW_SECONDS = 0.2
 
 
-def say_if_compiling(module: str, function: str, seconds: int) -> None:
-    """Say on standard error that a first run takes so long, where code of this function is yet to be compiled."""
+def say_if_compiling(module: str, function: str, seconds: int) -> bool:
+    """Say on standard error that a first run takes so long, where code of this function is yet to be compiled.
+
+    Returns whether it was said.
+    """
     try:
         compiled = getattr(importlib.import_module(module), function)
     except (ImportError, NotAvailable):
         # Where sixteen lanes cannot be had, others plan.
-        return
-    if not is_kept(compiled):
-        print(f"evenroad: compiling for this machine, once: about {seconds} s", file=sys.stderr, flush=True)
+        return False
+    if is_kept(compiled):
+        return False
+    print(f"evenroad: compiling for this machine, once: about {seconds} s", file=sys.stderr, flush=True)
+    return True
 
 
 class Advance(Protocol):

@@ -178,13 +178,15 @@ class Attempt:
                 return Searched(states, costs, NOT_FOUND, spent=True)
         return Searched(states, costs, found)
 
-    def connect(self, world: ConnectsItself, variant: int = 0) -> Connection:
+    def connect(self, world: ConnectsItself, variant: int = 0, most: int = 2**31 - 1) -> Connection:
         """Let the world join the start to one of the free goals, within what is left of the budget.
 
-        A variant >= 1 has it do so in another way; only a world that is `ConnectsAnew` can.
+        A variant >= 1 has it do so in another way; only a world that is `ConnectsAnew` can.  It gives up after `most`
+        motions.
         """
         start, goals, motions = self.query.start, self.query.goals[self.goals], self.query.budget.motions
-        most = 2**31 - 1 if motions is None else max(motions - self.motions_checked, 1)
+        if motions is not None:
+            most = min(most, max(motions - self.motions_checked, 1))
         seconds = min(max(self.deadline - time.perf_counter(), 1e-3), _LONG)
         with self.watch("search"):
             if variant and isinstance(world, ConnectsAnew):

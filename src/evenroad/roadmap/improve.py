@@ -17,6 +17,9 @@ from evenroad.world import ConnectsAnew
 NO_BETTER = 1e-9
 """A path is not improved on that exceeds the shortest possible by no more than this share."""
 
+LEAST_MOTIONS, LONGER = 1000, 4
+"""A round gives up after so many motions, or after so many times those of the first path, whichever is more."""
+
 
 def improved(attempt: Attempt, first: PlanResult) -> PlanResult:
     """Return the best path within what is left of the budget, or of its rounds; never a worse one than the first.
@@ -47,10 +50,12 @@ def improved(attempt: Attempt, first: PlanResult) -> PlanResult:
 def _by_rounds(attempt: Attempt, world: ConnectsAnew, first: PlanResult, stage: Stage) -> PlanResult:
     best, stages, least = first, [stage], _least_cost(attempt)
     nodes, counts, done = stage.points, dict(first.counts), 0
+    # A round that is much longer than the first was takes the time of many others.
+    most = max(LEAST_MOTIONS, LONGER * attempt.motions_checked)
     for variant in count(1):
         if not _goes_on(attempt, best, least, variant):
             break
-        connection = attempt.connect(world, variant)
+        connection = attempt.connect(world, variant, most)
         done, nodes = variant, nodes + connection.nodes
         counts["configurations_checked"] += connection.configurations
         if connection.goal < 0:
