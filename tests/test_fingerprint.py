@@ -1,4 +1,4 @@
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
@@ -6,6 +6,8 @@ import pytest
 
 from evenroad._fingerprint import Fingerprinted, fingerprint_of
 from evenroad.errors import NotAvailable
+from evenroad.robot import ArmWorld, load_robot, load_scene
+from evenroad.robot.certified import CertifiedWorld
 from evenroad.space import SE2, SE3, Box, Circle, JointSpace, Rectangle
 from evenroad.world import Counting, FunctionWorld, GridMap, OrientedBox, SolidWorld
 
@@ -120,6 +122,18 @@ def test_solid_worlds_are_told_apart_by_all_that_decides_their_verdicts():
     ]
     assert len({world.fingerprint() for world in worlds}) == 4
     assert SolidWorld(space, list(body), tuple(far), (0.1, 0.1)).fingerprint() == worlds[0].fingerprint()
+
+
+def test_an_arm_whose_motions_are_proved_is_another_world_than_the_arm():
+    arm = ArmWorld(load_robot("ur5"), load_scene("box-reach"))
+    worlds = [
+        arm,
+        CertifiedWorld(arm),
+        CertifiedWorld(arm, 1e-3),
+        CertifiedWorld(replace(arm, resolution=0.1)),
+    ]
+    assert len({world.fingerprint() for world in worlds}) == 4
+    assert CertifiedWorld(replace(arm)).fingerprint() == worlds[1].fingerprint()
 
 
 def test_a_counting_world_has_the_fingerprint_of_its_own_world_or_none():

@@ -268,12 +268,12 @@ def test_an_argument_out_of_range_is_named(changes, error, words):
             "unknown link 'hand'",
         ),
         (
-            {"capsules": (Capsule((0, 0, 0), (0, 0, 1e39), 0.1, link="base"),)},
+            {"capsules": (Capsule((0, 0, 0), (0, 0, 1e8), 0.1, link="base"),)},
             InvalidValue,
             "no larger than 1e",
         ),
         (
-            {"capsules": (Capsule((0, 0, 0), (0, 0, 1), 1e39, link="base"),)},
+            {"capsules": (Capsule((0, 0, 0), (0, 0, 1), 1e8, link="base"),)},
             InvalidValue,
             "no larger than 1e",
         ),
@@ -332,7 +332,7 @@ def test_a_mimic_beyond_what_single_precision_holds_is_refused(mimic):
 
 
 def test_an_obstacle_farther_away_than_single_precision_holds_is_refused():
-    far = Obstacle.of("x", "sphere", (1e39,), (0, 1e39, 0))
+    far = Obstacle.of("x", "sphere", (1e8,), (0, 1e8, 0))
     with pytest.raises(InvalidValue, match=r"'x' must be within 1e[+]06 m"):
         ArmWorld(ur5(), Scene("x", (far,)))
 

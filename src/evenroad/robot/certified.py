@@ -27,6 +27,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._checks import require_positive
+from evenroad._fingerprint import fingerprint_of
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch
@@ -86,6 +87,10 @@ class CertifiedWorld:
         """Return which motions of a path, (p, dim), are proved free: (p - 1,)."""
         waypoints = as_batch("path", path, self.space.dim)
         return self.motion_valid(waypoints[:-1], waypoints[1:])
+
+    def fingerprint(self) -> str:
+        """Return the SHA-256 (hex) of the world inside and the tolerance: equal for worlds of the same verdicts."""
+        return fingerprint_of("certified", self.world.fingerprint(), self.tolerance)
 
     def explain(self, q: npt.NDArray[np.float64]) -> str:
         """Return in words why one configuration, (dim,), is not free."""
