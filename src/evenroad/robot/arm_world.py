@@ -150,13 +150,19 @@ class ArmWorld:
         InvalidValue
             As `valid`, or if the two differ in length.
         """
+        return self._motions_free(a, b, 0.0)
+
+    def _motions_free(
+        self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64], tolerance: float
+    ) -> npt.NDArray[np.bool_]:
+        """Return which motions are free at their states and, by the lanes, proved where `tolerance` is > 0."""
         first, second = as_batch_pair(a, b, self._space.dim)
         if self.fixed_contact is not None:
             return np.zeros(len(first), dtype=np.bool_)
-        resolution, bounds, tables = self.resolution, self.bounds, self.tables
-        if self.backend == "scalar":
-            return scalar.motions_free(first, second, resolution, bounds, tables.ints, tables.floats)
-        return trees.lanes()[0].motions_free(first, second, 0.0, *trees.lane_arguments(self))
+        if self.backend == "lanes":
+            return trees.lanes()[0].motions_free(first, second, tolerance, *trees.lane_arguments(self))
+        tables = self.tables
+        return scalar.motions_free(first, second, self.resolution, self.bounds, tables.ints, tables.floats)
 
     @property
     def proof(self) -> str:
@@ -195,11 +201,12 @@ class ArmWorld:
         Raises
         ------
         InvalidValue
-            As `motion_valid`.
+            As `motion_valid`, or if `tolerance` is not such a number.
         """
+        tolerance = require_positive("tolerance", tolerance)
+        if self.backend == "lanes":
+            return self._motions_free(a, b, tolerance)
         first, second = as_batch_pair(a, b, self._space.dim)
-        if self.backend == "lanes" and self.fixed_contact is None:
-            return trees.lanes()[0].motions_free(first, second, tolerance, *trees.lane_arguments(self))
         proved = self.motion_valid(first, second)
         rows, tables = np.flatnonzero(proved), self.tables
         proved[rows] = motions_certified(
