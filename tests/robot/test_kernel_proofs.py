@@ -1,9 +1,13 @@
 """Proofs in lanes: a motion that they call free is free at every state, also of robots of many bodies."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from evenroad.robot.arm_world import ArmWorld
+from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel import motion_proof
 from evenroad.robot.scene import Scene
 from tests.robot.kernel_arms import as_balls, random_scene, random_tree, seven_joint_arm, ur5
 from tests.robot.oracle import clearance
@@ -62,3 +66,31 @@ def test_lanes_and_double_precision_prove_the_same_but_for_micrometres(motions):
     wide, near = (scalar.motion_certified(a, b, tolerance) for tolerance in (1e-4, 1e-7))
     assert not (proved & ~near).any()
     assert not (wide & ~proved).any()
+
+
+@pytest.mark.parametrize("name", ["capsules among obstacles", "balls among obstacles", "tree"])
+def test_every_length_that_decides_a_test_is_made_larger_and_nothing_else(name, monkeypatch):
+    world = ArmWorld(*WORLDS[name])
+    robot, lanes = world.robot_tables, world.tables.lanes
+    ints, table = lanes[: lanes[at.INTEGERS]], lanes[lanes[at.INTEGERS] :].view(np.float32)
+    speeds = robot.speeds @ np.linspace(1.0, 2.0, world.space.dim)
+    pair_speeds = robot.pair_speeds @ np.linspace(1.0, 2.0, world.space.dim)
+    motion = SimpleNamespace(speeds=speeds, pair_speeds=pair_speeds)
+    wide = table.copy()
+    monkeypatch.setattr(motion_proof, "_wider", motion_proof._wider.py_func)
+    motion_proof._enlarge.py_func(0.25, motion, SimpleNamespace(ints=ints, table=table, enlarged=wide))
+    least = np.zeros(len(table))
+    for i, speed in enumerate(speeds):
+        least[ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i + 6] = 0.25 * speed
+    for i in range(ints[at.BODIES]):
+        _, first, end = ints[ints[at.BODY_INTS] + at.BODY_INT_ROW * i :][:3]
+        place = ints[at.BODY_FLOATS] + at.BODY_FLOAT_ROW * i
+        least[place + 3 : place + 7] = 0.25 * speeds[first:end].max()
+    for p in range(ints[at.BODY_PAIRS]):
+        _, _, first, end = ints[ints[at.BODY_PAIR_INTS] + at.BODY_PAIR_INT_ROW * p :][:4]
+        least[ints[at.BODY_PAIR_FLOATS] + p] = 0.25 * pair_speeds[first:end].max()
+    for i, speed in enumerate(pair_speeds):
+        place = ints[at.PAIR_FLOATS] + at.PAIR_FLOAT_ROW * i
+        least[place : place + 2] = 0.25 * speed
+    assert (wide.astype(np.float64) >= table + least).all()
+    np.testing.assert_allclose(wide, table + least, rtol=1e-6)
