@@ -48,7 +48,7 @@ def plan_disk(plan: DiskOptions) -> int:
     files = output_files(plan, map_files(plan.world), suffixes, "map")
     for name, value in (("start", start), *(("goal", goal) for goal in goals)):
         _require_on_map(gridmap, name, value)
-    say_if_compiling("evenroad.world.gridmap.search", "find_way", 15)
+    say_if_compiling("evenroad.world.gridmap.search", "find_path", 15)
     if wants_points(plan):
         # Points are drawn over the rectangle: most of one that is mostly unknown is not worth any.
         world = (gridmap.cropped() if gridmap.unknown.any() else gridmap).world(
