@@ -45,7 +45,8 @@ def test_for_any_other_world_points_grow():
     world = FunctionWorld(
         Box((0, 0), (1, 1)), lambda q: (np.abs(q[:, 0] - 0.5) > 0.1) | (q[:, 1] > 0.9), 0.01
     )
-    result = find_path(world, (0.1, 0.1), (0.9, 0.1))
+    # Time enough also where code is compiled first.
+    result = find_path(world, (0.1, 0.1), (0.9, 0.1), budget=Budget(seconds=60.0))
     assert result.solved
     assert result.planner == "prm anytime"
     closed = FunctionWorld(Box((0, 0), (1, 1)), lambda q: np.abs(q[:, 0] - 0.5) > 0.1, 0.01)
