@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._checks import require_count
-from evenroad.errors import InvalidValue, NotAvailable, UnknownName
+from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points.pointset import PointSet
 from evenroad.points.samplers import make_sampler
 from evenroad.roadmap.budget import Budget
@@ -121,11 +121,7 @@ def as_points(points: PointSet | int, space: Space) -> PointSet:
                 "points must be a PointSet, such as draw('even', 512, 2), or how many points to draw,"
                 f" got {points!r}"
             )
-        n = require_count("points", points)
-        try:
-            points = make_sampler("even").draw(n, space.cube_dim)
-        except NotAvailable:
-            points = make_sampler("korobov").draw(n, space.cube_dim)
+        points = make_sampler("even").draw(require_count("points", points), space.cube_dim)
     if points.d != space.cube_dim:
         raise InvalidValue(f"the points have d={points.d}, the space has {space.cube_dim} dimensions")
     return points
