@@ -1,0 +1,70 @@
+"""How likely a configuration is free in a scene that nobody knows yet: its share among random scenes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from evenroad._arrays import Floats
+from evenroad.robot import ArmWorld, Obstacle, Robot, Scene
+from evenroad.robot.kinematics import capsule_ends, link_poses
+
+BOXES = (3, 30)
+"""A random scene has so many boxes, the last number not included."""
+
+HALF_EXTENTS = (0.01, 0.03, 0.25, 0.5)
+"""Of a box, as shares of the reach: the least, the range that their typical size is drawn from, and the largest."""
+
+CLEAR = 0.25
+"""Boxes stand at least so far from the axis of the base, as a share of the reach."""
+
+FULL = 0.5
+"""Boxes are added up to this volume, as a share of the cube of the reach."""
+
+SEEN = 2000
+"""Configurations that tell how far the robot reaches."""
+
+
+def chance_of_freedom(
+    robot: Robot,
+    q: Floats,
+    scenes: int,
+    rng: np.random.Generator,
+    progress: Callable[[float], None] = lambda _: None,
+) -> Floats:
+    """Return for each configuration, (n, dim), the share of random scenes in which no box touches it: (n,).
+
+    The boxes stand anywhere within the robot's reach; they know of no task.
+    """
+    bare = replace(robot, pairs=())
+    some = q[:SEEN]
+    places = capsule_ends(robot, some).reshape(-1, 3)
+    moved_first = next(i for i, joint in enumerate(robot.joints) if joint.name == robot.group[0])
+    base = link_poses(robot, some[:1])[0, moved_first + 1, :3, 3]
+    low, high = places.min(axis=0), places.max(axis=0)
+    reach = float(np.max(np.linalg.norm(places - base, axis=1)))
+    free = np.zeros(len(q))
+    for i in range(scenes):
+        free += ArmWorld(bare, random_scene(base, low, high, reach, rng)).valid(q)
+        progress((i + 1) / scenes)
+    return free / scenes
+
+
+def random_scene(base: Floats, low: Floats, high: Floats, reach: float, rng: np.random.Generator) -> Scene:
+    """Return boxes at random between two corners, (3,), of sizes in proportion to the reach [m]."""
+    least, small, large, most = HALF_EXTENTS
+    typical = rng.uniform(np.log(small), np.log(large))
+    boxes: list[Obstacle] = []
+    volume = 0.0
+    for _ in range(int(rng.integers(*BOXES))):
+        half = reach * np.clip(np.exp(rng.normal(typical, 0.5, 3)), least, most)
+        centre = rng.uniform(low, high)
+        while np.hypot(*(centre - base)[:2]) < CLEAR * reach:
+            centre = rng.uniform(low, high)
+        volume += float(np.prod(2.0 * half))
+        if volume > FULL * reach**3:
+            break
+        boxes.append(Obstacle.of(f"box {len(boxes)}", "box", 2.0 * half, centre))
+    return Scene("random", tuple(boxes))

@@ -1,0 +1,69 @@
+"""The order of milestones: each as far from the earlier ones as it can be, with more of them where scenes leave room."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from evenroad._arrays import Floats, Ints
+from evenroad.robot.kinematics import KinematicTree, capsule_ends
+
+STEP = 1e-4
+"""Of the difference quotient that measures how far a joint moves the body [rad or m]."""
+
+LEAST_WEIGHT = 0.01
+"""Of the joint that moves the body most: what a joint that moves nothing counts."""
+
+
+def displacement_weights(robot: KinematicTree, q: Floats) -> Floats:
+    """Return what a unit of each joint counts, by how far it moves the robot's body: (dim,), of mean 1.
+
+    ``w_j = sqrt(m_j)`` up to a factor, where m_j is the mean over the configurations `q`, (n, dim), of the longest way
+    that any end or middle of a capsule moves per unit of joint j [m/rad, or 1].
+    """
+    moved = np.empty(q.shape[1])
+    body = _body_points(robot, q)
+    for joint in range(len(moved)):
+        there = q.copy()
+        there[:, joint] += STEP
+        ways = np.linalg.norm(_body_points(robot, there) - body, axis=2)
+        moved[joint] = ways.max(axis=1).mean() / STEP
+    weights = np.sqrt(np.maximum(moved, LEAST_WEIGHT * moved.max()))
+    return weights / weights.mean()
+
+
+def _body_points(robot: KinematicTree, q: Floats) -> Floats:
+    """Return the ends and middles of all capsules, (n, 3 capsules, 3) [m]."""
+    ends = capsule_ends(robot, q)
+    return np.concatenate([ends[:, :, 0], ends[:, :, 1], ends.mean(axis=2)], axis=1)
+
+
+@njit(cache=True, nogil=True)
+def spread_order(points: Floats, period: Floats, preference: Floats, count: int) -> Ints:
+    """Return the first rows of `points`, (n, dim), in an order of which every beginning is well spread: (count,).
+
+    Farthest-point order (Gonzalez 1985) with a preference, (n,) > 0: the next point has the largest product of its
+    distance to those before and its preference, so that spacing is in proportion to 1 / preference.  Axes repeat after
+    `period`, (dim,); inf where they do not.
+    """
+    n, dim = points.shape
+    order = np.empty(count, dtype=np.int64)
+    nearest = np.full(n, np.inf)
+    chosen = np.argmax(preference)
+    for i in range(count):
+        order[i] = chosen
+        best, following = -1.0, 0
+        for row in range(n):
+            squared = 0.0
+            for k in range(dim):
+                apart = abs(points[row, k] - points[chosen, k])
+                if period[k] != np.inf:
+                    apart = min(apart, period[k] - apart)
+                squared += apart * apart
+            if squared < nearest[row]:
+                nearest[row] = squared
+            value = np.sqrt(nearest[row]) * preference[row]
+            if value > best:
+                best, following = value, row
+        chosen = following
+    return order
