@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,15 +17,11 @@ from evenroad.research.report.comparisons import Comparison, comparisons_of
 from evenroad.research.report.fair import LazyChecks, Pooled, lazy_checks, pooled
 from evenroad.research.report.runs import Runs, Setting, runs_of
 from evenroad.research.report.verdicts import SOURCES, ExpectedTable, Verdict, load_expected, verdicts_of
-from evenroad.research.statistics import FEW_UNITS, SamplesNeeded, resampled_ratios, samples_needed
-from evenroad.research.statistics.resampling import DRAWS
-
-TARGET = 0.9
-"""Success rate that the samples needed are asked for."""
+from evenroad.research.statistics.resampling import DRAWS, SamplesNeeded, resampled_ratios, samples_needed
+from evenroad.research.statistics.units import FEW_UNITS
 
 
-@dataclass(frozen=True)
-class Failure:
+class Failure(NamedTuple):
     """Runs of one problem, sampler and rule that failed alike."""
 
     problem: str
@@ -58,17 +55,17 @@ def needed_of(cells: Sequence[Cell]) -> dict[tuple[Setting, str], SamplesNeeded]
         sure = [curve for curve in of_sampler.values() if _has_enough(curve)]
         resampled = iter(resampled_curves(sure))
         for sampler, curve in of_sampler.items():
-            found[setting, sampler] = _needed(curve, next(resampled) if _has_enough(curve) else None)
+            found[setting, sampler] = samples_needed(
+                [cell.n for cell in curve],
+                [cell.rate for cell in curve],
+                next(resampled) if _has_enough(curve) else None,
+                [cell.runs for cell in curve],
+            )
     return found
 
 
 def _has_enough(curve: Sequence[Cell]) -> bool:
     return min(len(cell.units) for cell in curve) >= FEW_UNITS
-
-
-def _needed(curve: Sequence[Cell], resampled: Floats | None) -> SamplesNeeded:
-    rates, runs = [cell.rate for cell in curve], [cell.runs for cell in curve]
-    return samples_needed([cell.n for cell in curve], rates, resampled, runs, target=TARGET)
 
 
 def resampled_curves(curves: Sequence[Sequence[Cell]]) -> list[Floats]:

@@ -8,7 +8,6 @@ from collections.abc import Iterable, Sequence
 
 from evenroad.research.report.analysis import Analysis
 from evenroad.research.report.cells import Cell
-from evenroad.research.statistics import Interval
 
 PAPER_ADDS = 3
 """The paper's |V| is the valid milestones when the planner stopped, plus 3."""
@@ -16,12 +15,18 @@ STOPS_EARLY = "stock"
 """The search that stops when the paper's planner does."""
 
 
-def cells_csv(analysis: Analysis) -> bytes:
-    """Return every cell.
+def csv_files(analysis: Analysis) -> dict[str, bytes]:
+    """Return the files by their names: of cells and comparisons always, others where there is something to say."""
+    files = {"cells.csv": _cells(analysis), "comparisons.csv": _comparisons(analysis)}
+    if analysis.verdicts:
+        files["expected.csv"] = _expected(analysis)
+    if analysis.pooled:
+        files["fair.csv"] = _fair(analysis)
+    return files
 
-    `mean_paper_v` is the number of milestones as the paper counts them; only the search that stops as early as the
-    paper's planner has it.  `unit` names what is independent, `units` counts them, and `sets` the sets of a pool.
-    """
+
+def _cells(analysis: Analysis) -> bytes:
+    """Return every cell; only the search that stops as early as the paper's planner has its count of milestones."""
     header = (
         "problem sampler n rule search runs solved success low high interval unit units sets mean_valid sd_valid"
         " mean_paper_v sd_paper_v mean_edges_checked mean_seconds failures samples_for_90 samples_for_90_low"
@@ -34,13 +39,12 @@ def cells_csv(analysis: Analysis) -> bytes:
         paper_v = (cell.mean_early + PAPER_ADDS, cell.sd_early) if early else ("", "")
         units = (cell.units.kind, len(cell.units), len(cell.sets))
         means = (cell.mean_valid, cell.sd_valid, *paper_v, cell.mean_edges, cell.mean_seconds)
-        counted = (*_names(cell), cell.runs, cell.solved, cell.rate, *_fields(cell.interval), *units)
+        counted = (*_names(cell), cell.runs, cell.solved, cell.rate, *cell.interval, *units)
         rows.append((*counted, *means, cell.failures, needed.estimate, needed.low, needed.high))
     return _csv(header, rows)
 
 
-def comparisons_csv(analysis: Analysis) -> bytes:
-    """Return every paired comparison."""
+def _comparisons(analysis: Analysis) -> bytes:
     header = (
         "problem sampler n rule search reference pairs only_sampler only_reference difference low high interval test p"
         " p_corrected"
@@ -48,12 +52,12 @@ def comparisons_csv(analysis: Analysis) -> bytes:
     rows = []
     for each in analysis.comparisons:
         counts = (each.reference, each.pairs, each.only_cell, each.only_reference, each.difference)
-        tested = (*_fields(each.interval), each.test, each.p, each.p_corrected)
+        tested = (*each.interval, each.test, each.p, each.p_corrected)
         rows.append((*_names(each.cell), *counts, *tested))
     return _csv(header, rows)
 
 
-def expected_csv(analysis: Analysis) -> bytes:
+def _expected(analysis: Analysis) -> bytes:
     """Return every expected cell with ours and the verdict."""
     header = (
         "source problem sampler n rule expected_runs expected_solved expected_success our_runs our_solved our_success p"
@@ -71,8 +75,7 @@ def expected_csv(analysis: Analysis) -> bytes:
     return _csv(header, rows)
 
 
-def fair_csv(analysis: Analysis) -> bytes:
-    """Return the pooled fair suite."""
+def _fair(analysis: Analysis) -> bytes:
     header = (
         "pooled_by group sampler worlds pairs sets success uniform_success difference low high interval p"
         " p_corrected"
@@ -81,17 +84,13 @@ def fair_csv(analysis: Analysis) -> bytes:
     for grouping, found in analysis.pooled.items():
         for each in found:
             counts = (grouping, each.group, each.sampler, each.instances, each.pairs, each.sets)
-            rates = (each.rate, each.reference_rate, each.difference, *_fields(each.interval))
+            rates = (each.rate, each.reference_rate, each.difference, *each.interval)
             rows.append((*counts, *rates, each.p, each.p_corrected))
     return _csv(header, rows)
 
 
 def _names(cell: Cell) -> tuple[object, ...]:
     return cell.setting.problem, cell.sampler, cell.n, cell.setting.rule, cell.setting.search
-
-
-def _fields(interval: Interval) -> tuple[object, ...]:
-    return interval.low, interval.high, interval.kind
 
 
 def _csv(header: str, rows: Iterable[Sequence[object]]) -> bytes:

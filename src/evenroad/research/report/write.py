@@ -13,11 +13,11 @@ from evenroad import __version__
 from evenroad._checks import require_known
 from evenroad._files import atomic_write, remove_abandoned_parts, require_writable_folder
 from evenroad.errors import BrokenFile, NotAvailable
-from evenroad.research.bench.rows import Rows
+from evenroad.research.bench.rows import FAILURES, Rows
 from evenroad.research.bench.store import Session, read_rows, read_sessions
 from evenroad.research.bench.task import PROTOCOL
 from evenroad.research.report.analysis import Analysis, analyse
-from evenroad.research.report.csv_files import cells_csv, comparisons_csv, expected_csv, fair_csv
+from evenroad.research.report.csv_files import csv_files
 from evenroad.research.report.page import as_page, sections_of
 from evenroad.research.report.tables import as_latex, as_markdown
 
@@ -37,27 +37,9 @@ def write_report(
 ) -> Report:
     """Write a report of a store into a folder: ``report.html``, PNG figures, CSV, ``tables.md`` and ``tables.tex``.
 
-    Each file is written atomically, and the same rows give the same bytes.
-
-    Parameters
-    ----------
-    store : path
-        A store of benchmark rows; a benchmark may be writing it.
-    out : path
-        Folder, made where there is none; its parent must exist.
-    only : sequence of str
-        Names of problems; all by default.
-    command : str
-        What to put on the page as the command that wrote it.
-
-    Raises
-    ------
-    NotAvailable
-        If the store has no rows.
-    UnknownName
-        If it has none of a problem in `only`; the text lists its problems.
-    BrokenFile
-        If the store cannot be read or the folder not be written.
+    A benchmark may be writing the store, which needs rows (NotAvailable), and rows of each problem that is named in
+    `only` (UnknownName); by default all count.  The folder is made where there is none (BrokenFile if it cannot be).
+    Each file is written atomically, and the same rows and `command`, which the page shows, give the same bytes.
     """
     source, folder = Path(store), Path(out)
     rows = _rows(source, only)
@@ -70,14 +52,9 @@ def write_report(
         PAGE: as_page("Benchmark report", facts, sections).encode(),
         "tables.md": "\n".join(map(as_markdown, tables)).encode(),
         "tables.tex": "\n".join(map(as_latex, tables)).encode(),
-        "cells.csv": cells_csv(analysis),
-        "comparisons.csv": comparisons_csv(analysis),
+        **csv_files(analysis),
+        **{f"{picture.name}.png": picture.png for section in sections for picture in section.pictures},
     }
-    if analysis.verdicts:
-        files["expected.csv"] = expected_csv(analysis)
-    if analysis.pooled:
-        files["fair.csv"] = fair_csv(analysis)
-    files |= {f"{picture.name}.png": picture.png for section in sections for picture in section.pictures}
     for name, content in files.items():
         with atomic_write(folder / name) as file:
             file.write(content)
@@ -107,24 +84,19 @@ def _make_folder(folder: Path) -> None:
 
 def facts_of(store: Path, rows: Rows, sessions: Sequence[Session], command: str) -> list[tuple[str, str]]:
     """Return where the numbers of a report come from, as (term, fact): command, rows, seeds, versions, machines."""
-    failed = int((~rows.answered).sum())
-    by_status = ", ".join(
-        f"{int(rows.status.is_in([status]).sum())} {status}"
-        for status in rows.status.present()
-        if not bool(rows.answered[rows.status.is_in([status])].any())
-    )
-    seeds = ", ".join(str(seed) for seed in np.unique(rows.seed))
+    failed = {status: int(rows.status.is_in([status]).sum()) for status in FAILURES}
+    by_status = ", ".join(f"{count} {status}" for status, count in failed.items() if count)
     facts = [
         ("command", command),
         ("store", f"{store.name}: {len(rows)} rows of {', '.join(rows.suite.present())}"),
-        ("failures", f"{failed}" + (f" ({by_status})" if failed else "")),
-        ("seeds", seeds),
+        ("failures", f"{sum(failed.values())}" + (f" ({by_status})" if by_status else "")),
+        ("seeds", ", ".join(str(seed) for seed in np.unique(rows.seed))),
         ("protocol", f"{PROTOCOL}; rows of others are left out"),
         ("report by", f"evenroad {__version__}"),
     ]
     if sessions:
         facts += [
-            ("runs by", "; ".join(dict.fromkeys(_versions(session) for session in sessions))),
+            ("runs by", "; ".join(dict.fromkeys(map(_versions, sessions)))),
             ("machines", "; ".join(dict.fromkeys(session.platform for session in sessions))),
             ("started", f"{sessions[0].started}, last resumed {sessions[-1].started}"),
         ]

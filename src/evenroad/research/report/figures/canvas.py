@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 
-@dataclass(frozen=True)
-class Look:
+class Look(NamedTuple):
     """How a sampler is drawn: the colour, marker and line that it has in every figure."""
 
     colour: str
@@ -51,9 +49,7 @@ def look_of(sampler: str) -> Look:
     return LOOKS.get(sampler, OTHER)
 
 
-def new_figure(
-    width: float, height: float, *, layout: Literal["constrained"] | None = "constrained"
-) -> Figure:
+def new_figure(width: float, height: float, layout: Literal["constrained"] | None = "constrained") -> Figure:
     """Return an empty figure of this size in inches."""
     figure = Figure(figsize=(width, height), dpi=DPI, layout=layout)
     FigureCanvasAgg(figure)
@@ -62,15 +58,11 @@ def new_figure(
 
 def add_legend(figure: Figure, order: Callable[[str], Any]) -> None:
     """Put one legend at the right of the figure; it names what any panel shows, in the order of `order`."""
-    handles = {
-        name: handle
-        for axes in figure.axes
-        for handle, name in zip(*axes.get_legend_handles_labels(), strict=True)
-    }
+    shown = [zip(*axes.get_legend_handles_labels(), strict=True) for axes in figure.axes]
+    handles = {name: handle for panel in shown for handle, name in panel}
     names = sorted(handles, key=order)
-    figure.legend(
-        [handles[name] for name in names], names, loc="outside right center", frameon=False, fontsize=9
-    )
+    lines = [handles[name] for name in names]
+    figure.legend(lines, names, loc="outside right center", frameon=False, fontsize=9)
 
 
 def as_png(figure: Figure) -> bytes:
