@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,23 +23,14 @@ STRETCH = 32
 """Runs of a block protocol whose points are generated together."""
 
 Drawn = tuple[PointSet, str]
-"""A set, and which one of its pool it is."""
 
 
-@dataclass(frozen=True)
-class RunSampler:
-    """How the set of a run is drawn.
+class RunSampler(NamedTuple):
+    """How the set of a run is drawn, from points of the sampler `family`.
 
-    Attributes
-    ----------
-    family : str
-        Name of the sampler whose points these are.
-    draw : callable
-        From (family, n, d, run, rng) to the set and its `set_id`.
-    why_not : callable
-        From (family, n, d) to why there is no such set, one sentence; "" if there is one.
-    protocol : str
-        What lists say of the draw, beside what the sampler says of itself.
+    `draw` goes from (family, n, d, run, rng) to the set and its `set_id`; `why_not` from (family, n, d) to why there is
+    no such set, one sentence, "" if there is one; `protocol` is what lists say of the draw, beside what the sampler
+    says of itself.
     """
 
     family: str
@@ -54,19 +45,10 @@ class RunSampler:
 
 
 def draw_set(name: str, n: int, d: int, run: int, rng: np.random.Generator) -> Drawn:
-    """Draw the set of one run, (n, d); `rng` is spawned, block protocols go by the number `run`, from 0, instead.
+    """Draw the set of one run, (n, d), and say which one of its pool it is, as `set_id` of an outcome.
 
-    Returns
-    -------
-    points : PointSet
-    set_id : str
-        The number of the set in its pool, by which statistics cluster; ``grid`` for the only set that there is;
-        empty for sets drawn afresh.
-
-    Raises
-    ------
-    UnknownName, NotAvailable
-        If there is no such sampler, or it has no such set.  Nothing is ever trained for a benchmark.
+    `rng` is spawned; block protocols go by the number `run`, from 0, instead.  Raises NotAvailable if there is no such
+    set: nothing is ever trained for a benchmark.
     """
     reason = why_not(name, n, d)
     if reason:
