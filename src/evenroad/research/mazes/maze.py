@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from evenroad._checks import require_count, require_known
 from evenroad._rng import RngLike, generator
@@ -40,7 +39,7 @@ class Maze:
 
 
 def load_maze(level: int) -> Maze:
-    """Return the maze of level 1, 2 or 3, harder and harder for uniform points; UnknownName for another level."""
+    """Return the maze of level 1, 2 or 3, harder and harder for uniform points."""
     require_known("maze level", level, LEVELS)
     record = json.loads((FOLDER / "mazes.json").read_text(encoding="utf-8"))[str(level)]
     start, goal = tuple(record["start"]), tuple(record["goal"])
@@ -53,18 +52,10 @@ Room = tuple[int, int]
 
 @dataclass(frozen=True)
 class MazeDesign:
-    """A rectangular maze: a random spanning tree of rooms, with doors in a share of the remaining walls.
+    """A rectangular maze: a random spanning tree of rooms, with doors in a share `loops` of the remaining walls.
 
-    Parameters
-    ----------
-    wall : int
-        Thickness of the walls [pixels], >= 2; odd ones are drawn one pixel thinner.
-    door : int
-        Width of the opening between two rooms [pixels], >= 1; at most the whole wall is opened.
-    loops : float
-        Share of the walls outside the spanning tree that get a door too, in [0, 1].
-    width, height : int
-        Of the picture [pixels].  Walls as thick as rooms, and numbers out of range, are an InvalidValue.
+    In pixels: the thickness of a `wall`, >= 2 and less than a room's, odd ones drawn one thinner; the width of a `door`
+    between two rooms, at most the whole wall; `width` and `height` of the picture.
     """
 
     cols: int
@@ -116,14 +107,8 @@ def draw_maze(design: MazeDesign, *, rng: RngLike = 0) -> DrawnMaze:
             y, low, high = ys[max(row, other_row)], xs[col] + half, xs[col + 1] - half
             at = _door_start(low, high, design.door, random)
             wall[y - half : y + half, at : at + min(design.door, high - low)] = False
-    return DrawnMaze(
-        GridMap(wall), _centre(xs, ys, (0, 0)), _centre(xs, ys, (design.cols - 1, design.rows - 1))
-    )
-
-
-def _centre(xs: npt.NDArray[np.int_], ys: npt.NDArray[np.int_], room: Room) -> tuple[float, float]:
-    col, row = room
-    return float(xs[col] + xs[col + 1]) / 2, float(ys[row] + ys[row + 1]) / 2
+    start, goal = ((float(xs[i] + xs[i + 1]) / 2, float(ys[i] + ys[i + 1]) / 2) for i in (0, -2))
+    return DrawnMaze(GridMap(wall), start, goal)
 
 
 def _door_start(low: int, high: int, door: int, random: np.random.Generator) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -24,53 +25,37 @@ _HOLES_X, _HOLES_Y = (110.0, 296.0), ((-200.0, -91.0), (303.0, 465.0))
 Of the first, only the area is known, from the share of free poses; where in the room it is does not matter to success.
 """
 
-_WALLS_ACROSS_X: tuple[tuple[float, tuple[Range, ...]], ...] = (
-    (-483.2, ((-209.9, -49.1), (-20.6, 486.9))),
-    (-349.9, ((-49.1, -20.6),)),
-    (-245.0, ((45.3, 80.3),)),
-    (-98.5, ((-107.8, 45.3), (80.3, 323.9))),
-    (-71.0, ((-107.8, 37.1), (72.4, 323.9))),
-    (71.5, ((-209.9, 37.1),)),
-    (74.6, ((266.9, 486.9),)),
-    (98.6, ((266.9, 486.9),)),
-    (89.9, ((-213.5, 6.8), (30.7, 72.4))),
-    (306.3, ((-213.5, 6.8), (30.7, 486.9))),
+# fmt: off
+_WALLS = (
+    ("outer wall", 0, _GROUND, ((-508.9, *_HOUSE_Y),)),
+    ("outer wall", 0, _ALL, ((319.6, *_HOUSE_Y),)),
+    ("outer wall", 1, _GROUND, ((-230.1, _HOUSE_X[0], _BASEMENT_X[0]),)),
+    ("outer wall", 1, _ALL, ((-230.1, *_BASEMENT_X),)),
+    ("outer wall", 1, _GROUND, ((531.9, _HOUSE_X[0], _BASEMENT_X[0]),)),
+    ("outer wall", 1, _ALL, ((531.9, *_BASEMENT_X),)),
+    ("wall", 0, _FLOOR, (
+        (-483.2, -209.9, -49.1), (-483.2, -20.6, 486.9), (-349.9, -49.1, -20.6), (-245.0, 45.3, 80.3),
+        (-98.5, -107.8, 45.3), (-98.5, 80.3, 323.9), (-71.0, -107.8, 37.1), (-71.0, 72.4, 323.9),
+        (71.5, -209.9, 37.1), (74.6, 266.9, 486.9), (98.6, 266.9, 486.9), (89.9, -213.5, 6.8),
+        (89.9, 30.7, 72.4), (306.3, -213.5, 6.8), (306.3, 30.7, 486.9),
+    )),
+    ("wall", 1, _FLOOR, (
+        (-213.5, 89.9, 306.3), (-209.9, -483.2, 71.5), (-107.8, -98.5, -71.0), (-49.1, -483.2, -349.9),
+        (-20.6, -483.2, -349.9), (6.8, 89.9, 306.3), (30.7, 89.9, 306.3), (37.1, -71.0, 71.5),
+        (45.3, -245.0, -98.5), (80.3, -245.0, -98.5), (72.4, -71.0, 89.9), (266.9, 74.6, 98.6),
+        (323.9, -98.5, -71.0), (486.9, -483.2, 74.6), (486.9, 98.6, 306.3),
+    )),
+    ("basement wall", 0, _BASEMENT, (
+        (53.2, *_HOUSE_Y), (72.3, -203.9, 531.9), (73.0, 476.8, 531.9), (301.8, -203.9, 301.0),
+        (307.8, 301.0, 476.8),
+    )),
+    ("basement wall", 1, _BASEMENT, (
+        (-203.9, 72.3, 301.8), (301.0, 301.8, 307.8), (476.8, 73.0, 307.8),
+    )),
 )
-"""Inner walls of the floor at these x, over these ranges of y."""
-
-_WALLS_ACROSS_Y: tuple[tuple[float, tuple[Range, ...]], ...] = (
-    (-213.5, ((89.9, 306.3),)),
-    (-209.9, ((-483.2, 71.5),)),
-    (-107.8, ((-98.5, -71.0),)),
-    (-49.1, ((-483.2, -349.9),)),
-    (-20.6, ((-483.2, -349.9),)),
-    (6.8, ((89.9, 306.3),)),
-    (30.7, ((89.9, 306.3),)),
-    (37.1, ((-71.0, 71.5),)),
-    (45.3, ((-245.0, -98.5),)),
-    (80.3, ((-245.0, -98.5),)),
-    (72.4, ((-71.0, 89.9),)),
-    (266.9, ((74.6, 98.6),)),
-    (323.9, ((-98.5, -71.0),)),
-    (486.9, ((-483.2, 74.6), (98.6, 306.3))),
-)
-"""Inner walls of the floor at these y, over these ranges of x."""
-
-_BASEMENT_ACROSS_X: tuple[tuple[float, tuple[Range, ...]], ...] = (
-    (53.2, (_HOUSE_Y,)),
-    (72.3, ((-203.9, 531.9),)),
-    (73.0, ((476.8, 531.9),)),
-    (301.8, ((-203.9, 301.0),)),
-    (307.8, ((301.0, 476.8),)),
-)
-_BASEMENT_ACROSS_Y: tuple[tuple[float, tuple[Range, ...]], ...] = (
-    (-203.9, ((72.3, 301.8),)),
-    (301.0, ((301.8, 307.8),)),
-    (476.8, ((73.0, 307.8),)),
-)
-
-_OUTER_ACROSS_X: tuple[tuple[float, Range], ...] = ((-508.9, _GROUND), (319.6, _ALL))
-_OUTER_ACROSS_Y = (-230.1, 531.9)
+# fmt: on
+"""Walls by name, the axis that they are across (x or y), their range of z, and of each its place on that axis and its
+range on the other."""
 
 _PILLARS: tuple[tuple[Range, Range, Range], ...] = (
     ((-381.0, -315.0), (287.0, 344.0), _FLOOR),
@@ -94,13 +79,14 @@ def cubicles() -> Puzzle:
     surfaces: below the floor, outside of the basement, the body is free, as it is there.  Pillars are solid; of all
     poses 2 in 100 000 would be free inside of hollow ones.
     """
+    pillars = (box for x, y, z in _PILLARS for box in pillar(x, y, z))
     return Puzzle(
         low=_LOW,
         high=_HIGH,
         start=(-4.96, -40.62, 70.57),
         goal=(200.0, -40.62, 70.57),
         body=_body(),
-        obstacles=(*_outer_walls(), *_inner_walls(), *_slab(), *_pillars()),
+        obstacles=(*_walls(), *_slab(), *pillars),
     )
 
 
@@ -118,21 +104,11 @@ def _body() -> tuple[OrientedBox, ...]:
     )
 
 
-def _outer_walls() -> list[OrientedBox]:
-    walls = [_across_x(x, _HOUSE_Y, z, "outer wall") for x, z in _OUTER_ACROSS_X]
-    for y in _OUTER_ACROSS_Y:
-        walls.append(_across_y(y, (_HOUSE_X[0], _BASEMENT_X[0]), _GROUND, "outer wall"))
-        walls.append(_across_y(y, _BASEMENT_X, _ALL, "outer wall"))
-    return walls
-
-
-def _inner_walls() -> list[OrientedBox]:
-    return [
-        *(_across_x(x, y, _FLOOR, "wall") for x, ranges in _WALLS_ACROSS_X for y in ranges),
-        *(_across_y(y, x, _FLOOR, "wall") for y, ranges in _WALLS_ACROSS_Y for x in ranges),
-        *(_across_x(x, y, _BASEMENT, "basement wall") for x, ranges in _BASEMENT_ACROSS_X for y in ranges),
-        *(_across_y(y, x, _BASEMENT, "basement wall") for y, ranges in _BASEMENT_ACROSS_Y for x in ranges),
-    ]
+def _walls() -> Iterator[OrientedBox]:
+    for name, axis, (bottom, top), walls in _WALLS:
+        for at, *ends in walls:
+            low, high = ((at, end) if axis == 0 else (end, at) for end in ends)
+            yield OrientedBox.spanning((*low, bottom), (*high, top), name)
 
 
 def _slab() -> list[OrientedBox]:
@@ -143,18 +119,6 @@ def _slab() -> list[OrientedBox]:
     pieces = [*((x, _HOUSE_Y) for x in beside_the_holes), *((_HOLES_X, y) for y in between_the_holes)]
     bottom, top = _GROUND[0], _FLOOR[0]
     return [OrientedBox.spanning((x[0], y[0], bottom), (x[1], y[1], top), name="slab") for x, y in pieces]
-
-
-def _across_x(x: float, y: Range, z: Range, name: str) -> OrientedBox:
-    return OrientedBox.spanning((x, y[0], z[0]), (x, y[1], z[1]), name)
-
-
-def _across_y(y: float, x: Range, z: Range, name: str) -> OrientedBox:
-    return OrientedBox.spanning((x[0], y, z[0]), (x[1], y, z[1]), name)
-
-
-def _pillars() -> list[OrientedBox]:
-    return [box for x, y, z in _PILLARS for box in pillar(x, y, z)]
 
 
 _ANGLES = 600

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 from evenroad.research.bench.task import ProblemSource
 from evenroad.research.problems.fair_worlds import PREFIX, Family, Stream, make_instance
@@ -59,8 +59,7 @@ TUNED_ON = (Family.BALLS, Family.BOXES)
 """Families that may choose a default; the others are there to be reported on alone."""
 
 
-@dataclass(frozen=True)
-class FairProblem:
+class FairProblem(NamedTuple):
     """What decides a stream of random problems.
 
     `d` is the dimension of the point sets, `difficulty` the success of uniform points [%] with k = 10 symmetrised, and
@@ -91,22 +90,18 @@ class FairProblem:
 
     def source(self) -> ProblemSource:
         """Return the problems by the number of their instance."""
-        make = partial(make_instance, self.stream, self.family, self.d, self.difficulty, self.size)
+        make = partial(make_instance, *self)
         about = f"{ABOUT[self.family]}; uniform solves {self.difficulty} % with N = {self.n}"
         return ProblemSource(self.name, self.d, make, random=True, about=about)
 
 
-def _problems() -> dict[str, FairProblem]:
-    every = (
-        FairProblem(stream, family, d, difficulty, size)
-        for stream in PREFIX
-        for (family, d), sizes in SIZES.items()
-        for difficulty, size in zip(DIFFICULTIES, sizes, strict=True)
-    )
-    return {each.name: each for each in every if each.stream is Stream.REPORTING or each.tuned_on}
-
-
-FAIR_PROBLEMS = _problems()
+_EVERY = (
+    FairProblem(stream, family, d, difficulty, size)
+    for stream in PREFIX
+    for (family, d), sizes in SIZES.items()
+    for difficulty, size in zip(DIFFICULTIES, sizes, strict=True)
+)
+FAIR_PROBLEMS = {each.name: each for each in _EVERY if each.stream is Stream.REPORTING or each.tuned_on}
 """Name -> problem: ``fair-..`` for what is reported, ``tune-..`` for what chooses."""
 
 FAIR = tuple(problem.source() for problem in FAIR_PROBLEMS.values())

@@ -59,15 +59,9 @@ def make_instance(
 ) -> Problem:
     """Return the problem of number `instance` >= 0; the same arguments give the same one, in every process.
 
-    Parameters
-    ----------
-    d : int
-        Dimension of the point sets: any with a number of obstacles for balls and boxes, 2 for mazes, 3 for SE(2) and
-        6 for SE(3).
-    difficulty : int
-        Success of uniform points in % that `size` is meant to give; part of the seed.
-    size : float
-        Of the obstacles: radius, half extent; width of the doors in mazes.
+    `d` is the dimension of the point sets: any of :data:`BALLS` for balls and boxes, 2 for mazes, 3 for SE(2) and 6 for
+    SE(3).  `size` is that of the obstacles, or the width of the doors in mazes, meant to give uniform points a success
+    of `difficulty` %, which is part of the seed.
     """
     ways: dict[Family, tuple[Callable[..., World], FarApart]] = {
         Family.BALLS: (partial(draw_balls, d), far_on_torus),
@@ -196,14 +190,9 @@ def draw_clutter(dim: int, size: float, rng: np.random.Generator) -> SolidWorld:
     centres = -margin + (1.0 + 2.0 * margin) * rng.random((count, dim))
     half_extents = size * (0.4 + 1.2 * rng.random((count, dim)))
     rotations = [_random_rotation(dim, rng) for _ in range(count)]
-    obstacles = [
-        OrientedBox(centre, extents, rotation)
-        for centre, extents, rotation in zip(centres.tolist(), half_extents.tolist(), rotations, strict=True)
-    ]
-    weights = (1.0, ROTATION_WEIGHT[dim])
-    space = (
-        SE2([0.0] * 2, [1.0] * 2, weights=weights) if dim == 2 else SE3([0.0] * 3, [1.0] * 3, weights=weights)
-    )
+    obstacles = list(map(OrientedBox, centres.tolist(), half_extents.tolist(), rotations))
+    kind = SE2 if dim == 2 else SE3
+    space = kind([0.0] * dim, [1.0] * dim, weights=(1.0, ROTATION_WEIGHT[dim]))
     return SolidWorld(space, BODY[dim], obstacles, RESOLUTION[dim])
 
 

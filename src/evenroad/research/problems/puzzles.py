@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,12 +20,8 @@ _SHARE = 0.01
 _NOT_ROTATED = (1.0, 0.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True)
-class Puzzle:
-    """A rigid body among boxes in space, as :class:`SolidWorld` takes them; it starts and ends not rotated.
-
-    `low` and `high` bound the translation; `start` and `goal` are translations.
-    """
+class Puzzle(NamedTuple):
+    """A rigid body among boxes in space; it starts and ends not rotated, at translations between `low` and `high`."""
 
     low: Triple
     high: Triple
@@ -34,8 +31,9 @@ class Puzzle:
     obstacles: tuple[OrientedBox, ...]
 
 
-def problem_of(puzzle: Puzzle, set_dim: int) -> Problem:
+def problem_of(make: Callable[[], Puzzle], set_dim: int, instance: int) -> Problem:
     """Return the puzzle by OMPL's rules: distance ``|dt| + arccos |q . q'|``, a hundredth of both extents as steps."""
+    puzzle = make()
     resolution = (_SHARE * math.dist(puzzle.low, puzzle.high), _SHARE * math.pi / 2.0)
     world = SolidWorld(SE3(puzzle.low, puzzle.high), puzzle.body, puzzle.obstacles, resolution)
     start, goal = (np.array([*place, *_NOT_ROTATED]) for place in (puzzle.start, puzzle.goal))
@@ -76,13 +74,12 @@ def twistycool() -> Puzzle:
     )
 
 
-def _bar(low: tuple[float, float, float], high: tuple[float, float, float]) -> OrientedBox:
+def _bar(low: Triple, high: Triple) -> OrientedBox:
     cosine, sine = math.cos(_TILT), math.sin(_TILT)
     rotation = (cosine, 0.0, -sine, 0.0, 1.0, 0.0, sine, 0.0, cosine)
-    middle = [(least + most) / 2.0 for least, most in zip(low, high, strict=True)]
-    half = [(most - least) / 2.0 for least, most in zip(low, high, strict=True)]
-    centre = [_CORNER[i] + sum(rotation[3 * i + j] * middle[j] for j in range(3)) for i in range(3)]
-    return OrientedBox(centre, half, rotation, name="bar")
+    along = OrientedBox.spanning(low, high)
+    centre = [_CORNER[i] + sum(rotation[3 * i + j] * along.centre[j] for j in range(3)) for i in range(3)]
+    return OrientedBox(centre, along.half_extents, rotation, name="bar")
 
 
 def _obstacles() -> tuple[OrientedBox, ...]:

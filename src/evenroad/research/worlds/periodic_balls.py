@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numba import njit
@@ -20,26 +21,14 @@ from evenroad.space.batch import as_cube_batch
 class PeriodicBalls(CompiledWorld):
     """A point robot in [0, 1]^d among open balls of one radius that repeat with period 1 along every axis.
 
-    With centres drawn uniformly the free set is stationary: no place of the cube, at its faces or in the middle, is
-    freer than another.  Only the obstacles are periodic.  The space is the cube, whose faces stop the robot as joint
-    limits do, and motions are straight.  They are tested exactly, without any step length, up to float rounding.
-
-    Parameters
-    ----------
-    centres : array_like, shape (n, d)
-        In [0, 1].  Copied to a read-only array.
-    radius : float
-        Of all balls, > 0; where it exceeds one half, a ball overlaps its own copies.
-
-    Raises
-    ------
-    InvalidValue
-        If the centres are no such array, or the radius is not such a number.
+    With centres, (n, d) in [0, 1], drawn uniformly the free set is stationary: no place of the cube, at its faces or in
+    the middle, is freer than another.  Only the obstacles are periodic.  The space is the cube, whose faces stop the
+    robot as joint limits do, and motions are straight.  They are tested exactly, without any step length, up to float
+    rounding.  A ball whose radius exceeds one half overlaps its own copies.
     """
 
     centres: Floats
     radius: float
-    _space: Box = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         shape = np.shape(self.centres)
@@ -48,17 +37,16 @@ class PeriodicBalls(CompiledWorld):
         centres = as_cube_batch(np.array(self.centres, dtype=np.float64, order="C"), shape[1])
         object.__setattr__(self, "centres", centres)
         object.__setattr__(self, "radius", require_positive("radius", self.radius))
-        object.__setattr__(self, "_space", Box([0.0] * self.d, [1.0] * self.d))
 
     @property
     def d(self) -> int:
         """Dimension."""
         return int(self.centres.shape[1])
 
-    @property
+    @cached_property
     def space(self) -> Box:
         """The unit cube with the Euclidean metric."""
-        return self._space
+        return Box([0.0] * self.d, [1.0] * self.d)
 
     def _valid(self, q: Floats) -> Bools:
         return points_are_free(q, self.centres, self.radius**2)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -26,52 +27,32 @@ class PeriodicBoxes(CompiledWorld):
     another.  Only the obstacles are periodic: the space is the cube, whose faces stop the robot, and motions are
     straight.  They are tested exactly, without any step length, up to float rounding.
 
-    Parameters
-    ----------
-    d : int
-        Dimension, >= 1.
-    axes : array_like of int, shape (n, m)
-        The coordinates that each box bounds, all different, in 0 .. d - 1.
-    centres : array_like, shape (n, m)
-        Of the boxes along these axes, in [0, 1].
-    half_extents : array_like, shape (n, m)
-        Along these axes, in (0, 0.5].
-
-    Raises
-    ------
-    InvalidValue
-        If an argument is no such number or array.
+    `axes`, (n, m), are the coordinates that each box bounds, all different; along these `centres` are in [0, 1] and
+    `half_extents` in (0, 0.5], (n, m) each.
     """
 
     d: int
     axes: Ints
     centres: Floats
     half_extents: Floats
-    _space: Box = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        d = require_count("d", self.d)
-        axes = _as_axes(self.axes, d)
-        object.__setattr__(self, "d", d)
-        object.__setattr__(self, "axes", axes)
+        object.__setattr__(self, "d", require_count("d", self.d))
+        object.__setattr__(self, "axes", _as_axes(self.axes, self.d))
+        shape = self.axes.shape
         for name in ("centres", "half_extents"):
-            if np.shape(getattr(self, name)) != axes.shape:
-                raise InvalidValue(
-                    f"{name} must have the shape of axes, {axes.shape}, got {np.shape(getattr(self, name))}"
-                )
             array = np.array(getattr(self, name), dtype=np.float64, order="C")
-            object.__setattr__(self, name, as_cube_batch(array, axes.shape[1]))
-        outside = (self.half_extents <= 0.0) | (self.half_extents > 0.5)
-        if outside.any():
-            raise InvalidValue(
-                f"half_extents must be in (0, 0.5], got {float(self.half_extents[outside][0])!r}"
-            )
-        object.__setattr__(self, "_space", Box([0.0] * d, [1.0] * d))
+            if array.shape != shape:
+                raise InvalidValue(f"{name} must have the shape of axes, {shape}, got {array.shape}")
+            object.__setattr__(self, name, as_cube_batch(array, shape[1]))
+        outside = self.half_extents[(self.half_extents <= 0.0) | (self.half_extents > 0.5)]
+        if len(outside):
+            raise InvalidValue(f"half_extents must be in (0, 0.5], got {float(outside[0])!r}")
 
-    @property
+    @cached_property
     def space(self) -> Box:
         """The unit cube with the Euclidean metric."""
-        return self._space
+        return Box([0.0] * self.d, [1.0] * self.d)
 
     def _valid(self, q: Floats) -> Bools:
         return points_are_free(q, self.axes, self.centres, self.half_extents)
@@ -145,16 +126,7 @@ def _is_outside_all(q: Floats, axes: Ints, centres: Floats, half_extents: Floats
 
 
 @njit(cache=True, nogil=True)
-def _misses(
-    a: Floats,
-    b: Floats,
-    axes: Ints,
-    centre: Floats,
-    half_extent: Floats,
-    spans: Floats,
-    narrowed: Floats,
-    on_axis: Floats,
-) -> bool:
+def _misses(a, b, axes, centre, half_extent, spans, narrowed, on_axis):  # type: ignore[no-untyped-def]
     """Return whether ``a + t (b - a)``, 0 <= t <= 1, is never within one box; the last three are room to work in."""
     for j in range(len(axes)):
         # Most boxes are out of reach along some axis: the middle of the motion says so.
