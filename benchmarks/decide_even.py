@@ -40,8 +40,7 @@ from benchmarks.nested_k import smallest_k
 from evenroad.points import draw
 from evenroad.points.bank import open_bank
 from evenroad.points.bank.bank import Cell
-from evenroad.research.problems.fair import DIFFICULTIES, SIZES
-from evenroad.research.problems.fair_worlds import Family, Stream, make_instance
+from evenroad.research.problems.fair import DIFFICULTIES, SIZES, Family, Stream, make_instance
 from evenroad.research.training import anneal_many
 
 DIMENSIONS = (5, 3, 2, 4, 7, 10)

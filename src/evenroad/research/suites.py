@@ -14,8 +14,7 @@ from evenroad._checks import require_count, require_known
 from evenroad.research.bench.samplers import SAMPLERS, why_not
 from evenroad.research.bench.task import Task
 from evenroad.research.problems import PROBLEMS
-from evenroad.research.problems.fair import FAIR_PROBLEMS, FairProblem
-from evenroad.research.problems.fair_worlds import Stream
+from evenroad.research.problems.fair import FAIR_PROBLEMS, FairProblem, Stream
 
 SEED = 1
 """Of the published results: it draws sets.  Widths and mazes were designed with other seeds, random worlds have one."""

@@ -8,7 +8,7 @@ import pytest
 from evenroad.cli.report_table import _fewest
 from evenroad.research.report.analysis import needed_of, resampled_curves
 from evenroad.research.report.cells import cells_of
-from evenroad.research.report.sections.settings import success_table
+from evenroad.research.report.sections import success_table
 from tests.research.report.stores import analysis_from, from_pool, runs_from, solved, task
 
 FRESH = ("",)

@@ -6,10 +6,9 @@ from functools import partial
 
 from evenroad._checks import require_known
 from evenroad.research.bench.task import ProblemSource
-from evenroad.research.problems.cubicles import cubicles
 from evenroad.research.problems.fair import FAIR
 from evenroad.research.problems.paper import CHAINS, CORRIDORS, MAZES, UR5
-from evenroad.research.problems.puzzles import problem_of, twistycool
+from evenroad.research.problems.puzzles import cubicles, problem_of, twistycool
 
 PUZZLES = tuple(
     ProblemSource(

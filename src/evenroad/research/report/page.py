@@ -12,23 +12,25 @@ from matplotlib.figure import Figure
 
 from evenroad.research.report.analysis import Analysis
 from evenroad.research.report.cells import Cell
-from evenroad.research.report.fair import is_fair, pooled_rules
-from evenroad.research.report.figures.canvas import as_png
-from evenroad.research.report.figures.charts import (
+from evenroad.research.report.charts import (
+    as_png,
     draw_curves,
     draw_fair_gains,
     draw_maze_success,
     draw_point_sets,
     maze_settings,
 )
-from evenroad.research.report.figures.scenes import draw_scene, scenes_among
+from evenroad.research.report.fair import is_fair, pooled_rules
 from evenroad.research.report.runs import Setting
-from evenroad.research.report.sections.settings import paired_tables, spread_table, success_table
-from evenroad.research.report.sections.suites import (
+from evenroad.research.report.scenes import draw_scene, scenes_among
+from evenroad.research.report.sections import (
     expected_table,
     failure_table,
     fair_table,
     lazy_table,
+    paired_tables,
+    spread_table,
+    success_table,
     verdict_counts,
 )
 from evenroad.research.report.tables import Table, as_html

@@ -18,7 +18,7 @@ from evenroad.geometry import rotation_from_quaternion
 from evenroad.points import draw
 from evenroad.research.bench.task import Problem
 from evenroad.research.problems import PROBLEMS
-from evenroad.research.report.figures.canvas import new_figure
+from evenroad.research.report.charts import new_figure
 from evenroad.research.worlds.chain import ChainWorld
 from evenroad.roadmap import KNearest, PlanResult, plan
 from evenroad.robot import ArmWorld
