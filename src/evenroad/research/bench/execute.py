@@ -128,10 +128,9 @@ def require_limit(seconds: float | None) -> None:
 
 @contextmanager
 def time_limit(seconds: float | None) -> Iterator[None]:
-    """Raise OverTime in the block after so many seconds; None means no limit.
+    """Raise OverTime in the block after so many seconds, by a SIGALRM: where there is none nothing is limited.
 
-    It takes a SIGALRM, so nothing is limited on platforms without it, nor outside of the main thread.  Compiled code
-    is not interrupted: the error comes when it returns.
+    Nor is it outside of the main thread, and compiled code is not interrupted: the error comes when it returns.
     """
     here = threading.current_thread() is threading.main_thread()
     if seconds is None or not here or not hasattr(signal, "SIGALRM"):

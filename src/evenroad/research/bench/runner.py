@@ -56,28 +56,11 @@ def run_tasks(
 ) -> Report:
     """Run all tasks that the store has no row of; a stopped run goes on with the next call.
 
-    Outcomes do not depend on the workers, nor on how often the run was stopped; seconds do.
-
-    Parameters
-    ----------
-    suite : str
-        Label of the rows.
-    tasks : iterable of Task
-        In an order that suits caches (see :func:`~evenroad.research.bench.execute.run_task`).
-    callback : callable, optional
-        Called as ``callback(finished, tasks)`` a few times a second, with those found in the store counted; what it
-        raises stops the run.
-    limit : float, optional
-        Seconds for a task, at most 10^6, after which its row says ``timeout``; None means no limit.
-    retry : bool
-        Run tasks again whose row is a failure.
-
-    Raises
-    ------
-    WorkerLost
-        If workers die again and again without finishing anything.
-    BrokenFile
-        If the store cannot be written any more.  What was finished waits in it for its end.
+    Outcomes do not depend on the workers, nor on how often the run was stopped; seconds do.  Tasks should come in an
+    order that suits caches (see :func:`~evenroad.research.bench.execute.run_task`); `suite` labels their rows, `limit`
+    is in seconds a task.  `callback` is called as ``callback(finished, tasks)`` a few times a second, with those found
+    in the store counted; what it raises stops the run.  With `retry` tasks whose row is a failure are run again.
+    Raises WorkerLost if workers die again and again without finishing anything.
     """
     require_limit(limit)
     tasks = tuple(tasks)

@@ -25,20 +25,12 @@ class Corridor(CompiledWorld):
 
     A configuration is free iff it lies in [0, 1]^d and there is a k with ``x_i <= lam`` for all i < k and
     ``x_i >= 1 - lam`` for all i > k: the Hypercube benchmark of OMPL's demos.  Motions are straight and
-    tested at ``n = ceil(length / resolution)`` segments' ends, the first included, in bisection order.
+    tested at ``n = ceil(length / resolution)`` segments' ends, the first included, in bisection order.  From a width of
+    one half on, the straight way from start to goal is free.
 
-    Parameters
-    ----------
-    d : int
-    lam : float
-        Width, in (0, 1).  From one half on, the straight way from start to goal is free.
-    checked : int, optional
-        Only the first so many coordinates are tested; all by default.  OMPL's demo tests 6, whatever its dimension:
-        published results for "d = 10" are of that.
-    side : {"comment", "demo"}
-        Which end of the coordinates goes first.  "comment" is the definition above, which the comment in OMPL's demo
-        states; "demo" has the two sides swapped, as its code does.  It matters only where coordinates are not alike
-        (Halton).
+    Only the first `checked` coordinates are tested, all by default.  OMPL's demo tests 6, whatever its dimension:
+    published results for "d = 10" are of that.  The side "demo" has the two sides swapped against the definition above,
+    as the demo's code has against its comment; it matters only where coordinates are not alike (Halton).
     """
 
     d: int
