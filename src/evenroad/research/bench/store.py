@@ -10,7 +10,7 @@ import sqlite3
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -169,17 +169,12 @@ def open_store(path: str | os.PathLike[str]) -> Iterator[Store]:
     with only_writer(target):
         if not target.exists() or target.stat().st_size == 0:
             create(target)
-        connection = connect(target)
-        try:
+        with closing(connect(target)) as connection:
             with sqlite_errors(target):
                 store = Store(target, connection)
-            try:
+            with closing(store):
                 store.take_in_rescued()
                 yield store
-            finally:
-                store.close()
-        finally:
-            connection.close()
 
 
 def _session() -> tuple[object, ...]:

@@ -6,7 +6,7 @@ import os
 import sqlite3
 import zlib
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from operator import itemgetter
 from pathlib import Path
 from typing import Any
@@ -133,15 +133,12 @@ def _pragma(connection: sqlite3.Connection, name: str) -> object:
 
 def create(path: Path) -> None:
     """Make an empty store at `path`, where there is no file yet or an empty one; all of it or nothing."""
-    with sqlite_errors(path):
-        connection = sqlite3.connect(path, timeout=PATIENCE, isolation_level=None)
-        try:
-            connection.executescript(
-                f"BEGIN EXCLUSIVE; {TABLES} PRAGMA application_id = {APPLICATION};"
-                f" PRAGMA user_version = {SCHEMA}; COMMIT;"
-            )
-        finally:
-            connection.close()
+    marks = f"PRAGMA application_id = {APPLICATION}; PRAGMA user_version = {SCHEMA};"
+    with (
+        sqlite_errors(path),
+        closing(sqlite3.connect(path, timeout=PATIENCE, isolation_level=None)) as connection,
+    ):
+        connection.executescript(f"BEGIN EXCLUSIVE; {TABLES} {marks} COMMIT;")
 
 
 def checksum_of(values: Sequence[object]) -> int:

@@ -174,6 +174,7 @@ def cells_of(runs: Runs) -> tuple[Cell, ...]:
         np.bincount(cell[such], minlength=cells).tolist() for such in (slice(None), runs.solved, runs.failed)
     )
     low, high = wilson(solved, totals)
+    also_by_set = grouping.also_by_set
     return tuple(
         Cell(
             setting=runs.settings[runs.setting[row]],
@@ -185,7 +186,7 @@ def cells_of(runs: Runs) -> tuple[Cell, ...]:
             interval=_interval(
                 Interval(float(low[c]), float(high[c]), "wilson"),
                 units[c],
-                sets[c] if grouping.also_by_set[c] else None,
+                sets[c] if also_by_set[c] else None,
             ),
             units=units[c],
             sets=sets[c],

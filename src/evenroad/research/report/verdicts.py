@@ -10,7 +10,6 @@ from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from evenroad._checks import require_known
 from evenroad.research.report.cells import Cell
 from evenroad.research.report.comparisons import holm_of_tested
 from evenroad.research.statistics.rates import fisher_exact
@@ -28,9 +27,9 @@ LEVEL = 0.05
 class ExpectedCell:
     """One cell of a published or measured table; numbers that the source does not give are NaN, or None for `runs`.
 
-    `success` is in percent; `v` and `v_sd` are the mean number of milestones and its standard deviation over runs,
-    where `v_counts` says what is counted (``all`` valid milestones, or ``early``: those added until there was a path)
-    and `v_add` what the source adds for start and goal.  `note` is what a reader must know of this cell.
+    `success` is in percent; `v` is the mean number of milestones, where `v_counts` says what is counted (``all`` valid
+    ones, or ``early``: those added until there was a path) and `v_add` what the source adds for start and goal.  `note`
+    is what a reader must know of this cell.
     """
 
     problem: str
@@ -39,7 +38,6 @@ class ExpectedCell:
     n: int
     success: float
     v: float
-    v_sd: float
     v_counts: str
     v_add: int
     runs: int | None = None
@@ -70,8 +68,7 @@ class ExpectedTable(NamedTuple):
 
 @cache
 def load_expected(name: str) -> ExpectedTable:
-    """Read one of :data:`SOURCES`; UnknownName if there is no such source."""
-    require_known("source of expected results", name, SOURCES)
+    """Read one of :data:`SOURCES`."""
     record = tomllib.loads((FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
     cells = tuple(cell for row in record["rows"] for cell in _cells_of(row))
     return ExpectedTable(record["name"], record["title"], record["source"], record["about"], cells)
@@ -79,12 +76,11 @@ def load_expected(name: str) -> ExpectedTable:
 
 def _cells_of(row: dict[str, Any]) -> list[ExpectedCell]:
     """Return the cells of a row of a data file, which lists `n` and, in the same order, its numbers."""
-    unknown = [math.nan] * len(row["n"])
-    columns = (row["n"], row["success"], row.get("v", unknown), row.get("v_sd", unknown))
+    columns = (row["n"], row["success"], row.get("v", [math.nan] * len(row["n"])))
     shared = {key: value for key, value in row.items() if key not in ("n", "success", "v", "v_sd")}
     return [
-        ExpectedCell(n=n, success=float(success), v=float(v), v_sd=float(v_sd), **shared)
-        for n, success, v, v_sd in zip(*columns, strict=True)
+        ExpectedCell(n=n, success=float(success), v=float(v), **shared)
+        for n, success, v in zip(*columns, strict=True)
     ]
 
 
@@ -120,15 +116,13 @@ class Verdict:
 
 
 def verdicts_of(table: ExpectedTable, cells: Sequence[Cell]) -> tuple[Verdict, ...]:
-    """Compare every expected cell with ours.
-
-    The test takes runs for independent.  Where they share sets of a pool they are not, and it says "differs" too
-    readily.
-    """
-    known = sorted(
-        (c for c in cells if c.setting.search in SEARCHES), key=lambda c: SEARCHES.index(c.setting.search)
-    )
-    ours = {(c.setting.problem, c.sampler, c.setting.rule, c.n): c for c in known}
+    """Compare every expected cell with ours; runs that share sets of a pool are taken for independent, too readily."""
+    ours = {
+        (cell.setting.problem, cell.sampler, cell.setting.rule, cell.n): cell
+        for search in SEARCHES
+        for cell in cells
+        if cell.setting.search == search
+    }
     found = [ours.get((each.problem, each.sampler, each.rule, each.n)) for each in table.cells]
     p_values = [_p_value(expected, cell) for expected, cell in zip(table.cells, found, strict=True)]
     corrected = holm_of_tested(p_values).tolist()
