@@ -77,11 +77,12 @@ class Section(NamedTuple):
 def sections_of(analysis: Analysis) -> tuple[Section, ...]:
     """Return the sections of the page, those without results left out."""
     settings = [setting for setting in analysis.runs.settings if not is_fair(setting)]
-    sections = [_setting(analysis, each) for each in settings]
-    if analysis.pooled:
-        sections.insert(0, _fair(analysis))
+    sections = []
     if analysis.verdicts:
-        sections.insert(0, _expected(analysis))
+        sections.append(_expected(analysis))
+    if analysis.pooled:
+        sections.append(_fair(analysis))
+    sections += [_setting(analysis, each) for each in settings]
     if mazes := maze_settings(settings):
         sections.append(_mazes([cell for cell in analysis.cells if cell.setting in mazes]))
     if scenes := scenes_among([setting.problem for setting in settings]):
@@ -102,8 +103,7 @@ def _expected(analysis: Analysis) -> Section:
 def _fair(analysis: Analysis) -> Section:
     rules = pooled_rules(analysis.runs.settings)
     tables = [fair_table(grouping, found, rules) for grouping, found in analysis.pooled.items()]
-    if analysis.lazy:
-        tables.append(lazy_table(analysis.lazy))
+    tables += [lazy_table(analysis.lazy)] if analysis.lazy else []
     picture = _picture("fair-gains", "Gain over uniform points", draw_fair_gains(analysis.pooled))
     return Section("fair", "Fair suite: random worlds, starts and goals", "", (picture,), tuple(tables))
 
