@@ -120,10 +120,6 @@ def analyse(rows: Rows) -> Analysis:
 
 
 def _verdicts(cells: tuple[Cell, ...]) -> dict[str, tuple[ExpectedTable, tuple[Verdict, ...]]]:
-    found = {}
-    for name in SOURCES:
-        table = load_expected(name)
-        verdicts = verdicts_of(table, cells)
-        if any(each.ours is not None for each in verdicts):
-            found[name] = (table, verdicts)
-    return found
+    tables = {name: load_expected(name) for name in SOURCES}
+    found = {name: (table, verdicts_of(table, cells)) for name, table in tables.items()}
+    return {name: each for name, each in found.items() if any(verdict.ours for verdict in each[1])}
