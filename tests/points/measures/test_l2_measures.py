@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.stats import qmc
 
-from evenroad.errors import EvenroadError, InvalidValue, UnknownName
+from evenroad.errors import InvalidValue
 from evenroad.points import PointSet
-from evenroad.points.measures import MEASURES, measure_named
+from evenroad.points.measures import MEASURES
 
 WEIGHTED = [name for name, measure in MEASURES.items() if measure.weighted]
 UNWEIGHTED = [name for name, measure in MEASURES.items() if not measure.weighted]
@@ -310,10 +310,3 @@ def test_bad_weights_are_refused(weights):
 def test_a_measure_without_a_constant_part_says_that_it_takes_no_weights(name):
     with pytest.raises(InvalidValue, match=f"{name} takes no coordinate weights"):
         MEASURES[name].squared([[0.5, 0.5]], [1.0, 1.0])
-
-
-def test_an_unknown_measure_lists_the_known_ones():
-    with pytest.raises(UnknownName, match="unknown measure 'L2'; known: average_squared, centred"):
-        measure_named("L2")
-    assert issubclass(UnknownName, EvenroadError)
-    assert measure_named("star") is MEASURES["star"]

@@ -13,11 +13,11 @@ import torch
 
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 from evenroad.points import load_points
-from evenroad.points.optimise import parse_objective
 from evenroad.research.network import NetworkConfig, train
 from evenroad.research.network.config import choose_device
 from evenroad.research.network.state import TrainingState, advance, first_state, is_finished, learning_rate
 from evenroad.research.training import anneal_many
+from evenroad.research.training.objective import parse_objective
 
 TINY = NetworkConfig(16, 2, sets=3, width=8, layers=2, k=3, steps=40, seed=5)
 

@@ -47,7 +47,7 @@ class Trained:
         Anneal a set that is neither in the bank nor in the cache; else refuse, naming the n that there are.
         The network's sets are never made on demand.
     callback : callable, optional
-        Progress of an annealing, as for :func:`evenroad.points.optimise.anneal`.
+        Progress of an annealing, as for :func:`evenroad.points.bank.anneal.anneal`.
     bank : Bank, optional
         By default the one that ships with evenroad.
     """
@@ -135,11 +135,14 @@ class Trained:
         One kind of processor always makes the same bits, and a file appears in one step: two processes that anneal
         it at once write the same content, whichever comes last.
         """
-        from evenroad.points.optimise import anneal
+        from evenroad.points.bank.anneal import anneal
+        from evenroad.points.measures import MEASURES
 
         _require_cache(file)
         seed = np.random.SeedSequence(SEED, spawn_key=(origin.replica or 0,))
-        made = anneal(n, d, origin.objective, steps=ON_DEMAND_STEPS, rng=seed, callback=self.callback)
+        made = anneal(
+            n, d, MEASURES[origin.objective], steps=ON_DEMAND_STEPS, rng=seed, callback=self.callback
+        )
         points = PointSet(np.minimum(made.points.astype(np.float32), np.float32(BELOW_ONE)), origin)
         save_points(file, points)
         return points

@@ -28,27 +28,18 @@ _SLABS = 32
 def dispersion_l2(points: object) -> float:
     """Return the exact l2-dispersion: the supremum over [0, 1]^d of the Euclidean distance to the nearest point.
 
-    The distance is largest at a vertex of the Voronoi cells cut by the cube.  With the points mirrored at every
-    face the mirrored cells meet at the faces, so those vertices are plain Voronoi vertices.
-
-    Parameters
-    ----------
-    points : array_like or PointSet, shape (n, d)
-        Coordinates in [0, 1), n >= 1, d <= 3.
-
-    Raises
-    ------
-    InvalidValue
-        For no points or bad coordinates.
-    NotAvailable
-        For d > 3: see :func:`dispersion_lower_bound`.
+    `points`, (n, d), have coordinates in [0, 1), n >= 1, d <= 3.  Raises InvalidValue for no points or bad ones, and
+    NotAvailable for d > 3.
     """
     coordinates = _checked(points, "dispersion_l2")
-    if coordinates.shape[1] == 1:
+    d = coordinates.shape[1]
+    if d == 1:
         return _dispersion_of_line(coordinates[:, 0])
+    # The distance is largest at a vertex of the Voronoi cells cut by the cube.  With the points mirrored at every face
+    # the mirrored cells meet at the faces, so those vertices are plain Voronoi vertices.
     distinct = np.unique(coordinates, axis=0)
     mirrored = [distinct]
-    for axis in range(distinct.shape[1]):
+    for axis in range(d):
         for face in (0.0, 1.0):
             image = distinct.copy()
             image[:, axis] = 2.0 * face - image[:, axis]
@@ -57,29 +48,16 @@ def dispersion_l2(points: object) -> float:
     # Rounding puts vertices of the faces slightly outside; clipped they are places of the cube again, and the
     # distance at any place of the cube is at most the supremum.
     near = ((vertices > -1e-9) & (vertices < 1.0 + 1e-9)).all(axis=1)
-    places = np.concatenate([np.clip(vertices[near], 0.0, 1.0), _corners(distinct.shape[1])])
+    places = np.concatenate([np.clip(vertices[near], 0.0, 1.0), np.indices([2] * d).reshape(d, -1).T])
     return float(np.max(cKDTree(distinct).query(places)[0]))
 
 
 def dispersion_linf(points: object, budget: float = BUDGET) -> float:
     """Return the exact linf-dispersion: half the side of the largest cube centred in [0, 1]^d without a point.
 
-    By bisection to the last bit on whether open cubes around the points cover the unit cube.
-
-    Parameters
-    ----------
-    points : array_like or PointSet, shape (n, d)
-        Coordinates in [0, 1), n >= 1, d <= 3.
-    budget : float
-        Limit on the estimated work, n^2 in d = 3 and n below: at the default n is 20000 at most in d = 3, where
-        a few thousand points take seconds.
-
-    Raises
-    ------
-    InvalidValue
-        For no points, bad coordinates or a bad budget.
-    NotAvailable
-        For d > 3, or if the estimated work exceeds the budget: see :func:`dispersion_lower_bound`.
+    By bisection to the last bit on whether open cubes around the points cover the unit cube.  `points` and errors are
+    those of :func:`dispersion_l2`; NotAvailable also if the estimated work, n^2 in d = 3 and n below, exceeds `budget`.
+    The default allows 20000 points in d = 3, where a few thousand take seconds.
     """
     coordinates = _checked(points, "dispersion_linf")
     n, d = coordinates.shape
@@ -106,8 +84,7 @@ def dispersion_lower_bound(
     ----------
     points : array_like or PointSet, shape (n, d)
         Coordinates in [0, 1), n >= 1.
-    norm : str
-        ``"l2"`` or ``"linf"``.
+    norm : {"l2", "linf"}
     rng : int, SeedSequence or Generator
         Draws the places.
     starts, rounds : int
@@ -115,10 +92,8 @@ def dispersion_lower_bound(
 
     Raises
     ------
-    InvalidValue
-        For no points, bad coordinates, starts or rounds.
-    UnknownName
-        For another norm.
+    InvalidValue, UnknownName
+        For no points, bad coordinates, starts or rounds; for another norm.
     """
     coordinates = _checked(points, None)
     require_known("norm", norm, NORMS)
@@ -163,10 +138,6 @@ def _checked(points: object, exact: str | None) -> Floats:
 def _dispersion_of_line(coordinates: Floats) -> float:
     ordered = np.sort(coordinates)
     return float(max(ordered[0], 1.0 - ordered[-1], np.diff(ordered).max(initial=0.0) / 2.0))
-
-
-def _corners(d: int) -> Floats:
-    return np.array(np.meshgrid(*[[0.0, 1.0]] * d)).reshape(d, -1).T
 
 
 def _largest_hole(coordinates: Floats) -> float:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import operator
 
 import numpy as np
 from numba import njit
@@ -18,22 +17,11 @@ from evenroad.points.pointset import as_unit_points
 def separation(points: object, periodic: bool = False) -> float:
     """Return the smallest Euclidean distance between two of the points; large is spread out.
 
-    Parameters
-    ----------
-    points : array_like or PointSet, shape (n, d)
-        Coordinates in [0, 1), n >= 2.
-    periodic : bool
-        Whether distances are those of the torus, each coordinate wrapping modulo 1.
-
-    Raises
-    ------
-    InvalidValue
-        For fewer than two points or bad coordinates.
+    `points`, (n, d), have coordinates in [0, 1), n >= 2, else InvalidValue; `periodic` measures on the torus, each
+    coordinate wrapping modulo 1.
     """
-    coordinates = as_unit_points(points)
+    coordinates = _checked(points, "separation")
     n, d = coordinates.shape
-    if n < 2:
-        raise InvalidValue(f"separation needs at least 2 points, got {n}")
     if np.unique(coordinates, axis=0).shape[0] < n:
         return 0.0
     tree = cKDTree(coordinates, boxsize=np.ones(d)) if periodic else cKDTree(coordinates)
@@ -56,16 +44,16 @@ def riesz_energy(points: object, s: int | None = None, periodic: bool = True) ->
     Returns
     -------
     float
-        The energy in units of ``spacing = n^(-1/d)``, so that it hardly depends on n;
-        ``inf`` where it exceeds the range of a float, as for coincident points.
+        With ``spacing = n^(-1/d)`` it hardly depends on n; ``inf`` where it exceeds the range of a float, as for
+        coincident points.
 
     Raises
     ------
     InvalidValue
         For fewer than two points, bad coordinates, or an s that is not an integer >= 1.
     """
-    logarithm = log_riesz_of_columns(*_checked(points, s), periodic, want_gradient=False)[0]
-    return _exp(logarithm)
+    logarithm = _log_riesz(points, s, periodic)[0]
+    return math.exp(logarithm) if logarithm < 709.0 else math.inf
 
 
 def riesz_rooted(points: object, s: int | None = None, periodic: bool = True) -> float:
@@ -73,25 +61,8 @@ def riesz_rooted(points: object, s: int | None = None, periodic: bool = True) ->
 
     It stays in the range of a float where the energy does not; the distance of coincident points counts as 10^-100.
     """
-    return riesz_rooted_with_gradient(points, s, periodic)[0]
-
-
-def riesz_energy_with_gradient(
-    points: object, s: int | None = None, periodic: bool = True
-) -> tuple[float, Floats]:
-    """Return :func:`riesz_energy` and its gradient, shape (n, d); infinite where the energy is."""
-    columns, exponent = _checked(points, s)
-    logarithm, gradient = log_riesz_of_columns(columns, exponent, periodic, want_gradient=True)
-    return _scaled(_exp(logarithm), gradient)
-
-
-def riesz_rooted_with_gradient(
-    points: object, s: int | None = None, periodic: bool = True
-) -> tuple[float, Floats]:
-    """Return :func:`riesz_rooted` and its gradient, shape (n, d)."""
-    columns, exponent = _checked(points, s)
-    logarithm, gradient = log_riesz_of_columns(columns, exponent, periodic, want_gradient=True)
-    return _scaled(_exp(logarithm / exponent), gradient / exponent)
+    logarithm, exponent = _log_riesz(points, s, periodic)
+    return math.exp(logarithm / exponent)
 
 
 def log_riesz_of_columns(
@@ -115,24 +86,19 @@ def log_riesz_of_columns(
     return logarithm, pushes
 
 
-def _checked(points: object, s: int | None) -> tuple[Floats, int]:
+def _log_riesz(points: object, s: int | None, periodic: bool) -> tuple[float, int]:
+    """Return log(riesz_energy) and the exponent."""
+    coordinates = _checked(points, "an energy")
+    exponent = 2 * coordinates.shape[1] if s is None else require_count("s", s)
+    columns = np.ascontiguousarray(coordinates.T)
+    return log_riesz_of_columns(columns, exponent, periodic, want_gradient=False)[0], exponent
+
+
+def _checked(points: object, what: str) -> Floats:
     coordinates = as_unit_points(points)
-    n, d = coordinates.shape
-    if n < 2:
-        raise InvalidValue(f"an energy needs at least 2 points, got {n}")
-    exponent = 2 * d if s is None else require_count("s", s)
-    return np.ascontiguousarray(coordinates.T), operator.index(exponent)
-
-
-def _exp(logarithm: float) -> float:
-    return math.exp(logarithm) if logarithm < 709.0 else math.inf
-
-
-def _scaled(value: float, log_gradient: Floats) -> tuple[float, Floats]:
-    gradient = np.ascontiguousarray(log_gradient.T)
-    if math.isinf(value):
-        return value, np.where(gradient == 0.0, 0.0, np.copysign(np.inf, gradient))
-    return value, value * gradient
+    if len(coordinates) < 2:
+        raise InvalidValue(f"{what} needs at least 2 points, got {len(coordinates)}")
+    return coordinates
 
 
 SMALLEST_SQUARED = 1e-200

@@ -28,15 +28,12 @@ def star_discrepancy(points: object, budget: float = BUDGET) -> float:
     points : array_like or PointSet, shape (n, d)
         Coordinates in [0, 1), n >= 1.
     budget : float
-        Limit on the estimated work, n^d / d!: at the default n is 140000, 3900, 700, 260 and 139 at most for
-        d = 2 .. 6.
+        Of the estimated work, n^d / d!: at the default n is 140000, 3900, 700, 260 and 139 at most for d = 2 .. 6.
 
     Raises
     ------
-    InvalidValue
-        For no points or bad coordinates.
-    NotAvailable
-        If the estimated work exceeds the budget.
+    InvalidValue, NotAvailable
+        For no points or bad coordinates; if the estimated work exceeds the budget.
     """
     coordinates = as_unit_points(points)
     n, d = coordinates.shape
@@ -64,35 +61,27 @@ def _largest_deviation(columns):  # type: ignore[no-untyped-def]
     counts = np.zeros(d, np.int64)
     volumes = np.ones(d)
     sides = np.empty((d, n + 1))
-    side_counts = np.zeros(d, np.int64)
     next_side = np.zeros(d, np.int64)
-    for i in range(n):
-        inside[0, i] = i
-        strictly[0, i] = True
+    inside[0] = np.arange(n)
+    strictly[0] = True
     counts[0] = n
     best = 0.0
     level = 0
     entering = True
     while level >= 0:
         if entering and level == d - 1:
-            best = max(best, _sweep_last(columns[level], inside[level], strictly[level], counts[level],
-                                         volumes[level], n))  # fmt: skip
+            last = inside[level], strictly[level], counts[level], volumes[level]
+            best = max(best, _sweep_last(columns[level], *last, n))
             level -= 1
             entering = False
             continue
         if entering:
-            values = np.empty(counts[level] + 1)
+            values = np.ones(counts[level] + 1)
             for position in range(counts[level]):
                 values[position] = columns[level, inside[level, position]]
-            values[counts[level]] = 1.0
-            values.sort()
-            kept = 0
-            for position in range(values.size):
-                if position == 0 or values[position] != values[position - 1]:
-                    sides[level, kept] = values[position]
-                    kept += 1
-            side_counts[level] = kept
-            next_side[level] = kept - 1
+            values = np.unique(values)
+            sides[level, : values.size] = values
+            next_side[level] = values.size - 1
             entering = False
         if next_side[level] < 0:
             level -= 1

@@ -12,7 +12,8 @@ from evenroad._checks import require_known
 from evenroad.errors import NotAvailable, UnknownName
 from evenroad.points import PointSet, draw, make_sampler
 from evenroad.points.bank import open_bank
-from evenroad.points.randomise import permute_coordinates
+from evenroad.points.randomise import randomise
+from evenroad.points.sampler import Symmetry
 from evenroad.points.samplers.lattice import MAX_D
 
 PERMUTED_FROM = 5
@@ -113,7 +114,7 @@ def _from_pool(family: str, n: int, d: int, run: int, rng: np.random.Generator) 
         # Constructed, as `even` is: its random shift makes it a set of its own.
         return points, ""
     if d >= PERMUTED_FROM:
-        points = permute_coordinates(points, rng=order)
+        points = randomise(points, {Symmetry.PERMUTATION}, rng=order)
     return points, str(points.origin.replica)
 
 

@@ -12,7 +12,8 @@ import torch
 
 from evenroad._checks import require_count, require_positive
 from evenroad.errors import InvalidValue, NotAvailable, shown
-from evenroad.points.optimise.objective import parse_objective, require_points_for
+from evenroad.points.bank.anneal import require_points_for
+from evenroad.research.training.objective import parse_objective
 
 POINTS_AT_ONCE = 4096
 """Number of points in memory together, unless a micro-batch is asked for."""
@@ -27,8 +28,7 @@ class NetworkConfig:
     n, d : int
         Number of points of a set, >= 2, and dimension, >= 1.
     objective : str
-        Its mean over the sets is made small, see :func:`~evenroad.points.optimise.parse_objective`.  Kept as ``str``
-        writes the parsed objective.
+        An expression (:mod:`evenroad.research.training.objective`), whose mean over the sets is made small.
     sets : int
         Number of sets that are trained together: they share the network, and each has its own random start.
     width, layers : int

@@ -20,9 +20,9 @@ from torch.nn import functional
 
 from evenroad._arrays import Floats, Ints
 from evenroad.errors import InvalidValue
-from evenroad.points.optimise.objective import Objective, objective_of_columns
 from evenroad.points.pointset import BELOW_ONE
 from evenroad.research.network.config import NetworkConfig
+from evenroad.research.training.objective import Objective
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,7 +186,7 @@ class _ObjectiveOfSets(torch.autograd.Function):
         _require_finite("the network's points", given)  # before the kernels: their fastmath knows no NaN
         values, gradient = np.empty(len(given)), np.empty_like(given)
         for index, each in enumerate(given):
-            values[index], by_columns = objective_of_columns(objective, np.ascontiguousarray(each.T))
+            values[index], by_columns = objective.of_columns(np.ascontiguousarray(each.T))
             gradient[index] = by_columns.T
         _require_finite(f"the objective '{objective}'", values)
         _require_finite(f"the gradient of '{objective}'", gradient)

@@ -22,9 +22,9 @@ from safetensors import SafetensorError
 from evenroad._arrays import Floats
 from evenroad._files import atomic_write
 from evenroad.errors import BrokenFile, shown
-from evenroad.points.optimise.objective import Objective
 from evenroad.research.network.config import NetworkConfig
 from evenroad.research.network.model import PointNetwork, build_network, edges_of_sets, objective_of_sets
+from evenroad.research.training.objective import Objective
 
 CHECKPOINT_FILE = "checkpoint.json"
 FORMAT = 1

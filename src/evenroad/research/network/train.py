@@ -13,9 +13,8 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._checks import require_count, require_positive
 from evenroad.errors import InvalidValue
+from evenroad.points.bank.anneal import Callback, anneal
 from evenroad.points.npz import save_points
-from evenroad.points.optimise import Objective, anneal, parse_objective
-from evenroad.points.optimise.anneal import Callback
 from evenroad.points.pointset import Origin, PointSet
 from evenroad.research.network.config import NetworkConfig, choose_device, same_bits
 from evenroad.research.network.state import (
@@ -28,6 +27,7 @@ from evenroad.research.network.state import (
     save_checkpoint,
 )
 from evenroad.research.training.folder import claim_folder, read_set, set_name
+from evenroad.research.training.objective import Objective, parse_objective
 
 
 def request_of(config: NetworkConfig) -> dict[str, Any]:
@@ -183,7 +183,7 @@ def refine(
     objective : str or Objective, optional
         What to make small; by default what the origin of every set says it was made for.
     steps : int
-        Of the annealing, see :func:`~evenroad.points.optimise.anneal`.
+        Of the annealing, see :func:`~evenroad.points.bank.anneal.anneal`.
     callback : callable, optional
         Called as ``callback(step, steps, best)`` after every step, counted over all sets, with the best value of
         the set at work.

@@ -14,9 +14,10 @@ import numpy as np
 
 from evenroad._files import atomic_write, remove_abandoned_parts
 from evenroad.errors import BrokenFile, InvalidValue, shown
+from evenroad.points.bank.anneal import SCHEDULE, Callback, anneal
 from evenroad.points.npz import load_points, save_points
-from evenroad.points.optimise.anneal import SCHEDULE, Callback, anneal
 from evenroad.points.pointset import Origin, PointSet
+from evenroad.research.training.objective import parse_objective
 
 REQUEST_FILE = "request.json"
 
@@ -72,7 +73,7 @@ def read_set(path: Path, origin: Origin, shape: tuple[int, int]) -> PointSet | N
 class SetTask:
     """All that a process needs to anneal one set, as plain values that can be sent to it.
 
-    `n`, `d`, `objective` (as text) and `steps` are those of :func:`~evenroad.points.optimise.anneal`; `entropy` and
+    `n`, `d`, `objective` (as text) and `steps` are those of :func:`~evenroad.points.bank.anneal.anneal`; `entropy` and
     `spawn_key` make the set's own seed sequence; `family`, `seed` and `replica` go into its origin; `path` is its file.
     """
 
@@ -91,7 +92,8 @@ class SetTask:
 def make_set(task: SetTask, callback: Callback) -> PointSet:
     """Anneal the set of a task, save it if it has a file, and return it."""
     sequence = np.random.SeedSequence(task.entropy, spawn_key=task.spawn_key)
-    annealed = anneal(task.n, task.d, task.objective, steps=task.steps, rng=sequence, callback=callback)
+    objective = parse_objective(task.objective)
+    annealed = anneal(task.n, task.d, objective, steps=task.steps, rng=sequence, callback=callback)
     points = PointSet(annealed.points, origin_of(task))
     if task.path is not None:
         save_points(task.path, points)

@@ -15,8 +15,7 @@ import numpy as np
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, seed_of
 from evenroad.errors import InvalidValue, WorkerLost
-from evenroad.points.optimise.anneal import Callback
-from evenroad.points.optimise.objective import Objective, parse_objective, require_points_for
+from evenroad.points.bank.anneal import Callback, require_points_for
 from evenroad.points.pointset import PointSet
 from evenroad.research.training.folder import (
     SetTask,
@@ -26,6 +25,7 @@ from evenroad.research.training.folder import (
     request_of,
     set_name,
 )
+from evenroad.research.training.objective import Objective, parse_objective
 from evenroad.research.workers import ProcessPool, usable_processors
 
 _POLL_SECONDS = 0.2
@@ -52,7 +52,7 @@ def anneal_many(
     Parameters
     ----------
     n, d, objective, steps
-        As for :func:`~evenroad.points.optimise.anneal`.
+        As for :func:`~evenroad.points.bank.anneal.anneal`.
     sets : int
         How many sets, >= 1.
     rng : int, SeedSequence or Generator

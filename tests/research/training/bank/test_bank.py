@@ -6,7 +6,9 @@ import pytest
 
 from evenroad.errors import BrokenFile, NotAvailable, UnknownName
 from evenroad.points.bank import Bank, Trained, open_bank
+from evenroad.points.bank.anneal import anneal
 from evenroad.points.bank.bank import DATA, INDEX, SEED
+from evenroad.points.measures import MEASURES
 from evenroad.points.pointset import PointSet
 from evenroad.research.training import anneal_many
 from evenroad.research.training.bank import MEASURED, Recipe, build, recipes, store
@@ -57,10 +59,8 @@ def test_the_bank_stays_within_its_20_megabytes():
 def test_a_set_of_the_bank_can_be_made_again_from_its_recipe():
     recipe = SHIPPED[0]
     replica = 3
-    from evenroad.points.optimise import anneal
-
     seed = np.random.SeedSequence(SEED, spawn_key=(replica,))
-    again = anneal(recipe.n, recipe.d, recipe.objective, steps=recipe.steps, rng=seed)
+    again = anneal(recipe.n, recipe.d, MEASURES[recipe.objective], steps=recipe.steps, rng=seed)
     shipped = open_bank().cell(recipe.family, recipe.n, recipe.d)
     # Another processor may round differently and end elsewhere, but in a basin as deep.
     assert again.value == pytest.approx(shipped.measures[f"{recipe.objective}_rooted"][replica], rel=0.05)
