@@ -26,42 +26,26 @@ class Sampler(Protocol):
     @property
     def name(self) -> str:
         """The name under which users ask for it."""
-        ...
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
-        """Return n points of [0, 1)^d, with their origin.
+        """Return n >= 1 points of [0, 1)^d, d >= 1, with their origin; all that is random comes from `rng`.
 
-        Parameters
-        ----------
-        n, d : int
-            Number of points and dimension, >= 1.
-        rng : int, SeedSequence or Generator
-            All that is random comes from it.  A passed Generator is spawned.
-
-        Raises
-        ------
-        InvalidValue
-            If n, d or rng is not of that kind, or the sampler does not go up to this n or d.
-        NotAvailable
-            If the sampler has no set of this n and d.
+        A passed Generator is spawned.  Raises InvalidValue if n, d or rng is not of that kind, or the sampler does not
+        go up to this n or d; NotAvailable if it has no set of this n and d.
         """
-        ...
 
 
 class KnownSampler(Sampler, Protocol):
-    """A sampler of the registry: it says itself what lists and other verbs need to know of it."""
+    """A sampler of the registry says itself what lists and other verbs need to know of it."""
 
     @property
     def about(self) -> str:
         """What its sets are, in one line."""
-        ...
 
     @property
     def any_n(self) -> bool:
         """Whether it has a set of every n, in every dimension that it takes."""
-        ...
 
     @property
     def symmetries(self) -> frozenset[Symmetry]:
         """Which transformations keep the quality of its sets."""
-        ...

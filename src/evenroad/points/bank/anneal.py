@@ -25,12 +25,9 @@ Callback = Callable[[int, int, float], object]
 SCHEDULE = 2
 """Version of the schedule of rates and noise, and of the start: another one makes other sets of the same seed."""
 
-LARGEST_RATE = 0.02
-LAST_OVER_FIRST = 1 / 2000
-HOTTEST = 0.3
+LARGEST_RATE, LAST_OVER_FIRST, HOTTEST = 0.02, 1 / 2000, 0.3
 
-FIRST_DECAY = 0.9
-SECOND_DECAY = 0.999
+FIRST_DECAY, SECOND_DECAY = 0.9, 0.999
 """Of Adam's moments."""
 
 TINY = 1e-30
@@ -43,16 +40,13 @@ class Minimised(Protocol):
     @property
     def periodic(self) -> bool:
         """Whether a shift modulo 1 of all points changes nothing."""
-        ...
 
     @property
     def least_points(self) -> int:
         """Fewest points that it is defined for: 2 with an energy, else 1."""
-        ...
 
     def of_columns(self, columns: Floats) -> tuple[float, Floats]:
         """Return the value and its gradient, shape (d, n), at points of shape (d, n)."""
-        ...
 
 
 class Annealed(NamedTuple):

@@ -18,8 +18,7 @@ BUDGET = 4e8
 EXACT_UP_TO = 3
 """Largest dimension with an exact algorithm."""
 
-NORMS: dict[str, float] = {"l2": 2.0, "linf": np.inf}
-"""The norms by name, as the exponent that scipy takes."""
+NORMS = {"l2": 2.0, "linf": np.inf}
 
 _SLABS = 32
 """Slabs that the search is split into; any number gives the same answer."""
@@ -39,11 +38,8 @@ def dispersion_l2(points: object) -> float:
     # the mirrored cells meet at the faces, so those vertices are plain Voronoi vertices.
     distinct = np.unique(coordinates, axis=0)
     mirrored = [distinct]
-    for axis in range(d):
-        for face in (0.0, 1.0):
-            image = distinct.copy()
-            image[:, axis] = 2.0 * face - image[:, axis]
-            mirrored.append(image)
+    for axis in np.eye(d, dtype=bool):
+        mirrored += [np.where(axis, 2.0 * face - distinct, distinct) for face in (0.0, 1.0)]
     vertices = Voronoi(np.unique(np.concatenate(mirrored), axis=0)).vertices
     # Rounding puts vertices of the faces slightly outside; clipped they are places of the cube again, and the
     # distance at any place of the cube is at most the supremum.
@@ -78,24 +74,12 @@ def dispersion_lower_bound(
     """Return a lower bound of the dispersion in any dimension: the best place that a random search found.
 
     Random places and corners, then hill climbing from the best sixteenth of them with shrinking steps.  Every
-    place that is looked at gives a true lower bound; how close it comes is not known.
+    place gives a true lower bound; how close it comes is not known.
 
-    Parameters
-    ----------
-    points : array_like or PointSet, shape (n, d)
-        Coordinates in [0, 1), n >= 1.
-    norm : {"l2", "linf"}
-    rng : int, SeedSequence or Generator
-        Draws the places.
-    starts, rounds : int
-        Places drawn at first, and rounds of climbing.
-
-    Raises
-    ------
-    InvalidValue, UnknownName
-        For no points, bad coordinates, starts or rounds; for another norm.
+    `points`, (n, d), have coordinates in [0, 1), n >= 1; `norm` is ``l2`` or ``linf``, else UnknownName; `starts`
+    places are drawn from `rng`, for so many `rounds` of climbing.  InvalidValue for anything else that is bad.
     """
-    coordinates = _checked(points, None)
+    coordinates = _checked(points)
     require_known("norm", norm, NORMS)
     starts, rounds = require_count("starts", starts), require_count("rounds", rounds)
     draws = generator(rng)
@@ -123,12 +107,12 @@ def dispersion_lower_bound(
     return float(heights.max())
 
 
-def _checked(points: object, exact: str | None) -> Floats:
+def _checked(points: object, exact: str | None = None) -> Floats:
     coordinates = as_unit_points(points)
     n, d = coordinates.shape
     if n == 0:
         raise InvalidValue(f"dispersion needs at least one point, got an array of shape (0, {d})")
-    if exact is not None and d > EXACT_UP_TO:
+    if exact and d > EXACT_UP_TO:
         raise NotAvailable(
             f"{exact} is exact for d <= {EXACT_UP_TO}, got d={d}; dispersion_lower_bound searches in any dimension"
         )
@@ -143,9 +127,8 @@ def _dispersion_of_line(coordinates: Floats) -> float:
 def _largest_hole(coordinates: Floats) -> float:
     """Return the largest linf-distance of a place of [0, 1]^d from the nearest of (n, d) points, d = 2 or 3.
 
-    The unit cube is cut into slabs, taken in a fixed random order.  A slab is bisected only if it holds a larger
-    hole than all before: a few of them, so the whole costs little more than one test of coverage (the
-    randomised optimisation of Chan 1999).
+    The cube is cut into slabs, taken in a fixed random order.  A slab is bisected only if it holds a larger hole than
+    all before: a few of them, so the whole costs little more than one test of coverage (Chan 1999).
     """
     n, d = coordinates.shape
     ordered = coordinates[np.argsort(coordinates[:, -1], kind="stable")]
@@ -158,15 +141,12 @@ def _largest_hole(coordinates: Floats) -> float:
     by_middle = np.argsort(middle, kind="stable")
     best = 0.0
     for slab in np.random.default_rng(0).permutation(edges.size - 1):
-        low, high = edges[slab], edges[slab + 1]
-        if not _hole_exists(first, middle, last, by_middle, low, high, np.nextafter(best, 1.0)):
-            continue
+        place = first, middle, last, by_middle, edges[slab], edges[slab + 1]
         reached, missed = np.nextafter(best, 1.0), 2.0
-        while True:
-            radius = 0.5 * (reached + missed)
-            if radius in (reached, missed):
-                break
-            if _hole_exists(first, middle, last, by_middle, low, high, radius):
+        if not _hole_exists(*place, reached):
+            continue
+        while (radius := 0.5 * (reached + missed)) not in (reached, missed):
+            if _hole_exists(*place, radius):
                 reached = radius
             else:
                 missed = radius
@@ -178,13 +158,11 @@ def _largest_hole(coordinates: Floats) -> float:
 def _hole_exists(first, middle, last, by_middle, low, high, radius):  # type: ignore[no-untyped-def]
     """Whether a place of [low, high] x [0, 1] x [0, 1] is at least `radius` from every point.
 
-    Of all such places take the one that comes first, coordinate by coordinate: it is pushed against the low
-    side of the box or against the high side of a point's open cube.  So only those values need be tried: for
-    each in `first`, the line along `last` is swept through `middle`, and the gaps between the cubes on it are
-    counted as cubes enter and leave.  Points are sorted by `last`; `by_middle` sorts them by `middle`.
-
-    The cubes are compared by their rounded sides throughout: then a place on a side is never inside by
-    rounding, and growing the radius never uncovers a place.
+    The first such place, coordinate by coordinate, is pushed against the low side of the box or the high side of a
+    point's open cube, so only those values are tried: for each in `first`, the line along `last` is swept through
+    `middle`, and the gaps between the cubes on it are counted as cubes enter and leave.  Points are sorted by `last`;
+    `by_middle` sorts them by `middle`.  The cubes are compared by their rounded sides throughout: then a place on a
+    side is never inside by rounding, and growing the radius never uncovers a place.
     """
     n = first.size
     near = np.empty(n, np.int64)

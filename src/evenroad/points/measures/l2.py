@@ -23,7 +23,7 @@ TILE = 512
 
 
 class MaximumPairs(NamedTuple):
-    """Pair factors ``ceiling_k - slope_k * max(x, y)``, positive on the cube; all of shape (d,)."""
+    """Pair factors ``ceiling_k - slope_k * max(x, y)``, positive on the cube; both of shape (d,)."""
 
     ceiling: Floats
     slope: Floats

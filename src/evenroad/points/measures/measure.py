@@ -22,16 +22,9 @@ class Measure:
     ``squared`` is the value of the closed form, ``rooted`` its square root: the discrepancy itself.  Where two points
     share a coordinate most measures have a kink, and the gradient is a one-sided one.
 
-    Attributes
-    ----------
-    name : str
-        In expressions and tables.
-    terms : callable
-        The parts of the closed form: see :mod:`evenroad.points.measures.l2`, also for the source of each.
-    weighted : bool
-        Whether coordinate weights are defined.
-    periodic, reflectable : bool
-        Whether a shift modulo 1, or reflecting a coordinate, x -> 1 - x, leaves it as it is.
+    `terms` gives the parts of the closed form (:mod:`evenroad.points.measures.l2`, with the sources); `weighted` says
+    whether coordinate weights are defined, `periodic` and `reflectable` whether a shift modulo 1 of all points, or
+    x -> 1 - x in a coordinate, leaves it as it is.
     """
 
     name: str

@@ -32,25 +32,9 @@ def separation(points: object, periodic: bool = False) -> float:
 def riesz_energy(points: object, s: int | None = None, periodic: bool = True) -> float:
     """Return the normalised Riesz s-energy, (1/n) sum over i and j != i of (spacing / distance_ij)^s.
 
-    Parameters
-    ----------
-    points : array_like or PointSet, shape (n, d)
-        Coordinates in [0, 1), n >= 2.
-    s : int, optional
-        The exponent >= 1; 2d if not given, which makes close pairs count and far ones not.
-    periodic : bool
-        Whether distances are those of the torus, each coordinate wrapping modulo 1.
-
-    Returns
-    -------
-    float
-        With ``spacing = n^(-1/d)`` it hardly depends on n; ``inf`` where it exceeds the range of a float, as for
-        coincident points.
-
-    Raises
-    ------
-    InvalidValue
-        For fewer than two points, bad coordinates, or an s that is not an integer >= 1.
+    With ``spacing = n^(-1/d)`` it hardly depends on n; ``inf`` where it exceeds the range of a float, as for coincident
+    points.  `points` and `periodic` are those of :func:`separation`; the exponent `s`, an integer >= 1, is 2d if not
+    given, which makes close pairs count and far ones not.  Raises InvalidValue for anything else.
     """
     logarithm = _log_riesz(points, s, periodic)[0]
     return math.exp(logarithm) if logarithm < 709.0 else math.inf
@@ -109,17 +93,11 @@ SMALLEST_SQUARED = 1e-200
 def _row_energies(columns, s, periodic, want_gradient):  # type: ignore[no-untyped-def]
     """Row sums of (nearest / distance^2)^(s/2), the nearest squared distances, and the rows' gradients."""
     d, n = columns.shape
-    nearest = np.empty(n)
-    rows = np.empty(n)
-    pushes = np.zeros((d, n))
-    squared = np.empty(n)
-    inverse = np.empty(n)
-    power = np.empty(n)
-    base = np.empty(n)
+    nearest, rows, pushes = np.empty(n), np.empty(n), np.zeros((d, n))
+    squared, inverse, power, base = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     wrap = 1.0 if periodic else 0.0
     for i in range(n):
-        for j in range(n):
-            squared[j] = 0.0
+        squared[:] = 0.0
         for k in range(d):
             at, others = columns[k, i], columns[k]
             for j in range(n):

@@ -29,12 +29,8 @@ SAMPLERS: dict[str, Callable[..., KnownSampler]] = {
 def make_sampler(name: str, **options: Any) -> KnownSampler:
     """Return the sampler of this name, one of :data:`SAMPLERS`, with its own parameters as options.
 
-    Raises
-    ------
-    UnknownName
-        If there is no such sampler; the text lists them.
-    InvalidValue
-        If the sampler does not take an option.
+    Raises UnknownName, which lists the samplers, if there is none of this name; InvalidValue if it does not take an
+    option.
     """
     if not isinstance(name, str) or name not in SAMPLERS:
         raise UnknownName.among("sampler", name, SAMPLERS)

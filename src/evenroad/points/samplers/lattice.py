@@ -34,10 +34,7 @@ class Lattice:
     symmetries = frozenset({Symmetry.PERMUTATION, Symmetry.REFLECTION})
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
-        """Return n lattice points of the unit cube, shape (n, d); see :class:`~evenroad.points.Sampler`.
-
-        Raises InvalidValue also if d > 12.
-        """
+        """Return n lattice points, shape (n, d), d <= 12; see :class:`~evenroad.points.Sampler`."""
         n, d = require_count("n", n), require_count("d", d)
         if d > MAX_D:
             raise InvalidValue(f"d must be at most {MAX_D} for the lattice sampler, got {d}")
@@ -60,12 +57,8 @@ class Lattice:
 
 
 def _unit_density_basis(d: int) -> Floats:
-    """Return a lower-triangular basis (rows are vectors) of A_d* with determinant 1.
-
-    The rows have the Gram matrix I - J/(d+1), an obtuse superbase of A_d*, scaled to unit density.
-    """
-    gram = np.eye(d) - np.full((d, d), 1.0 / (d + 1))
-    return np.linalg.cholesky(gram) * (d + 1) ** (0.5 / d)
+    """Return a lower-triangular basis of A_d*: rows with the Gram matrix I - J/(d+1), scaled to determinant 1."""
+    return np.linalg.cholesky(np.eye(d) - np.full((d, d), 1.0 / (d + 1))) * (d + 1) ** (0.5 / d)
 
 
 def _random_rotation(d: int, random: np.random.Generator) -> Floats:

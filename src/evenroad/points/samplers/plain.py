@@ -33,10 +33,7 @@ class Uniform:
 class Sukharev:
     """The grid of smallest l_inf dispersion among k^d points (Sukharev 1971).
 
-    Parameters
-    ----------
-    allow_fewer : bool
-        For n that is no k^d, give the largest grid with at most n points instead of refusing.
+    With `allow_fewer` an n that is no k^d gives the largest grid with at most n points, instead of being refused.
     """
 
     allow_fewer: bool = False

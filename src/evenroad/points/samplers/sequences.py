@@ -30,13 +30,8 @@ class _Sequence:
         require_count("start", self.start, at_least=0)
 
     def _set(self, points: npt.NDArray[Any], rng: RngLike) -> PointSet:
-        origin = Origin(
-            family=self.name,
-            method="scrambled" if self.scramble else "plain",
-            seed=seed_of(rng) if self.scramble else None,
-            start=self.start,
-        )
-        return PointSet(points, origin)
+        method, seed = ("scrambled", seed_of(rng)) if self.scramble else ("plain", None)
+        return PointSet(points, Origin(family=self.name, method=method, seed=seed, start=self.start))
 
 
 @dataclass(frozen=True)
@@ -79,8 +74,7 @@ class Sobol(_Sequence):
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
         """Return points start .. start + n - 1 of the sequence, shape (n, d); see :class:`~evenroad.points.Sampler`.
 
-        Raises InvalidValue also if start + n exceeds 2**30 points, or d exceeds the 21201 dimensions of the direction
-        numbers.
+        Raises InvalidValue also if start + n exceeds 2**30, or d the 21201 dimensions of the direction numbers.
         """
         from scipy.stats import qmc
 

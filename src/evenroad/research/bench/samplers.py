@@ -11,7 +11,7 @@ import numpy as np
 from evenroad._checks import require_known
 from evenroad.errors import NotAvailable, UnknownName
 from evenroad.points import PointSet, draw, make_sampler
-from evenroad.points.bank import open_bank
+from evenroad.points.bank import Bank
 from evenroad.points.randomise import randomise
 from evenroad.points.sampler import Symmetry
 from evenroad.points.samplers.lattice import MAX_D
@@ -136,7 +136,7 @@ def _grid_exists(family: str, n: int, d: int) -> str:
 
 def _pool_exists(family: str, n: int, d: int) -> str:
     try:
-        open_bank().cell(family, n, d)
+        Bank().cell(family, n, d)
     except (NotAvailable, UnknownName) as error:
         return str(error)
     return ""
