@@ -11,7 +11,7 @@ pool, whichever is larger.  By this rule `korobov` wins in d = 2, 5, 7 and 10.  
 by 0.5 (0.4) and 1.2 (0.5) points: not worth a second default with files, a cache, and only some N, so `even` is the
 Korobov lattice in every dimension.
 
-In %, with k = 4 / 10 and all N pooled, and the mean over k = 4, 6, 10 and 20:
+Success in %, with k = 4 / 10 and all N pooled, and the mean over k = 4, 6, 10 and 20:
 
     d   uniform      Sobol        annealed     Korobov      mean
     2   31.9 / 55.7  50.4 / 61.8  55.3 / 62.8  56.4 / 62.5  60.9

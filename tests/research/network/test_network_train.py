@@ -5,7 +5,7 @@ import signal
 import subprocess
 import sys
 import time
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -219,7 +219,7 @@ def test_a_killed_training_leaves_a_checkpoint_that_resumes_bit_for_bit(tmp_path
     config = replace(TINY, steps=400)
     script = (
         "from evenroad.research.network import NetworkConfig, train\n"
-        f"train(NetworkConfig(**{config.as_record()!r}), folder={str(tmp_path)!r}, device='cpu',"
+        f"train(NetworkConfig(**{asdict(config)!r}), folder={str(tmp_path)!r}, device='cpu',"
         " checkpoint_seconds=0)\n"
     )
     process = subprocess.Popen([sys.executable, "-c", script])

@@ -10,7 +10,7 @@ import hashlib
 import json
 import math
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -130,7 +130,7 @@ def save_checkpoint(folder: Path, config: NetworkConfig, state: TrainingState) -
         file.write(data)
     record = {
         "format": FORMAT,
-        "config": config.as_record(),
+        "config": asdict(config),
         "step": state.step,
         "last_improved": state.last_improved,
         # JSON knows no infinity; before the first step there is no mean.
@@ -208,7 +208,7 @@ def put_tensors(state: TrainingState, tensors: dict[str, torch.Tensor], step: in
 def _steps_of(record: Any, config: NetworkConfig) -> tuple[int, int]:
     if not isinstance(record, dict) or record.get("format") != FORMAT:
         raise ValueError(f"it is no checkpoint of format {FORMAT}")
-    if record["config"] != config.as_record():
+    if record["config"] != asdict(config):
         raise ValueError("it belongs to another config")
     step, last_improved = int(record["step"]), int(record["last_improved"])
     if not 0 <= last_improved <= step <= config.steps:
