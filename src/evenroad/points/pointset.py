@@ -64,13 +64,8 @@ class PointSet:
     Parameters
     ----------
     points : array_like, shape (n, d)
-        Coordinates in [0, 1), d >= 1; copied to a read-only C-contiguous float64 array.
+        Real numbers in [0, 1), d >= 1, else InvalidValue; copied to a read-only C-contiguous float64 array.
     origin : Origin
-
-    Raises
-    ------
-    InvalidValue
-        If the array is not two-dimensional and of real numbers, or a coordinate is outside [0, 1).
     """
 
     points: Floats

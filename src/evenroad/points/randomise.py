@@ -22,15 +22,12 @@ def randomise(points: PointSet, symmetries: Collection[Symmetry], *, rng: RngLik
     ----------
     points : PointSet
     symmetries : collection of Symmetry
-        What keeps the quality of the set, e.g. ``SAMPLERS[name]().symmetries``.
+        ``make_sampler(name).symmetries`` are those that keep the quality of its sets.
     rng : int, SeedSequence or Generator
         A passed Generator is spawned.
 
-    Returns
-    -------
-    PointSet
-        The method of its origin says what was done, with all digits: ``annealed, permuted 2 0 1, reflected 0``.
-        A coordinate that would be reflected to 1 becomes the largest float below 1: the cube is half open.
+    The method of the origin says what was done, with all digits: ``annealed, permuted 2 0 1, reflected 0``.  A
+    coordinate that would be reflected to 1 becomes the largest float below 1: the cube is half open.
     """
     random = generator(rng)
     if Symmetry.PERMUTATION in symmetries:

@@ -86,15 +86,8 @@ def anneal(
     callback : callable, optional
         Called as ``callback(step, steps, best)`` after every step; what it raises stops the annealing.
 
-    Raises
-    ------
-    InvalidValue
-        For n, d, steps, rng or a start out of range.
-
-    Notes
-    -----
-    The same bits are given by one kind of processor, with one version of numpy and numba: sums run as vectors, whose
-    width, and so the order of additions, is the processor's.
+    Raises InvalidValue for n, d, steps, rng or a start out of range.  The bits are those of one kind of processor and
+    one version of numpy and numba: sums run as vectors, whose width, and so the order of additions, is the processor's.
     """
     n, d, steps = require_count("n", n), require_count("d", d), require_count("steps", steps)
     require_points_for(objective, n)
@@ -139,8 +132,7 @@ def learning_rate(step: int, steps: int, first: float) -> float:
 def first_rate(n: int, d: int) -> float:
     """Return the learning rate of the first step: .02, or a fifth of the spacing n^(-1/d) where that is less.
 
-    A step of Adam is about as long as its rate: at d = 2, n = 512 one of .02 is half a spacing, and an energy
-    never settles.
+    A step of Adam is about as long as its rate: one of half a spacing, as .02 is at d = 2, n = 512, never settles.
     """
     return min(LARGEST_RATE, 0.2 * n ** (-1.0 / d))
 
@@ -173,8 +165,7 @@ def _first_columns(n: int, d: int, start: npt.ArrayLike | None, draws: np.random
 def _adam_step(columns, first, second, gradient, noise, step, rate, spread, wrap):  # type: ignore[no-untyped-def]
     """Move `columns` (d, n) against `gradient` by Adam (Kingma and Ba 2015) and along `noise`; update both moments.
 
-    `step` counts from 1, `rate` is the learning rate, `spread` the standard deviation of the noise.
-    Coordinates stay in [LOWEST, BELOW_ONE]: wrapped modulo 1 first if `wrap`, then clipped.
+    `step` counts from 1.  Coordinates stay in [LOWEST, BELOW_ONE]: wrapped modulo 1 first if `wrap`, then clipped.
     """
     first_scale = 1.0 / (1.0 - FIRST_DECAY**step)
     second_scale = 1.0 / (1.0 - SECOND_DECAY**step)

@@ -36,7 +36,7 @@ TRAINED_FAMILIES: dict[str, str] = {
 
 @dataclass(frozen=True)
 class Trained:
-    """Draws a set of a trained family, and can make those that do not ship.
+    """Draws a set of a trained family, and can make those that do not ship (but not the network's).
 
     Which set is drawn depends on `rng` alone, never on what the cache holds.
 
@@ -45,7 +45,6 @@ class Trained:
     family : {"hickernell", "mpmc"}
     train : bool
         Anneal a set that is neither in the bank nor in the cache; else refuse, naming the n that there are.
-        The network's sets are never made on demand.
     callback : callable, optional
         Called as ``callback(step, steps, best)`` after every step of an annealing.
     bank : Bank
@@ -79,12 +78,8 @@ class Trained:
     def find(self, n: int, d: int, *, rng: RngLike = 0) -> tuple[PointSet, str]:
         """Return one set of n points in d dimensions, and whether it is ``exact`` (shipped), ``cached`` or ``fresh``.
 
-        Raises
-        ------
-        NotAvailable
-            If there is no such set and it may not be made.
-        BrokenFile
-            If a new set could not be kept; nothing is annealed then.
+        Raises NotAvailable if there is no such set and it may not be made, BrokenFile if a new one could not be kept:
+        nothing is annealed then.
         """
         n, d = require_count("n", n), require_count("d", d)
         if self.bank.has(self.family, n, d) or self.family == "mpmc":

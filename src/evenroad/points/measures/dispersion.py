@@ -76,8 +76,16 @@ def dispersion_lower_bound(
     Random places and corners, then hill climbing from the best sixteenth of them with shrinking steps.  Every
     place gives a true lower bound; how close it comes is not known.
 
-    `points`, (n, d), have coordinates in [0, 1), n >= 1; `norm` is ``l2`` or ``linf``, else UnknownName; `starts`
-    places are drawn from `rng`, for so many `rounds` of climbing.  InvalidValue for anything else that is bad.
+    Parameters
+    ----------
+    points : array_like or PointSet, shape (n, d)
+        Coordinates in [0, 1), n >= 1.
+    norm : {"l2", "linf"}
+        Another one is an UnknownName; every other bad argument an InvalidValue.
+    rng : int, SeedSequence or Generator
+        Draws the places.
+    starts, rounds : int
+        Places drawn at first, and rounds of climbing, >= 1.
     """
     coordinates = _checked(points)
     require_known("norm", norm, NORMS)

@@ -1,4 +1,4 @@
-"""Measure: one L2 discrepancy, as a value or with its gradient, squared or rooted."""
+"""Measure: one L2 discrepancy, squared, or rooted and with its gradient."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Measure:
     least_points = 1
 
     def squared(self, points: object, weights: npt.ArrayLike | None = None) -> float:
-        """Return the squared discrepancy.
+        """Return the squared discrepancy; bad points or weights, or weights of a measure without, are an InvalidValue.
 
         Parameters
         ----------
@@ -43,24 +43,12 @@ class Measure:
             Coordinates in [0, 1), n >= 1.
         weights : array_like, shape (d,), optional
             Weights >= 0 of the parts of the coordinates' factors that are not constant: 0 ignores a coordinate.
-
-        Raises
-        ------
-        InvalidValue
-            For no points, bad coordinates, bad weights, or weights of a measure that has none.
         """
         return self._squared(*self._checked(points, weights), want_gradient=False)[0]
 
     def rooted(self, points: object, weights: npt.ArrayLike | None = None) -> float:
         """Return the discrepancy, the square root of :meth:`squared`; same parameters and errors."""
         return math.sqrt(self.squared(points, weights))
-
-    def squared_with_gradient(
-        self, points: object, weights: npt.ArrayLike | None = None
-    ) -> tuple[float, Floats]:
-        """Return :meth:`squared` and its gradient, shape (n, d)."""
-        value, gradient = self._squared(*self._checked(points, weights), want_gradient=True)
-        return value, np.ascontiguousarray(gradient.T)
 
     def rooted_with_gradient(
         self, points: object, weights: npt.ArrayLike | None = None

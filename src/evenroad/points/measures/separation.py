@@ -33,8 +33,16 @@ def riesz_energy(points: object, s: int | None = None, periodic: bool = True) ->
     """Return the normalised Riesz s-energy, (1/n) sum over i and j != i of (spacing / distance_ij)^s.
 
     With ``spacing = n^(-1/d)`` it hardly depends on n; ``inf`` where it exceeds the range of a float, as for coincident
-    points.  `points` and `periodic` are those of :func:`separation`; the exponent `s`, an integer >= 1, is 2d if not
-    given, which makes close pairs count and far ones not.  Raises InvalidValue for anything else.
+    points.  Bad arguments are an InvalidValue.
+
+    Parameters
+    ----------
+    points : array_like or PointSet, shape (n, d)
+        Coordinates in [0, 1), n >= 2.
+    s : int, optional
+        The exponent >= 1; 2d if not given, which makes close pairs count and far ones not.
+    periodic : bool
+        Whether distances are those of the torus, each coordinate wrapping modulo 1.
     """
     logarithm = _log_riesz(points, s, periodic)[0]
     return math.exp(logarithm) if logarithm < 709.0 else math.inf

@@ -21,9 +21,8 @@ MAX_D = 12
 class Lattice:
     """A_d* (Conway and Sloane 1999, chapter 4.6.6), under a random rotation and a random shift.
 
-    The rule that keeps exactly n points: around a uniformly random centre in the rotated lattice of unit density,
-    grow a cube until it holds n lattice points, go on half the distance to the point that would enter next, and scale
-    that cube to the unit cube.
+    To keep exactly n points, a cube around a uniformly random centre in the rotated lattice grows until it holds n,
+    goes on half the distance to the point that would enter next, and is scaled to the unit cube.
     """
 
     name = "lattice"
