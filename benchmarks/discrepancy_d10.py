@@ -23,7 +23,7 @@ from matplotlib.ticker import NullFormatter
 from evenroad.points import PointSet, draw
 from evenroad.points.bank import Bank
 from evenroad.points.measures import MEASURES
-from evenroad.points.samplers.sequences import Halton, Sobol
+from evenroad.points.samplers import Halton, Sobol
 
 D = 10
 COUNTS = (128, 256, 512, 1024)

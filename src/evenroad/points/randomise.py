@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from enum import StrEnum
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,17 @@ import numpy.typing as npt
 
 from evenroad._rng import RngLike, generator
 from evenroad.points.pointset import PointSet
-from evenroad.points.sampler import Symmetry
+
+
+class Symmetry(StrEnum):
+    """A kind of transformation of the unit cube."""
+
+    PERMUTATION = "permutations of the coordinates"
+    REFLECTION = "reflections"
+    SHIFT = "shifts modulo 1"
+
+
+ALL_SYMMETRIES = frozenset(Symmetry)
 
 LARGEST_COORDINATE = float(np.nextafter(1.0, 0.0))
 

@@ -6,7 +6,7 @@ import pytest
 from evenroad.errors import NotAvailable, UnknownName
 from evenroad.points import draw
 from evenroad.points.bank import Bank
-from evenroad.points.samplers.sequences import Halton, Sobol
+from evenroad.points.samplers import Halton, Sobol
 from evenroad.research.bench.samplers import SAMPLERS, draw_set, why_not
 
 

@@ -17,7 +17,7 @@ from evenroad.errors import BrokenFile, NotAvailable, UnknownName
 from evenroad.points.bank.bank import SEED, Bank
 from evenroad.points.npz import load_points, save_points
 from evenroad.points.pointset import Origin, PointSet
-from evenroad.points.sampler import Symmetry
+from evenroad.points.randomise import Symmetry
 
 if TYPE_CHECKING:
     from evenroad.points.bank.anneal import Callback

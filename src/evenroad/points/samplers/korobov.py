@@ -19,7 +19,7 @@ from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import Origin, PointSet
-from evenroad.points.sampler import ALL_SYMMETRIES
+from evenroad.points.randomise import ALL_SYMMETRIES
 
 MAX_N = 2**26
 """Up to here products of two residues, and the multiple of n next to them, are exact in float64."""

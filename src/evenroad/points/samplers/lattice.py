@@ -11,7 +11,7 @@ from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import Origin, PointSet
-from evenroad.points.sampler import Symmetry
+from evenroad.points.randomise import Symmetry
 
 MAX_D = 12
 """Beyond this the ball around the cube holds thousands of lattice points for each one inside the cube."""

@@ -12,8 +12,8 @@ from evenroad._checks import require_known
 from evenroad.errors import NotAvailable, UnknownName
 from evenroad.points import PointSet, draw, make_sampler
 from evenroad.points.bank import Bank
-from evenroad.points.randomise import randomise
-from evenroad.points.sampler import Symmetry
+from evenroad.points.randomise import Symmetry, randomise
+from evenroad.points.samplers import Halton, Sobol
 from evenroad.points.samplers.lattice import MAX_D
 
 PERMUTED_FROM = 5
@@ -96,9 +96,6 @@ def _block(family: str, n: int, d: int, run: int, rng: np.random.Generator) -> D
 @lru_cache(maxsize=4)
 def _stretch(family: str, n: int, d: int, number: int) -> PointSet:
     """Return the blocks of many runs at once: SciPy's Halton engine generates all the points that it skips."""
-    # Here, because it imports scipy.stats.
-    from evenroad.points.samplers.sequences import Halton, Sobol
-
     sequence = Halton if family == "halton" else Sobol
     return sequence(scramble=False, start=number * STRETCH * n + 1).draw(STRETCH * n, d)
 

@@ -27,7 +27,7 @@ from evenroad.points.bank.anneal import require_points_for
 from evenroad.points.measures import MEASURES
 from evenroad.points.measures.separation import log_riesz_of_columns
 from evenroad.points.pointset import as_unit_points
-from evenroad.points.sampler import ALL_SYMMETRIES, Symmetry
+from evenroad.points.randomise import ALL_SYMMETRIES, Symmetry
 
 ENERGIES = {"riesz": ALL_SYMMETRIES, "riesz_open": ALL_SYMMETRIES - {Symmetry.SHIFT}}
 """Riesz energies with s = 2d, rooted, on the torus and in the open cube; and what leaves each as it is."""

@@ -5,8 +5,7 @@ from __future__ import annotations
 from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue, shown
 from evenroad.points.pointset import Origin, PointSet
-from evenroad.points.randomise import randomise
-from evenroad.points.sampler import Symmetry
+from evenroad.points.randomise import Symmetry, randomise
 from evenroad.points.samplers import SAMPLERS
 from evenroad.research.training.objective import parse_objective
 
