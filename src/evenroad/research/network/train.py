@@ -126,21 +126,17 @@ def _run(
         if home is not None and time.monotonic() - saved_at >= checkpoint_seconds:
             save_checkpoint(home, config, state)
             saved_step, saved_at = state.step, time.monotonic()
-        if callback is not None:
-            _report(callback, config, state, home)
+        try:
+            if callback is not None:
+                callback(state.step, config.steps, state.best_mean)
+        except BaseException:
+            # Between two steps the state is whole, so that nothing done so far needs to be lost.
+            if home is not None:
+                save_checkpoint(home, config, state)
+            raise
     # The last one stays: should a set's file be damaged later, it is written again without training.
     if home is not None and saved_step != state.step:
         save_checkpoint(home, config, state)
-
-
-def _report(callback: Callback, config: NetworkConfig, state: TrainingState, home: Path | None) -> None:
-    try:
-        callback(state.step, config.steps, state.best_mean)
-    except BaseException:
-        # Between two steps the state is whole, so that nothing done so far needs to be lost.
-        if home is not None:
-            save_checkpoint(home, config, state)
-        raise
 
 
 def refine(
