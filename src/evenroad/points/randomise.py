@@ -29,6 +29,9 @@ LARGEST_COORDINATE = float(np.nextafter(1.0, 0.0))
 def randomise(points: PointSet, symmetries: Collection[Symmetry], *, rng: RngLike = 0) -> PointSet:
     """Return the points under random moves of these kinds: permuted, then reflected, then shifted.
 
+    The method of the origin says what was done, with all digits: ``annealed, permuted 2 0 1, reflected 0``.  A
+    coordinate that would be reflected to 1 becomes the largest float below 1: the cube is half open.
+
     Parameters
     ----------
     points : PointSet
@@ -36,9 +39,6 @@ def randomise(points: PointSet, symmetries: Collection[Symmetry], *, rng: RngLik
         ``make_sampler(name).symmetries`` are those that keep the quality of its sets.
     rng : int, SeedSequence or Generator
         A passed Generator is spawned.
-
-    The method of the origin says what was done, with all digits: ``annealed, permuted 2 0 1, reflected 0``.  A
-    coordinate that would be reflected to 1 becomes the largest float below 1: the cube is half open.
     """
     random = generator(rng)
     if Symmetry.PERMUTATION in symmetries:

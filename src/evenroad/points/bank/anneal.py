@@ -69,7 +69,9 @@ def anneal(
     """Make the objective of n points in [0, 1)^d small, on one thread; the same seed gives the same bits.
 
     Adam (.9, .999) with a learning rate that falls 2000-fold along a half cosine, plus Gaussian noise in
-    proportion to the rate: the noise is what finds a good basin.  The best points seen are kept.
+    proportion to the rate: the noise is what finds a good basin.  The best points seen are kept.  The bits are those of
+    one kind of processor and one version of numpy and numba: sums run as vectors, whose width, and so the order of
+    additions, is the processor's.  Arguments out of range are an InvalidValue.
 
     Parameters
     ----------
@@ -85,9 +87,6 @@ def anneal(
         Instead of random points; coordinates at a face of the cube are moved off it by 6e-8.
     callback : callable, optional
         Called as ``callback(step, steps, best)`` after every step; what it raises stops the annealing.
-
-    Raises InvalidValue for n, d, steps, rng or a start out of range.  The bits are those of one kind of processor and
-    one version of numpy and numba: sums run as vectors, whose width, and so the order of additions, is the processor's.
     """
     n, d, steps = require_count("n", n), require_count("d", d), require_count("steps", steps)
     require_points_for(objective, n)
