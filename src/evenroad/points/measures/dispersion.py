@@ -149,12 +149,12 @@ def _largest_hole(coordinates: Floats) -> float:
     by_middle = np.argsort(middle, kind="stable")
     best = 0.0
     for slab in np.random.default_rng(0).permutation(edges.size - 1):
-        place = first, middle, last, by_middle, edges[slab], edges[slab + 1]
+        cubes = first, middle, last, by_middle, edges[slab], edges[slab + 1]
         reached, missed = np.nextafter(best, 1.0), 2.0
-        if not _hole_exists(*place, reached):
+        if not _hole_exists(*cubes, reached):
             continue
         while (radius := 0.5 * (reached + missed)) not in (reached, missed):
-            if _hole_exists(*place, radius):
+            if _hole_exists(*cubes, radius):
                 reached = radius
             else:
                 missed = radius
@@ -172,30 +172,23 @@ def _hole_exists(first, middle, last, by_middle, low, high, radius):  # type: ig
     `by_middle` sorts them by `middle`.  The cubes are compared by their rounded sides throughout: then a place on a
     side is never inside by rounding, and growing the radius never uncovers a place.
     """
-    n = first.size
-    near = np.empty(n, np.int64)
-    on_line = np.zeros(n, np.bool_)
-    for candidate in range(-1, n):
-        place = low if candidate < 0 else first[candidate] + radius
+    starts, ends = first[by_middle] - radius, first[by_middle] + radius
+    on_line = np.zeros(first.size, np.bool_)
+    for place in np.append(low, first + radius):
         if place < low or place > high:
             continue
-        count = 0
-        for position in range(n):
-            i = by_middle[position]
-            on_line[i] = False
-            if first[i] - radius < place < first[i] + radius:
-                near[count] = i
-                count += 1
+        near = by_middle[(starts < place) & (place < ends)]
+        on_line[:] = False
         # With no cube the whole line is one gap.
         gaps = 1
         entering, leaving = 0, 0
         middle_place = 0.0
         while True:
-            while entering < count and middle[near[entering]] - radius < middle_place:
+            while entering < near.size and middle[near[entering]] - radius < middle_place:
                 gaps += _gaps_opened_by(near[entering], last, on_line, radius)
                 on_line[near[entering]] = True
                 entering += 1
-            while leaving < count and middle[near[leaving]] + radius <= middle_place:
+            while leaving < near.size and middle[near[leaving]] + radius <= middle_place:
                 on_line[near[leaving]] = False
                 gaps -= _gaps_opened_by(near[leaving], last, on_line, radius)
                 leaving += 1
