@@ -29,11 +29,11 @@ def separation(points: object, periodic: bool = False) -> float:
     return float(distances[:, 1].min())
 
 
-def riesz_energy(points: object, s: int | None = None, periodic: bool = True) -> float:
-    """Return the normalised Riesz s-energy, (1/n) sum over i and j != i of (spacing / distance_ij)^s.
+def riesz_rooted(points: object, s: int | None = None, periodic: bool = True) -> float:
+    """Return the Riesz s-energy to the power 1/s: as s grows, the spacing n^(-1/d) over the smallest distance.
 
-    With ``spacing = n^(-1/d)`` it hardly depends on n; ``inf`` where it exceeds the range of a float, as for coincident
-    points.  Bad arguments are an InvalidValue.
+    The energy is (1/n) sum over i and j != i of (spacing / distance_ij)^s, and so hardly depends on n.  The distance of
+    coincident points counts as 10^-100.  Bad arguments are an InvalidValue.
 
     Parameters
     ----------
@@ -44,23 +44,16 @@ def riesz_energy(points: object, s: int | None = None, periodic: bool = True) ->
     periodic : bool
         Whether distances are those of the torus, each coordinate wrapping modulo 1.
     """
-    logarithm = _log_riesz(points, s, periodic)[0]
-    return math.exp(logarithm) if logarithm < 709.0 else math.inf
-
-
-def riesz_rooted(points: object, s: int | None = None, periodic: bool = True) -> float:
-    """Return :func:`riesz_energy` to the power 1/s: as s grows, the spacing over the smallest distance.
-
-    It stays in the range of a float where the energy does not; the distance of coincident points counts as 10^-100.
-    """
-    logarithm, exponent = _log_riesz(points, s, periodic)
-    return math.exp(logarithm / exponent)
+    coordinates = _checked(points, "an energy")
+    exponent = 2 * coordinates.shape[1] if s is None else require_count("s", s)
+    columns = np.ascontiguousarray(coordinates.T)
+    return math.exp(log_riesz_of_columns(columns, exponent, periodic, want_gradient=False)[0] / exponent)
 
 
 def log_riesz_of_columns(
     columns: Floats, s: int, periodic: bool, want_gradient: bool
 ) -> tuple[float, Floats]:
-    """Return log(riesz_energy) and its gradient, shape (d, n), at checked points of shape (d, n).
+    """Return the log of the Riesz energy and its gradient, shape (d, n), at checked points of shape (d, n).
 
     Every power is taken relative to the largest of its row, and rows are joined in the log: nothing
     overflows, whatever d.  The distance of coincident points counts as 10^-100, and they do not push each other:
@@ -76,14 +69,6 @@ def log_riesz_of_columns(
         # A pair stands in the sum twice, so a point's own row holds half of what its coordinates change.
         pushes *= -2.0 * s * np.exp(row_logs - np.log(rows) - total_log)
     return logarithm, pushes
-
-
-def _log_riesz(points: object, s: int | None, periodic: bool) -> tuple[float, int]:
-    """Return log(riesz_energy) and the exponent."""
-    coordinates = _checked(points, "an energy")
-    exponent = 2 * coordinates.shape[1] if s is None else require_count("s", s)
-    columns = np.ascontiguousarray(coordinates.T)
-    return log_riesz_of_columns(columns, exponent, periodic, want_gradient=False)[0], exponent
 
 
 def _checked(points: object, what: str) -> Floats:

@@ -87,7 +87,10 @@ def advance(
         points = state.network(batch.starts, batch.sender, batch.receiver)
         values = objective_of_sets(points, objective)
         (values.sum() / config.sets).backward()
-        _take_note(state, batch.first, points.detach().cpu().numpy(), values.detach().cpu().numpy())
+        now = values.detach().cpu().numpy()
+        better = np.flatnonzero(now < state.best_values[batch.first : batch.first + len(now)])
+        state.best_values[batch.first + better] = now[better]
+        state.best_points[batch.first + better] = points.detach().cpu().numpy()[better]
         total += float(values.detach().sum())
     state.optimiser.step()
     state.step += 1
@@ -105,13 +108,6 @@ def is_finished(state: TrainingState, config: NetworkConfig) -> bool:
 def learning_rate(step: int, config: NetworkConfig) -> float:
     """Return the rate of a step in 1 .. `steps`: it falls from the config's rate towards 0 along a half cosine."""
     return config.rate * 0.5 * (1.0 + math.cos(math.pi * (step - 1) / config.steps))
-
-
-def _take_note(state: TrainingState, first: int, points: Floats, values: Floats) -> None:
-    for index, value in enumerate(values, start=first):
-        if value < state.best_values[index]:
-            state.best_values[index] = value
-            state.best_points[index] = points[index - first]
 
 
 def save_checkpoint(folder: Path, config: NetworkConfig, state: TrainingState) -> None:
