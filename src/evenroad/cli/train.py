@@ -10,7 +10,7 @@ import tyro
 
 if TYPE_CHECKING:
     from evenroad.points import PointSet
-    from evenroad.points.optimise.anneal import Callback
+    from evenroad.points.bank.anneal import Callback
     from evenroad.research.network import NetworkConfig
 
 
@@ -47,7 +47,7 @@ class Train:
 
         from evenroad.cli.interrupt import interrupt_between_steps
         from evenroad.cli.progress import progress_bar
-        from evenroad.points.optimise import parse_objective
+        from evenroad.research.training.objective import parse_objective
 
         self._check()
         self._make_folder()
@@ -68,8 +68,8 @@ class Train:
         """Refuse bad options before anything is written, and those that the method would silently ignore."""
         from evenroad._checks import require_count
         from evenroad.errors import InvalidValue
-        from evenroad.points.optimise import parse_objective
-        from evenroad.points.optimise.objective import require_points_for
+        from evenroad.points.bank.anneal import require_points_for
+        from evenroad.research.training.objective import parse_objective
 
         least = {"n": 1, "d": 1, "sets": 1, "steps": 1, "refine": 0, "seed": 0}
         for name, at_least in least.items():
@@ -121,7 +121,7 @@ class Train:
         )
 
     def _network(self, callback: Callback) -> tuple[PointSet, ...]:
-        from evenroad.points.optimise import SCHEDULE
+        from evenroad.points.bank.anneal import SCHEDULE
         from evenroad.research.network import train
         from evenroad.research.training.folder import claim_folder
 

@@ -11,8 +11,9 @@ import numpy as np
 from evenroad._checks import require_known
 from evenroad.errors import NotAvailable, UnknownName
 from evenroad.points import PointSet, draw, make_sampler
-from evenroad.points.bank import open_bank
-from evenroad.points.randomise import permute_coordinates
+from evenroad.points.bank import Bank
+from evenroad.points.randomise import Symmetry, randomise
+from evenroad.points.samplers import Halton, Sobol
 from evenroad.points.samplers.lattice import MAX_D
 
 PERMUTED_FROM = 5
@@ -77,9 +78,6 @@ def _block(family: str, n: int, d: int, run: int, rng: np.random.Generator) -> D
 @lru_cache(maxsize=4)
 def _stretch(family: str, n: int, d: int, number: int) -> PointSet:
     """Return the blocks of many runs at once: SciPy's Halton engine generates all the points that it skips."""
-    # Here, because it imports scipy.stats.
-    from evenroad.points.samplers.sequences import Halton, Sobol
-
     sequence = Halton if family == "halton" else Sobol
     return sequence(scramble=False, start=number * STRETCH * n + 1).draw(STRETCH * n, d)
 
@@ -95,7 +93,7 @@ def _from_pool(family: str, n: int, d: int, run: int, rng: np.random.Generator) 
         # Constructed, as `even` is: its random shift makes it a set of its own.
         return points, ""
     if d >= PERMUTED_FROM:
-        points = permute_coordinates(points, rng=order)
+        points = randomise(points, {Symmetry.PERMUTATION}, rng=order)
     return points, str(points.origin.replica)
 
 
@@ -117,7 +115,7 @@ def _grid_exists(family: str, n: int, d: int) -> str:
 
 def _pool_exists(family: str, n: int, d: int) -> str:
     try:
-        open_bank().cell(family, n, d)
+        Bank().cell(family, n, d)
     except (NotAvailable, UnknownName) as error:
         return str(error)
     return ""
