@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from evenroad._arrays import Floats, Ints
+from evenroad._arrays import Floats, Ints, set_fields
 from evenroad._checks import as_batch, require_positive
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 
@@ -54,10 +54,7 @@ class TriangleMesh:
             raise InvalidValue(
                 f"triangles must name rows of the {len(vertices)} vertices, got {triangles.min()} .. {triangles.max()}"
             )
-        triangles = triangles.astype(np.int64)
-        for field, array in (("vertices", vertices), ("triangles", triangles)):
-            array.setflags(write=False)
-            object.__setattr__(self, field, array)
+        set_fields(self, vertices=vertices, triangles=triangles.astype(np.int64))
 
 
 def merged(meshes: tuple[TriangleMesh, ...]) -> TriangleMesh:
@@ -99,14 +96,9 @@ def load_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> TriangleMe
     Parameters
     ----------
     path : str or path
-        The file.  A scene of several meshes becomes one, each part where the scene has it.
+        A scene of several meshes becomes one, each part where the scene has it, named like the file.
     scale : float
         What the coordinates are multiplied by, > 0: 0.001 for an .stl in millimetres.
-
-    Returns
-    -------
-    TriangleMesh
-        Named like the file.
 
     Raises
     ------
