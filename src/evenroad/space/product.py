@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import reduce
 from typing import Literal
 
 import numpy as np
@@ -87,7 +88,7 @@ class Product(Space):
     def all_distances(self, a: Floats, b: Floats) -> Floats:
         """Return the distances of all pairs of rows, (n, dim) and (m, dim), as (n, m)."""
         first, second = as_batch("a", a, self.dim), as_batch("b", b, self.dim)
-        return self._combined([all_distances(*own) for own in self._part_by_part(first, second)])
+        return self._combined(all_distances(*own) for own in self._part_by_part(first, second))
 
     def part_distances(self, a: Floats, b: Floats) -> list[Floats]:
         """Return for every part the distances in its own metric, without weights, each (n,)."""
@@ -108,12 +109,10 @@ class Product(Space):
     def _part_by_part(self, a: Floats, b: Floats) -> Iterator[tuple[Space, Floats, Floats]]:
         return zip(self.parts, self.split(a), self.split(b), strict=True)
 
-    def _combined(self, lengths: list[Floats]) -> Floats:
+    def _combined(self, lengths: Iterable[Floats]) -> Floats:
         """Return one distance out of those of the parts."""
-        total, *others = [weight * length for weight, length in zip(self.weights, lengths, strict=True)]
-        for other in others:
-            total = total + other if self.combine == "sum" else np.hypot(total, other)
-        return total
+        weighted = (weight * length for weight, length in zip(self.weights, lengths, strict=True))
+        return reduce(np.add if self.combine == "sum" else np.hypot, weighted)
 
 
 def _split(q: Floats, widths: list[int]) -> list[Floats]:

@@ -70,15 +70,25 @@ def point_is_free(x: float, y: float, disk: DiskTables) -> bool:
     if state != UNDECIDED:
         return state >= FREE
     squared_radius = disk.radius * disk.radius
-    reach = math.ceil(disk.radius)
-    for other in range(max(col - reach, 0), min(col + reach, cols - 1) + 1):
+    return squared_gap(x, y, row, col, math.ceil(disk.radius), squared_radius, disk) >= squared_radius
+
+
+@njit(cache=True, nogil=True, inline="always")
+def squared_gap(x: float, y: float, row: int, col: int, reach: int, enough: float, disk: DiskTables) -> float:
+    """Return the squared distance from a point of a cell to the obstacles of columns within `reach`.
+
+    Once one is found nearer than `enough`, the nearest is not looked for.
+    """
+    least = np.inf
+    for other in range(max(col - reach, 0), min(col + reach, disk.cells.shape[1] - 1) + 1):
         gap_x = max(other - x, x - (other + 1), 0.0)
         gap_y = 0.0
         if disk.above[row, other] > 0:
             gap_y = min(y - (row + 1 - disk.above[row, other]), row + disk.below[row, other] - y)
-        if gap_x * gap_x + gap_y * gap_y < squared_radius:
-            return False
-    return True
+        least = min(least, gap_x * gap_x + gap_y * gap_y)
+        if least < enough:
+            break
+    return least
 
 
 @njit(cache=True, nogil=True)
