@@ -8,16 +8,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from evenroad._arrays import Bools, Floats, Ints
+from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import as_row, require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
 from evenroad.space import Box, Product
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.bisection import require_few_segments
+from evenroad.world.function import OUTSIDE
 from evenroad.world.solids.kernel import contacts, motions_are_free, motions_are_proved
-from evenroad.world.solids.oriented_box import BoxTable, OrientedBox, box_table, reach_of
-from evenroad.world.solids.poses import RigidSpace, as_pose_pair, as_poses, body_dimension
+from evenroad.world.solids.oriented_box import BoxTable, OrientedBox, box_table, reaches_of
+from evenroad.world.solids.poses import RigidSpace, as_pose_pair, as_poses, body_dimension, contact_with
 
 _TOLERANCE = 1e-3
 """How near to contact `SolidWorld.recheck` still proves a motion free, as a share of the step of translations."""
@@ -68,16 +69,8 @@ class SolidWorld:
         if not body:
             raise InvalidValue("body must be one box or more, got none")
         resolution, steps = _as_steps(self.resolution, self.space)
-        for name, value in (
-            ("body", body),
-            ("obstacles", obstacles),
-            ("resolution", resolution),
-            ("_body", box_table(body)),
-            ("_obstacles", box_table(obstacles)),
-            ("_reaches", np.array([reach_of([box]) for box in body])),
-            ("_steps", steps),
-        ):
-            object.__setattr__(self, name, value)
+        set_fields(self, body=body, obstacles=obstacles, resolution=resolution, _steps=steps)
+        set_fields(self, _body=box_table(body), _obstacles=box_table(obstacles), _reaches=reaches_of(body))
 
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of space, body, obstacles and resolution: equal for worlds of the same verdicts."""
@@ -112,11 +105,6 @@ class SolidWorld:
 
         Stricter than testing states, however many: no stretch of a motion is left open.  A motion is refused, too, that
         comes nearer to an obstacle than about a thousandth of `step`.
-
-        Raises
-        ------
-        InvalidValue
-            As `valid`.
         """
         waypoints = as_batch("path", path, self.space.dim)
         inside = self.space.contains(waypoints)
@@ -132,10 +120,8 @@ class SolidWorld:
         """Return in words why the pose `q`, (dim,), is not free."""
         pose = as_batch("q", np.asarray(q, dtype=np.float64)[np.newaxis], self.space.dim)
         if not self.space.contains(pose)[0]:
-            return "it lies outside the bounds of the space"
-        obstacle = int(self._contacts(pose)[0])
-        name = self.obstacles[obstacle].name
-        return f"the body meets obstacle {obstacle}{f' ({name})' if name else ''}"
+            return OUTSIDE
+        return contact_with(self.obstacles, int(self._contacts(pose)[0]))
 
     @property
     def _reach(self) -> float:
