@@ -130,10 +130,9 @@ def _as_cells(name: str, value: Bools) -> Bools:
 class DiskWorld:
     """A disk of one radius on one map: what `GridMap.world` returns.
 
-    Obstacles are the closed squares of the occupied cells and everything outside the map; a disk is free if
-    its centre is at least `radius` away from all of them, so touching is free.  Motions are swept disks along
-    straight segments.  They are tested exactly, without any step length: up to float rounding, about 1e-12
-    pixels, a motion reported free never comes closer and one reported blocked does.
+    Obstacles are the closed squares of the occupied cells and everything outside the map; a disk is free if its centre
+    is at least `radius` away from all of them, so touching is free.  Motions are swept disks along straight segments,
+    tested without any step length: exact up to float rounding, about 1e-12 pixels.
 
     Parameters
     ----------
@@ -251,8 +250,8 @@ class DiskWorld:
         """Find a path from a free map point, (2,), to the one of several, (g, 2), that is nearest on the lattice.
 
         It leads over cell centres, and over half cells where it is narrow; it is found wherever `may_connect` holds
-        but for passages hardly wider than the disk.  `most_motions` bounds the motions that are tested.  The time is
-        bounded by the size of the map; `seconds` is not looked at.
+        but for passages hardly wider than the disk.  `most_motions` are tested; the size of the map bounds the time,
+        `seconds` is not looked at.
         """
         first = as_batch("start", np.reshape(start, (1, -1)), 2)[0]
         last = as_batch("goals", goals, 2)

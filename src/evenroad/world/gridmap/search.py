@@ -210,18 +210,15 @@ def _is_at_gate(r: int, c: int, gates: Bools) -> bool:
 
 @njit(cache=True, nogil=True)
 def _trace(node: int, came: Any, wide: int, start: Any, goal: Any, disk: DiskTables) -> Any:
-    count = 3
-    at = node
-    while came[at] >= 0:
-        at -= STEPS[came[at], 1] * wide + STEPS[came[at], 0]
-        count += 1
-    path = np.empty((count, 2))
-    path[0, 0], path[0, 1], path[-1, 0], path[-1, 1] = start[0], start[1], goal[0], goal[1]
-    at = node
-    for i in range(count - 2, 0, -1):
-        path[i, 0], path[i, 1] = _to_map(0.5 * (at % wide), 0.5 * (at // wide), disk.frame)
-        if came[at] >= 0:
-            at -= STEPS[came[at], 1] * wide + STEPS[came[at], 0]
+    nodes = [node]
+    while came[nodes[-1]] >= 0:
+        step = STEPS[came[nodes[-1]]]
+        nodes.append(nodes[-1] - step[1] * wide - step[0])
+    path = np.empty((len(nodes) + 2, 2))
+    path[0], path[-1] = start, goal
+    for i in range(len(nodes)):
+        r, c = divmod(nodes[-1 - i], wide)
+        path[i + 1, 0], path[i + 1, 1] = _to_map(0.5 * c, 0.5 * r, disk.frame)
     return path
 
 
@@ -269,10 +266,7 @@ def _skip_ahead(path: Any, disk: DiskTables) -> tuple[Floats, int]:
                 far = middle
         at = near
         kept.append(at)
-    points = np.empty((len(kept), 2))
-    for i in range(len(kept)):
-        points[i] = path[kept[i]]
-    return points, motions
+    return path[np.array(kept)], motions
 
 
 @njit(cache=True, nogil=True)
@@ -324,14 +318,7 @@ def _best_selection(points: Any, disk: DiskTables) -> tuple[Floats, int]:
             length[j], before[j] = through, i
     if not np.isfinite(length[count - 1]):
         return points, motions
-    kept = 1
-    at = count - 1
-    while at > 0:
-        at = before[at]
-        kept += 1
-    chosen = np.empty((kept, 2))
-    at = count - 1
-    for i in range(kept - 1, -1, -1):
-        chosen[i] = points[at]
-        at = before[at]
-    return chosen, motions
+    chosen = [count - 1]
+    while chosen[-1] > 0:
+        chosen.append(before[chosen[-1]])
+    return points[np.array(chosen[::-1])], motions
