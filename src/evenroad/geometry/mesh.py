@@ -40,14 +40,13 @@ class TriangleMesh:
 
     def __post_init__(self) -> None:
         vertices = np.array(as_batch("vertices", self.vertices, 3))
+        wanted = "triangles must be a (t, 3) array of integers"
         try:
             triangles = np.array(self.triangles)
         except ValueError as error:
-            raise InvalidValue(f"triangles must be a (t, 3) array of integers: {error}") from None
+            raise InvalidValue(f"{wanted}: {error}") from None
         if triangles.ndim != 2 or triangles.shape[1] != 3 or not np.issubdtype(triangles.dtype, np.integer):
-            raise InvalidValue(
-                f"triangles must be a (t, 3) array of integers, got {triangles.dtype} of shape {triangles.shape}"
-            )
+            raise InvalidValue(f"{wanted}, got {triangles.dtype} of shape {triangles.shape}")
         if len(triangles) == 0:
             raise InvalidValue("a mesh must have one triangle or more: one without would never collide")
         if triangles.min() < 0 or triangles.max() >= len(vertices):

@@ -74,8 +74,8 @@ class FlatSpace(Space):
     def interpolate(self, a: Floats, b: Floats, t: Floats | float) -> Floats:
         """Return the points a fraction `t`, scalar or (n,) in [0, 1], of the short motion from `a` to `b`.
 
-        Exact at both ends and never beyond them.  Of the two motions between opposite places of a wrapping
-        axis, the one that does not cross the ends of its range is taken, in either direction.
+        Exact at both ends and never beyond them.  Between opposite places of a wrapping axis the motion is taken that
+        does not cross the ends of its range.
         """
         first, second = map(self._canonical, as_batch_pair(a, b, self.dim))
         fraction = as_fractions(t, len(first))

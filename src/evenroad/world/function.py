@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -56,6 +56,9 @@ class FunctionWorld:
         If `is_valid` cannot be called, or `resolution` is not of that kind.
     """
 
+    proof: ClassVar[str] = "resolution"
+    """A function says nothing of what lies between two states, `recheck` or not."""
+
     space: Space
     is_valid: Callable[[Floats], Any]
     resolution: float | Sequence[float]
@@ -84,11 +87,6 @@ class FunctionWorld:
         Raises InvalidValue as `valid`, if the two differ in length, or if a motion has more than 2^30 states.
         """
         return self._motions_free(*as_batch_pair(a, b, self.space.dim), finer=1)
-
-    @property
-    def proof(self) -> str:
-        """``resolution``: a function says nothing of what lies between two states, `recheck` or not."""
-        return "resolution"
 
     def recheck(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, dim), are free at a twentieth of the resolution: (p - 1,)."""

@@ -6,6 +6,7 @@ import hashlib
 import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
@@ -147,6 +148,11 @@ class DiskWorld:
         If `radius` is not such a number.
     """
 
+    proof: ClassVar[str] = "exact"
+    """What is shown of a motion called free."""
+    planner: ClassVar[str] = "cells"
+    """How `connect` plans, in results."""
+
     grid: GridMap
     radius: float
     _tables: DiskTables = field(init=False, repr=False)
@@ -159,11 +165,6 @@ class DiskWorld:
     def space(self) -> Rectangle:
         """The map's rectangle, in map units."""
         return self.grid.space
-
-    @property
-    def proof(self) -> str:
-        """What is shown of a motion called free: ``exact``."""
-        return "exact"
 
     def valid(self, q: Floats) -> Bools:
         """Return whether the disk is free at each map point, (n, 2) -> (n,); False outside the map."""
@@ -238,11 +239,6 @@ class DiskWorld:
     @cached_property
     def _components(self) -> tuple[Ints32, Ints32, Ints]:
         return label_components(self._tables, self._gates)
-
-    @property
-    def planner(self) -> str:
-        """How `connect` plans, in results."""
-        return "cells"
 
     def connect(
         self, start: Floats, goals: Floats, *, most_motions: int = 2**31 - 1, seconds: float = math.inf

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
@@ -54,6 +55,9 @@ class SolidWorld:
         If the space is of another kind, boxes are missing or of another dimension, or `resolution` does not fit.
     """
 
+    proof: ClassVar[str] = "certified"
+    """What `recheck` calls free is proved to be, everywhere between its ends."""
+
     space: RigidSpace
     body: Sequence[OrientedBox]
     obstacles: Sequence[OrientedBox]
@@ -94,11 +98,6 @@ class SolidWorld:
             start, end, *self._steps, self._body, self._reach, self._obstacles, self._planar
         )
         return free
-
-    @property
-    def proof(self) -> str:
-        """``certified``: what `recheck` calls free is proved to be, everywhere between its ends."""
-        return "certified"
 
     def recheck(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, dim), are proved free: (p - 1,).
