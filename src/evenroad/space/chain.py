@@ -59,10 +59,6 @@ class ChainSpace(FlatSpace):
         first, second = as_batch("a", a, self.joints), as_batch("b", b, self.joints)
         return _all_distances(_far_ends(first), _far_ends(second))
 
-    def wrapped(self, q: Floats) -> Floats:
-        """Return `q`, (n, joints), with angles brought into [-pi, pi)."""
-        return self._canonical(as_batch("q", q, self.joints))
-
 
 @njit(cache=True, nogil=True)
 def chain_distance(a: Floats, b: Floats) -> float:

@@ -87,8 +87,13 @@ class FlatSpace(Space):
         between[:, bounded] = np.clip(straight, np.minimum(start, end), np.maximum(start, end))
         return np.where(fraction == 1.0, second, self._canonical(between))
 
+    def wrapped(self, q: Floats) -> Floats:
+        """Return `q`, (n, dim), with wrapping axes brought into their ranges."""
+        return self._canonical(as_batch("q", q, self.dim))
+
     def _canonical(self, q: Floats) -> Floats:
-        """Return `q` with wrapping axes brought into their ranges; what is there already is not rounded."""
+        """Do as `wrapped`, for a sound batch."""
+        # What is in its range already is not rounded.
         outside = ((q < self._low) | (q >= self._high)) & self._flat.wrapping
         if not outside.any():
             return q

@@ -16,7 +16,7 @@ from evenroad.space.protocol import Space
 _UNIT_TOLERANCE = 1e-6
 """How far a norm may be from 1: room for quaternions read from a text file with seven digits."""
 
-_SMALL_ANGLE = 1e-8
+SMALL_ANGLE = 1e-8
 """Below it a chord and its arc agree to the last bit, and sin(angle) is too small to divide by safely."""
 
 
@@ -76,7 +76,7 @@ class SO3(Space):
         first, nearer = _on_one_side(a, b)
         fraction = as_fractions(t, len(first))
         angle = _angle(first, nearer)[:, np.newaxis]
-        is_small = angle < _SMALL_ANGLE
+        is_small = angle < SMALL_ANGLE
         sine = np.where(is_small, 1.0, np.sin(angle))
         from_first = np.where(is_small, 1.0 - fraction, np.sin((1.0 - fraction) * angle) / sine)
         from_nearer = np.where(is_small, fraction, np.sin(fraction * angle) / sine)

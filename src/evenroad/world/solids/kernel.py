@@ -8,11 +8,9 @@ import numpy as np
 from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints
+from evenroad.space.so3 import SMALL_ANGLE
 from evenroad.world.bisection import next_between
 from evenroad.world.solids.oriented_box import BoxTable
-
-_SMALL_ANGLE = 1e-8
-"""Below it a chord and its arc agree to the last bit, and sin(angle) is too small to divide by safely."""
 
 _ROUNDING = 4e-6
 """In a proof boxes are enlarged by this share of their points' ways more: quaternions are of norm 1 up to 1e-6."""
@@ -144,7 +142,7 @@ def _put_between(a, b, from_a, from_b, angle, state):  # type: ignore[no-untyped
     """Write the pose with the weights `from_a` and `from_b`: straight, and by slerp (Shoemake 1985)."""
     for k in range(3):
         state[k] = from_a * a[k] + from_b * b[k]
-    if angle >= _SMALL_ANGLE:
+    if angle >= SMALL_ANGLE:
         sine = math.sin(angle)
         from_a, from_b = math.sin(from_a * angle) / sine, math.sin(from_b * angle) / sine
     for k in range(3, 7):

@@ -71,7 +71,5 @@ def as_pose_pair(a: Floats, b: Floats, space: Space) -> tuple[Floats, Floats]:
 
 
 def _heading(q: Floats) -> Floats:
-    """Return the headings of planar poses in [-pi, pi), as `Circle` gives them."""
-    heading = q[:, 2]
-    wrapped = np.mod(heading + np.pi, 2.0 * np.pi) - np.pi
-    return np.where((heading >= -np.pi) & (heading < np.pi), heading, wrapped)
+    """Return the headings of planar poses in [-pi, pi)."""
+    return Circle().wrapped(q[:, 2:])[:, 0]
