@@ -13,7 +13,7 @@ from evenroad._checks import require_count, require_known
 from evenroad._rng import RngLike, generator
 from evenroad.errors import InvalidValue
 from evenroad.world import GridMap, load_map
-from evenroad.world.gridmap.disk import DiskWorld
+from evenroad.world.gridmap import DiskWorld
 
 FOLDER = Path(__file__).parent
 LEVELS = (1, 2, 3)

@@ -25,7 +25,7 @@ from evenroad.robot import ArmWorld
 from evenroad.space.path import place_at
 from evenroad.viz import draw_plan, style
 from evenroad.viz.arm import draw_arm_plan
-from evenroad.world.gridmap.disk import DiskWorld
+from evenroad.world.gridmap import DiskWorld
 from evenroad.world.solids import OrientedBox, SolidWorld
 
 SCENES = ("maze-1", "maze-2", "maze-3", "chain-10d", "cubicles", "twistycool", "ur5-c", "ur5-a")
