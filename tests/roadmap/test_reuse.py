@@ -1,3 +1,4 @@
+import inspect
 import pickle
 from concurrent.futures import ThreadPoolExecutor
 
@@ -6,10 +7,23 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from evenroad.arms import plan_arm
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points import PointSet, draw
 from evenroad.research.mazes import load_maze
-from evenroad.roadmap import Budget, Complete, KNearest, Radius, Roadmap, Status
+from evenroad.roadmap import (
+    Budget,
+    Complete,
+    KNearest,
+    Radius,
+    Roadmap,
+    Status,
+    WorldRoadmap,
+    find_path,
+    fmt,
+    plan,
+    plan_anytime,
+)
 from evenroad.roadmap.neighbours.find import Surroundings, nearest_of
 from evenroad.space import Rectangle, Space
 from evenroad.world import GridMap
@@ -66,7 +80,7 @@ def test_a_query_finds_the_shortest_path_of_the_roadmap_and_its_two_ends(reuse, 
     roadmap, world, queries = reuse
     known = roadmap.in_world(world, lazy_milestones=lazy_milestones)
     for start, goal in queries:
-        result = known.query(start, goal, links=links)
+        result = known.query(start, goal, links=links, shorten=False)
         expected = _cheapest(roadmap, world, start, goal, lazy_milestones, links)
         assert result.solved == np.isfinite(expected)
         if result.solved:
@@ -96,9 +110,9 @@ def test_no_edge_of_the_roadmap_is_asked_about_twice():
     known = roadmap.in_world(world)
     assert world.asked_configurations == 64
     for _ in range(2):
-        known.query(CORNERS[0], CORNERS[3], search="full")
+        known.query(CORNERS[0], CORNERS[3], search="full", shorten=False)
     asked = world.asked_motions
-    again = known.query(CORNERS[0], CORNERS[3])
+    again = known.query(CORNERS[0], CORNERS[3], shorten=False)
     assert world.asked_motions - asked == again.counts["edges_checked"] <= 13
     assert again.counts["configurations_checked"] == 2
     states = known.known
@@ -120,6 +134,11 @@ def test_one_roadmap_serves_several_worlds():
     assert roadmap.in_world(ChanceWorld(1, 1.0, 1.0)).query(*CORNERS[::3]).solved
 
 
+def test_every_planner_shortens_its_paths_unless_told_not_to():
+    planners = plan, fmt, plan_anytime, find_path, plan_arm, WorldRoadmap.query
+    assert [inspect.signature(planner).parameters["shorten"].default for planner in planners] == [True] * 6
+
+
 def test_statuses_counts_and_names_of_a_query():
     world = GridMap(np.eye(20, dtype=bool)).world(0.5)
     known = Roadmap.build(world.space, draw("sobol", 64, 2), KNearest(8)).in_world(world)
@@ -128,7 +147,7 @@ def test_statuses_counts_and_names_of_a_query():
     apart = known.query((5, 15), (15, 5))
     assert apart.status is Status.NOT_CONNECTED
     assert 0 < apart.counts["start_component"] < apart.counts["valid"]
-    joined = known.query((5, 15), (5, 18), keep_graph=True, shorten=True)
+    joined = known.query((5, 15), (5, 18), keep_graph=True)
     assert joined.solved
     assert joined.rule == "k=8 symmetrised of all points"
     assert joined.planner == "prm lazy"
@@ -166,7 +185,8 @@ def test_an_edge_cost_is_kept_over_all_queries():
     known = roadmap.in_world(ChanceWorld(5, 1.0, 0.8), edge_cost=twice)
     plain = roadmap.in_world(ChanceWorld(5, 1.0, 0.8))
     for goal in CORNERS[1:]:
-        assert known.query(CORNERS[0], goal).cost == pytest.approx(2.0 * plain.query(CORNERS[0], goal).cost)
+        costs = [each.query(CORNERS[0], goal).milestone_cost for each in (known, plain)]
+        assert costs[0] == pytest.approx(2.0 * costs[1])
 
 
 @settings(max_examples=60, deadline=None)
@@ -261,7 +281,7 @@ def test_a_roadmap_measures_its_edges_once_and_only_when_asked():
     known = [roadmap.in_world(world) for world in worlds]
     assert Ruled.measured == 0
     for one in known:
-        one.query(*CORNERS[::3])
+        one.query(*CORNERS[::3], shorten=False)
     # The edges once, and what each query measures of all milestones.
     assert len(roadmap.edges) <= Ruled.measured < 2 * len(roadmap.edges) + 3 * 3 * 300
     assert np.array_equal(roadmap.lengths, space.distance(*roadmap.configurations[roadmap.edges.T]))

@@ -44,7 +44,7 @@ def confirmed(
 
 def confirm(states: EdgeStates, found: Found) -> bool:
     """Return whether the world confirms all motions of a path; those that fail are blocked from now on."""
-    nodes, along = found
+    nodes, along, _ = found
     passed = confirmed(states.world, states.configurations[nodes], ~states.confirmed[along])
     states.confirmed[along] = passed
     states.edge_states[along[~passed]] = BLOCKED

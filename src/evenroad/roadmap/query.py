@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass, field
 
 import numpy as np
@@ -14,7 +13,7 @@ from evenroad.points.pointset import PointSet
 from evenroad.points.samplers import make_sampler
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.cost import EdgeCost
-from evenroad.roadmap.search import FINDERS, EdgeStates, Found, SearchProblem, find_any
+from evenroad.roadmap.search import FINDERS, Finder, find_any
 from evenroad.space import Space
 
 LINKS = 100
@@ -76,7 +75,7 @@ class Query:
         return milestones if milestones <= FEW else min(self.links, milestones)
 
     @property
-    def find(self) -> Callable[[SearchProblem, EdgeStates], Found]:
+    def find(self) -> Finder:
         """The search."""
         return find_any if self.success_only else FINDERS[self.search]
 

@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats, Ints
+from evenroad.roadmap.budget import BudgetSpent, in_time
 from evenroad.roadmap.cost import EdgeCost
 from evenroad.roadmap.proof import confirmed
-from evenroad.roadmap.search import BudgetSpent, shortest_path
-from evenroad.roadmap.search.edge_states import in_time
+from evenroad.roadmap.search import shortest_path
 from evenroad.space import Space
 from evenroad.space.path import motion_lengths, subdivide
 from evenroad.world import World

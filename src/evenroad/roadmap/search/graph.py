@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from evenroad._arrays import Bools, Ints, Ints32
+from evenroad._arrays import Ints, Ints32
 
 
 class Rows(NamedTuple):
@@ -56,12 +56,9 @@ def components(nodes: int, edges: Ints32) -> Ints32:
     return label
 
 
-def join(label: Ints32, edges: Ints32) -> Bools:
-    """Join components along edges, one after the other, in place; return for each edge whether it joined two.
-
-    `label` holds for every node the lowest node of its component, before and after.
-    """
-    return _join(label, np.array(edges, dtype=np.int32))
+def join(label: Ints32, edges: Ints32) -> None:
+    """Join components along edges, in place: `label` holds for every node the lowest node of its component."""
+    _join(label, np.array(edges, dtype=np.int32))
 
 
 @njit(cache=True, nogil=True)
@@ -90,7 +87,6 @@ _NO_LINKS = Rows(np.zeros(1, dtype=np.int64), np.empty(0, dtype=np.int32), np.em
 @njit(cache=True, nogil=True)
 def _join(root, edges):  # type: ignore[no-untyped-def]
     """Union-find; the root of a component is always its lowest node."""
-    joined = np.zeros(edges.shape[0], dtype=np.bool_)
     for e in range(edges.shape[0]):
         a, b = edges[e, 0], edges[e, 1]
         while root[a] != a:
@@ -99,7 +95,6 @@ def _join(root, edges):  # type: ignore[no-untyped-def]
         while root[b] != b:
             root[b] = root[root[b]]
             b = root[b]
-        joined[e] = a != b
         if a < b:
             root[b] = a
         else:
@@ -107,4 +102,3 @@ def _join(root, edges):  # type: ignore[no-untyped-def]
     for v in range(root.shape[0]):
         # Roots are lower than their children, so one ascending sweep flattens every tree.
         root[v] = root[root[v]]
-    return joined
