@@ -77,57 +77,69 @@ def _all_free(
 def find_any(ends: Ends, states: EdgeStates) -> Found:
     """Return some path of free edges if there is one, asking about no more edges than the full search.
 
-    Two trees grow, from the start and from the goals, always the one that has asked less: each asks about the edges
-    that lead nearest to where the other began, until they meet.  A search without an answer ends when one of the two
-    can grow no more.  Edges between two nodes of one tree are not asked about.
+    Two trees grow, from the start and from the goals: both ask about the edges that lead nearest to where the other
+    began, until they meet.  A search without an answer ends when one of the two can grow no more.  Edges between two
+    nodes of one tree are not asked about.
     """
-    edges = states.edges
-    nearness = _away(states, ends.goals), _away(states, [ends.start])
+    edges, to_goal, to_start = states.edges, _away(states, ends.goals), _away(states, [ends.start])
     tree = np.zeros(len(states.configurations), dtype=np.int8)
     tree[ends.start], tree[ends.goals] = 1, 2
     parent_edge = np.full(len(tree), -1, dtype=np.int32)
-    asked = [0, 0]
+    most = _FIRST
     while True:
-        here = int(asked[1] < asked[0])
-        targets, offers = _ways_out(edges, states.edge_states, states.node_states, tree, np.int8(here + 1))
-        if not len(targets):
+        givers, takers, offers, both = _ways_out(edges, states.edge_states, states.node_states, tree)
+        if not both:
             return NOT_FOUND
-        best = np.argsort(nearness[here][targets], kind="stable")[: _FIRST + asked[here] // 2]
-        targets, offers = targets[best], offers[best]
-        states.ask_nodes(targets)
-        free = states.node_states[targets] == FREE
-        targets, offers = targets[free], offers[free]
-        states.ask_edges(offers)
-        asked[here] += len(offers)
-        free = states.edge_states[offers] == FREE
-        targets, offers = targets[free], offers[free]
-        met = np.flatnonzero(tree[targets])
+        from_start = tree[givers] == 1
+        best = _nearest(np.flatnonzero(from_start), to_goal[takers], most)
+        others = _nearest(np.flatnonzero(~from_start), to_start[takers], most)
+        most += min(len(best), len(others)) // 2
+        rows = np.concatenate([best, others])
+        states.ask_nodes(takers[rows])
+        rows = rows[states.node_states[takers[rows]] == FREE]
+        states.ask_edges(offers[rows])
+        rows = rows[states.edge_states[offers[rows]] == FREE]
+        givers, takers, offers = givers[rows], takers[rows], offers[rows]
+        met = np.flatnonzero(tree[takers])
         if len(met):
-            joint = offers[met[0]]
-            a, b = edges[joint] if tree[edges[joint, 0]] == 1 else edges[joint, ::-1]
-            there, back = (_path_back(parent_edge, edges, int(node)) for node in (a, b))
-            nodes = np.concatenate([there.nodes, back.nodes[::-1]])
-            return Found(nodes, np.concatenate([there.edges, [joint], back.edges[::-1]]))
-        tree[targets], parent_edge[targets] = here + 1, offers
+            nodes = givers[met[0]], takers[met[0]]
+            there, back = (_path_back(parent_edge, edges, int(node)) for node in nodes)
+            along = np.concatenate([there.edges, offers[met[:1]], back.edges[::-1]])
+            return Found(np.concatenate([there.nodes, back.nodes[::-1]]), along)
+        tree[takers], parent_edge[takers] = tree[givers], offers
 
 
 _FIRST = 16
-"""Edges that `find_any` asks about together at first; later the more, the longer it takes."""
+"""Edges that each tree of `find_any` asks about at first; later the more, the longer it takes."""
+
+
+def _nearest(rows: npt.NDArray[np.integer], away: Floats, most: int) -> npt.NDArray[np.integer]:
+    """Return at most so many of the rows, those of the least distances."""
+    return rows if len(rows) <= most else rows[np.argsort(away[rows], kind="stable")[:most]]
 
 
 @njit(cache=True, nogil=True)
-def _ways_out(edges, edge_states, node_states, tree, own):  # type: ignore[no-untyped-def]
-    """Return the nodes that edges not known to be blocked join to one tree, and for each the first of these edges."""
-    offers = np.full(tree.shape[0], -1, dtype=np.int32)
+def _ways_out(edges, edge_states, node_states, tree):  # type: ignore[no-untyped-def]
+    """Return edges, not known to be blocked, that lead out of a tree or from the first one to the second.
+
+    From which nodes, to which, one for each of these, and the edges; and whether both trees have such edges.
+    """
+    giver = np.empty(tree.shape[0], dtype=np.int32)
+    offer = np.full(tree.shape[0], -1, dtype=np.int32)
+    grows = np.zeros(3, dtype=np.bool_)
     for e in range(edges.shape[0]):
         a, b = edges[e, 0], edges[e, 1]
-        if edge_states[e] == BLOCKED or (tree[a] == own) == (tree[b] == own):
+        if tree[a] == tree[b] or edge_states[e] == BLOCKED:
             continue
-        target = b if tree[a] == own else a
-        if offers[target] < 0 and node_states[target] != BLOCKED:
-            offers[target] = e
-    targets = np.flatnonzero(offers >= 0)
-    return targets, offers[targets]
+        if tree[a] == 0 or tree[b] == 1:
+            a, b = b, a
+        if node_states[b] == BLOCKED:
+            continue
+        grows[tree[a]] = grows[tree[b]] = True
+        if offer[b] < 0:
+            giver[b], offer[b] = a, e
+    takers = np.flatnonzero(offer >= 0)
+    return giver[takers], takers, offer[takers], grows[1] and grows[2]
 
 
 def march(problem: SearchProblem, states: EdgeStates) -> Found:
@@ -146,7 +158,7 @@ def march(problem: SearchProblem, states: EdgeStates) -> Found:
     while frontier:
         _, node = heapq.heappop(frontier)
         if node in goals:
-            return _path_back(parent_edge, states.edges, node)._replace(reached=np.count_nonzero(stage))
+            return _path_back(parent_edge, states.edges, node)._replace(reached=int(np.count_nonzero(stage)))
         fresh, offers = _best_offers(node, graph, weights, cost, stage)
         states.ask_edges(offers)
         free = states.edge_states[offers] == FREE
@@ -160,7 +172,7 @@ def march(problem: SearchProblem, states: EdgeStates) -> Found:
         stage[node] = _CLOSED
         for newcomer in fresh.tolist():
             heapq.heappush(frontier, (int(cost[newcomer]), newcomer))
-    return NOT_FOUND._replace(reached=np.count_nonzero(stage))
+    return NOT_FOUND._replace(reached=int(np.count_nonzero(stage)))
 
 
 _UNVISITED, _OPEN, _CLOSED = np.int8(0), np.int8(1), np.int8(2)
