@@ -9,49 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from evenroad._arrays import Floats, Ints32
-
-
-def k_nearest(points: Floats, k: int, period: Floats | None = None, *, earlier: bool = False) -> Ints32:
-    """Return the k nearest other points of every point, nearest first, ties to the lower index.
-
-    Parameters
-    ----------
-    points : ndarray, shape (n, d)
-        Finite coordinates; the metric is Euclidean, those of wrapping axes lie in [0, period).
-    k : int
-        At least 1.
-    period : ndarray, shape (d,), optional
-        After how much each axis repeats, inf where it does not; default: none does.
-    earlier : bool
-        Only points of a lower index count.  A tree over all points serves here too: parts of it without
-        a lower index are skipped.
-
-    Returns
-    -------
-    ndarray of int32, shape (n, min(k, n - 1))
-        With `earlier`, row i has -1 after its min(k, i) neighbours.
-    """
-    n, d = points.shape
-    k = min(k, n - 1)
-    if k < 1:
-        return np.empty((n, 0), dtype=np.int32)
-    period = np.full(d, np.inf) if period is None else period.copy()
-    order, boxes, lowest = build(points, LEAF_SIZE)
-    return _k_nearest(points, period, order, boxes, lowest, k, earlier, LEAF_SIZE)
-
-
-def pairs_within(points: Floats, radius: float, period: Floats | None = None) -> Ints32:
-    """Return every pair i < j at distance <= `radius`, shape (m, 2), in no particular order.
-
-    `points` and `period` are those of :func:`k_nearest`.
-    """
-    n, d = points.shape
-    if n < 2:
-        return np.empty((0, 2), dtype=np.int32)
-    period = np.full(d, np.inf) if period is None else period.copy()
-    order, boxes, _ = build(points, LEAF_SIZE)
-    return _pairs_within(points, period, order, boxes, radius, LEAF_SIZE)
+LEAF_SIZE = 12
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -87,45 +45,41 @@ def _distance(points, i, j, period, wraps):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def _k_nearest(points, period, order, boxes, lowest, k, earlier, leaf_size):  # type: ignore[no-untyped-def]
+def k_nearest(points, period, k, earlier):  # type: ignore[no-untyped-def]
+    """Return the k < n nearest other points of every point, (n, k) int32, nearest first, ties to the lower index.
+
+    Coordinates are finite, those of wrapping axes in [0, period), the other periods inf; the metric is Euclidean.  With
+    `earlier` only points of a lower index count, and row i has -1 after its min(k, i) neighbours: parts of the tree
+    without a lower index are skipped.
+    """
     n = points.shape[0]
+    order, spans, boxes, lowest = _build(points)
     wraps = np.isfinite(period).any()
     nearest = np.full((n, k), -1, dtype=np.int32)
     distance = np.empty(k)
     # The depth of the tree bounds the stack: two entries a level.
-    nodes = np.empty(128, dtype=np.int64)
-    firsts = np.empty(128, dtype=np.int64)
-    lasts = np.empty(128, dtype=np.int64)
-    bounds = np.empty(128)
+    nodes, bounds = np.empty(128, dtype=np.int64), np.empty(128)
     # Queries in tree order touch the same leaves one after the other, which keeps them in the cache.
-    for position in range(n):
-        query = order[position]
-        point = points[query]
-        found = nearest[query]
+    for query in order:
+        point, found = points[query], nearest[query]
         end = query if earlier else n
-        count = 0
-        nodes[0], firsts[0], lasts[0], bounds[0] = 0, 0, n, 0.0
-        top = 1
+        count, top = 0, 1
+        nodes[0], bounds[0] = 0, 0.0
         while top > 0:
             top -= 1
-            node, first, last = nodes[top], firsts[top], lasts[top]
+            node = nodes[top]
             if (count == k and bounds[top] > distance[k - 1]) or lowest[node] >= end:
                 continue
-            if 2 * node + 2 < boxes.shape[0]:
-                middle = (first + last) // 2
-                left, right = 2 * node + 1, 2 * node + 2
+            left, right = 2 * node + 1, 2 * node + 2
+            if right < boxes.shape[0]:
                 to_left = _box_distance(boxes, left, point, period, wraps)
                 to_right = _box_distance(boxes, right, point, period, wraps)
-                nearer_last = to_right < to_left
-                for turn in range(2):
-                    # The nearer child is pushed last, so that it is visited first.
-                    if (turn == 1) == nearer_last:
-                        nodes[top], firsts[top], lasts[top], bounds[top] = right, middle, last, to_right
-                    else:
-                        nodes[top], firsts[top], lasts[top], bounds[top] = left, first, middle, to_left
-                    top += 1
+                # The nearer child is pushed last, so that it is visited first.
+                nodes[top], nodes[top + 1] = (left, right) if to_right < to_left else (right, left)
+                bounds[top], bounds[top + 1] = max(to_left, to_right), min(to_left, to_right)
+                top += 2
                 continue
-            for i in range(first, last):
+            for i in range(spans[node, 0], spans[node, 1]):
                 other = order[i]
                 if other == query or other >= end:
                     continue
@@ -138,91 +92,81 @@ def _k_nearest(points, period, order, boxes, lowest, k, earlier, leaf_size):  # 
                 while slot > 0 and (
                     distance[slot - 1] > total or (distance[slot - 1] == total and found[slot - 1] > other)
                 ):
-                    distance[slot] = distance[slot - 1]
-                    found[slot] = found[slot - 1]
+                    distance[slot], found[slot] = distance[slot - 1], found[slot - 1]
                     slot -= 1
-                distance[slot] = total
-                found[slot] = other
+                distance[slot], found[slot] = total, other
                 count = min(count + 1, k)
     return nearest
 
 
 @njit(cache=True, nogil=True)
-def _pairs_within(points, period, order, boxes, radius, leaf_size):  # type: ignore[no-untyped-def]
+def pairs_within(points, period, radius):  # type: ignore[no-untyped-def]
+    """Return every pair i < j at distance <= `radius`, (m, 2), in no particular order; as `k_nearest`, n >= 1."""
     n = points.shape[0]
+    order, spans, boxes, _ = _build(points)
     wraps = np.isfinite(period).any()
     limit = radius * radius
     pairs = np.empty((max(16, 4 * n), 2), dtype=np.int32)
     count = 0
+    nodes = np.empty(128, dtype=np.int64)
     for query in range(n):
-        point = points[query]
-        stack = [(0, 0, n)]
-        while stack:
-            node, first, last = stack.pop()
-            if _box_distance(boxes, node, point, period, wraps) > limit:
+        nodes[0], top = 0, 1
+        while top > 0:
+            top -= 1
+            node = nodes[top]
+            if _box_distance(boxes, node, points[query], period, wraps) > limit:
                 continue
             if 2 * node + 2 < boxes.shape[0]:
-                middle = (first + last) // 2
-                stack.append((2 * node + 1, first, middle))
-                stack.append((2 * node + 2, middle, last))
+                nodes[top], nodes[top + 1] = 2 * node + 1, 2 * node + 2
+                top += 2
                 continue
-            for i in range(first, last):
+            for i in range(spans[node, 0], spans[node, 1]):
                 other = order[i]
-                if other <= query:
-                    continue
-                if _distance(points, other, query, period, wraps) <= limit:
+                if other > query and _distance(points, other, query, period, wraps) <= limit:
                     if count == pairs.shape[0]:
-                        grown = np.empty((2 * count, 2), dtype=np.int32)
-                        grown[:count] = pairs
-                        pairs = grown
-                    pairs[count, 0] = query
-                    pairs[count, 1] = other
+                        pairs = np.concatenate((pairs, np.empty_like(pairs)))
+                    pairs[count] = query, other
                     count += 1
     return pairs[:count].copy()
 
 
-LEAF_SIZE = 12
-
-
 @njit(cache=True, nogil=True)
-def build(points, leaf_size):  # type: ignore[no-untyped-def]
-    """Return the order of the points in the leaves, and boxes (nodes, 2, d) and lowest indices (nodes,) by node.
+def _build(points):  # type: ignore[no-untyped-def]
+    """Return the order of the points in the leaves, and by node its span of it, its box and its lowest index.
 
-    Nodes split at the median of their widest axis; node v has the children 2v + 1 and 2v + 2.
+    Shapes (n,), (nodes, 2), (nodes, 2, d), (nodes,); nodes split at the median of their widest axis, and node v has the
+    children 2v + 1 and 2v + 2.
     """
     n, d = points.shape
     depth = 0
-    while (n >> depth) > leaf_size:
+    while (n >> depth) > LEAF_SIZE:
         depth += 1
+    size = (1 << (depth + 1)) - 1
     order = np.arange(n)
-    boxes = np.empty(((1 << (depth + 1)) - 1, 2, d))
-    lowest = np.empty(boxes.shape[0], dtype=np.int64)
-    stack = [(0, 0, n)]
-    while stack:
-        node, first, last = stack.pop()
+    spans, boxes, lowest = (
+        np.empty((size, 2), dtype=np.int64),
+        np.empty((size, 2, d)),
+        np.empty(size, dtype=np.int64),
+    )
+    spans[0] = 0, n
+    for node in range(size):
+        first, last = spans[node]
         lowest[node] = order[first:last].min()
+        widest, width = 0, -np.inf
         for axis in range(d):
-            low = np.inf
-            high = -np.inf
+            low, high = np.inf, -np.inf
             for i in range(first, last):
                 x = points[order[i], axis]
-                low = min(low, x)
-                high = max(high, x)
-            boxes[node, 0, axis] = low
-            boxes[node, 1, axis] = high
-        if 2 * node + 2 < boxes.shape[0]:
-            axis = 0
-            for other in range(1, d):
-                if (
-                    boxes[node, 1, other] - boxes[node, 0, other]
-                    > boxes[node, 1, axis] - boxes[node, 0, axis]
-                ):
-                    axis = other
+                low, high = min(low, x), max(high, x)
+            boxes[node, 0, axis], boxes[node, 1, axis] = low, high
+            if high - low > width:
+                widest, width = axis, high - low
+        if 2 * node + 2 < size:
             middle = (first + last) // 2
-            _partition(points, order, axis, first, last, middle)
-            stack.append((2 * node + 1, first, middle))
-            stack.append((2 * node + 2, middle, last))
-    return order, boxes, lowest
+            _partition(points, order, widest, first, last, middle)
+            spans[2 * node + 1] = first, middle
+            spans[2 * node + 2] = middle, last
+    return order, spans, boxes, lowest
 
 
 @njit(cache=True, nogil=True)
