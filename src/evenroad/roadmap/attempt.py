@@ -51,22 +51,10 @@ class Searched:
 class Attempt:
     """One query on its way to a result; of one thread.
 
-    Attributes
-    ----------
-    world, query
-        Who is asked, and what.
-    origin, rule, planner
-        As in :class:`PlanResult`.
-    goals : ndarray of int64, shape (g,)
-        Rows of the query's goals that are free, once `valid_ends` was asked; the others are left out.
-    grows : bool
-        Whether the planner draws its points itself, until the budget is spent.
-    checked : int
-        Configurations checked outside of a graph.
-    motions_checked : int
-        Motions checked in earlier graphs, which count for the budget.
-    spent : bool
-        Whether the budget was spent too early.
+    `origin`, `rule` and `planner` are those of :class:`PlanResult`.  `grows` says whether the planner draws its points
+    itself, until the budget is spent.  `checked` configurations were checked outside of a graph, and `motions_checked`
+    motions in earlier graphs: they count for the budget.  `spent` says whether that was over too early.  `goals` are
+    the rows of the query's goals that are free, (g,), once `valid_ends` was asked; the others are left out.
     """
 
     world: World

@@ -20,8 +20,8 @@ BLOCK = 1 << 16
 def nearest(q: Floats, k: int, space: Space | None = None, *, earlier: bool = False) -> Ints32:
     """Return the k nearest other rows of every row of `q`, (n, dim), nearest first, ties to the lower index.
 
-    By the metric of the space, or else the Euclidean one; shape (n, min(k, n - 1)).  With `earlier` only rows of a lower
-    index count, and row i ends with -1 where there are fewer than k.
+    By the metric of the space, or else the Euclidean one; shape (n, min(k, n - 1)).  With `earlier` only rows of a
+    lower index count, and row i ends with -1 where there are fewer than k.
     """
     n, metric = len(q), flat_metric(space)
     k = min(k, n - 1)
