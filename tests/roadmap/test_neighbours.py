@@ -109,6 +109,6 @@ def test_any_metric_is_searched_by_all_distances_with_the_same_rule_for_ties(poi
 def test_blocks_of_rows_give_what_one_block_gives(monkeypatch):
     points = np.floor(draw("uniform", 50, 2, rng=4).points * 6)
     whole = nearest(points, 6, Great()), within(points, 2.0, Great())
-    monkeypatch.setattr("evenroad.roadmap.neighbours.find.BLOCK", 120)
+    monkeypatch.setattr("evenroad.roadmap.neighbours.BLOCK", 120)
     np.testing.assert_array_equal(nearest(points, 6, Great()), whole[0])
     np.testing.assert_array_equal(within(points, 2.0, Great()), whole[1])

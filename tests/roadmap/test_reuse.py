@@ -24,7 +24,7 @@ from evenroad.roadmap import (
     plan,
     plan_anytime,
 )
-from evenroad.roadmap.neighbours.find import Surroundings, nearest_of
+from evenroad.roadmap.neighbours import Surroundings, nearest_of
 from evenroad.space import Rectangle, Space
 from evenroad.world import GridMap
 from tests.roadmap.spaces import Great, Torus

@@ -46,8 +46,8 @@ def plan_anytime(
 ) -> PlanResult:
     """Plan with `first` points, then with twice as many, and so on, lazily, until the answer is good enough.
 
-    Each stage finds what ``plan(..., search="lazy")`` finds with its points, but milestones and motions that an earlier
-    stage has checked are not checked again.  The best path of all stages is the answer.
+    Each stage finds what ``plan(..., search="lazy")`` finds with its points, but nothing that an earlier stage has
+    checked is checked again.  The best path of all stages is the answer.
 
     Parameters
     ----------
@@ -73,10 +73,8 @@ def plan_anytime(
 
     Raises
     ------
-    InvalidValue
+    InvalidValue, UnknownName
         As in :func:`plan`, and if the sampler's sets do not begin with the smaller ones.
-    UnknownName
-        If there is no such `until`.
     """
     if until not in UNTIL:
         raise UnknownName.among("until", until, UNTIL)
@@ -101,9 +99,7 @@ class _Growth:
     """A roadmap that grows point by point: the milestones so far, what is known of them, and the best path."""
 
     def __init__(self, attempt: Attempt, rule: Rule) -> None:
-        self.attempt, self.rule = attempt, rule
-        self.pairs = KnownPairs()
-        self.drawn = 0
+        self.attempt, self.rule, self.pairs, self.drawn = attempt, rule, KnownPairs(), 0
         self.names = np.empty(0, dtype=np.int64)
         self.milestones = np.empty((0, attempt.world.space.dim))
         self.stages: list[Stage] = []
@@ -132,7 +128,7 @@ class _Growth:
         if cost is not None and cost < min(self._costs(), default=np.inf):
             self.best = self.last
         self.stages.append(Stage(points.n, len(self.milestones), checked, cost, attempt.elapsed()))
-        return not self.last.spent and time.perf_counter() < attempt.deadline
+        return not attempt.spent and time.perf_counter() < attempt.deadline
 
     def is_done(self, until: str) -> bool:
         """Return whether the last stage ends the work."""

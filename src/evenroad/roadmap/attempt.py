@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from evenroad._arrays import Bools, Floats, Ints32
 from evenroad.points.pointset import Origin
 from evenroad.roadmap.budget import Budget, BudgetSpent, Stopwatch, in_time
 from evenroad.roadmap.cost import BOUND, edge_costs
-from evenroad.roadmap.neighbours.find import Surroundings, nearest_of
+from evenroad.roadmap.neighbours import Surroundings, nearest_of
 from evenroad.roadmap.proof import confirm
 from evenroad.roadmap.query import Query
 from evenroad.roadmap.rules import Rule
@@ -36,15 +35,11 @@ _LONG = 1e8
 
 @dataclass(frozen=True, eq=False)
 class Searched:
-    """What is known of a graph after a search of it, and the path with its cost, if there is one.
-
-    `spent` says whether the budget was spent before the search had an answer.
-    """
+    """What is known of a graph after a search of it, and the path with its cost, if there is one."""
 
     states: EdgeStates
     found: Found = NOT_FOUND
     cost: float | None = None
-    spent: bool = False
 
 
 @dataclass(eq=False)
@@ -72,11 +67,6 @@ class Attempt:
         self.began = time.perf_counter()
         self.deadline = self.query.budget.deadline()
         self.goals = np.arange(len(self.query.goals))
-
-    @cached_property
-    def own_planner(self) -> ConnectsItself | None:
-        """The world, if it connects itself; asked once, for the question takes as long as some checks."""
-        return self.world if isinstance(self.world, ConnectsItself) else None
 
     @property
     def start_and_goals(self) -> Floats:
@@ -139,7 +129,7 @@ class Attempt:
                     pass
             except BudgetSpent:
                 self.spent = True
-                return Searched(states, spent=True)
+                return Searched(states)
             if not len(found.nodes):
                 return Searched(states, found)
             return Searched(states, found, length_along(edge_costs(space, q, edges[found.edges], cost)))

@@ -20,7 +20,7 @@ from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.hemmed import with_reasons
 from evenroad.roadmap.query import Query, read_places
 from evenroad.roadmap.result import PlanResult, Stage
-from evenroad.world import ConnectsAnew, World
+from evenroad.world import ConnectsAnew, ConnectsItself, World
 
 SECONDS = 5.0
 """Wall time of a budget that is not given."""
@@ -72,11 +72,11 @@ def find_path(
     budget = budget or Budget(seconds=SECONDS)
     query = Query(*read_places(start, goal, world.space), shorten=shorten, budget=budget)
     attempt = Attempt(world, query, NO_POINTS, "none", "none")
-    if attempt.own_planner is not None:
-        attempt.planner = attempt.own_planner.planner
+    if isinstance(world, ConnectsItself):
+        attempt.planner = world.planner
         if (refused := refusal(attempt)) is not None:
             return refused
-        connection = attempt.connect(attempt.own_planner)
+        connection = attempt.connect(world)
         if connection.goal >= 0:
             result = connected(attempt, connection)
             return _improved(attempt, result) if improve else result
@@ -91,12 +91,8 @@ def find_path(
 
 
 def _improved(attempt: Attempt, first: PlanResult) -> PlanResult:
-    """Return the best path within what is left of the budget, or of its rounds; never a worse one than the first.
-
-    A world that connects anew does so again and again, each time driven by another sequence; in any other one a roadmap
-    grows beside the first path.
-    """
-    nodes = first.counts.get("nodes", 0)
+    """Return the best path within what is left of the budget, or of its rounds; never a worse one than the first."""
+    nodes = first.counts["nodes"]
     stage = Stage(nodes, nodes, attempt.motions_checked, first.cost, attempt.elapsed())
     if isinstance(attempt.world, ConnectsAnew):
         return _by_rounds(attempt, attempt.world, first, stage)
@@ -104,6 +100,7 @@ def _improved(attempt: Attempt, first: PlanResult) -> PlanResult:
 
 
 def _by_rounds(attempt: Attempt, world: ConnectsAnew, first: PlanResult, stage: Stage) -> PlanResult:
+    """Let the world plan again and again, each time driven by another sequence."""
     best, stages, nodes, counts, done = first, [stage], stage.points, dict(first.counts), 0
     # A round that is much longer than the first was takes the time of many others.
     most = max(LEAST_MOTIONS, LONGER * attempt.motions_checked)
@@ -116,8 +113,8 @@ def _by_rounds(attempt: Attempt, world: ConnectsAnew, first: PlanResult, stage: 
         if connection.goal < 0:
             continue
         result = connected(attempt, connection)
-        for name in counts.keys() & {"shortcut_motions"}:
-            counts[name] += result.counts[name]
+        if attempt.query.shorten:
+            counts["shortcut_motions"] += result.counts["shortcut_motions"]
         if _cost(result) < _cost(best):
             best = result
             stages.append(Stage(nodes, nodes, attempt.motions_checked, best.cost, attempt.elapsed()))
@@ -127,6 +124,7 @@ def _by_rounds(attempt: Attempt, world: ConnectsAnew, first: PlanResult, stage: 
 
 
 def _by_growth(attempt: Attempt, first: PlanResult, stage: Stage) -> PlanResult:
+    """Grow a roadmap beside the first path."""
     query, left = attempt.query, attempt.left()
     if left is None or not _goes_on(attempt, first, 1):
         return replace(first, counts=first.counts | {"rounds": 0}, stages=(stage,))

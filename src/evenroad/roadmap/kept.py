@@ -18,7 +18,7 @@ from evenroad.roadmap.answer import answer, connected, proved_apart, refusal
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.cost import BOUND, EdgeCost, edge_costs
-from evenroad.roadmap.neighbours.find import Surroundings, nearest_of
+from evenroad.roadmap.neighbours import Surroundings, nearest_of
 from evenroad.roadmap.query import LINKS, Query, as_points, read_places
 from evenroad.roadmap.result import PlanResult
 from evenroad.roadmap.rules import KNearest, Rule
@@ -33,7 +33,7 @@ from evenroad.roadmap.search import (
     SearchProblem,
 )
 from evenroad.space import Space
-from evenroad.world import World
+from evenroad.world import ConnectsItself, World
 
 
 class Prices(NamedTuple):
@@ -53,12 +53,8 @@ class Roadmap:
 
     Attributes
     ----------
-    space : Space
-        Where the milestones are.
-    points : PointSet
-        Of its unit cube.
-    rule : Rule
-        Which joined them.
+    space, points, rule
+        Where the milestones are, the points of its unit cube, and what joined them.
     configurations : ndarray, shape (n, dim)
         The milestones, in the order of the points; read-only.
     edges : ndarray of int32, shape (m, 2)
@@ -123,20 +119,9 @@ class Roadmap:
 
         Nothing is computed or asked for edges until a query needs them, unless there is an `edge_cost`.
 
-        Parameters
-        ----------
-        world : World
-            Of the same space.
-        lazy_milestones : bool
-            Do not check the milestones now but where they could lie on a path.  Starts and goals are then
-            joined to the nearest of all milestones, else to the nearest of the valid ones.
-        edge_cost : callable, optional
-            As in `plan`.
-
-        Raises
-        ------
-        InvalidValue
-            If the world has another space: the points, or the distances along the edges, differ there.
+        With `lazy_milestones` these are not checked now but where they could lie on a path; starts and goals are then
+        joined to the nearest of all milestones, else to the nearest of the valid ones.  InvalidValue if the world has
+        another space: the points, or the distances along the edges, differ there.
         """
         if not self._fits(world.space):
             raise InvalidValue(f"the roadmap was built for {self.space!r}, the world has {world.space!r}")
@@ -158,14 +143,8 @@ class WorldRoadmap:
     A query's answer depends on the roadmap, the world and the query alone, not on what was asked before: earlier
     queries only save checks.  Threads may share it; their queries are answered one after the other.
 
-    Attributes
-    ----------
-    roadmap : Roadmap
-        The milestones and candidate edges.
-    world : World
-        Who is asked about them.
-    lazy_milestones : bool
-        Whether milestones are checked only where they could lie on a path.
+    `roadmap` has the milestones and candidate edges, `world` is asked about them, and with `lazy_milestones` about
+    milestones only where they could lie on a path.
     """
 
     def __init__(
@@ -249,10 +228,8 @@ class WorldRoadmap:
 
         Raises
         ------
-        InvalidValue
-            If start or goal are not finite or of another dimension.
-        UnknownName
-            If there is no such search.
+        InvalidValue, UnknownName
+            As :func:`plan`.
         """
         query = Query(
             *read_places(start, goal, self.world.space),
@@ -272,7 +249,7 @@ class WorldRoadmap:
             with attempt.watch("neighbours"):
                 states, problem = self._link(attempt)
             searched = attempt.search(query.find, states, problem)
-            if connect and searched.cost is None and not searched.spent:
+            if connect and searched.cost is None and not attempt.spent:
                 joined = self._connect(attempt, states)
                 if joined is not None:
                     return joined
@@ -280,8 +257,8 @@ class WorldRoadmap:
 
     def _connect(self, attempt: Attempt, states: EdgeStates) -> PlanResult | None:
         """Return the result of the world's own planner, or None where there is none, or it finds nothing."""
-        world = attempt.own_planner
-        if world is None or self._edge_cost is not None or proved_apart(attempt) is not None:
+        world = self.world
+        if self._edge_cost is not None or not isinstance(world, ConnectsItself) or proved_apart(attempt):
             return None
         attempt.motions_checked += states.motions_checked
         connection = attempt.connect(world)

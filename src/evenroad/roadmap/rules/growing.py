@@ -16,7 +16,7 @@ import numpy as np
 from evenroad._arrays import Floats, Ints32
 from evenroad._checks import require_count, require_positive
 from evenroad.errors import InvalidValue, NotAvailable
-from evenroad.roadmap.neighbours.find import flat_metric
+from evenroad.roadmap.neighbours import flat_metric
 from evenroad.roadmap.rules.near import KNearest, Radius, Reach, Rule, plain
 from evenroad.space import Space
 

@@ -26,10 +26,9 @@ def search_problem(states: EdgeStates, costs: Floats, goals: int = 1, *, bound: 
     """
     nodes = len(states.configurations)
     ends = Ends.last(nodes, goals)
-    fixed_point = FixedPoint.of(float(costs.max(initial=0.0)), nodes)
-    bounds = fixed_point.bounds(bound * _away(states, ends.goals))
-    weights = fixed_point.weights(costs)
-    return SearchProblem(ends.start, ends.goals, Graph.of(nodes, states.edges), weights, bounds)
+    unit = FixedPoint.of(float(costs.max(initial=0.0)), nodes)
+    bounds = unit.bounds(bound * _away(states, ends.goals))
+    return SearchProblem(ends.start, ends.goals, Graph.of(nodes, states.edges), unit.weights(costs), bounds)
 
 
 def _away(states: EdgeStates, nodes: Iterable[int]) -> Floats:

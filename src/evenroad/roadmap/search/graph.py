@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -23,13 +22,12 @@ class Rows(NamedTuple):
     edge: Ints32
 
     @classmethod
-    def of(cls, nodes: int, edges: Ints32, *, numbered_from: int = 0) -> Rows:
+    def of(cls, nodes: int, edges: Ints32, numbered_from: int = 0) -> Rows:
         """Return the rows of undirected edges, (m, 2), whose numbers begin with `numbered_from`."""
         return cls(*_rows(nodes, np.array(edges, dtype=np.int32), numbered_from))
 
 
-@dataclass(frozen=True, eq=False)
-class Graph:
+class Graph(NamedTuple):
     """Undirected edges, by node: fixed ones, and links of one query beside them.
 
     Both may be rows of the first nodes only: the others have no arcs there.
@@ -46,7 +44,7 @@ class Graph:
 
     def with_links(self, nodes: int, edges: Ints32, numbered_from: int) -> Graph:
         """Return this graph with so many nodes, and links instead of those that it has; O(nodes)."""
-        return replace(self, nodes=nodes, links=Rows.of(nodes, edges, numbered_from=numbered_from))
+        return Graph(nodes, self.fixed, Rows.of(nodes, edges, numbered_from))
 
 
 def components(nodes: int, edges: Ints32) -> Ints32:
@@ -64,11 +62,9 @@ def join(label: Ints32, edges: Ints32) -> None:
 @njit(cache=True, nogil=True)
 def _rows(nodes, edges, numbered_from):  # type: ignore[no-untyped-def]
     first = np.zeros(nodes + 1, dtype=np.int64)
-    for e in range(edges.shape[0]):
-        first[edges[e, 0] + 1] += 1
-        first[edges[e, 1] + 1] += 1
-    for v in range(nodes):
-        first[v + 1] += first[v]
+    for v in edges.ravel():
+        first[v + 1] += 1
+    first = np.cumsum(first)
     place = first[:-1].copy()
     other = np.empty(first[nodes], dtype=np.int32)
     edge = np.empty(first[nodes], dtype=np.int32)

@@ -115,9 +115,9 @@ def shortest_path(
     `lengths`, (m,), are >= 0, and `bounds`, (nodes,), consistent lower ones of the paths to the goal.  Where it cannot
     be reached the path is empty and its length inf.
     """
-    fixed_point = FixedPoint.of(float(lengths.max(initial=0.0)), nodes)
-    weights, to_goal = fixed_point.weights(lengths), fixed_point.bounds(bounds)
-    problem = SearchProblem(start, np.array([goal]), Graph.of(nodes, edges), weights, to_goal)
+    unit = FixedPoint.of(float(lengths.max(initial=0.0)), nodes)
+    graph, weights, to_goal = Graph.of(nodes, edges), unit.weights(lengths), unit.bounds(bounds)
+    problem = SearchProblem(start, np.array([goal]), graph, weights, to_goal)
     path, along, _ = best_path(problem, np.full(len(edges), FREE), np.full(nodes, FREE))
     return path, length_along(lengths[along]) if path.size else np.inf
 

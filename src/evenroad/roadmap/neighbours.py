@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints32
-from evenroad.roadmap.neighbours import kdtree
+from evenroad.roadmap.kdtree import k_nearest, pairs_within
 from evenroad.space import Space
 from evenroad.space.flat import FlatMetric
 from evenroad.space.protocol import all_distances
@@ -28,7 +28,7 @@ def nearest(q: Floats, k: int, space: Space | None = None, *, earlier: bool = Fa
     if k < 1:
         return np.empty((n, 0), dtype=np.int32)
     if space is None or metric is not None:
-        return kdtree.k_nearest(*in_metric(q, metric), k, earlier)
+        return k_nearest(*in_metric(q, metric), k, earlier)
     found = np.full((n, k), -1, dtype=np.int32)
     for rows, distances in _blocks(space, q, earlier=earlier):
         columns = np.arange(distances.shape[1])
@@ -43,7 +43,7 @@ def within(q: Floats, radius: float, space: Space | None = None) -> Ints32:
     metric = flat_metric(space)
     found = [np.empty((0, 2), dtype=np.int32)]
     if space is None or metric is not None:
-        return kdtree.pairs_within(*in_metric(q, metric), radius) if len(q) else found[0]
+        return pairs_within(*in_metric(q, metric), radius) if len(q) else found[0]
     for rows, distances in _blocks(space, q):
         row, column = np.nonzero(distances <= radius)
         later = column > row + rows.start
