@@ -9,7 +9,7 @@ import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints32
 from evenroad.points.pointset import Origin
-from evenroad.roadmap.budget import Budget, BudgetSpent, Stopwatch, in_time
+from evenroad.roadmap.budget import Budget, BudgetSpent, Stopwatch
 from evenroad.roadmap.cost import BOUND, edge_costs
 from evenroad.roadmap.neighbours import Surroundings, nearest_of
 from evenroad.roadmap.proof import confirm
@@ -17,6 +17,7 @@ from evenroad.roadmap.query import Query
 from evenroad.roadmap.rules import Rule
 from evenroad.roadmap.rules.near import ascending
 from evenroad.roadmap.search import (
+    FREE,
     NOT_FOUND,
     EdgeStates,
     Ends,
@@ -84,15 +85,13 @@ class Attempt:
 
     def valid(self, samples: Floats) -> Bools:
         """Return which of the samples, (n, dim), are known to be free, as far as the time allows: (n,)."""
-        free = np.zeros(len(samples), dtype=np.bool_)
-        with self.watch("validity"):
-            try:
-                for rows in in_time(np.arange(len(samples)), self.deadline):
-                    free[rows] = self.world.valid(samples[rows])
-                    self.checked += len(rows)
-            except BudgetSpent:
-                self.spent = True
-        return free
+        states = self.states(samples, np.empty((0, 2), dtype=np.int32))
+        try:
+            states.ask_nodes(np.arange(len(samples)))
+        except BudgetSpent:
+            self.spent = True
+        self.checked += states.configurations_checked
+        return states.node_states == FREE
 
     def candidates(self, rule: Rule, milestones: Floats) -> EdgeStates:
         """Return the graph of milestones, start and goals: the edges of the rule, and the links that the query adds."""

@@ -276,7 +276,13 @@ class WorldRoadmap:
         links = self._links(distances, attempt.query)
         n, m = len(roadmap.configurations), len(roadmap.edges)
         nodes, edges = n + len(ends), m + len(links)
-        known = self._make_room(n, m, len(ends), len(links))
+        known = self._known = Known(
+            _with_room(self._known.nodes, n, len(ends)),
+            _with_room(self._known.edges, m, len(links)),
+            _with_room(self._known.confirmed, m, len(links)),
+        )
+        self._configurations = _with_room(self._configurations, n, len(ends))
+        self._edges = _with_room(self._edges, m, len(links))
         self._configurations[n:nodes], self._edges[m:edges] = ends, links
         known.nodes[n:nodes], known.edges[m:edges], known.confirmed[m:edges] = FREE, UNKNOWN, False
         q = self._configurations[:nodes]
@@ -303,18 +309,6 @@ class WorldRoadmap:
         goals = np.arange(n + 1, n + len(distances))
         links.append(np.stack([np.full(len(goals), n), goals], axis=1))
         return np.concatenate(links).astype(np.int32)
-
-    def _make_room(self, n: int, m: int, ends: int, links: int) -> Known:
-        """Have room for so many ends behind the n milestones and links behind the m edges; return what is known."""
-        known = self._known
-        self._configurations = _with_room(self._configurations, n, ends)
-        self._edges = _with_room(self._edges, m, links)
-        self._known = Known(
-            _with_room(known.nodes, n, ends),
-            _with_room(known.edges, m, links),
-            _with_room(known.confirmed, m, links),
-        )
-        return self._known
 
     def _weigh(self, links: Floats, nodes: int) -> tuple[Ints, FixedPoint]:
         """Return the costs of the edges and then of these links, (l,), as integers, and their unit."""
