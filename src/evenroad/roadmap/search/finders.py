@@ -89,21 +89,20 @@ def find_any(ends: Ends, states: EdgeStates) -> Found:
         givers, takers, offers, both = _ways_out(edges, states.edge_states, states.node_states, tree)
         if not both:
             return NOT_FOUND
-        from_start = tree[givers] == 1
-        best = _nearest(np.flatnonzero(from_start), to_goal[takers], most)
-        others = _nearest(np.flatnonzero(~from_start), to_start[takers], most)
-        most += min(len(best), len(others)) // 2
-        rows = np.concatenate([best, others])
-        states.ask_nodes(takers[rows])
-        rows = rows[states.node_states[takers[rows]] == FREE]
-        states.ask_edges(offers[rows])
-        rows = rows[states.edge_states[offers[rows]] == FREE]
-        givers, takers, offers = givers[rows], takers[rows], offers[rows]
-        met = np.flatnonzero(tree[takers])
-        if len(met):
-            nodes = givers[met[0]], takers[met[0]]
+        if len(takers) > most:
+            from_start = tree[givers] == 1
+            best = _nearest(np.flatnonzero(from_start), to_goal[takers], most)
+            rows = np.concatenate([best, _nearest(np.flatnonzero(~from_start), to_start[takers], most)])
+            givers, takers, offers = givers[rows], takers[rows], offers[rows]
+        most += len(offers) // 4
+        states.ask_nodes(takers)
+        states.ask_edges(offers[states.node_states[takers] == FREE])
+        free = states.edge_states[offers] == FREE
+        givers, takers, offers = givers[free], takers[free], offers[free]
+        if (met := tree[takers] > 0).any():
+            nodes = givers[met][0], takers[met][0]
             there, back = (_path_back(parent_edge, edges, int(node)) for node in nodes)
-            along = np.concatenate([there.edges, offers[met[:1]], back.edges[::-1]])
+            along = np.concatenate([there.edges, offers[met][:1], back.edges[::-1]])
             return Found(np.concatenate([there.nodes, back.nodes[::-1]]), along)
         tree[takers], parent_edge[takers] = tree[givers], offers
 
