@@ -90,13 +90,13 @@ def test_without_a_picture_nothing_is_drawn_and_matplotlib_is_not_even_loaded(tm
 
 
 def test_the_answer_is_there_before_the_picture_is_drawn(run, tmp_path, monkeypatch):
-    import evenroad.viz
+    import evenroad.viz.plan
 
     def fail(*_):
         assert (tmp_path / "a.json").exists()
         raise MemoryError("no room for a picture")
 
-    monkeypatch.setattr(evenroad.viz, "save_plan_picture", fail)
+    monkeypatch.setattr(evenroad.viz.plan, "save_plan_picture", fail)
     code, out, err = run(*plan_arguments(out="a"))
     assert code == 2
     assert "solved" in out

@@ -80,7 +80,7 @@ def plan_disk(plan: DiskOptions) -> int:
     print_plan(result, files.values())
     if "png" in files:
         # Last, and loaded only now: nobody waits for the picture.
-        from evenroad.viz import save_plan_picture
+        from evenroad.viz.plan import save_plan_picture
 
         save_plan_picture(files["png"], result, world)
     return 0 if result.solved else 1
