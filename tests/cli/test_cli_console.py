@@ -1,13 +1,17 @@
 """What reaches the terminal is what was said: brackets and colons are no markup."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from rich.table import Table
 
 from evenroad._terminal import print_table
+from evenroad.cli.plan_parts import print_plan
 from evenroad.points import PointSet, save_points
+from evenroad.roadmap import plan
+from evenroad.world import GridMap
 from tests.research.report.stores import solved, task, write_store
 
 SAID = ("[ms]", "[bold]", "[/]", "scene[red].yaml", ":key:")
@@ -45,3 +49,19 @@ def test_a_files_name_may_look_like_markup(run, tmp_path, name):
     code, out, _ = run("measure", f"{name}.npz")
     assert code == 0
     assert f"{name}.npz: n=2" in out
+
+
+def test_the_times_of_a_plan_for_an_arm_fit_one_line_of_80_columns(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    seconds = {
+        "validity": 0.0123,
+        "neighbours": 1.4567,
+        "search": 0.5555,
+        "motions": 0.9999,
+        "shortcut": 0.0021,
+    }
+    world = GridMap(np.zeros((9, 9), dtype=bool)).world(1.0)
+    result = replace(plan(world, (2, 2), (7, 7), 16), seconds=seconds)
+    print_plan(result, ["a.json"], [("checked by", "lanes")])
+    out = capsys.readouterr().out
+    assert "time [ms]   validity 12, neighbours 1457, search 556, motions 1000, shortcut 2.1" in out

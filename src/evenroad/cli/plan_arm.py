@@ -102,7 +102,7 @@ def _rows(query: ArmQuery, model: RobotModel, meshes: MeshCheck | None) -> list[
     if held:
         rows.append(("held", held))
     rows += bodiless_rows(model)
-    rows.append(("checked with", world.checked_with))
+    rows.append(("checked by", world.checked_with))
     if meshes is not None:
         rows.append(("meshes", str(meshes)))
     return rows

@@ -173,9 +173,9 @@ def print_plan(result: PlanResult, files: Iterable[Path], more: Sequence[tuple[s
         rows.append(("improved", f"from {after}, in {counts['rounds']} rounds"))
     if result.proof is not None:
         rows.append(("proved", PROOFS[result.proof]))
-    rows.append(
-        ("time [ms]", ", ".join(f"{phase} {1e3 * took:.1f}" for phase, took in result.seconds.items()))
-    )
+    # Without digits that say nothing, so that all phases fit into one line.
+    times = {phase: 1e3 * seconds for phase, seconds in result.seconds.items()}
+    rows.append(("time [ms]", ", ".join(f"{phase} {ms:.{int(ms < 10)}f}" for phase, ms in times.items())))
     rows += [*more, ("files", ", ".join(map(str, files)))]
     table = Table(show_header=False, box=None, pad_edge=False)
     table.add_column(style="bold", no_wrap=True)
