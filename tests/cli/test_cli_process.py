@@ -45,6 +45,18 @@ raise SystemExit(main())
     assert (done.returncode, done.stderr) == (130, "evenroad: interrupted; what was finished is kept\n")
 
 
+def test_hardly_anything_is_loaded_before_an_interrupt_is_looked_after():
+    """What Python itself does before our first line cannot be helped; ours takes a few milliseconds."""
+    code = (
+        "import sys; before = set(sys.modules); import evenroad.cli;"
+        "print(sum('evenroad' not in name for name in set(sys.modules) - before),"
+        " {'pathlib', 'dataclasses', 'inspect', 'numpy'} & set(sys.modules))"
+    )
+    loaded, heavy = python("-S", "-c", code, PYTHONPATH=str(PACKAGE.parent)).stdout.split(maxsplit=1)
+    assert int(loaded) < 60
+    assert heavy == "set()\n"
+
+
 @pytest.mark.parametrize("goes_on", ["time.sleep(10)", "raise RuntimeError('no compiled object yet')"])
 def test_an_interrupt_in_a_callback_of_compiled_code_is_not_lost(goes_on):
     """While numba compiles, LLVM calls Python, and drops what that raises."""
