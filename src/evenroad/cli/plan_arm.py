@@ -19,7 +19,7 @@ from evenroad.cli.plan_parts import (
     save_plan,
     wants_points,
 )
-from evenroad.cli.robot_tables import bodiless_rows
+from evenroad.cli.robot import bodiless_rows
 from evenroad.io import plan_record
 from evenroad.roadmap import default_rule, find_path
 from evenroad.robot import RobotModel, find_robot, find_scene, held_values

@@ -8,14 +8,12 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from rich.table import Table
-from rich.text import Text
 
 from evenroad import roadmap
 from evenroad._checks import require_count, require_known, require_positive
 from evenroad._files import require_writable_folder
 from evenroad._rng import generator
-from evenroad._terminal import print_table
+from evenroad._terminal import GREEN, RED, print_table
 from evenroad.cli.plan_options import PlanOptions
 from evenroad.errors import InvalidValue
 from evenroad.io import save_json, save_path_csv
@@ -150,7 +148,7 @@ def save_plan(
 
 def print_plan(result: PlanResult, files: Iterable[Path], more: Sequence[tuple[str, str]] = ()) -> None:
     """Print a plan as a table of two columns; `more` are rows of its own."""
-    rows: list[tuple[str, str]] = []
+    rows = [("status", f"{result.status}: {result.message}")]
     counts = result.counts
     if result.rule != "none":
         rows.append(("points", str(result.origin)))
@@ -177,11 +175,4 @@ def print_plan(result: PlanResult, files: Iterable[Path], more: Sequence[tuple[s
     times = {phase: 1e3 * seconds for phase, seconds in result.seconds.items()}
     rows.append(("time [ms]", ", ".join(f"{phase} {ms:.{int(ms < 10)}f}" for phase, ms in times.items())))
     rows += [*more, ("files", ", ".join(map(str, files)))]
-    table = Table(show_header=False, box=None, pad_edge=False)
-    table.add_column(style="bold", no_wrap=True)
-    table.add_column(overflow="fold")
-    colour = "green" if result.solved else "red"
-    table.add_row("status", Text.assemble((str(result.status), colour), f": {result.message}"))
-    for name, text in rows:
-        table.add_row(name, text)
-    print_table(table)
+    print_table(rows, first=GREEN if result.solved else RED)
