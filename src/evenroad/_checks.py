@@ -53,15 +53,12 @@ def require_known(what: str, name: object, known: Container[object]) -> None:
 def as_row(
     name: str, values: Sequence[float], length: int | None = None, *, within: float = math.inf
 ) -> tuple[float, ...]:
-    """Return `values` as a tuple of finite floats from -`within` to `within`, `length` of them or else at least one.
-
-    Raises InvalidValue naming `values` and what is allowed.
-    """
+    """Return `values` as a tuple of finite floats from -`within` to `within`, `length` of them or else at least one."""
     wanted = "one finite number or more" if length is None else f"{length} finite number(s)"
     try:
         row = tuple(map(float, values))
     except (TypeError, ValueError):
-        raise InvalidValue(f"{name} must be {wanted}, got {values!r}") from None
+        row = ()
     if len(row) == 0 or (length is not None and len(row) != length) or not all(map(math.isfinite, row)):
         raise InvalidValue(f"{name} must be {wanted}, got {values!r}")
     if max(map(abs, row)) > within:
@@ -70,23 +67,9 @@ def as_row(
 
 
 def as_batch(name: str, values: object, dim: int) -> Floats:
-    """Return `values` as a read-only C-contiguous float64 array of shape (n, dim) with finite entries.
+    """Return `values` as a read-only C-contiguous float64 array, (n, dim), of finite entries, or raise InvalidValue.
 
     Read-only whatever `values` is: compiled code is compiled anew for each mix of read-only and other arrays.
-
-    Parameters
-    ----------
-    name : str
-        What the caller calls the argument, for the error text.
-    values : array_like, shape (n, dim)
-        Copied only when it is not such an array; never written to.
-    dim : int
-        Number of columns wanted.
-
-    Raises
-    ------
-    InvalidValue
-        Naming the shape, or the first entry that is NaN or infinite and its place.
     """
     try:
         array = np.asarray(values, dtype=np.float64)

@@ -20,7 +20,7 @@ def provide_cache() -> None:
     can write to neither: read-only site-packages and no home, as in many containers.
     """
     beside = os.path.join(os.path.dirname(__file__), "__pycache__")
-    if os.environ.get(VARIABLE) or _writable(beside) or _writable(_of_user()):
+    if os.environ.get(VARIABLE) or _writable(beside) or _writable(user_cache("numba")):
         return
     import atexit
     import logging
@@ -48,13 +48,13 @@ def provide_cache() -> None:
     )
 
 
-def _of_user() -> str:
-    """Return the user's cache folder of numba."""
+def user_cache(program: str) -> str:
+    """Return the folder where a program keeps what it can make again, as the platform has it."""
     if sys.platform == "darwin":
-        return os.path.expanduser("~/Library/Caches/numba")
+        return os.path.expanduser(f"~/Library/Caches/{program}")
     if sys.platform == "win32":
-        return os.path.join(os.environ.get("LOCALAPPDATA", os.path.expanduser("~")), "numba", "Cache")
-    return os.path.join(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"), "numba")
+        return os.path.join(os.environ.get("LOCALAPPDATA", os.path.expanduser("~")), program, "Cache")
+    return os.path.join(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"), program)
 
 
 def _writable(folder: str) -> bool:
@@ -77,10 +77,7 @@ def is_kept(function: Any) -> bool:
 
 
 def say_if_compiling(module: str, function: str, seconds: int) -> bool:
-    """Say on standard error that a first run takes so long, where code of this function is yet to be compiled.
-
-    Returns whether it was said.
-    """
+    """Say that a first run takes so long, where a function is yet to be compiled; return whether that was said."""
     try:
         compiled = getattr(import_module(module), function)
     except (ImportError, NotAvailable):

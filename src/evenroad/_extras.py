@@ -9,13 +9,7 @@ from evenroad.errors import NotAvailable
 
 
 def require_extra(module: str, extra: str, what: str) -> Any:
-    """Return an optional module, e.g. ``coal`` of the extra ``mesh``; `what` says who needs it.
-
-    Raises
-    ------
-    NotAvailable
-        If it is not installed; the text says how to install it.
-    """
+    """Return an optional module, e.g. ``coal`` of the extra ``mesh``, or raise NotAvailable: `what` needs it."""
     try:
         return import_module(module)
     except ImportError as error:

@@ -24,39 +24,26 @@ from evenroad.points.samplers import make_sampler
 class FamilyEngine(QMCEngine):
     """An engine over one set of a family; a subclass names the ``family``, any name of ``SAMPLERS``.
 
-    The set is drawn from the family and then randomised by every move that keeps its quality
+    The set, ``points``, is drawn from the family and then randomised by every move that keeps its quality
     (:func:`evenroad.points.randomise.randomise`).  ``random`` hands its points out in their order and raises
     Exhausted when fewer are left than asked for.  A set is even as a whole, but its first points alone are
     not, those of a lattice least of all: choose as n what you will use.
 
     Parameters
     ----------
-    d : int
-        Dimension, >= 1.
-    n : int
-        Size of the set, >= 1.
+    d, n : int
+        Dimension and size of the set, >= 1.
     optimization : {None, "random-cd", "lloyd"}
         SciPy's post-processing of what ``random`` returns.  It does not keep what the set was made for.
-    rng : int, SeedSequence, Generator or None
-        None takes fresh entropy, as everywhere in SciPy.  A passed Generator is spawned.
-    seed
-        SciPy's old name of `rng`, still used by ``scipy.integrate.qmc_quad``.
+    rng, seed : int, SeedSequence, Generator or None
+        None takes fresh entropy, as everywhere in SciPy.  A Generator is spawned.  `seed` is SciPy's old name.
     **options
         The sampler's own, e.g. ``train=True`` of a trained family.
 
-    Attributes
-    ----------
-    n : int
-        Size of the set.
-    points : PointSet
-        The set, with its origin.
-
     Raises
     ------
-    InvalidValue
-        If d, n, rng or an option is not of that kind.
-    NotAvailable
-        If the family has no set of this n and d.
+    InvalidValue, NotAvailable
+        For a wrong argument; if the family has no set of this n and d.
     """
 
     family: ClassVar[str]
@@ -88,13 +75,7 @@ class FamilyEngine(QMCEngine):
         return self
 
     def _random(self, n: object = 1, *, workers: object = 1) -> Floats:
-        """Return the next n points, shape (n, d); SciPy's ``random`` counts them. `workers` has no use here.
-
-        Raises
-        ------
-        Exhausted
-            If fewer than n points are left; none is then handed out.
-        """
+        """Return the next n points, (n, d), which SciPy's ``random`` counts; raises Exhausted if fewer are left."""
         return self.points.points[self.num_generated : self._end_of_next(n)].copy()
 
     def _end_of_next(self, n: object) -> int:
