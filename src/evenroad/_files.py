@@ -83,21 +83,6 @@ def _new_part(folder: Path) -> tuple[int, int | None, str]:
         os.close(handle)
 
 
-@contextmanager
-def one_at_a_time(path: str | os.PathLike[str]) -> Iterator[None]:
-    """Hold the lock file `path` for the block: other processes that want it wait.
-
-    The lock goes with the process, so a killed one leaves none.  Where the platform has no ``flock`` (Windows)
-    nothing is locked.
-    """
-    if fcntl is None:
-        yield
-        return
-    with open(path, "w", encoding="utf-8") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
-        yield
-
-
 def cache_folder() -> Path:
     """Return where what is made on demand is kept: ``$EVENROAD_CACHE``, or the platform's cache folder."""
     return Path(os.environ.get("EVENROAD_CACHE") or user_cache("evenroad"))

@@ -7,16 +7,15 @@ from pathlib import Path
 
 from evenroad._compiled import say_if_compiling
 from evenroad.arms import SEARCH, ArmQuery, arm_query, finished, plan_on_points
-from evenroad.cli.plan_options import ArmOptions
+from evenroad.cli.plan import PlanArm
 from evenroad.cli.plan_parts import (
     chosen_budget,
     chosen_rule,
     common_query,
     draw_points,
+    finish,
     load_compiled_code,
     output_files,
-    print_plan,
-    save_plan,
     wants_points,
 )
 from evenroad.cli.robot import bodiless_rows
@@ -27,7 +26,7 @@ from evenroad.robot.kernel.selftest import lanes_failure
 from evenroad.robot.reference.recheck import MeshCheck
 
 
-def plan_arm(plan: ArmOptions) -> int:
+def plan_arm(plan: PlanArm) -> int:
     """Plan, write, report; return 0 when solved, else 1.
 
     Links without a body are named, with a warning where the URDF draws them: their collisions go unseen.
@@ -62,17 +61,17 @@ def plan_arm(plan: ArmOptions) -> int:
         "checked_with": world.checked_with,
         "meshes": None if meshes is None else asdict(meshes),
     }
-    save_plan(files, result, record, world.robot.group)
-    print_plan(result, files.values(), _rows(query, query.model, meshes))
-    if "png" in files:
-        # Last, and loaded only now: nobody waits for the picture.
+
+    def draw(file: Path) -> None:
         from evenroad.viz.arm import save_arm_picture
 
-        save_arm_picture(files["png"], result, world)
-    return 0 if result.solved else 1
+        save_arm_picture(file, result, world)
+
+    rows = _rows(query, query.model, meshes)
+    return finish(files, result, record, world.robot.group, draw, rows)
 
 
-def _say_if_compiling(plan: ArmOptions) -> None:
+def _say_if_compiling(plan: PlanArm) -> None:
     kernel, points = "evenroad.robot.kernel", wants_points(plan)
     said = say_if_compiling(f"{kernel}.batch", "configurations_free", 30 if points else 20)
     # Where the lanes do not work, the trees are never compiled.
@@ -80,7 +79,7 @@ def _say_if_compiling(plan: ArmOptions) -> None:
         say_if_compiling(f"{kernel}.trees", "grow", 15)
 
 
-def _asked(plan: ArmOptions, query: ArmQuery) -> dict[str, object]:
+def _asked(plan: PlanArm, query: ArmQuery) -> dict[str, object]:
     robot = query.world.robot
     return {
         "scene": str(plan.world),
@@ -108,6 +107,6 @@ def _rows(query: ArmQuery, model: RobotModel, meshes: MeshCheck | None) -> list[
     return rows
 
 
-def _inputs(plan: ArmOptions) -> list[Path]:
+def _inputs(plan: PlanArm) -> list[Path]:
     given = (find_scene(plan.world), *find_robot(plan.robot), plan.srdf, plan.bodies)
     return [path for path in given if path is not None]

@@ -32,7 +32,7 @@ VERBS = {
     "report": ("evenroad.research.commands.report:Report", "page, figures and tables of a store"),
     "robot": ("evenroad.cli.robot:Robot", "what an arm is made of, and how fast it is checked"),
     "export": ("evenroad.research.commands.export:Export", "a store for OMPL's Planner Arena"),
-    "demo": ("evenroad.cli.demo:Demo", "plan through a maze that ships with evenroad"),
+    "demo": ("evenroad.cli.plan:Demo", "plan through a maze that ships with evenroad"),
 }
 """Name of a verb -> where it is, loaded when it is asked for, and what it does."""
 

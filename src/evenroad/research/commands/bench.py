@@ -9,7 +9,7 @@ from typing import Annotated
 
 import numpy as np
 
-from evenroad._terminal import interrupt_between_steps, print_table, progress_shown
+from evenroad._terminal import print_table, progress_shown
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.research.bench.execute import DEFAULT_LIMIT, require_limit
 from evenroad.research.bench.rows import Rows
@@ -17,6 +17,7 @@ from evenroad.research.bench.runner import Report, run_tasks
 from evenroad.research.bench.samplers import SAMPLERS
 from evenroad.research.bench.store import open_store, read_rows
 from evenroad.research.bench.task import Task
+from evenroad.research.commands.interrupt import interrupt_between_steps
 from evenroad.research.problems import PROBLEMS
 from evenroad.research.report.analysis import failures_of
 from evenroad.research.suites import SUITES, Suite

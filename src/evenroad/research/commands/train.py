@@ -10,12 +10,13 @@ import numpy as np
 
 from evenroad._checks import require_count
 from evenroad._files import require_writable_folder
-from evenroad._terminal import interrupt_between_steps, progress_shown
+from evenroad._terminal import progress_shown
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.points import PointSet, load_points, save_points
 from evenroad.points.optimise import SCHEDULE, parse_objective
 from evenroad.points.optimise.anneal import Callback
 from evenroad.points.optimise.objective import require_points_for
+from evenroad.research.commands.interrupt import interrupt_between_steps
 from evenroad.research.training import anneal_many
 from evenroad.research.training.folder import claim_folder
 
