@@ -148,13 +148,7 @@ class Demo:
 
 
 def plan_type(words: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
-    """Return which of the two the words of a command line ask for, by the robot that is given.
-
-    Raises
-    ------
-    InvalidValue
-        If no robot or two are given, or an option that only the other kind has.
-    """
+    """Return which of the two a command line asks for, by its robot; InvalidValue if its options do not go together."""
     given = {word.partition("=")[0].replace("_", "-") for word in words if word.startswith("--")}
     chosen: type[PlanDisk] | type[PlanArm] = PlanArm if "--robot" in given else PlanDisk
     if not HELP.isdisjoint(words):

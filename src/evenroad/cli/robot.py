@@ -72,10 +72,9 @@ def bodiless_rows(model: RobotModel) -> list[tuple[str, str]]:
         text = "drawn, but without collision geometry, so that nothing is found to touch: "
         rows.append(("WARNING", text + ", ".join(model.drawn_only)))
     if model.always_touching:
-        pairs = ", ".join(f"{first} and {second}" for first, second in model.always_touching)
-        rows.append(
-            ("WARNING", f"in collision in every sampled configuration, so that none is free: {pairs}")
-        )
+        text = "in collision in every sampled configuration, so that none is free: "
+        pairs = (f"{first} and {second}" for first, second in model.always_touching)
+        rows.append(("WARNING", text + ", ".join(pairs)))
     return rows
 
 
@@ -92,9 +91,8 @@ def _joints(robot: Arm) -> list[tuple[str, ...]]:
 def _limits(joint: Joint) -> str:
     if joint.kind == "continuous":
         return "any"
-    if joint.lower == -joint.upper:
-        return f"±{joint.upper:.5g}"
-    return f"{joint.lower:.5g} .. {joint.upper:.5g}"
+    both = f"±{joint.upper:.5g}"
+    return both if joint.lower == -joint.upper else f"{joint.lower:.5g} .. {joint.upper:.5g}"
 
 
 def _use(robot: Arm, joint: Joint) -> str:
@@ -132,26 +130,22 @@ def _summary(model: RobotModel, world: ArmWorld) -> list[tuple[str, str]]:
 
 
 def _conservatism(model: RobotModel, world: ArmWorld) -> str:
+    text = f"capsules tested as {world.spheres} spheres, up to {1e3 * world.excess:.1f} mm larger"
     shapes = sum(body.shape_volume for body in model.bodies)
-    capsules = sum(body.capsule_volume for body in model.bodies)
-    added = (
-        f"{100.0 * max(capsules / shapes - 1.0, 0.0):.0f} % more volume than the URDF's shapes; "
-        if shapes
-        else ""
-    )
-    return f"{added}capsules tested as {world.spheres} spheres, up to {1e3 * world.excess:.1f} mm larger"
+    if not shapes:
+        return text
+    more = max(sum(body.capsule_volume for body in model.bodies) / shapes - 1.0, 0.0)
+    return f"{100.0 * more:.0f} % more volume than the URDF's shapes; {text}"
 
 
 def _speed(world: ArmWorld) -> str:
-    cube = generator(0).random((_CONFIGURATIONS, world.space.cube_dim))
-    q = world.space.from_cube(cube)
+    q = world.space.from_cube(generator(0).random((_CONFIGURATIONS, world.space.cube_dim)))
     free = q[world.valid(q)]
     configurations = _per_second(lambda: world.valid(q), len(q))
-    share = len(free) / len(q)
-    text = f"{configurations:,.0f} random configurations/s ({100.0 * share:.0f} % free)"
+    text = f"{configurations:,.0f} random configurations/s ({100.0 * len(free) / len(q):.0f} % free)"
     if len(free) > 1:
-        a, b = free[: len(free) // 2][:_MOTIONS], free[len(free) // 2 :][:_MOTIONS]
-        a, b = a[: min(len(a), len(b))], b[: min(len(a), len(b))]
+        half = min(len(free) // 2, _MOTIONS)
+        a, b = free[:half], free[len(free) // 2 :][:half]
         lengths = np.maximum(world.space.distance(a, b), world.resolution)
         b = world.space.interpolate(a, b, np.minimum(_MOST_SEGMENTS * world.resolution / lengths, 1.0))
         passed = float(np.mean(world.motion_valid(a, b)))
