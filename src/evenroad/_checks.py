@@ -1,14 +1,16 @@
-"""Checks of plain arguments, with errors that name the value."""
+"""Checks of plain arguments, and of what is installed, with errors that name it."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Container, Sequence
+from importlib import import_module
+from typing import Any
 
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad.errors import InvalidValue, UnknownName, shown
+from evenroad.errors import InvalidValue, NotAvailable, UnknownName, shown
 
 LARGEST_COUNT = 2**31 - 1
 """Nodes of a roadmap are numbered by int32: nothing that is counted here can sensibly be larger."""
@@ -64,6 +66,14 @@ def as_row(
     if max(map(abs, row)) > within:
         raise InvalidValue(f"{name} must lie between -{within:g} and {within:g}, got {values!r}")
     return row
+
+
+def require_extra(module: str, extra: str, what: str) -> Any:
+    """Return an optional module, e.g. ``coal`` of the extra ``mesh``, or raise NotAvailable: `what` needs it."""
+    try:
+        return import_module(module)
+    except ImportError as error:
+        raise NotAvailable(f"{what} needs the extra: pip install 'evenroad[{extra}]' ({error})") from error
 
 
 def as_batch(name: str, values: object, dim: int) -> Floats:

@@ -58,9 +58,8 @@ def _canonical(value: Any) -> bytes:
         return _tagged("set", *sorted(map(_canonical, value)))
     if isinstance(value, Mapping):
         return _tagged("mapping", *sorted(_canonical(item) for item in value.items()))
-    raise NotAvailable(
-        f"a {type(value).__name__} has no fingerprint, so a file could not know it again: {value!r}"
-    )
+    kind = type(value).__name__
+    raise NotAvailable(f"a {kind} has no fingerprint, so a file could not know it again: {value!r}")
 
 
 def _tagged(tag: str, *parts: bytes) -> bytes:

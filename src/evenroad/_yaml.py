@@ -26,13 +26,12 @@ def read_mapping(path: Path, what: str) -> dict[str, Any]:
     """
     try:
         text = path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
-    except ValueError as error:
-        raise BrokenFile(f"{path} is not YAML: {error}") from error
-    try:
         _require_shallow(text, path)
         document = _document(text, path)
+    except BrokenFile:
+        raise
+    except OSError as error:
+        raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
     except (yaml.YAMLError, ValueError, LookupError, AttributeError, RecursionError) as error:
         raise BrokenFile(f"{path} is not YAML: {' '.join(str(error).split())}") from error
     if not isinstance(document, dict):

@@ -32,18 +32,13 @@ class FamilyEngine(QMCEngine):
     Parameters
     ----------
     d, n : int
-        Dimension and size of the set, >= 1.
+        Dimension and size of the set, >= 1; NotAvailable is raised if the family has none.
     optimization : {None, "random-cd", "lloyd"}
         SciPy's post-processing of what ``random`` returns.  It does not keep what the set was made for.
     rng, seed : int, SeedSequence, Generator or None
         None takes fresh entropy, as everywhere in SciPy.  A Generator is spawned.  `seed` is SciPy's old name.
     **options
         The sampler's own, e.g. ``train=True`` of a trained family.
-
-    Raises
-    ------
-    InvalidValue, NotAvailable
-        For a wrong argument; if the family has no set of this n and d.
     """
 
     family: ClassVar[str]
@@ -82,10 +77,8 @@ class FamilyEngine(QMCEngine):
         """Return the index after the next n points, or raise Exhausted where there are not that many."""
         count, left = require_count("n", n, at_least=0), self.n - self.num_generated
         if count > left:
-            raise Exhausted(
-                f"asked for {count} more points, but {left} of the {self.n} are left: a set has an end; make an"
-                " engine with a larger n, or reset() to start again"
-            )
+            text = f"asked for {count} more points, but {left} of the {self.n} are left: a set has an end; "
+            raise Exhausted(text + "make an engine with a larger n, or reset() to start again")
         return self.num_generated + count
 
 

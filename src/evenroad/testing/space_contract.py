@@ -36,11 +36,8 @@ class SpaceContract:
 
     def pairs(self) -> tuple[Floats, Floats, float]:
         """Return the ends of 30 random motions, two (30, dim) arrays, and a tolerance for their lengths."""
-        q = self.configurations(60)
-        a, b = q[:30], q[30:]
+        a, b = np.split(self.configurations(60), 2)
         return a, b, _TOLERANCE * float(self.space.distance(a, b).max())
-
-    # ---- the map from the cube
 
     def test_from_cube_gives_one_finite_configuration_of_the_space_a_point(self) -> None:
         q = self.configurations(60)
@@ -78,8 +75,6 @@ class SpaceContract:
         there = self.space.from_cube(place + shrink[:, np.newaxis] * steps)
         return self.space.distance(here, there) / shrink
 
-    # ---- the metric
-
     def test_distance_is_zero_to_itself_and_positive_to_others(self) -> None:
         q = self.configurations(60)
         _, _, tolerance = self.pairs()
@@ -101,8 +96,6 @@ class SpaceContract:
         a, b, tolerance = self.pairs()
         assert self.space.flat.dim == self.space.dim
         np.testing.assert_allclose(self.space.flat.distance(a, b), self.space.distance(a, b), atol=tolerance)
-
-    # ---- interpolation
 
     def test_interpolation_starts_and_ends_at_its_ends(self) -> None:
         a, b, tolerance = self.pairs()
@@ -132,8 +125,6 @@ class SpaceContract:
         a, b, _ = self.pairs()
         each = np.full(len(a), 0.3)
         np.testing.assert_array_equal(self.space.interpolate(a, b, 0.3), self.space.interpolate(a, b, each))
-
-    # ---- batches
 
     def test_batches_give_what_their_rows_give(self) -> None:
         a, b, _ = self.pairs()
@@ -169,8 +160,6 @@ class SpaceContract:
             *zip(arguments, before, strict=True),
         ):
             np.testing.assert_array_equal(other, same)
-
-    # ---- bad input
 
     def test_a_wrong_shape_is_refused(self) -> None:
         q, dim, cube_dim = self.configurations(4), self.space.dim, self.space.cube_dim
