@@ -27,8 +27,7 @@ def provide_cache() -> None:
     import shutil
     import tempfile
 
-    folder = tempfile.mkdtemp(prefix="evenroad-compiled-")
-    owner = os.getpid()
+    folder, owner = tempfile.mkdtemp(prefix="evenroad-compiled-"), os.getpid()
 
     def remove() -> None:
         if os.getpid() == owner:
