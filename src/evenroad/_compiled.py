@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from importlib import import_module
+from types import ModuleType
 from typing import Any
 
 from evenroad.errors import NotAvailable
@@ -75,8 +76,23 @@ def is_kept(function: Any) -> bool:
         return True
 
 
+def defer_blas() -> None:
+    """Keep numba from loading SciPy's linear algebra, a quarter of the start of a command, until code needs it.
+
+    Numba only looks whether it is there, and looks again when it compiles a product of matrices.
+    """
+    name = "scipy.linalg.cython_blas"
+    if name not in sys.modules:
+        sys.modules[name] = ModuleType(name)
+        try:
+            import_module("numba.np.arraymath")
+        finally:
+            del sys.modules[name]
+
+
 def say_if_compiling(module: str, function: str, seconds: int) -> bool:
     """Say that a first run takes so long, where a function is yet to be compiled; return whether that was said."""
+    defer_blas()
     try:
         compiled = getattr(import_module(module), function)
     except (ImportError, NotAvailable):

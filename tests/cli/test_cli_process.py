@@ -145,3 +145,16 @@ def test_a_long_input_is_cut_in_the_error_line_and_what_is_allowed_stays(run):
     code, _, err = run("demo", "--out", "a" * 5000)
     assert (code, len(err) < 700) == (2, True)
     assert "too long" in err
+
+
+def test_linear_algebra_is_not_loaded_for_a_plan_and_works_all_the_same(tmp_path):
+    code = f"""
+import sys, numba, numpy as np
+from evenroad.cli.verbs import run
+words = "plan box-reach --robot ur5 --start home --goal inside --no-picture --out {tmp_path}/a"
+assert run(words.split()) == 0
+print("scipy.linalg" in sys.modules)
+a = np.random.default_rng(0).random((3, 3))
+print(np.allclose(numba.njit(lambda a: a @ np.linalg.inv(a))(a), np.eye(3)), "scipy.linalg" in sys.modules)
+"""
+    assert python("-c", code).stdout.splitlines()[-2:] == ["False", "True True"]
