@@ -127,6 +127,11 @@ def test_only_the_command_imports_the_studies():
     assert importers == {"cli"}
 
 
+def test_nobody_else_loads_the_studies_by_name_either():
+    naming = {path.relative_to(ROOT).parts[0] for path in MODULES if "evenroad.research" in path.read_text()}
+    assert naming == {"cli", "research"}
+
+
 def test_no_module_is_longer_than_400_lines():
     too_long = [path for path in MODULES if len(path.read_text().splitlines()) > 400]
     assert too_long == []

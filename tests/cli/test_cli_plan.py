@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from evenroad.cli.plan_parts import draw_points
+from evenroad.cli.verbs import VERBS
 from evenroad.points import draw
 from evenroad.research.mazes import load_maze
 
@@ -340,8 +341,9 @@ def test_an_interrupt_exits_with_130_and_leaves_no_half_file(run, tmp_path, monk
     "arguments",
     [
         ["--help"],
-        *([verb, "--help"] for verb in ("plan", "points", "measure", "train", "demo")),
+        *([verb, "--help"] for verb in VERBS),
         ["plan", "-h"],
+        ["plan", "--robot", "ur5", "-h"],
     ],
 )
 def test_help_is_there_for_every_verb(run, arguments):

@@ -131,6 +131,10 @@ def test_a_solved_plan_shows_the_way_of_the_tip_from_start_to_goal(reach):
         assert tuple(shown[row, column]) == ImageColor.getrgb(colour)
 
 
+def test_a_view_of_something_long_and_flat_has_both_sides():
+    assert View(np.zeros(2), np.array([1000.0, 0.1]), (400, 300)).image.size == (400 * FINER, FINER)
+
+
 @pytest.mark.parametrize(("low", "high"), [(-0.3, 0.9), (0.0, 1e-3), (-5e4, 7e4), (0.94, 1.06)])
 def test_ticks_are_a_handful_of_round_numbers(low, high):
     marks = ticks(low, high)

@@ -22,18 +22,15 @@ Colour = tuple[int, int, int] | tuple[int, int, int, int] | str
 
 
 class View:
-    """What is seen along one axis: outlines in metres, between the corners `low` and `high`, (2,) each.
+    """What is seen along one axis, between the corners `low` and `high`, (2,) each, in metres.
 
-    Attributes
-    ----------
-    image : PIL.Image.Image
-        `FINER` times as large as it is shown.
+    Its ``image`` is `FINER` times as large as it is shown.
     """
 
     def __init__(self, low: Floats, high: Floats, room: tuple[int, int]) -> None:
         self.low, self.high = low, high
         self.scale = FINER * float(np.min(np.array(room) / (high - low)))
-        width, height = (FINER * round(side / FINER) for side in self.scale * (high - low))
+        width, height = (FINER * max(1, round(side / FINER)) for side in self.scale * (high - low))
         self.image = Image.new("RGB", (width, height), "white")
         self._draw = ImageDraw.Draw(self.image, "RGBA")
         for axis in (0, 1):
