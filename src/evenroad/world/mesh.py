@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints, set_fields
-from evenroad._extras import require_extra
+from evenroad._checks import require_extra
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.mesh import TriangleMesh, merged
 from evenroad.geometry.pose import rotations_from_quaternions
