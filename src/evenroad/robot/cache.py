@@ -68,7 +68,7 @@ def _file(key: str) -> Path:
 
 def _model(record: dict[str, Any]) -> RobotModel:
     return RobotModel(
-        robot=_robot(record["robot"]),
+        robot=robot_of(record["robot"]),
         bodies=tuple(LinkBody(**body | {"shapes": tuple(body["shapes"])}) for body in record["bodies"]),
         pairs_from=record["pairs_from"],
         dropped=tuple((first, second, reason) for first, second, reason in record["dropped"]),
@@ -77,7 +77,8 @@ def _model(record: dict[str, Any]) -> RobotModel:
     )
 
 
-def _robot(record: dict[str, Any]) -> Robot:
+def robot_of(record: dict[str, Any]) -> Robot:
+    """Return the robot that ``asdict`` made this record of, read back from JSON."""
     return Robot(
         name=record["name"],
         links=tuple(record["links"]),

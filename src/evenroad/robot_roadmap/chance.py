@@ -23,6 +23,9 @@ CLEAR = 0.25
 FULL = 0.5
 """Boxes are added up to this volume, as a share of the cube of the reach."""
 
+TRIES = 100
+"""Places that are tried for a box: a robot that goes straight up has none away from its axis."""
+
 SEEN = 2000
 """Configurations that tell how far the robot reaches."""
 
@@ -43,8 +46,9 @@ def chance_of_freedom(
     places = capsule_ends(robot, some).reshape(-1, 3)
     moved_first = next(i for i, joint in enumerate(robot.joints) if joint.name == robot.group[0])
     base = link_poses(robot, some[:1])[0, moved_first + 1, :3, 3]
-    low, high = places.min(axis=0), places.max(axis=0)
-    reach = float(np.max(np.linalg.norm(places - base, axis=1)))
+    thick = max(capsule.radius for capsule in robot.capsules)
+    low, high = places.min(axis=0) - thick, places.max(axis=0) + thick
+    reach = thick + float(np.max(np.linalg.norm(places - base, axis=1)))
     free = np.zeros(len(q))
     for i in range(scenes):
         free += ArmWorld(bare, random_scene(base, low, high, reach, rng)).valid(q)
@@ -60,9 +64,10 @@ def random_scene(base: Floats, low: Floats, high: Floats, reach: float, rng: np.
     volume = 0.0
     for _ in range(int(rng.integers(*BOXES))):
         half = reach * np.clip(np.exp(rng.normal(typical, 0.5, 3)), least, most)
-        centre = rng.uniform(low, high)
-        while np.hypot(*(centre - base)[:2]) < CLEAR * reach:
+        for _ in range(TRIES):
             centre = rng.uniform(low, high)
+            if np.hypot(*(centre - base)[:2]) >= CLEAR * reach:
+                break
         volume += float(np.prod(2.0 * half))
         if volume > FULL * reach**3:
             break

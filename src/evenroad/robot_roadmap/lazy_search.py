@@ -15,8 +15,8 @@ from evenroad.robot_roadmap.turns import TURN
 
 UNKNOWN, FREE, BLOCKED = 0, 1, 2
 
-MOST_TURNS = 7
-"""So many turns to either side are followed."""
+NONE, OUT_OF_MOTIONS, PAUSED = -1, -2, -3
+"""In place of a goal: there is no path, so many motions were checked, or so many searches made."""
 
 _BITS = 4
 _ROOM = 1024
@@ -99,7 +99,7 @@ def ends_of(ways, start, goals, links):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def lazy_path(ways, ends, milestones, edges, motions_left, day, full):  # type: ignore[no-untyped-def]
+def lazy_path(ways, ends, milestones, edges, motions_left, searches_left, day, full):  # type: ignore[no-untyped-def]
     """Return the shortest path that the world calls free: waypoints, its goal or -1, and what was checked.
 
     A lazy shortest-path search (Dellin and Srinivasa 2016): the best path over all that is not known to be blocked is
@@ -114,6 +114,8 @@ def lazy_path(ways, ends, milestones, edges, motions_left, day, full):  # type: 
         the straight motions to the goals.
     motions_left : int
         Give up when so many motions were checked.
+    searches_left : int
+        Come back after so many searches: what was found out is in the arrays, and the next call goes on.
     day, full : Checks
         Of the day's obstacles alone, enough for what was proved free of the rest beforehand; and of everything.
 
@@ -121,17 +123,17 @@ def lazy_path(ways, ends, milestones, edges, motions_left, day, full):  # type: 
     -------
     path : float64 array, shape (p, dim)
     goal : int
-        -1 without a path; -2 where checks ran out before.
+        NONE, OUT_OF_MOTIONS or PAUSED without a path.
     configurations, motions : int
         How many were checked.
     """
     dim = ways.milestones.shape[1]
     configurations = motions = 0
     nothing = np.empty((0, dim))
-    while True:
+    for _ in range(searches_left):
         nodes, turned, along, goal = _shortest(ways, ends, milestones, edges)
         if goal < 0:
-            return nothing, -1, configurations, motions
+            return nothing, NONE, configurations, motions
         path = np.empty((len(nodes) + 2, dim))
         path[0], path[-1] = ends.start, ends.goals[goal]
         unknown = np.empty(len(nodes), dtype=np.int64)
@@ -154,7 +156,7 @@ def lazy_path(ways, ends, milestones, edges, motions_left, day, full):  # type: 
             i = step // 2 if step % 2 == 0 else len(along) - 1 - step // 2
             if edges[along[i]] == UNKNOWN:
                 if motions >= motions_left:
-                    return nothing, -2, configurations, motions
+                    return nothing, OUT_OF_MOTIONS, configurations, motions
                 motions += 1
                 checks = day if along[i] < ways.edges else full
                 edges[along[i]] = FREE if _proved(path[i : i + 1], path[i + 1 : i + 2], checks) else BLOCKED
@@ -163,6 +165,7 @@ def lazy_path(ways, ends, milestones, edges, motions_left, day, full):  # type: 
                 break
         if all_free:
             return path, goal, configurations, motions
+    return nothing, PAUSED, configurations, motions
 
 
 @njit(cache=True, nogil=True)

@@ -1,44 +1,40 @@
-"""RobotRoadmap: milestones and motions that are free of a robot itself and of its fixed cell, whatever the day brings."""
+"""A robot's roadmap, free of the robot itself and of its fixed cell, and what becomes of it in the scene of a day."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import time
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
-from evenroad._arrays import Bools, Floats, Ints, Ints32
-from evenroad._checks import require_count
-from evenroad._rng import RngLike, generator
-from evenroad.errors import InvalidValue
-from evenroad.points import draw
-from evenroad.roadmap.neighbours.find import nearest
-from evenroad.robot import ArmWorld, Robot, Scene
-from evenroad.robot.arm_world import RECHECK_TOLERANCE
-from evenroad.robot_roadmap.chance import chance_of_freedom
-from evenroad.robot_roadmap.spread import displacement_weights, spread_order
-from evenroad.robot_roadmap.turns import TURN, OneTurn, one_turn, shifts
-from evenroad.space import JointSpace
+from evenroad._arrays import Floats, Ints, Ints32
+from evenroad.roadmap import Budget, PlanResult, Status
+from evenroad.roadmap.answer import connected, gave_up, refusal
+from evenroad.roadmap.attempt import Attempt
+from evenroad.roadmap.find_path import NO_POINTS, SECONDS
+from evenroad.roadmap.hemmed import with_reasons
+from evenroad.roadmap.query import FEW, LINKS, Query, read_places
+from evenroad.robot import ArmWorld, Robot, Scene, configuration, in_scene
+from evenroad.robot.trees import lane_arguments
+from evenroad.robot_roadmap.cell import day_and_all, require_same_robot
+from evenroad.robot_roadmap.turns import TURN, OneTurn, one_turn, whole_turns
+from evenroad.world.protocol import Connection
 
-CANDIDATES = 16
-"""Free configurations that one milestone is chosen from."""
+Place = str | npt.ArrayLike
+"""A configuration: numbers in the order of the group, or a text as :func:`evenroad.robot.configuration` takes it."""
 
-BATCH = 4096
-"""Configurations that are drawn at once, until enough are free."""
+SLICE = 64
+"""Searches between two looks at the clock: some milliseconds."""
 
-MOST_DRAWN = 1 << 20
-"""Where fewer than the wanted ones are free among so many, the robot is said to be hardly ever free."""
+SHARE = 0.5
+"""Of the time, for the roadmap; the rest is the trees', where it does not lead to the goal."""
 
-TRIED = 60
-"""Nearest milestones that each is tried to be joined to."""
-
-SCENES = 400
-"""Random scenes by which the chance of being free is measured."""
-
-FIRST = 1500
-"""Configurations that the weights of the metric are measured on."""
+_LONG = 1e8
+"""Seconds that stand for no limit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +78,7 @@ class RobotRoadmap:
     @cached_property
     def one_turn(self) -> OneTurn:
         """The ranges that the milestones are in."""
-        return one_turn(self.world.space, revolute(self.robot))
+        return one_turn(self.world.space, whole_turns(self.robot))
 
     @cached_property
     def ways(self) -> Any:
@@ -114,143 +110,164 @@ class RobotRoadmap:
         a, b = self.milestones[self.edges[:, 0]], self.milestones[self.edges[:, 1]]
         return np.linalg.norm(self.weights * (b + TURN * self.turns - a), axis=1)
 
+    def in_scene(self, scene: Scene) -> SceneRoadmap:
+        """Return the roadmap in the day's scene, for many queries in it: what one finds out serves the next."""
+        return SceneRoadmap(self, scene)
 
-def revolute(robot: Robot) -> Bools:
-    """Return which joints of the group turn, (dim,); the others slide."""
-    kinds = {joint.name: joint.kind for joint in robot.joints}
-    return np.array([kinds[name] != "prismatic" for name in robot.group])
+    def plan(
+        self, scene: Scene, start: Place, goal: Place | Sequence[Place], *, budget: Budget | None = None
+    ) -> PlanResult:
+        """Plan in the day's scene, see :meth:`SceneRoadmap.plan`."""
+        return self.in_scene(scene).plan(start, goal, budget=budget)
 
 
-def make_roadmap(
-    robot: Robot,
-    cell: Scene | None = None,
-    n: int = 1024,
-    *,
-    k: int = 16,
-    gamma: float | None = None,
-    resolution: float = 0.05,
-    rng: RngLike = 0,
-    progress: Callable[[str, float], None] = lambda what, share: None,
-) -> RobotRoadmap:
-    """Make the roadmap of a robot in its cell: some seconds, once.
-
-    Milestones are chosen from scrambled Sobol points that are free of robot and cell, each as far as possible from
-    those before, in the metric of displacement, and denser where random scenes leave the robot free.
+class SceneRoadmap:
+    """A robot's roadmap in one scene, with what earlier queries found out there; of one thread.
 
     Parameters
     ----------
-    robot : Robot
-        With its tool, if it has one.
-    cell : Scene, optional
-        What never moves around it: mount, fence, walls.  Default: nothing.
-    n : int
-        Milestones, >= 1.
-    k : int
-        Each is joined to so many of its nearest ones that it can reach freely, >= 1, and to those that choose it.
-    gamma : float, optional
-        The spacing is in proportion to the chance of being free to the power of -gamma, >= 0.  Default: 8 for 64
-        milestones, 6 for 256, 4 from 1024 on; 0 for seven joints and more, where it was no gain.
-    resolution : float
-        Largest step of a motion check, > 0 [rad].
-    rng : int, SeedSequence or Generator
-        Of the pool and the random scenes.
-    progress : callable, optional
-        Called with what is being done and its share that is over.
+    roadmap : RobotRoadmap
+    scene : Scene
+        What stands around the robot today.  The roadmap's cell is always there, named again or not.
+    robot : Robot, optional
+        The roadmap's robot with other limits or named states.  Default: as it is in the scene.
+
+    Attributes
+    ----------
+    world : ArmWorld
+        The robot in its cell, with the day's obstacles.
 
     Raises
     ------
     InvalidValue
-        If an argument is no such number, or the robot is never free in its cell; the text says what blocks.
+        If the robot is another than the roadmap's, or the scene has the cell in another way: the text says how.
+    UnknownName
+        If the scene names something that is not there.
     """
-    n, k = require_count("n", n), require_count("k", k)
-    cell = Scene("nothing") if cell is None else cell
-    world = ArmWorld(robot, cell, resolution=resolution)
-    dim = world.space.dim
-    gamma = default_gamma(n, dim) if gamma is None else float(gamma)
-    if not (np.isfinite(gamma) and gamma >= 0.0):
-        raise InvalidValue(f"gamma must be a finite number >= 0, got {gamma!r}")
-    pool_rng, scene_rng = generator(rng).spawn(2)
-    one = one_turn(world.space, revolute(robot))
-    progress("drawing configurations", 0.0)
-    pool = _free_pool(world, one, CANDIDATES * n, pool_rng)
-    n = min(n, len(pool))
-    weights = displacement_weights(robot, pool[:FIRST])
-    preference = np.ones(len(pool))
-    if gamma > 0.0:
-        chance = chance_of_freedom(
-            robot, pool, SCENES, scene_rng, lambda share: progress("random scenes", share)
-        )
-        preference = np.maximum(chance, 1.0 / SCENES) ** gamma
-    progress("choosing milestones", 0.0)
-    order = spread_order(weights * pool, weights * _periods(one), preference, n)
-    milestones = pool[order]
-    progress("joining milestones", 0.0)
-    edges, turns = _free_edges(world, one, milestones, weights, k)
-    for array in (milestones, edges, turns, weights):
-        array.setflags(write=False)
-    return RobotRoadmap(robot, cell, resolution, milestones, edges, turns, weights, gamma)
 
+    def __init__(self, roadmap: RobotRoadmap, scene: Scene, robot: Robot | None = None) -> None:
+        day, everything = day_and_all(roadmap.cell, scene)
+        robot = in_scene(roadmap.robot if robot is None else robot, everything)
+        require_same_robot(roadmap.robot, robot)
+        resolution = roadmap.resolution
+        self.roadmap = roadmap
+        self.world = ArmWorld(robot, everything, resolution=resolution)
+        # What the roadmap knows to be free of the robot and its cell is asked about the other obstacles alone.
+        self._day = ArmWorld(replace(robot, pairs=()), day, resolution=resolution)
+        self._milestones = np.zeros(len(roadmap.milestones), dtype=np.int8)
+        self._edges = np.zeros(len(roadmap.edges), dtype=np.int8)
 
-def default_gamma(n: int, dim: int) -> float:
-    """Return the power that was best for so many milestones: fewer of them keep more to where there is room."""
-    return 0.0 if dim >= 7 else float(np.clip(8.0 - np.log2(n / 64.0), 4.0, 8.0))
+    @cached_property
+    def _ways(self) -> Any:
+        """The roadmap by node, within the limits of today."""
+        ways, space = self.roadmap.ways, self.world.space
+        limits = np.stack([np.maximum(ways.limits[0], space.low), np.minimum(ways.limits[1], space.high)])
+        return ways._replace(limits=limits)
 
+    def connect(
+        self,
+        start: Floats,
+        goals: Floats,
+        *,
+        most_motions: int = 2**31 - 1,
+        seconds: float = SECONDS,
+        links: int = LINKS,
+    ) -> Connection:
+        """Join a start, (dim,), to the goal, (g, dim), that the roadmap leads to on the shortest way.
 
-def _periods(one: OneTurn) -> Floats:
-    """Return after how much each joint repeats for the spacing: a joint with stops repeats after its range."""
-    return np.where(one.wraps, TURN, one.high - one.low)
+        Start and goals have to be free; each is linked to its nearest `links` milestones, of few to all.
+        """
+        n, m, g = len(self._milestones), len(self._edges), len(goals)
+        path, goal, configurations, motions = np.empty((0, len(start))), -1, 0, 0
+        if self.world.backend == "scalar":
+            # The compiled search asks the lanes.
+            return Connection(path, goal, n, configurations, motions)
+        from evenroad.robot_roadmap.lazy_search import PAUSED, Checks, ends_of, lazy_path
 
+        ways, checks = self._ways, [Checks(*lane_arguments(world)) for world in (self._day, self.world)]
+        ends = ends_of(ways, start, goals, n if n <= FEW else links)
+        edges = np.zeros(m + n * (1 + g) + g, dtype=np.int8)
+        edges[:m] = self._edges
+        if not lazy_path.overloads:
+            # Compiled, or loaded, before the clock runs; nothing is searched.
+            lazy_path(ways, ends, self._milestones, edges, 0, 0, *checks)
+        deadline, goal = time.perf_counter() + seconds, PAUSED
+        while goal == PAUSED and time.perf_counter() < deadline:
+            path, goal, asked, moved = lazy_path(
+                ways, ends, self._milestones, edges, most_motions - motions, SLICE, *checks
+            )
+            configurations, motions = configurations + asked, motions + moved
+        self._edges[:] = edges[:m]
+        return Connection(path, goal, n, configurations, motions)
 
-def _free_pool(world: ArmWorld, one: OneTurn, count: int, rng: np.random.Generator) -> Floats:
-    """Return the first free ones of a low-discrepancy sequence, (count, dim), or the fewer that MOST_DRAWN hold."""
-    drawn = 2 * count
-    while True:
-        cube = draw("sobol", drawn, world.space.dim, rng=rng.spawn(1)[0]).points
-        q = one.low + cube * (one.high - one.low)
-        free = q[world.valid(q)]
-        if len(free) >= count or drawn >= MOST_DRAWN:
-            break
-        drawn *= 2
-    if not len(free):
-        raise InvalidValue(
-            f"the robot is never free in its cell: of {drawn} configurations none; in the last one"
-            f" {world.explain(q[-1])}"
-        )
-    return free[:count]
+    def plan(
+        self,
+        start: Place,
+        goal: Place | Sequence[Place],
+        *,
+        budget: Budget | None = None,
+        shorten: bool = True,
+        trees: bool = True,
+    ) -> PlanResult:
+        """Plan from a start to a goal, or one of several: along the roadmap and, where it does not lead there, with trees.
 
+        Parameters
+        ----------
+        start, goal : str, array_like of shape (dim,); of goals a sequence of such, too
+            Numbers in the order of the group [rad or m], or a text as :func:`evenroad.robot.configuration` takes it.
+        budget : Budget, optional
+            Default: 5 s.  Half of the time is the roadmap's, the rest the trees'.
+        shorten : bool
+            Whether the path is made shorter.
+        trees : bool
+            Whether trees are tried.
 
-def _free_edges(
-    world: ArmWorld, one: OneTurn, milestones: Floats, weights: Floats, k: int
-) -> tuple[Ints32, Ints]:
-    """Return motions that are proved free, (m, 2), and their turns, (m, dim)."""
-    metric = JointSpace(one.low, one.high, one.wraps.tolist(), weights.tolist())
-    near = nearest(milestones, min(TRIED, max(len(milestones) - 1, 1)), metric)
-    own = np.repeat(np.arange(len(milestones)), near.shape[1])
-    pairs, which = np.unique(np.sort(np.stack([own, near.ravel()], axis=1)), axis=0, return_inverse=True)
-    turns = shifts(one, milestones[pairs[:, 0]], milestones[pairs[:, 1]])
-    free = motions_free(world, one, milestones[pairs[:, 0]], milestones[pairs[:, 1]], turns)
-    reached = free[which.reshape(near.shape)]
-    kept = reached & (np.cumsum(reached, axis=1) <= k)
-    chosen = np.unique(which.reshape(near.shape)[kept])
-    return pairs[chosen].astype(np.int32), turns[chosen].astype(np.int8)
+        Returns
+        -------
+        PlanResult
+            Every motion of its path is proved free.
 
+        Raises
+        ------
+        InvalidValue, UnknownName
+            If start or goal is no configuration of the robot.
+        """
+        budget = Budget(seconds=SECONDS) if budget is None else budget
+        places = read_places(self._place(start), self._places(goal), self.world.space)
+        query = Query(*places, shorten=shorten, budget=budget)
+        attempt = Attempt(self.world, query, NO_POINTS, "none", "robot roadmap")
+        if (refused := refusal(attempt)) is not None:
+            return refused
+        seconds = max(SHARE * min(attempt.deadline - time.perf_counter(), _LONG), 1e-3)
+        most = 2**31 - 1 if budget.motions is None else budget.motions
+        with attempt.watch("search"):
+            connection = self.connect(
+                query.start, query.goals[attempt.goals], most_motions=most, seconds=seconds
+            )
+        attempt.motions_checked += connection.motions
+        if connection.goal < 0 and trees and attempt.left() is not None:
+            attempt.planner = "robot roadmap, then trees"
+            grown = attempt.connect(self.world)
+            connection = replace(
+                grown,
+                configurations=connection.configurations + grown.configurations,
+                motions=connection.motions + grown.motions,
+            )
+        if connection.goal >= 0:
+            return connected(attempt, connection)
+        failed = gave_up(attempt, connection)
+        if not trees:
+            text = f"the roadmap of {len(self._milestones)} milestones does not lead from start to goal today"
+            failed = replace(failed, status=Status.NOT_CONNECTED, message=text)
+        return with_reasons(self.world, failed)
 
-def motions_free(world: ArmWorld, one: OneTurn, a: Floats, b: Floats, turns: Ints) -> Bools:
-    """Return which motions are proved free, with both ends turned so that they are within the limits: (m,)."""
-    b = np.where(one.lifts, b + TURN * turns, b)
-    low, high = np.minimum(a, b), np.maximum(a, b)
-    least, most = np.ceil((one.limits[0] - low) / TURN), np.floor((one.limits[1] - high) / TURN)
-    turned = np.where(one.lifts, TURN * np.clip(0.0, least, most), 0.0)
-    fits = np.all(~one.lifts | (least <= most), axis=1)
-    free = np.zeros(len(a), dtype=np.bool_)
-    free[fits] = world.motion_certified((a + turned)[fits], (b + turned)[fits], RECHECK_TOLERANCE)
-    return free
+    def _place(self, place: Place) -> npt.ArrayLike:
+        """Return a configuration of a text; of numbers themselves."""
+        if isinstance(place, str):
+            return configuration(self.world.robot, place, self.world.scene)
+        return place
 
-
-def beginning(roadmap: RobotRoadmap, n: int) -> RobotRoadmap:
-    """Return the roadmap of its first `n` milestones and the edges between them."""
-    n = require_count("n", n)
-    kept = np.all(roadmap.edges < n, axis=1)
-    return replace(
-        roadmap, milestones=roadmap.milestones[:n], edges=roadmap.edges[kept], turns=roadmap.turns[kept]
-    )
+    def _places(self, goal: Place | Sequence[Place]) -> npt.ArrayLike:
+        if isinstance(goal, list | tuple) and any(isinstance(each, str) for each in goal):
+            return [self._place(each) for each in goal]  # type: ignore[return-value]
+        return self._place(goal)  # type: ignore[arg-type]

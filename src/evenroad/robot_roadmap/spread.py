@@ -28,6 +28,8 @@ def displacement_weights(robot: KinematicTree, q: Floats) -> Floats:
         there[:, joint] += STEP
         ways = np.linalg.norm(_body_points(robot, there) - body, axis=2)
         moved[joint] = ways.max(axis=1).mean() / STEP
+    if not moved.any():
+        return np.ones(len(moved))
     weights = np.sqrt(np.maximum(moved, LEAST_WEIGHT * moved.max()))
     return weights / weights.mean()
 

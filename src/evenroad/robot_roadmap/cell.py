@@ -1,0 +1,128 @@
+"""What a roadmap was made for, and whether a robot or a scene of today still is that."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from evenroad.errors import InvalidValue
+from evenroad.robot import Obstacle, Robot, Scene, held_values
+
+
+def day_and_all(cell: Scene, scene: Scene) -> tuple[Scene, Scene]:
+    """Return the scene of a day without what is in the cell, and with all of it.
+
+    Raises InvalidValue if the scene has an obstacle of the cell elsewhere, of another shape, or lacks a contact with it
+    that the cell allows: the milestones would touch what is not to be touched.
+    """
+    fixed = {obstacle.name: obstacle for obstacle in cell.obstacles}
+    named = {obstacle.name for obstacle in scene.obstacles}
+    for obstacle in scene.obstacles:
+        if obstacle.name in fixed and obstacle.body != fixed[obstacle.name].body:
+            raise InvalidValue(
+                f"obstacle {obstacle.name!r} of scene {scene.name!r} is a {_text(obstacle)}, in the roadmap's cell a"
+                f" {_text(fixed[obstacle.name])}: make the roadmap for the cell as it is"
+            )
+    forbidden = sorted(pair for pair in cell.allowed if pair[1] in named and pair not in scene.allowed)
+    if forbidden:
+        raise InvalidValue(
+            f"scene {scene.name!r} has {forbidden[0][1]!r} but does not allow {forbidden[0][0]!r} to touch it, as the"
+            " roadmap's cell does: allow it, or make the roadmap without"
+        )
+    everything = replace(
+        scene,
+        obstacles=(*(o for o in cell.obstacles if o.name not in named), *scene.obstacles),
+        allowed=scene.allowed | cell.allowed,
+        states={**cell.states, **scene.states},
+        limits={**cell.limits, **_narrower(cell, scene)},
+    )
+    return scene_without(scene, fixed), everything
+
+
+def _narrower(cell: Scene, scene: Scene) -> dict[str, tuple[float, float]]:
+    """Return the ranges of a scene, cut to those of the cell."""
+    ranges = {}
+    for joint, (lower, upper) in scene.limits.items():
+        least, most = cell.limits.get(joint, (lower, upper))
+        ranges[joint] = (max(lower, least), min(upper, most))
+    return ranges
+
+
+def scene_without(scene: Scene, names: dict[str, Obstacle]) -> Scene:
+    """Return a scene without the obstacles of these names, of which it need not have any."""
+    return scene.without(*(obstacle.name for obstacle in scene.obstacles if obstacle.name in names))
+
+
+def _text(obstacle: Obstacle) -> str:
+    size, xyz = (", ".join(f"{value:g}" for value in values) for values in (obstacle.size, obstacle.xyz))
+    return f"{obstacle.shape} of {size} at ({xyz})"
+
+
+def require_same_robot(made: Robot, given: Robot) -> None:
+    """Raise InvalidValue unless a robot moves and is tested as the one that a roadmap was made for; limits may differ.
+
+    The text says what differs.
+    """
+    if (difference := next(_differences(made, given), None)) is not None:
+        raise InvalidValue(f"the roadmap was made for another robot, {made.name!r}: {difference}")
+
+
+def require_same_cell(made: Scene, given: Scene) -> None:
+    """Raise InvalidValue unless a cell is the one that a roadmap was made for; the text says what differs."""
+    ours, theirs = ({obstacle.name: obstacle for obstacle in scene.obstacles} for scene in (made, given))
+    if ours.keys() != theirs.keys():
+        raise InvalidValue(f"the roadmap was made for another cell: {_lists('obstacles', ours, theirs)}")
+    day_and_all(made, given)
+    for what, first, second in (
+        ("allowed", made.allowed, given.allowed),
+        ("limits", made.limits, given.limits),
+    ):
+        if first != second:
+            raise InvalidValue(
+                f"the roadmap was made for another cell: its {what} were {first}, are {second}"
+            )
+
+
+def _differences(made: Robot, given: Robot) -> Iterator[str]:
+    """Yield in words how two robots differ in what decides a verdict, except for limits."""
+    for what, ours, theirs in (
+        ("joints of the group", made.group, given.group),
+        ("links", made.links, given.links),
+    ):
+        if tuple(ours) != tuple(theirs):
+            yield _lists(what, ours, theirs)
+    joints = {joint.name: joint for joint in given.joints}
+    for joint in made.joints:
+        other = joints.get(joint.name)
+        if other is None:
+            yield f"it had a joint {joint.name!r}, which this one lacks"
+        elif replace(other, lower=joint.lower, upper=joint.upper, velocity=joint.velocity) != joint:
+            yield f"joint {joint.name!r} has another place, axis or kind ({joint.kind}, now {other.kind})"
+    if len(joints) != len(made.joints):
+        yield "this one has more joints"
+    for link in made.links:
+        if _bodies(made, link) != _bodies(given, link):
+            yield f"the bodies of {link!r} differ: {len(_bodies(made, link))} capsules, now {len(_bodies(given, link))}"
+    pairs = (sorted(map(str, map(sorted, robot.pairs))) for robot in (made, given))
+    ours, theirs = map(tuple, pairs)
+    if ours != theirs:
+        yield _lists("tested pairs", ours, theirs)
+    held = held_values(given)
+    for name, value in held_values(made).items():
+        if held.get(name) != value:
+            yield f"joint {name!r} was held at {value:g}, now at {held.get(name)}"
+
+
+def _bodies(robot: Robot, link: str) -> list[str]:
+    return sorted(repr(capsule) for capsule in robot.capsules if capsule.link == link)
+
+
+def _lists(what: str, ours: object, theirs: object) -> str:
+    """Return in words what one list has and the other has not."""
+    first, second = list(ours), list(theirs)  # type: ignore[call-overload]
+    lost = [str(name) for name in first if name not in second]
+    new = [str(name) for name in second if name not in first]
+    if not (lost or new):
+        return f"its {what} were in another order: {', '.join(map(str, first))}"
+    parts = [f"{word} {', '.join(names[:6])}" for word, names in (("without", lost), ("with", new)) if names]
+    return f"this one is {' and '.join(parts)} among its {what}"

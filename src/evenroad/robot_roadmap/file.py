@@ -1,0 +1,130 @@
+"""Roadmaps of robots on disk: one .npz that knows its robot and its cell, checked on load."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from evenroad import __version__
+from evenroad._npz import Arrays, Path, digest, read_json, read_npz, require_array, write_npz
+from evenroad.errors import BrokenFile, EvenroadError, InvalidValue
+from evenroad.robot import Obstacle, Robot, Scene
+from evenroad.robot.cache import robot_of
+from evenroad.robot_roadmap.cell import require_same_cell, require_same_robot
+from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
+from evenroad.robot_roadmap.turns import TURN
+
+FORMAT = 1
+_ARRAYS = ("milestones", "edges", "turns", "weights")
+_NAMES = {"format", "version", "robot", "cell", "settings", "digest", *_ARRAYS}
+_CELL = ("name", "obstacles", "allowed", "states", "limits")
+
+
+def save_robot_roadmap(path: Path, roadmap: RobotRoadmap) -> None:
+    """Write a robot's roadmap with its robot and its cell, atomically.
+
+    Raises BrokenFile if the file cannot be written; whatever was at `path` is then untouched.
+    """
+    settings = {"resolution": roadmap.resolution, "gamma": roadmap.gamma}
+    arrays: Arrays = dict(
+        format=np.array(FORMAT),
+        version=np.array(__version__),
+        robot=np.array(json.dumps(asdict(roadmap.robot))),
+        cell=np.array(json.dumps(_cell_record(roadmap.cell))),
+        settings=np.array(json.dumps(settings)),
+        **{name: getattr(roadmap, name) for name in _ARRAYS},
+    )
+    write_npz(path, arrays | {"digest": np.array(digest(arrays))}, compressed=True)
+
+
+def load_robot_roadmap(path: Path, robot: Robot | None = None, cell: Scene | None = None) -> RobotRoadmap:
+    """Read a roadmap written by :func:`save_robot_roadmap`.
+
+    Parameters
+    ----------
+    path : path-like
+        The file.
+    robot, cell : Robot and Scene, optional
+        What it has to have been made for; the file knows both itself.
+
+    Raises
+    ------
+    BrokenFile
+        If the file is missing, is no such npz or was damaged, or comes from another version of evenroad.
+    InvalidValue
+        If it was made for another robot, tool, group or cell; the text says what differs.
+    """
+    arrays = read_npz(path, "roadmap of a robot", _NAMES)
+    expected = str(arrays.pop("digest"))
+    if digest(arrays) != expected:
+        raise BrokenFile(f"{path}: its content does not match its digest; the file was changed or damaged")
+    made_by = arrays["format"].tolist(), str(arrays["version"])
+    if made_by != (FORMAT, __version__):
+        raise BrokenFile(
+            f"{path} has format {made_by[0]} of evenroad {made_by[1]}, this is format {FORMAT} of {__version__}:"
+            " make the roadmap anew, since what it calls free was checked by that version"
+        )
+    settings = read_json(path, "settings", arrays["settings"], ("resolution", "gamma"))
+    try:
+        made_robot, made_cell = robot_of(json.loads(str(arrays["robot"]))), _cell(path, arrays["cell"])
+        made = RobotRoadmap(
+            robot=made_robot, cell=made_cell, **settings, **{name: arrays[name] for name in _ARRAYS}
+        )
+        _check(path, made)
+    except BrokenFile:
+        raise
+    except (EvenroadError, TypeError, ValueError, KeyError, AttributeError) as error:
+        raise BrokenFile(f"{path}: {error}") from error
+    if cell is not None:
+        require_same_cell(made.cell, cell)
+    if robot is not None:
+        try:
+            require_same_robot(made.robot, robot)
+        except InvalidValue as error:
+            raise InvalidValue(f"{path}: {error}") from None
+    for name in _ARRAYS:
+        arrays[name].setflags(write=False)
+    return made
+
+
+def _check(path: Path, made: RobotRoadmap) -> None:
+    """Raise BrokenFile unless milestones, edges and turns are what a roadmap of the robot can have."""
+    dim, n, m = made.world.space.dim, len(made.milestones), len(made.edges)
+    require_array(path, "milestones", made.milestones, np.float64, (n, dim))
+    require_array(path, "edges", made.edges, np.int32, (m, 2))
+    require_array(path, "turns", made.turns, np.int8, (m, dim))
+    require_array(path, "weights", made.weights, np.float64, (dim,))
+    one = made.one_turn
+    if not np.all((made.milestones >= one.low) & (made.milestones <= one.high)):
+        raise BrokenFile(f"{path}: milestones must be within the ranges of their joints")
+    if not (np.all(made.weights > 0.0) and np.isfinite(made.weights).all()):
+        raise BrokenFile(f"{path}: weights must be finite and > 0")
+    if m and not (made.edges.min() >= 0 and made.edges.max() < n):
+        raise BrokenFile(f"{path}: edges must join milestones 0 .. {n - 1}")
+    if np.any(made.turns[:, ~one.wraps]) or np.any(np.abs(made.turns) > 1):
+        raise BrokenFile(f"{path}: edges must lead past their ends by at most one turn of {TURN:.3f}")
+
+
+def _cell_record(cell: Scene) -> dict[str, Any]:
+    obstacles = [(o.name, o.shape, o.size, o.xyz, o.rotation, o.cell) for o in cell.obstacles]
+    return dict(
+        name=cell.name,
+        obstacles=obstacles,
+        allowed=sorted(cell.allowed),
+        states=cell.states,
+        limits=cell.limits,
+    )
+
+
+def _cell(path: Path, array: Any) -> Scene:
+    record = read_json(path, "cell", array, _CELL)
+    return Scene(
+        record["name"],
+        tuple(Obstacle.of(*fields) for fields in record["obstacles"]),
+        frozenset((link, name) for link, name in record["allowed"]),
+        record["states"],
+        {joint: (lower, upper) for joint, (lower, upper) in record["limits"].items()},
+    )

@@ -1,0 +1,156 @@
+"""Making a roadmap for one robot in its cell, once: some seconds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from evenroad._arrays import Floats, Ints, Ints32
+from evenroad._checks import require_count, require_positive
+from evenroad._rng import RngLike, generator
+from evenroad.errors import InvalidValue
+from evenroad.points import draw
+from evenroad.roadmap.neighbours import nearest
+from evenroad.robot import ArmWorld, Robot, Scene, in_scene
+from evenroad.robot_roadmap.chance import chance_of_freedom
+from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
+from evenroad.robot_roadmap.spread import displacement_weights, spread_order
+from evenroad.robot_roadmap.turns import TURN, OneTurn, lifted_motions_free, one_turn, shifts, whole_turns
+from evenroad.space import JointSpace
+
+CANDIDATES = 16
+"""Free configurations that one milestone is chosen from."""
+
+MOST_DRAWN = 1 << 20
+"""Where fewer than the wanted ones are free among so many, the robot is said to be hardly ever free."""
+
+MOST = 1 << 15
+"""Milestones: their order takes time with the square of their number."""
+
+TRIED = 60
+"""Nearest milestones that each is tried to be joined to."""
+
+SCENES = 400
+"""Random scenes by which the chance of being free is measured."""
+
+FIRST = 1500
+"""Configurations that the weights of the metric are measured on."""
+
+
+def make_roadmap(
+    robot: Robot,
+    cell: Scene | None = None,
+    n: int = 1024,
+    *,
+    k: int = 16,
+    gamma: float | None = None,
+    resolution: float = 0.05,
+    rng: RngLike = 0,
+    progress: Callable[[str, float], None] = lambda what, share: None,
+) -> RobotRoadmap:
+    """Make the roadmap of a robot in its cell: some seconds, once.
+
+    Milestones are chosen from scrambled Sobol points that are free of robot and cell, each as far as possible from
+    those before, in the metric of displacement, and denser where random scenes leave the robot free.
+
+    Parameters
+    ----------
+    robot : Robot
+        With its tool, if it has one.
+    cell : Scene, optional
+        What never moves around it: mount, fence, walls; and the ranges to plan in.  Default: nothing.
+    n : int
+        Milestones, 1 to 32768; fewer where hardly any configuration is free.
+    k : int
+        Each is joined to so many of its nearest ones that it can reach freely, >= 1, and to those that choose it.
+    gamma : float, optional
+        The spacing is in proportion to the chance of being free to the power of -gamma, >= 0.  Default: 8 for 64
+        milestones, 6 for 256, 4 from 1024 on; 0 for seven joints and more, where it was no gain.
+    resolution : float
+        Largest step of a motion check, > 0 [rad].
+    rng : int, SeedSequence or Generator
+        Of the pool and the random scenes.
+    progress : callable, optional
+        Called with what is being done and its share that is over.
+
+    Raises
+    ------
+    InvalidValue
+        If an argument is no such number, or the robot is never free in its cell; the text says what blocks.
+    """
+    n, k = require_count("n", n), require_count("k", k)
+    if n > MOST:
+        raise InvalidValue(f"n must be at most {MOST}, got {n}")
+    cell = Scene("nothing") if cell is None else cell
+    robot = in_scene(robot, cell)
+    world = ArmWorld(robot, cell, resolution=resolution)
+    if world.fixed_contact is not None:
+        first, second = world.fixed_contact
+        raise InvalidValue(f"the robot is never free in its cell: {first!r} always touches {second!r}")
+    dim = world.space.dim
+    gamma = default_gamma(n, dim) if gamma is None else require_positive("gamma", gamma, or_zero=True)
+    pool_rng, scene_rng = generator(rng).spawn(2)
+    one = one_turn(world.space, whole_turns(robot))
+    progress("drawing configurations", 0.0)
+    pool = _free_pool(world, one, CANDIDATES * n, pool_rng)
+    n = min(n, len(pool))
+    weights = displacement_weights(robot, pool[:FIRST])
+    preference = np.ones(len(pool))
+    if gamma > 0.0:
+        chance = chance_of_freedom(
+            robot, pool, SCENES, scene_rng, lambda share: progress("random scenes", share)
+        )
+        preference = np.maximum(chance, 1.0 / SCENES) ** gamma
+    progress("choosing milestones", 0.0)
+    order = spread_order(weights * pool, weights * _periods(one), preference, n)
+    milestones = pool[order]
+    progress("joining milestones", 0.0)
+    edges, turns = _free_edges(world, one, milestones, weights, k)
+    for array in (milestones, edges, turns, weights):
+        array.setflags(write=False)
+    return RobotRoadmap(robot, cell, resolution, milestones, edges, turns, weights, gamma)
+
+
+def default_gamma(n: int, dim: int) -> float:
+    """Return the power that was best for so many milestones: fewer of them keep more to where there is room."""
+    return 0.0 if dim >= 7 else float(np.clip(8.0 - np.log2(n / 64.0), 4.0, 8.0))
+
+
+def _periods(one: OneTurn) -> Floats:
+    """Return after how much each joint repeats for the spacing: a joint with stops repeats after its range."""
+    return np.where(one.wraps, TURN, one.high - one.low)
+
+
+def _free_pool(world: ArmWorld, one: OneTurn, count: int, rng: np.random.Generator) -> Floats:
+    """Return the first free ones of a low-discrepancy sequence, (count, dim), or the fewer that MOST_DRAWN hold."""
+    drawn = 2 * count
+    while True:
+        cube = draw("sobol", drawn, world.space.dim, rng=rng.spawn(1)[0]).points
+        q = one.low + cube * (one.high - one.low)
+        free = q[world.valid(q)]
+        if len(free) >= count or drawn >= MOST_DRAWN:
+            break
+        drawn *= 2
+    if not len(free):
+        raise InvalidValue(
+            f"the robot is never free in its cell: of {drawn} configurations none; in the last one"
+            f" {world.explain(q[-1])}"
+        )
+    return free[:count]
+
+
+def _free_edges(
+    world: ArmWorld, one: OneTurn, milestones: Floats, weights: Floats, k: int
+) -> tuple[Ints32, Ints]:
+    """Return motions that are proved free, (m, 2), and their turns, (m, dim)."""
+    metric = JointSpace(one.low, one.high, one.wraps.tolist(), weights.tolist())
+    near = nearest(milestones, min(TRIED, max(len(milestones) - 1, 1)), metric)
+    own = np.repeat(np.arange(len(milestones)), near.shape[1])
+    pairs, which = np.unique(np.sort(np.stack([own, near.ravel()], axis=1)), axis=0, return_inverse=True)
+    turns = shifts(one, milestones[pairs[:, 0]], milestones[pairs[:, 1]])
+    free = lifted_motions_free(world, one, milestones[pairs[:, 0]], milestones[pairs[:, 1]], turns)
+    reached = free[which.reshape(near.shape)]
+    kept = reached & (np.cumsum(reached, axis=1) <= k)
+    chosen = np.unique(which.reshape(near.shape)[kept])
+    return pairs[chosen].astype(np.int32), turns[chosen].astype(np.int8)

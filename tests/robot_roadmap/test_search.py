@@ -1,0 +1,196 @@
+"""The compiled lazy search against Dijkstra's over everything, edge by edge, in plain Python."""
+
+import heapq
+import itertools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from evenroad.robot import ArmWorld, Scene, with_limits
+from evenroad.robot.arm_world import RECHECK_TOLERANCE
+from evenroad.robot_roadmap.make import make_roadmap
+from evenroad.robot_roadmap.robot_roadmap import SceneRoadmap
+from evenroad.robot_roadmap.turns import MOST_TURNS, one_turn
+from evenroad.space import JointSpace
+from tests.robot.kernel_arms import box_scene, ur5
+
+TURN = 2.0 * np.pi
+
+
+def shortest(known, start, goals):
+    """Return the length of the shortest free way from start to a goal over (milestone, turns), or inf."""
+    roadmap, world = known.roadmap, known.world
+    low, high = np.array(world.space.low), np.array(world.space.high)
+    lifts = roadmap.one_turn.lifts
+    q = roadmap.milestones
+
+    def free(a, b):
+        return bool(world.motion_certified(a[np.newaxis], b[np.newaxis], RECHECK_TOLERANCE)[0])
+
+    def length(a, b):
+        return float(np.linalg.norm(roadmap.weights * (b - a)))
+
+    def nearest_lift(i, place):
+        best = [
+            turns
+            for turns in itertools.product(*[range(-2, 3) if lift else (0,) for lift in lifts])
+            if np.all(q[i] + TURN * np.array(turns) >= low) and np.all(q[i] + TURN * np.array(turns) <= high)
+        ]
+        return min(best, key=lambda turns: length(q[i] + TURN * np.array(turns), place), default=None)
+
+    neighbours = {i: [] for i in range(len(q))}
+    for (a, b), turns in zip(roadmap.edges.tolist(), roadmap.turns.astype(int), strict=True):
+        neighbours[a].append((b, turns))
+        neighbours[b].append((a, -turns))
+    at_goal = {}
+    for g, goal in enumerate(goals):
+        for i in range(len(q)):
+            if (turns := nearest_lift(i, goal)) is not None:
+                at_goal.setdefault((i, turns), []).append(g)
+    best = min((length(start, goal) for goal in goals if free(start, goal)), default=np.inf)
+    queue, done, verdicts = [], set(), {}
+    for i in range(len(q)):
+        turns = nearest_lift(i, start)
+        if turns is not None and free(start, there := q[i] + TURN * np.array(turns)):
+            heapq.heappush(queue, (length(start, there), i, turns))
+    while queue:
+        cost, i, turns = heapq.heappop(queue)
+        if (i, turns) in done or cost >= best:
+            continue
+        done.add((i, turns))
+        here = q[i] + TURN * np.array(turns)
+        for g in at_goal.get((i, turns), []):
+            if cost + length(here, goals[g]) < best and free(here, goals[g]):
+                best = cost + length(here, goals[g])
+        for j, by in neighbours[i]:
+            there = q[j] + TURN * (np.array(turns) + by)
+            if np.any(there < low) or np.any(there > high):
+                continue
+            edge = (i, j, *by) if i < j else (j, i, *(-by))
+            if edge not in verdicts:
+                verdicts[edge] = free(here, there)
+            if verdicts[edge]:
+                heapq.heappush(queue, (cost + length(here, there), j, tuple(np.array(turns) + by)))
+    return best
+
+
+@pytest.fixture(scope="module")
+def roadmap():
+    """Three joints of two turns each, by a table."""
+    cell = box_scene()
+    cell = replace(
+        cell, obstacles=cell.obstacles[:1], allowed=frozenset(p for p in cell.allowed if p[1] == "table")
+    )
+    return make_roadmap(ur5(joints=3), cell, 48, k=5, gamma=2.0)
+
+
+def length_of(roadmap, path):
+    return float(np.sum(np.linalg.norm(roadmap.weights * np.diff(path, axis=0), axis=1)))
+
+
+def test_the_path_is_as_long_as_that_of_a_slow_search_and_proved_again(roadmap):
+    rng, found = np.random.default_rng(3), 0
+    for goals in (1, 1, 3):
+        known = SceneRoadmap(roadmap, box_scene())
+        q = known.world.space.from_cube(rng.random((4000, 3)))
+        ends = q[known.world.valid(q)]
+        for i in range(0, 8 * (1 + goals), 1 + goals):
+            start, there = ends[i], ends[i + 1 : i + 1 + goals]
+            connection = known.connect(start, there)
+            expected = shortest(known, start, there)
+            if connection.goal < 0:
+                assert expected == np.inf
+                continue
+            found += 1
+            path = connection.path
+            assert length_of(roadmap, path) == pytest.approx(expected, rel=1e-9)
+            assert known.world.recheck(path).all()
+            np.testing.assert_array_equal(path[0], start)
+            np.testing.assert_array_equal(path[-1], there[connection.goal])
+    assert found > 10
+
+
+def test_what_one_query_found_out_is_not_asked_again(roadmap):
+    known = SceneRoadmap(roadmap, box_scene())
+    start, goal = far_apart(known)
+    first, second = known.connect(start, goal), known.connect(start, goal)
+    assert second.motions < first.motions
+    np.testing.assert_array_equal(first.path, second.path)
+
+
+def hard(known, least=0.0):
+    """Yield starts and goals at least so far apart in the first joint that no straight motion joins, but a way does."""
+    q = known.world.space.from_cube(np.random.default_rng(0).random((4000, 3)))
+    # The shoulder cannot turn through the table.
+    q = q[known.world.valid(q) & (q[:, 1] > -np.pi) & (q[:, 1] < 0.0)]
+    q = q[np.argsort(q[:, 0])]
+    for start, goal in zip(q[: len(q) // 2], q[::-1], strict=False):
+        far = goal[0] - start[0] > least
+        if far and not known.world.motion_valid(start[np.newaxis], goal[np.newaxis])[0]:
+            if SceneRoadmap(known.roadmap, known.world.scene).connect(start, goal[np.newaxis]).goal == 0:
+                yield start, goal[np.newaxis]
+
+
+def far_apart(known):
+    return next(hard(known, 1.5 * TURN))
+
+
+def test_a_goal_more_than_a_turn_away_is_reached_and_no_limit_left(roadmap):
+    known = SceneRoadmap(roadmap, box_scene())
+    start, goal = far_apart(known)
+    assert goal[0, 0] - start[0] > 1.5 * TURN
+    path = known.connect(start, goal).path
+    assert len(path) > 2
+    assert np.all(path >= known.world.space.low)
+    assert np.all(path <= known.world.space.high)
+    assert known.world.recheck(path).all()
+
+
+def test_todays_narrower_limits_hold(roadmap):
+    scene = replace(box_scene(), limits={"shoulder_pan_joint": (-1.0, 3.5)})
+    known = SceneRoadmap(roadmap, scene)
+    for start, goal in itertools.islice(hard(known), 5):
+        path = known.connect(start, goal).path
+        assert len(path) > 2
+        assert np.all(path[:, 0] >= -1.0)
+        assert np.all(path[:, 0] <= 3.5)
+
+
+def test_joints_of_very_many_turns_are_followed_over_some_of_them():
+    space = JointSpace([-200.0, -1.0], [200.0, 1.0])
+    one = one_turn(space, np.array([True, True]))
+    assert one.lifts.tolist() == [True, False]
+    assert one.limits[:, 0].tolist() == pytest.approx([-(MOST_TURNS + 0.5) * TURN, (MOST_TURNS + 0.5) * TURN])
+    robot = with_limits(ur5(joints=2), {"shoulder_pan_joint": (-200.0, 200.0)})
+    known = make_roadmap(robot, Scene("nothing"), 32, gamma=0.0).in_scene(Scene("nothing"))
+    start = np.array([-60.0, -1.5])
+    for turned in (-20.0, 39.0, 70.0):
+        result = known.plan(start, [turned, -1.5], shorten=False)
+        assert result.solved
+        assert known.world.recheck(result.path).all()
+        assert np.abs(np.diff(result.path[:, 0])).sum() >= turned - start[0] - 1e-9
+
+
+def test_checks_run_out_and_come_back(roadmap):
+    known = SceneRoadmap(roadmap, box_scene())
+    start, goal = far_apart(known)
+    assert known.connect(start, goal, most_motions=1).motions == 1
+    again = known.connect(start, goal)
+    fresh = SceneRoadmap(roadmap, box_scene()).connect(start, goal)
+    np.testing.assert_array_equal(again.path, fresh.path)
+
+
+def test_a_world_of_one_lane_leaves_all_to_the_trees(roadmap, monkeypatch):
+    known = SceneRoadmap(roadmap, box_scene())
+    known.world = ArmWorld(known.world.robot, known.world.scene, backend="scalar")
+    start, goal = far_apart(known)
+    assert known.connect(start, goal).goal == -1
+    monkeypatch.setattr(ArmWorld, "connect", lambda world, start, goals, **_: fake(start, goals))
+    assert known.plan(start, goal[0], shorten=False).planner == "robot roadmap, then trees"
+
+
+def fake(start, goals):
+    from evenroad.world.protocol import Connection
+
+    return Connection(np.stack([start, goals[0]]), 0, 2, 0, 1)
