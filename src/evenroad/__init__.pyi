@@ -29,6 +29,9 @@ from evenroad.robot import Scene as Scene
 from evenroad.robot import configuration as configuration
 from evenroad.robot import load_robot as load_robot
 from evenroad.robot import load_scene as load_scene
+from evenroad.robot_roadmap.file import load_robot_roadmap as load_robot_roadmap
+from evenroad.robot_roadmap.file import save_robot_roadmap as save_robot_roadmap
+from evenroad.robot_roadmap.make import make_roadmap as make_roadmap
 from evenroad.space import SE2 as SE2
 from evenroad.space import SE3 as SE3
 from evenroad.space import Space as Space

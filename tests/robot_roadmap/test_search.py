@@ -127,9 +127,10 @@ def hard(known, least=0.0):
     q = q[np.argsort(q[:, 0])]
     for start, goal in zip(q[: len(q) // 2], q[::-1], strict=False):
         far = goal[0] - start[0] > least
-        if far and not known.world.motion_valid(start[np.newaxis], goal[np.newaxis])[0]:
-            if SceneRoadmap(known.roadmap, known.world.scene).connect(start, goal[np.newaxis]).goal == 0:
-                yield start, goal[np.newaxis]
+        straight = known.world.motion_valid(start[np.newaxis], goal[np.newaxis])[0]
+        fresh = SceneRoadmap(known.roadmap, known.world.scene)
+        if far and not straight and fresh.connect(start, goal[np.newaxis]).goal == 0:
+            yield start, goal[np.newaxis]
 
 
 def far_apart(known):

@@ -106,8 +106,11 @@ class PlanArm(PlanOptions):
     """A scene (.yaml; shipped: box-reach.yaml, box-reach-narrow.yaml)."""
     start: tuple[str, ...]
     """One number a joint with commas between them, name=value,..., or a named state."""
-    robot: str
+    robot: str | None = None
     """Plan for this arm: a URDF file, or the name of a shipped one (ur5, arm7)."""
+    roadmap: Path | None = None
+    """Plan along this roadmap, which ``evenroad roadmap`` made and which knows its arm and its cell; --robot may be
+    given, too, and then has to be that arm."""
     srdf: Path | None = None
     """Its SRDF, with groups, named states and pairs of links that need no test."""
     group: str | None = None
@@ -150,11 +153,12 @@ class Demo:
 def plan_type(words: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
     """Return which of the two a command line asks for, by its robot; InvalidValue if its options do not go together."""
     given = {word.partition("=")[0].replace("_", "-") for word in words if word.startswith("--")}
-    chosen: type[PlanDisk] | type[PlanArm] = PlanArm if "--robot" in given else PlanDisk
+    for_arm = not given.isdisjoint({"--robot", "--roadmap"})
+    chosen: type[PlanDisk] | type[PlanArm] = PlanArm if for_arm else PlanDisk
     if not HELP.isdisjoint(words):
         return chosen
-    if len(given & {"--robot", "--robot-radius"}) != 1:
-        many = "both" if "--robot" in given else "neither"
+    if for_arm == ("--robot-radius" in given):
+        many = "both" if for_arm else "neither"
         raise InvalidValue(
             f"give --robot-radius (a disk) or --robot (an arm), exactly one of them, not {many}"
         )

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
+
+import numpy as np
 
 from evenroad._compiled import say_if_compiling
 from evenroad.arms import SEARCH, arm_query, finished, plan_on_points
@@ -18,11 +20,14 @@ from evenroad.cli.plan_parts import (
     output_files,
     wants_points,
 )
+from evenroad.cli.roadmap import kept_roadmap
 from evenroad.cli.robot import bodiless_rows
 from evenroad.io import plan_record
 from evenroad.roadmap import default_rule, find_path
-from evenroad.robot import find_robot, find_scene, held_values
+from evenroad.robot import find_robot, find_scene, held_values, load_scene
 from evenroad.robot.kernel.selftest import lanes_failure
+from evenroad.robot_roadmap.cell import day_and_all
+from evenroad.robot_roadmap.robot_roadmap import SceneRoadmap
 
 
 def plan_arm(plan: PlanArm) -> int:
@@ -31,10 +36,13 @@ def plan_arm(plan: PlanArm) -> int:
     Links without a body are named, with a warning where the URDF draws them: their collisions go unseen.
     """
     budget = chosen_budget(plan)
+    kept = None if plan.roadmap is None else kept_roadmap(plan)
     _say_if_compiling(plan)
+    robot = kept.robot if kept is not None and plan.robot is None else plan.robot
+    assert robot is not None
     query = arm_query(
-        plan.robot,
-        plan.world,
+        robot,
+        plan.world if kept is None else day_and_all(kept.cell, load_scene(plan.world))[1],
         " ".join(plan.start),
         [" ".join(words) for words in plan.goal],
         resolution=plan.resolution,
@@ -43,14 +51,19 @@ def plan_arm(plan: PlanArm) -> int:
         group=plan.group,
         bodies=plan.bodies,
     )
-    assert query.model is not None
-    inputs = (find_scene(plan.world), *find_robot(plan.robot), plan.srdf, plan.bodies)
+    known = None if kept is None else SceneRoadmap(kept, query.world.scene, query.world.robot)
+    query = query if known is None else replace(query, world=known.world)
+    of_robot = () if plan.robot is None else find_robot(plan.robot)
+    inputs = (find_scene(plan.world), *of_robot, plan.srdf, plan.bodies, plan.roadmap)
     files = output_files(plan, [path for path in inputs if path is not None], ("json", "csv"), "file")
     world, start, goals = query.world, query.start, query.goals
     rule = chosen_rule(plan, default_rule(world.space).k)
     points = draw_points(plan, world.space.cube_dim) if wants_points(plan) else None
     load_compiled_code(world, start, goals, points, rule, SEARCH)
-    if points is None:
+    if known is not None:
+        known.connect(start, start[np.newaxis])
+        result = known.plan(start, goals, budget=budget, shorten=not plan.raw)
+    elif points is None:
         result = find_path(world, start, goals, budget=budget, shorten=not plan.raw, improve=plan.improve)
     else:
         result = plan_on_points(query, points, rule=rule, shorten=not plan.raw, budget=budget)
@@ -59,6 +72,7 @@ def plan_arm(plan: PlanArm) -> int:
     asked = {
         "scene": str(plan.world),
         "robot": plan.robot,
+        "roadmap": None if plan.roadmap is None else str(plan.roadmap),
         "srdf": None if plan.srdf is None else str(plan.srdf),
         "bodies": None if plan.bodies is None else str(plan.bodies),
         "joints": list(robot.group),
@@ -67,13 +81,14 @@ def plan_arm(plan: PlanArm) -> int:
         "resolution": world.resolution,
     }
     record = plan_record(result, asked | common_query(plan)) | {
-        "no_body": list(model.bodiless),
-        "drawn_only": list(model.drawn_only),
+        "no_body": [] if model is None else list(model.bodiless),
+        "drawn_only": [] if model is None else list(model.drawn_only),
         "checked_with": world.checked_with,
         "meshes": None if meshes is None else asdict(meshes),
     }
     held = ", ".join(f"{name} at {value:.6g}" for name, value in held_values(robot).items())
-    rows = [("joints", ", ".join(robot.group)), *([("held", held)] if held else []), *bodiless_rows(model)]
+    rows = [("joints", ", ".join(robot.group)), *([("held", held)] if held else [])]
+    rows += [] if model is None else bodiless_rows(model)
     rows += [("checked by", world.checked_with), *([] if meshes is None else [("meshes", str(meshes))])]
 
     def draw(file: Path) -> None:

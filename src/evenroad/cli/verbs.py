@@ -21,6 +21,10 @@ LONGEST = 600
 
 VERBS = {
     "plan": ("evenroad.cli.plan:PlanDisk", "a path for a disk on a map, or for an arm in a scene (--robot)"),
+    "roadmap": (
+        "evenroad.cli.roadmap:MakeRoadmap",
+        "a roadmap for one arm in its cell, good for every scene",
+    ),
     "points": (
         "evenroad.cli.points:Points",
         "write a point set: shipped, constructed, or annealed on demand",

@@ -71,5 +71,5 @@ def random_scene(base: Floats, low: Floats, high: Floats, reach: float, rng: np.
         volume += float(np.prod(2.0 * half))
         if volume > FULL * reach**3:
             break
-        boxes.append(Obstacle.of(f"box {len(boxes)}", "box", 2.0 * half, centre))
+        boxes.append(Obstacle.of(f"box {len(boxes)}", "box", tuple(2.0 * half), tuple(centre)))
     return Scene("random", tuple(boxes))

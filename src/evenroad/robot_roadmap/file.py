@@ -70,9 +70,8 @@ def load_robot_roadmap(path: Path, robot: Robot | None = None, cell: Scene | Non
     settings = read_json(path, "settings", arrays["settings"], ("resolution", "gamma"))
     try:
         made_robot, made_cell = robot_of(json.loads(str(arrays["robot"]))), _cell(path, arrays["cell"])
-        made = RobotRoadmap(
-            robot=made_robot, cell=made_cell, **settings, **{name: arrays[name] for name in _ARRAYS}
-        )
+        fields: dict[str, Any] = {name: arrays[name] for name in _ARRAYS} | settings
+        made = RobotRoadmap(robot=made_robot, cell=made_cell, **fields)
         _check(path, made)
     except BrokenFile:
         raise

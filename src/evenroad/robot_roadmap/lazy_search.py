@@ -190,12 +190,13 @@ def _shortest(ways, ends, milestones, edges):  # type: ignore[no-untyped-def]
     slots = np.full(4 * room, -1, dtype=np.int64)
     size = 0
     open_states = [(0.0, np.int64(0)) for _ in range(0)]
-    best, goal, last, last_edge = np.inf, -1, -1, -1
+    last: Any = -1
+    best, goal, last_edge = np.inf, -1, -1
     for g in range(len(ends.goals)):
         straight = ways.edges + n * (1 + len(ends.goals)) + g
         if edges[straight] != BLOCKED and ends.straight[g] < best:
             best, goal, last, last_edge = ends.straight[g], g, -1, straight
-    state = -1
+    state: Any = -1
     while True:
         # The start has no milestone: its links are its half edges.
         begin, end = (0, n) if state < 0 else (ways.first[node[state]], ways.first[node[state] + 1])
@@ -249,13 +250,13 @@ def _shortest(ways, ends, milestones, edges):  # type: ignore[no-untyped-def]
         if state < 0:
             break
         closed[state] = True
+        i = node[state]
         for g in range(len(ends.goals)):
-            i = node[state]
             edge = ways.edges + n * (1 + g) + i
-            if turned[state] == ends.turns[1 + g, i] and edges[edge] != BLOCKED:
-                if cost[state] + ends.length[1 + g, i] < best:
-                    best = cost[state] + ends.length[1 + g, i]
-                    goal, last, last_edge = g, state, edge
+            there = cost[state] + ends.length[1 + g, i]
+            if turned[state] == ends.turns[1 + g, i] and edges[edge] != BLOCKED and there < best:
+                best = there
+                goal, last, last_edge = g, state, edge
     count, state = 0, last
     while state >= 0:
         count, state = count + 1, parent[state]

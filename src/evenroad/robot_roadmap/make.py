@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -104,12 +105,26 @@ def make_roadmap(
         preference = np.maximum(chance, 1.0 / SCENES) ** gamma
     progress("choosing milestones", 0.0)
     order = spread_order(weights * pool, weights * _periods(one), preference, n)
-    milestones = pool[order]
     progress("joining milestones", 0.0)
-    edges, turns = _free_edges(world, one, milestones, weights, k)
-    for array in (milestones, edges, turns, weights):
+    nothing = RobotRoadmap(
+        robot,
+        cell,
+        world.resolution,
+        pool[:0],
+        np.empty((0, 2), np.int32),
+        np.empty((0, dim), np.int8),
+        weights,
+        gamma,
+    )
+    return joined(nothing, pool[order], k)
+
+
+def joined(roadmap: RobotRoadmap, milestones: Floats, k: int) -> RobotRoadmap:
+    """Return a roadmap with other milestones, (n, dim), each joined to the `k` nearest that it can reach freely."""
+    edges, turns = _free_edges(roadmap.world, roadmap.one_turn, milestones, roadmap.weights, k)
+    for array in (milestones, edges, turns, roadmap.weights):
         array.setflags(write=False)
-    return RobotRoadmap(robot, cell, resolution, milestones, edges, turns, weights, gamma)
+    return replace(roadmap, milestones=milestones, edges=edges, turns=turns)
 
 
 def default_gamma(n: int, dim: int) -> float:
@@ -144,8 +159,8 @@ def _free_edges(
     world: ArmWorld, one: OneTurn, milestones: Floats, weights: Floats, k: int
 ) -> tuple[Ints32, Ints]:
     """Return motions that are proved free, (m, 2), and their turns, (m, dim)."""
-    metric = JointSpace(one.low, one.high, one.wraps.tolist(), weights.tolist())
-    near = nearest(milestones, min(TRIED, max(len(milestones) - 1, 1)), metric)
+    metric = JointSpace(one.low.tolist(), one.high.tolist(), one.wraps.tolist(), weights.tolist())
+    near = nearest(milestones, min(max(TRIED, k), max(len(milestones) - 1, 1)), metric)
     own = np.repeat(np.arange(len(milestones)), near.shape[1])
     pairs, which = np.unique(np.sort(np.stack([own, near.ravel()], axis=1)), axis=0, return_inverse=True)
     turns = shifts(one, milestones[pairs[:, 0]], milestones[pairs[:, 1]])

@@ -209,7 +209,7 @@ class SceneRoadmap:
         shorten: bool = True,
         trees: bool = True,
     ) -> PlanResult:
-        """Plan from a start to a goal, or one of several: along the roadmap and, where it does not lead there, with trees.
+        """Plan from a start to one of the goals: along the roadmap and, where it does not lead there, with trees.
 
         Parameters
         ----------

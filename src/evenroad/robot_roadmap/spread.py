@@ -1,4 +1,4 @@
-"""The order of milestones: each as far from the earlier ones as it can be, with more of them where scenes leave room."""
+"""The order of milestones: each far from the earlier ones, with more of them where scenes leave room."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def spread_order(points: Floats, period: Floats, preference: Floats, count: int)
     n, dim = points.shape
     order = np.empty(count, dtype=np.int64)
     nearest = np.full(n, np.inf)
-    chosen = np.argmax(preference)
+    chosen = int(np.argmax(preference))
     for i in range(count):
         order[i] = chosen
         best, following = -1.0, 0

@@ -26,7 +26,7 @@ class OneTurn:
     low, high : ndarrays, shape (dim,)
         What milestones are drawn in [rad or m]; a joint of more than one turn has the turn in the middle of its range.
     limits : ndarray, shape (2, dim)
-        The joints' own ranges, of a joint that `lifts` at most MOST_TURNS to either side of `low` and `high` [rad or m].
+        The joints' own ranges; of one that `lifts` at most MOST_TURNS to either side of `low` and `high` [rad or m].
     wraps : ndarray of bool, shape (dim,)
         Joints whose edges may lead over the end of the range: those that turn on for ever, or more than once.
     lifts : ndarray of bool, shape (dim,)
@@ -41,7 +41,7 @@ class OneTurn:
 
 
 def one_turn(space: JointSpace, whole: Bools) -> OneTurn:
-    """Return the ranges of a space's joints, cut to one turn where there are more and a turn changes nothing: `whole`, (dim,)."""
+    """Return the ranges of a space's joints, cut to one turn where they have more and a turn is `whole`, (dim,)."""
     limits = np.array([space.low, space.high])
     endless = np.array(space.wrapping)
     lifts = whole & ~endless & (limits[1] - limits[0] > TURN)

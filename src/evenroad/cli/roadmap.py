@@ -1,0 +1,110 @@
+"""``evenroad roadmap``: a roadmap for one arm in its cell; and reading it where ``evenroad plan`` is given one."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+from evenroad._compiled import say_if_compiling
+from evenroad._files import require_writable_folder
+from evenroad._terminal import print_table, progress_shown
+from evenroad.cli.plan import PlanArm
+from evenroad.cli.plan_parts import wants_points
+from evenroad.errors import InvalidValue
+from evenroad.robot import Scene, find_robot, find_scene, load_model, load_scene
+from evenroad.robot_roadmap.file import load_robot_roadmap, save_robot_roadmap
+from evenroad.robot_roadmap.make import make_roadmap
+from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
+
+
+@dataclass(frozen=True, kw_only=True)
+class MakeRoadmap:
+    """Make a roadmap for an arm in its cell: milestones and motions that touch neither the arm itself nor the cell.
+
+    It is made once, in some seconds, and serves every scene of that cell: evenroad plan today.yaml --roadmap FILE.
+    """
+
+    robot: Annotated[str, "positional"]
+    """A URDF file, or the name of a shipped robot (ur5, arm7)."""
+    cell: Path | None = None
+    """A scene (.yaml) of what never moves: mount, fence, walls; and the ranges to plan in.  Default: nothing."""
+    n: Annotated[int, "-n"] = 1024
+    """How many milestones."""
+    k: Annotated[int, "-k"] = 16
+    """Each is joined to so many of the nearest ones that it can reach freely."""
+    gamma: float | None = None
+    """Milestones are as dense as the chance of being free in random scenes to this power, >= 0.  Default: by n, and 0
+    from seven joints on."""
+    srdf: Path | None = None
+    """Its SRDF, with groups, named states and pairs of links that need no test."""
+    group: str | None = None
+    """A group of the SRDF, or joints with commas between them; the others are held."""
+    bodies: Path | None = None
+    """A YAML file of capsules and spheres in place of the URDF's collision geometry."""
+    resolution: float = 0.05
+    """Largest step of a motion check, > 0, in radians."""
+    seed: int = 0
+    """Seed of everything random; the same command gives the same roadmap."""
+    out: Annotated[Path | None, "-o"] = None
+    """Where it goes.  Default: the robot's name in the current folder, with .roadmap."""
+
+    def run(self) -> int:
+        """Load, make, write, report; return 0."""
+        inputs = [*find_robot(self.robot), self.srdf, self.bodies]
+        inputs += [] if self.cell is None else [find_scene(self.cell)]
+        out = Path(f"{Path(self.robot).stem}.roadmap") if self.out is None else self.out
+        if not out.name:
+            raise InvalidValue(f"--out must end with a file name, got {str(out)!r}")
+        if out.resolve() in {path.resolve() for path in inputs if path is not None}:
+            raise InvalidValue(f"--out {out} would overwrite one of the files that it is made from")
+        require_writable_folder(out)
+        model = load_model(self.robot, srdf=self.srdf, group=self.group, bodies=self.bodies)
+        cell = Scene("nothing") if self.cell is None else load_scene(self.cell)
+        say_if_compiling("evenroad.robot.kernel.batch", "configurations_free", 30)
+        began = time.perf_counter()
+        with progress_shown("roadmap") as shown:
+            roadmap = make_roadmap(
+                model.robot,
+                cell,
+                self.n,
+                k=self.k,
+                gamma=self.gamma,
+                resolution=self.resolution,
+                rng=self.seed,
+                progress=lambda what, share: shown(int(1000 * share), 1000),
+            )
+        seconds = time.perf_counter() - began
+        save_robot_roadmap(out, roadmap)
+        n, m = len(roadmap.milestones), len(roadmap.edges)
+        robot = roadmap.robot
+        wraps = [name for name, lifts in zip(robot.group, roadmap.one_turn.lifts, strict=True) if lifts]
+        rows = [
+            ("roadmap", f"{n} milestones and {m} motions, free of {robot.name!r} and its cell {cell.name!r}"),
+            ("joints", ", ".join(robot.group)),
+            *([("turn on", ", ".join(wraps))] if wraps else []),
+            ("time", f"{seconds:.1f} s"),
+            ("file", f"{out}, {out.stat().st_size / 1000:.0f} kB"),
+        ]
+        print_table(rows)
+        return 0
+
+
+def kept_roadmap(plan: PlanArm) -> RobotRoadmap:
+    """Return the roadmap that a plan is told to use, refusing options that do not go with one."""
+    assert plan.roadmap is not None
+    if wants_points(plan) or plan.improve:
+        raise InvalidValue(
+            "--roadmap goes without points and without --improve: it has milestones of its own"
+        )
+    if plan.robot is None:
+        for option in ("srdf", "group", "bodies"):
+            if getattr(plan, option) is not None:
+                raise InvalidValue(f"--{option} goes with --robot; the roadmap knows its arm")
+    roadmap = load_robot_roadmap(plan.roadmap)
+    if plan.resolution not in (PlanArm.resolution, roadmap.resolution):
+        raise InvalidValue(
+            f"the roadmap was made with --resolution {roadmap.resolution:g}, got {plan.resolution:g}"
+        )
+    return roadmap

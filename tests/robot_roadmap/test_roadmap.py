@@ -1,0 +1,213 @@
+"""What a robot's roadmap is made of, what it is refused for, and its file."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import evenroad as er
+from evenroad.geometry.shapes import Capsule
+from evenroad.robot import ArmWorld, Joint, Mimic, Obstacle, Scene, with_group, with_limits
+from evenroad.robot_roadmap import chance
+from evenroad.robot_roadmap.cell import day_and_all
+from evenroad.robot_roadmap.make import make_roadmap
+from evenroad.robot_roadmap.robot_roadmap import SceneRoadmap
+from evenroad.robot_roadmap.spread import displacement_weights, spread_order
+from evenroad.robot_roadmap.turns import whole_turns
+from tests.robot.kernel_arms import STRAIGHT, Z, box_scene, ur5
+
+TABLE = Scene(
+    "cell",
+    (Obstacle.of("table", "box", (1.0, 1.2, 0.05), (0.25, 0.0, -0.025), cell=True),),
+    frozenset({("base", "table"), ("shoulder", "table")}),
+)
+
+
+@pytest.fixture(scope="module")
+def roadmap():
+    return make_roadmap(ur5(joints=3), TABLE, 40, k=4, gamma=0.0)
+
+
+def test_milestones_and_motions_are_free_of_robot_and_cell(roadmap):
+    world = ArmWorld(ur5(joints=3), TABLE)
+    assert len(roadmap.milestones) == 40
+    assert world.valid(roadmap.milestones).all()
+    a, b = roadmap.milestones[roadmap.edges[:, 0]], roadmap.milestones[roadmap.edges[:, 1]]
+    b = b + 2.0 * np.pi * roadmap.turns
+    # Where the second end is past a limit, the first may be turned back.
+    back = np.where(b > world.space.high, -1, np.where(b < world.space.low, 1, 0)) * 2.0 * np.pi
+    assert world.motion_certified(a + back, b + back, 1e-6).all()
+    assert np.bincount(roadmap.edges.ravel(), minlength=40).min() >= 4
+
+
+def test_the_same_arguments_give_the_same_roadmap(roadmap):
+    again = make_roadmap(ur5(joints=3), TABLE, 40, k=4, gamma=0.0)
+    np.testing.assert_array_equal(again.milestones, roadmap.milestones)
+    np.testing.assert_array_equal(again.edges, roadmap.edges)
+    other = make_roadmap(ur5(joints=3), TABLE, 40, k=4, gamma=0.0, rng=1)
+    assert not np.array_equal(other.milestones, roadmap.milestones)
+
+
+def test_each_milestone_is_the_farthest_from_those_before():
+    points = np.random.default_rng(0).random((300, 2))
+    order = spread_order(points, np.array([np.inf, 1.0]), np.ones(300), 40)
+    apart = np.abs(points[:, np.newaxis] - points[order])
+    apart[..., 1] = np.minimum(apart[..., 1], 1.0 - apart[..., 1])
+    distances = np.linalg.norm(apart, axis=2)
+    for i in range(1, 40):
+        assert distances[:, :i].min(axis=1).argmax() == order[i]
+
+
+def test_random_scenes_leave_more_room_to_an_arm_that_is_folded(monkeypatch):
+    monkeypatch.setattr(chance, "SEEN", 100)
+    straight, folded = [0.0, -0.3, 0.0], [0.0, -1.57, 2.6]
+    q = np.concatenate([np.random.default_rng(0).uniform(-3, 3, (98, 3)), [straight, folded]])
+    shares = chance.chance_of_freedom(ur5(joints=3), q, 200, np.random.default_rng(1))
+    assert 0.3 < shares[-2] < shares[-1] <= 1.0
+
+
+def test_one_milestone_and_ones_that_cannot_be_made():
+    one = make_roadmap(ur5(joints=3), TABLE, 1, gamma=0.0)
+    assert one.edges.shape == (0, 2)
+    assert one.plan(Scene("today"), [0.0, -1.5, 0.0], [1.0, -1.5, 0.0]).solved
+    for n in (0, -3, 1.5, 1 << 16):
+        with pytest.raises(er.InvalidValue, match="n must be"):
+            make_roadmap(ur5(), TABLE, n)
+    for wrong in ({"k": 0}, {"gamma": -1.0}, {"gamma": np.nan}, {"resolution": 0.0}):
+        with pytest.raises(er.InvalidValue, match=next(iter(wrong))):
+            make_roadmap(ur5(), TABLE, 8, **wrong)
+
+
+def test_a_robot_that_is_never_free_is_refused_with_what_blocks():
+    with pytest.raises(er.InvalidValue, match="never free in its cell: 'base' always touches 'table'"):
+        make_roadmap(ur5(), replace(TABLE, allowed=frozenset()), 8)
+    wall = Obstacle.of("room", "box", (4.0, 4.0, 4.0))
+    links = ("base", "shoulder", "upperarm")
+    with pytest.raises(er.InvalidValue, match=r"never free in its cell: of \d+ .* touches 'room'"):
+        make_roadmap(ur5(joints=3), Scene("full", (wall,), frozenset((link, "room") for link in links)), 8)
+
+
+def test_a_turn_of_a_joint_that_others_follow_is_not_nothing():
+    robot = ur5()
+    follower = Joint("finger", "revolute", "wrist3", "f", (0, 0, 0.1), STRAIGHT, Z, -9, 9, mimic=Mimic("wrist_3_joint", 0.5))
+    robot = replace(robot, links=(*robot.links, "f"), joints=(*robot.joints, follower))
+    assert whole_turns(robot).tolist() == [True] * 5 + [False]
+
+
+def test_a_slider_that_goes_straight_up_has_a_roadmap():
+    joint = Joint("lift", "prismatic", "base", "sled", (0, 0, 0), STRAIGHT, Z, 0.0, 1.0)
+    robot = er.Robot("lift", ("base", "sled"), (joint,), (Capsule((0, 0, 0), (0, 0, 0.1), 0.05, link="sled"),), (), ("lift",))
+    roadmap = make_roadmap(robot, None, 16)
+    assert displacement_weights(robot, roadmap.milestones).tolist() == [1.0]
+    lid = Scene("lid", (Obstacle.of("lid", "box", (1, 1, 0.1), (0, 0, 0.8)),))
+    assert roadmap.plan(lid, [0.0], [0.5]).solved
+    assert roadmap.plan(lid, [0.0], [0.9]).status == "goal_invalid"
+
+
+def test_several_goals_and_none_that_is_free(roadmap):
+    inside, free, far = [0.0, 0.6, 0.0], [1.0, -1.5, 0.0], [3.0, -1.5, 0.0]
+    result = roadmap.plan(box_scene(), [0.0, -1.5, 0.0], [inside, far, free])
+    assert result.solved
+    assert result.goal_index == 2
+    assert result.proof == "certified"
+    assert roadmap.plan(box_scene(), [0.0, -1.5, 0.0], [inside, inside]).status == "goal_invalid"
+    assert roadmap.plan(box_scene(), inside, free).status == "start_invalid"
+
+
+def test_the_cell_is_there_even_where_the_scene_does_not_name_it(roadmap):
+    assert roadmap.plan(Scene("today"), [0.0, -1.5, 0.0], [0.0, 0.6, 0.0]).status == "goal_invalid"
+    named = roadmap.plan(TABLE, [0.0, -1.5, 0.0], [1.0, -1.5, 0.0])
+    unnamed = roadmap.plan(Scene("today"), [0.0, -1.5, 0.0], [1.0, -1.5, 0.0])
+    np.testing.assert_array_equal(named.path, unnamed.path)
+
+
+def test_a_scene_that_contradicts_the_cell_is_refused(roadmap):
+    higher = TABLE.obstacles[0].at(replace(TABLE.obstacles[0].body.pose, xyz=(0.25, 0.0, 0.1)))
+    with pytest.raises(er.InvalidValue, match=r"'table' of scene 'cell' is a box of 1, 1.2, 0.05 at \(0.25, 0, 0.1\)"):
+        roadmap.in_scene(replace(TABLE, obstacles=(higher,)))
+    with pytest.raises(er.InvalidValue, match="does not allow 'base' to touch it"):
+        roadmap.in_scene(replace(TABLE, allowed=frozenset({("shoulder", "table")})))
+
+
+def test_ranges_of_cell_and_scene_both_hold():
+    cell, scene = Scene("cell", limits={"a": (-1.0, 1.0), "b": (0.0, 1.0)}), Scene("today", limits={"a": (0.0, 3.0)})
+    assert day_and_all(cell, scene)[1].limits == {"a": (0.0, 1.0), "b": (0.0, 1.0)}
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda r: with_group(r, r.group[:2]), "without elbow_joint among its joints of the group"),
+        (lambda r: r.with_tool([Capsule((0, 0, 0), (0, 0, 0.1), 0.02)], "wrist3"), "with tool among its links"),
+        (lambda r: replace(r, pairs=r.pairs[1:]), "among its tested pairs"),
+        (lambda r: replace(r, held={"wrist_1_joint": 1.0}), "'wrist_1_joint' was held at 0, now at 1"),
+        (lambda r: replace(r, capsules=r.capsules[:-1]), "the bodies of 'wrist3' differ: 1 capsules, now 0"),
+        (lambda r: replace(r, joints=(replace(r.joints[0], xyz=(0.0, 0.0, 0.1)), *r.joints[1:])), "'shoulder_pan_joint' has another place"),
+    ],
+)  # fmt: skip
+def test_another_robot_is_refused_with_what_differs(roadmap, tmp_path, change, said):
+    file = tmp_path / "arm.roadmap"
+    er.save_robot_roadmap(file, roadmap)
+    with pytest.raises(er.InvalidValue, match=said):
+        er.load_robot_roadmap(file, change(ur5(joints=3)))
+    with pytest.raises(er.InvalidValue, match=said):
+        SceneRoadmap(roadmap, TABLE, change(ur5(joints=3)))
+
+
+def test_other_limits_are_no_other_robot(roadmap):
+    narrow = with_limits(ur5(joints=3), {"elbow_joint": (-1.0, 1.0)})
+    assert SceneRoadmap(roadmap, TABLE, narrow).world.space.high[2] == 1.0
+
+
+def test_a_file_gives_back_all_of_it(roadmap, tmp_path):
+    file = tmp_path / "arm.roadmap"
+    er.save_robot_roadmap(file, roadmap)
+    again = er.load_robot_roadmap(file, ur5(joints=3), TABLE)
+    for name in ("milestones", "edges", "turns", "weights"):
+        np.testing.assert_array_equal(getattr(again, name), getattr(roadmap, name))
+    assert (again.robot, again.cell, again.gamma, again.resolution) == (roadmap.robot, TABLE, 0.0, 0.05)
+    first, second = (r.plan(box_scene(), [0.0, -1.5, 0.0], [2.0, -1.0, 1.0]) for r in (roadmap, again))
+    np.testing.assert_array_equal(first.path, second.path)
+
+
+def test_another_cell_is_refused_with_what_differs(roadmap, tmp_path):
+    file = tmp_path / "arm.roadmap"
+    er.save_robot_roadmap(file, roadmap)
+    with pytest.raises(er.InvalidValue, match="with left, right, .* among its obstacles"):
+        er.load_robot_roadmap(file, cell=box_scene())
+    with pytest.raises(er.InvalidValue, match="limits"):
+        er.load_robot_roadmap(file, cell=replace(TABLE, limits={"elbow_joint": (0.0, 1.0)}))
+
+
+def test_a_damaged_file_and_one_of_another_version_are_broken(roadmap, tmp_path, monkeypatch):
+    file = tmp_path / "arm.roadmap"
+    er.save_robot_roadmap(file, roadmap)
+    content = file.read_bytes()
+    for damaged in (b"", content[:-30], content[:200] + b"\0" + content[201:], b"obstacles: {}"):
+        file.write_bytes(damaged)
+        with pytest.raises(er.BrokenFile):
+            er.load_robot_roadmap(file)
+    with pytest.raises(er.BrokenFile, match="no such file"):
+        er.load_robot_roadmap(tmp_path / "other.roadmap")
+    monkeypatch.setattr("evenroad.robot_roadmap.file.__version__", "0.0.1")
+    er.save_robot_roadmap(file, roadmap)
+    monkeypatch.undo()
+    with pytest.raises(er.BrokenFile, match="of evenroad 0.0.1, this is"):
+        er.load_robot_roadmap(file)
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "said"),
+    [
+        ("edges", lambda a: a + 39, "edges must join milestones"),
+        ("turns", lambda a: a + np.int8(2), "by at most one turn"),
+        ("milestones", lambda a: a + 4.0, "within the ranges"),
+        ("weights", lambda a: -a, "weights must be"),
+        ("milestones", lambda a: a[:, :2], "milestones must be float64 of shape"),
+    ],
+)
+def test_content_that_no_roadmap_has_is_broken(roadmap, tmp_path, field, value, said):
+    file = tmp_path / "arm.roadmap"
+    er.save_robot_roadmap(file, replace(roadmap, **{field: value(getattr(roadmap, field))}))
+    with pytest.raises(er.BrokenFile, match=said):
+        er.load_robot_roadmap(file)
