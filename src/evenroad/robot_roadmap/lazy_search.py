@@ -18,6 +18,9 @@ UNKNOWN, FREE, BLOCKED = 0, 1, 2
 NONE, OUT_OF_MOTIONS, PAUSED = -1, -2, -3
 """In place of a goal: there is no path, so many motions were checked, or so many searches made."""
 
+_EASY, _ANEW = 4, 32
+"""A query that so many searches have not answered is worth a closer bound, made anew after so many more."""
+
 _BITS = 4
 _ROOM = 1024
 """States that there is room for at first; doubled when it is used up."""
@@ -129,9 +132,11 @@ def lazy_path(ways, ends, milestones, edges, motions_left, searches_left, day, f
     """
     dim = ways.milestones.shape[1]
     configurations = motions = 0
-    nothing = np.empty((0, dim))
-    for _ in range(searches_left):
-        nodes, turned, along, goal = _shortest(ways, ends, milestones, edges)
+    nothing, left = np.empty((0, dim)), np.zeros(len(ways.milestones))
+    for search in range(searches_left):
+        if search % _ANEW == _EASY:
+            _write_way_left(ways, ends, milestones, edges, left)
+        nodes, turned, along, goal = _shortest(ways, ends, milestones, edges, left)
         if goal < 0:
             return nothing, NONE, configurations, motions
         path = np.empty((len(nodes) + 2, dim))
@@ -176,10 +181,33 @@ def _proved(a, b, checks):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def _shortest(ways, ends, milestones, edges):  # type: ignore[no-untyped-def]
+def _write_way_left(ways, ends, milestones, edges, left):  # type: ignore[no-untyped-def]
+    """Write how far it is from each milestone to a goal at least, (n,), with turns left out: Dijkstra (1959)."""
+    n, queue = len(left), [(0.0, np.int64(0)) for _ in range(0)]
+    left[:] = np.inf
+    for i in range(n):
+        for g in range(len(ends.goals)):
+            if edges[ways.edges + n * (1 + g) + i] != BLOCKED and milestones[i] != BLOCKED:
+                left[i] = min(left[i], ends.length[1 + g, i])
+        if left[i] < np.inf:
+            heapq.heappush(queue, (left[i], np.int64(i)))
+    while len(queue):
+        cost, i = heapq.heappop(queue)
+        if cost > left[i]:
+            continue
+        for half in range(ways.first[i], ways.first[i + 1]):
+            there, reached = ways.other[half], cost + ways.length[half]
+            if reached < left[there] and edges[ways.edge[half]] != BLOCKED and milestones[there] != BLOCKED:
+                left[there] = reached
+                heapq.heappush(queue, (reached, there))
+
+
+@njit(cache=True, nogil=True)
+def _shortest(ways, ends, milestones, edges, left):  # type: ignore[no-untyped-def]
     """Return the milestones, turns and edges of the shortest path that is not known to be blocked, and its goal or -1.
 
-    A* (Hart, Nilsson and Raphael 1968) over milestones with turns, with the distance to the nearest goal as its bound.
+    A* (Hart, Nilsson and Raphael 1968) over milestones with turns, with the distance to the nearest goal as its bound,
+    or the way that is `left`, (n,), at least, where that is longer.
     """
     n, dim = ways.milestones.shape
     q, room = np.empty(dim), _ROOM
@@ -223,7 +251,7 @@ def _shortest(ways, ends, milestones, edges):  # type: ignore[no-untyped-def]
                 nearest = np.inf
                 for g in range(len(ends.goals)):
                     nearest = min(nearest, _distance(ways, q, ends.goals[g]))
-                bound[found] = nearest
+                bound[found] = max(nearest, left[there])
             if reached < cost[found] and not closed[found]:
                 cost[found], parent[found], via[found] = reached, state, edge
                 heapq.heappush(open_states, (reached + bound[found], found))

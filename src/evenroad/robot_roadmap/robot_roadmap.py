@@ -184,6 +184,10 @@ class SceneRoadmap:
             return Connection(path, goal, n, configurations, motions)
         from evenroad.robot_roadmap.lazy_search import PAUSED, Checks, ends_of, lazy_path
 
+        # Compiled code is made anew for arrays that can be written to.
+        start, goals = np.array(start), np.array(goals)
+        start.setflags(write=False)
+        goals.setflags(write=False)
         ways, checks = self._ways, [Checks(*lane_arguments(world)) for world in (self._day, self.world)]
         ends = ends_of(ways, start, goals, n if n <= FEW else links)
         edges = np.zeros(m + n * (1 + g) + g, dtype=np.int8)
