@@ -89,14 +89,32 @@ def test_a_robot_that_is_never_free_is_refused_with_what_blocks():
 
 def test_a_turn_of_a_joint_that_others_follow_is_not_nothing():
     robot = ur5()
-    follower = Joint("finger", "revolute", "wrist3", "f", (0, 0, 0.1), STRAIGHT, Z, -9, 9, mimic=Mimic("wrist_3_joint", 0.5))
+    follower = Joint(
+        "finger",
+        "revolute",
+        "wrist3",
+        "f",
+        (0, 0, 0.1),
+        STRAIGHT,
+        Z,
+        -9,
+        9,
+        mimic=Mimic("wrist_3_joint", 0.5),
+    )
     robot = replace(robot, links=(*robot.links, "f"), joints=(*robot.joints, follower))
     assert whole_turns(robot).tolist() == [True] * 5 + [False]
 
 
 def test_a_slider_that_goes_straight_up_has_a_roadmap():
     joint = Joint("lift", "prismatic", "base", "sled", (0, 0, 0), STRAIGHT, Z, 0.0, 1.0)
-    robot = er.Robot("lift", ("base", "sled"), (joint,), (Capsule((0, 0, 0), (0, 0, 0.1), 0.05, link="sled"),), (), ("lift",))
+    robot = er.Robot(
+        "lift",
+        ("base", "sled"),
+        (joint,),
+        (Capsule((0, 0, 0), (0, 0, 0.1), 0.05, link="sled"),),
+        (),
+        ("lift",),
+    )
     roadmap = make_roadmap(robot, None, 16)
     assert displacement_weights(robot, roadmap.milestones).tolist() == [1.0]
     lid = Scene("lid", (Obstacle.of("lid", "box", (1, 1, 0.1), (0, 0, 0.8)),))
@@ -123,28 +141,43 @@ def test_the_cell_is_there_even_where_the_scene_does_not_name_it(roadmap):
 
 def test_a_scene_that_contradicts_the_cell_is_refused(roadmap):
     higher = TABLE.obstacles[0].at(replace(TABLE.obstacles[0].body.pose, xyz=(0.25, 0.0, 0.1)))
-    with pytest.raises(er.InvalidValue, match=r"'table' of scene 'cell' is a box of 1, 1.2, 0.05 at \(0.25, 0, 0.1\)"):
+    with pytest.raises(
+        er.InvalidValue, match=r"'table' of scene 'cell' is a box of 1, 1.2, 0.05 at \(0.25, 0, 0.1\)"
+    ):
         roadmap.in_scene(replace(TABLE, obstacles=(higher,)))
     with pytest.raises(er.InvalidValue, match="does not allow 'base' to touch it"):
         roadmap.in_scene(replace(TABLE, allowed=frozenset({("shoulder", "table")})))
 
 
 def test_ranges_of_cell_and_scene_both_hold():
-    cell, scene = Scene("cell", limits={"a": (-1.0, 1.0), "b": (0.0, 1.0)}), Scene("today", limits={"a": (0.0, 3.0)})
+    cell, scene = (
+        Scene("cell", limits={"a": (-1.0, 1.0), "b": (0.0, 1.0)}),
+        Scene("today", limits={"a": (0.0, 3.0)}),
+    )
     assert day_and_all(cell, scene)[1].limits == {"a": (0.0, 1.0), "b": (0.0, 1.0)}
+
+
+def lifted(joint):
+    return replace(joint, xyz=(0.0, 0.0, 0.1))
 
 
 @pytest.mark.parametrize(
     ("change", "said"),
     [
         (lambda r: with_group(r, r.group[:2]), "without elbow_joint among its joints of the group"),
-        (lambda r: r.with_tool([Capsule((0, 0, 0), (0, 0, 0.1), 0.02)], "wrist3"), "with tool among its links"),
+        (
+            lambda r: r.with_tool([Capsule((0, 0, 0), (0, 0, 0.1), 0.02)], "wrist3"),
+            "with tool among its links",
+        ),
         (lambda r: replace(r, pairs=r.pairs[1:]), "among its tested pairs"),
         (lambda r: replace(r, held={"wrist_1_joint": 1.0}), "'wrist_1_joint' was held at 0, now at 1"),
         (lambda r: replace(r, capsules=r.capsules[:-1]), "the bodies of 'wrist3' differ: 1 capsules, now 0"),
-        (lambda r: replace(r, joints=(replace(r.joints[0], xyz=(0.0, 0.0, 0.1)), *r.joints[1:])), "'shoulder_pan_joint' has another place"),
+        (
+            lambda r: replace(r, joints=(lifted(r.joints[0]), *r.joints[1:])),
+            "'shoulder_pan_joint' has another place",
+        ),
     ],
-)  # fmt: skip
+)
 def test_another_robot_is_refused_with_what_differs(roadmap, tmp_path, change, said):
     file = tmp_path / "arm.roadmap"
     er.save_robot_roadmap(file, roadmap)
@@ -152,6 +185,26 @@ def test_another_robot_is_refused_with_what_differs(roadmap, tmp_path, change, s
         er.load_robot_roadmap(file, change(ur5(joints=3)))
     with pytest.raises(er.InvalidValue, match=said):
         SceneRoadmap(roadmap, TABLE, change(ur5(joints=3)))
+
+
+def test_a_joint_that_turns_on_may_have_limits_in_the_cell_but_none_of_a_day(roadmap, tmp_path):
+    joint = Joint("turn", "continuous", "base", "arm", (0, 0, 0), STRAIGHT, Z, -np.inf, np.inf)
+    body = Capsule((0.2, 0, 0.1), (0.6, 0, 0.1), 0.05, link="arm")
+    robot = er.Robot("turner", ("base", "arm"), (joint,), (body,), (), ("turn",))
+    limited = Scene("limited", limits={"turn": (-1.0, 2.0)})
+    endless, kept = make_roadmap(robot, None, 8), make_roadmap(robot, limited, 8)
+    er.save_robot_roadmap(tmp_path / "a.roadmap", kept)
+    assert er.load_robot_roadmap(tmp_path / "a.roadmap", robot, limited).milestones.min() >= -1.0
+    assert SceneRoadmap(kept, Scene("today"), robot).world.space.high == (2.0,)
+    post = Scene("post", (Obstacle.of("post", "box", (0.1, 0.1, 1.0), (0.5, 0.0, 0.0)),))
+    result = endless.plan(post, [-0.5], [0.5])
+    assert result.solved
+    assert endless.in_scene(post).world.recheck(result.path).all()
+    assert len(result.path) > 2
+    with pytest.raises(
+        er.InvalidValue, match=r"'turn' has another place, axis or kind \(continuous, now revolute\)"
+    ):
+        endless.in_scene(limited)
 
 
 def test_other_limits_are_no_other_robot(roadmap):

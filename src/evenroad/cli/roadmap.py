@@ -102,7 +102,10 @@ def kept_roadmap(plan: PlanArm) -> RobotRoadmap:
         for option in ("srdf", "group", "bodies"):
             if getattr(plan, option) is not None:
                 raise InvalidValue(f"--{option} goes with --robot; the roadmap knows its arm")
-    roadmap = load_robot_roadmap(plan.roadmap)
+    robot = None
+    if plan.robot is not None:
+        robot = load_model(plan.robot, srdf=plan.srdf, group=plan.group, bodies=plan.bodies).robot
+    roadmap = load_robot_roadmap(plan.roadmap, robot)
     if plan.resolution not in (PlanArm.resolution, roadmap.resolution):
         raise InvalidValue(
             f"the roadmap was made with --resolution {roadmap.resolution:g}, got {plan.resolution:g}"

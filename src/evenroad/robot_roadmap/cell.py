@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from evenroad.errors import InvalidValue
-from evenroad.robot import Obstacle, Robot, Scene, held_values
+from evenroad.robot import Obstacle, Robot, Scene, held_values, in_scene
 
 
 def day_and_all(cell: Scene, scene: Scene) -> tuple[Scene, Scene]:
@@ -58,11 +58,14 @@ def _text(obstacle: Obstacle) -> str:
     return f"{obstacle.shape} of {size} at ({xyz})"
 
 
-def require_same_robot(made: Robot, given: Robot) -> None:
-    """Raise InvalidValue unless a robot moves and is tested as the one that a roadmap was made for; limits may differ.
+def require_same_robot(made: Robot, cell: Scene, given: Robot) -> None:
+    """Raise InvalidValue unless a robot, in the ranges of the cell, moves and is tested as the one of a roadmap.
 
-    The text says what differs.
+    Its limits may differ.  The text says what else does.
     """
+    names = {joint.name for joint in given.joints}
+    known = {joint: limits for joint, limits in cell.limits.items() if joint in names}
+    given = in_scene(given, replace(cell, limits=known))
     if (difference := next(_differences(made, given), None)) is not None:
         raise InvalidValue(f"the roadmap was made for another robot, {made.name!r}: {difference}")
 

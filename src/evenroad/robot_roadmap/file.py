@@ -81,7 +81,7 @@ def load_robot_roadmap(path: Path, robot: Robot | None = None, cell: Scene | Non
         require_same_cell(made.cell, cell)
     if robot is not None:
         try:
-            require_same_robot(made.robot, robot)
+            require_same_robot(made.robot, made.cell, robot)
         except InvalidValue as error:
             raise InvalidValue(f"{path}: {error}") from None
     for name in _ARRAYS:

@@ -183,7 +183,8 @@ def _proved(a, b, checks):  # type: ignore[no-untyped-def]
 @njit(cache=True, nogil=True)
 def _write_way_left(ways, ends, milestones, edges, left):  # type: ignore[no-untyped-def]
     """Write how far it is from each milestone to a goal at least, (n,), with turns left out: Dijkstra (1959)."""
-    n, queue = len(left), [(0.0, np.int64(0)) for _ in range(0)]
+    n = len(left)
+    queue: Any = [(0.0, np.int64(0)) for _ in range(0)]
     left[:] = np.inf
     for i in range(n):
         for g in range(len(ends.goals)):
@@ -196,7 +197,8 @@ def _write_way_left(ways, ends, milestones, edges, left):  # type: ignore[no-unt
         if cost > left[i]:
             continue
         for half in range(ways.first[i], ways.first[i + 1]):
-            there, reached = ways.other[half], cost + ways.length[half]
+            there: Any = ways.other[half]
+            reached = cost + ways.length[half]
             if reached < left[there] and edges[ways.edge[half]] != BLOCKED and milestones[there] != BLOCKED:
                 left[there] = reached
                 heapq.heappush(queue, (reached, there))

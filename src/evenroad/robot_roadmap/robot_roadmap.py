@@ -148,7 +148,7 @@ class SceneRoadmap:
     def __init__(self, roadmap: RobotRoadmap, scene: Scene, robot: Robot | None = None) -> None:
         day, everything = day_and_all(roadmap.cell, scene)
         robot = in_scene(roadmap.robot if robot is None else robot, everything)
-        require_same_robot(roadmap.robot, robot)
+        require_same_robot(roadmap.robot, roadmap.cell, robot)
         resolution = roadmap.resolution
         self.roadmap = roadmap
         self.world = ArmWorld(robot, everything, resolution=resolution)

@@ -1,0 +1,94 @@
+"""``evenroad roadmap``, and ``evenroad plan --roadmap``."""
+
+import json
+
+import numpy as np
+import pytest
+
+import evenroad as er
+from evenroad.cli import main
+
+CELL = """\
+obstacles:
+  table: {shape: box, size: [1, 1.2, 0.05], xyz: [0.25, 0, -0.025], cell: true}
+allowed:
+  table: [base_link, shoulder_link]
+"""
+ENDS = ["--start", "home", "--goal", "inside", "--no-picture"]
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "cell.yaml").write_text(CELL)
+    return tmp_path
+
+
+@pytest.fixture
+def made(folder):
+    line = ["roadmap", "ur5", "--cell", "cell.yaml", "-n", "64", "--gamma", "0", "-o", "my.roadmap"]
+    assert main(line) == 0
+    return folder
+
+
+def test_it_makes_the_roadmap_that_python_makes(made):
+    robot, cell = er.load_robot("ur5"), er.load_scene("cell.yaml")
+    expected = er.make_roadmap(robot, cell, 64, gamma=0.0)
+    roadmap = er.load_robot_roadmap("my.roadmap", robot, cell)
+    np.testing.assert_array_equal(roadmap.milestones, expected.milestones)
+    np.testing.assert_array_equal(roadmap.edges, expected.edges)
+
+
+def test_a_plan_along_it_is_that_of_python_and_proved(made):
+    assert main(["plan", "box-reach.yaml", "--roadmap", "my.roadmap", *ENDS, "--out", "a"]) == 0
+    record = json.loads((made / "a.json").read_text())
+    scene = er.load_scene("box-reach")
+    result = er.load_robot_roadmap("my.roadmap").plan(scene, "home", "inside")
+    assert record["path"] == result.path.tolist()
+    assert record["proof"] == "certified"
+    assert (
+        main(["plan", "box-reach.yaml", "--roadmap", "my.roadmap", "--robot", "ur5", *ENDS, "--out", "b"])
+        == 0
+    )
+    assert json.loads((made / "b.json").read_text())["path"] == record["path"]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["roadmap", "ur5", "-n", "0"], "n must be"),
+        (["roadmap", "ur5", "-o", "no/where.roadmap"], "no"),
+        (["roadmap", "ur5", "--cell", "cell.yaml", "-o", "cell.yaml"], "would overwrite"),
+        (
+            ["plan", "box-reach.yaml", "--roadmap", "cell.yaml", *ENDS],
+            "is not a readable .npz roadmap of a robot",
+        ),
+        (["plan", "box-reach.yaml", "--roadmap", "none", *ENDS], "no such file: none"),
+        (["plan", "box-reach.yaml", "--roadmap", "none", *ENDS, "-n", "5"], "goes without points"),
+        (["plan", "box-reach.yaml", "--roadmap", "none", *ENDS, "--improve"], "goes without points"),
+        (["plan", "box-reach.yaml", "--roadmap", "none", *ENDS, "--group", "a"], "--group goes with --robot"),
+        (["plan", "box-reach.yaml", "--roadmap", "x", "--robot-radius", "1", *ENDS], "not both"),
+    ],
+)
+def test_bad_input_gets_one_line(folder, capsys, words, said):
+    assert main(words) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert said in error
+
+
+def test_what_contradicts_the_roadmap_gets_one_line(made, capsys):
+    other = (made / "cell.yaml").read_text().replace("-0.025", "-0.03")
+    (made / "today.yaml").write_text(other)
+    ends = ["--start", "0,-1.5,0,0,0,0", "--goal", "1,-1.5,0,0,0,0", "--no-picture"]
+    for words, said in (
+        (["today.yaml"], "'table' of scene 'today' is a box"),
+        (["cell.yaml", "--robot", "arm7"], "made for another robot, 'ur5'"),
+        (["cell.yaml", "--resolution", "0.1"], "made with --resolution 0.05"),
+        (["cell.yaml", "--robot", "ur5", "--group", "elbow_joint"], "among its joints of the group"),
+    ):
+        capsys.readouterr()
+        assert main(["plan", *words, "--roadmap", "my.roadmap", *ends]) == 2
+        error = capsys.readouterr().err
+        assert error.count("\n") == 1
+        assert said in error
