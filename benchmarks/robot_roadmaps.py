@@ -1,8 +1,8 @@
 """How few milestones are enough: a roadmap made for one robot against points that know only the joint box.
 
-    python -m benchmarks.robot_roadmaps --problems 60 --draws 2 --out docs/data/robot_roadmaps.csv
+    python -m benchmarks.robot_roadmaps --problems 40 --draws 2 --out docs/data/robot_roadmaps.csv
     python -m benchmarks.robot_roadmaps --queries 40
-    python -m benchmarks.robot_roadmaps --table docs/data/robot_roadmaps.csv
+    python -m benchmarks.robot_roadmaps --table docs/data/robot_roadmaps.csv --picture docs/robot_roadmaps.png
 
 Problems of four kinds, from the seeds kept for reporting; only those count whose straight motion is not free.  No
 trees, k = 10, and a path counts only where the check of all its motions, made anew, proves them free.  Methods:
@@ -138,6 +138,33 @@ def table(path: Path) -> None:
             )
 
 
+def success(path: Path) -> dict[tuple[str, int, str], float]:
+    """Return the share of problems solved, in percent, by method, size and kind."""
+    solved: dict[tuple[str, int, str], list[int]] = {}
+    with path.open() as file:
+        for row in csv.DictReader(file):
+            solved.setdefault((row["method"], int(row["n"]), row["kind"]), []).append(int(row["solved"]))
+    return {key: 100.0 * float(np.mean(values)) for key, values in solved.items()}
+
+
+def picture(path: Path, out: Path) -> None:
+    """Draw success over the number of milestones, a panel for each kind."""
+    from matplotlib import pyplot as plt
+
+    share = success(path)
+    figure, panels = plt.subplots(1, len(KINDS), figsize=(11, 2.8), sharey=True, layout="constrained")
+    for panel, kind in zip(panels, KINDS, strict=True):
+        for method, colour in zip(METHODS, ("0.7", "0.45", "tab:blue", "tab:red"), strict=True):
+            panel.plot(
+                SIZES, [share[method, n, kind] for n in SIZES], "o-", color=colour, label=method, markersize=4
+            )
+        panel.set(xscale="log", xticks=SIZES, xticklabels=SIZES, xlabel="milestones", title=kind)
+        panel.minorticks_off()
+    panels[0].set_ylabel("solved without trees [%]")
+    panels[0].legend(fontsize=7)
+    figure.savefig(out, dpi=110)
+
+
 def times(name: str, count: int, n: int = 1024) -> None:
     """Print milliseconds a query: along the roadmap in a new and in a kept scene, and with trees alone."""
     robot, pool = arm(name), Pool(arm(name))
@@ -192,6 +219,7 @@ def main() -> None:
     parser.add_argument("--queries", type=int, default=0, help="in each kept scene")
     parser.add_argument("--out", type=Path, default=Path("docs/data/robot_roadmaps.csv"))
     parser.add_argument("--table", type=Path)
+    parser.add_argument("--picture", type=Path)
     options = parser.parse_args()
     if options.problems:
         write(options.out, options.robot, REPORTING[: options.problems], options.draws)
@@ -199,6 +227,8 @@ def main() -> None:
         times(options.robot, options.queries)
     if options.problems or options.table:
         table(options.table or options.out)
+    if options.picture:
+        picture(options.table or options.out, options.picture)
 
 
 if __name__ == "__main__":
