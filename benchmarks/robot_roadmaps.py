@@ -26,12 +26,17 @@ import numpy as np
 
 from benchmarks.arm_problems import KINDS, REPORTING, Pool, Problem, arm, problems, queries
 from evenroad.points import draw
-from evenroad.roadmap import KNearest, find_path, plan
+from evenroad.roadmap import Budget, KNearest
+from evenroad.roadmap.find_path import find_path
+from evenroad.roadmap.plan import plan
 from evenroad.robot import ArmWorld, Robot, Scene
 from evenroad.robot_roadmap.make import joined, make_roadmap
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap, SceneRoadmap
 
 K = 10
+LIMIT = Budget(seconds=1.0)
+"""Of a query that is timed."""
+
 SIZES = (64, 128, 256, 1024)
 METHODS = ("box, ends k", "box", "control", "roadmap")
 COLUMNS = ("method", "n", "draw", "kind", "seed", "solved", "configurations", "motions", "length")
@@ -165,7 +170,7 @@ def picture(path: Path, out: Path) -> None:
     figure.savefig(out, dpi=110)
 
 
-def times(name: str, count: int, n: int = 1024) -> None:
+def times(name: str, count: int, kinds: list[str], n: int = 1024) -> None:
     """Print milliseconds a query: along the roadmap in a new and in a kept scene, and with trees alone."""
     robot, pool = arm(name), Pool(arm(name))
     began = time.perf_counter()
@@ -175,7 +180,7 @@ def times(name: str, count: int, n: int = 1024) -> None:
         "| kind | planner | median ms | 95 % ms | mean ms | trees needed | length / trees |\n|---|"
         + "---|" * 6
     )
-    for kind in KINDS:
+    for kind in kinds:
         new, kept, alone, lengths, helped = [], [], [], [], []
         for seed in REPORTING[:6]:
             world, pairs = queries(pool, kind, seed, count)
@@ -186,15 +191,15 @@ def times(name: str, count: int, n: int = 1024) -> None:
                 best = {"new": np.inf, "alone": np.inf}
                 for _ in range(3):
                     began = time.perf_counter()
-                    SceneRoadmap(made, world.scene).plan(start, goal)
+                    SceneRoadmap(made, world.scene).plan(start, goal, budget=LIMIT)
                     best["new"] = min(best["new"], time.perf_counter() - began)
                     began = time.perf_counter()
                     fresh = ArmWorld(world.robot, world.scene)
-                    trees = find_path(fresh, start, goal)
+                    trees = find_path(fresh, start, goal, budget=LIMIT)
                     best["alone"] = min(best["alone"], time.perf_counter() - began)
                 # Once: the second time it would know the answer.
                 began = time.perf_counter()
-                result = known.plan(start, goal)
+                result = known.plan(start, goal, budget=LIMIT)
                 kept.append(time.perf_counter() - began)
                 new.append(best["new"])
                 alone.append(best["alone"])
@@ -217,6 +222,7 @@ def main() -> None:
     parser.add_argument("--problems", type=int, default=0, help="of each kind")
     parser.add_argument("--draws", type=int, default=2)
     parser.add_argument("--queries", type=int, default=0, help="in each kept scene")
+    parser.add_argument("--kinds", nargs="+", default=list(KINDS), choices=KINDS, help="of the queries")
     parser.add_argument("--out", type=Path, default=Path("docs/data/robot_roadmaps.csv"))
     parser.add_argument("--table", type=Path)
     parser.add_argument("--picture", type=Path)
@@ -224,7 +230,7 @@ def main() -> None:
     if options.problems:
         write(options.out, options.robot, REPORTING[: options.problems], options.draws)
     if options.queries:
-        times(options.robot, options.queries)
+        times(options.robot, options.queries, options.kinds)
     if options.problems or options.table:
         table(options.table or options.out)
     if options.picture:

@@ -18,7 +18,7 @@ UNKNOWN, FREE, BLOCKED = 0, 1, 2
 NONE, OUT_OF_MOTIONS, PAUSED = -1, -2, -3
 """In place of a goal: there is no path, so many motions were checked, or so many searches made."""
 
-_EASY, _ANEW = 4, 32
+_EASY, _ANEW = 4, 16
 """A query that so many searches have not answered is worth a closer bound, made anew after so many more."""
 
 _BITS = 4
