@@ -10,15 +10,18 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from evenroad import __version__
 from evenroad._files import atomic_write, cache_folder
 from evenroad.errors import BrokenFile
+from evenroad.geometry.hulls import Hull
 from evenroad.geometry.shapes import Capsule
 from evenroad.robot.joint import Joint, Mimic
 from evenroad.robot.robot import LinkBody, Robot, RobotModel
 from evenroad.robot.urdf_xml import find_mesh, mesh_names, read_urdf_xml
 
-_FORMAT = 6
+_FORMAT = 7
 """Counted up when the same files would give another robot, or the files of this cache look different."""
 
 
@@ -47,7 +50,7 @@ def keep(key: str, model: RobotModel) -> None:
     with suppress(OSError):
         file.parent.mkdir(parents=True, exist_ok=True)
         with atomic_write(file) as stream:
-            stream.write(json.dumps(asdict(model)).encode())
+            stream.write(json.dumps(asdict(model), default=np.ndarray.tolist).encode())
 
 
 def _parts(urdf: Path, srdf: Path | None, bodies: Path | None) -> Iterator[bytes]:
@@ -90,6 +93,8 @@ def _robot(record: dict[str, Any]) -> Robot:
         group=tuple(record["group"]),
         held=record["held"],
         states=record["states"],
+        hulls=tuple(Hull(hull["points"], hull["radius"], hull["link"]) for hull in record["hulls"]),
+        pairs_given=record["pairs_given"],
     )
 
 

@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
+import numpy as np
+
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
 
@@ -40,6 +42,8 @@ def _exact(value: Any) -> Any:
         return {str(key): _exact(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple):
         return [_exact(entry) for entry in value]
+    if isinstance(value, np.ndarray):
+        return [value.shape, (value + 0.0).astype("<f8").tobytes().hex()]
     if isinstance(value, bool) or value is None or isinstance(value, str):
         return value
     # Zeros of both signs are one number.
