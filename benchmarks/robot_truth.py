@@ -2,9 +2,10 @@
 
     python -m benchmarks.robot_truth OUT.csv ROBOT.urdf ...
 
-For each robot: how many configurations that we call free collide in truth (uniform ones, others bisected to our edge of
-contact, and states of paths), how many are blocked here and there, and how many are blocked here alone.  True pairs are all
-links with shapes that a moving joint is between, but neighbours and those that touch in every uniform configuration.
+For each robot: how many configurations that we call free collide in truth (uniform ones, others bisected to our edge
+of contact, and states of paths), how many are blocked here and there, and how many are blocked here alone.  True pairs
+are all links with shapes that a moving joint is between, but neighbours and those that touch in every uniform
+configuration.
 """
 
 from __future__ import annotations
@@ -26,9 +27,26 @@ from evenroad.space.path import resample
 COUNT = 2000
 PATHS = 10
 FIELDS = (
-    "robot dim links tested dropped_touching configurations truth_blocked blocked beyond free_that_collide"
-    " at_contact at_contact_that_collide path_states path_states_that_collide hulls load_s us_per_configuration note"
-).split()
+    *(
+        "robot",
+        "dim",
+        "links",
+        "tested",
+        "dropped_touching",
+        "configurations",
+        "truth_blocked",
+        "blocked",
+        "beyond",
+    ),
+    *(
+        "free_that_collide",
+        "at_contact",
+        "at_contact_that_collide",
+        "path_states",
+        "path_states_that_collide",
+    ),
+    *("hulls", "load_s", "us_per_configuration", "note"),
+)
 
 
 class Truth:
@@ -65,7 +83,9 @@ class Truth:
             between = [link for link in up if link not in down] + [link for link in down if link not in up]
             moving = sum(moves[link] for link in between)
             # What lies between them, both ends of the way left out.
-            lower, upper = (second, first) if first in down else (first, second) if second in up else (None, None)
+            lower, upper = (
+                (second, first) if first in down else (first, second) if second in up else (None, None)
+            )
             inner = [link for link in way(lower)[1:] if link in between and link != upper] if lower else []
             neighbours = lower is not None and moving == 1 and not any(link in self.of_link for link in inner)
             if moving and not neighbours:
@@ -90,11 +110,16 @@ class Truth:
             for column, (first, second) in enumerate(self.pairs):
                 for i in self.of_link[first]:
                     for k in self.of_link[second]:
-                        if hits[row, column] or np.linalg.norm(centres[i] - centres[k]) > reach[i][1] + reach[k][1]:
+                        if (
+                            hits[row, column]
+                            or np.linalg.norm(centres[i] - centres[k]) > reach[i][1] + reach[k][1]
+                        ):
                             continue
                         result.clear()
                         hits[row, column] = bool(
-                            coal.collide(items[i].geometry, solid[i], items[k].geometry, solid[k], request, result)
+                            coal.collide(
+                                items[i].geometry, solid[i], items[k].geometry, solid[k], request, result
+                            )
                         )
         return hits
 
@@ -178,7 +203,7 @@ def _path_states(world: ArmWorld, free: np.ndarray) -> np.ndarray:
     found = []
     for k in range(min(PATHS, len(free) - 1)):
         connection = world.connect(free[k], free[k + 1 : k + 2], seconds=2.0)
-        if connection.path is not None:
+        if len(connection.path) > 1:
             path, _ = world.shorten(connection.path)
             found.append(resample(path, world.space, 0.02)[0])
     return np.concatenate(found)[: 2 * COUNT] if found else free[:0]

@@ -44,6 +44,8 @@ def bodiless_rows(model: RobotModel) -> list[tuple[str, str]]:
         rows.append(
             ("WARNING", f"in collision in every sampled configuration, so that none is free: {pairs}")
         )
+    elif model.never_free:
+        rows.append(("WARNING", model.never_free))
     return rows
 
 

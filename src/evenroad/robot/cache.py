@@ -77,6 +77,7 @@ def _model(record: dict[str, Any]) -> RobotModel:
         dropped=tuple((first, second, reason) for first, second, reason in record["dropped"]),
         drawn_only=tuple(record["drawn_only"]),
         always_touching=tuple((first, second) for first, second in record["always_touching"]),
+        never_free=record["never_free"],
     )
 
 

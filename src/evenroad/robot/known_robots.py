@@ -63,9 +63,16 @@ class _Known:
 
 def prepared(robot: Robot) -> tuple[JointSpace, npt.NDArray[np.float64], float, RobotTables]:
     """Return what is a robot's in every scene: its space, bounds, the longest motion and its tables; kept."""
-    values = (robot.name, robot.links, robot.joints, robot.capsules, robot.pairs, robot.group)
-    values += robot.hulls, robot.pairs_given
-    known = _Known(robot, (*values, tuple(sorted(robot.held.items()))))
+    values = (
+        robot.name,
+        robot.links,
+        robot.joints,
+        robot.capsules,
+        robot.hulls,
+        robot.pairs,
+        robot.pairs_given,
+    )
+    known = _Known(robot, (*values, robot.group, tuple(sorted(robot.held.items()))))
     try:
         return _kept(known)
     except TypeError:

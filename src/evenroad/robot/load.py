@@ -37,7 +37,8 @@ def load_robot(
 ) -> Robot:
     """Return a robot; see :func:`load_model`, which also tells how it was made.
 
-    Warns of pairs of links that touch in every sampled configuration though they are tested.
+    Warns of pairs of links that touch in every sampled configuration though they are tested, and of robots that are in
+    self-collision in all of them.
     """
     model = load_model(source, srdf=srdf, group=group, bodies=bodies)
     if model.always_touching:
@@ -47,6 +48,8 @@ def load_robot(
             " SRDF, or give smaller bodies",
             stacklevel=2,
         )
+    elif model.never_free:
+        warnings.warn(f"{model.robot.name!r}: {model.never_free}", stacklevel=2)
     return model.robot
 
 
@@ -149,6 +152,7 @@ def _build(
         pairs.dropped,
         drawn_only,
         pairs.always,
+        pairs.never_free,
     )
 
 

@@ -203,6 +203,8 @@ class RobotModel:
     always_touching : tuple of pairs of str
         Pairs that are tested, since the SRDF does not disable them, and touch in every sampled configuration: with one
         of these no configuration is free.
+    never_free : str
+        Where no sampled configuration is free of self-collision: that, the pair that blocks most, and what to do.
     """
 
     robot: Robot
@@ -211,6 +213,7 @@ class RobotModel:
     dropped: tuple[tuple[str, str, str], ...]
     drawn_only: tuple[str, ...] = ()
     always_touching: tuple[tuple[str, str], ...] = ()
+    never_free: str = ""
 
     @property
     def bodiless(self) -> tuple[str, ...]:

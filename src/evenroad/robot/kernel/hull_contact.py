@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 from llvmlite import ir
-from numba import njit, types
+from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
@@ -83,15 +83,18 @@ def _write_relative(places: Any, a: int, b: int, step: int, pose: Floats) -> Non
 def hulls_meet(first: int, second: int, pose: Floats, margin: float, ints: Ints, table: Any) -> int:
     """Return two hulls of two bodies that come nearer than `margin`, as ``node << 32 | node``, or APART.
 
-    `first` and `second` are the roots of their trees, numbers of nodes; `pose` is that of the second body in the frame of
-    the first, (12,): rotation row by row, translation.
+    `first` and `second` are the roots of their trees, numbers of nodes; `pose` is that of the second body in the
+    frame of the first, (12,): rotation row by row, translation.
     """
     waiting, way = integers_at(_room(_DEEPEST), (_DEEPEST,)), doubles_at(_room(3), (3,))
     waiting[0], count = first << 32 | second, 1
     while count > 0:
         count -= 1
         a, b = waiting[count] >> 32, waiting[count] & 0xFFFFFFFF
-        ball, other = ints[at.NODE_FLOATS] + at.NODE_FLOAT_ROW * a, ints[at.NODE_FLOATS] + at.NODE_FLOAT_ROW * b
+        ball, other = (
+            ints[at.NODE_FLOATS] + at.NODE_FLOAT_ROW * a,
+            ints[at.NODE_FLOATS] + at.NODE_FLOAT_ROW * b,
+        )
         squared = 0.0
         for axis in range(3):
             way[axis] = table[ball + axis] - pose[9 + axis]
@@ -126,7 +129,9 @@ def hulls_meet(first: int, second: int, pose: Floats, margin: float, ints: Ints,
 
 
 @quick
-def _hulls_near(row: int, other_row: int, way: Floats, pose: Floats, margin: float, ints: Ints, table: Any) -> bool:
+def _hulls_near(
+    row: int, other_row: int, way: Floats, pose: Floats, margin: float, ints: Ints, table: Any
+) -> bool:
     """Return whether two hulls, nodes at these rows, come within `margin`; False only where a plane says so.
 
     `way` is a direction from the second to the first, not of length 0, that the search begins with.
@@ -167,15 +172,19 @@ def _hulls_near(row: int, other_row: int, way: Floats, pose: Floats, margin: flo
 @quick
 def _difference(i: int, k: int, axis: int, pose: Floats, table: Any) -> float:
     """Return a coordinate of a corner of the first body as seen from one of the second."""
-    turned = pose[3 * axis] * table[3 * k] + pose[3 * axis + 1] * table[3 * k + 1] + pose[3 * axis + 2] * table[3 * k + 2]
+    turned = (
+        pose[3 * axis] * table[3 * k]
+        + pose[3 * axis + 1] * table[3 * k + 1]
+        + pose[3 * axis + 2] * table[3 * k + 2]
+    )
     return table[3 * i + axis] - turned - pose[9 + axis]
 
 
 @quick
 def _nearest(simplex: Floats, size: int, v: Floats) -> int:
-    """Write the point of a simplex nearest to the origin; keep the corners that it lies between, return their number.
+    """Write the point of a simplex nearest to the origin, keep the corners that it is between, return their number.
 
-    0 where the origin is inside of four.  Else the point lies within a corner, an edge or a side; few enough to try all.
+    0 where the origin is inside of four.  Else it is in a corner, an edge or a side; few enough to try them all.
     """
     if size == 4 and _is_inside(simplex):
         return 0
@@ -206,7 +215,7 @@ def _nearest(simplex: Floats, size: int, v: Floats) -> int:
 
 @quick
 def _projects_into(simplex: Floats, face: int, weights: Floats) -> bool:
-    """Return whether the origin's projection onto a face, bits of its corners, is inside; write the corners' weights."""
+    """Return whether the origin projects into a face, bits of its corners; write the corners' weights."""
     a, b, c = -1, -1, -1
     for i in range(4):
         if (face >> i) & 1:
