@@ -42,7 +42,8 @@ class ArmWorld:
     """The configurations in which a robot touches neither a scene's obstacles nor itself.
 
     Configurations hold the values of the robot's group, in its order [rad or m].  Links are tested against
-    each other as the capsules that they are, in the robot's pairs; against obstacles a capsule is replaced
+    each other as the capsules that they are, in the robot's pairs, and where these touch as the robot's convex hulls,
+    if it has any; against obstacles a capsule is replaced
     by spheres that cover it, of at most 1.10 times its radius, so that a verdict is never free where the
     capsule touches (`excess` says how much larger they are).
 
