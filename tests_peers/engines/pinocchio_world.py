@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._extras import require_extra
+from evenroad._checks import require_extra
 from evenroad.geometry.shapes import Shape
 from evenroad.robot.kinematics import joint_values
 from evenroad.robot.reference.coal_world import asking_for_contacts, coal_shape, tests_of
 from evenroad.robot.reference.engine_world import EngineWorld
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
-from evenroad.world.mesh.coal import require_coal
+from evenroad.world.mesh import require_coal
 from tests_peers.engines.urdf_text import as_urdf
 
 

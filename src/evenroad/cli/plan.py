@@ -1,16 +1,72 @@
-"""``evenroad plan``: a path for a disk on a map, or for an arm in a scene."""
+"""``evenroad plan``, for a disk on a map or for an arm in a scene, and ``evenroad demo``: what they are told."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Annotated, ClassVar
 
-from evenroad.cli.plan_options import ArmOptions, DiskOptions
+from evenroad.cli.options import HELP, option_names
 from evenroad.errors import InvalidValue
 
 
 @dataclass(frozen=True, kw_only=True)
-class PlanDisk(DiskOptions):
+class PlanOptions:
+    """What every plan is told."""
+
+    planner: ClassVar[str]
+    """The function that plans, loaded when it is asked to."""
+
+    world: Annotated[Path, "positional"]
+    """The file of the world."""
+    start: tuple[str, ...]
+    """Where to start."""
+    goal: tuple[tuple[str, ...], ...]
+    """As start; given more than once, the path ends at one of the goals: the first that is reached, with
+    points or --improve the cheapest."""
+    n: Annotated[int | None, "-n"] = None
+    """Plan on a roadmap of exactly so many points (ps-PRM).  Default: no points, but until there is a path or a proof
+    that there is none, or the time is over; where another option speaks of points: 512."""
+    time: float | None = None
+    """Seconds to plan at most, > 0 (default 5; with points 60)."""
+    improve: bool = False
+    """Use up the time: plan again in other ways, and keep the shortest path.  Not with points."""
+    certified: bool = False
+    """The path must be proved free throughout; else the answer says which of its motions is not."""
+    k: Annotated[int | None, "-k"] = None
+    """Connect each milestone with its k nearest, symmetrised (default 10; 20 from six joints on)."""
+    connect_radius: float | None = None
+    """Connect milestones up to this distance instead, in map units or radians."""
+    sampler: str = "auto"
+    """even, hickernell, mpmc, korobov, lattice, halton, sobol, sukharev or uniform; auto, the default, is
+    even."""
+    plain: bool = False
+    """halton and sobol: the plain sequence instead of the scrambled one."""
+    skip: int = 0
+    """halton and sobol: index of the first point of the sequence."""
+    allow_fewer: bool = False
+    """sukharev: take the largest grid with at most n points."""
+    seed: int = 0
+    """Seed of everything random; the same command gives the same path."""
+    raw: bool = False
+    """Leave the path as it was found, without shortcutting it."""
+    out: Path | None = None
+    """Where results go: OUT.json, OUT.png and, for an arm, OUT.csv. Default: the world's stem in the current folder,
+    with -plan added where that would overwrite an input."""
+    no_picture: bool = False
+    """Draw no picture."""
+
+    def run(self) -> int:
+        """Plan, write, report; return 0 when solved, else 1."""
+        module, _, name = self.planner.partition(":")
+        code: int = getattr(import_module(module), name)(self)
+        return code
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlanDisk(PlanOptions):
     """Plan a short path for a disk on a map, write a JSON result and a picture.
 
     A disk (--robot-radius) moves on a bare image (.png, .pgm): unit = pixel, x right, y DOWN, origin in the top-left
@@ -19,15 +75,24 @@ class PlanDisk(DiskOptions):
     For an arm in a scene give --robot instead; its options: evenroad plan --robot ur5 --help
     """
 
-    def run(self) -> int:
-        """Plan, write, report; return 0 when solved, else 1."""
-        from evenroad.cli.plan_disk import plan_disk
+    planner = "evenroad.cli.plan_disk:plan_disk"
 
-        return plan_disk(self)
+    world: Annotated[Path, "positional"]
+    """A map: a .png or .pgm image, or a ROS map_server .yaml."""
+    start: tuple[str, ...]
+    """x y in map units."""
+    robot_radius: float
+    """Plan for a disk of this radius, > 0, in map units."""
+    clearance: float = 0.0
+    """Margin to keep from every obstacle, added to the radius, >= 0."""
+    unknown_is_free: bool = False
+    """May pass through unknown cells of a ROS map."""
+    csv: bool = False
+    """Also write the path as OUT.csv."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class PlanArm(ArmOptions):
+class PlanArm(PlanOptions):
     """Plan a short path for an arm in a scene, write a JSON result, the path as CSV and a picture.
 
     An arm (--robot) moves in a scene file (.yaml): metres and radians, frame of the robot's root link.
@@ -35,24 +100,58 @@ class PlanArm(ArmOptions):
     For a disk on a map give --robot-radius instead; its options: evenroad plan --help
     """
 
+    planner = "evenroad.cli.plan_arm:plan_arm"
+
+    world: Annotated[Path, "positional"]
+    """A scene (.yaml; shipped: box-reach.yaml, box-reach-narrow.yaml)."""
+    start: tuple[str, ...]
+    """One number a joint with commas between them, name=value,..., or a named state."""
+    robot: str
+    """Plan for this arm: a URDF file, or the name of a shipped one (ur5, arm7)."""
+    srdf: Path | None = None
+    """Its SRDF, with groups, named states and pairs of links that need no test."""
+    group: str | None = None
+    """A group of the SRDF, or joints with commas between them; the others are held where the named states of start
+    and goal have them, else at 0."""
+    bodies: Path | None = None
+    """A YAML file of capsules and spheres in place of the URDF's collision geometry."""
+    deg: bool = False
+    """Angles of start and goal are in degrees."""
+    resolution: float = 0.05
+    """Largest step of a motion check, > 0, in radians."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Demo:
+    """Plan through a maze that ships with evenroad."""
+
+    level: int = 3
+    """Which maze: 1, 2 or 3, of rising difficulty."""
+    n: Annotated[int, "-n"] = 1024
+    """How many points to draw."""
+    out: Path = Path("demo")
+    """Where results go: OUT.png and OUT.json."""
+
     def run(self) -> int:
-        """Plan, write, report; return 0 when solved, else 1."""
-        from evenroad.cli.plan_arm import plan_arm
+        """Run ``evenroad plan`` on the maze with its own start and goal."""
+        from evenroad.research.mazes import load_maze
 
-        return plan_arm(self)
+        maze = load_maze(self.level)
+        return PlanDisk(
+            world=maze.path,
+            start=tuple(map(str, maze.start)),
+            goal=(tuple(map(str, maze.goal)),),
+            robot_radius=maze.robot_radius,
+            n=self.n,
+            out=self.out,
+        ).run()
 
 
-def plan_type(arguments: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
-    """Return which of the two a command line asks for, by the robot that is given.
-
-    Raises
-    ------
-    InvalidValue
-        If no robot or two are given, or an option that only the other kind has.
-    """
-    given = {word.partition("=")[0].replace("_", "-") for word in arguments if word.startswith("--")}
+def plan_type(words: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
+    """Return which of the two a command line asks for, by its robot; InvalidValue if its options do not go together."""
+    given = {word.partition("=")[0].replace("_", "-") for word in words if word.startswith("--")}
     chosen: type[PlanDisk] | type[PlanArm] = PlanArm if "--robot" in given else PlanDisk
-    if "-h" in arguments or "--help" in given:
+    if not HELP.isdisjoint(words):
         return chosen
     if len(given & {"--robot", "--robot-radius"}) != 1:
         many = "both" if "--robot" in given else "neither"
@@ -60,10 +159,6 @@ def plan_type(arguments: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
             f"give --robot-radius (a disk) or --robot (an arm), exactly one of them, not {many}"
         )
     other, needs = (PlanDisk, "--robot-radius") if chosen is PlanArm else (PlanArm, "--robot")
-    for option in sorted(given & (_options(other) - _options(chosen))):
+    for option in sorted(given & (option_names(other) - option_names(chosen))):
         raise InvalidValue(f"{option} goes with {needs} only")
     return chosen
-
-
-def _options(kind: type[PlanDisk] | type[PlanArm]) -> set[str]:
-    return {f"--{each.name.replace('_', '-')}" for each in fields(kind)}

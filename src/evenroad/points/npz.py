@@ -9,7 +9,7 @@ from typing import get_args, get_type_hints
 import numpy as np
 
 from evenroad._files import atomic_write
-from evenroad._npz import Path, read_json, read_npz, write_npz
+from evenroad._npz import Path, read_json, read_npz, reading, write_npz
 from evenroad.errors import BrokenFile, shown
 from evenroad.points.pointset import Origin, PointSet
 
@@ -34,22 +34,12 @@ def save_array(path: Path, points: PointSet) -> None:
 def read_points(path: Path) -> PointSet:
     """Read a point set from ``.npz`` (see :func:`load_points`) or a plain ``.npy`` array, which has no origin.
 
-    Raises
-    ------
-    BrokenFile
-        If the file is missing or is neither.
-    InvalidValue
-        If a plain array is no point set: its shape, or a coordinate that is not in [0, 1).
+    Raises BrokenFile if the file is missing or is neither, InvalidValue if a plain array is no point set.
     """
     if str(path).endswith(".npz"):
         return load_points(path)
-    try:
-        with open(path, "rb") as file:
-            array = np.load(file, allow_pickle=False)
-    except FileNotFoundError:
-        raise BrokenFile(f"no such file: {path}") from None
-    except Exception as error:  # see read_npz
-        raise BrokenFile(f"{path} is not a readable .npy array: {shown(error)}") from error
+    with reading(path, ".npy array"), open(path, "rb") as file:
+        array = np.load(file, allow_pickle=False)
     return PointSet(array)
 
 

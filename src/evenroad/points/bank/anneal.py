@@ -1,0 +1,181 @@
+"""Annealing: noisy Adam on the coordinates, the noise cooling with the learning rate."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple, Protocol
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from evenroad._arrays import Floats
+from evenroad._checks import require_count
+from evenroad._rng import RngLike, generator
+from evenroad.errors import InvalidValue
+from evenroad.points.pointset import BELOW_ONE, as_unit_points
+
+LOWEST = 1.0 - BELOW_ONE
+"""Smallest coordinate that an annealing returns; the largest is BELOW_ONE."""
+
+Callback = Callable[[int, int, float], object]
+"""``callback(step, steps, best)`` after every step."""
+
+SCHEDULE = 2
+"""Version of the schedule of rates and noise, and of the start: another one makes other sets of the same seed."""
+
+LARGEST_RATE, LAST_OVER_FIRST, HOTTEST = 0.02, 1 / 2000, 0.3
+
+FIRST_DECAY, SECOND_DECAY = 0.9, 0.999
+"""Of Adam's moments."""
+
+TINY = 1e-30
+"""Keeps 0/0 away and nothing more, so that the scale of the objective does not matter."""
+
+
+class Minimised(Protocol):
+    """What an annealing makes small: an L2 discrepancy, or an objective of several terms."""
+
+    @property
+    def periodic(self) -> bool:
+        """Whether a shift modulo 1 of all points changes nothing."""
+
+    @property
+    def least_points(self) -> int:
+        """Fewest points that it is defined for: 2 with an energy, else 1."""
+
+    def of_columns(self, columns: Floats) -> tuple[float, Floats]:
+        """Return the value and its gradient, shape (d, n), at points of shape (d, n)."""
+
+
+class Annealed(NamedTuple):
+    """The best points that an annealing saw, (n, d) in (0, 1), read-only, below 1 as float32; and the value there."""
+
+    points: Floats
+    value: float
+
+
+def anneal(
+    n: int,
+    d: int,
+    objective: Minimised,
+    *,
+    steps: int = 5000,
+    rng: RngLike = 0,
+    start: npt.ArrayLike | None = None,
+    callback: Callback | None = None,
+) -> Annealed:
+    """Make the objective of n points in [0, 1)^d small, on one thread; the same seed gives the same bits.
+
+    Adam (.9, .999) with a learning rate that falls 2000-fold along a half cosine, plus Gaussian noise in
+    proportion to the rate: the noise is what finds a good basin.  The best points seen are kept.  The bits are those of
+    one kind of processor and one version of numpy and numba: sums run as vectors, whose width, and so the order of
+    additions, is the processor's.  Arguments out of range are an InvalidValue.
+
+    Parameters
+    ----------
+    n, d : int
+        Number of points and dimension, >= 1 (n >= 2 for an energy).
+    objective : Minimised
+        One of ``MEASURES``, or what :func:`~evenroad.research.training.objective.parse_objective` gives.
+    steps : int
+        5000 is the standard, 20000 gains another percent or so.
+    rng : int, SeedSequence or Generator
+        Draws the start and the noise.
+    start : array_like, shape (n, d), optional
+        Instead of random points; coordinates at a face of the cube are moved off it by 6e-8.
+    callback : callable, optional
+        Called as ``callback(step, steps, best)`` after every step; what it raises stops the annealing.
+    """
+    n, d, steps = require_count("n", n), require_count("d", d), require_count("steps", steps)
+    require_points_for(objective, n)
+    draws = generator(rng)
+    columns = _first_columns(n, d, start, draws)
+    best_value, best_columns = math.inf, columns.copy()
+    first, second, noise = np.zeros((d, n)), np.zeros((d, n)), np.empty((d, n))
+    highest_rate, spread = first_rate(n, d), noise_over_rate(objective, n, d)
+    for step in range(1, steps + 1):
+        value, gradient = objective.of_columns(columns)
+        if value < best_value:
+            best_value = value
+            best_columns[:] = columns
+        rate = learning_rate(step, steps, highest_rate)
+        draws.standard_normal(out=noise)
+        _adam_step(columns, first, second, gradient, noise, step, rate, spread * rate, objective.periodic)
+        if callback is not None:
+            callback(step, steps, best_value)
+    last_value, _ = objective.of_columns(columns)
+    if last_value < best_value:
+        best_value, best_columns = last_value, columns
+    points = np.ascontiguousarray(best_columns.T)
+    points.setflags(write=False)
+    return Annealed(points, best_value)
+
+
+def require_points_for(objective: Minimised, n: int) -> None:
+    """Raise InvalidValue unless the objective is defined for `n` points."""
+    if n < objective.least_points:
+        raise InvalidValue(
+            f"the objective '{objective}' needs at least {objective.least_points} points, got {n}"
+        )
+
+
+def learning_rate(step: int, steps: int, first: float) -> float:
+    """Return the rate of step 1 .. `steps`: from `first` to a 2000th of it along a half cosine."""
+    share = (step - 1) / max(steps - 1, 1)
+    last = first * LAST_OVER_FIRST
+    return last + (first - last) * 0.5 * (1.0 + math.cos(math.pi * share))
+
+
+def first_rate(n: int, d: int) -> float:
+    """Return the learning rate of the first step: .02, or a fifth of the spacing n^(-1/d) where that is less.
+
+    A step of Adam is about as long as its rate: one of half a spacing, as .02 is at d = 2, n = 512, never settles.
+    """
+    return min(LARGEST_RATE, 0.2 * n ** (-1.0 / d))
+
+
+def noise_over_rate(objective: Minimised, n: int, d: int) -> float:
+    """Return the noise's standard deviation over the learning rate: fitted to trials, not derived.
+
+    With an energy it starts at a fiftieth of the spacing.  Discrepancies alone like it the hotter, the fewer
+    points a dimension there are (d = 2 .. 14, n = 16 .. 1024).
+    """
+    if objective.least_points == 2:
+        return min(HOTTEST, 0.02 * n ** (-1.0 / d) / first_rate(n, d))
+    if n <= 32:
+        return HOTTEST
+    return min(HOTTEST, max(0.05, max(0.02 * d, 0.1) * math.sqrt(128.0 / n)))
+
+
+def _first_columns(n: int, d: int, start: npt.ArrayLike | None, draws: np.random.Generator) -> Floats:
+    if start is None:
+        random = np.ascontiguousarray(draws.random((n, d)).T)
+        # On a line points would have to pass each other: there one point a cell is the place to start.
+        return (np.arange(n) + random) / n if d == 1 else random
+    given = as_unit_points(start)
+    if given.shape != (n, d):
+        raise InvalidValue(f"start must have shape ({n}, {d}), got {given.shape}")
+    return np.ascontiguousarray(np.clip(given.T, LOWEST, BELOW_ONE))
+
+
+@njit(cache=True)
+def _adam_step(columns, first, second, gradient, noise, step, rate, spread, wrap):  # type: ignore[no-untyped-def]
+    """Move `columns` (d, n) against `gradient` by Adam (Kingma and Ba 2015) and along `noise`; update both moments.
+
+    `step` counts from 1.  Coordinates stay in [LOWEST, BELOW_ONE]: wrapped modulo 1 first if `wrap`, then clipped.
+    """
+    first_scale = 1.0 / (1.0 - FIRST_DECAY**step)
+    second_scale = 1.0 / (1.0 - SECOND_DECAY**step)
+    d, n = columns.shape
+    for k in range(d):
+        for i in range(n):
+            slope = gradient[k, i]
+            first[k, i] = FIRST_DECAY * first[k, i] + (1.0 - FIRST_DECAY) * slope
+            second[k, i] = SECOND_DECAY * second[k, i] + (1.0 - SECOND_DECAY) * slope * slope
+            move = first[k, i] * first_scale / (math.sqrt(second[k, i] * second_scale) + TINY)
+            moved = columns[k, i] - rate * move + spread * noise[k, i]
+            if wrap:
+                moved -= math.floor(moved)
+            columns[k, i] = min(max(moved, LOWEST), BELOW_ONE)

@@ -1,0 +1,140 @@
+"""``evenroad train``: make sets of any objective, by annealing or by the network; the same line resumes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import numpy as np
+
+from evenroad._checks import require_count
+from evenroad._files import require_writable_folder
+from evenroad._terminal import progress_shown
+from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.points import PointSet, load_points, save_points
+from evenroad.points.bank.anneal import SCHEDULE, Callback, require_points_for
+from evenroad.research.commands.interrupt import interrupt_between_steps
+from evenroad.research.training import anneal_many
+from evenroad.research.training.folder import claim_folder
+from evenroad.research.training.objective import parse_objective
+
+if TYPE_CHECKING:
+    from evenroad.research.network import NetworkConfig
+
+
+@dataclass(frozen=True, kw_only=True)
+class Train:
+    """Train point sets and write them as OUT/set-0000.npz, ...; the same command goes on where it stopped."""
+
+    n: Annotated[int, "-n"]
+    """How many points."""
+    d: Annotated[int, "-d"]
+    """How many dimensions."""
+    method: Literal["anneal", "mpmc"] = "anneal"
+    """anneal: noisy Adam on the coordinates. mpmc: the message-passing network (needs the extra [train])."""
+    objective: str = "hickernell"
+    """What is made small: a sum of measures, energies or their logs, e.g. "hickernell+10*riesz"."""
+    sets: int = 8
+    """How many sets."""
+    steps: int = 5000
+    """Steps of the optimiser."""
+    refine: int = 0
+    """mpmc: anneal the network's sets for so many more steps, and write them as OUT/refined-0000.npz, ..."""
+    device: str | None = None
+    """mpmc: auto, cpu or cuda (default: auto)."""
+    seed: int = 0
+    """Set i depends on this seed and i alone, whatever the number of processes."""
+    jobs: int | None = None
+    """Processes for anneal (default: one a processor)."""
+    out: Annotated[Path, "-o"]
+    """The folder for the sets; made if its parent exists."""
+
+    def run(self) -> int:
+        """Train, write, report."""
+        self._check()
+        self._make_folder()
+        title = f"{self.method} n={self.n} d={self.d} x {self.sets}"
+        with interrupt_between_steps() as check, progress_shown(title) as report:
+
+            def callback(step: int, steps: int, best: float) -> None:
+                check()
+                report(step, steps, best)
+
+            sets = self._anneal(callback) if self.method == "anneal" else self._network(callback)
+        objective = parse_objective(self.objective)
+        values = np.array([objective.value(each) for each in sets])
+        print(f"{self.out}: {len(sets)} sets, {objective}: mean {values.mean():.6g}, best {values.min():.6g}")
+        return 0
+
+    def _check(self) -> None:
+        """Refuse bad options before anything is written, and those that the method would silently ignore."""
+        least = {"n": 1, "d": 1, "sets": 1, "steps": 1, "refine": 0, "seed": 0}
+        for name, at_least in least.items():
+            require_count(name, getattr(self, name), at_least)
+        require_points_for(parse_objective(self.objective), self.n)
+        foreign = ("refine", "device") if self.method == "anneal" else ("jobs",)
+        for name in foreign:
+            if getattr(self, name):
+                raise InvalidValue(f"--{name} does not go with the method {self.method!r}")
+        if self.jobs is not None:
+            require_count("jobs", self.jobs)
+        if self.method == "mpmc":
+            from evenroad.research.network.config import choose_device
+
+            self._config()
+            choose_device(self.device or "auto")
+
+    def _make_folder(self) -> None:
+        if self.out.exists() and not self.out.is_dir():
+            raise BrokenFile(f"cannot write sets into {self.out}: it is not a folder")
+        if not self.out.exists():
+            require_writable_folder(self.out)
+            self.out.mkdir()
+        require_writable_folder(self.out / "set-0000.npz")
+
+    def _anneal(self, callback: Callback) -> tuple[PointSet, ...]:
+        return anneal_many(
+            self.n,
+            self.d,
+            self.objective,
+            self.sets,
+            steps=self.steps,
+            rng=self.seed,
+            workers=self.jobs,
+            folder=self.out,
+            callback=callback,
+        )
+
+    def _config(self) -> NetworkConfig:
+        from evenroad.research.network import NetworkConfig
+
+        return NetworkConfig(
+            n=self.n, d=self.d, objective=self.objective, sets=self.sets, steps=self.steps, seed=self.seed
+        )
+
+    def _network(self, callback: Callback) -> tuple[PointSet, ...]:
+        from evenroad.research.network import train
+
+        sets = train(self._config(), folder=self.out, callback=callback, device=self.device or "auto")
+        if not self.refine:
+            return sets
+        claim_folder(self.out, {"steps": self.refine, "schedule": SCHEDULE}, "refined.json")
+        return tuple(self._refined(i, points, callback) for i, points in enumerate(sets))
+
+    def _refined(self, i: int, points: PointSet, callback: Callback) -> PointSet:
+        """Refine set i and save it at once, or read it where an earlier run did."""
+        from evenroad.research.network import refine
+
+        path = self.out / f"refined-{i:04d}.npz"
+        try:
+            return load_points(path)
+        except BrokenFile:
+            pass  # missing or damaged: made (again)
+
+        def counted(step: int, steps: int, best: float) -> None:
+            callback(i * steps + step, self.sets * steps, best)
+
+        (refined,) = refine((points,), steps=self.refine, callback=counted)
+        save_points(path, refined)
+        return refined

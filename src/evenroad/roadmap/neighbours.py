@@ -1,0 +1,136 @@
+"""Neighbours in a space, by kd-tree where its metric is flat, else by all distances; and those of one newcomer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numba import njit
+
+from evenroad._arrays import Bools, Floats, Ints32
+from evenroad.roadmap.kdtree import k_nearest, pairs_within
+from evenroad.space import Space
+from evenroad.space.flat import FlatMetric
+from evenroad.space.protocol import all_distances
+
+BLOCK = 1 << 16
+"""Distances held at once."""
+
+
+def nearest(q: Floats, k: int, space: Space | None = None, *, earlier: bool = False) -> Ints32:
+    """Return the k nearest other rows of every row of `q`, (n, dim), nearest first, ties to the lower index.
+
+    By the metric of the space, or else the Euclidean one; shape (n, min(k, n - 1)).  With `earlier` only rows of a
+    lower index count, and row i ends with -1 where there are fewer than k.
+    """
+    n, metric = len(q), flat_metric(space)
+    k = min(k, n - 1)
+    if k < 1:
+        return np.empty((n, 0), dtype=np.int32)
+    if space is None or metric is not None:
+        return k_nearest(*in_metric(q, metric), k, earlier)
+    found = np.full((n, k), -1, dtype=np.int32)
+    for rows, distances in _blocks(space, q, earlier=earlier):
+        columns = np.arange(distances.shape[1])
+        for row, away in zip(range(n)[rows], distances, strict=True):
+            near = nearest_of(away, columns < row if earlier else columns != row, k)
+            found[row, : len(near)] = near
+    return found
+
+
+def within(q: Floats, radius: float, space: Space | None = None) -> Ints32:
+    """Return every pair of rows i < j at distance <= `radius`, shape (m, 2), in no particular order."""
+    metric = flat_metric(space)
+    found = [np.empty((0, 2), dtype=np.int32)]
+    if space is None or metric is not None:
+        return pairs_within(*in_metric(q, metric), radius) if len(q) else found[0]
+    for rows, distances in _blocks(space, q):
+        row, column = np.nonzero(distances <= radius)
+        later = column > row + rows.start
+        found.append(np.stack([row[later] + rows.start, column[later]], axis=1).astype(np.int32))
+    return np.concatenate(found)
+
+
+def flat_metric(space: Space | None) -> FlatMetric | None:
+    """Return the flat metric of a space, or None where it has none (or says nothing of it)."""
+    return getattr(space, "flat", None)
+
+
+def in_metric(q: Floats, metric: FlatMetric | None) -> tuple[Floats, Floats]:
+    """Return coordinates and periods in which the metric is Euclidean, wrapping ones in [0, period)."""
+    points = np.array(q, dtype=np.float64, order="C")
+    if metric is None:
+        return points, np.full(points.shape[1], np.inf)
+    points *= metric.scale
+    period = metric.scale * metric.period
+    for axis in np.flatnonzero(metric.wrapping):
+        points[:, axis] %= period[axis]
+        # The remainder of a tiny negative number rounds up to the period itself.
+        points[points[:, axis] >= period[axis], axis] = 0.0
+    return points, period
+
+
+def _blocks(space: Space, q: Floats, *, earlier: bool = False) -> Iterator[tuple[slice, Floats]]:
+    """Yield row ranges with their distances to all configurations, (rows, n), or to those up to the range's end."""
+    n = len(q)
+    step = max(1, BLOCK // max(n, 1))
+    for begin in range(0, n, step):
+        rows = slice(begin, min(begin + step, n))
+        yield rows, all_distances(space, q[rows], q[: rows.stop] if earlier else q)
+
+
+class Surroundings:
+    """Milestones, (n, dim), ready to be asked which of them are near a configuration, in O(n)."""
+
+    def __init__(self, q: Floats, space: Space) -> None:
+        self._q, self._space = q, space
+        self._metric = flat_metric(space)
+        self._points, self._period = in_metric(q, self._metric)
+
+    def distances(self, newcomer: Floats) -> Floats:
+        """Return the distance of a configuration, (dim,), from each milestone, (n,)."""
+        if self._metric is None:
+            return self._space.distance(np.broadcast_to(newcomer, self._q.shape), self._q)
+        point, _ = in_metric(newcomer[np.newaxis], self._metric)
+        return _distances(self._points, self._period, point)
+
+
+def nearest_of(distances: Floats, usable: Bools, k: int | None = None, radius: float | None = None) -> Ints32:
+    """Return the rows that are usable, the `k` nearest of them, at most `radius` away, nearest first.
+
+    Ties go to the lower row; without a `k` all rows come, in their order.
+    """
+    if k is None:
+        return np.flatnonzero(usable if radius is None else usable & (distances <= radius)).astype(np.int32)
+    return _k_smallest(distances, usable, min(k, len(distances)), np.inf if radius is None else radius)
+
+
+@njit(cache=True, nogil=True)
+def _distances(points, period, point):  # type: ignore[no-untyped-def]
+    distance = np.empty(points.shape[0])
+    for i in range(points.shape[0]):
+        total = 0.0
+        for axis in range(points.shape[1]):
+            gap = abs(points[i, axis] - point[0, axis])
+            gap = min(gap, period[axis] - gap)
+            total += gap * gap
+        distance[i] = np.sqrt(total)
+    return distance
+
+
+@njit(cache=True, nogil=True)
+def _k_smallest(distances, usable, k, radius):  # type: ignore[no-untyped-def]
+    rows = np.empty(k, dtype=np.int32)
+    nearest = np.empty(k)
+    count = 0
+    for row in range(distances.shape[0]):
+        distance = distances[row]
+        if not usable[row] or distance > radius or k == 0 or (count == k and distance >= nearest[k - 1]):
+            continue
+        slot = min(count, k - 1)
+        while slot > 0 and nearest[slot - 1] > distance:
+            nearest[slot], rows[slot] = nearest[slot - 1], rows[slot - 1]
+            slot -= 1
+        nearest[slot], rows[slot] = distance, row
+        count = min(count + 1, k)
+    return rows[:count].copy()
