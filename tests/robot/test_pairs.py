@@ -202,3 +202,26 @@ def test_a_robot_of_which_no_configuration_is_free_says_so_and_names_the_pair_th
     assert "'tip' touch in" in model.never_free
     with pytest.warns(UserWarning, match="free of self-collision"):
         load_robot(path)
+
+
+def test_a_pair_that_touches_only_where_another_joint_is_held_comes_back_when_that_is_held_elsewhere(
+    tmp_path,
+):
+    slide = "<limit lower='0' upper='1' velocity='1' effort='1'/>"
+    text = urdf(
+        link("base", _ball(0.1)), link("trolley", ""), link("arm", _ball(0.1, "0.1 0 0")), link("tip", _ball(0.02)),
+        joint("lift", "base", "trolley", "prismatic", slide, "0 0 0", "0 0 1"),
+        joint("turn", "trolley", "arm", "continuous", "", "0 0 0.05", "0 0 1"),
+        joint("nod", "arm", "tip", xyz="0.5 0 0"),
+    )  # fmt: skip
+    path = write(tmp_path, text)
+    model = load_model(path, group="turn,nod")
+    robot = model.robot
+    assert ("base", "arm", "touch in every sample with the other joints where they are held") in model.dropped
+    assert robot.pairs == (("base", "tip"),)
+    assert with_group(robot, ("turn", "nod"), {"lift": 0.0}).pairs == robot.pairs
+    lifted = with_group(robot, ("turn", "nod"), {"lift": 0.5})
+    assert set(lifted.pairs) == {("base", "tip"), ("base", "arm")}
+    assert ArmWorld(lifted, Scene("empty", ())).valid(np.zeros((1, 2))).all()
+    assert ("base", "arm") in with_group(robot, ("lift", "turn", "nod")).pairs
+    assert ("base", "arm") in load_model(path).robot.pairs

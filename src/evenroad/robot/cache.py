@@ -96,6 +96,7 @@ def _robot(record: dict[str, Any]) -> Robot:
         states=record["states"],
         hulls=tuple(Hull(hull["points"], hull["radius"], hull["link"]) for hull in record["hulls"]),
         pairs_given=record["pairs_given"],
+        resting=tuple((first, second) for first, second in record["resting"]),
     )
 
 
