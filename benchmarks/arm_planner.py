@@ -35,7 +35,7 @@ from evenroad.robot import trees
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.kernel import lane_check, layout
 from evenroad.robot.kernel.addresses import call_at
-from evenroad.robot.kernel.forward_kinematics import scratch_memory, unpacked
+from evenroad.robot.kernel.lane_check import scratch_memory, unpacked
 from evenroad.robot.trees import connect, shorten
 from evenroad.space.path import path_length
 from evenroad.world.protocol import Connection
@@ -106,7 +106,7 @@ class Log:
 @njit(nogil=True)
 def _again(states: Any, tables: Any, table: Any, enough: Any, lanes: Any, address: int) -> int:
     ints, floats = unpacked(lanes)
-    room, _, scratch = scratch_memory(states.shape[1] // 16, ints, floats)
+    room, scratch = scratch_memory(address, states.shape[1] // 16, ints, floats)
     radii, current, blocked = floats.copy(), -1, 0
     for i in range(len(states)):
         if table[i] != current:

@@ -8,7 +8,7 @@ from numba import njit
 
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import call_at
-from evenroad.robot.kernel.forward_kinematics import scratch_memory, unpacked
+from evenroad.robot.kernel.lane_check import scratch_memory, unpacked
 from evenroad.robot.kernel.layout import quick
 from evenroad.robot.kernel.motion import enter, wrapped
 from evenroad.robot.kernel.motion_checks import NO_END, Checks, checks_of, motion_free, motion_proved
@@ -31,7 +31,7 @@ def configurations_free(q: Floats, address: int, bounds: Floats, tables: Ints) -
     """
     n, dim = q.shape
     ints, table = unpacked(tables)
-    states, _, scratch = scratch_memory(dim, ints, table)
+    states, scratch = scratch_memory(address, dim, ints, table)
     inside, free = np.empty(LANES, dtype=np.bool_), np.empty(n, dtype=np.bool_)
     for first in range(0, n, LANES):
         count = min(LANES, n - first)

@@ -70,6 +70,9 @@ PAIR_FLOAT_ROW = 4
 """Distance of centres from which on they cannot touch; sum of radii; one over the squared half lengths (0 for
 points)."""
 
+FEW = 3
+"""Of bodies with at most so many capsules no box is tested before those of the capsules: it would cost more."""
+
 LEAST_SQUARE = 1e-30
 """What a squared length is taken for at least where one divides by it [m^2]; the kernels' own, in no row."""
 

@@ -20,8 +20,7 @@ from evenroad.robot.kernel.addresses import (
     matrix_at,
     singles_at,
 )
-from evenroad.robot.kernel.forward_kinematics import scratch_memory, unpacked
-from evenroad.robot.kernel.lane_check import ANY_LENGTH, check_address
+from evenroad.robot.kernel.lane_check import ANY_LENGTH, check_address, scratch_memory, unpacked
 from evenroad.robot.kernel.layout import inner, quick
 from evenroad.robot.kernel.motion import span
 from evenroad.robot.kernel.motion_proof import MOST_WAITING, is_proved
@@ -101,7 +100,7 @@ def checks_of(
     """
     dim, capsules, pairs = bounds.shape[1], arms.shape[1], pair_arms.shape[1]
     ints, table = unpacked(tables)
-    states, _, scratch = scratch_memory(dim, ints, table)
+    states, scratch = scratch_memory(addresses[0], dim, ints, table)
     own = 3 * dim + LANES + capsules + pairs + MOST_WAITING
     memory = np.empty(own + MOST_WAITING + (len(table) + 1) // 2)
     enlarged = memory[own + MOST_WAITING :].view(np.float32)
