@@ -31,7 +31,7 @@ class Robot:
         from evenroad.robot import ArmWorld, Scene, in_scene, load_model, load_scene
 
         model = load_model(self.robot, srdf=self.srdf, group=self.group, bodies=self.bodies)
-        say_if_compiling("evenroad.robot.kernel.batch", "configurations_free", 30)
+        say_if_compiling("evenroad.robot.kernel.batch", "check_configurations", 30)
         scene = Scene("empty space", ()) if self.scene is None else load_scene(self.scene)
         world = ArmWorld(in_scene(model.robot, scene), scene)
         print_robot(model, world)

@@ -9,13 +9,11 @@ import math
 import time
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.robot.kernel.robot_tables import RobotTables
-from evenroad.robot.kernel.scene_tables import ArmTables
 from evenroad.robot.tree_sequences import ball_points, share_pairs
 from evenroad.space import JointSpace
 from evenroad.world.protocol import Connection
@@ -46,18 +44,8 @@ class PlansWithTrees(Protocol):
         ...
 
     @property
-    def robot_tables(self) -> RobotTables:
-        """What compiled code reads of the robot."""
-        ...
-
-    @property
-    def tables(self) -> ArmTables:
-        """What compiled code reads of robot and scene."""
-        ...
-
-    @property
-    def bounds(self) -> Floats:
-        """Low, high and period of each joint, (3, dim)."""
+    def lanes(self) -> Any:
+        """The world as compiled code takes it."""
         ...
 
     @property

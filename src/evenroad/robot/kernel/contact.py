@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.forward_kinematics import BOX, HALF, PLACED, scratch_places
+from evenroad.robot.kernel.forward_kinematics import scratch_places
 from evenroad.robot.kernel.lanes import (
     ONE,
     ZERO,
@@ -33,7 +33,7 @@ from evenroad.robot.kernel.lanes import (
     store_vector,
     times,
 )
-from evenroad.robot.kernel.layout import LANES, inlined, inner
+from evenroad.robot.kernel.layout import BOX, HALF, LANES, PLACED, inlined, inner
 
 ALL = (1 << LANES) - 1
 _LEAST = np.float32(at.LEAST_SQUARE)
@@ -61,7 +61,7 @@ def _meeting_obstacles(scratch: Singles, ints: Ints, table: Singles, enough: int
     Sixteen obstacles at once are tested against the box around all lanes of a body, if it has many capsules, and then
     of a capsule; those that are near one by one.
     """
-    bodies, capsules, _ = scratch_places(ints)
+    bodies, capsules = scratch_places(ints)
     blocks, blocked = ints[at.BLOCKS], 0
     # From the outermost bodies inwards: those meet obstacles most often.
     for body in range(ints[at.BODIES] - 1, ints[at.FIXED_BODIES] - 1, -1):
@@ -172,7 +172,7 @@ def _meeting_one(
 @inner
 def _meeting_themselves(scratch: Singles, ints: Ints, table: Singles, blocked: int, enough: int) -> int:
     """Return `blocked` and the mask of lanes in which two bodies of a pair touch."""
-    bodies, capsules, _ = scratch_places(ints)
+    bodies, capsules = scratch_places(ints)
     for p in range(ints[at.BODY_PAIRS]):
         a, b, begin, end = row(ints, ints[at.BODY_PAIR_INTS] + at.BODY_PAIR_INT_ROW * p, 4)
         (near,) = row(table, ints[at.BODY_PAIR_FLOATS] + p, 1)

@@ -21,40 +21,29 @@ from evenroad.robot.kernel.lanes import (
     store,
     store_vector,
 )
-from evenroad.robot.kernel.layout import LANES, inner
+from evenroad.robot.kernel.layout import FRAME, HALF, LANES, PLACED, inlined, inner
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 Singles = npt.NDArray[np.float32]
 
-FRAME = 12 * LANES
-"""Numbers of a frame in the scratch memory: rotation row by row, origin."""
-
-PLACED = 12 * LANES
-"""Numbers of a body or a capsule: its centre; half extents of the box around a body, half the segment of a capsule;
-centre and half extents of the box around it in all lanes, where that is asked for more than once."""
-
-HALF, BOX = 3 * LANES, 6 * LANES
-"""Where the second three are, and the last six."""
-
 _FULL_TURN = 2.0 * np.pi
 
 
-@inner
-def scratch_places(ints: Ints) -> tuple[int, int, int]:
-    """Return where bodies and capsules begin in the scratch memory, after the frames, and its length."""
+@inlined
+def scratch_places(ints: Ints) -> tuple[int, int]:
+    """Return where bodies and capsules begin in the scratch memory, after the frames."""
     bodies = FRAME * (ints[at.FRAMES] + 1)
-    capsules = bodies + PLACED * ints[at.BODIES]
-    return bodies, capsules, capsules + PLACED * ints[at.CAPSULES]
+    return bodies, bodies + PLACED * ints[at.BODIES]
 
 
 @inner
 def place_fixed(scratch: Singles, ints: Ints, table: Singles) -> None:
     """Write what no joint moves, and the half segments, zeros, of the balls among the capsules."""
-    _, capsules, length = scratch_places(ints)
+    _, capsules = scratch_places(ints)
     for entry in range(12):
         store(scratch, entry * LANES, spread(ONE if entry in (0, 4, 8) else ZERO))
-    for place in range(capsules + HALF, length, PLACED):
+    for place in range(capsules + HALF, ints[at.SCRATCH], PLACED):
         for axis in range(3):
             store(scratch, place + axis * LANES, spread(ZERO))
     # Not a plain 0: numba compiles a function once more for a literal.
@@ -104,7 +93,7 @@ def _place_frames(scratch: Singles, states: Floats, ints: Ints, table: Singles) 
 @inner
 def _place_bodies(scratch: Singles, first: int, end: int, ints: Ints, table: Singles) -> None:
     """Write bodies, the boxes around those of many capsules, and their capsules."""
-    bodies, capsules, _ = scratch_places(ints)
+    bodies, capsules = scratch_places(ints)
     for body in range(first, end):
         frame, first_capsule, end_capsule = row(ints, ints[at.BODY_INTS] + at.BODY_INT_ROW * body, 3)
         place = FRAME * frame

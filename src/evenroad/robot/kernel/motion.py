@@ -7,12 +7,12 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.robot.kernel.layout import inlined, inner, quick
+from evenroad.robot.kernel.layout import inlined, quick
 
 Floats = npt.NDArray[np.float64]
 
 
-@inner
+@quick
 def enter(q: Floats, bounds: Floats, into: Floats) -> bool:
     """Write `q` with its wrapping coordinates in their ranges and return whether the others are within theirs.
 
@@ -46,7 +46,7 @@ def wrapped(value: float, low: float, high: float, period: float) -> float:
     return value
 
 
-@inner
+@quick
 def span(start: Floats, end: Floats, bounds: Floats, resolution: float, direction: Floats) -> int:
     """Put the ends in dictionary order, write the short way between them and return its number of segments.
 

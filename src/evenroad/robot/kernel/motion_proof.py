@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel.lane_world import MOST_WAITING
 from evenroad.robot.kernel.layout import LANES, quick
 from evenroad.robot.kernel.motion_states import CONFIGURATIONS, Motion, World, blocked_states, write_states
 
@@ -17,9 +18,6 @@ Floats = npt.NDArray[np.float64]
 
 _UP = np.float32(1.0 + 3e-7)
 """What sums of single precision are multiplied by to be no less than the true ones."""
-
-MOST_WAITING = 640
-"""Stretches that may wait: 16 more at most for each halving, of which single precision bears some thirty."""
 
 
 @quick

@@ -32,7 +32,7 @@ class World(NamedTuple):
     arms, pair_arms : float64 arrays, shapes (dim, capsules) and (dim, capsule pairs)
         How fast each coordinate moves a capsule, and the two of a pair against each other, at most [m/rad].
     scratch : float32 array
-        As ``lane_check.scratch_memory`` makes it.
+        Where `check` keeps places.
     enlarged : float32 array
         A copy of `table` with radii for proofs.
     levels : int64 array, shape (640,)

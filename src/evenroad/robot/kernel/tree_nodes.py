@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from evenroad.robot.kernel.addresses import integers_at, matrices_at, number_tables_at, singles_at
 from evenroad.robot.kernel.lanes import ZERO, absolute, load, smaller, smallest_lane, spread, store
 from evenroad.robot.kernel.layout import LANES, quick
 
@@ -41,6 +42,23 @@ class Trees(NamedTuple):
     links: Ints
     sizes: Ints
     periods: Singles
+
+
+@quick
+def trees_at(nodes: int, capacity: int, sizes: int, periods: int, bounds: Floats) -> Trees:
+    """Return trees whose nodes, links and columns follow each other in memory; the periods are written."""
+    dim = bounds.shape[1]
+    links = nodes + 8 * 2 * capacity * dim
+    trees = Trees(
+        matrices_at(nodes, (2, capacity, dim)),
+        singles_at(links + 8 * 8 * capacity, (2 * dim * capacity,)),
+        number_tables_at(links, (4, 2, capacity)),
+        integers_at(sizes, (2,)),
+        singles_at(periods, (dim,)),
+    )
+    for k in range(dim):
+        trees.periods[k] = min(bounds[2, k], 1e30)
+    return trees
 
 
 PARENT, TRIED, PROVED, MOVED = range(4)
