@@ -15,7 +15,7 @@ from evenroad.robot.fingerprint import fingerprint
 from evenroad.robot.kernel import scalar
 from evenroad.robot.kernel.certify import motions_certified
 from evenroad.robot.kernel.lane_world import LaneWorld
-from evenroad.robot.kernel.obstacles import obstacle_arrays, tested_contacts
+from evenroad.robot.kernel.obstacles import obstacle_rows, tested_contacts
 from evenroad.robot.kernel.robot_tables import RobotTables
 from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
 from evenroad.robot.kernel.selftest import lanes_failure
@@ -101,7 +101,7 @@ class ArmWorld:
         space, longest, of_robot, by_joint = prepared(self.robot)
         require_few_segments(self.resolution, longest / self.resolution)
         tested = tested_contacts(of_robot.capsules, self.robot.links, self.scene)
-        tables = arm_tables(of_robot, obstacle_arrays(self.scene), tested)
+        tables = arm_tables(of_robot, obstacle_rows(self.scene), tested)
         object.__setattr__(self, "_space", space)
         object.__setattr__(self, "bounds", by_joint[: 3 * space.dim].reshape(3, space.dim))
         object.__setattr__(self, "robot_tables", of_robot)

@@ -115,7 +115,7 @@ def _grown(
     world: PlansWithTrees, ends: Floats, samples: Floats | None, most: int, seconds: float
 ) -> Connection:
     # Imported late: where the vector type cannot even be defined, all else still works.
-    from evenroad.robot.kernel import tree_nodes, tree_steps
+    from evenroad.robot.kernel import tree_steps
     from evenroad.robot.kernel import trees as kernel
 
     order = None
@@ -127,8 +127,8 @@ def _grown(
     count, dim = ends.shape
     capacity = -(-max(_CAPACITY, 2 * count + kernel.ROOM) // 16) * 16
     block = np.empty(kernel.room_for(count, capacity, dim))
-    state, begin = block[: tree_steps.STATE + 2].view(np.int64), tree_steps.STATE + 2 + count * dim
-    state[:], block[tree_steps.STATE + 2 : begin] = 0, ends.ravel()
+    state, begin = block[: kernel.STATE + 2].view(np.int64), kernel.STATE + 2 + count * dim
+    state[:], block[kernel.STATE + 2 : begin] = 0, ends.ravel()
     sequence = _place(cube_points, dim) if samples is None else (address(samples), len(samples))
     driven_by = *sequence, *_place(ball_points, dim)
     _, arguments = world.lanes.arguments(tree_steps.memory_for(dim))
@@ -143,15 +143,15 @@ def _grown(
             place, capacity = address(block), 2 * capacity
         elif ended != kernel.PAUSED or time.perf_counter() >= deadline:
             break
-    state = block[: tree_steps.STATE + 2].view(np.int64)
-    nodes, links, _ = _trees(block, begin, capacity, dim)
+    state = block[: kernel.STATE + 2].view(np.int64)
     path, goal = np.empty((0, dim)), -1
     if ended == kernel.SOLVED:
+        nodes, links, _ = _trees(block, begin, capacity, dim)
         here, there = (
-            _to_root(links[tree_nodes.PARENT, tree], state[tree_steps.START_NODE + tree]) for tree in (0, 1)
+            _to_root(links[kernel.PARENT, tree], state[kernel.START_NODE + tree]) for tree in (0, 1)
         )
         path = np.concatenate([nodes[0, here[::-1]], nodes[1, there]])
-        goal = int(links[tree_nodes.PROVED, 1, there[-1]]) - 1
+        goal = int(links[kernel.PROVED, 1, there[-1]]) - 1
         goal = goal if order is None else int(order[goal])
     motions, configurations, _, *_, first, second = state.tolist()
     return Connection(path, goal, first + second, configurations, motions)

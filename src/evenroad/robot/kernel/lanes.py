@@ -352,28 +352,44 @@ def _numbers(stride: int) -> Callable[..., Any]:
 row, column = _numbers(1), _numbers(LANES)
 
 
+_WIDE = ir.VectorType(ir.DoubleType(), LANES)
+
+
+def _spread_wide(builder: ir.IRBuilder, number: ir.Value) -> ir.Value:
+    undefined = ir.Constant(_WIDE, ir.Undefined)
+    one = builder.insert_element(undefined, number, ir.Constant(ir.IntType(32), 0))
+    return builder.shuffle_vector(one, undefined, ir.Constant(_BITS, [0] * LANES))
+
+
+@intrinsic
+def store_along(typing_context: Any, array: Any, place: Any, begin: Any, shares: Any, way: Any) -> Any:
+    """Write ``begin + share * way`` to a float64 array from `place` on, for the sixteen shares of another."""
+
+    def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
+        first = ir.Constant(ir.IntType(64), 0)
+        share = _loaded(builder, _pointer(context, builder, shares, args[3], first, _WIDE))
+        done = builder.fmul(share, _spread_wide(builder, args[4]))
+        value = builder.fadd(_spread_wide(builder, args[2]), done)
+        _stored(builder, _pointer(context, builder, array, *args[:2], _WIDE), value)
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp, types.float64, shares, types.float64), lower
+
+
 @intrinsic
 def load_angles(typing_context: Any, array: Any, place: Any, multiplier: Any, offset: Any, turn: Any) -> Any:
     """Return multiples and more of sixteen numbers of a float64 array, less whole turns, unless a turn is 0.
 
     Computed in double precision: single precision has no digits for a large angle.
     """
-    wide = ir.VectorType(ir.DoubleType(), LANES)
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        values = _loaded(builder, _pointer(context, builder, array, *args[:2], wide))
-        factor, summand, period = (
-            builder.shuffle_vector(
-                builder.insert_element(ir.Constant(wide, ir.Undefined), arg, ir.Constant(ir.IntType(32), 0)),
-                ir.Constant(wide, ir.Undefined),
-                ir.Constant(_BITS, [0] * LANES),
-            )
-            for arg in args[2:]
-        )
+        values = _loaded(builder, _pointer(context, builder, array, *args[:2], _WIDE))
+        factor, summand, period = (_spread_wide(builder, arg) for arg in args[2:])
         values = builder.fadd(builder.fmul(values, factor), summand)
-        turns = builder.fmul(values, ir.Constant(wide, [0.5 / np.pi] * LANES))
+        turns = builder.fmul(values, ir.Constant(_WIDE, [0.5 / np.pi] * LANES))
         rint = cgutils.get_or_insert_function(
-            builder.module, ir.FunctionType(wide, [wide]), f"llvm.rint.v{LANES}f64"
+            builder.module, ir.FunctionType(_WIDE, [_WIDE]), f"llvm.rint.v{LANES}f64"
         )
         return builder.fptrunc(
             builder.fsub(values, builder.fmul(period, builder.call(rint, [turns]))), _VECTOR

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import call_at
+from evenroad.robot.kernel.lanes import store_along
 from evenroad.robot.kernel.layout import LANES, quick
 
 Floats = npt.NDArray[np.float64]
@@ -87,9 +88,7 @@ def blocked_states(w: World, table: Singles, enough: int) -> int:
 def write_states(m: Motion, w: World) -> None:
     """Write the configurations at the sixteen shares of a motion."""
     for k in range(len(m.start)):
-        start, way = m.start[k], m.way[k]
-        for lane in range(LANES):
-            w.states[k * LANES + lane] = start + m.share[lane] * way
+        store_along(w.states, k * LANES, m.start[k], m.share, m.way[k])
 
 
 @quick

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from evenroad.geometry.shapes import Capsule
 from evenroad.robot.joint import Joint
 from evenroad.robot.kernel.lane_world import LaneWorld
-from evenroad.robot.kernel.obstacles import obstacle_arrays, tested_contacts
+from evenroad.robot.kernel.obstacles import obstacle_rows, tested_contacts
 from evenroad.robot.kernel.robot_tables import robot_tables
 from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
 from evenroad.robot.robot import Robot
@@ -80,7 +80,7 @@ def small_tables() -> ArmTables:
         Obstacle.of("pipe", "capsule", (0.05, 0.4), (0.4, -0.4, 0.2), _STRAIGHT),
     )
     tables, scene = robot_tables(robot), Scene("small", obstacles)
-    return arm_tables(tables, obstacle_arrays(scene), tested_contacts(tables.capsules, links, scene))
+    return arm_tables(tables, obstacle_rows(scene), tested_contacts(tables.capsules, links, scene))
 
 
 def _read_only(array: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
