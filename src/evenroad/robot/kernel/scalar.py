@@ -13,7 +13,7 @@ import numpy.typing as npt
 from numba import njit
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.layout import inner
+from evenroad.robot.kernel.layout import inner, quick
 from evenroad.robot.kernel.motion import enter, span
 from evenroad.world.bisection import next_between
 
@@ -134,7 +134,7 @@ def _meets_obstacle(ints: Ints, floats: Floats, margins: Floats, capsules: Float
     return -1, -1
 
 
-@inner
+@quick
 def squared_distance_to_obstacle(x: float, y: float, z: float, form: int, floats: Floats, data: int) -> float:
     """Return the squared distance of a point from an obstacle, without the rounding of its edges [m^2].
 

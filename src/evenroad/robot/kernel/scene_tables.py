@@ -10,7 +10,7 @@ import numpy.typing as npt
 from numba import njit
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.layout import inner
+from evenroad.robot.kernel.layout import quick
 from evenroad.robot.kernel.obstacles import BOX, CYLINDER, ROTATION, SIZE, SPHERE, TRANSLATION
 from evenroad.robot.kernel.robot_tables import PADDING, RobotTables
 from evenroad.robot.kernel.scalar import squared_distance_to_obstacle
@@ -72,7 +72,7 @@ def arm_tables(robot: RobotTables, obstacles: Floats, tested: Bools) -> ArmTable
     return ArmTables(ints, floats, lanes, margin, kept, None if capsule < 0 else (capsule, obstacle))
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, no_cfunc_wrapper=True, error_model="numpy")
 def _pack(
     robot_ints: Ints,
     robot_floats: Floats,
@@ -85,11 +85,12 @@ def _pack(
     # Rows of all obstacles, of which those that the robot can reach are kept.
     kept, forms = np.empty((2, len(obstacles)), dtype=np.int64)
     rows = np.empty((len(obstacles), at.OBSTACLE_FLOAT_ROW))
-    count = 0
+    # Not a plain 0: numba compiles a function once more for a literal.
+    count, first = 0, np.int64(0)
     for k in range(len(obstacles)):
         form = _write_obstacle(rows[count], obstacles[k], reach)
         far = reach + rows[count, 15]
-        if squared_distance_to_obstacle(0.0, 0.0, 0.0, form, rows[count], 0) <= far * far:
+        if squared_distance_to_obstacle(0.0, 0.0, 0.0, form, rows[count], first) <= far * far:
             kept[count], forms[count] = k, form
             count += 1
     blocks = (count + at.LANES - 1) // at.LANES
@@ -135,7 +136,7 @@ def _pack(
     return ints, floats, lanes, added, kept, capsule, obstacle
 
 
-@inner
+@quick
 def _write_obstacle(row: Floats, obstacle: Floats, reach: float) -> int:
     """Write all points within a rounding of a box, or a cylinder, and return the kind that the kernels know.
 
@@ -173,7 +174,7 @@ def _write_obstacle(row: Floats, obstacle: Floats, reach: float) -> int:
     return at.ALIGNED
 
 
-@inner
+@quick
 def _is_straight(rotation: Floats) -> bool:
     """Return whether a rotation (9,) takes axes to axes, up to the rounding of sines of right angles."""
     # Loops here and elsewhere in place of array expressions: those take seconds to compile.
@@ -183,7 +184,7 @@ def _is_straight(rotation: Floats) -> bool:
     return farthest < 1e-14
 
 
-@inner
+@quick
 def _write_bounds(floats: Floats, data: int, box: int, kind: int) -> float:
     """Write the box around an obstacle whose row is at `data`, and return its padding in single precision [m]."""
     squared = 0.0
@@ -202,7 +203,7 @@ def _write_bounds(floats: Floats, data: int, box: int, kind: int) -> float:
     return OBSTACLE_PADDING * math.sqrt(squared)
 
 
-@inner
+@quick
 def _fixed_contact(ints: Ints, floats: Floats, kept: Ints, tested: Bools) -> tuple[int, int]:
     """Return a capsule that does not move and an obstacle that a sphere of it touches, or -1, -1."""
     for i in range(ints[at.FIXED_CAPSULES]):

@@ -187,7 +187,7 @@ def _begin(ends: Floats, trees: Trees, memory: Memory, checks: Checks) -> None:
                 row = first + lane
                 for k in range(dim):
                     memory.here[k] = checks.states[k * LANES + lane]
-                root = add_node(trees, min(row, 1), memory.here, -1)
+                root = add_node(trees, min(row, 1), memory.here, np.int64(-1))
                 # Nothing leads to a root that could be proved: here is which of the ends it is.
                 trees.links[PROVED, min(row, 1), root] = row
         if trees.sizes[0] == 0:
