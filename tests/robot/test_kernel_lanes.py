@@ -3,6 +3,7 @@
 import numpy as np
 from numba import njit
 
+from evenroad.robot.kernel.forward_kinematics import sine_and_cosine
 from evenroad.robot.kernel.lanes import (
     absolute,
     below_zero,
@@ -17,7 +18,6 @@ from evenroad.robot.kernel.lanes import (
     minus,
     plus,
     row,
-    sine_and_cosine,
     smaller,
     smallest_lane,
     square_root,

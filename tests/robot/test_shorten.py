@@ -86,7 +86,7 @@ def test_the_same_path_gives_the_same_path(paths):
 @pytest.mark.parametrize("backend", ["lanes", "scalar"])
 def test_both_backends_shorten(backend):
     world = box_world(backend)
-    path = connect(world, START, [GOAL], seconds=60).path
+    path = connect(box_world(), START, [GOAL], seconds=60).path
     detour = np.concatenate([path, path[::-1], path])
     shorter, _ = shorten(world, detour)
     assert length(world, shorter) <= length(world, path) * (1 + 1e-12)

@@ -5,16 +5,17 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from functools import cache
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._checks import require_count, require_positive
 from evenroad.errors import InvalidValue
-from evenroad.robot import plain_trees
 from evenroad.robot.kernel.addresses import address
-from evenroad.robot.plain_trees import PlansWithTrees
+from evenroad.robot.kernel.lane_world import LaneWorld
 from evenroad.robot.tree_sequences import ball_points, cube_points, share_pairs
+from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch
 from evenroad.world.protocol import Connection
 
@@ -28,6 +29,31 @@ _CAPACITY = 1024
 
 _SLICE = 1000
 """Batches of sixteen checks between two looks at the clock: about 10 ms."""
+
+
+_TOLERANCE = 1e-4
+"""Of proofs where the lanes do not work [m]."""
+
+_WORTH_WHILE = 3e-3
+"""Motions that shorten a path by less than this share are not looked at there."""
+
+
+class PlansWithTrees(Protocol):
+    """What trees need of an arm's world; see ``ArmWorld``, which has these attributes."""
+
+    @property
+    def space(self) -> JointSpace: ...  # noqa: D102
+
+    @property
+    def lanes(self) -> LaneWorld: ...  # noqa: D102
+
+    @property
+    def backend(self) -> str: ...  # noqa: D102
+
+    @property
+    def fixed_contact(self) -> tuple[str, str] | None: ...  # noqa: D102
+
+    def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> npt.NDArray[np.bool_]: ...  # noqa: D102
 
 
 def connect(
@@ -63,7 +89,8 @@ def connect(
     Returns
     -------
     Connection
-        With an empty path where there is none within the budget, or start or goals are not free.
+        With an empty path where there is none within the budget, start or goals are not free, or the world's backend
+        is not the lanes, in which trees grow.
 
     Raises
     ------
@@ -75,11 +102,8 @@ def connect(
     most = require_count("most_motions", most_motions)
     ends = as_batch("start and goals", _stacked(start, goals, dim), dim)
     samples = None if sequence is None else _as_sequence(sequence, dim)
-    if world.fixed_contact is not None:
+    if world.fixed_contact is not None or world.backend == "scalar":
         return Connection(np.empty((0, dim)), -1, 0, 0, 0)
-    if world.backend == "scalar":
-        samples = cube_points(dim) if samples is None else samples
-        return plain_trees.grown(world, ends, samples, most, limit)
     return _grown(world, ends, samples, most, limit)
 
 
@@ -105,10 +129,46 @@ def shorten(world: PlansWithTrees, path: npt.ArrayLike) -> tuple[Floats, int]:
     if len(waypoints) < 2:
         raise InvalidValue(f"a path must have 2 waypoints or more, got {len(waypoints)}")
     if world.backend == "scalar":
-        return plain_trees.shortened(world, waypoints)
+        return _shortened(world, waypoints)
     from evenroad.robot.kernel.shorten import shorten_path
 
     return shorten_path(world.lanes, waypoints, share_pairs())
+
+
+def _shortened(world: PlansWithTrees, path: Floats) -> tuple[Floats, int]:
+    """Return a path that is not longer, and how many motions were looked at, without lanes: each motion by itself."""
+    space = world.space
+    path = space.interpolate(path, path, 0.0)
+    motions = 0
+
+    def is_shortcut(a: Floats, b: Floats) -> bool:
+        nonlocal motions
+        motions += 1
+        return bool(world.motion_certified(a[np.newaxis], b[np.newaxis], _TOLERANCE)[0])
+
+    i = 0
+    while i < len(path) - 2:
+        for j in range(len(path) - 1, i + 1, -1):
+            if is_shortcut(path[i], path[j]):
+                path = np.concatenate([path[: i + 1], path[j:]])
+                break
+        i += 1
+    for low, high in np.sort(share_pairs(), axis=1):
+        places = np.concatenate([[0.0], np.cumsum(space.distance(path[:-1], path[1:]))])
+        shares = np.array([low, high]) * places[-1]
+        first, last = np.clip(np.searchsorted(places, shares, side="right") - 1, 0, len(path) - 2)
+        if first >= last:
+            continue
+        lengths = np.maximum(np.diff(places)[[first, last]], 1e-300)
+        ends = space.interpolate(
+            path[[first, last]],
+            path[[first + 1, last + 1]],
+            np.minimum((shares - places[[first, last]]) / lengths, 1),
+        )
+        gain = shares[1] - shares[0] - space.distance(ends[:1], ends[1:])[0]
+        if gain >= _WORTH_WHILE * places[-1] and is_shortcut(*ends):
+            path = np.concatenate([path[: first + 1], ends, path[last + 1 :]])
+    return path, motions
 
 
 def _grown(

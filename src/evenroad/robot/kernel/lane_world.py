@@ -11,16 +11,9 @@ import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import address
-from evenroad.robot.kernel.layout import LANES
+from evenroad.robot.kernel.layout import DESK, LANES, MOST_WAITING
 
 Floats = npt.NDArray[np.float64]
-
-MOST_WAITING = 640
-"""Stretches of a motion that may wait for a proof: 16 more at most for each halving, of which single precision bears
-some thirty."""
-
-DESK = 16
-"""Length of the desk at the beginning of the memory, see ``motion_checks.checks_of``."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,10 +19,11 @@ from numba.core import cgutils
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, models, register_model
 
-from evenroad.robot.kernel.layout import LANES, inlined
+from evenroad.robot.kernel.layout import LANES
 
 _FLOAT = ir.FloatType()
 _VECTOR = ir.VectorType(_FLOAT, LANES)
+_WIDE = ir.VectorType(ir.DoubleType(), LANES)
 _BITS = ir.VectorType(ir.IntType(32), LANES)
 _FLAGS = ("nnan", "ninf", "nsz", "contract")
 
@@ -44,9 +45,9 @@ class _LanesModel(models.PrimitiveModel):
         super().__init__(manager, kind, _VECTOR)
 
 
-def _spread(builder: ir.IRBuilder, number: ir.Value) -> ir.Value:
+def _spread(builder: ir.IRBuilder, number: ir.Value, kind: ir.Type = _VECTOR) -> ir.Value:
     """Return `number` in all lanes."""
-    undefined = ir.Constant(_VECTOR, ir.Undefined)
+    undefined = ir.Constant(kind, ir.Undefined)
     one = builder.insert_element(undefined, number, ir.Constant(ir.IntType(32), 0))
     return builder.shuffle_vector(one, undefined, ir.Constant(_BITS, [0] * LANES))
 
@@ -263,7 +264,7 @@ def lowest_bit(typing_context: Any, bits: Any) -> Any:
     return types.int64(types.int64), lower
 
 
-def _pointer(context: Any, builder: Any, kind: Any, array: Any, place: Any, number: ir.Type) -> ir.Value:
+def _pointer(context: Any, builder: Any, kind: Any, array: Any, place: Any, *, number: ir.Type) -> ir.Value:
     data = context.make_array(kind)(context, builder, array).data
     return builder.bitcast(builder.gep(data, [place], inbounds=True), number.as_pointer())
 
@@ -285,7 +286,7 @@ def load(typing_context: Any, array: Any, place: Any) -> Any:
     """Return the sixteen numbers of a float32 array from `place` on."""
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        return _loaded(builder, _pointer(context, builder, array, *args, _VECTOR))
+        return _loaded(builder, _pointer(context, builder, array, *args, number=_VECTOR))
 
     return LANES_TYPE(array, types.intp), lower
 
@@ -295,7 +296,7 @@ def store(typing_context: Any, array: Any, place: Any, lanes: Any) -> Any:
     """Write sixteen numbers to a float32 array from `place` on."""
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        _stored(builder, _pointer(context, builder, array, *args[:2], _VECTOR), args[2])
+        _stored(builder, _pointer(context, builder, array, *args[:2], number=_VECTOR), args[2])
         return context.get_dummy_value()
 
     return types.void(array, types.intp, lanes), lower
@@ -306,7 +307,7 @@ def load_vector(typing_context: Any, array: Any, place: Any) -> Any:
     """Return three times sixteen numbers of a float32 array from `place` on: x, y, z."""
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        pointer = _pointer(context, builder, array, *args, _VECTOR)
+        pointer = _pointer(context, builder, array, *args, number=_VECTOR)
         return context.make_tuple(
             builder, VECTOR_TYPE, [_loaded(builder, pointer, axis) for axis in range(3)]
         )
@@ -319,7 +320,7 @@ def store_vector(typing_context: Any, array: Any, place: Any, vector: Any) -> An
     """Write a vector to a float32 array from `place` on, as `load_vector` reads it."""
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        pointer = _pointer(context, builder, array, *args[:2], _VECTOR)
+        pointer = _pointer(context, builder, array, *args[:2], number=_VECTOR)
         for axis, value in enumerate(cgutils.unpack_tuple(builder, args[2])):
             _stored(builder, pointer, value, axis)
         return context.get_dummy_value()
@@ -338,7 +339,7 @@ def _numbers(stride: int) -> Callable[..., Any]:
         kind = types.UniTuple(array.dtype, count.literal_value)
 
         def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-            pointer = _pointer(context, builder, array, *args[:2], context.get_data_type(array.dtype))
+            pointer = _pointer(context, builder, array, *args[:2], number=context.get_data_type(array.dtype))
             places = (
                 builder.gep(pointer, [ir.Constant(ir.IntType(64), i * stride)]) for i in range(kind.count)
             )
@@ -352,25 +353,16 @@ def _numbers(stride: int) -> Callable[..., Any]:
 row, column = _numbers(1), _numbers(LANES)
 
 
-_WIDE = ir.VectorType(ir.DoubleType(), LANES)
-
-
-def _spread_wide(builder: ir.IRBuilder, number: ir.Value) -> ir.Value:
-    undefined = ir.Constant(_WIDE, ir.Undefined)
-    one = builder.insert_element(undefined, number, ir.Constant(ir.IntType(32), 0))
-    return builder.shuffle_vector(one, undefined, ir.Constant(_BITS, [0] * LANES))
-
-
 @intrinsic
 def store_along(typing_context: Any, array: Any, place: Any, begin: Any, shares: Any, way: Any) -> Any:
     """Write ``begin + share * way`` to a float64 array from `place` on, for the sixteen shares of another."""
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
         first = ir.Constant(ir.IntType(64), 0)
-        share = _loaded(builder, _pointer(context, builder, shares, args[3], first, _WIDE))
-        done = builder.fmul(share, _spread_wide(builder, args[4]))
-        value = builder.fadd(_spread_wide(builder, args[2]), done)
-        _stored(builder, _pointer(context, builder, array, *args[:2], _WIDE), value)
+        share = _loaded(builder, _pointer(context, builder, shares, args[3], first, number=_WIDE))
+        done = builder.fmul(share, _spread(builder, args[4], _WIDE))
+        value = builder.fadd(_spread(builder, args[2], _WIDE), done)
+        _stored(builder, _pointer(context, builder, array, *args[:2], number=_WIDE), value)
         return context.get_dummy_value()
 
     return types.void(array, types.intp, types.float64, shares, types.float64), lower
@@ -384,8 +376,8 @@ def load_angles(typing_context: Any, array: Any, place: Any, multiplier: Any, of
     """
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        values = _loaded(builder, _pointer(context, builder, array, *args[:2], _WIDE))
-        factor, summand, period = (_spread_wide(builder, arg) for arg in args[2:])
+        values = _loaded(builder, _pointer(context, builder, array, *args[:2], number=_WIDE))
+        factor, summand, period = (_spread(builder, arg, _WIDE) for arg in args[2:])
         values = builder.fadd(builder.fmul(values, factor), summand)
         turns = builder.fmul(values, ir.Constant(_WIDE, [0.5 / np.pi] * LANES))
         rint = cgutils.get_or_insert_function(
@@ -400,29 +392,3 @@ def load_angles(typing_context: Any, array: Any, place: Any, multiplier: Any, of
 
 ZERO = np.float32(0.0)
 ONE = np.float32(1.0)
-
-_PI = np.float32(np.pi)
-_HALF_PI = np.float32(0.5 * np.pi)
-
-# x + S3 x^3 + S5 x^5 + S7 x^7 + S9 x^9 nearest to sin x on [-pi/2, pi/2] in the largest error (by Lawson's
-# reweighted least squares, 1961): 4.6e-9, or 1.7e-8 with coefficients of single precision.  Taylor's series, or
-# one made for pi/4, errs by 1e-4 there.
-_S3 = np.float32(-0.16666657096)
-_S5 = np.float32(0.0083330172914)
-_S7 = np.float32(-0.00019806615190)
-_S9 = np.float32(2.6000547418e-06)
-
-
-@inlined
-def sine_and_cosine(angle: Any) -> Any:
-    """Return the sines and cosines of sixteen angles from -pi to pi [rad], to 2e-7."""
-    size = absolute(angle)
-    # sin x = sin(pi - x); cos x = sin(pi/2 - |x|).
-    sine = with_sign_of(_sine_within_a_quarter(smaller(_PI - size, size)), angle)
-    return sine, _sine_within_a_quarter(_HALF_PI - size)
-
-
-@inlined
-def _sine_within_a_quarter(angle: Any) -> Any:
-    square = angle * angle
-    return angle + angle * square * (_S3 + square * (_S5 + square * (_S7 + square * _S9)))

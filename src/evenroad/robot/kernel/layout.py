@@ -84,6 +84,13 @@ half extents of the box around it in all lanes, where that is asked for more tha
 HALF, BOX = 3 * LANES, 6 * LANES
 """Where the second three are, and the last six."""
 
+MOST_WAITING = 640
+"""Stretches of a motion that may wait for a proof: 16 more at most for each halving, of which single precision bears
+some thirty."""
+
+DESK = 16
+"""Length of the desk at the beginning of the memory, see ``motion_checks.checks_of``."""
+
 LEAST_SQUARE = 1e-30
 """What a squared length is taken for at least where one divides by it [m^2]; the kernels' own, in no row."""
 

@@ -21,8 +21,7 @@ from evenroad.robot.kernel.addresses import (
     matrix_at,
     singles_at,
 )
-from evenroad.robot.kernel.lane_world import DESK, MOST_WAITING
-from evenroad.robot.kernel.layout import LANES, quick
+from evenroad.robot.kernel.layout import DESK, LANES, MOST_WAITING, quick
 from evenroad.robot.kernel.motion import span
 from evenroad.robot.kernel.motion_proof import is_proved
 from evenroad.robot.kernel.motion_states import COUNTS, MOTIONS, Motion, World, are_free, blocked_states

@@ -10,9 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.lane_world import MOST_WAITING
 from evenroad.robot.kernel.lanes import row
-from evenroad.robot.kernel.layout import LANES, quick
+from evenroad.robot.kernel.layout import LANES, MOST_WAITING, quick
 from evenroad.robot.kernel.motion_states import CONFIGURATIONS, Motion, World, blocked_states, write_states
 
 Floats = npt.NDArray[np.float64]
