@@ -76,13 +76,9 @@ class RobotTables:
 def robot_tables(robot: Robot) -> RobotTables:
     """Return the tables of a robot.
 
-    Raises
-    ------
-    InvalidValue
-        If a capsule has a size that is not a finite number > 0, the robot has no capsules, a length is larger than
-        1e6 m, or an angle, or what a mimic multiplies by or adds, larger than 1e9.
-    UnknownName
-        If capsules or pairs name a link that is not there.
+    Raises InvalidValue if a capsule has a size that is not a finite number > 0, the robot has no capsules, a length is
+    larger than 1e6 m, or an angle, or what a mimic multiplies by or adds, larger than 1e9; and UnknownName if capsules
+    or pairs name a link that is not there.
     """
     tree = moving_tree(robot)
     _require_few_turns(robot, tree)
