@@ -29,7 +29,7 @@ def configurations_free(world: LaneWorld, q: Floats) -> Flags:
     """Return which rows of `q`, (n, dim), are within bounds and free: (n,)."""
     n, dim = q.shape
     free = np.empty(n, dtype=np.bool_)
-    _, arguments = world.arguments(COUNTS + LANES // 8)
+    _, arguments = world.arguments(COUNTS)
     check_configurations(address(q), n, dim, address(free), *arguments)
     return free
 
@@ -64,24 +64,24 @@ def check_configurations(
     """Do the work of `configurations_free`, arrays by their addresses."""
     checks = checks_of(motion_check, check, resolution, tables, by_joint, memory, room)
     rows, verdicts = matrix_at(q, (n, dim)), bytes_at(free, (n,))
-    inside = bytes_at(room + 8 * COUNTS, (LANES,))
     for first in range(0, n, LANES):
         count = min(LANES, n - first)
-        inside[:] = 1
+        outside = 0
         for k in range(dim):
             low, high, period = checks.bounds[0, k], checks.bounds[1, k], checks.bounds[2, k]
+            states = checks.states[k * LANES : (k + 1) * LANES]
             for lane in range(LANES):
                 # Lanes to spare repeat the last row.
                 value = rows[first + min(lane, count - 1), k]
                 if period != np.inf:
                     value = wrapped(value, low, high, period)
                 within = low <= value <= high
-                inside[lane] &= within
+                outside |= (1 - within) << lane
                 # What is out of bounds may be too large for single precision.
-                checks.states[k * LANES + lane] = value if within else low
-        touching = blocked(checks)
+                states[lane] = value if within else low
+        outside |= blocked(checks)
         for lane in range(count):
-            verdicts[first + lane] = inside[lane] & ~(touching >> lane)
+            verdicts[first + lane] = 1 - ((outside >> lane) & 1)
 
 
 @program
