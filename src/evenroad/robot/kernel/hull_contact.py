@@ -45,13 +45,13 @@ def _room(typing_context: Any, count: Any) -> Any:
 
 
 @quick
-def bodies_meet(scratch: Any, frames: int, lane: int, pair: int, ints: Ints, table: Any) -> bool:
+def bodies_meet(scratch: Any, lane: int, pair: int, ints: Ints, table: Any) -> bool:
     """Return whether the hulls of a pair of bodies come within their margin where a lane of the frames has them."""
     row = ints[at.BODY_PAIR_INTS] + at.BODY_PAIR_INT_ROW * pair
     a = ints[at.BODY_INTS] + at.BODY_INT_ROW * ints[row]
     b = ints[at.BODY_INTS] + at.BODY_INT_ROW * ints[row + 1]
-    pose, step = doubles_at(_room(12), (12,)), 12 * at.LANES
-    _write_relative(scratch, frames + step * ints[a] + lane, frames + step * ints[b] + lane, at.LANES, pose)
+    pose = doubles_at(_room(12), (12,))
+    _write_relative(scratch, at.FRAME * ints[a] + lane, at.FRAME * ints[b] + lane, at.LANES, pose)
     margin = table[ints[at.HULL_MARGINS] + pair - (ints[at.BODY_PAIRS] - ints[at.HULL_PAIRS])]
     return hulls_meet(ints[a + 3], ints[b + 3], pose, margin, ints, table) != APART
 
