@@ -52,7 +52,7 @@ class Robot:
     def run(self) -> int:
         """Load, measure, print; return 0."""
         model = load_model(self.robot, srdf=self.srdf, group=self.group, bodies=self.bodies)
-        say_if_compiling("evenroad.robot.kernel.batch", "configurations_free", 30)
+        say_if_compiling("evenroad.robot.kernel.batch", "check_configurations", 30)
         scene = Scene("empty space", ()) if self.scene is None else load_scene(self.scene)
         world = ArmWorld(in_scene(model.robot, scene), scene)
         print_table(_joints(model.robot), ("joint", "kind", "limits", "velocity", "use"))

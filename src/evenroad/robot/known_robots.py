@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -61,21 +62,55 @@ class _Known:
         return hash(self.key)
 
 
-def prepared(robot: Robot) -> tuple[JointSpace, npt.NDArray[np.float64], float, RobotTables]:
-    """Return what is a robot's in every scene: its space, bounds, the longest motion and its tables; kept."""
+class Prepared(NamedTuple):
+    """What is a robot's in every scene.
+
+    Attributes
+    ----------
+    space : JointSpace
+        Of its group.
+    longest : float
+        An upper bound on the length of a motion.
+    tables : RobotTables
+        What compiled code knows of it.
+    by_joint : float64 array
+        As in ``LaneWorld``.
+    """
+
+    space: JointSpace
+    longest: float
+    tables: RobotTables
+    by_joint: npt.NDArray[np.float64]
+
+
+_recent: dict[int, tuple[Robot, dict[str, float], Prepared]] = {}
+"""By identity, which costs less to look up than a key of a robot's values; a dictionary is the only part of a robot
+that can change."""
+
+
+def prepared(robot: Robot) -> Prepared:
+    """Return what is a robot's in every scene; kept."""
+    recent = _recent.get(id(robot))
+    if recent is not None and recent[0] is robot and recent[1] == robot.held:
+        return recent[2]
     values = (robot.name, robot.links, robot.joints, robot.capsules, robot.pairs, robot.group)
     known = _Known(robot, (*values, tuple(sorted(robot.held.items()))))
     try:
-        return _kept(known)
+        found = _kept(known)
     except TypeError:
         # Of lists in place of tuples: no key.
         return _kept.__wrapped__(known)
+    if len(_recent) >= 32:
+        _recent.clear()
+    _recent[id(robot)] = robot, dict(robot.held), found
+    return found
 
 
 @lru_cache(maxsize=32)
-def _kept(known: _Known) -> tuple[JointSpace, npt.NDArray[np.float64], float, RobotTables]:
+def _kept(known: _Known) -> Prepared:
     space = joint_space(known.robot)
-    low, high = np.array(space.low), np.array(space.high)
-    bounds = np.stack([low, high, space.flat.period])
-    bounds.setflags(write=False)
-    return space, bounds, float(np.linalg.norm(high - low)), robot_tables(known.robot)
+    low, high, tables = np.array(space.low), np.array(space.high), robot_tables(known.robot)
+    arms, pair_arms = (np.ravel(speeds.T) for speeds in (tables.speeds, tables.pair_speeds))
+    by_joint = np.concatenate([low, high, space.flat.period, arms, pair_arms])
+    by_joint.setflags(write=False)
+    return Prepared(space, float(np.linalg.norm(high - low)), tables, by_joint)

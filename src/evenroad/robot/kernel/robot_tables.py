@@ -70,20 +70,15 @@ class RobotTables:
     pair_margins: Floats
     speeds: Floats
     pair_speeds: Floats
-    speeds_by_joint: tuple[Floats, Floats]
     fixed_contact: tuple[str, str] | None
 
 
 def robot_tables(robot: Robot) -> RobotTables:
     """Return the tables of a robot.
 
-    Raises
-    ------
-    InvalidValue
-        If a capsule has a size that is not a finite number > 0, the robot has no capsules, a length is larger than
-        1e6 m, or an angle, or what a mimic multiplies by or adds, larger than 1e9.
-    UnknownName
-        If capsules or pairs name a link that is not there.
+    Raises InvalidValue if a capsule has a size that is not a finite number > 0, the robot has no capsules, a length is
+    larger than 1e6 m, or an angle, or what a mimic multiplies by or adds, larger than 1e9; and UnknownName if capsules
+    or pairs name a link that is not there.
     """
     tree = moving_tree(robot)
     _require_few_turns(robot, tree)
@@ -105,8 +100,8 @@ def robot_tables(robot: Robot) -> RobotTables:
         (i, k) for a, b in pairs for i in _of_link(capsules, a) for k in _of_link(capsules, b)
     )
     padding = PADDING * max(1.0, reach)
-    ints, floats = _pack(tree, capsules, pairs, 0.0)
-    padded = _pack(tree, capsules, pairs, padding)[1]
+    packed = len(robot.group), tree, capsules, pairs
+    (ints, floats), padded = _pack(*packed, 0.0), _pack(*packed, padding)[1]
     radii = layout.PAIR_FLOAT_ROW * np.arange(len(capsule_pairs)) + ints[layout.PAIR_FLOATS] + 1
     speeds, pair_speeds = speed_bounds(tree, capsules, capsule_pairs, robot)
     # Margins: once for what is added, once more for what rounding may add to that.
@@ -121,11 +116,10 @@ def robot_tables(robot: Robot) -> RobotTables:
         2.0 * (padded[radii] - floats[radii]),
         np.ascontiguousarray(speeds),
         np.ascontiguousarray(pair_speeds),
-        (np.ascontiguousarray(speeds.T), np.ascontiguousarray(pair_speeds.T)),
         _fixed_contact(capsules, fixed),
     )
     arrays = ints, floats, tables.singles, tables.pair_margins, tables.speeds, tables.pair_speeds
-    for array in (*arrays, *tables.speeds_by_joint):
+    for array in arrays:
         array.setflags(write=False)
     return tables
 
@@ -194,11 +188,20 @@ class _Rows:
 
 
 def _pack(
-    tree: MovingTree, capsules: Sequence[PlacedCapsule], pairs: Sequence[tuple[str, str]], padding: float
+    coordinates: int,
+    tree: MovingTree,
+    capsules: Sequence[PlacedCapsule],
+    pairs: Sequence[tuple[str, str]],
+    padding: float,
 ) -> tuple[Ints, Floats]:
     """Return integers and floats, radii larger by `padding` [m]."""
     rows = _Rows()
     rows.header[layout.FRAMES] = len(tree.frames)
+    rows.header[layout.COORDINATES] = coordinates
+    bodies = len({capsule.link for capsule in capsules})
+    rows.header[layout.SCRATCH] = layout.FRAME * (len(tree.frames) + 1) + layout.PLACED * (
+        len(capsules) + bodies
+    )
     rows.header[layout.CAPSULES] = len(capsules)
     rows.header[layout.FIXED_CAPSULES] = sum(capsule.frame == 0 for capsule in capsules)
     rows.begin(layout.FRAME_INTS, layout.FRAME_FLOATS)
@@ -248,6 +251,7 @@ def _pack_pairs(
         capsule_pairs += [(i, k) for i in _of_link(capsules, a) for k in _of_link(capsules, b)]
         rows.ints += [bodies.index(a), bodies.index(b), first, len(capsule_pairs)]
         rows.floats.append(balls[bodies.index(a)][1] + balls[bodies.index(b)][1] + 2.0 * padding)
+    rows.header[layout.PAIRS] = len(capsule_pairs)
     rows.begin(layout.PAIR_INTS, layout.PAIR_FLOATS)
     for i, k in capsule_pairs:
         rows.ints += [i, k]
