@@ -175,6 +175,7 @@ def _meeting_themselves(scratch: Singles, ints: Ints, table: Singles, blocked: i
     """Return `blocked` and the mask of lanes in which two bodies of a pair touch."""
     bodies, capsules = scratch_places(ints)
     by_hulls = ints[at.BODY_PAIRS] - ints[at.HULL_PAIRS]
+    margins = ints[at.HULL_MARGINS] - by_hulls
     for p in range(ints[at.BODY_PAIRS]):
         a, b, begin, end = row(ints, ints[at.BODY_PAIR_INTS] + at.BODY_PAIR_INT_ROW * p, 4)
         (near,) = row(table, ints[at.BODY_PAIR_FLOATS] + p, 1)
@@ -215,7 +216,7 @@ def _meeting_themselves(scratch: Singles, ints: Ints, table: Singles, blocked: i
         while undecided != 0:
             lane = lowest_bit(undecided)
             undecided &= undecided - 1
-            if bodies_meet(scratch, lane, p, ints, table):
+            if bodies_meet(scratch, lane, LANES, table[margins + p], p, ints, table):
                 blocked |= 1 << lane
                 if enough == 1:
                     return blocked

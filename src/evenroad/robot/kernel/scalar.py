@@ -13,7 +13,7 @@ import numpy.typing as npt
 from numba import njit
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.hull_contact import placed_bodies_meet
+from evenroad.robot.kernel.hull_contact import bodies_meet
 from evenroad.robot.kernel.layout import inner, quick
 from evenroad.robot.kernel.motion import enter, span
 from evenroad.world.bisection import next_between
@@ -159,7 +159,7 @@ def _meets_itself(ints: Ints, floats: Floats, pair_margins: Floats, frames: Floa
                 if by_hulls < 0:
                     return pair
                 margin = pair_margins[len(pair_margins) - ints[at.HULL_PAIRS] + by_hulls]
-                if placed_bodies_meet(frames, margin, p, ints, floats):
+                if bodies_meet(frames.reshape(-1), 0, 1, margin, p, ints, floats):
                     return pair
                 break
     return -1
