@@ -85,9 +85,10 @@ def plan_arm(
 
     Parameters
     ----------
-    robot, scene : path-like, Robot and Scene
-        A URDF or the name of a shipped robot (``ur5``, ``arm7``), a scene file or that of a shipped one
-        (``box-reach``, ...), or values.
+    robot : str, path-like or Robot
+        A URDF file, or the name of a shipped robot (``ur5``, ``arm7``).
+    scene : str, path-like or Scene
+        A scene file, or the name of a shipped one (``box-reach``, ...).
     start : str or array_like, shape (dim,)
         Numbers in the order of the group [rad or m], or a text: the name of a state, ``0,-1.57,...`` or ``name=value``.
         A value that is outside of its joint's limits by no more than 1e-6 is brought to the limit.
