@@ -8,7 +8,9 @@ from importlib import import_module
 from pathlib import Path
 from typing import Annotated, ClassVar
 
-from evenroad.cli.options import HELP, option_names
+import tyro
+
+from evenroad.cli.options import HELP, given_options, option_names
 from evenroad.errors import InvalidValue
 
 
@@ -19,14 +21,14 @@ class PlanOptions:
     planner: ClassVar[str]
     """The function that plans, loaded when it is asked to."""
 
-    world: Annotated[Path, "positional"]
+    world: tyro.conf.Positional[Path]
     """The file of the world."""
     start: tuple[str, ...]
     """Where to start."""
-    goal: tuple[tuple[str, ...], ...]
-    """As start; given more than once, the path ends at one of the goals: the first that is reached, with
+    goal: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]]
+    """As start.  Required; given more than once, the path ends at one of the goals: the first that is reached, with
     points or --improve the cheapest."""
-    n: Annotated[int | None, "-n"] = None
+    n: Annotated[int | None, tyro.conf.arg(aliases=["-n"])] = None
     """Plan on a roadmap of exactly so many points (ps-PRM).  Default: no points, but until there is a path or a proof
     that there is none, or the time is over; where another option speaks of points: 512."""
     time: float | None = None
@@ -35,7 +37,7 @@ class PlanOptions:
     """Use up the time: plan again in other ways, and keep the shortest path.  Not with points."""
     certified: bool = False
     """The path must be proved free throughout; else the answer says which of its motions is not."""
-    k: Annotated[int | None, "-k"] = None
+    k: Annotated[int | None, tyro.conf.arg(aliases=["-k"])] = None
     """Connect each milestone with its k nearest, symmetrised (default 10; 20 from six joints on)."""
     connect_radius: float | None = None
     """Connect milestones up to this distance instead, in map units or radians."""
@@ -77,7 +79,7 @@ class PlanDisk(PlanOptions):
 
     planner = "evenroad.cli.plan_disk:plan_disk"
 
-    world: Annotated[Path, "positional"]
+    world: tyro.conf.Positional[Path]
     """A map: a .png or .pgm image, or a ROS map_server .yaml."""
     start: tuple[str, ...]
     """x y in map units."""
@@ -102,7 +104,7 @@ class PlanArm(PlanOptions):
 
     planner = "evenroad.cli.plan_arm:plan_arm"
 
-    world: Annotated[Path, "positional"]
+    world: tyro.conf.Positional[Path]
     """A scene (.yaml; shipped: box-reach.yaml, box-reach-narrow.yaml)."""
     start: tuple[str, ...]
     """One number a joint with commas between them, name=value,..., or a named state."""
@@ -127,7 +129,7 @@ class Demo:
 
     level: int = 3
     """Which maze: 1, 2 or 3, of rising difficulty."""
-    n: Annotated[int, "-n"] = 1024
+    n: Annotated[int, tyro.conf.arg(aliases=["-n"])] = 1024
     """How many points to draw."""
     out: Path = Path("demo")
     """Where results go: OUT.png and OUT.json."""
@@ -149,7 +151,7 @@ class Demo:
 
 def plan_type(words: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
     """Return which of the two a command line asks for, by its robot; InvalidValue if its options do not go together."""
-    given = {word.partition("=")[0].replace("_", "-") for word in words if word.startswith("--")}
+    given = given_options(words)
     chosen: type[PlanDisk] | type[PlanArm] = PlanArm if "--robot" in given else PlanDisk
     if not HELP.isdisjoint(words):
         return chosen
