@@ -11,16 +11,20 @@ from contextlib import redirect_stderr
 from dataclasses import MISSING, fields
 from io import StringIO
 from itertools import dropwhile, takewhile
+from textwrap import fill
 from typing import Annotated, Any, Union
 
 from tyro import cli, conf
 from tyro.constructors import ConstructorRegistry, PrimitiveConstructorSpec, PrimitiveTypeInfo
 
 from evenroad._checks import require_known
+from evenroad._terminal import table_width
 from evenroad.errors import InvalidValue, UnknownName, shown
 
 HELP = {"-h", "--help"}
+MARKS = (conf.FlagCreatePairsOff, conf.DisallowNone, conf.PositionalMetavarFromFieldName)
 NUMBERS = {int: "a whole number", float: "a number"}
+RULES = ConstructorRegistry()
 
 
 def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
@@ -29,18 +33,19 @@ def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
     Raises InvalidValue or UnknownName for what the verb lacks or needs, and for a value that is none of its kind;
     SystemExit after its help, where the words ask for that.
     """
-    known = option_names(kind)
+    known, program = option_names(kind), f"evenroad {verb}"
     for name in sorted(given_options(words) - known - HELP):
-        raise UnknownName.among(f"option of evenroad {verb}:", name, known)
-    options, unknown = _parsed(kind, f"evenroad {verb}", words)
-    for word in unknown:
-        raise InvalidValue(f"evenroad {verb} has no use for the word {shown(word)}")
+        raise UnknownName.among(f"option of {program}:", name, known)
+    texts = [" ".join(text.split()) for text in (kind.__doc__ or "").split("\n\n")]
+    # Tyro wraps no text about a verb, and would join lines that begin with a letter.
+    about = "\n\n".join(fill(text, table_width(), subsequent_indent="  ") for text in texts)
+    options, unknown = _parsed(kind, program, words, about)
+    if unknown:
+        raise InvalidValue(f"{program} has no use for the word {shown(unknown[0])}")
     for field in fields(kind):
         # Tyro asks for none of what may be given more than once.
         if field.default is MISSING and getattr(options, field.name) == ():
-            raise InvalidValue(
-                f"missing from evenroad {verb}: --{field.name}; all options: evenroad {verb} --help"
-            )
+            raise InvalidValue(f"missing from {program}: --{field.name}; all options: {program} --help")
     return options
 
 
@@ -53,8 +58,7 @@ def print_completion(kinds: Mapping[str, type], words: Sequence[str]) -> None:
 
 def option_names(kind: type) -> set[str]:
     """Return the long names of a verb's options, such as ``--start``."""
-    named = (field.name for field in fields(kind) if "Positional" not in str(field.type))
-    return {f"--{name.replace('_', '-')}" for name in named}
+    return {f"--{each.name.replace('_', '-')}" for each in fields(kind) if "Positional" not in str(each.type)}
 
 
 def given_options(words: Sequence[str]) -> set[str]:
@@ -62,22 +66,19 @@ def given_options(words: Sequence[str]) -> set[str]:
     return {word.partition("=")[0].replace("_", "-") for word in words if word.startswith("--")}
 
 
-def _parsed(kind: Any, program: str, words: Sequence[str]) -> Any:
-    """Return what tyro makes of the words, and those that it does not know."""
-    config = (conf.FlagCreatePairsOff, conf.DisallowNone, conf.PositionalMetavarFromFieldName)
-    numbers, said = ConstructorRegistry(), StringIO()
-    numbers.primitive_rule(_number)
+def _parsed(kind: Any, prog: str, words: Sequence[str], about: str = "") -> Any:
+    """Return what tyro makes of the words, and those that it has no use for."""
+    said = StringIO()
     try:
-        with redirect_stderr(said):
-            return cli(
-                kind, prog=program, args=words, config=config, registry=numbers, return_unknown_args=True
-            )
+        with redirect_stderr(said), RULES:
+            return cli(kind, prog=prog, description=about, args=words, config=MARKS, return_unknown_args=True)
     except SystemExit as end:
         if not end.code:
             raise
-        raise InvalidValue(f"{_in_words(said.getvalue())}; all options: {program} --help") from None
+        raise InvalidValue(f"{_in_words(said.getvalue())}; all options: {prog} --help") from None
 
 
+@RULES.primitive_rule
 def _number(info: PrimitiveTypeInfo) -> PrimitiveConstructorSpec[Any] | None:
     """Tell tyro how to read a number, and what to say of a word that is none."""
     kind = next((each for each in NUMBERS if info.type in (each, each | None)), None)

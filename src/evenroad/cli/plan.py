@@ -26,11 +26,11 @@ class PlanOptions:
     start: tuple[str, ...]
     """Where to start."""
     goal: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]]
-    """As start.  Required; given more than once, the path ends at one of the goals: the first that is reached, with
-    points or --improve the cheapest."""
+    """As start.  Required; given more than once, the path ends at the first one that is reached.
+    With points or --improve at the cheapest."""
     n: Annotated[int | None, tyro.conf.arg(aliases=["-n"])] = None
-    """Plan on a roadmap of exactly so many points (ps-PRM).  Default: no points, but until there is a path or a proof
-    that there is none, or the time is over; where another option speaks of points: 512."""
+    """Plan on a roadmap of exactly so many points (ps-PRM); where only other options speak of points: 512.
+    Default: no points, but until there is a path or a proof that there is none, or the time is over."""
     time: float | None = None
     """Seconds to plan at most, > 0 (default 5; with points 60)."""
     improve: bool = False
@@ -42,8 +42,7 @@ class PlanOptions:
     connect_radius: float | None = None
     """Connect milestones up to this distance instead, in map units or radians."""
     sampler: str = "auto"
-    """even, hickernell, mpmc, korobov, lattice, halton, sobol, sukharev or uniform; auto, the default, is
-    even."""
+    """even, hickernell, mpmc, korobov, lattice, halton, sobol, sukharev or uniform; auto is even."""
     plain: bool = False
     """halton and sobol: the plain sequence instead of the scrambled one."""
     skip: int = 0
@@ -55,8 +54,8 @@ class PlanOptions:
     raw: bool = False
     """Leave the path as it was found, without shortcutting it."""
     out: Path | None = None
-    """Where results go: OUT.json, OUT.png and, for an arm, OUT.csv. Default: the world's stem in the current folder,
-    with -plan added where that would overwrite an input."""
+    """Where results go: OUT.json, OUT.png and, for an arm, OUT.csv.
+    Default: the world's stem in the current folder, with -plan added where that would overwrite an input."""
     no_picture: bool = False
     """Draw no picture."""
 
@@ -113,8 +112,8 @@ class PlanArm(PlanOptions):
     srdf: Path | None = None
     """Its SRDF, with groups, named states and pairs of links that need no test."""
     group: str | None = None
-    """A group of the SRDF, or joints with commas between them; the others are held where the named states of start
-    and goal have them, else at 0."""
+    """A group of the SRDF, or joints with commas between them.
+    The others are held where the named states of start and goal have them, else at 0."""
     bodies: Path | None = None
     """A YAML file of capsules and spheres in place of the URDF's collision geometry."""
     deg: bool = False

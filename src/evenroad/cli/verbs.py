@@ -73,7 +73,7 @@ def _run(arguments: list[str]) -> int:
     from evenroad.cli.options import print_completion, read_options
 
     try:
-        if verb == "--tyro-print-completion":
+        if verb.startswith("--tyro-"):
             print_completion({name: _kind(name, ["--help"]) for name in VERBS}, arguments)
         require_known("verb", verb, VERBS)
         asked = read_options(verb, _kind(verb, words), words)
