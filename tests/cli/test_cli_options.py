@@ -119,10 +119,13 @@ def test_a_wrong_word_is_one_line_and_exit_code_2(run, words, says):
     assert err.startswith(f"evenroad: error: {says}")
 
 
-def test_a_verb_loads_only_what_it_needs():
+@pytest.mark.parametrize(
+    ("words", "unwanted"), [("plan --help", "rich"), ("--help", "tyro"), ("--version", "tyro")]
+)
+def test_only_what_is_asked_for_is_loaded(words, unwanted):
     code = (
-        "import sys, evenroad.cli.verbs as verbs; verbs.run(['plan', '--help']);"
-        "print(sorted({'numba', 'matplotlib', 'evenroad.research'} & set(sys.modules)))"
+        f"import sys, evenroad.cli.verbs as verbs; verbs.run({words.split()});"
+        f"print(sorted({{'numba', 'matplotlib', 'evenroad.research', {unwanted!r}}} & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"
