@@ -8,7 +8,9 @@ from importlib import import_module
 from pathlib import Path
 from typing import Annotated, ClassVar
 
-from evenroad.cli.options import HELP, option_names
+import tyro
+
+from evenroad.cli.options import HELP, given_options, option_names
 from evenroad.errors import InvalidValue
 
 
@@ -19,29 +21,28 @@ class PlanOptions:
     planner: ClassVar[str]
     """The function that plans, loaded when it is asked to."""
 
-    world: Annotated[Path, "positional"]
+    world: tyro.conf.Positional[Path]
     """The file of the world."""
     start: tuple[str, ...]
     """Where to start."""
-    goal: tuple[tuple[str, ...], ...]
-    """As start; given more than once, the path ends at one of the goals: the first that is reached, with
-    points or --improve the cheapest."""
-    n: Annotated[int | None, "-n"] = None
-    """Plan on a roadmap of exactly so many points (ps-PRM).  Default: no points, but until there is a path or a proof
-    that there is none, or the time is over; where another option speaks of points: 512."""
+    goal: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]]
+    """As start.  Required; given more than once, the path ends at the first one that is reached.
+    With points or --improve at the cheapest."""
+    n: Annotated[int | None, tyro.conf.arg(aliases=["-n"])] = None
+    """Plan on a roadmap of exactly so many points (ps-PRM); where only other options speak of points: 512.
+    Default: no points, but until there is a path or a proof that there is none, or the time is over."""
     time: float | None = None
     """Seconds to plan at most, > 0 (default 5; with points 60)."""
     improve: bool = False
     """Use up the time: plan again in other ways, and keep the shortest path.  Not with points."""
     certified: bool = False
     """The path must be proved free throughout; else the answer says which of its motions is not."""
-    k: Annotated[int | None, "-k"] = None
+    k: Annotated[int | None, tyro.conf.arg(aliases=["-k"])] = None
     """Connect each milestone with its k nearest, symmetrised (default 10; 20 from six joints on)."""
     connect_radius: float | None = None
     """Connect milestones up to this distance instead, in map units or radians."""
     sampler: str = "auto"
-    """even, hickernell, mpmc, korobov, lattice, halton, sobol, sukharev or uniform; auto, the default, is
-    even."""
+    """even, hickernell, mpmc, korobov, lattice, halton, sobol, sukharev or uniform; auto is even."""
     plain: bool = False
     """halton and sobol: the plain sequence instead of the scrambled one."""
     skip: int = 0
@@ -53,8 +54,8 @@ class PlanOptions:
     raw: bool = False
     """Leave the path as it was found, without shortcutting it."""
     out: Path | None = None
-    """Where results go: OUT.json, OUT.png and, for an arm, OUT.csv. Default: the world's stem in the current folder,
-    with -plan added where that would overwrite an input."""
+    """Where results go: OUT.json, OUT.png and, for an arm, OUT.csv.
+    Default: the world's stem in the current folder, with -plan added where that would overwrite an input."""
     no_picture: bool = False
     """Draw no picture."""
 
@@ -77,7 +78,7 @@ class PlanDisk(PlanOptions):
 
     planner = "evenroad.cli.plan_disk:plan_disk"
 
-    world: Annotated[Path, "positional"]
+    world: tyro.conf.Positional[Path]
     """A map: a .png or .pgm image, or a ROS map_server .yaml."""
     start: tuple[str, ...]
     """x y in map units."""
@@ -102,7 +103,7 @@ class PlanArm(PlanOptions):
 
     planner = "evenroad.cli.plan_arm:plan_arm"
 
-    world: Annotated[Path, "positional"]
+    world: tyro.conf.Positional[Path]
     """A scene (.yaml; shipped: box-reach.yaml, box-reach-narrow.yaml)."""
     start: tuple[str, ...]
     """One number a joint with commas between them, name=value,..., or a named state."""
@@ -111,8 +112,8 @@ class PlanArm(PlanOptions):
     srdf: Path | None = None
     """Its SRDF, with groups, named states and pairs of links that need no test."""
     group: str | None = None
-    """A group of the SRDF, or joints with commas between them; the others are held where the named states of start
-    and goal have them, else at 0."""
+    """A group of the SRDF, or joints with commas between them.
+    The others are held where the named states of start and goal have them, else at 0."""
     bodies: Path | None = None
     """A YAML file of capsules and spheres in place of the URDF's collision geometry."""
     deg: bool = False
@@ -127,7 +128,7 @@ class Demo:
 
     level: int = 3
     """Which maze: 1, 2 or 3, of rising difficulty."""
-    n: Annotated[int, "-n"] = 1024
+    n: Annotated[int, tyro.conf.arg(aliases=["-n"])] = 1024
     """How many points to draw."""
     out: Path = Path("demo")
     """Where results go: OUT.png and OUT.json."""
@@ -149,7 +150,7 @@ class Demo:
 
 def plan_type(words: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
     """Return which of the two a command line asks for, by its robot; InvalidValue if its options do not go together."""
-    given = {word.partition("=")[0].replace("_", "-") for word in words if word.startswith("--")}
+    given = given_options(words)
     chosen: type[PlanDisk] | type[PlanArm] = PlanArm if "--robot" in given else PlanDisk
     if not HELP.isdisjoint(words):
         return chosen

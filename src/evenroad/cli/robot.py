@@ -7,9 +7,9 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
 
 import numpy as np
+import tyro
 
 from evenroad._compiled import say_if_compiling
 from evenroad._rng import generator
@@ -38,7 +38,7 @@ _SECONDS = 0.2
 class Robot:
     """Show the joints, limits, bodies and self-collision pairs of an arm, and checks per second."""
 
-    robot: Annotated[str, "positional"]
+    robot: tyro.conf.Positional[str]
     """A URDF file, or the name of a shipped robot (ur5, arm7)."""
     srdf: Path | None = None
     """Its SRDF, with groups, named states and pairs of links that need no test."""
