@@ -36,22 +36,10 @@ from evenroad.space.batch import as_batch
 
 @dataclass(frozen=True, eq=False)
 class CertifiedWorld:
-    """An arm's world whose motions are free only where that is proved, with no gap between states.
+    """An arm's world whose motions are free only where that is proved: for roadmaps whose every edge is.
 
-    For a roadmap whose every edge is proved, plan in this world instead of the other.
-
-    Parameters
-    ----------
-    world : ArmWorld
-        The robot and its scene.
-    tolerance : float
-        Where a motion comes nearer than about this to contact it is not called free, > 0 [m].  Smaller ones
-        cost more time for motions that pass close by.
-
-    Raises
-    ------
-    InvalidValue
-        If `tolerance` is not such a number.
+    What comes nearer to contact than about `tolerance` is not called free, > 0 [m]; smaller ones cost more time for
+    motions that pass close by.
     """
 
     world: ArmWorld
@@ -70,13 +58,7 @@ class CertifiedWorld:
         return self.world.valid(q)
 
     def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-        """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are proved free: (m,).
-
-        Raises
-        ------
-        InvalidValue
-            As for :class:`ArmWorld`.
-        """
+        """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are proved free: (m,)."""
         return self.world.motion_certified(a, b, self.tolerance)
 
     @property

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from evenroad._checks import require_known
+from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
 from evenroad.geometry.fit import fit_capsules
 from evenroad.geometry.pose import IDENTITY, Pose
@@ -18,25 +19,22 @@ from evenroad.robot.scene import Scene
 
 @dataclass(frozen=True)
 class Robot:
-    """A kinematic tree with bodies.  A value: readers of files and fitting of capsules are elsewhere.
+    """A kinematic tree with bodies.
 
     Attributes
     ----------
-    name : str
-        Name of the robot.
     links : tuple of str
-        All links; the root first, every parent before its children.
+        The root first, every parent before its children.
     joints : tuple of Joint
         ``joints[i]`` is the joint whose child is ``links[i + 1]``.
     capsules : tuple of Capsule
         The bodies.
     pairs : tuple of pairs of str
-        Pairs of links that are tested against each other.
+        Links that are tested against each other.
     group : tuple of str
-        Joints that are planned for, in the order of the configuration; revolute, continuous or prismatic, none a mimic.
+        Joints that are planned for, in the order of the configuration; none is fixed or a mimic.
     held : mapping of str to float
-        Values of the movable joints that are not in the group [rad or m]; where not given: 0, or the nearest
-        to it within limits.
+        Joint -> value of other movable joints [rad or m]; where not given: 0, or the nearest to it within limits.
     states : mapping of str to mapping of str to float
         Named configurations: joint -> value, of joints outside of the group, too, where they are known.
     """
@@ -54,20 +52,22 @@ class Robot:
         # The kernel takes the ends as they are: a capsule with a pose of its own gets them in its link's frame.
         object.__setattr__(self, "capsules", tuple(map(without_pose, self.capsules)))
 
+    def fingerprint(self) -> str:
+        """Return the SHA-256 (hex) of what decides verdicts; the names of the robot and its states do not."""
+        return fingerprint_of(self.links, self.joints, self.capsules, self.pairs, self.group, dict(self.held))
+
     def with_tool(
         self, tool: Robot | Sequence[Shape], at: str, *, pose: Pose = IDENTITY, prefix: str = ""
     ) -> Robot:
         """Return the robot with a tool fixed to one of its links.
 
-        The group stays the robot's; the tool's joints are held where the tool has them, its group at 0 or the nearest
-        to it within limits.  Pairs within the robot and within the tool stay; those between the two are computed as
-        for a robot without an SRDF.
+        The group stays the robot's; the tool's joints are held.  Pairs within the robot and within the tool stay; those
+        between the two are computed as for a robot without an SRDF.
 
         Parameters
         ----------
         tool : Robot, or sequence of Shape
-            A gripper or another tool as a robot of its own; or its shapes in the frame of a new link ``tool``, to which
-            capsules are fitted.
+            A robot of its own; or shapes in the frame of a new link ``tool``, to which capsules are fitted.
         at : str
             The link that carries it.
         pose : Pose
@@ -88,8 +88,8 @@ class Robot:
             tool = Robot("tool", ("tool",), (), tuple(replace(c, link="tool") for c in capsules), (), ())
         if not tool.capsules:
             raise InvalidValue(f"tool {tool.name!r} must have a body: without one it would never collide")
-        held = {name: joint.neutral for name in tool.group for joint in tool.joints if joint.name == name}
-        tool = _renamed(replace(tool, group=(), held=held_values(tool) | held, states={}), prefix)
+        tool = replace(tool, group=(), states={})
+        tool = _renamed(replace(tool, held=held_values(tool)), prefix)
         mount = Joint(f"{at}-{tool.links[0]}", "fixed", at, tool.links[0], pose.xyz, pose.rotation)
         joints = [joint.name for joint in self.joints], [mount.name, *(joint.name for joint in tool.joints)]
         for what, ours, theirs in (("link", self.links, tool.links), ("joint", *joints)):
@@ -141,9 +141,8 @@ def _renamed(robot: Robot, prefix: str) -> Robot:
 class LinkBody:
     """What became of the collision geometry of a link.
 
-    `shapes` are those of the URDF, e.g.  ``box``, ``mesh forearm.stl``, and `shape_volume` the sum of their volumes
-    [m^3]; so many `capsules` stand for them, whose union has `capsule_volume` [m^3].  `given` says whether the user
-    gave them.
+    `shapes` are the file's, e.g. ``box`` or ``mesh forearm.stl``, with the sum of their volumes [m^3]; so many
+    `capsules` stand for them, with the volume of their union [m^3]; `given` by the user or not.
     """
 
     link: str
@@ -168,14 +167,13 @@ class RobotModel:
     bodies : tuple of LinkBody
         One for each link that has a body.
     pairs_from : str
-        ``SRDF`` or ``computed``: where the self pairs come from.
+        ``SRDF`` or ``computed``.
     dropped : tuple of (str, str, str)
         Pairs of links with bodies that are not tested, each with the reason.
     drawn_only : tuple of str
-        Links that the URDF draws (``<visual>``) and that have no body: nothing is ever found to touch them.
+        Links that are drawn and have no body: nothing is ever found to touch them.
     always_touching : tuple of pairs of str
-        Pairs that are tested, since the SRDF does not disable them, and touch in every sampled configuration: with one
-        of these no configuration is free.
+        Pairs that the SRDF does not disable and that touch in every sampled configuration: none is free.
     """
 
     robot: Robot
@@ -193,9 +191,7 @@ class RobotModel:
 
 
 def with_group(robot: Robot, group: Sequence[str], held: Mapping[str, float] | None = None) -> Robot:
-    """Return the robot with another group; the other movable joints are held at `held`, else at 0.
-
-    Where 0 is outside of a joint's limits, it is held at the limit that is nearest.
+    """Return the robot with another group; the other movable joints are held at `held`, else at 0 or nearest to it.
 
     Raises
     ------
@@ -217,9 +213,6 @@ def with_group(robot: Robot, group: Sequence[str], held: Mapping[str, float] | N
 
 def in_scene(robot: Robot, scene: Scene) -> Robot:
     """Return the robot with the scene's ranges to plan in, where they are narrower than its own limits.
-
-    Half of what a joint of four pi can do is the other half once more: a narrower range makes every point of a
-    set count for more.
 
     Raises
     ------

@@ -1,0 +1,143 @@
+"""Foreign robots, tried as their owners would: read, sampled, and planned for between two free configurations.
+
+    python -m benchmarks.robots FOLDER... --state after --out docs/data/robots.csv
+
+Every URDF, xacro and MJCF in the folders that has a joint which moves is a row; files that are equal byte for byte
+are one.  A robot is read without an SRDF, all its joints planned for, in empty space; where the refusal names an
+option of `load_model` that would help (``--use-visuals``), the owner follows.  Each has a process and a time limit of
+its own.  Rows of another state (``before``) that the CSV holds already stay.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import hashlib
+import json
+import re
+import subprocess
+import sys
+import time
+import warnings
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+COLUMNS = ("robot", "state", "answer", "joints", "free_percent", "seconds", "reason")
+SUFFIXES = (".urdf", ".xacro", ".xml")
+MOVES = re.compile(rb"type=[\"'](revolute|continuous|prismatic)[\"']|<mujoco")
+SAMPLES = 2000
+SECONDS = 5.0
+"""For the plan."""
+
+RIGHTLY = ("is missing", "no joint that could be planned for", "no collision geometry at all", "is not")
+"""Refusals that no reader of the file could do without: a piece is not there."""
+
+
+def robots_in(folders: list[Path]) -> Iterator[tuple[str, Path]]:
+    """Yield a short name and the file of every robot that moves."""
+    seen = set()
+    for folder in folders:
+        for path in sorted(path for path in folder.rglob("*") if path.suffix in SUFFIXES):
+            content = path.read_bytes()
+            digest = hashlib.sha256(content).digest()
+            if MOVES.search(content) and digest not in seen:
+                seen.add(digest)
+                yield "/".join(path.relative_to(folder).parts[-3:]), path
+
+
+def tried(path: Path) -> dict[str, object]:
+    """Return the row of one robot, without its name."""
+    import numpy as np
+
+    from evenroad.arms import plan_arm
+    from evenroad.errors import EvenroadError
+    from evenroad.points import draw
+    from evenroad.robot import ArmWorld, Scene, load_model
+
+    scene, options = Scene("empty space"), {}
+    try:
+        try:
+            model = load_model(path)
+        except EvenroadError as error:
+            if "--use-visuals" not in str(error):
+                raise
+            options = {"use_visuals": True}
+            model = load_model(path, **options)
+        world = ArmWorld(model.robot, scene)
+        q = world.space.from_cube(draw("halton", SAMPLES, world.space.cube_dim, rng=0).points)
+        free = q[world.valid(q)]
+        row = {"joints": world.space.dim, "free_percent": round(100.0 * len(free) / len(q), 1)}
+        if len(free) < 2:
+            pair = world.explain(np.mean([world.space.low, world.space.high], axis=0))
+            return row | {"answer": "0 % free" if len(free) == 0 else "no path", "reason": pair}
+        result = plan_arm(str(path), scene, free[0], free[-1], seconds=SECONDS, **options)
+    except EvenroadError as error:
+        reason = str(error).replace(str(path.parent) + "/", "")
+        return {
+            "answer": "refused " + ("rightly" if any(s in reason for s in RIGHTLY) else "wrongly"),
+            "reason": reason,
+        }
+    if result.solved:
+        return row | {"answer": "solved", "reason": "with its visuals" if options else ""}
+    return row | {"answer": "no path", "reason": f"{result.status}: {result.message}"}
+
+
+def in_its_process(path: Path, limit: float) -> dict[str, object]:
+    begin = time.perf_counter()
+    try:
+        run = subprocess.run(
+            [sys.executable, "-m", "benchmarks.robots", "--one", str(path)],
+            capture_output=True,
+            text=True,
+            timeout=limit,
+        )
+        lines = run.stdout.splitlines() or [""]
+        row = (
+            json.loads(lines[-1])
+            if run.returncode == 0
+            else {"answer": "crashed", "reason": run.stderr[-300:]}
+        )
+    except subprocess.TimeoutExpired:
+        row = {"answer": "out of time", "reason": f"more than {limit:g} s"}
+    return row | {"seconds": round(time.perf_counter() - begin, 1)}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("folders", type=Path, nargs="*")
+    parser.add_argument("--state", default="after")
+    parser.add_argument("--out", type=Path, default=Path("out/robots.csv"))
+    parser.add_argument("--limit", type=float, default=180.0, help="seconds for one robot")
+    parser.add_argument("--only", default="", help="robots with this in their name")
+    parser.add_argument("--one", type=Path, help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.one:
+        warnings.simplefilter("ignore")
+        print(json.dumps(tried(options.one)))
+        return
+    rows: dict[tuple[str, str], dict[str, object]] = {}
+    if options.out.exists():
+        with open(options.out, newline="") as file:
+            rows = {(row["robot"], row["state"]): dict(row) for row in csv.DictReader(file)}
+    options.out.parent.mkdir(parents=True, exist_ok=True)
+    for name, path in robots_in(options.folders):
+        if options.only not in name:
+            continue
+        row = in_its_process(path, options.limit)
+        row["reason"] = " ".join(str(row.get("reason", "")).split())[:200]
+        rows[name, options.state] = {"robot": name, "state": options.state, **row}
+        print(f"{name:60} {row['answer']:16} {row['seconds']:6} s  {row['reason']}", flush=True)
+        with open(options.out, "w", newline="") as file:
+            writer = csv.DictWriter(file, COLUMNS, restval="", lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(rows[key] for key in sorted(rows))
+    for state in sorted({state for _, state in rows}):
+        counts = Counter(row["answer"] for (_, of), row in rows.items() if of == state)
+        print(f"{state}: " + ", ".join(f"{count} {answer}" for answer, count in counts.most_common()))
+
+
+if __name__ == "__main__":
+    main()
