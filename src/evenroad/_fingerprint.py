@@ -54,8 +54,6 @@ def _canonical(value: Any) -> bytes:
         return _tagged("enum", type(value).__name__.encode(), value.name.encode())
     if value is None or isinstance(value, bool | int | float | str | bytes | np.bool_ | np.number):
         plain = value.item() if isinstance(value, np.generic) else value
-        # Zeros of both signs are one number.
-        plain = plain + 0.0 if isinstance(plain, float) else plain
         return _tagged(type(plain).__name__, repr(plain).encode())
     if isinstance(value, np.ndarray) and value.dtype != object:
         return _tagged(

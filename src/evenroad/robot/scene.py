@@ -120,8 +120,12 @@ class Scene:
 
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of what decides verdicts: obstacles and allowed contacts, in whatever order."""
-        obstacles = [(each.name, each.shape, each.size, each.xyz, each.rotation) for each in self.obstacles]
-        return fingerprint_of(set(obstacles), set(self.allowed))
+        rows = set()
+        for each in self.obstacles:
+            numbers = (*each.size, *each.xyz, *each.rotation)
+            # Zeros of both signs are one number.
+            rows.add((each.name, each.shape, *(number + 0.0 for number in numbers)))
+        return fingerprint_of(rows, self.allowed)
 
     def with_(self, *obstacles: Obstacle, allowed: Sequence[tuple[str, str]] = ()) -> Scene:
         """Return the scene with more obstacles, of new names, and more (link, obstacle) contacts left untested."""
