@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -28,8 +29,10 @@ from evenroad.robot import (
     load_model,
     load_scene,
 )
+from evenroad.robot.load import RobotOptions
 from evenroad.robot.reference.recheck import MeshCheck, has_meshes, recheck, unseen_pairs
 from evenroad.robot.states import clipped
+from evenroad.robot.urdf_xml import RobotFile
 
 PathLike = str | os.PathLike[str]
 Place = str | npt.ArrayLike
@@ -56,8 +59,8 @@ class ArmQuery:
         Configurations of which one is to be reached.
     goal_names : tuple of str
         What the caller called each of them: its text; of numbers, nothing.
-    source : path-like or None
-        The URDF's file or shipped name; None for a robot that was given as a value.
+    source : RobotFile or None
+        Where the robot was read; None for a robot that was given as a value.
     model : RobotModel or None
         How the robot was made from its files; None as for `source`.
     """
@@ -66,7 +69,7 @@ class ArmQuery:
     start: npt.NDArray[np.float64]
     goals: npt.NDArray[np.float64]
     goal_names: tuple[str, ...]
-    source: PathLike | None = None
+    source: RobotFile | None = None
     model: RobotModel | None = None
 
 
@@ -86,9 +89,7 @@ def plan_arm(
     shorten: bool = True,
     resolution: float = RESOLUTION,
     degrees: bool = False,
-    srdf: PathLike | None = None,
-    group: str | Sequence[str] | None = None,
-    bodies: PathLike | None = None,
+    **options: Unpack[RobotOptions],
 ) -> PlanResult:
     """Plan for an arm among obstacles, as ``evenroad plan --robot`` does: until there is a path or the time is over.
 
@@ -125,8 +126,8 @@ def plan_arm(
         Largest step of a motion check, > 0 [rad].
     degrees : bool
         Angles in texts are degrees.
-    srdf, group, bodies
-        As in :func:`evenroad.robot.load_model`; for a robot that is read from a file.
+    **options
+        ``srdf``, ``group``, ``bodies``, ... of :func:`evenroad.robot.load_model`, for a robot that is read from a file.
 
     Returns
     -------
@@ -152,9 +153,7 @@ def plan_arm(
         goal,
         resolution=resolution,
         degrees=degrees,
-        srdf=srdf,
-        group=group,
-        bodies=bodies,
+        **options,
     )
     budget = Budget(seconds=seconds) if budget is None else budget
     if points is None:
@@ -210,19 +209,17 @@ def arm_query(
     *,
     resolution: float = RESOLUTION,
     degrees: bool = False,
-    srdf: PathLike | None = None,
-    group: str | Sequence[str] | None = None,
-    bodies: PathLike | None = None,
+    **options: Unpack[RobotOptions],
 ) -> ArmQuery:
     """Read robot, scene and configurations, and put them together; parameters and errors as :func:`plan_arm`."""
     scene = scene if isinstance(scene, Scene) else load_scene(scene)
     source, model = None, None
     if isinstance(robot, Robot):
-        if not (srdf is None and group is None and bodies is None):
-            raise InvalidValue("srdf, group and bodies go with the file of a robot, not with a Robot")
+        if options:
+            raise InvalidValue(f"{', '.join(options)}: for the file of a robot, not for a Robot")
     else:
-        source, model = robot, load_model(robot, srdf=srdf, group=group, bodies=bodies)
-        robot = model.robot
+        model = load_model(robot, **options)
+        source, robot = model.file, model.robot
     goals = _places(goal)
     texts = [place for place in (start, *goals) if isinstance(place, str)]
     robot = at_states(in_scene(robot, scene), texts, scene)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -13,24 +13,31 @@ from typing import Any
 from evenroad import __version__
 from evenroad._files import atomic_write, cache_folder
 from evenroad.errors import BrokenFile
-from evenroad.geometry.shapes import Capsule
+from evenroad.geometry.shapes import Capsule, Mesh
 from evenroad.robot.joint import Joint, Mimic
 from evenroad.robot.robot import LinkBody, Robot, RobotModel
-from evenroad.robot.urdf_xml import find_mesh, mesh_names, read_urdf_xml
+from evenroad.robot.urdf import Urdf
 
-_FORMAT = 6
+_FORMAT = 7
 """Counted up when the same files would give another robot, or the files of this cache look different."""
 
 
-def key_of(urdf: Path, srdf: Path | None, bodies: Path | None, group: str | Sequence[str] | None) -> str:
-    """Return the hash of all that decides the robot: the content of its files, meshes included, and the group.
+def key_of(urdf: Urdf, others: Iterable[tuple[str, Path | None]], group: str | Sequence[str] | None) -> str:
+    """Return the hash of all that decides the robot: what its file says, the content of meshes and others, the group.
 
-    Raises BrokenFile, InvalidValue if a file is missing, or the URDF broken: a cached robot is never returned for
-    files that are gone.
+    The others have a name for errors: BrokenFile if one is missing, as a cached robot is never returned for files that
+    are gone.
     """
-    digest = hashlib.sha256(f"{_FORMAT}|{__version__}|{urdf.name}|{group!r}".encode())
-    for part in _parts(urdf, srdf, bodies):
-        digest.update(hashlib.sha256(part).digest())
+    digest = hashlib.sha256(f"{_FORMAT}|{__version__}|{urdf!r}|{group!r}".encode())
+    sources = [shape.source for shape in urdf.shapes if isinstance(shape, Mesh)]
+    meshes = [("mesh", source) for source in sources if isinstance(source, Path)]
+    for what, path in (*meshes, *others):
+        try:
+            # An empty file is refused where none at all is fine.
+            content = b"absent" if path is None else b"present" + path.read_bytes()
+        except OSError as error:
+            raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
+        digest.update(hashlib.sha256(content).digest())
     return digest.hexdigest()
 
 
@@ -50,18 +57,6 @@ def keep(key: str, model: RobotModel) -> None:
             stream.write(json.dumps(asdict(model)).encode())
 
 
-def _parts(urdf: Path, srdf: Path | None, bodies: Path | None) -> Iterator[bytes]:
-    root = read_urdf_xml(urdf)
-    files = [("robot", urdf), ("SRDF", srdf), ("file of bodies", bodies)]
-    files += [("mesh", find_mesh(name, urdf, link)) for link, name in mesh_names(root)]
-    for what, path in files:
-        try:
-            # An empty file is refused where none at all is fine.
-            yield b"absent" if path is None else b"present" + path.read_bytes()
-        except OSError as error:
-            raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
-
-
 def _file(key: str) -> Path:
     return cache_folder() / "robots" / f"{key[:32]}.json"
 
@@ -74,6 +69,7 @@ def _model(record: dict[str, Any]) -> RobotModel:
         dropped=tuple((first, second, reason) for first, second, reason in record["dropped"]),
         drawn_only=tuple(record["drawn_only"]),
         always_touching=tuple((first, second) for first, second in record["always_touching"]),
+        notes=tuple(record["notes"]),
     )
 
 

@@ -15,6 +15,7 @@ from evenroad.robot.joint import Joint, require_within, within_limits_of_mimics
 from evenroad.robot.kinematics import held_values
 from evenroad.robot.pairs import computed_pairs
 from evenroad.robot.scene import Scene
+from evenroad.robot.urdf_xml import RobotFile
 
 
 @dataclass(frozen=True)
@@ -174,6 +175,10 @@ class RobotModel:
         Links that are drawn and have no body: nothing is ever found to touch them.
     always_touching : tuple of pairs of str
         Pairs that the SRDF does not disable and that touch in every sampled configuration: none is free.
+    notes : tuple of str
+        What was read otherwise than it stands in the file.
+    file : RobotFile or None
+        Where the robot was read, and how.
     """
 
     robot: Robot
@@ -182,6 +187,8 @@ class RobotModel:
     dropped: tuple[tuple[str, str, str], ...]
     drawn_only: tuple[str, ...] = ()
     always_touching: tuple[tuple[str, str], ...] = ()
+    notes: tuple[str, ...] = ()
+    file: RobotFile | None = field(default=None, compare=False)
 
     @property
     def bodiless(self) -> tuple[str, ...]:

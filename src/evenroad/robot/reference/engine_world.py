@@ -11,10 +11,10 @@ from evenroad._arrays import Bools, Floats
 from evenroad.errors import InvalidValue
 from evenroad.geometry.shapes import Shape, along_z
 from evenroad.robot.known_robots import joint_space
-from evenroad.robot.load import find_robot
+from evenroad.robot.load import find_robot, read_robot
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
-from evenroad.robot.urdf import read_urdf
+from evenroad.robot.urdf_xml import RobotFile
 from evenroad.space import JointSpace
 from evenroad.world.function import FunctionWorld, TestedAtStates
 
@@ -68,13 +68,14 @@ class EngineWorld(TestedAtStates, ABC):
         """Return which configurations within the limits, (n, dim), touch nothing: (n,)."""
 
 
-def original_shapes(source: str | os.PathLike[str], robot: Robot) -> tuple[Shape, ...]:
-    """Return the collision shapes that the URDF `source`, or a shipped robot, gives, before capsules were fitted.
+def original_shapes(source: str | os.PathLike[str] | RobotFile, robot: Robot) -> tuple[Shape, ...]:
+    """Return the collision shapes that a robot's file, or a shipped robot, gives, before capsules were fitted.
 
     Links of `robot` that have no shape there, because their capsules were given, keep those.  Raises as
     :func:`evenroad.robot.load_model`.
     """
-    shapes = read_urdf(find_robot(source)[0]).shapes
+    file = source if isinstance(source, RobotFile) else RobotFile(find_robot(source)[0])
+    shapes = read_robot(file).shapes
     there = {shape.link for shape in shapes}
     return shapes + tuple(shape for shape in capsule_shapes(robot) if shape.link not in there)
 
