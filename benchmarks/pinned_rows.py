@@ -16,7 +16,7 @@ import math
 import tempfile
 from pathlib import Path
 
-from evenroad._progress import LineProgress
+from evenroad._terminal import LineProgress
 from evenroad.research.bench.runner import run_tasks
 from evenroad.research.bench.store import open_store, read_rows
 from evenroad.research.bench.task import Task

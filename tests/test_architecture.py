@@ -13,7 +13,7 @@ ROOT = Path(evenroad.__file__).parent
 
 BASE = {
     *("errors", "_checks", "_rng", "_files", "_npz", "_yaml"),
-    *("_arrays", "_progress", "_extras", "_compiled", "_fingerprint"),
+    *("_arrays", "_terminal", "_extras", "_compiled", "_fingerprint"),
 }
 MAY_IMPORT = {
     "points": BASE,
@@ -133,7 +133,7 @@ def test_no_module_is_longer_than_400_lines():
 
 
 def test_importing_evenroad_loads_nothing_heavy():
-    heavy = {"numba", "scipy", "matplotlib", "torch", "tyro", "rich", "PIL"}
+    heavy = {"numba", "scipy", "matplotlib", "torch", "rich", "PIL"}
     code = f"import sys, evenroad; print(sorted({heavy!r} & set(sys.modules)))"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert loaded.stdout.strip() == "[]"

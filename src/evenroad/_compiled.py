@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import os
 import sys
+from importlib import import_module
 from pathlib import Path
 from typing import Any
+
+from evenroad.errors import NotAvailable
 
 VARIABLE = "NUMBA_CACHE_DIR"
 """Names the folder of the user's choice; numba reads it."""
@@ -74,3 +77,19 @@ def is_kept(function: Any) -> bool:
     except Exception:
         # Inner parts of numba, of which each version has its own.
         return True
+
+
+def say_if_compiling(module: str, function: str, seconds: int) -> bool:
+    """Say on standard error that a first run takes so long, where code of this function is yet to be compiled.
+
+    Returns whether it was said.
+    """
+    try:
+        compiled = getattr(import_module(module), function)
+    except (ImportError, NotAvailable):
+        # Where sixteen lanes cannot be had, others plan.
+        return False
+    if is_kept(compiled):
+        return False
+    print(f"evenroad: compiling for this machine, once: about {seconds} s", file=sys.stderr, flush=True)
+    return True

@@ -5,7 +5,8 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -28,47 +29,43 @@ def write_npz(path: Path, arrays: Mapping[str, npt.ArrayLike], *, compressed: bo
         save(file, allow_pickle=False, **{name: np.asarray(array) for name, array in arrays.items()})
 
 
-def read_npz(path: Path, what: str, *layouts: Collection[str]) -> Arrays:
-    """Read a file that `write_npz` wrote.
-
-    Parameters
-    ----------
-    path : path
-        The file.
-    what : str
-        What it should hold, for the texts of errors: ``point set``, ``roadmap``.
-    *layouts : collections of str
-        The names of its arrays have to be those of one of these.
-
-    Raises
-    ------
-    BrokenFile
-        If the file is missing, is no such npz, or was damaged; the text names it and says what is wrong.
-    """
-    arrays = {}
+@contextmanager
+def reading(path: Path, kind: str) -> Iterator[None]:
+    """Turn whatever goes wrong in the block into a BrokenFile that names the file and the `kind` that it is not."""
     try:
-        # Opened here, not by NumPy, which leaves the handle open when the archive is broken.
-        with open(path, "rb") as file:
-            archive = np.load(file, allow_pickle=False)
-            if not isinstance(archive, np.lib.npyio.NpzFile):
-                raise BrokenFile(f"{path} is a plain array, not a .npz {what}")
-            if not any(set(archive.files) == set(layout) for layout in layouts):
-                raise BrokenFile(
-                    f"{path} holds {shown(sorted(archive.files))}, a {what} holds {sorted(layouts[0])}"
-                )
-            for name in archive.files:
-                arrays[name] = archive[name]
-                if not isinstance(arrays[name], np.ndarray):
-                    # NumPy hands out a member without the magic of an array as bytes.
-                    raise BrokenFile(f"{path}: {name} is no array")
-    except FileNotFoundError:
-        raise BrokenFile(f"no such file: {path}") from None
+        yield
     except BrokenFile:
         raise
+    except FileNotFoundError:
+        raise BrokenFile(f"no such file: {path}") from None
+    except IsADirectoryError:
+        raise BrokenFile(f"{path} is a folder, not a {kind}") from None
     except Exception as error:
         # No list is complete: damaged headers alone give errors of the tokenizer, of memory and of overflow, and
         # zipfile has its own for every compression, encryption and version that it does not know.
-        raise BrokenFile(f"{path} is not a readable .npz {what}: {shown(error)}") from error
+        raise BrokenFile(f"{path} is not a readable {kind}: {shown(error)}") from error
+
+
+def read_npz(path: Path, what: str, *layouts: Collection[str]) -> Arrays:
+    """Return the arrays of a file that `write_npz` wrote, whose names have to be those of one of the `layouts`.
+
+    Raises BrokenFile if the file is missing, is no such npz, or was damaged; the text says what a `what` holds.
+    """
+    arrays = {}
+    # Opened here, not by NumPy, which leaves the handle open when the archive is broken.
+    with reading(path, f".npz {what}"), open(path, "rb") as file:
+        archive = np.load(file, allow_pickle=False)
+        if not isinstance(archive, np.lib.npyio.NpzFile):
+            raise BrokenFile(f"{path} is a plain array, not a .npz {what}")
+        if not any(set(archive.files) == set(layout) for layout in layouts):
+            raise BrokenFile(
+                f"{path} holds {shown(sorted(archive.files))}, a {what} holds {sorted(layouts[0])}"
+            )
+        for name in archive.files:
+            arrays[name] = archive[name]
+            if not isinstance(arrays[name], np.ndarray):
+                # NumPy hands out a member without the magic of an array as bytes.
+                raise BrokenFile(f"{path}: {name} is no array")
     return arrays
 
 

@@ -120,7 +120,7 @@ def test_a_path_with_a_motion_that_is_not_proved_is_none_where_a_proof_was_asked
 def test_a_goal_is_missed(run):
     code, out, err = run("plan", "box-reach.yaml", "--robot", "ur5", "--start", "home")
     assert (code, out) == (2, "")
-    assert err == "evenroad: error: give --goal, where the path is to end\n"
+    assert err == "evenroad: error: evenroad plan needs --goal; all options: evenroad plan --help\n"
 
 
 def test_improving_does_not_go_with_points(run):
@@ -130,12 +130,12 @@ def test_improving_does_not_go_with_points(run):
 
 
 def test_what_is_compiled_is_said_once(run, monkeypatch, capsys):
-    from evenroad.cli import progress
+    from evenroad import _compiled
 
-    monkeypatch.setattr(progress, "is_kept", lambda function: False)
+    monkeypatch.setattr(_compiled, "is_kept", lambda function: False)
     assert main([str(word) for word in arm_arguments(out="a")] + ["--no-picture"]) == 0
     assert capsys.readouterr().err == "evenroad: compiling for this machine, once: about 20 s\n"
-    monkeypatch.setattr(progress, "is_kept", lambda function: True)
+    monkeypatch.setattr(_compiled, "is_kept", lambda function: True)
     assert main([str(word) for word in arm_arguments(out="a")] + ["--no-picture"]) == 0
     assert capsys.readouterr().err == ""
 
@@ -294,7 +294,7 @@ BAD = {
     "no time": ({"time": 0}, "time must be a finite number > 0, got 0"),
     "less than no time": ({"time": -2}, "time must be a finite number > 0, got -2"),
     "a time that is not a number": ({"time": "nan"}, "time must be a finite number > 0, got nan"),
-    "a time in words": ({"time": "soon"}, "time must be a finite number > 0, got 'soon'"),
+    "a time in words": ({"time": "soon"}, "--time must be a number, got 'soon'"),
     "endless time": ({"time": "inf"}, "time must be a finite number > 0, got inf"),
     "points of a negative number": ({"n": -5}, "n must be an integer >= 1, got -5"),
     "a pose that is no rotation": (

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from rich.table import Table
 
-from evenroad.cli.console import print_table
+from evenroad._terminal import print_table
 from evenroad.points import PointSet, save_points
 from tests.research.report.stores import solved, task, write_store
 

@@ -10,7 +10,7 @@ import sys
 import numpy as np
 import pytest
 
-from evenroad.cli.interrupt import interrupt_between_steps
+from evenroad._terminal import interrupt_between_steps
 from evenroad.points import SAMPLERS, PointSet, draw, load_points, save_points
 
 
@@ -387,8 +387,16 @@ def test_an_empty_set_has_nothing_to_measure(run):
 
 
 def test_a_value_beyond_the_range_of_a_float_is_left_out_and_said_so():
-    from evenroad.cli.measure import _finite
+    from evenroad.cli.points import _finite
 
     assert _finite("a", 0.5, "note") == ("a", 0.5, "note")
     for value in (np.inf, np.nan):
         assert _finite("a", value, "note") == ("a", None, "note: beyond the range of a float")
+
+
+def test_a_folder_is_no_point_set(run, tmp_path):
+    (tmp_path / "sets.npz").mkdir()
+    for name, kind in ((tmp_path, ".npy array"), ("sets.npz", ".npz point set")):
+        code, out, err = run("measure", name)
+        assert (code, out) == (2, "")
+        assert err == f"evenroad: error: {name} is a folder, not a {kind}\n"

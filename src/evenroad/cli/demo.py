@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import tyro
-
 from evenroad.cli.plan import PlanDisk
 
 
@@ -17,7 +15,7 @@ class Demo:
 
     level: int = 3
     """Which maze: 1, 2 or 3, of rising difficulty."""
-    n: Annotated[int, tyro.conf.arg(aliases=["-n"])] = 1024
+    n: Annotated[int, "-n"] = 1024
     """How many points to draw."""
     out: Path = Path("demo")
     """Where results go: OUT.png and OUT.json."""

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
+from evenroad.cli.options import HELP, option_names
 from evenroad.cli.plan_options import ArmOptions, DiskOptions
 from evenroad.errors import InvalidValue
 
@@ -42,17 +43,17 @@ class PlanArm(ArmOptions):
         return plan_arm(self)
 
 
-def plan_type(arguments: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
-    """Return which of the two a command line asks for, by the robot that is given.
+def plan_type(words: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
+    """Return which of the two the words of a command line ask for, by the robot that is given.
 
     Raises
     ------
     InvalidValue
         If no robot or two are given, or an option that only the other kind has.
     """
-    given = {word.partition("=")[0].replace("_", "-") for word in arguments if word.startswith("--")}
+    given = {word.partition("=")[0].replace("_", "-") for word in words if word.startswith("--")}
     chosen: type[PlanDisk] | type[PlanArm] = PlanArm if "--robot" in given else PlanDisk
-    if "-h" in arguments or "--help" in given:
+    if not HELP.isdisjoint(words):
         return chosen
     if len(given & {"--robot", "--robot-radius"}) != 1:
         many = "both" if "--robot" in given else "neither"
@@ -60,10 +61,6 @@ def plan_type(arguments: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
             f"give --robot-radius (a disk) or --robot (an arm), exactly one of them, not {many}"
         )
     other, needs = (PlanDisk, "--robot-radius") if chosen is PlanArm else (PlanArm, "--robot")
-    for option in sorted(given & (_options(other) - _options(chosen))):
+    for option in sorted(given & (option_names(other) - option_names(chosen))):
         raise InvalidValue(f"{option} goes with {needs} only")
     return chosen
-
-
-def _options(kind: type[PlanDisk] | type[PlanArm]) -> set[str]:
-    return {f"--{each.name.replace('_', '-')}" for each in fields(kind)}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from pathlib import Path
 
+from evenroad._compiled import say_if_compiling
 from evenroad.arms import SEARCH, ArmQuery, arm_query, finished, plan_on_points
 from evenroad.cli.plan_options import ArmOptions
 from evenroad.cli.plan_parts import (
@@ -14,12 +15,12 @@ from evenroad.cli.plan_parts import (
     draw_points,
     load_compiled_code,
     output_files,
+    print_plan,
+    save_plan,
     wants_points,
 )
-from evenroad.cli.plan_table import print_plan
-from evenroad.cli.progress import say_if_compiling
 from evenroad.cli.robot_tables import bodiless_rows
-from evenroad.io import plan_record, save_json, save_path_csv
+from evenroad.io import plan_record
 from evenroad.roadmap import default_rule, find_path
 from evenroad.robot import RobotModel, find_robot, find_scene, held_values
 from evenroad.robot.kernel.selftest import lanes_failure
@@ -61,14 +62,8 @@ def plan_arm(plan: ArmOptions) -> int:
         "checked_with": world.checked_with,
         "meshes": None if meshes is None else asdict(meshes),
     }
-    save_json(files["json"], record)
-    # An earlier run's path must not pass for this one's, nor one in collision for a free one.
-    files["csv"].unlink(missing_ok=True)
-    if result.path is None or not result.solved:
-        del files["csv"]
-    else:
-        save_path_csv(files["csv"], result.path, world.robot.group)
-    print_plan(result, list(files.values()), _rows(query, query.model, meshes))
+    save_plan(files, result, record, world.robot.group)
+    print_plan(result, files.values(), _rows(query, query.model, meshes))
     if "png" in files:
         # Last, and loaded only now: nobody waits for the picture.
         from evenroad.viz.arm import save_arm_picture

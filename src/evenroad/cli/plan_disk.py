@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from evenroad import roadmap
+from evenroad._compiled import say_if_compiling
 from evenroad._rng import generator
 from evenroad.cli.plan_options import DiskOptions
 from evenroad.cli.plan_parts import (
@@ -17,12 +18,12 @@ from evenroad.cli.plan_parts import (
     draw_points,
     load_compiled_code,
     output_files,
+    print_plan,
+    save_plan,
     wants_points,
 )
-from evenroad.cli.plan_table import print_plan
-from evenroad.cli.progress import say_if_compiling
 from evenroad.errors import InvalidValue
-from evenroad.io import plan_record, save_json, save_path_csv
+from evenroad.io import plan_record
 from evenroad.roadmap import Status, find_path
 from evenroad.roadmap.answer import PROVED
 from evenroad.roadmap.proof import require_certified
@@ -75,15 +76,8 @@ def plan_disk(plan: DiskOptions) -> int:
         "unknown_is_free": plan.unknown_is_free,
         **common_query(plan),
     }
-    save_json(files["json"], plan_record(result, query))
-    if "csv" in files:
-        # An earlier run's path must not pass for this one's.
-        files["csv"].unlink(missing_ok=True)
-        if result.path is None or not result.solved:
-            del files["csv"]
-        else:
-            save_path_csv(files["csv"], result.path, ("x", "y"))
-    print_plan(result, list(files.values()))
+    save_plan(files, result, plan_record(result, query), ("x", "y"))
+    print_plan(result, files.values())
     if "png" in files:
         # Last, and loaded only now: nobody waits for the picture.
         from evenroad.viz import save_plan_picture

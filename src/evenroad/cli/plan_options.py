@@ -6,30 +6,28 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import tyro
-
 
 @dataclass(frozen=True, kw_only=True)
 class PlanOptions:
     """What every plan is told."""
 
-    world: Annotated[Path, tyro.conf.Positional]
+    world: Annotated[Path, "positional"]
     """The file of the world."""
     start: tuple[str, ...]
     """Where to start."""
-    goal: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]]
-    """As start.  Required; given more than once, the path ends at one of the goals: the first that is reached, with
+    goal: tuple[tuple[str, ...], ...]
+    """As start; given more than once, the path ends at one of the goals: the first that is reached, with
     points or --improve the cheapest."""
-    n: Annotated[int | None, tyro.conf.arg(aliases=["-n"])] = None
+    n: Annotated[int | None, "-n"] = None
     """Plan on a roadmap of exactly so many points (ps-PRM).  Default: no points, but until there is a path or a proof
     that there is none, or the time is over; where another option speaks of points: 512."""
-    time: Annotated[str | None, tyro.conf.arg(metavar="SECONDS")] = None
+    time: float | None = None
     """Seconds to plan at most, > 0 (default 5; with points 60)."""
     improve: bool = False
     """Use up the time: plan again in other ways, and keep the shortest path.  Not with points."""
     certified: bool = False
     """The path must be proved free throughout; else the answer says which of its motions is not."""
-    k: Annotated[int | None, tyro.conf.arg(aliases=["-k"])] = None
+    k: Annotated[int | None, "-k"] = None
     """Connect each milestone with its k nearest, symmetrised (default 10; 20 from six joints on)."""
     connect_radius: float | None = None
     """Connect milestones up to this distance instead, in map units or radians."""
@@ -57,7 +55,7 @@ class PlanOptions:
 class DiskOptions(PlanOptions):
     """What a plan for a disk on a map is told."""
 
-    world: Annotated[Path, tyro.conf.Positional]
+    world: Annotated[Path, "positional"]
     """A map: a .png or .pgm image, or a ROS map_server .yaml."""
     start: tuple[str, ...]
     """x y in map units."""
@@ -75,7 +73,7 @@ class DiskOptions(PlanOptions):
 class ArmOptions(PlanOptions):
     """What a plan for an arm in a scene is told."""
 
-    world: Annotated[Path, tyro.conf.Positional]
+    world: Annotated[Path, "positional"]
     """A scene (.yaml; shipped: box-reach.yaml, box-reach-narrow.yaml)."""
     start: tuple[str, ...]
     """One number a joint with commas between them, name=value,..., or a named state."""

@@ -1,34 +1,42 @@
-"""What planning for disks and for arms has in common: the rule, the points, the files."""
+"""What planning for disks and for arms has in common: rule, points, time, files, and the table at the end."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from rich.table import Table
+from rich.text import Text
 
 from evenroad import roadmap
-from evenroad._checks import require_count, require_positive
+from evenroad._checks import require_count, require_known, require_positive
 from evenroad._files import require_writable_folder
 from evenroad._rng import generator
+from evenroad._terminal import print_table
 from evenroad.cli.plan_options import PlanOptions
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad.errors import InvalidValue
+from evenroad.io import save_json, save_path_csv
 from evenroad.points import SAMPLERS, PointSet, make_sampler
-from evenroad.roadmap import Budget, KNearest, Radius, Rule
+from evenroad.roadmap import Budget, KNearest, PlanResult, Radius, Rule
 from evenroad.roadmap.find_path import SECONDS
-from evenroad.world import ConnectsItself, Rechecks
-
-if TYPE_CHECKING:
-    from evenroad.world import World
-
-DEFAULT_FAMILY = "even"
+from evenroad.world import ConnectsItself, Rechecks, World
 
 DEFAULT_N = 512
 
+PROOFS = {
+    "exact": "exact: no motion touches anything, up to rounding",
+    "certified": "certified: the robot's capsules touch nothing anywhere along the path",
+    "resolution": "resolution: motions are free at states close together; what lies between them is not seen",
+}
+
 _FEW = 16
 """Points of a plan that only loads compiled code."""
+
+_TAKES = {"halton": {"plain", "skip"}, "sobol": {"plain", "skip"}, "sukharev": {"allow_fewer"}}
+"""Options that only these samplers take."""
 
 
 def chosen_rule(plan: PlanOptions, default_k: int) -> Rule:
@@ -49,32 +57,30 @@ def wants_points(plan: PlanOptions) -> bool:
 
 
 def chosen_budget(plan: PlanOptions) -> Budget:
-    """Return how long to plan, and refuse what does not go with the points or the goals that were asked for."""
+    """Return how long to plan, and refuse what does not go with the points that were asked for."""
     if plan.improve and wants_points(plan):
         raise InvalidValue("--improve goes without points: a roadmap of exactly so many has one best path")
-    if not plan.goal:
-        raise InvalidValue("give --goal, where the path is to end")
     if plan.time is not None:
-        return Budget(seconds=require_positive("time", _number(plan.time)))
+        return Budget(seconds=require_positive("time", plan.time))
     return Budget() if wants_points(plan) else Budget(seconds=SECONDS)
 
 
-def _number(text: str) -> float | str:
-    """Return a text as a number, or as it is where it is none, for an error that shows it."""
-    try:
-        return float(text)
-    except ValueError:
-        return text
-
-
 def draw_points(plan: PlanOptions, d: int) -> PointSet:
-    """Draw the set of n points in d dimensions that was asked for."""
+    """Draw the set of n points in d dimensions that was asked for, refusing options that its sampler would ignore."""
     n = require_count("n", DEFAULT_N if plan.n is None else plan.n)
     generator(plan.seed)
-    name = DEFAULT_FAMILY if plan.sampler == "auto" else plan.sampler
-    if name not in SAMPLERS:
-        raise UnknownName.among("sampler", name, [*SAMPLERS, "auto"])
-    return make_sampler(name, **_sampler_options(plan, name)).draw(n, d, rng=plan.seed)
+    name = "even" if plan.sampler == "auto" else plan.sampler
+    require_known("sampler", name, [*SAMPLERS, "auto"])
+    takes = _TAKES.get(name, set())
+    for option in ("plain", "skip", "allow_fewer"):
+        if getattr(plan, option) and option not in takes:
+            raise InvalidValue(f"--{option.replace('_', '-')} does not go with the sampler {name!r}")
+    options: dict[str, Any] = {}
+    if "plain" in takes:
+        options = {"scramble": not plan.plain, "start": plan.skip}
+    elif takes:
+        options = {"allow_fewer": plan.allow_fewer}
+    return make_sampler(name, **options).draw(n, d, rng=plan.seed)
 
 
 def load_compiled_code(
@@ -106,10 +112,14 @@ def output_files(
         raise InvalidValue(f"--out must end with a file name, got {str(plan.out)!r}")
     suffixes = [*suffixes, *(() if plan.no_picture else ("png",))]
     taken = {source.resolve() for source in inputs}
+
+    def named(stem: Path) -> dict[str, Path]:
+        return {suffix: stem.with_name(f"{stem.name}.{suffix}") for suffix in suffixes}
+
     stem = plan.out if plan.out is not None else Path(plan.world.stem)
-    if plan.out is None and any(path.resolve() in taken for path in _named(stem, suffixes).values()):
+    if plan.out is None and any(path.resolve() in taken for path in named(stem).values()):
         stem = Path(f"{plan.world.stem}-plan")
-    files = _named(stem, suffixes)
+    files = named(stem)
     for path in files.values():
         if path.resolve() in taken:
             raise InvalidValue(f"--out {stem} would overwrite the {what} {path}")
@@ -119,22 +129,59 @@ def output_files(
 
 def common_query(plan: PlanOptions) -> dict[str, Any]:
     """Return the options that every plan has, for the record."""
-    names = ("n", "time", "improve", "certified", "sampler", "plain", "skip", "allow_fewer", "seed", "raw")
+    names = ("n", "improve", "certified", "sampler", "plain", "skip", "allow_fewer", "seed", "raw")
     return {name: getattr(plan, name) for name in names} | {"time": chosen_budget(plan).seconds}
 
 
-def _named(stem: Path, suffixes: Sequence[str]) -> dict[str, Path]:
-    return {suffix: stem.with_name(f"{stem.name}.{suffix}") for suffix in suffixes}
+def save_plan(
+    files: dict[str, Path], result: PlanResult, record: dict[str, Any], columns: Sequence[str]
+) -> None:
+    """Write record and path to those files that are wanted; of `files` only those remain that there are now."""
+    save_json(files["json"], record)
+    if "csv" not in files:
+        return
+    # An earlier run's path must not pass for this one's, nor one in collision for a free one.
+    files["csv"].unlink(missing_ok=True)
+    if result.path is None or not result.solved:
+        del files["csv"]
+    else:
+        save_path_csv(files["csv"], result.path, columns)
 
 
-def _sampler_options(plan: PlanOptions, name: str) -> dict[str, Any]:
-    """Return the sampler's options, refusing those that this sampler would silently ignore."""
-    takes = {"halton": {"plain", "skip"}, "sobol": {"plain", "skip"}, "sukharev": {"allow_fewer"}}.get(
-        name, set()
+def print_plan(result: PlanResult, files: Iterable[Path], more: Sequence[tuple[str, str]] = ()) -> None:
+    """Print a plan as a table of two columns; `more` are rows of its own."""
+    rows: list[tuple[str, str]] = []
+    counts = result.counts
+    if result.rule != "none":
+        rows.append(("points", str(result.origin)))
+    elif "nodes" in counts:
+        rows.append(
+            (
+                "planner",
+                f"{result.planner}: {counts['nodes']} nodes, {counts['edges_checked']} motions checked",
+            )
+        )
+    if result.roadmap is not None:
+        edges = f"{counts['edges_free']} free of {counts['edges_checked']} checked ({result.rule})"
+        rows += [("milestones", f"{counts['valid']} valid of {counts['points']}"), ("edges", edges)]
+    if result.cost is not None and result.milestone_cost is not None:
+        before = "before it was straightened" if result.roadmap is None else "along the roadmap"
+        rows.append(("cost", f"{result.cost:.6g} ({before} {result.milestone_cost:.6g})"))
+    if result.stages and result.cost is not None and "rounds" in counts:
+        first = result.stages[0]
+        after = f"{first.cost:.6g} after {1e3 * first.seconds:.1f} ms"
+        rows.append(("improved", f"from {after}, in {counts['rounds']} rounds"))
+    if result.proof is not None:
+        rows.append(("proved", PROOFS[result.proof]))
+    rows.append(
+        ("time [ms]", ", ".join(f"{phase} {1e3 * took:.1f}" for phase, took in result.seconds.items()))
     )
-    for option in ("plain", "skip", "allow_fewer"):
-        if getattr(plan, option) and option not in takes:
-            raise InvalidValue(f"--{option.replace('_', '-')} does not go with the sampler {name!r}")
-    if "plain" in takes:
-        return {"scramble": not plan.plain, "start": plan.skip}
-    return {"allow_fewer": plan.allow_fewer} if "allow_fewer" in takes else {}
+    rows += [*more, ("files", ", ".join(map(str, files)))]
+    table = Table(show_header=False, box=None, pad_edge=False)
+    table.add_column(style="bold", no_wrap=True)
+    table.add_column(overflow="fold")
+    colour = "green" if result.solved else "red"
+    table.add_row("status", Text.assemble((str(result.status), colour), f": {result.message}"))
+    for name, text in rows:
+        table.add_row(name, text)
+    print_table(table)

@@ -6,14 +6,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import tyro
-
 
 @dataclass(frozen=True, kw_only=True)
 class Robot:
     """Show the joints, limits, bodies and self-collision pairs of an arm, and checks per second."""
 
-    robot: Annotated[str, tyro.conf.Positional]
+    robot: Annotated[str, "positional"]
     """A URDF file, or the name of a shipped robot (ur5, arm7)."""
     srdf: Path | None = None
     """Its SRDF, with groups, named states and pairs of links that need no test."""
@@ -26,7 +24,7 @@ class Robot:
 
     def run(self) -> int:
         """Load, measure, print; return 0."""
-        from evenroad.cli.progress import say_if_compiling
+        from evenroad._compiled import say_if_compiling
         from evenroad.cli.robot_tables import print_robot
         from evenroad.robot import ArmWorld, Scene, in_scene, load_model, load_scene
 

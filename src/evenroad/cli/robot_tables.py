@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from evenroad._rng import generator
-from evenroad.cli.console import print_table
+from evenroad._terminal import print_table
 from evenroad.robot import ArmWorld, Joint, Robot, RobotModel, held_values
 
 _CONFIGURATIONS = 4096

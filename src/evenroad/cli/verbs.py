@@ -1,25 +1,18 @@
-"""Parses the command line, runs one verb, and turns our errors into one line and exit code 2."""
+"""Runs the verb that a command line asks for, and turns our errors into one line and exit code 2."""
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Sequence
-from typing import Annotated, Any, Union
-
-import tyro
+from importlib import import_module
+from shutil import get_terminal_size
+from textwrap import fill
+from typing import Any
 
 from evenroad import __version__
-from evenroad.cli.bench import Bench
-from evenroad.cli.demo import Demo
-from evenroad.cli.export import Export
-from evenroad.cli.measure import Measure
-from evenroad.cli.plan import PlanDisk, plan_type
-from evenroad.cli.points import Points
-from evenroad.cli.report import Report
-from evenroad.cli.robot import Robot
-from evenroad.cli.train import Train
-from evenroad.errors import EvenroadError
+from evenroad._terminal import WIDTH, leave_output
+from evenroad.cli.options import HELP, help_text, read_options
+from evenroad.errors import EvenroadError, UnknownName
 
 DONE = 0
 BAD_INPUT = 2
@@ -28,63 +21,74 @@ LONGEST = 600
 """Most characters of an error: input that was pasted by mistake is not shown in full."""
 
 VERBS = {
-    "plan": PlanDisk,
-    "points": Points,
-    "measure": Measure,
-    "train": Train,
-    "bench": Bench,
-    "report": Report,
-    "robot": Robot,
-    "export": Export,
-    "demo": Demo,
+    "plan": ("evenroad.cli.plan:PlanDisk", "a path for a disk on a map, or for an arm in a scene (--robot)"),
+    "points": (
+        "evenroad.cli.points:Points",
+        "write a point set: shipped, constructed, or annealed on demand",
+    ),
+    "measure": ("evenroad.cli.points:Measure", "print every measure of a point set"),
+    "train": ("evenroad.research.commands.train:Train", "train point sets for any objective"),
+    "bench": ("evenroad.research.commands.bench:Bench", "run benchmarks into a store"),
+    "report": ("evenroad.research.commands.report:Report", "page, figures and tables of a store"),
+    "robot": ("evenroad.cli.robot:Robot", "what an arm is made of, and how fast it is checked"),
+    "export": ("evenroad.research.commands.export:Export", "a store for OMPL's Planner Arena"),
+    "demo": ("evenroad.cli.demo:Demo", "plan through a maze that ships with evenroad"),
 }
+"""Name of a verb -> where it is, loaded when it is asked for, and what it does."""
 
-DESCRIPTION = f"""evenroad {__version__}: point sets that make sampling-based motion planners need fewer samples.
+DESCRIPTION = f"""usage: evenroad [-h] [--version] VERB ...
+
+evenroad {__version__}: point sets that make sampling-based motion planners need fewer samples.
 
 Exit codes: 0 solved / done, 1 any other answer (no path), 2 bad input, 130 interrupted.
+
+verbs (evenroad VERB --help tells of its options):
 """
 
 
 def run(arguments: Sequence[str]) -> int:
     """Run the verb that the arguments ask for and return the exit code."""
-    if list(arguments) == ["--version"]:
-        print(f"evenroad {__version__}")
-        return 0
     try:
-        code: int = _parse(list(arguments)).run()
+        code = _run(list(arguments))
         sys.stdout.flush()
         return code
-    except EvenroadError as error:
-        print(f"evenroad: error: {_in_one_line(str(error))}", file=sys.stderr)
-        return BAD_INPUT
-    except MemoryError as error:
-        print(f"evenroad: error: not enough memory: {_in_one_line(str(error))}", file=sys.stderr)
-        return BAD_INPUT
     except BrokenPipeError:
-        # The reader of our output has gone, as `head` does; what is left of the output goes nowhere.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        leave_output()
         return DONE
-    except OSError as error:
-        print(f"evenroad: error: {_in_one_line(str(error))}", file=sys.stderr)
+    except (EvenroadError, MemoryError, OSError) as error:
+        kind = "not enough memory: " if isinstance(error, MemoryError) else ""
+        print(f"evenroad: error: {kind}{_in_one_line(str(error))}", file=sys.stderr)
         return BAD_INPUT
 
 
-def _parse(arguments: list[str]) -> Any:
-    """Return the verb with its options; with none, or options that cannot be read, tyro says so and exits."""
-    verbs: dict[str, Any] = dict(VERBS)
-    if arguments[:1] == ["plan"]:
-        verbs["plan"] = plan_type(arguments)
-    kinds = tuple(
-        Annotated[kind, tyro.conf.subcommand(name, prefix_name=False)] for name, kind in verbs.items()
-    )
-    any_of: Any = Union[kinds]  # noqa: UP007
-    return tyro.cli(
-        any_of,
-        prog="evenroad",
-        description=DESCRIPTION,
-        args=arguments or ["--help"],
-        config=(tyro.conf.OmitArgPrefixes, tyro.conf.FlagCreatePairsOff),
-    )
+def _run(arguments: list[str]) -> int:
+    verb, words = (arguments or ["--help"])[0], arguments[1:]
+    if verb == "--version":
+        print(f"evenroad {__version__}")
+        return DONE
+    width = min(WIDTH, get_terminal_size().columns)
+    if verb in HELP:
+        lines = [
+            fill(f"  {name:8} {about}", width, subsequent_indent=" " * 11)
+            for name, (_, about) in VERBS.items()
+        ]
+        print(DESCRIPTION + "\n".join(lines))
+        return DONE
+    if verb not in VERBS:
+        raise UnknownName.among("verb", verb, VERBS)
+    kind = _kind(verb, words)
+    if not HELP.isdisjoint(words):
+        print(help_text(verb, kind, width))
+        return DONE
+    code: int = read_options(verb, kind, words).run()
+    return code
+
+
+def _kind(verb: str, words: Sequence[str]) -> Any:
+    """Return the class of a verb; of `plan` the one for the robot that its words give."""
+    module, _, name = VERBS[verb][0].partition(":")
+    home = import_module(module)
+    return home.plan_type(words) if verb == "plan" else getattr(home, name)
 
 
 def _in_one_line(text: str) -> str:

@@ -9,7 +9,7 @@ from typing import get_args, get_type_hints
 import numpy as np
 
 from evenroad._files import atomic_write
-from evenroad._npz import Path, read_json, read_npz, write_npz
+from evenroad._npz import Path, read_json, read_npz, reading, write_npz
 from evenroad.errors import BrokenFile, shown
 from evenroad.points.pointset import Origin, PointSet
 
@@ -43,13 +43,8 @@ def read_points(path: Path) -> PointSet:
     """
     if str(path).endswith(".npz"):
         return load_points(path)
-    try:
-        with open(path, "rb") as file:
-            array = np.load(file, allow_pickle=False)
-    except FileNotFoundError:
-        raise BrokenFile(f"no such file: {path}") from None
-    except Exception as error:  # see read_npz
-        raise BrokenFile(f"{path} is not a readable .npy array: {shown(error)}") from error
+    with reading(path, ".npy array"), open(path, "rb") as file:
+        array = np.load(file, allow_pickle=False)
     return PointSet(array)
 
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from evenroad.cli.report_table import _fewest
+from evenroad.research.commands.report import _fewest
 from evenroad.research.report.analysis import needed_of, resampled_curves
 from evenroad.research.report.cells import cells_of
 from evenroad.research.report.sections.settings import success_table

@@ -18,7 +18,7 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._files import atomic_write, one_at_a_time
-from evenroad._progress import LineProgress
+from evenroad._terminal import LineProgress
 from evenroad.points.bank.bank import DATA, INDEX, SEED, Bank, cell_name
 from evenroad.points.measures import MEASURES, separation
 from evenroad.points.pointset import BELOW_ONE, PointSet

@@ -1,11 +1,17 @@
-"""What the terminal shows of a report: one line a problem, within 100 columns."""
+"""``evenroad report``: from a store of benchmark rows to one page, figures, tables and CSV."""
 
 from __future__ import annotations
 
+import shlex
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
 from rich.table import Table
 
-from evenroad.cli.console import WIDTH, print_table, table_width
-from evenroad.research.report import Report
+from evenroad._terminal import WIDTH, print_table, table_width
+from evenroad.research import report
+from evenroad.research.bench.store import rescue_file
 from evenroad.research.report.analysis import Analysis
 from evenroad.research.report.comparisons import REFERENCES
 from evenroad.research.report.fair import is_fair, pooled_rules
@@ -14,9 +20,31 @@ from evenroad.research.report.sections.suites import verdict_counts
 from evenroad.research.report.tables import difference
 
 
-def print_report(report: Report) -> None:
+@dataclass(frozen=True, kw_only=True)
+class Report:
+    """Write report.html, PNG figures, CSV, Markdown and LaTeX tables of a store of benchmark results."""
+
+    store: Annotated[Path, "positional"]
+    """The store that ``evenroad bench`` wrote; it may still be writing."""
+    out: Annotated[Path, "-o"]
+    """The folder to write into; made where there is none."""
+    only: str = ""
+    """Names of problems, with commas between them; default: all in the store."""
+
+    def run(self) -> int:
+        """Write the report and print its gist."""
+        problems = [name.strip() for name in self.only.split(",") if name.strip()]
+        words = ["evenroad", "report", str(self.store), "-o", str(self.out)]
+        command = shlex.join(words + (["--only", self.only] if self.only else []))
+        _print_report(report.write_report(self.store, self.out, only=problems, command=command))
+        if rescue_file(self.store).exists():
+            print(f"not in it: the rows in {rescue_file(self.store)}, which the next evenroad bench takes in")
+        return 0
+
+
+def _print_report(written: report.Report) -> None:
     """Print how many samples each problem takes, the verdicts, the fair suite in short, and where the page is."""
-    analysis = report.analysis
+    analysis = written.analysis
     settings = [setting for setting in analysis.runs.settings if not is_fair(setting)]
     if settings:
         print_table(_needed_table(analysis, settings))
@@ -27,7 +55,7 @@ def print_report(report: Report) -> None:
     failed = sum(each.runs for each in analysis.failures)
     if failed:
         print(f"{failed} runs gave no answer; they are listed on the page")
-    print(f"{report.files[0]} and {len(report.files) - 1} more files")
+    print(f"{written.files[0]} and {len(written.files) - 1} more files")
 
 
 def _needed_table(analysis: Analysis, settings: list[Setting]) -> Table:

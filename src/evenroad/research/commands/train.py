@@ -6,11 +6,20 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-import tyro
+import numpy as np
+
+from evenroad._checks import require_count
+from evenroad._files import require_writable_folder
+from evenroad._terminal import interrupt_between_steps, progress_bar
+from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.points import PointSet, load_points, save_points
+from evenroad.points.optimise import SCHEDULE, parse_objective
+from evenroad.points.optimise.anneal import Callback
+from evenroad.points.optimise.objective import require_points_for
+from evenroad.research.training import anneal_many
+from evenroad.research.training.folder import claim_folder
 
 if TYPE_CHECKING:
-    from evenroad.points import PointSet
-    from evenroad.points.optimise.anneal import Callback
     from evenroad.research.network import NetworkConfig
 
 
@@ -18,9 +27,9 @@ if TYPE_CHECKING:
 class Train:
     """Train point sets and write them as OUT/set-0000.npz, ...; the same command goes on where it stopped."""
 
-    n: Annotated[int, tyro.conf.arg(aliases=["-n"])]
+    n: Annotated[int, "-n"]
     """How many points."""
-    d: Annotated[int, tyro.conf.arg(aliases=["-d"])]
+    d: Annotated[int, "-d"]
     """How many dimensions."""
     method: Literal["anneal", "mpmc"] = "anneal"
     """anneal: noisy Adam on the coordinates. mpmc: the message-passing network (needs the extra [train])."""
@@ -38,17 +47,11 @@ class Train:
     """Set i depends on this seed and i alone, whatever the number of processes."""
     jobs: int | None = None
     """Processes for anneal (default: one a processor)."""
-    out: Annotated[Path, tyro.conf.arg(aliases=["-o"])]
+    out: Annotated[Path, "-o"]
     """The folder for the sets; made if its parent exists."""
 
     def run(self) -> int:
         """Train, write, report."""
-        import numpy as np
-
-        from evenroad.cli.interrupt import interrupt_between_steps
-        from evenroad.cli.progress import progress_bar
-        from evenroad.points.optimise import parse_objective
-
         self._check()
         self._make_folder()
         title = f"{self.method} n={self.n} d={self.d} x {self.sets}"
@@ -66,11 +69,6 @@ class Train:
 
     def _check(self) -> None:
         """Refuse bad options before anything is written, and those that the method would silently ignore."""
-        from evenroad._checks import require_count
-        from evenroad.errors import InvalidValue
-        from evenroad.points.optimise import parse_objective
-        from evenroad.points.optimise.objective import require_points_for
-
         least = {"n": 1, "d": 1, "sets": 1, "steps": 1, "refine": 0, "seed": 0}
         for name, at_least in least.items():
             require_count(name, getattr(self, name), at_least)
@@ -88,9 +86,6 @@ class Train:
             choose_device(self.device or "auto")
 
     def _make_folder(self) -> None:
-        from evenroad._files import require_writable_folder
-        from evenroad.errors import BrokenFile
-
         if self.out.exists() and not self.out.is_dir():
             raise BrokenFile(f"cannot write sets into {self.out}: it is not a folder")
         if not self.out.exists():
@@ -99,8 +94,6 @@ class Train:
         require_writable_folder(self.out / "set-0000.npz")
 
     def _anneal(self, callback: Callback) -> tuple[PointSet, ...]:
-        from evenroad.research.training import anneal_many
-
         return anneal_many(
             self.n,
             self.d,
@@ -121,9 +114,7 @@ class Train:
         )
 
     def _network(self, callback: Callback) -> tuple[PointSet, ...]:
-        from evenroad.points.optimise import SCHEDULE
         from evenroad.research.network import train
-        from evenroad.research.training.folder import claim_folder
 
         sets = train(self._config(), folder=self.out, callback=callback, device=self.device or "auto")
         if not self.refine:
@@ -133,8 +124,6 @@ class Train:
 
     def _refined(self, i: int, points: PointSet, callback: Callback) -> PointSet:
         """Refine set i and save it at once, or read it where an earlier run did."""
-        from evenroad.errors import BrokenFile
-        from evenroad.points import load_points, save_points
         from evenroad.research.network import refine
 
         path = self.out / f"refined-{i:04d}.npz"

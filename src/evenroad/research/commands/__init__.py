@@ -1,0 +1,1 @@
+"""The verbs of the studies, which the command registers by name."""
