@@ -21,6 +21,7 @@ import time
 import warnings
 from collections import Counter
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 COLUMNS = ("robot", "state", "answer", "joints", "free_percent", "seconds", "reason")
@@ -30,8 +31,16 @@ SAMPLES = 2000
 SECONDS = 5.0
 """For the plan."""
 
-RIGHTLY = ("is missing", "no joint that could be planned for", "no collision geometry at all", "is not")
-"""Refusals that no reader of the file could do without: a piece is not there."""
+RIGHTLY = (
+    "is missing",
+    "which is no joint",
+    "no joint that could be planned for",
+    "no collision geometry at all",
+    "MuJoCo cannot read",
+    "must satisfy lower <= upper",
+    "more than one root",
+)
+"""Refusals of files in which a piece is not there, or wrong: what no reader could make up."""
 
 
 def robots_in(folders: list[Path]) -> Iterator[tuple[str, Path]]:
@@ -112,6 +121,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("out/robots.csv"))
     parser.add_argument("--limit", type=float, default=180.0, help="seconds for one robot")
     parser.add_argument("--only", default="", help="robots with this in their name")
+    parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--one", type=Path, help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.one:
@@ -123,17 +133,17 @@ def main() -> None:
         with open(options.out, newline="") as file:
             rows = {(row["robot"], row["state"]): dict(row) for row in csv.DictReader(file)}
     options.out.parent.mkdir(parents=True, exist_ok=True)
-    for name, path in robots_in(options.folders):
-        if options.only not in name:
-            continue
-        row = in_its_process(path, options.limit)
-        row["reason"] = " ".join(str(row.get("reason", "")).split())[:200]
-        rows[name, options.state] = {"robot": name, "state": options.state, **row}
-        print(f"{name:60} {row['answer']:16} {row['seconds']:6} s  {row['reason']}", flush=True)
-        with open(options.out, "w", newline="") as file:
-            writer = csv.DictWriter(file, COLUMNS, restval="", lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(rows[key] for key in sorted(rows))
+    chosen = [each for each in robots_in(options.folders) if options.only in each[0]]
+    with ThreadPoolExecutor(options.jobs) as pool:
+        answers = pool.map(lambda each: in_its_process(each[1], options.limit), chosen)
+        for (name, _), row in zip(chosen, answers, strict=True):
+            row["reason"] = " ".join(str(row.get("reason", "")).split())[:200]
+            rows[name, options.state] = {"robot": name, "state": options.state, **row}
+            print(f"{name:60} {row['answer']:16} {row['seconds']:6} s  {row['reason']}", flush=True)
+            with open(options.out, "w", newline="") as file:
+                writer = csv.DictWriter(file, COLUMNS, restval="", lineterminator="\n")
+                writer.writeheader()
+                writer.writerows(rows[key] for key in sorted(rows))
     for state in sorted({state for _, state in rows}):
         counts = Counter(row["answer"] for (_, of), row in rows.items() if of == state)
         print(f"{state}: " + ", ".join(f"{count} {answer}" for answer, count in counts.most_common()))

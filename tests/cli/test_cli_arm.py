@@ -438,6 +438,6 @@ def test_robot_measures_in_bounded_time_between_limits_of_a_million_radians(run,
     begin = time.process_time()
     code, out, err = run("robot", "arm.urdf")
     assert (code, err) == (0, "")
-    assert "±1e+06 rad" in out
+    assert "the limits -999999, 999999 turns without end" in " ".join(out.split())
     assert "motions/s" in out
     assert time.process_time() - begin < 20.0

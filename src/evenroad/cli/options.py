@@ -1,7 +1,8 @@
 """A verb's options: read from the words of a command line, and told as help.
 
 A verb is a frozen dataclass.  Its fields are its options, and the text below a field is that option's help.
-``Annotated[int, "-n"]`` gives an option a short name, too; ``Annotated[Path, "positional"]`` needs none.
+``Annotated[int, "-n"]`` gives an option a short name, too; ``Annotated[Path, "positional"]`` needs none;
+``Annotated[tuple[str, ...], "repeated"]`` takes one value each time that it is given.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 from evenroad.errors import InvalidValue, UnknownName, shown
 
-POSITIONAL = "positional"
+POSITIONAL, REPEATED = "positional", "repeated"
 HELP = {"-h", "--help"}
 
 _KINDS: dict[Any, str] = {int: "a whole number", float: "a number", str: "a text", Path: "a path"}
@@ -125,8 +126,14 @@ def _options(kind: type) -> list[_Option]:
         depth = 0
         while get_origin(hint) is tuple:
             hint, depth = get_args(hint)[0], depth + 1
-        names = () if POSITIONAL in marks else (*marks, f"--{field.name.replace('_', '-')}")
-        options.append(_Option(field, names, hint, known, several=depth > 0, repeats=depth > 1))
+        repeated = REPEATED in marks
+        short = () if repeated else marks
+        names = () if POSITIONAL in marks else (*short, f"--{field.name.replace('_', '-')}")
+        options.append(
+            _Option(
+                field, names, hint, known, several=depth > 0 and not repeated, repeats=depth > 1 or repeated
+            )
+        )
     return options
 
 
@@ -149,7 +156,7 @@ def help_text(verb: str, kind: type, width: int) -> str:
     for option in options:
         default = option.field.default
         note = " (required)" if option.required else f" (default: {default})"
-        if default is None or default is False or default == "":
+        if default is None or default is False or default in ("", ()):
             note = ""
         indent = " " * 6
         text = texts.get(option.field.name, "") + note

@@ -41,9 +41,7 @@ def plan_arm(plan: ArmOptions) -> int:
         [" ".join(words) for words in plan.goal],
         resolution=plan.resolution,
         degrees=plan.deg,
-        srdf=plan.srdf,
-        group=plan.group,
-        bodies=plan.bodies,
+        **plan.options(),
     )
     assert query.model is not None
     files = output_files(plan, _inputs(plan), ("json", "csv"), "file")

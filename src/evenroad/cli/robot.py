@@ -6,19 +6,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
+from evenroad.cli.plan_options import RobotOptions
+
 
 @dataclass(frozen=True, kw_only=True)
-class Robot:
+class Robot(RobotOptions):
     """Show the joints, limits, bodies and self-collision pairs of an arm, and checks per second."""
 
     robot: Annotated[str, "positional"]
-    """A URDF file, or the name of a shipped robot (ur5, arm7)."""
-    srdf: Path | None = None
-    """Its SRDF, with groups, named states and pairs of links that need no test."""
-    group: str | None = None
-    """A group of the SRDF, or joints with commas between them; the others are held."""
-    bodies: Path | None = None
-    """A YAML file of capsules and spheres in place of the URDF's collision geometry."""
+    """A URDF, xacro or MJCF file, or the name of a shipped robot (ur5, arm7)."""
     scene: Path | None = None
     """Count checks per second in this scene (a file or box-reach.yaml) instead of in empty space."""
 
@@ -28,7 +24,7 @@ class Robot:
         from evenroad.cli.robot_tables import print_robot
         from evenroad.robot import ArmWorld, Scene, in_scene, load_model, load_scene
 
-        model = load_model(self.robot, srdf=self.srdf, group=self.group, bodies=self.bodies)
+        model = load_model(self.robot, **self.options())
         say_if_compiling("evenroad.robot.kernel.batch", "configurations_free", 30)
         scene = Scene("empty space", ()) if self.scene is None else load_scene(self.scene)
         world = ArmWorld(in_scene(model.robot, scene), scene)

@@ -32,8 +32,8 @@ def print_robot(model: RobotModel, world: ArmWorld) -> None:
 
 
 def bodiless_rows(model: RobotModel) -> list[tuple[str, str]]:
-    """Return rows, name and text, about links that nothing is found to touch and pairs that always touch."""
-    rows = []
+    """Return rows, name and text: what was read otherwise, links that nothing touches, pairs that always touch."""
+    rows = [("note", note) for note in model.notes]
     if model.bodiless:
         rows.append(("no body", ", ".join(model.bodiless)))
     if model.drawn_only:

@@ -18,6 +18,8 @@ from evenroad.robot.joint import Joint, Kind, Mimic
 from evenroad.robot.urdf import Urdf, as_tree
 from evenroad.robot.urdf_xml import RobotFile, read_xml
 
+_FAR = 1e6
+"""Limits of slides that have none [m]."""
 _KINDS: dict[str, Kind] = {"mjJNT_HINGE": "revolute", "mjJNT_SLIDE": "prismatic"}
 
 
@@ -106,8 +108,8 @@ class _Reader:
     def _joint(self, number: int, name: str, kind: Kind, parent: str, child: str, origin: Pose) -> Joint:
         model = self.model
         x, y, z = model.jnt_axis[number].tolist()
-        limited = bool(model.jnt_limited[number])
-        lower, upper = model.jnt_range[number].tolist() if limited else (-math.inf, math.inf)
+        far = math.inf if kind == "revolute" else _FAR
+        lower, upper = model.jnt_range[number].tolist() if model.jnt_limited[number] else (-far, far)
         # The body is drawn where the joint is at its reference.
         reference = float(model.qpos0[model.jnt_qposadr[number]])
         if reference and kind == "revolute":
@@ -117,7 +119,7 @@ class _Reader:
             )
         elif reference:
             origin = origin @ Pose((-reference * x, -reference * y, -reference * z))
-        kind = "continuous" if kind == "revolute" and not limited else kind
+        kind = "continuous" if math.isinf(upper) else kind
         return Joint(name, kind, parent, child, origin.xyz, origin.rotation, (x, y, z), lower, upper)
 
     def _with_mimics(self, joints: list[Joint]) -> list[Joint]:
