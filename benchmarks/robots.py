@@ -26,7 +26,7 @@ from pathlib import Path
 
 COLUMNS = ("robot", "state", "answer", "joints", "free_percent", "seconds", "reason")
 SUFFIXES = (".urdf", ".xacro", ".xml")
-MOVES = re.compile(rb"type=[\"'](revolute|continuous|prismatic)[\"']|<mujoco")
+MOVES = re.compile(rb"type\s*=\s*[\"'](revolute|continuous|prismatic)[\"']|<mujoco[\s\S]*<joint")
 SAMPLES = 2000
 SECONDS = 5.0
 """For the plan."""
@@ -39,6 +39,8 @@ RIGHTLY = (
     "MuJoCo cannot read",
     "must satisfy lower <= upper",
     "more than one root",
+    "must be 3 finite numbers",
+    "not well-formed",
 )
 """Refusals of files in which a piece is not there, or wrong: what no reader could make up."""
 
@@ -83,10 +85,9 @@ def tried(path: Path) -> dict[str, object]:
         result = plan_arm(str(path), scene, free[0], free[-1], seconds=SECONDS, **options)
     except EvenroadError as error:
         reason = str(error).replace(str(path.parent) + "/", "")
-        return {
-            "answer": "refused " + ("rightly" if any(s in reason for s in RIGHTLY) else "wrongly"),
-            "reason": reason,
-        }
+        drawn = "no collision geometry" in reason and b"<visual" in path.read_bytes()
+        rightly = any(said in reason for said in RIGHTLY) and not drawn
+        return {"answer": f"refused {'rightly' if rightly else 'wrongly'}", "reason": reason}
     if result.solved:
         return row | {"answer": "solved", "reason": "with its visuals" if options else ""}
     return row | {"answer": "no path", "reason": f"{result.status}: {result.message}"}

@@ -204,8 +204,10 @@ def test_a_slide_of_huge_limits_is_held_until_a_scene_limits_it(tmp_path):
         "\n\n<?xml version='1.0'?>" + two_joints(),
         two_joints().replace("<link", "<sensor:camera><sensor:x/></sensor:camera><link", 1),
         two_joints().replace("<link", "<link xlink:href='somewhere'", 1),
+        two_joints() + "\n\0",
+        two_joints().replace("<axis xyz='0 1 0'/>", "<axis xyz='0 1 0'/><axis xyz='0 1 0'/>"),
     ],
-    ids=["blank lines first", "a prefix of nobody", "an attribute of nobody"],
+    ids=["blank lines first", "a prefix of nobody", "an attribute of nobody", "a zero last", "an axis twice"],
 )
 def test_xml_is_read_that_other_readers_of_urdfs_take(tmp_path, text):
     assert read_urdf(write(tmp_path, text)).order == ("a", "b")
@@ -276,7 +278,7 @@ BROKEN = {
         "joint 'a' in .*: <joint> has more than one <origin>",
     ),
     "two limits": (
-        urdf(link("x"), link("y"), joint("a", "x", "y", inside=LIMIT + LIMIT)),
+        urdf(link("x"), link("y"), joint("a", "x", "y", inside=LIMIT + LIMIT.replace("1", "2"))),
         BrokenFile,
         "joint 'a' in .*: <joint> has more than one <limit>",
     ),

@@ -46,8 +46,8 @@ _LENGTHS = ("size", "radius", "length")
 _THIN = 1e-6
 """What a body has in place of a dimension of 0 [m]."""
 _SINGLE = ("origin", "axis", "limit", "mimic", "parent", "child", "geometry")
-"""Of these, the first would be taken and others passed over."""
-_IGNORED = ("inertial", "material", "transmission", "gazebo", "sensor", "ros2_control")
+"""Of these, the first would be taken and others passed over, unless they are equal."""
+_IGNORED = ("inertial", "material", "transmission", "gazebo", "sensor", "ros2_control", "collision_checking")
 """What collision checking does not need; much of it in dialects of its own."""
 
 
@@ -126,12 +126,12 @@ def read_xml(path: Path, what: str, kind: str, tag: str = "robot") -> Element:
 
 
 def _parsed(content: bytes, path: Path) -> Element:
-    """Return the root of XML as other readers of URDFs take it: whatever prefixes, and blank lines at the top."""
+    """Return the root of XML as other readers of URDFs take it: whatever prefixes, and blanks at both ends."""
     builder, parser = TreeBuilder(), expat.ParserCreate()
     parser.StartElementHandler = builder.start
     parser.EndElementHandler = builder.end
     try:
-        parser.Parse(content.lstrip(b" \t\r\n"), True)
+        parser.Parse(content.strip(b" \t\r\n\0"), True)
         return builder.close()
     except (expat.ExpatError, ValueError, LookupError) as error:
         raise BrokenFile(f"{path} is not XML: {error}") from error
@@ -187,7 +187,9 @@ def _check(owner: Element, path: Path) -> None:
             if not element.get(attribute):
                 raise BrokenFile(f"{where}: <{element.tag}> lacks {attribute!r}")
         for tag in _SINGLE:
-            if len(element.findall(tag)) > 1:
+            found = element.findall(tag)
+            # Twice the same is taken once.
+            if len(found) > 1 and (len(found[0]) or any(each.attrib != found[0].attrib for each in found)):
                 raise BrokenFile(f"{where}: <{element.tag}> has more than one <{tag}>")
         for attribute, text in list(element.attrib.items()):
             count = _NUMBERS.get((element.tag, attribute))
