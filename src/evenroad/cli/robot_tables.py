@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import math
 import time
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict
+from typing import Any
 
 import numpy as np
 from rich.table import Table
@@ -20,8 +23,6 @@ _MOST_SEGMENTS = 1000
 """Motions that are timed are cut off there: between limits of a million radians each would take ten seconds."""
 
 _SECONDS = 0.2
-_LONGEST = 100.0
-"""Motions are cut to this length [rad or m]: limits may be as good as none, and checks go from state to state."""
 
 
 def print_robot(model: RobotModel, world: ArmWorld) -> None:
@@ -94,7 +95,7 @@ def _bodies(model: RobotModel) -> Table:
 
 
 def _summary(model: RobotModel, world: ArmWorld) -> Table:
-    robot = model.robot
+    robot, measured = model.robot, _measured(world)
     table = Table(show_header=False, box=None, pad_edge=False)
     table.add_column(style="bold", no_wrap=True)
     table.add_column(overflow="fold")
@@ -109,7 +110,10 @@ def _summary(model: RobotModel, world: ArmWorld) -> Table:
     if robot.states:
         table.add_row("states", Text(", ".join(robot.states)))
     table.add_row("obstacles", _conservatism(model, world))
-    table.add_row("checks", _speed(world))
+    table.add_row("checks", _speed(world, measured))
+    if measured["blocking"] is not None:
+        text = f"no random configuration is free; most often {measured['blocking']}: disable that pair in an SRDF"
+        table.add_row("WARNING", Text(f"{text} (--write-srdf writes one), or give smaller bodies (--bodies)"))
     return table
 
 
@@ -124,22 +128,44 @@ def _conservatism(model: RobotModel, world: ArmWorld) -> str:
     return f"{added}capsules tested as {world.spheres} spheres, up to {1e3 * world.excess:.1f} mm larger"
 
 
-def _speed(world: ArmWorld) -> str:
-    cube = generator(0).random((_CONFIGURATIONS, world.space.cube_dim))
-    q = world.space.from_cube(cube)
+def _measured(world: ArmWorld) -> dict[str, Any]:
+    """Return how fast random configurations and motions are checked, how many are free, and what blocks all."""
+    q = world.space.from_cube(generator(0).random((_CONFIGURATIONS, world.space.cube_dim)))
     free = q[world.valid(q)]
-    configurations = _per_second(lambda: world.valid(q), len(q))
-    share = len(free) / len(q)
-    text = f"{configurations:,.0f} random configurations/s ({100.0 * share:.0f} % free)"
+    found: dict[str, Any] = {
+        "configurations_per_second": _per_second(lambda: world.valid(q), len(q)),
+        "free_percent": 100.0 * len(free) / len(q),
+        "motions_per_second": None,
+        "free_motions_percent": None,
+        "blocking": None,
+    }
     if len(free) > 1:
         a, b = free[: len(free) // 2][:_MOTIONS], free[len(free) // 2 :][:_MOTIONS]
         a, b = a[: min(len(a), len(b))], b[: min(len(a), len(b))]
         lengths = np.maximum(world.space.distance(a, b), world.resolution)
         b = world.space.interpolate(a, b, np.minimum(_MOST_SEGMENTS * world.resolution / lengths, 1.0))
-        passed = float(np.mean(world.motion_valid(a, b)))
-        motions = _per_second(lambda: world.motion_valid(a, b), len(a))
-        text += f", {motions:,.0f} motions/s between free ones ({100.0 * passed:.0f} % free)"
-    return f"{text}, one core, with {world.checked_with}, in {world.scene.name}"
+        found["free_motions_percent"] = 100.0 * float(np.mean(world.motion_valid(a, b)))
+        found["motions_per_second"] = _per_second(lambda: world.motion_valid(a, b), len(a))
+    elif len(free) == 0:
+        ((found["blocking"], _),) = Counter(map(world.explain, q[:_MOTIONS])).most_common(1)
+    return found
+
+
+def _speed(world: ArmWorld, measured: dict[str, Any]) -> str:
+    text = "{configurations_per_second:,.0f} random configurations/s ({free_percent:.0f} % free)"
+    if measured["motions_per_second"] is not None:
+        text += ", {motions_per_second:,.0f} motions/s between free ones ({free_motions_percent:.0f} % free)"
+    return f"{text.format(**measured)}, one core, with {world.checked_with}, in {world.scene.name}"
+
+
+def robot_record(model: RobotModel, world: ArmWorld) -> dict[str, Any]:
+    """Return all that is known of a robot as what JSON has; limits of joints that have none are null."""
+    record = asdict(model) | {"file": None if model.file is None else str(model.file.path)}
+    record["held"] = held_values(world.robot)
+    for joint in record["robot"]["joints"]:
+        joint |= {key: None for key in ("lower", "upper", "velocity") if math.isinf(joint[key])}
+    checks = {"scene": world.scene.name, "with": world.checked_with, **_measured(world)}
+    return record | {"no_body": list(model.bodiless), "checks": checks}
 
 
 def _per_second(call: Callable[[], object], count: int) -> float:
