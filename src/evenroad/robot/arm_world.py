@@ -177,8 +177,8 @@ class ArmWorld:
         proved = self.motion_valid(first, second)
         rows, tables = np.flatnonzero(proved), self.tables
         proved[rows] = motions_certified(
-            _read_only(first[rows]),
-            _read_only(second[rows]),
+            as_batch("a", first[rows], self._space.dim),
+            as_batch("b", second[rows], self._space.dim),
             tolerance,
             self.bounds,
             tables.ints,
@@ -278,10 +278,3 @@ def _chosen(backend: str) -> str:
     if failure is not None and backend == "lanes":
         raise NotAvailable(f"the lanes do not work on this machine ({failure}); backend='scalar' does")
     return "lanes" if failure is None else "scalar"
-
-
-def _read_only(array: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """Return a contiguous array that cannot be written to: compiled code is made anew for each mix of the two."""
-    array = np.ascontiguousarray(array)
-    array.setflags(write=False)
-    return array

@@ -62,37 +62,23 @@ def _file(key: str) -> Path:
 
 
 def _model(record: dict[str, Any]) -> RobotModel:
-    return RobotModel(
-        robot=_robot(record["robot"]),
-        bodies=tuple(LinkBody(**body | {"shapes": tuple(body["shapes"])}) for body in record["bodies"]),
-        pairs_from=record["pairs_from"],
-        dropped=tuple((first, second, reason) for first, second, reason in record["dropped"]),
-        drawn_only=tuple(record["drawn_only"]),
-        always_touching=tuple((first, second) for first, second in record["always_touching"]),
-        notes=tuple(record["notes"]),
-    )
+    robot = record.pop("robot")
+    bodies = tuple(LinkBody(**_with_tuples(body)) for body in record.pop("bodies"))
+    return RobotModel(_robot(robot), bodies, **_with_tuples(record))
 
 
 def _robot(record: dict[str, Any]) -> Robot:
+    joints = [joint | {"mimic": joint["mimic"] and Mimic(**joint["mimic"])} for joint in record.pop("joints")]
+    capsules = [(each["a"], each["b"], each["radius"], each["link"]) for each in record.pop("capsules")]
     return Robot(
-        name=record["name"],
-        links=tuple(record["links"]),
-        joints=tuple(_joint(joint) for joint in record["joints"]),
-        capsules=tuple(
-            Capsule(capsule["a"], capsule["b"], capsule["radius"], link=capsule["link"])
-            for capsule in record["capsules"]
-        ),
-        pairs=tuple((first, second) for first, second in record["pairs"]),
-        group=tuple(record["group"]),
-        held=record["held"],
-        states=record["states"],
+        joints=tuple(Joint(**_with_tuples(joint)) for joint in joints),
+        capsules=tuple(Capsule(a, b, radius, link=link) for a, b, radius, link in capsules),
+        **_with_tuples(record),
     )
 
 
-def _joint(record: dict[str, Any]) -> Joint:
-    mimic = record["mimic"]
-    return Joint(**_with_tuples(record) | {"mimic": None if mimic is None else Mimic(**mimic)})
-
-
-def _with_tuples(record: dict[str, Any]) -> dict[str, Any]:
-    return {key: tuple(value) if isinstance(value, list) else value for key, value in record.items()}
+def _with_tuples(value: Any) -> Any:
+    """Return a record with tuples where JSON has lists."""
+    if isinstance(value, dict):
+        return {key: _with_tuples(entry) for key, entry in value.items()}
+    return tuple(map(_with_tuples, value)) if isinstance(value, list) else value
