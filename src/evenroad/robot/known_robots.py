@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import fields
 from functools import lru_cache
 from typing import Any
 
@@ -46,7 +47,7 @@ def joint_space(robot: Robot) -> JointSpace:
 Prepared = tuple[JointSpace, npt.NDArray[np.float64], float, RobotTables]
 
 
-_FIELDS = ("name", "links", "joints", "capsules", "pairs", "group")
+_FIELDS = tuple(each.name for each in fields(Robot) if each.name not in ("states", "held"))
 
 
 def prepared(robot: Robot) -> Prepared:

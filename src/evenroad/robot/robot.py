@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 
 from evenroad._checks import require_known
 from evenroad._fingerprint import fingerprint_of
@@ -55,7 +55,10 @@ class Robot:
 
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of what decides verdicts; the names of the robot and its states do not."""
-        return fingerprint_of(self.links, self.joints, self.capsules, self.pairs, self.group, dict(self.held))
+        names_alone = ("name", "states")
+        return fingerprint_of(
+            *(getattr(self, each.name) for each in fields(self) if each.name not in names_alone)
+        )
 
     def with_tool(
         self, tool: Robot | Sequence[Shape], at: str, *, pose: Pose = IDENTITY, prefix: str = ""
@@ -118,20 +121,15 @@ class Robot:
 
 def _renamed(robot: Robot, prefix: str) -> Robot:
     """Return a robot with `prefix` before the names of all links and joints."""
-    joints = tuple(
-        replace(
-            joint,
-            name=prefix + joint.name,
-            parent=prefix + joint.parent,
-            child=prefix + joint.child,
-            mimic=replace(joint.mimic, joint=prefix + joint.mimic.joint) if joint.mimic else None,
-        )
-        for joint in robot.joints
-    )
+    joints = []
+    for joint in robot.joints:
+        mimic = joint.mimic and replace(joint.mimic, joint=prefix + joint.mimic.joint)
+        name, parent, child = (prefix + each for each in (joint.name, joint.parent, joint.child))
+        joints.append(replace(joint, name=name, parent=parent, child=child, mimic=mimic))
     return replace(
         robot,
         links=tuple(prefix + link for link in robot.links),
-        joints=joints,
+        joints=tuple(joints),
         capsules=tuple(replace(capsule, link=prefix + capsule.link) for capsule in robot.capsules),
         pairs=tuple((prefix + first, prefix + second) for first, second in robot.pairs),
         held={prefix + name: value for name, value in robot.held.items()},
@@ -200,12 +198,8 @@ class RobotModel:
 def with_group(robot: Robot, group: Sequence[str], held: Mapping[str, float] | None = None) -> Robot:
     """Return the robot with another group; the other movable joints are held at `held`, else at 0 or nearest to it.
 
-    Raises
-    ------
-    UnknownName
-        If a joint is not one that moves freely.
-    InvalidValue
-        If a joint is held that is in the group, or at a value that is outside its limits.
+    Raises UnknownName if a joint is not one that moves freely; InvalidValue if one is held that is in the group, or
+    outside of its limits.
     """
     free = {joint.name: joint for joint in robot.joints if joint.kind != "fixed" and joint.mimic is None}
     held = dict(held or {})
@@ -221,12 +215,7 @@ def with_group(robot: Robot, group: Sequence[str], held: Mapping[str, float] | N
 def in_scene(robot: Robot, scene: Scene) -> Robot:
     """Return the robot with the scene's ranges to plan in, where they are narrower than its own limits.
 
-    Raises
-    ------
-    UnknownName
-        If the scene names a joint that the robot does not have.
-    InvalidValue
-        If no value is within both ranges.
+    Raises UnknownName if the scene names a joint that the robot does not have; InvalidValue if no value is within both.
     """
     joints = {joint.name: joint for joint in robot.joints}
     limits = {}
@@ -239,14 +228,8 @@ def in_scene(robot: Robot, scene: Scene) -> Robot:
 def with_limits(robot: Robot, limits: Mapping[str, tuple[float, float]]) -> Robot:
     """Return the robot with other limits, joint -> (lower, upper) [rad or m].
 
-    A continuous joint that gets limits becomes a revolute one; limits of a mimic narrow those of its leader.
-
-    Raises
-    ------
-    UnknownName
-        If a joint is not there.
-    InvalidValue
-        If lower is not below upper.
+    A continuous joint that gets limits becomes a revolute one; limits of a mimic narrow those of its leader.  Raises
+    UnknownName if a joint is not there; InvalidValue if lower is not below upper.
     """
     names = [joint.name for joint in robot.joints]
     for name, (lower, upper) in limits.items():
@@ -255,16 +238,12 @@ def with_limits(robot: Robot, limits: Mapping[str, tuple[float, float]]) -> Robo
             raise InvalidValue(
                 f"limits of joint {name!r} must satisfy lower < upper, got {lower!r}, {upper!r}"
             )
-    joints = tuple(
-        replace(
-            joint,
-            kind="revolute" if joint.kind == "continuous" else joint.kind,
-            lower=float(limits[joint.name][0]),
-            upper=float(limits[joint.name][1]),
-        )
-        if joint.name in limits
-        else joint
-        for joint in robot.joints
-    )
+    joints = []
+    for joint in robot.joints:
+        if joint.name in limits:
+            lower, upper = map(float, limits[joint.name])
+            kind = "revolute" if joint.kind == "continuous" else joint.kind
+            joint = replace(joint, kind=kind, lower=lower, upper=upper)
+        joints.append(joint)
     # A leader goes no further than its mimics may.
     return replace(robot, joints=tuple(within_limits_of_mimics(joints)))

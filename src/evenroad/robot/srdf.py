@@ -6,7 +6,7 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
 
 from evenroad._checks import require_known
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
@@ -68,7 +68,7 @@ def read_srdf(path: Path, urdf: Urdf) -> Srdf:
 
 @dataclass(frozen=True)
 class _Groups:
-    elements: Mapping[str, ElementTree.Element]
+    elements: Mapping[str, Element]
     virtual: frozenset[str]
     urdf: Urdf
     path: Path
@@ -102,11 +102,11 @@ class _Groups:
             link = by_child[link].parent
         return names
 
-    def _part(self, part: ElementTree.Element, what: str, attribute: str, known: Collection[str]) -> str:
+    def _part(self, part: Element, what: str, attribute: str, known: Collection[str]) -> str:
         return _known(what, _attribute(part, attribute, self.path), known, self.path)
 
 
-def _values(state: ElementTree.Element, virtual: frozenset[str], urdf: Urdf, path: Path) -> dict[str, float]:
+def _values(state: Element, virtual: frozenset[str], urdf: Urdf, path: Path) -> dict[str, float]:
     values = {}
     for joint in state.findall("joint"):
         name = _attribute(joint, "name", path)
@@ -128,7 +128,7 @@ def _in_order(names: set[str], urdf: Urdf) -> tuple[str, ...]:
     return tuple(name for name in urdf.order if name in free)
 
 
-def _attribute(element: ElementTree.Element, name: str, path: Path) -> str:
+def _attribute(element: Element, name: str, path: Path) -> str:
     value = element.get(name)
     if not value:
         raise BrokenFile(f"<{element.tag}> in {path} lacks {name!r}")

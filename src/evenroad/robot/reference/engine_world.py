@@ -23,25 +23,9 @@ from evenroad.world.function import FunctionWorld, TestedAtStates
 class EngineWorld(TestedAtStates, ABC):
     """A robot's shapes among a scene's, checked state by state; subclasses say by whom.
 
-    Parameters
-    ----------
-    robot : Robot
-        Tree of joints, group and pairs of links; its capsules count only where `shapes` is not given.
-    scene : Scene
-        Obstacles and allowed contacts.
-    shapes : sequence of Shape, optional
-        Shapes of the links, each in its link's frame, as of :func:`original_shapes`.  By default the robot's capsules.
-    resolution : float
-        As for :class:`evenroad.robot.arm_world.ArmWorld`.
-
-    Raises
-    ------
-    NotAvailable
-        If the engine, or what reads a mesh, is not installed.
-    BrokenFile
-        If a mesh is missing, broken or empty.
-    InvalidValue
-        If a link would have no shape, or a shape is of a link that is not there.
+    `shapes` are those of the links, each in its link's frame, as of :func:`original_shapes`; by default the robot's
+    capsules.  Raises NotAvailable if the engine is not installed, BrokenFile if a mesh is missing or broken,
+    InvalidValue if a link would have no shape, or a shape is of a link that is not there.
     """
 
     robot: Robot
