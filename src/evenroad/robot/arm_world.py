@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Bools, Floats
 from evenroad._checks import require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import NotAvailable, UnknownName
@@ -79,7 +79,7 @@ class ArmWorld:
     resolution: float = 0.05
     backend: str = "auto"
     _space: JointSpace = field(init=False, repr=False)
-    bounds: npt.NDArray[np.float64] = field(init=False, repr=False)
+    bounds: Floats = field(init=False, repr=False)
     robot_tables: RobotTables = field(init=False, repr=False)
     tables: ArmTables = field(init=False, repr=False)
 
@@ -88,11 +88,10 @@ class ArmWorld:
         space, bounds, longest, of_robot = prepared(self.robot)
         require_few_segments(self.resolution, longest / self.resolution)
         tested = tested_contacts(of_robot.capsules, self.robot.links, self.scene)
-        object.__setattr__(self, "_space", space)
-        object.__setattr__(self, "bounds", bounds)
-        object.__setattr__(self, "robot_tables", of_robot)
-        object.__setattr__(self, "tables", arm_tables(of_robot, obstacle_arrays(self.scene), tested))
-        object.__setattr__(self, "backend", _chosen(self.backend))
+        made = {"_space": space, "bounds": bounds, "robot_tables": of_robot, "backend": _chosen(self.backend)}
+        made["tables"] = arm_tables(of_robot, obstacle_arrays(self.scene), tested)
+        for name, value in made.items():
+            object.__setattr__(self, name, value)
 
     @property
     def space(self) -> JointSpace:
@@ -115,7 +114,7 @@ class ArmWorld:
         """How many spheres stand for the capsules where obstacles are concerned."""
         return sum(len(capsule.cover.places) for capsule in self.robot_tables.capsules)
 
-    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def valid(self, q: Floats) -> Bools:
         """Return which configurations, (n, dim), are within the limits and touch nothing: (n,).
 
         Raises InvalidValue if `q` has another shape or an entry that is not finite.
@@ -129,16 +128,14 @@ class ArmWorld:
         batch, (address, _) = trees.lanes()
         return batch.configurations_free(configurations, address, self.bounds, tables.lanes)
 
-    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
 
         Raises InvalidValue as `valid`, or if the two differ in length.
         """
         return self._motions_free(a, b, 0.0)
 
-    def _motions_free(
-        self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64], tolerance: float
-    ) -> npt.NDArray[np.bool_]:
+    def _motions_free(self, a: Floats, b: Floats, tolerance: float) -> Bools:
         """Return which motions are free at their states and, by the lanes, proved where `tolerance` is > 0."""
         first, second = as_batch_pair(a, b, self._space.dim)
         if self.fixed_contact is not None:
@@ -153,7 +150,7 @@ class ArmWorld:
         """``certified``: what `recheck` calls free is proved to be, everywhere between its ends."""
         return "certified"
 
-    def recheck(self, path: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def recheck(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, dim), are proved free: (p - 1,).
 
         The method is that of :mod:`evenroad.robot.certified`: no stretch of a motion is left open.  Refused is, too,
@@ -162,9 +159,7 @@ class ArmWorld:
         waypoints = as_batch("path", path, self._space.dim)
         return self.motion_certified(waypoints[:-1], waypoints[1:], RECHECK_TOLERANCE)
 
-    def motion_certified(
-        self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64], tolerance: float
-    ) -> npt.NDArray[np.bool_]:
+    def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> Bools:
         """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are proved free: (m,).
 
         What comes nearer than about `tolerance` to contact is not called free, > 0 [m].  Raises as `motion_valid`.
@@ -195,8 +190,8 @@ class ArmWorld:
 
     def connect(
         self,
-        start: npt.NDArray[np.float64],
-        goals: npt.NDArray[np.float64],
+        start: Floats,
+        goals: Floats,
         *,
         most_motions: int = MOST_MOTIONS,
         seconds: float = SECONDS,
@@ -209,8 +204,8 @@ class ArmWorld:
 
     def connect_anew(
         self,
-        start: npt.NDArray[np.float64],
-        goals: npt.NDArray[np.float64],
+        start: Floats,
+        goals: Floats,
         *,
         variant: int,
         most_motions: int = MOST_MOTIONS,
@@ -220,7 +215,7 @@ class ArmWorld:
         sequence = shifted_cube_points(self._space.dim, variant)
         return connect(self, start, goals, most_motions=most_motions, seconds=seconds, sequence=sequence)
 
-    def shorten(self, path: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], int]:
+    def shorten(self, path: Floats) -> tuple[Floats, int]:
         """Return a path that is not longer and whose new motions are proved free, and how many were looked at.
 
         See :func:`evenroad.robot.trees.shorten`.
@@ -231,7 +226,7 @@ class ArmWorld:
         """Return a text that two worlds share whose robot, scene and resolution are the same."""
         return fingerprint_of("arm", self.robot, self.scene, self.resolution)
 
-    def explain(self, q: npt.NDArray[np.float64]) -> str:
+    def explain(self, q: Floats) -> str:
         """Return in words why one configuration, (dim,), is not free: a joint outside its limits, or what touches."""
         batch = as_batch("q", np.asarray(q, dtype=np.float64)[np.newaxis], self._space.dim)
         # To itself: brings wrapping joints into their ranges.
@@ -251,7 +246,7 @@ class ArmWorld:
         capsule, obstacle = self.tables.fixed_contact
         return self.robot_tables.capsules[capsule].link, self.scene.obstacles[obstacle].name
 
-    def _touching(self, q: npt.NDArray[np.float64]) -> tuple[str, str] | None:
+    def _touching(self, q: Floats) -> tuple[str, str] | None:
         """Return two bodies that touch, or come as near as what single precision may call touching."""
         of_robot, tables, of_capsules = self.robot_tables, self.tables, self.robot_tables.capsules
         # A copy: code would be compiled anew for an array that cannot be written to.

@@ -24,9 +24,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-import numpy.typing as npt
-
+from evenroad._arrays import Bools, Floats
 from evenroad._checks import require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.robot.arm_world import ArmWorld
@@ -53,11 +51,11 @@ class CertifiedWorld:
         """The space of the world inside."""
         return self.world.space
 
-    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def valid(self, q: Floats) -> Bools:
         """Return what the world inside says of configurations, (n, dim): (n,)."""
         return self.world.valid(q)
 
-    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are proved free: (m,)."""
         return self.world.motion_certified(a, b, self.tolerance)
 
@@ -66,7 +64,7 @@ class CertifiedWorld:
         """``certified``, as every motion is here."""
         return "certified"
 
-    def recheck(self, path: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def recheck(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, dim), are proved free: (p - 1,)."""
         waypoints = as_batch("path", path, self.space.dim)
         return self.motion_valid(waypoints[:-1], waypoints[1:])
@@ -75,6 +73,6 @@ class CertifiedWorld:
         """Return the SHA-256 (hex) of the world inside and the tolerance: equal for worlds of the same verdicts."""
         return fingerprint_of("certified", self.world.fingerprint(), self.tolerance)
 
-    def explain(self, q: npt.NDArray[np.float64]) -> str:
+    def explain(self, q: Floats) -> str:
         """Return in words why one configuration, (dim,), is not free."""
         return self.world.explain(q)

@@ -8,8 +8,8 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad._checks import require_known
 from evenroad.errors import InvalidValue
 from evenroad.robot.kernel.robot_tables import RobotTables, robot_tables
@@ -44,7 +44,7 @@ def joint_space(robot: Robot) -> JointSpace:
     return JointSpace(low, high, wrapping)
 
 
-Prepared = tuple[JointSpace, npt.NDArray[np.float64], float, RobotTables]
+Prepared = tuple[JointSpace, Floats, float, RobotTables]
 
 
 _FIELDS = tuple(each.name for each in fields(Robot) if each.name not in ("states", "held"))

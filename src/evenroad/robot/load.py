@@ -216,7 +216,7 @@ def read_bodies(path: Path, links: Sequence[str]) -> dict[str, tuple[Capsule, ..
     """Return link -> its capsules, for the links that the file names.
 
     The file has a list for each link, ``forearm: [{a: [0, 0, 0], b: [0, 0, 0.3], radius: 0.05}, {centre: [0, 0, 0.4],
-    radius: 0.06}]``: capsules by their end points, spheres by their centres, in the link's frame [m].  Raises BrokenFile
+    radius: 0.06}]``: capsules by their ends, spheres by their centres, in the link's frame [m].  Raises BrokenFile
     if it is missing or not of that form; UnknownName for a link that there is not, or another key; InvalidValue if a
     number is not one, a radius is not > 0, or a link has no body.
     """

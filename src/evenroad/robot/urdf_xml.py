@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import unquote
@@ -17,31 +17,28 @@ from xml.parsers import expat
 
 from evenroad._extras import require_extra
 from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.geometry.shapes import PRIMITIVES
 
-_THREE = (("origin", "xyz"), ("origin", "rpy"), ("axis", "xyz"), ("box", "size"), ("mesh", "scale"))
-_ONE = {
-    "limit": ("lower", "upper", "velocity"),
-    "mimic": ("multiplier", "offset"),
-    "sphere": ("radius",),
-    "cylinder": ("radius", "length"),
-    "capsule": ("radius", "length"),
+_SIZES = {tag: dict(shape.dimensions) for tag, shape in PRIMITIVES.items()}
+_SHAPES = (*_SIZES, "mesh")
+_NUMBERS = {
+    "origin": {"xyz": 3, "rpy": 3},
+    "axis": {"xyz": 3},
+    "limit": {"lower": 1, "upper": 1, "velocity": 1},
+    "mimic": {"multiplier": 1, "offset": 1},
+    "mesh": {"scale": 3},
+    **_SIZES,
 }
-_NUMBERS = dict.fromkeys(_THREE, 3) | {(tag, name): 1 for tag, names in _ONE.items() for name in names}
-"""Element and attribute -> how many finite numbers it must hold, if it is there."""
-
-_REQUIRED = {
+"""Element -> attribute -> how many finite numbers it must hold, if it is there."""
+_REQUIRED: dict[str, Iterable[str]] = {
     "link": ("name",),
     "joint": ("name", "type"),
     "parent": ("link",),
     "child": ("link",),
     "mimic": ("joint",),
-    "box": ("size",),
-    "sphere": ("radius",),
-    "cylinder": ("radius", "length"),
-    "capsule": ("radius", "length"),
     "mesh": ("filename",),
+    **_SIZES,
 }
-_SHAPES = ("box", "sphere", "cylinder", "capsule", "mesh")
 _LENGTHS = ("size", "radius", "length")
 _THIN = 1e-6
 """What a body has in place of a dimension of 0 [m]."""
@@ -192,7 +189,7 @@ def _check(owner: Element, path: Path) -> None:
             if len(found) > 1 and (len(found[0]) or any(each.attrib != found[0].attrib for each in found)):
                 raise BrokenFile(f"{where}: <{element.tag}> has more than one <{tag}>")
         for attribute, text in list(element.attrib.items()):
-            count = _NUMBERS.get((element.tag, attribute))
+            count = _NUMBERS.get(element.tag, {}).get(attribute)
             if count is not None:
                 what = f"{where}: {attribute} of <{element.tag}>"
                 # The readers that come after this one do not agree on what separates numbers.
