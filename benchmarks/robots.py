@@ -40,6 +40,8 @@ RIGHTLY = (
     "must satisfy lower <= upper",
     "more than one root",
     "must be 3 finite numbers",
+    "must be a finite number",
+    "unknown type of joint",
     "not well-formed",
 )
 """Refusals of files in which a piece is not there, or wrong: what no reader could make up."""
