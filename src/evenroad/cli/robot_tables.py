@@ -162,6 +162,7 @@ def robot_record(model: RobotModel, world: ArmWorld) -> dict[str, Any]:
     """Return all that is known of a robot as what JSON has; limits of joints that have none are null."""
     record = asdict(model) | {"file": None if model.file is None else str(model.file.path)}
     record["held"] = held_values(world.robot)
+    record["robot"]["hulls"] = dict(Counter(hull.link for hull in model.robot.hulls))
     for joint in record["robot"]["joints"]:
         joint |= {key: None for key in ("lower", "upper", "velocity") if math.isinf(joint[key])}
     checks = {"scene": world.scene.name, "with": world.checked_with, **_measured(world)}

@@ -10,15 +10,18 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from evenroad import __version__
 from evenroad._files import atomic_write, cache_folder
 from evenroad.errors import BrokenFile
+from evenroad.geometry.hulls import Hull
 from evenroad.geometry.shapes import Capsule, Mesh
 from evenroad.robot.joint import Joint, Mimic
 from evenroad.robot.robot import LinkBody, Robot, RobotModel
 from evenroad.robot.urdf import Urdf
 
-_FORMAT = 7
+_FORMAT = 8
 """Counted up when the same files would give another robot, or the files of this cache look different."""
 
 
@@ -54,7 +57,7 @@ def keep(key: str, model: RobotModel) -> None:
     with suppress(OSError):
         file.parent.mkdir(parents=True, exist_ok=True)
         with atomic_write(file) as stream:
-            stream.write(json.dumps(asdict(model)).encode())
+            stream.write(json.dumps(asdict(model), default=np.ndarray.tolist).encode())
 
 
 def _file(key: str) -> Path:
@@ -69,10 +72,12 @@ def _model(record: dict[str, Any]) -> RobotModel:
 
 def _robot(record: dict[str, Any]) -> Robot:
     joints = [joint | {"mimic": joint["mimic"] and Mimic(**joint["mimic"])} for joint in record.pop("joints")]
+    hulls = [Hull(each["points"], each["radius"], each["link"]) for each in record.pop("hulls")]
     capsules = [(each["a"], each["b"], each["radius"], each["link"]) for each in record.pop("capsules")]
     return Robot(
         joints=tuple(Joint(**_with_tuples(joint)) for joint in joints),
         capsules=tuple(Capsule(a, b, radius, link=link) for a, b, radius, link in capsules),
+        hulls=tuple(hulls),
         **_with_tuples(record),
     )
 

@@ -14,10 +14,11 @@ from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.geometry.fit import fit_capsules
 from evenroad.geometry.fit_points import union_volume
+from evenroad.geometry.hulls import Piece, piece_of
 from evenroad.geometry.shapes import Capsule, Mesh
 from evenroad.robot.cache import cached, keep, key_of
 from evenroad.robot.mjcf import read_mjcf
-from evenroad.robot.pairs import always_touching, computed_pairs, pairs_without
+from evenroad.robot.pairs import self_pairs
 from evenroad.robot.robot import LinkBody, Robot, RobotModel
 from evenroad.robot.srdf import choose_group, chosen_states, read_srdf
 from evenroad.robot.urdf import Urdf, read_urdf
@@ -173,15 +174,18 @@ def _build(
         group=chosen,
         states={} if srdf is None else chosen_states(srdf, chosen, group),
     )
-    if srdf is not None and srdf.disabled:
-        pairs, pairs_from = pairs_without(robot, srdf.disabled), "SRDF"
-        touching = tuple(always_touching(robot, pairs.tested))
-    else:
-        pairs, pairs_from, touching = computed_pairs(robot), "computed", ()
+    disabled = None if srdf is None or not srdf.disabled else srdf.disabled
+    pairs = self_pairs(robot, _pieces(urdf, given), disabled)
     links = tuple(_link_body(urdf, link, capsules[link], link in given) for link in capsules)
     drawn_only = tuple(link for link in urdf.drawn_only if link not in capsules)
     return RobotModel(
-        replace(robot, pairs=pairs.tested), links, pairs_from, pairs.dropped, drawn_only, touching, urdf.notes
+        replace(robot, pairs=pairs.tested, hulls=pairs.hulls, pairs_given=disabled is not None),
+        links,
+        "computed" if disabled is None else "SRDF",
+        pairs.dropped,
+        drawn_only,
+        pairs.always,
+        urdf.notes,
     )
 
 
@@ -198,6 +202,15 @@ def _capsules(
         found[shape.link] = found.get(shape.link, ()) + fit_capsules(shape)
     found |= given
     return {link: found[link] for link in urdf.links if link in found}
+
+
+def _pieces(urdf: Urdf, given: dict[str, tuple[Capsule, ...]]) -> dict[str, list[Piece]]:
+    """Return what every link with a body consists of: the capsules given, or the shapes of the URDF."""
+    shapes = [shape for shape in urdf.shapes if shape.link not in given]
+    pieces: dict[str, list[Piece]] = {}
+    for shape in (*shapes, *(capsule for capsules in given.values() for capsule in capsules)):
+        pieces.setdefault(shape.link, []).append(piece_of(shape))
+    return pieces
 
 
 def _link_body(urdf: Urdf, link: str, capsules: tuple[Capsule, ...], given: bool) -> LinkBody:

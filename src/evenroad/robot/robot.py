@@ -5,15 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 
+import numpy as np
+
 from evenroad._checks import require_known
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
 from evenroad.geometry.fit import fit_capsules
+from evenroad.geometry.hulls import Hull, Piece, piece_of
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import Capsule, Shape, without_pose
 from evenroad.robot.joint import Joint, require_within, within_limits_of_mimics
 from evenroad.robot.kinematics import held_values
-from evenroad.robot.pairs import computed_pairs
+from evenroad.robot.pairs import self_pairs
 from evenroad.robot.scene import Scene
 from evenroad.robot.urdf_xml import RobotFile
 
@@ -38,6 +41,12 @@ class Robot:
         Joint -> value of other movable joints [rad or m]; where not given: 0, or the nearest to it within limits.
     states : mapping of str to mapping of str to float
         Named configurations: joint -> value, of joints outside of the group, too, where they are known.
+    hulls : tuple of Hull
+        Convex pieces that contain the links' shapes more tightly than capsules: where capsules of a pair touch, these
+        decide.  Links without any are their capsules.
+    pairs_given : bool
+        Whether `pairs` were given by somebody, as by an SRDF; else a pair that the group does not move and that touches
+        where it is held is left out.
     """
 
     name: str
@@ -48,6 +57,8 @@ class Robot:
     group: tuple[str, ...]
     held: Mapping[str, float] = field(default_factory=dict)
     states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    hulls: tuple[Hull, ...] = ()
+    pairs_given: bool = True
 
     def __post_init__(self) -> None:
         # The kernel takes the ends as they are: a capsule with a pose of its own gets them in its link's frame.
@@ -88,8 +99,10 @@ class Robot:
         """
         require_known(f"link of {self.name!r}", at, self.links)
         if not isinstance(tool, Robot):
-            capsules = [capsule for shape in tool for capsule in fit_capsules(shape)]
-            tool = Robot("tool", ("tool",), (), tuple(replace(c, link="tool") for c in capsules), (), ())
+            shapes = [replace(shape, link="tool") for shape in tool]
+            capsules = tuple(capsule for shape in shapes for capsule in fit_capsules(shape))
+            hulls = tuple(piece_of(shape).hull for shape in shapes)
+            tool = Robot("tool", ("tool",), (), capsules, (), (), hulls=hulls)
         if not tool.capsules:
             raise InvalidValue(f"tool {tool.name!r} must have a body: without one it would never collide")
         tool = replace(tool, group=(), states={})
@@ -110,13 +123,26 @@ class Robot:
             joints=(*self.joints, mount, *tool.joints),
             capsules=(*self.capsules, *tool.capsules),
             held={**self.held, **tool.held},
+            hulls=(*self.hulls, *tool.hulls),
         )
         between = tuple(
             pair
-            for pair in computed_pairs(joined).tested
+            for pair in self_pairs(joined, pieces_of(joined)).tested
             if (pair[0] in tool.links) != (pair[1] in tool.links)
         )
         return replace(joined, pairs=(*self.pairs, *tool.pairs, *between))
+
+
+def pieces_of(robot: Robot) -> dict[str, list[Piece]]:
+    """Return the hulls of every link that has a body; of links without any its capsules."""
+    pieces: dict[str, list[Piece]] = {}
+    for hull in robot.hulls:
+        pieces.setdefault(hull.link, []).append(Piece(hull, hull.points[np.newaxis], hull.radius))
+    own = set(pieces)
+    for capsule in robot.capsules:
+        if capsule.link not in own:
+            pieces.setdefault(capsule.link, []).append(piece_of(capsule))
+    return pieces
 
 
 def _renamed(robot: Robot, prefix: str) -> Robot:
@@ -133,6 +159,7 @@ def _renamed(robot: Robot, prefix: str) -> Robot:
         capsules=tuple(replace(capsule, link=prefix + capsule.link) for capsule in robot.capsules),
         pairs=tuple((prefix + first, prefix + second) for first, second in robot.pairs),
         held={prefix + name: value for name, value in robot.held.items()},
+        hulls=tuple(replace(hull, link=prefix + hull.link) for hull in robot.hulls),
     )
 
 

@@ -23,6 +23,7 @@ from evenroad.robot.kernel.forward_kinematics import (
     place_moving_capsules,
     scratch_places,
 )
+from evenroad.robot.kernel.hull_contact import bodies_meet
 from evenroad.robot.kernel.lanes import (
     ZERO,
     absolute,
@@ -63,7 +64,7 @@ def blocked_lanes(scratch: Singles, ints: Ints, table: Singles, enough: int) -> 
     blocked = _meeting_obstacles(scratch, capsules, bodies, ints, table, enough)
     if blocked == ALL or (blocked != 0 and enough == 1):
         return blocked
-    return _meeting_themselves(scratch, capsules, bodies, ints, table, blocked, enough)
+    return _meeting_themselves(scratch, frames, capsules, bodies, ints, table, blocked, enough)
 
 
 @inner
@@ -172,9 +173,17 @@ def _near_obstacles(around: Any, block: int, ints: Ints, table: Singles) -> int:
 
 @inner
 def _meeting_themselves(
-    scratch: Singles, capsules: int, bodies: int, ints: Ints, table: Singles, blocked: int, enough: int
+    scratch: Singles,
+    frames: int,
+    capsules: int,
+    bodies: int,
+    ints: Ints,
+    table: Singles,
+    blocked: int,
+    enough: int,
 ) -> int:
     """Return `blocked` and the mask of lanes in which two bodies of a pair touch."""
+    by_hulls = ints[at.BODY_PAIRS] - ints[at.HULL_PAIRS]
     for p in range(ints[at.BODY_PAIRS]):
         row = ints[at.BODY_PAIR_INTS] + at.BODY_PAIR_INT_ROW * p
         a, b = bodies + BODY * ints[row], bodies + BODY * ints[row + 1]
@@ -186,6 +195,7 @@ def _meeting_themselves(
             continue
         others = ints[at.BODY_INTS] + at.BODY_INT_ROW * ints[row + 1]
         count = ints[others + 2] - ints[others + 1]
+        undecided = 0
         # Pairs of one capsule of the first body with all of the other body follow each other.
         for first in range(ints[row + 2], ints[row + 3], count):
             if count > FEW:
@@ -207,8 +217,19 @@ def _meeting_themselves(
                 if table[data + 2] + table[data + 3] > ZERO:
                     # Not both are balls.
                     in_touch = touching(scratch, a, b, data, table)
+                if p >= by_hulls:
+                    undecided |= in_touch
+                    continue
                 blocked |= in_touch
                 if blocked == ALL or (blocked != 0 and enough == 1):
+                    return blocked
+        undecided &= ~blocked
+        while undecided != 0:
+            lane = lowest_bit(undecided)
+            undecided &= undecided - 1
+            if bodies_meet(scratch, frames, lane, p, ints, table):
+                blocked |= 1 << lane
+                if enough == 1:
                     return blocked
     return blocked
 

@@ -31,7 +31,13 @@ OBSTACLE_FLOATS, BLOCK_FLOATS = range(21, 23)
 INTEGERS = 23
 """Header: how many integers there are, header included; where lanes read, single-precision floats follow them."""
 
-HEADER = 24
+HULL_PAIRS = 24
+"""Header: how many pairs of bodies, the last ones, are decided by their hulls where capsules touch."""
+
+NODE_INTS, NODE_FLOATS, HULL_MARGINS = range(25, 28)
+"""Header: where nodes of trees of hulls begin, and the margins of pairs that are decided by hulls."""
+
+HEADER = 28
 """Length of the header."""
 
 FRAME_INT_ROW = 3
@@ -40,14 +46,20 @@ FRAME_INT_ROW = 3
 CAPSULE_INT_ROW = 3
 """Frame, first sample, end of samples."""
 
-BODY_INT_ROW = 3
-"""Frame, first capsule, end of capsules."""
+BODY_INT_ROW = 4
+"""Frame, first capsule, end of capsules, root of its tree of hulls."""
 
 BODY_PAIR_INT_ROW = 4
 """Two bodies, first capsule pair, end of capsule pairs."""
 
 PAIR_INT_ROW = 2
 """Two capsules."""
+
+NODE_INT_ROW = 4
+"""Two children, or -1 twice; of a leaf, where its points begin and end in the floats, in steps of three."""
+
+NODE_FLOAT_ROW = 5
+"""Centre (3) and radius of a ball around all below, in the body's frame; by how much a leaf's hull is widened."""
 
 OBSTACLE_INT_ROW = 1
 """Kind, one of the following."""

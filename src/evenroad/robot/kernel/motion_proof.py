@@ -111,3 +111,7 @@ def _enlarge(half: float, m: Motion, w: World) -> None:
         row += at.BODY_PAIR_INT_ROW
         place = ints[at.BODY_PAIR_FLOATS] + p
         wide[place] = _wider(table[place], most)
+    for p in range(ints[at.HULL_PAIRS]):
+        place = ints[at.HULL_MARGINS] + p
+        margin = half * m.pair_speeds[len(m.pair_speeds) - ints[at.HULL_PAIRS] + p]
+        wide[place] = _wider(table[place], margin)

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from numba import njit
 
 from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel.hull_contact import placed_bodies_meet
 from evenroad.robot.kernel.layout import inner
 from evenroad.robot.kernel.motion import enter, span
 from evenroad.world.bisection import next_between
@@ -168,7 +169,13 @@ def _meets_itself(ints: Ints, floats: Floats, pair_margins: Floats, frames: Floa
             data = ints[at.PAIR_FLOATS] + at.PAIR_FLOAT_ROW * pair
             reach = floats[data + 1] + pair_margins[pair]
             if _squared_distance_of_pair(pair, ints, floats, capsules) < reach * reach:
-                return pair
+                by_hulls = p - (ints[at.BODY_PAIRS] - ints[at.HULL_PAIRS])
+                if by_hulls < 0:
+                    return pair
+                margin = pair_margins[len(pair_margins) - ints[at.HULL_PAIRS] + by_hulls]
+                if placed_bodies_meet(frames, margin, p, ints, floats):
+                    return pair
+                break
     return -1
 
 
