@@ -459,19 +459,11 @@ def test_robot_tells_all_as_json(run, desk):
     assert record["checks"]["free_percent"] == 100.0
 
 
-def test_robot_says_which_pair_leaves_nothing_free(run, desk):
-    big = SPHERE.replace("0.05", "0.4")
-    near = joint("b", "upper", "lower", xyz="0 0 0.01")
-    arm = urdf(link("base", big), link("upper", ""), link("lower", big), joint("a", "base", "upper"), near)
-    (desk / "arm.urdf").write_text(arm)
-    (desk / "arm.srdf").write_text(
-        "<robot name='arm'><group name='g'><joint name='a'/><joint name='b'/></group>"
-        "<disable_collisions link1='base' link2='upper'/></robot>"
-    )
-    code, out, _ = run("robot", "arm.urdf", "--srdf", "arm.srdf")
-    said = " ".join(out.split())
+def test_robot_says_what_leaves_nothing_free(run, desk):
+    (desk / "wall.yaml").write_text("obstacles: {wall: {shape: sphere, radius: 0.2, xyz: [0, 0, 0.3]}}")
+    code, out, _ = run("robot", "arm.urdf", "--scene", "wall.yaml")
     assert code == 0
-    assert "no random configuration is free; most often 'base' touches 'lower': disable that pair" in said
+    assert "no random configuration is free in wall; most often 'upper' touches 'wall'" in " ".join(out.split())
 
 
 def test_groups_are_planned_together_in_the_order_given(run, desk):

@@ -45,6 +45,8 @@ def bodiless_rows(model: RobotModel) -> list[tuple[str, str]]:
         rows.append(
             ("WARNING", f"in collision in every sampled configuration, so that none is free: {pairs}")
         )
+    elif model.never_free:
+        rows.append(("WARNING", model.never_free))
     return rows
 
 
@@ -111,9 +113,9 @@ def _summary(model: RobotModel, world: ArmWorld) -> Table:
         table.add_row("states", Text(", ".join(robot.states)))
     table.add_row("obstacles", _conservatism(model, world))
     table.add_row("checks", _speed(world, measured))
-    if measured["blocking"] is not None:
-        text = f"no random configuration is free; most often {measured['blocking']}: disable that pair in an SRDF"
-        table.add_row("WARNING", Text(f"{text} (--write-srdf writes one), or give smaller bodies (--bodies)"))
+    if measured["blocking"] is not None and not (model.never_free or model.always_touching):
+        text = f"no random configuration is free in {world.scene.name}; most often {measured['blocking']}"
+        table.add_row("WARNING", Text(text))
     return table
 
 

@@ -53,12 +53,8 @@ class Hull:
 
 
 def hull_around(points: Floats, radius: float, link: str) -> Hull:
-    """Return the hull of points, (n, 3), widened by `radius`; of many, one of fewer that contains it."""
-    corners = extreme(points) if len(points) > 4 else points
-    if len(corners) > _FEW:
-        corners, beyond = _thinned(corners)
-        radius += beyond
-    return Hull(corners, radius + _ROUNDING * (1.0 + float(np.abs(corners).max())), link)
+    """Return the hull of points, (n, 3), widened by `radius`, and by what rounding may lose."""
+    return Hull(points, radius + _ROUNDING * (1.0 + float(np.abs(points).max())), link)
 
 
 def _thinned(corners: Floats) -> tuple[Floats, float]:
@@ -97,7 +93,10 @@ def _distances_from_hull(points: Floats, few: Floats) -> Floats | None:
     e, f, r = b - a, c - a, points - a
     ee, ef, ff, er, fr = (np.einsum("ni,ni->n", u, v) for u, v in ((e, e), (e, f), (f, f), (e, r), (f, r)))
     area = np.maximum(ee * ff - ef * ef, 1e-300)
-    second, third = np.clip((ff * er - ef * fr) / area, 0.0, 1.0), np.clip((ee * fr - ef * er) / area, 0.0, 1.0)
+    second, third = (
+        np.clip((ff * er - ef * fr) / area, 0.0, 1.0),
+        np.clip((ee * fr - ef * er) / area, 0.0, 1.0),
+    )
     most = np.maximum(second + third, 1.0)
     nearest = a + (second / most)[:, np.newaxis] * e + (third / most)[:, np.newaxis] * f
     return np.where(beyond.max(axis=1) <= _ROUNDING, _ROUNDING, np.linalg.norm(points - nearest, axis=1))
@@ -128,7 +127,9 @@ def piece_of(shape: Shape) -> Piece:
     elif isinstance(shape, Cylinder):
         turn, outward = np.arange(SIDES) * 2.0 * np.pi / SIDES, 1.0 / np.cos(np.pi / SIDES)
         ring = shape.radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
-        points = np.concatenate([np.c_[ring, np.full(SIDES, end)] for end in (-0.5, 0.5) * np.array(shape.length)])
+        points = np.concatenate(
+            [np.c_[ring, np.full(SIDES, end)] for end in (-0.5, 0.5) * np.array(shape.length)]
+        )
     elif isinstance(shape, Mesh):
         mesh = shape.triangles
         return _piece_around(shape.pose.apply(mesh.vertices)[mesh.triangles], shape.link)
@@ -148,7 +149,10 @@ def halves(piece: Piece) -> tuple[Piece, ...]:
 
 
 def _piece_around(corners: Floats, link: str) -> Piece:
-    return Piece(hull_around(corners.reshape(-1, 3), 0.0, link), corners)
+    points, beyond = extreme(corners.reshape(-1, 3)), 0.0
+    if len(points) > _FEW:
+        points, beyond = _thinned(points)
+    return Piece(hull_around(points, beyond, link), corners)
 
 
 def _box_volume(corners: Floats) -> float:

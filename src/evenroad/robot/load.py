@@ -46,7 +46,8 @@ class RobotOptions(TypedDict, total=False):
 def load_robot(source: PathLike, **options: Unpack[RobotOptions]) -> Robot:
     """Return a robot; see :func:`load_model`, which also tells how it was made.
 
-    Warns of pairs of links that touch in every sampled configuration though they are tested.
+    Warns of pairs of links that touch in every sampled configuration though they are tested, and of robots that are in
+    self-collision in all of them.
     """
     model = load_model(source, **options)
     if model.always_touching:
@@ -56,6 +57,8 @@ def load_robot(source: PathLike, **options: Unpack[RobotOptions]) -> Robot:
             " SRDF, or give smaller bodies",
             stacklevel=2,
         )
+    elif model.never_free:
+        warnings.warn(f"{model.robot.name!r}: {model.never_free}", stacklevel=2)
     return model.robot
 
 
@@ -185,6 +188,7 @@ def _build(
         pairs.dropped,
         drawn_only,
         pairs.always,
+        pairs.never_free,
         urdf.notes,
     )
 

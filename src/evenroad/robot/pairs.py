@@ -36,13 +36,15 @@ Pieces = Mapping[str, Sequence[Piece]]
 class SelfPairs:
     """Pairs of links that are tested, in the order of the links; and the others with bodies, each with the reason.
 
-    Pairs in `always` are tested and touch in every sample.
+    Pairs in `always` are tested and touch in every sample.  `never_free` says which pair blocks most where some pair
+    touches in every sample; else it is empty.
     """
 
     tested: tuple[tuple[str, str], ...]
     dropped: tuple[tuple[str, str, str], ...]
     always: tuple[tuple[str, str], ...]
     hulls: tuple[Hull, ...]
+    never_free: str
 
 
 def self_pairs(
@@ -52,8 +54,9 @@ def self_pairs(
 
     Dropped are pairs that no joint moves on each other; of an SRDF those that it disables; without one (None)
     neighbours in the tree (links without bodies between them do not count where only one joint between them moves) and
-    pairs whose shapes touch in every one of 1000 configurations drawn uniformly within the limits of all joints, and in
-    as many where the joints outside of the group are held.  Pairs that never touch are kept: a sample cannot prove that.
+    pairs whose shapes touch in every one of 1000 configurations drawn uniformly within the limits of all joints, and
+    of as many where the joints outside of the group are held.  Pairs that never touch are kept: a sample cannot prove
+    that.
     """
     order = [link for link in robot.links if link in pieces]
     rigid, above = _rigid(robot), _bodied_above(robot, pieces)
@@ -77,6 +80,7 @@ def self_pairs(
         tuple((*pair, reasons[pair]) for pair in every if pair in reasons),
         tuple(pair for pair in always if pair not in reasons),
         _unless_round(piece.hull for link in order for piece in samples.pieces[link]),
+        samples.never_free(tested),
     )
 
 
@@ -109,6 +113,7 @@ class _Samples:
 
     def __init__(self, robot: KinematicTree, pieces: dict[str, list[Piece]]) -> None:
         self.pieces = pieces
+        self.touching: dict[tuple[str, str], Ints] = {}
         poses = _sampled_poses(robot)
         self._poses = {link: poses[:, robot.links.index(link)] for link in pieces}
         self._parts = hull_trees({link: [(p.parts, p.radius) for p in of] for link, of in pieces.items()})
@@ -116,7 +121,7 @@ class _Samples:
     def judge(self, pairs: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
         """Return the pairs whose shapes touch in all samples; split the hulls of others that touch too often."""
         every = np.arange(len(next(iter(self._poses.values()))))
-        some = every[:: 1 + len(every) // _LOOKED_AT]
+        some = self.looked_at = every[:: 1 + len(every) // _LOOKED_AT]
         trees = self._hulls()
         balls = {link: trees.ball(link) for link in self.pieces}
         centres = {
@@ -129,6 +134,7 @@ class _Samples:
             rows = some[np.linalg.norm(centres[first] - centres[second], axis=1) <= reach]
             rows = rows[self._touching(trees, first, second, rows)]
             inside = self._touching(self._parts, first, second, rows)
+            self.touching[first, second] = rows[inside]
             if inside.sum() == len(some) and self._touching(self._parts, first, second, every).all():
                 always.append((first, second))
             else:
@@ -136,6 +142,20 @@ class _Samples:
         for _ in range(_ROUNDS):
             wrong = self._split({pair: rows for pair, rows in wrong.items() if len(rows) > _FEW * len(some)})
         return always
+
+    def never_free(self, tested: Sequence[tuple[str, str]]) -> str:
+        """Return which pair of those tested blocks most where one of them touches in all samples of the group."""
+        # The others are of all joints.
+        rows = self.looked_at[self.looked_at >= len(next(iter(self._poses.values()))) - SAMPLES]
+        times = {pair: np.isin(rows, self.touching[pair]) for pair in tested}
+        if not times or not np.any(list(times.values()), axis=0).all():
+            return ""
+        (first, second), worst = max(times.items(), key=lambda item: item[1].sum())
+        return (
+            f"none of {len(rows)} random configurations is free of self-collision; {first!r} and {second!r} touch in"
+            f" {100.0 * worst.mean():.0f} % of them: disable pairs that may touch in an SRDF, or narrow the limits of"
+            " joints"
+        )
 
     def _split(self, wrong: Mapping[tuple[str, str], Ints]) -> dict[tuple[str, str], Ints]:
         """Split all hulls that touch in these samples; return those in which others touch still."""
@@ -163,7 +183,10 @@ class _Samples:
 
     def _hulls(self) -> HullTrees:
         return hull_trees(
-            {link: [(p.hull.points[np.newaxis], p.hull.radius) for p in of] for link, of in self.pieces.items()}
+            {
+                link: [(p.hull.points[np.newaxis], p.hull.radius) for p in of]
+                for link, of in self.pieces.items()
+            }
         )
 
 
@@ -177,7 +200,8 @@ def _sampled_poses(robot: KinematicTree) -> Floats:
     q = low + generator(0).random((SAMPLES, len(movable))) * (high - low)
     held = held_values(robot)
     if held:
-        of_group = [q[:, i] if joint.name not in held else np.full(SAMPLES, held[joint.name]) for i, joint in enumerate(movable)]
-        q = np.concatenate([q, np.stack(of_group, axis=1)])
+        places = [i for i, joint in enumerate(movable) if joint.name in held]
+        q = np.concatenate([q, q])
+        q[SAMPLES:, places] = [held[movable[i].name] for i in places]
     values = with_mimics(robot, {joint.name: q[:, i] for i, joint in enumerate(movable)})
     return poses_at(robot, values, len(q))

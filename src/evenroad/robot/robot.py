@@ -200,6 +200,8 @@ class RobotModel:
         Links that are drawn and have no body: nothing is ever found to touch them.
     always_touching : tuple of pairs of str
         Pairs that the SRDF does not disable and that touch in every sampled configuration: none is free.
+    never_free : str
+        Where no sampled configuration is free of self-collision: that, the pair that blocks most, and what to do.
     notes : tuple of str
         What was read otherwise than it stands in the file.
     file : RobotFile or None
@@ -212,6 +214,7 @@ class RobotModel:
     dropped: tuple[tuple[str, str, str], ...]
     drawn_only: tuple[str, ...] = ()
     always_touching: tuple[tuple[str, str], ...] = ()
+    never_free: str = ""
     notes: tuple[str, ...] = ()
     file: RobotFile | None = field(default=None, compare=False)
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 from llvmlite import ir
-from numba import njit, types
+from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
@@ -83,30 +83,41 @@ def _write_relative(places: Any, a: int, b: int, step: int, pose: Floats) -> Non
 def hulls_meet(first: int, second: int, pose: Floats, margin: float, ints: Ints, table: Any) -> int:
     """Return two hulls of two bodies that come nearer than `margin`, as ``node << 32 | node``, or APART.
 
-    `first` and `second` are the roots of their trees, numbers of nodes; `pose` is that of the second body in the frame of
-    the first, (12,): rotation row by row, translation.
+    `first` and `second` are the roots of their trees, numbers of nodes; `pose` is that of the second body in the
+    frame of the first, (12,): rotation row by row, translation.
     """
-    waiting = integers_at(_room(_DEEPEST), (_DEEPEST,))
+    waiting, way = integers_at(_room(_DEEPEST), (_DEEPEST,)), doubles_at(_room(3), (3,))
     waiting[0], count = first << 32 | second, 1
     while count > 0:
         count -= 1
         a, b = waiting[count] >> 32, waiting[count] & 0xFFFFFFFF
-        ball, other = ints[at.NODE_FLOATS] + at.NODE_FLOAT_ROW * a, ints[at.NODE_FLOATS] + at.NODE_FLOAT_ROW * b
+        ball, other = (
+            ints[at.NODE_FLOATS] + at.NODE_FLOAT_ROW * a,
+            ints[at.NODE_FLOATS] + at.NODE_FLOAT_ROW * b,
+        )
         squared = 0.0
         for axis in range(3):
-            gap = pose[9 + axis] - table[ball + axis]
+            way[axis] = table[ball + axis] - pose[9 + axis]
             for entry in range(3):
-                gap += pose[3 * axis + entry] * table[other + entry]
-            squared += gap * gap
-        near = table[ball + 3] + table[other + 3] + margin
-        if squared > near * near:
+                way[axis] -= pose[3 * axis + entry] * table[other + entry]
+            squared += way[axis] * way[axis]
+        near, next_near = table[ball + 6] + margin, table[other + 6] + margin
+        if squared > (near + table[other + 6]) ** 2:
+            continue
+        # The box of the one and the ball of the other.
+        aside, next_aside = 0.0, 0.0
+        for axis in range(3):
+            turned = pose[axis] * way[0] + pose[3 + axis] * way[1] + pose[6 + axis] * way[2]
+            aside += max(abs(way[axis]) - table[ball + 3 + axis], 0.0) ** 2
+            next_aside += max(abs(turned) - table[other + 3 + axis], 0.0) ** 2
+        if aside > next_near * next_near or next_aside > near * near:
             continue
         row, next_row = ints[at.NODE_INTS] + at.NODE_INT_ROW * a, ints[at.NODE_INTS] + at.NODE_INT_ROW * b
         if ints[row] < 0 and ints[next_row] < 0:
-            widened = table[ball + 4] + table[other + 4] + margin
-            if _hulls_near(ints[row + 2 : row + 4], ints[next_row + 2 : next_row + 4], pose, widened, table):
+            widened = table[ball + 7] + table[other + 7] + margin
+            if squared == 0.0 or _hulls_near(row, next_row, way, pose, widened, ints, table):
                 return a << 32 | b
-        elif ints[next_row] < 0 or (ints[row] >= 0 and table[ball + 3] >= table[other + 3]):
+        elif ints[next_row] < 0 or (ints[row] >= 0 and table[ball + 6] >= table[other + 6]):
             for child in range(2):
                 waiting[count] = ints[row + child] << 32 | b
                 count += 1
@@ -118,54 +129,62 @@ def hulls_meet(first: int, second: int, pose: Floats, margin: float, ints: Ints,
 
 
 @quick
-def _hulls_near(p: Ints, q: Ints, pose: Floats, margin: float, table: Any) -> bool:
-    """Return whether the hulls of two ranges of points come within `margin`; False only where a plane says so."""
+def _hulls_near(
+    row: int, other_row: int, way: Floats, pose: Floats, margin: float, ints: Ints, table: Any
+) -> bool:
+    """Return whether two hulls, nodes at these rows, come within `margin`; False only where a plane says so.
+
+    `way` is a direction from the second to the first, not of length 0, that the search begins with.
+    """
+    p, p_end, q, q_end = ints[row + 2], ints[row + 3], ints[other_row + 2], ints[other_row + 3]
     simplex, v = doubles_at(_room(12), (12,)), doubles_at(_room(3), (3,))
-    corner, other, size = p[0], q[0], 0
-    for axis in range(3):
-        v[axis] = _difference(corner, other, axis, pose, table)
+    corner, other, size = p, q, 0
+    length = math.sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2])
+    x, y, z = way[0] / length, way[1] / length, way[2] / length
     for _ in range(_MOST_STEPS):
-        length = math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
-        if length <= max(margin, _SAME):
-            return True
-        x, y, z = v[0] / length, v[1] / length, v[2] / length
         least, most = np.inf, -np.inf
-        for i in range(p[0], p[1]):
+        for i in range(p, p_end):
             along = table[3 * i] * x + table[3 * i + 1] * y + table[3 * i + 2] * z
             if along < least:
                 least, corner = along, i
         u = pose[0] * x + pose[3] * y + pose[6] * z
         w = pose[1] * x + pose[4] * y + pose[7] * z
         t = pose[2] * x + pose[5] * y + pose[8] * z
-        for i in range(q[0], q[1]):
+        for i in range(q, q_end):
             along = table[3 * i] * u + table[3 * i + 1] * w + table[3 * i + 2] * t
             if along > most:
                 most, other = along, i
         gap = least - most - (pose[9] * x + pose[10] * y + pose[11] * z)
         if gap > margin:
             return False
-        if length - gap < 1e-6 * length + _SAME:
+        if size > 0 and length - gap < 1e-6 * length + _SAME:
             return True
         for axis in range(3):
             simplex[3 * size + axis] = _difference(corner, other, axis, pose, table)
         size = _nearest(simplex, size + 1, v)
-        if size == 0:
+        length = math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
+        if size == 0 or length <= max(margin, _SAME):
             return True
+        x, y, z = v[0] / length, v[1] / length, v[2] / length
     return True
 
 
 @quick
 def _difference(i: int, k: int, axis: int, pose: Floats, table: Any) -> float:
     """Return a coordinate of a corner of the first body as seen from one of the second."""
-    turned = pose[3 * axis] * table[3 * k] + pose[3 * axis + 1] * table[3 * k + 1] + pose[3 * axis + 2] * table[3 * k + 2]
+    turned = (
+        pose[3 * axis] * table[3 * k]
+        + pose[3 * axis + 1] * table[3 * k + 1]
+        + pose[3 * axis + 2] * table[3 * k + 2]
+    )
     return table[3 * i + axis] - turned - pose[9 + axis]
 
 
 @quick
 def _nearest(simplex: Floats, size: int, v: Floats) -> int:
-    """Write the point of a simplex nearest to the origin; keep the corners that it lies between, return their number.
+    """Write the point of a simplex nearest to the origin, keep the corners that it is between, return their number.
 
-    0 where the origin is inside of four.  Else the point lies within a corner, an edge or a side; few enough to try all.
+    0 where the origin is inside of four.  Else it is in a corner, an edge or a side; few enough to try them all.
     """
     if size == 4 and _is_inside(simplex):
         return 0
@@ -196,7 +215,7 @@ def _nearest(simplex: Floats, size: int, v: Floats) -> int:
 
 @quick
 def _projects_into(simplex: Floats, face: int, weights: Floats) -> bool:
-    """Return whether the origin's projection onto a face, bits of its corners, is inside; write the corners' weights."""
+    """Return whether the origin projects into a face, bits of its corners; write the corners' weights."""
     a, b, c = -1, -1, -1
     for i in range(4):
         if (face >> i) & 1:

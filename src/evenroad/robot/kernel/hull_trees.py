@@ -23,51 +23,51 @@ def tree_rows(leaves: Leaves, first_node: int, first_point: int) -> tuple[Ints, 
     points = np.concatenate([corners.reshape(-1, 3) for corners, _ in leaves])
     counts = np.concatenate([np.full(corners.shape[0], corners.shape[1]) for corners, _ in leaves])
     widths = np.concatenate([np.full(len(corners), width) for corners, width in leaves])
-    ends = np.cumsum(counts)
-    low, high = (extreme.reduceat(points, ends - counts) for extreme in (np.minimum, np.maximum))
-    centres = 0.5 * (low + high)
-    away = np.linalg.norm(points - np.repeat(centres, counts, axis=0), axis=1)
-    reach = np.maximum.reduceat(away, ends - counts) + widths
-    children, balls, leaf = _tree_over(centres, reach)
+    starts = np.cumsum(counts) - counts
+    low = np.minimum.reduceat(points, starts) - widths[:, np.newaxis]
+    high = np.maximum.reduceat(points, starts) + widths[:, np.newaxis]
+    away = np.linalg.norm(points - np.repeat(0.5 * (low + high), counts, axis=0), axis=1)
+    children, boxes, leaf = _tree_over(low, high, np.maximum.reduceat(away, starts) + widths)
     ints = np.where(children < 0, -1, children + first_node)
-    spans = np.stack([ends - counts, ends], axis=1)[leaf] + first_point
-    return np.hstack([ints, spans]), np.hstack([balls, widths[leaf][:, np.newaxis]]), points, leaf
+    spans = np.stack([starts, starts + counts], axis=1)[leaf] + first_point
+    return np.hstack([ints, spans]), np.hstack([boxes, widths[leaf][:, np.newaxis]]), points, leaf
 
 
 @njit(cache=True, nogil=True)
-def _tree_over(centres: Floats, reach: Floats) -> tuple[Ints, Floats, Ints]:
-    """Return children (-1 of a leaf), balls with centre and radius, and leaves of a tree over balls, halved by place."""
-    n = len(centres)
-    children, balls = np.full((2 * n - 1, 2), -1), np.empty((2 * n - 1, 4))
+def _tree_over(low: Floats, high: Floats, reach: Floats) -> tuple[Ints, Floats, Ints]:
+    """Return children (-1 of a leaf), boxes with their balls, and leaves of a tree over boxes, halved by place.
+
+    The boxes of the leaves are from `low` to `high`, (n, 3); nothing in them is farther from their middle than `reach`.
+    """
+    n = len(low)
+    children, boxes = np.full((2 * n - 1, 2), -1), np.empty((2 * n - 1, 7))
     leaf, order = np.zeros(2 * n - 1, dtype=np.int64), np.arange(n)
     waiting = [(0, 0, n)]
     made = 1
     while len(waiting) > 0:
         node, first, end = waiting.pop()
-        below = order[first:end]
-        widest, axis = -1.0, 0
+        below, axis = order[first:end], 0
         for k in range(3):
-            low, high = centres[below, k].min(), centres[below, k].max()
-            balls[node, k] = 0.5 * (low + high)
-            if high - low > widest:
-                widest, axis = high - low, k
-        balls[node, 3] = 0.0
+            lowest, highest = low[below, k].min(), high[below, k].max()
+            boxes[node, k], boxes[node, 3 + k] = 0.5 * (lowest + highest), 0.5 * (highest - lowest) + 1e-12
+            if boxes[node, 3 + k] > boxes[node, 3 + axis]:
+                axis = k
+        boxes[node, 6] = 0.0
         for i in below:
             squared = 0.0
             for k in range(3):
-                squared += (centres[i, k] - balls[node, k]) ** 2
-            # A little more than what rounding may lose.
-            balls[node, 3] = max(balls[node, 3], (np.sqrt(squared) + reach[i]) * (1.0 + 1e-12))
+                squared += (0.5 * (low[i, k] + high[i, k]) - boxes[node, k]) ** 2
+            boxes[node, 6] = max(boxes[node, 6], np.sqrt(squared) + reach[i] + 1e-12)
         if end - first == 1:
             leaf[node] = order[first]
             continue
-        order[first:end] = below[np.argsort(centres[below, axis], kind="mergesort")]
+        order[first:end] = below[np.argsort(low[below, axis] + high[below, axis], kind="mergesort")]
         middle = (first + end) // 2
         for side in range(2):
             children[node, side] = made
             waiting.append((made, first, middle) if side == 0 else (made, middle, end))
             made += 1
-    return children, balls, leaf
+    return children, boxes, leaf
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +82,7 @@ class HullTrees:
     def ball(self, name: str) -> Floats:
         """Return centre and radius, (4,), of a ball around a body in its frame."""
         first = self.ints[at.NODE_FLOATS] + at.NODE_FLOAT_ROW * self.roots[name]
-        return self.floats[first : first + 4]
+        return self.floats[first + np.array([0, 1, 2, 6])]
 
 
 def hull_trees(bodies: Mapping[str, Leaves], first_point: int = 0) -> HullTrees:
@@ -96,7 +96,9 @@ def hull_trees(bodies: Mapping[str, Leaves], first_point: int = 0) -> HullTrees:
     ints = np.concatenate([np.zeros(at.HEADER, dtype=np.int64), *(row[0].ravel() for row in rows)])
     floats = np.concatenate([np.zeros(0), *(row[k].ravel() for k in (2, 1) for row in rows)])
     ints[at.NODE_INTS], ints[at.NODE_FLOATS] = at.HEADER, 3 * (point - first_point)
-    return HullTrees(ints, floats, roots, np.concatenate([np.zeros(0, dtype=np.int64), *(row[3] for row in rows)]))
+    return HullTrees(
+        ints, floats, roots, np.concatenate([np.zeros(0, dtype=np.int64), *(row[3] for row in rows)])
+    )
 
 
 def contacts(trees: HullTrees, first: str, second: str, poses: Floats, others: Floats) -> Ints:

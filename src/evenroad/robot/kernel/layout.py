@@ -58,8 +58,9 @@ PAIR_INT_ROW = 2
 NODE_INT_ROW = 4
 """Two children, or -1 twice; of a leaf, where its points begin and end in the floats, in steps of three."""
 
-NODE_FLOAT_ROW = 5
-"""Centre (3) and radius of a ball around all below, in the body's frame; by how much a leaf's hull is widened."""
+NODE_FLOAT_ROW = 8
+"""Centre (3) and half extents (3) of a box around all below, in the body's frame; radius of a ball about the same
+centre around all below; by how much a leaf's hull is widened."""
 
 OBSTACLE_INT_ROW = 1
 """Kind, one of the following."""

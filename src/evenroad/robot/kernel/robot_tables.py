@@ -105,12 +105,12 @@ def robot_tables(robot: Robot) -> RobotTables:
     moving, fixed = _split_pairs(robot, tree)
     bodied = {capsule.link for capsule in capsules}
     hulls, sharp = _hulls_of(robot, tree)
-    # Pairs of which hulls decide come last.
-    pairs = sorted((pair for pair in moving if bodied.issuperset(pair)), key=lambda pair: not sharp.isdisjoint(pair))
+    # Pairs of which hulls decide come last, and of these the dearest.
+    work = {link: len(hulls[link].leaves) if link in sharp else 0 for link in bodied}
+    pairs = sorted(filter(bodied.issuperset, moving), key=lambda pair: work[pair[0]] + work[pair[1]])
     of_hulls = [pair for pair in pairs if not sharp.isdisjoint(pair)]
-    capsule_pairs = tuple(
-        (i, k) for a, b in pairs for i in _of_link(capsules, a) for k in _of_link(capsules, b)
-    )
+    of = _by_link(capsules)
+    capsule_pairs = tuple((i, k) for a, b in pairs for i in of[a] for k in of[b])
     padding = PADDING * max(1.0, reach)
     ints, floats = _pack(tree, capsules, pairs, hulls, len(of_hulls), 0.0)
     padded = _pack(tree, capsules, pairs, hulls, len(of_hulls), padding)[1]
@@ -170,18 +170,22 @@ def _split_pairs(robot: Robot, tree: MovingTree) -> tuple[list[tuple[str, str]],
     return moving, fixed
 
 
-def _of_link(capsules: Sequence[PlacedCapsule], link: str) -> list[int]:
-    return [i for i, capsule in enumerate(capsules) if capsule.link == link]
+def _by_link(capsules: Sequence[PlacedCapsule]) -> dict[str, list[int]]:
+    """Return the numbers of every link's capsules."""
+    numbers: dict[str, list[int]] = {}
+    for i, capsule in enumerate(capsules):
+        numbers.setdefault(capsule.link, []).append(i)
+    return numbers
 
 
 def _fixed_contact(
     capsules: Sequence[PlacedCapsule], hulls: Mapping[str, PlacedHulls], fixed: Sequence[tuple[str, str]]
 ) -> tuple[str, str] | None:
     """Return the first pair of links, fixed to each other, whose bodies touch, or None."""
-    here = np.eye(4)[np.newaxis]
+    here, of = np.eye(4)[np.newaxis], _by_link(capsules)
     for a, b in fixed:
-        for i in _of_link(capsules, a):
-            for k in _of_link(capsules, b):
+        for i in of.get(a, ()):
+            for k in of.get(b, ()):
                 ends = capsules[i].ends[np.newaxis], capsules[k].ends[np.newaxis]
                 if segment_distance(*ends)[0] >= capsules[i].radius + capsules[k].radius:
                     continue
@@ -250,8 +254,9 @@ def _pack_pairs(
     padding: float,
 ) -> None:
     """Append bodies, which are links with capsules, pairs of bodies and pairs of capsules."""
-    bodies = list(dict.fromkeys(capsule.link for capsule in capsules))
-    groups = [_of_link(capsules, link) for link in bodies]
+    of = _by_link(capsules)
+    bodies, groups = list(of), list(of.values())
+    number = {link: i for i, link in enumerate(bodies)}
     balls = [_ball([capsules[i] for i in group]) for group in groups]
     frames = [tree.links[link].frame for link in bodies]
     rows.header[layout.BODIES] = len(bodies)
@@ -268,9 +273,9 @@ def _pack_pairs(
     capsule_pairs: list[tuple[int, int]] = []
     for a, b in pairs:
         first = len(capsule_pairs)
-        capsule_pairs += [(i, k) for i in _of_link(capsules, a) for k in _of_link(capsules, b)]
-        rows.ints += [bodies.index(a), bodies.index(b), first, len(capsule_pairs)]
-        rows.floats.append(balls[bodies.index(a)][1] + balls[bodies.index(b)][1] + 2.0 * padding)
+        capsule_pairs += [(i, k) for i in of[a] for k in of[b]]
+        rows.ints += [number[a], number[b], first, len(capsule_pairs)]
+        rows.floats.append(balls[number[a]][1] + balls[number[b]][1] + 2.0 * padding)
     rows.begin(layout.PAIR_INTS, layout.PAIR_FLOATS)
     for i, k in capsule_pairs:
         rows.ints += [i, k]

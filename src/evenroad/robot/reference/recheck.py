@@ -104,7 +104,8 @@ def recheck(
     except NotAvailable:
         of_these = f": {_named(unseen)} are never tested without it" if unseen else ""
         return MeshCheck("not checked", message=f"needs evenroad[mesh]{of_these}")
-    always = _always_touching(world, unseen)
+    # Of pairs that nobody gave, those may touch all the time that the group does not move.
+    always = _always_touching(world, unseen if robot.pairs_given else every.pairs)
     if always:
         kept = tuple(pair for pair in every.pairs if pair not in always)
         world = CoalWorld(replace(robot, pairs=kept), scene, shapes, resolution)
