@@ -463,7 +463,9 @@ def test_robot_says_what_leaves_nothing_free(run, desk):
     (desk / "wall.yaml").write_text("obstacles: {wall: {shape: sphere, radius: 0.2, xyz: [0, 0, 0.3]}}")
     code, out, _ = run("robot", "arm.urdf", "--scene", "wall.yaml")
     assert code == 0
-    assert "no random configuration is free in wall; most often 'upper' touches 'wall'" in " ".join(out.split())
+    assert "no random configuration is free in wall; most often 'upper' touches 'wall'" in " ".join(
+        out.split()
+    )
 
 
 def test_groups_are_planned_together_in_the_order_given(run, desk):
@@ -496,4 +498,4 @@ def test_a_robot_that_is_only_drawn_is_planned_for_where_that_is_wanted(run, des
     assert "--use-visuals takes what is drawn" in err
     code, out, _ = run(*on_desk(), "--use-visuals")
     assert code == 0
-    assert "link 'upper' has the body that is drawn of it" in " ".join(out.split())
+    assert "what is drawn of a link is its body: base, upper, lower" in " ".join(out.split())

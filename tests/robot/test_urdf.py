@@ -219,7 +219,7 @@ def test_what_is_drawn_is_the_body_where_that_is_wanted(tmp_path):
     model = load_model(path, use_visuals=True)
     assert [(body.link, body.shapes) for body in model.bodies] == [("x", ("sphere",)), ("y", ("box",))]
     assert model.drawn_only == ()
-    assert model.notes == ("link 'y' has the body that is drawn of it",)
+    assert model.notes == ("what is drawn of a link is its body: y",)
     (box,) = [shape for shape in original_shapes(model.file, model.robot) if shape.link == "y"]
     assert (box.size, box.pose.xyz) == ((1.0, 2.0, 3.0), (0.0, 0.0, 1.0))
 

@@ -84,15 +84,18 @@ def read_urdf_xml(file: RobotFile) -> tuple[Element, list[str]]:
         for parent in list(root.iter()):
             for element in parent.findall(name):
                 parent.remove(element)
+    drawn = []
     for link in root.findall("link"):
         visuals = link.findall("visual")
         if file.use_visuals and visuals and link.find("collision") is None:
-            notes.append(f"link {link.get('name')!r} has the body that is drawn of it")
+            drawn.append(str(link.get("name")))
             for visual in visuals:
                 visual.tag = "collision"
         else:
             for visual in visuals:
                 visual.clear()
+    if drawn:
+        notes.append(f"what is drawn of a link is its body: {', '.join(drawn)}")
     for owner in root:
         if owner.tag in ("link", "joint"):
             _check(owner, path)
