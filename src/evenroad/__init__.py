@@ -7,7 +7,6 @@ first use, so that ``import evenroad`` costs milliseconds.
 from __future__ import annotations
 
 import importlib
-from pathlib import Path
 from typing import Any
 
 from evenroad import _compiled
@@ -19,8 +18,8 @@ _compiled.provide_cache()
 
 def _read_homes() -> dict[str, str]:
     """Return the module of each public name: the lines ``from MODULE import NAME as NAME`` of the stub."""
-    lines = Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8").splitlines()
-    words = [line.split() for line in lines if line.startswith("from ")]
+    with open(__file__.removesuffix(".py") + ".pyi", encoding="utf-8") as stub:
+        words = [line.split() for line in stub if line.startswith("from ")]
     return {name: module for _, module, _, name, *_ in words}
 
 

@@ -32,8 +32,8 @@ from evenroad.robot import load_scene as load_scene
 from evenroad.space import SE2 as SE2
 from evenroad.space import SE3 as SE3
 from evenroad.space import Space as Space
-from evenroad.viz import save_plan_picture as save_plan_picture
 from evenroad.viz.arm import save_arm_picture as save_arm_picture
+from evenroad.viz.plan import save_plan_picture as save_plan_picture
 from evenroad.world import FunctionWorld as FunctionWorld
 from evenroad.world import GridMap as GridMap
 from evenroad.world import World as World

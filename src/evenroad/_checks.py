@@ -1,14 +1,16 @@
-"""Checks of plain arguments, with errors that name the value."""
+"""Checks of plain arguments, and of what is installed, with errors that name it."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Container, Sequence
+from importlib import import_module
+from typing import Any
 
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad.errors import InvalidValue, UnknownName, shown
+from evenroad.errors import InvalidValue, NotAvailable, UnknownName, shown
 
 LARGEST_COUNT = 2**31 - 1
 """Nodes of a roadmap are numbered by int32: nothing that is counted here can sensibly be larger."""
@@ -53,15 +55,12 @@ def require_known(what: str, name: object, known: Container[object]) -> None:
 def as_row(
     name: str, values: Sequence[float], length: int | None = None, *, within: float = math.inf
 ) -> tuple[float, ...]:
-    """Return `values` as a tuple of finite floats from -`within` to `within`, `length` of them or else at least one.
-
-    Raises InvalidValue naming `values` and what is allowed.
-    """
+    """Return `values` as a tuple of finite floats from -`within` to `within`, `length` of them or else at least one."""
     wanted = "one finite number or more" if length is None else f"{length} finite number(s)"
     try:
         row = tuple(map(float, values))
     except (TypeError, ValueError):
-        raise InvalidValue(f"{name} must be {wanted}, got {values!r}") from None
+        row = ()
     if len(row) == 0 or (length is not None and len(row) != length) or not all(map(math.isfinite, row)):
         raise InvalidValue(f"{name} must be {wanted}, got {values!r}")
     if max(map(abs, row)) > within:
@@ -69,24 +68,18 @@ def as_row(
     return row
 
 
+def require_extra(module: str, extra: str, what: str) -> Any:
+    """Return an optional module, e.g. ``coal`` of the extra ``mesh``, or raise NotAvailable: `what` needs it."""
+    try:
+        return import_module(module)
+    except ImportError as error:
+        raise NotAvailable(f"{what} needs the extra: pip install 'evenroad[{extra}]' ({error})") from error
+
+
 def as_batch(name: str, values: object, dim: int) -> Floats:
-    """Return `values` as a read-only C-contiguous float64 array of shape (n, dim) with finite entries.
+    """Return `values` as a read-only C-contiguous float64 array, (n, dim), of finite entries, or raise InvalidValue.
 
     Read-only whatever `values` is: compiled code is compiled anew for each mix of read-only and other arrays.
-
-    Parameters
-    ----------
-    name : str
-        What the caller calls the argument, for the error text.
-    values : array_like, shape (n, dim)
-        Copied only when it is not such an array; never written to.
-    dim : int
-        Number of columns wanted.
-
-    Raises
-    ------
-    InvalidValue
-        Naming the shape, or the first entry that is NaN or infinite and its place.
     """
     try:
         array = np.asarray(values, dtype=np.float64)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from importlib import import_module
-from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from evenroad.errors import NotAvailable
@@ -20,15 +20,15 @@ def provide_cache() -> None:
     Numba keeps compiled code beside the module, else in the user's cache, and refuses to load a module at all where it
     can write to neither: read-only site-packages and no home, as in many containers.
     """
-    if os.environ.get(VARIABLE) or _writable(Path(__file__).parent / "__pycache__") or _writable(_of_user()):
+    beside = os.path.join(os.path.dirname(__file__), "__pycache__")
+    if os.environ.get(VARIABLE) or _writable(beside) or _writable(user_cache("numba")):
         return
     import atexit
     import logging
     import shutil
     import tempfile
 
-    folder = tempfile.mkdtemp(prefix="evenroad-compiled-")
-    owner = os.getpid()
+    folder, owner = tempfile.mkdtemp(prefix="evenroad-compiled-"), os.getpid()
 
     def remove() -> None:
         if os.getpid() == owner:
@@ -37,7 +37,7 @@ def provide_cache() -> None:
     atexit.register(remove)
     # Worker processes inherit it.
     os.environ[VARIABLE] = folder
-    if not _writable(Path(os.environ.get("XDG_CONFIG_HOME") or os.path.expanduser("~/.config"))):
+    if not _writable(os.environ.get("XDG_CONFIG_HOME") or os.path.expanduser("~/.config")):
         # Nor would Matplotlib find a place, and it says so at length.
         os.environ.setdefault("MPLCONFIGDIR", folder)
     if "numba" in sys.modules:
@@ -48,23 +48,20 @@ def provide_cache() -> None:
     )
 
 
-def _of_user() -> Path:
-    """Return the user's cache folder of numba."""
+def user_cache(program: str) -> str:
+    """Return the folder where a program keeps what it can make again, as the platform has it."""
     if sys.platform == "darwin":
-        return Path(os.path.expanduser("~/Library/Caches/numba"))
+        return os.path.expanduser(f"~/Library/Caches/{program}")
     if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA", os.path.expanduser("~"))) / "numba" / "Cache"
-    return Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")) / "numba"
+        return os.path.join(os.environ.get("LOCALAPPDATA", os.path.expanduser("~")), program, "Cache")
+    return os.path.join(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"), program)
 
 
-def _writable(folder: Path) -> bool:
+def _writable(folder: str) -> bool:
     """Return whether a folder can be written, or could be made; nothing is made here."""
-    try:
-        while not folder.exists():
-            folder = folder.parent
-    except OSError:
-        return False
-    return folder.is_dir() and os.access(folder, os.W_OK)
+    while not os.path.lexists(folder) and os.path.dirname(folder) != folder:
+        folder = os.path.dirname(folder)
+    return os.path.isdir(folder) and os.access(folder, os.W_OK)
 
 
 def is_kept(function: Any) -> bool:
@@ -79,11 +76,23 @@ def is_kept(function: Any) -> bool:
         return True
 
 
-def say_if_compiling(module: str, function: str, seconds: int) -> bool:
-    """Say on standard error that a first run takes so long, where code of this function is yet to be compiled.
+def defer_blas() -> None:
+    """Keep numba from loading SciPy's linear algebra, a quarter of the start of a command, until code needs it.
 
-    Returns whether it was said.
+    Numba only looks whether it is there, and looks again when it compiles a product of matrices.
     """
+    name = "scipy.linalg.cython_blas"
+    if name not in sys.modules:
+        sys.modules[name] = ModuleType(name)
+        try:
+            import_module("numba.np.arraymath")
+        finally:
+            del sys.modules[name]
+
+
+def say_if_compiling(module: str, function: str, seconds: int) -> bool:
+    """Say that a first run takes so long, where a function is yet to be compiled; return whether that was said."""
+    defer_blas()
     try:
         compiled = getattr(import_module(module), function)
     except (ImportError, NotAvailable):

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 import stat
-import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO
 
+from evenroad._compiled import user_cache
 from evenroad.errors import BrokenFile
 
 try:
@@ -26,12 +26,8 @@ _PREFIX, _SUFFIX = ".evenroad-", ".part"
 def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     """Open a temporary file beside `path`; on success it replaces `path`, on any error it is removed.
 
-    A process that is killed leaves its temporary file behind; see :func:`remove_abandoned_parts`.
-
-    Raises
-    ------
-    BrokenFile
-        If the folder does not exist, cannot be written, or the disk is full; `path` is then as it was.
+    A process that is killed leaves its temporary file behind; see :func:`remove_abandoned_parts`.  Raises BrokenFile if
+    the folder does not exist, cannot be written, or the disk is full.
     """
     target = Path(path)
     require_writable_folder(target)
@@ -46,13 +42,11 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
             os.fsync(file.fileno())
         os.chmod(name, 0o666 & ~_umask())
         os.replace(name, target)
-    except OSError as error:
-        _remove(name)
-        if isinstance(error, BrokenFile):
-            raise
-        raise _cannot_write(target, error) from error
-    except BaseException:
-        _remove(name)
+    except BaseException as error:
+        with suppress(FileNotFoundError):
+            os.unlink(name)
+        if isinstance(error, OSError) and not isinstance(error, BrokenFile):
+            raise _cannot_write(target, error) from error
         raise
     finally:
         if lock is not None:
@@ -89,30 +83,9 @@ def _new_part(folder: Path) -> tuple[int, int | None, str]:
         os.close(handle)
 
 
-@contextmanager
-def one_at_a_time(path: str | os.PathLike[str]) -> Iterator[None]:
-    """Hold the lock file `path` for the block: other processes that want it wait.
-
-    The lock goes with the process, so a killed one leaves none.  Where the platform has no ``flock`` (Windows)
-    nothing is locked.
-    """
-    if fcntl is None:
-        yield
-        return
-    with open(path, "w", encoding="utf-8") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
-        yield
-
-
 def cache_folder() -> Path:
     """Return where what is made on demand is kept: ``$EVENROAD_CACHE``, or the platform's cache folder."""
-    if named := os.environ.get("EVENROAD_CACHE"):
-        return Path(named)
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches" / "evenroad"
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA", Path.home())) / "evenroad" / "cache"
-    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "evenroad"
+    return Path(os.environ.get("EVENROAD_CACHE") or user_cache("evenroad"))
 
 
 def require_writable_folder(path: str | os.PathLike[str]) -> None:
@@ -130,8 +103,7 @@ def require_writable_folder(path: str | os.PathLike[str]) -> None:
     if is_folder:
         raise BrokenFile(f"cannot write {target}: it is a folder")
     try:
-        with tempfile.TemporaryFile(dir=folder):
-            pass
+        tempfile.TemporaryFile(dir=folder).close()
     except OSError as error:
         raise BrokenFile(f"cannot write into the folder {folder}: {error.strerror or error}") from error
 
@@ -144,8 +116,3 @@ def _umask() -> int:
     mask = os.umask(0)
     os.umask(mask)
     return mask
-
-
-def _remove(name: str) -> None:
-    with suppress(FileNotFoundError):
-        os.unlink(name)

@@ -20,10 +20,7 @@ class Fingerprinted(Protocol):
     def fingerprint(self) -> str:
         """Return a text that two values share only if they mean the same: two worlds, the same verdicts.
 
-        Raises
-        ------
-        NotAvailable
-            If the value cannot know, such as a world made from a function without a name.
+        Raises NotAvailable if the value cannot know, such as a world made from a function without a name.
         """
         ...
 
@@ -31,21 +28,11 @@ class Fingerprinted(Protocol):
 def fingerprint_of(*values: object) -> str:
     """Return the SHA-256 (hex) of values: equal for equal values, in any process and on any machine.
 
-    Parameters
-    ----------
-    *values
-        Numbers, texts, None, enumerations, arrays, sequences, sets and mappings of such; values with a
-        ``fingerprint()`` of their own; and dataclasses, of which all fields count that take part in comparisons.
-
-    Raises
-    ------
-    NotAvailable
-        If a value is none of these, such as a function.
+    Values are numbers, texts, None, enumerations, arrays, sequences, sets and mappings of such, what has a
+    ``fingerprint()`` of its own, and dataclasses, by the fields that take part in comparisons.  Raises NotAvailable
+    for any other, such as a function.
     """
-    sha = hashlib.sha256()
-    for value in values:
-        sha.update(_canonical(value))
-    return sha.hexdigest()
+    return hashlib.sha256(b"".join(map(_canonical, values))).hexdigest()
 
 
 def _canonical(value: Any) -> bytes:
@@ -71,9 +58,8 @@ def _canonical(value: Any) -> bytes:
         return _tagged("set", *sorted(map(_canonical, value)))
     if isinstance(value, Mapping):
         return _tagged("mapping", *sorted(_canonical(item) for item in value.items()))
-    raise NotAvailable(
-        f"a {type(value).__name__} has no fingerprint, so a file could not know it again: {value!r}"
-    )
+    kind = type(value).__name__
+    raise NotAvailable(f"a {kind} has no fingerprint, so a file could not know it again: {value!r}")
 
 
 def _tagged(tag: str, *parts: bytes) -> bytes:

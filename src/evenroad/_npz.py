@@ -20,10 +20,7 @@ Arrays = dict[str, npt.NDArray[Any]]
 
 
 def write_npz(path: Path, arrays: Mapping[str, npt.ArrayLike], *, compressed: bool = False) -> None:
-    """Write arrays by their names, atomically; texts become arrays of no axes.
-
-    Raises BrokenFile if the file cannot be written; whatever was at `path` is then untouched.
-    """
+    """Write arrays by their names, atomically (see `atomic_write`); texts become arrays of no axes."""
     save = np.savez_compressed if compressed else np.savez
     with atomic_write(path) as file:
         save(file, allow_pickle=False, **{name: np.asarray(array) for name, array in arrays.items()})
@@ -57,7 +54,7 @@ def read_npz(path: Path, what: str, *layouts: Collection[str]) -> Arrays:
         archive = np.load(file, allow_pickle=False)
         if not isinstance(archive, np.lib.npyio.NpzFile):
             raise BrokenFile(f"{path} is a plain array, not a .npz {what}")
-        if not any(set(archive.files) == set(layout) for layout in layouts):
+        if set(archive.files) not in map(set, layouts):
             raise BrokenFile(
                 f"{path} holds {shown(sorted(archive.files))}, a {what} holds {sorted(layouts[0])}"
             )

@@ -12,18 +12,10 @@ RngLike: TypeAlias = int | np.integer | np.random.SeedSequence | np.random.Gener
 
 
 def generator(rng: RngLike) -> np.random.Generator:
-    """Return the generator that `rng` stands for.
+    """Return the generator that `rng` stands for, or raise InvalidValue.
 
-    Parameters
-    ----------
-    rng : int, numpy.random.SeedSequence or numpy.random.Generator
-        An int (>= 0) or SeedSequence seeds a fresh PCG64, so the same value gives the same bits.  A passed
-        Generator is spawned, as ``scipy.stats.qmc`` does, so the caller's own stream is not consumed.
-
-    Raises
-    ------
-    InvalidValue
-        For ``None`` (hidden entropy), booleans, negative ints and any other type.
+    An int (>= 0) or SeedSequence seeds a fresh PCG64, so the same value gives the same bits.  A Generator is spawned,
+    as ``scipy.stats.qmc`` does, so the caller's own stream is not consumed.
     """
     if isinstance(rng, np.random.Generator):
         return rng.spawn(1)[0]

@@ -1,69 +1,79 @@
-"""The terminal: tables within its width, progress of long work, and Ctrl-C between two steps."""
+"""The terminal: tables within its width, and the progress of long work."""
 
 from __future__ import annotations
 
 import os
-import signal
+import shutil
 import sys
-import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Protocol
-
-if TYPE_CHECKING:
-    from rich.console import Console
-    from rich.table import Table
+from itertools import zip_longest
+from textwrap import fill, wrap
 
 WIDTH = 100
 """Columns that a table may take."""
 
 REDRAW_SECONDS = 0.2
+BOLD, GREEN, RED = "1", "32", "31"
 
 
-def print_table(table: Table) -> None:
-    """Print a table on standard output now, within the terminal and 100 columns; a title may be wider.
+def table_width() -> int:
+    """Return how many columns a table may take here."""
+    return min(WIDTH, shutil.get_terminal_size().columns)
 
-    Texts are printed as they are: neither ``[ms]`` nor ``:key:`` in a name is a command to the terminal.
+
+def print_table(
+    rows: Sequence[Sequence[str]],
+    headings: Sequence[str] = (),
+    title: str = "",
+    *,
+    right: Sequence[int] = (),
+    first: str = BOLD,
+    gap: int = 2,
+) -> None:
+    """Print rows of texts, those of the columns `right` at the right; the widest column is wrapped to fit.
+
+    Headings are bold; without any the first column is, and the first row's name is shown in the style `first`.
     """
-    console = _console()
-    title, table.title = table.title, None
+    table = [tuple(headings), *rows] if headings else rows
+    widths = [
+        max(len(line) for cell in column for line in cell.split("\n")) for column in zip(*table, strict=True)
+    ]
+    widest = widths.index(max(widths))
+    rest = sum(widths) - widths[widest] + gap * (len(widths) - 1)
+    widths[widest] = min(widths[widest], max(table_width() - rest, 10))
+    lines = [fill(title, table_width(), break_on_hyphens=False)] if title else []
+    for number, row in enumerate(table):
+        cells = [_lines(cell, width) for cell, width in zip(row, widths, strict=True)]
+        for parts in zip_longest(*cells, fillvalue=""):
+            shown = [
+                part.rjust(width) if i in right else part.ljust(width)
+                for i, (part, width) in enumerate(zip(parts, widths, strict=True))
+            ]
+            if headings and number == 0:
+                shown = [_styled(text, BOLD) for text in shown]
+            elif not headings:
+                shown[0] = _styled(shown[0], BOLD if number else first)
+            lines.append((" " * gap).join(shown).rstrip())
     try:
-        if title:
-            console.print(title, style="table.title", width=table_width())
-        console.print(table, width=table_width())
-        sys.stdout.flush()
+        print("\n".join(lines), flush=True)
     except BrokenPipeError:
         leave_output()
+
+
+def _lines(cell: str, width: int) -> list[str]:
+    return [line for part in cell.split("\n") for line in wrap(part, width, break_on_hyphens=False) or [""]]
+
+
+def _styled(text: str, style: str) -> str:
+    """Return a text in bold or a colour, where standard output is a terminal that shows it."""
+    return f"\033[{style}m{text}\033[0m" if sys.stdout.isatty() and not os.environ.get("NO_COLOR") else text
 
 
 def leave_output() -> None:
     """Send the rest of the output nowhere: its reader has gone, as `head` does, and the work goes on."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def table_width() -> int:
-    """Return how many columns a table may take here."""
-    return min(WIDTH, _console().width)
-
-
-def _console() -> Console:
-    from rich.console import Console
-
-    class Output(Console):
-        def on_broken_pipe(self) -> None:
-            """Leave it to the caller, where Rich would end the process with an error."""
-            raise BrokenPipeError
-
-    return Output(highlight=False, markup=False, emoji=False)
-
-
-class Advance(Protocol):
-    """Takes note of how far the work is, and of the best value so far where there is such a thing."""
-
-    def __call__(self, step: int, steps: int, best: float | None = None) -> None:
-        """Show `step` of `steps`."""
-        ...
 
 
 class LineProgress:
@@ -89,64 +99,16 @@ class LineProgress:
 
 
 @contextmanager
-def progress_bar(title: str) -> Iterator[Advance]:
-    """Yield a ``callback(step, steps, best)`` that draws a bar on standard error; in a log, lines."""
+def progress_shown(title: str) -> Iterator[LineProgress]:
+    """Yield a ``callback(step, steps, best)`` that keeps a line on standard error up to date; in a log, lines."""
     if not sys.stderr.isatty():
         yield LineProgress(title, lambda line: print(line, file=sys.stderr, flush=True))
         return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-    columns = (
-        TextColumn("{task.description}", markup=False),
-        BarColumn(),
-        TextColumn("{task.percentage:3.0f} %{task.fields[value]}"),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=Console(file=sys.stderr), transient=True) as bar:
-        task = bar.add_task(title, total=None, value="")
-        last = 0.0
+    def redraw(line: str) -> None:
+        print(f"\r\033[K{line[: table_width() - 1]}", end="", file=sys.stderr, flush=True)
 
-        def callback(step: int, steps: int, best: float | None = None) -> None:
-            nonlocal last
-            now = time.monotonic()
-            if now - last >= REDRAW_SECONDS or step == steps:
-                last = now
-                value = "" if best is None else f"  best {best:.5g}"
-                bar.update(task, total=steps, completed=step, value=value)
-
-        yield callback
-
-
-@contextmanager
-def interrupt_between_steps() -> Iterator[Callable[[], None]]:
-    """Yield ``check()``, which raises KeyboardInterrupt if Ctrl-C was pressed; a second Ctrl-C acts at once.
-
-    A signal handler runs in the middle of whatever is computed, where state is half-written; the library keeps
-    what is done when its callback raises.  Outside the main thread handlers cannot be set and nothing changes.
-    """
-    pressed = False
-
-    def check() -> None:
-        if pressed:
-            raise KeyboardInterrupt
-
-    def press(number: int, frame: object) -> None:
-        nonlocal pressed
-        if pressed:
-            raise KeyboardInterrupt
-        pressed = True
-        print("evenroad: stopping after this step (Ctrl-C again: at once)", file=sys.stderr)
-
-    before = signal.getsignal(signal.SIGINT)
-    if threading.current_thread() is not threading.main_thread() or before != signal.default_int_handler:
-        # Not ours to set, or somebody else's: with SIGINT ignored (nohup, a background job) it stays so.
-        yield check
-        return
-    signal.signal(signal.SIGINT, press)
     try:
-        yield check
+        yield LineProgress(title, redraw, every=REDRAW_SECONDS)
     finally:
-        signal.signal(signal.SIGINT, before)
+        redraw("")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -18,23 +19,19 @@ _MERGE = "tag:yaml.org,2002:merge"
 
 
 def read_mapping(path: Path, what: str) -> dict[str, Any]:
-    """Return the mapping that a YAML file consists of, its keys as text.
+    """Return the mapping that a YAML file, of the kind `what`, consists of, its keys as text.
 
-    Raises
-    ------
-    BrokenFile
-        If the file is missing, not YAML, or not a mapping, or any mapping in it has two values for one key (``1`` and
-        ``'1'`` are the same); `what` names its kind.
+    Raises BrokenFile if the file is missing, not YAML, or not a mapping, or any mapping in it has two values for one
+    key (``1`` and ``'1'`` are the same).
     """
     try:
         text = path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
-    except ValueError as error:
-        raise BrokenFile(f"{path} is not YAML: {error}") from error
-    try:
         _require_shallow(text, path)
         document = _document(text, path)
+    except BrokenFile:
+        raise
+    except OSError as error:
+        raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
     except (yaml.YAMLError, ValueError, LookupError, AttributeError, RecursionError) as error:
         raise BrokenFile(f"{path} is not YAML: {' '.join(str(error).split())}") from error
     if not isinstance(document, dict):
@@ -107,19 +104,13 @@ def numbers(value: object, count: int, what: str) -> tuple[float, ...]:
     """Return `value` as a tuple of `count` finite floats, or raise InvalidValue naming it."""
     entries = value if isinstance(value, list) else [value]
     plain = [entry for entry in entries if isinstance(entry, int | float) and not isinstance(entry, bool)]
-    row = tuple(map(_as_float, plain))
-    if len(entries) == count == len(row) and all(map(math.isfinite, row)):
-        return row
+    with suppress(OverflowError):
+        row = tuple(map(float, plain))
+        if len(entries) == count == len(row) and all(map(math.isfinite, row)):
+            return row
     allowed = "a finite number" if count == 1 else f"a list of {count} finite numbers"
     shown = entries[0] if count == 1 and len(entries) == 1 else value
     hint = ""
     if any(isinstance(entry, str) for entry in entries):
         hint = " (text; YAML reads an exponent only after a decimal point: 1.0e-2, not 1e-2)"
     raise InvalidValue(f"{what} must be {allowed}, got {shown!r}{hint}")
-
-
-def _as_float(number: float) -> float:
-    try:
-        return float(number)
-    except OverflowError:
-        return math.inf

@@ -24,39 +24,21 @@ from evenroad.points.samplers import make_sampler
 class FamilyEngine(QMCEngine):
     """An engine over one set of a family; a subclass names the ``family``, any name of ``SAMPLERS``.
 
-    The set is drawn from the family and then randomised by every move that keeps its quality
+    The set, ``points``, is drawn from the family and then randomised by every move that keeps its quality
     (:func:`evenroad.points.randomise.randomise`).  ``random`` hands its points out in their order and raises
     Exhausted when fewer are left than asked for.  A set is even as a whole, but its first points alone are
     not, those of a lattice least of all: choose as n what you will use.
 
     Parameters
     ----------
-    d : int
-        Dimension, >= 1.
-    n : int
-        Size of the set, >= 1.
+    d, n : int
+        Dimension and size of the set, >= 1; NotAvailable is raised if the family has none.
     optimization : {None, "random-cd", "lloyd"}
         SciPy's post-processing of what ``random`` returns.  It does not keep what the set was made for.
-    rng : int, SeedSequence, Generator or None
-        None takes fresh entropy, as everywhere in SciPy.  A passed Generator is spawned.
-    seed
-        SciPy's old name of `rng`, still used by ``scipy.integrate.qmc_quad``.
+    rng, seed : int, SeedSequence, Generator or None
+        None takes fresh entropy, as everywhere in SciPy.  A Generator is spawned.  `seed` is SciPy's old name.
     **options
         The sampler's own, e.g. ``train=True`` of a trained family.
-
-    Attributes
-    ----------
-    n : int
-        Size of the set.
-    points : PointSet
-        The set, with its origin.
-
-    Raises
-    ------
-    InvalidValue
-        If d, n, rng or an option is not of that kind.
-    NotAvailable
-        If the family has no set of this n and d.
     """
 
     family: ClassVar[str]
@@ -88,23 +70,15 @@ class FamilyEngine(QMCEngine):
         return self
 
     def _random(self, n: object = 1, *, workers: object = 1) -> Floats:
-        """Return the next n points, shape (n, d); SciPy's ``random`` counts them. `workers` has no use here.
-
-        Raises
-        ------
-        Exhausted
-            If fewer than n points are left; none is then handed out.
-        """
+        """Return the next n points, (n, d), which SciPy's ``random`` counts; raises Exhausted if fewer are left."""
         return self.points.points[self.num_generated : self._end_of_next(n)].copy()
 
     def _end_of_next(self, n: object) -> int:
         """Return the index after the next n points, or raise Exhausted where there are not that many."""
         count, left = require_count("n", n, at_least=0), self.n - self.num_generated
         if count > left:
-            raise Exhausted(
-                f"asked for {count} more points, but {left} of the {self.n} are left: a set has an end; make an"
-                " engine with a larger n, or reset() to start again"
-            )
+            text = f"asked for {count} more points, but {left} of the {self.n} are left: a set has an end; "
+            raise Exhausted(text + "make an engine with a larger n, or reset() to start again")
         return self.num_generated + count
 
 

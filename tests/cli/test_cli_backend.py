@@ -22,7 +22,7 @@ PLAN = ("plan", "desk.yaml", "--robot", "arm.urdf", "--start", "-0.9,0", "--goal
 
 def test_the_lanes_are_named_where_they_work(run, desk):
     _, out, _ = run(*PLAN)
-    assert "checked with lanes" in " ".join(out.split())
+    assert "checked by lanes" in " ".join(out.split())
     assert json.loads((desk / "a.json").read_text())["checked_with"] == "lanes"
     assert "one core, with lanes, in empty space" in " ".join(run("robot", "arm.urdf")[1].split())
 
@@ -31,6 +31,6 @@ def test_the_fallback_is_said_aloud_with_its_reason(run, desk, monkeypatch):
     monkeypatch.setattr(arm_world, "lanes_failure", lambda: "OSError: no vectors")
     said = "scalar (lanes do not work here: OSError: no vectors)"
     _, out, _ = run(*PLAN)
-    assert f"checked with {said}" in " ".join(out.split())
+    assert f"checked by {said}" in " ".join(out.split())
     assert json.loads((desk / "a.json").read_text())["checked_with"] == said
     assert f"one core, with {said}" in " ".join(run("robot", "arm.urdf")[1].split())

@@ -1,24 +1,53 @@
 """What reaches the terminal is what was said: brackets and colons are no markup."""
 
 import re
+import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from rich.table import Table
 
-from evenroad._terminal import print_table
+from evenroad import _terminal
+from evenroad._terminal import print_table, progress_shown
+from evenroad.cli.plan_parts import print_plan
 from evenroad.points import PointSet, save_points
+from evenroad.roadmap import plan
+from evenroad.world import GridMap
 from tests.research.report.stores import solved, task, write_store
 
 SAID = ("[ms]", "[bold]", "[/]", "scene[red].yaml", ":key:")
 
 
 def test_a_table_shows_titles_headings_and_cells_as_they_are(capsys):
-    table = Table(*SAID, title=" ".join(SAID))
-    table.add_row(*SAID)
-    print_table(table)
+    print_table([SAID], SAID, " ".join(SAID))
     out = capsys.readouterr().out
     assert {text: out.count(text) for text in SAID} == dict.fromkeys(SAID, 3)
+
+
+def test_the_widest_column_is_wrapped_and_nothing_of_it_is_lost(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "40")
+    words = [f"word-{i}" for i in range(20)]
+    print_table([("one", " ".join(words), "3"), ("two", "x" * 50, "44")], right=(2,))
+    lines = capsys.readouterr().out.splitlines()
+    assert max(map(len, lines)) == 40
+    assert " ".join(lines).split() == ["one", *words[:4], "3", *words[4:], "two", "x" * 31, "44", "x" * 19]
+    assert lines[0].endswith("   3")
+
+
+def test_names_are_bold_on_a_terminal_alone(capsys, monkeypatch):
+    for terminal, shown in ((False, "a  b\n"), (True, "\033[1ma\033[0m  b\n")):
+        monkeypatch.setattr(sys.stdout, "isatty", lambda terminal=terminal: terminal)
+        print_table([("a", "b")])
+        assert capsys.readouterr().out == shown
+
+
+def test_progress_is_one_line_on_a_terminal_and_gone_at_the_end(capsys, monkeypatch):
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    monkeypatch.setattr(_terminal, "REDRAW_SECONDS", 0.0)
+    with progress_shown("work") as report:
+        report(0, 4)
+        report(1, 4, 0.5)
+    assert re.fullmatch(r"\r\033\[Kwork: 25 %, \d+ s left, best 0.5\r\033\[K", capsys.readouterr().err)
 
 
 def test_a_plan_says_in_which_unit_its_times_are(run):
@@ -45,3 +74,19 @@ def test_a_files_name_may_look_like_markup(run, tmp_path, name):
     code, out, _ = run("measure", f"{name}.npz")
     assert code == 0
     assert f"{name}.npz: n=2" in out
+
+
+def test_the_times_of_a_plan_for_an_arm_fit_one_line_of_80_columns(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    seconds = {
+        "validity": 0.0123,
+        "neighbours": 1.4567,
+        "search": 0.5555,
+        "motions": 0.9999,
+        "shortcut": 0.0021,
+    }
+    world = GridMap(np.zeros((9, 9), dtype=bool)).world(1.0)
+    result = replace(plan(world, (2, 2), (7, 7), 16), seconds=seconds)
+    print_plan(result, ["a.json"], [("checked by", "lanes")])
+    out = capsys.readouterr().out
+    assert "time [ms]   validity 12, neighbours 1457, search 556, motions 1000, shortcut 2.1" in out

@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from evenroad.cli.plan_parts import draw_points
+from evenroad.cli.verbs import VERBS
 from evenroad.points import draw
 from evenroad.research.mazes import load_maze
 
@@ -90,13 +91,13 @@ def test_without_a_picture_nothing_is_drawn_and_matplotlib_is_not_even_loaded(tm
 
 
 def test_the_answer_is_there_before_the_picture_is_drawn(run, tmp_path, monkeypatch):
-    import evenroad.viz
+    import evenroad.viz.plan
 
     def fail(*_):
         assert (tmp_path / "a.json").exists()
         raise MemoryError("no room for a picture")
 
-    monkeypatch.setattr(evenroad.viz, "save_plan_picture", fail)
+    monkeypatch.setattr(evenroad.viz.plan, "save_plan_picture", fail)
     code, out, err = run(*plan_arguments(out="a"))
     assert code == 2
     assert "solved" in out
@@ -340,8 +341,9 @@ def test_an_interrupt_exits_with_130_and_leaves_no_half_file(run, tmp_path, monk
     "arguments",
     [
         ["--help"],
-        *([verb, "--help"] for verb in ("plan", "points", "measure", "train", "demo")),
+        *([verb, "--help"] for verb in VERBS),
         ["plan", "-h"],
+        ["plan", "--robot", "ur5", "-h"],
     ],
 )
 def test_help_is_there_for_every_verb(run, arguments):

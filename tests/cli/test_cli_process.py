@@ -45,6 +45,18 @@ raise SystemExit(main())
     assert (done.returncode, done.stderr) == (130, "evenroad: interrupted; what was finished is kept\n")
 
 
+def test_hardly_anything_is_loaded_before_an_interrupt_is_looked_after():
+    """What Python itself does before our first line cannot be helped; ours takes a few milliseconds."""
+    code = (
+        "import sys; before = set(sys.modules); import evenroad.cli;"
+        "print(sum('evenroad' not in name for name in set(sys.modules) - before),"
+        " {'pathlib', 'dataclasses', 'inspect', 'numpy'} & set(sys.modules))"
+    )
+    loaded, heavy = python("-S", "-c", code, PYTHONPATH=str(PACKAGE.parent)).stdout.split(maxsplit=1)
+    assert int(loaded) < 60
+    assert heavy == "set()\n"
+
+
 @pytest.mark.parametrize("goes_on", ["time.sleep(10)", "raise RuntimeError('no compiled object yet')"])
 def test_an_interrupt_in_a_callback_of_compiled_code_is_not_lost(goes_on):
     """While numba compiles, LLVM calls Python, and drops what that raises."""
@@ -133,3 +145,16 @@ def test_a_long_input_is_cut_in_the_error_line_and_what_is_allowed_stays(run):
     code, _, err = run("demo", "--out", "a" * 5000)
     assert (code, len(err) < 700) == (2, True)
     assert "too long" in err
+
+
+def test_linear_algebra_is_not_loaded_for_a_plan_and_works_all_the_same(tmp_path):
+    code = f"""
+import sys, numba, numpy as np
+from evenroad.cli.verbs import run
+words = "plan box-reach --robot ur5 --start home --goal inside --no-picture --out {tmp_path}/a"
+assert run(words.split()) == 0
+print("scipy.linalg" in sys.modules)
+a = np.random.default_rng(0).random((3, 3))
+print(np.allclose(numba.njit(lambda a: a @ np.linalg.inv(a))(a), np.eye(3)), "scipy.linalg" in sys.modules)
+"""
+    assert python("-c", code).stdout.splitlines()[-2:] == ["False", "True True"]

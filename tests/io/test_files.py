@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 
 from evenroad import _files
-from evenroad._files import atomic_write, one_at_a_time, remove_abandoned_parts, require_writable_folder
+from evenroad._files import atomic_write, remove_abandoned_parts, require_writable_folder
 from evenroad.errors import BrokenFile
 from evenroad.io import plan_record, save_json, save_path_csv
 from evenroad.points import draw
+from evenroad.research.training.folder import one_at_a_time
 from evenroad.roadmap import plan
 from evenroad.world import GridMap
 

@@ -2,9 +2,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from matplotlib.path import Path as Outline
-from PIL import Image
+from PIL import Image, ImageColor
 
 from evenroad.errors import BrokenFile
 from evenroad.geometry.pose import rotation_from_rpy
@@ -23,6 +22,7 @@ from evenroad.robot import (
 from evenroad.viz import style
 from evenroad.viz.arm import VIEWS, draw_arm_view, save_arm_picture
 from evenroad.viz.outline import obstacle_bounds, obstacle_outline, stadium
+from evenroad.viz.sheet import FINER, View, ticks
 
 TURNED = rotation_from_rpy(0.5, -0.8, 1.9)
 OBSTACLES = (
@@ -85,29 +85,63 @@ def test_a_stadium_is_at_its_radius_from_its_segment():
     np.testing.assert_allclose(np.linalg.norm(outline - a - t * (b - a), axis=1), 0.25)
 
 
+def _view(world, result, pair):
+    """A view of what is within 1.5 m, as colours (rows, columns, 3), and where points are in it: column, row."""
+    view = View(np.full(2, -1.5), np.full(2, 1.5), (400, 400))
+    draw_arm_view(view, result, world, pair)
+    return np.asarray(view.image).astype(int), lambda points: (points * [1, -1] + 1.5) * FINER * 400 / 3
+
+
 def test_the_arm_is_drawn_where_its_capsules_are(reach):
-    result = _planned(reach)
-    axes = Figure().add_subplot()
-    draw_arm_view(axes, result, reach, (0, 2))
-    ends = capsule_ends(reach.robot, result.goal[np.newaxis])[0]
-    outlines = [path.vertices for collection in axes.collections for path in collection.get_paths()]
-    for (a, b), capsule in zip(ends, reach.robot.capsules, strict=True):
-        expected = stadium(a[[0, 2]], b[[0, 2]], capsule.radius)
-        assert any(
-            len(each) >= len(expected) and np.allclose(each[: len(expected)], expected) for each in outlines
-        )
+    """Pixels are as bright as paper outside of all that is shown, and are not within the goal's capsules."""
+    result = plan(reach, *[configuration(reach.robot, "home", reach.scene)] * 2, draw("korobov", 8, 6))
+    bare = ArmWorld(reach.robot, Scene("bare", ()))
+    shown, place = _view(bare, result, (0, 2))
+    ends = capsule_ends(reach.robot, result.goal[np.newaxis])[0][:, :, [0, 2]]
+    radii = np.array([each.radius for each in reach.robot.capsules])
+    points = np.random.default_rng(0).uniform(-1.2, 1.2, (4000, 2))
+    a, along = ends[:, 0], ends[:, 1] - ends[:, 0]
+    t = np.einsum("pck,ck->pc", points[:, np.newaxis] - a, along) / np.maximum((along**2).sum(axis=1), 1e-12)
+    nearest = a + np.clip(t, 0, 1)[:, :, np.newaxis] * along
+    depth = (radii - np.linalg.norm(points[:, np.newaxis] - nearest, axis=2)).max(axis=1)
+    column, row = place(points).astype(int).T
+    dark = shown[row, column].min(axis=1) < 220
+    assert np.count_nonzero(depth > 0.02) > 50
+    assert dark[depth > 0.02].all()
+    assert not dark[depth < -0.02].any()
 
 
 def test_a_solved_plan_shows_the_way_of_the_tip_from_start_to_goal(reach):
     from evenroad.robot import link_poses
 
     result = _planned(reach)
-    axes = Figure().add_subplot()
-    draw_arm_view(axes, result, reach, (0, 1))
-    way = max((line.get_xydata() for line in axes.lines), key=len)
-    tips = link_poses(reach.robot, np.stack([result.start, result.goal]))[:, -1, :2, 3]
-    np.testing.assert_allclose(way[[0, -1]], tips, atol=1e-12)
-    assert np.linalg.norm(np.diff(way, axis=0), axis=1).max() < 0.1
+    shown, place = _view(reach, result, (0, 1))
+    fractions = np.linspace(0, 1, 20)[:, np.newaxis]
+    dense = np.concatenate(
+        [a + fractions * (b - a) for a, b in zip(result.path, result.path[1:], strict=False)]
+    )
+    tips = link_poses(reach.robot, dense)[:, -1, :2, 3]
+    red = np.argwhere(np.abs(shown - ImageColor.getrgb(style.PATH)).sum(axis=2) < 30)[:, ::-1]
+    gaps = np.linalg.norm(place(tips)[:, np.newaxis] - red, axis=2).min(axis=1)
+    # The dots at both ends lie on the line.
+    assert gaps.max() < FINER * 8
+    assert np.median(gaps) < FINER
+    for tip, colour in ((tips[0], style.START), (tips[-1], style.GOAL)):
+        column, row = place(tip).astype(int)
+        assert tuple(shown[row, column]) == ImageColor.getrgb(colour)
+
+
+def test_a_view_of_something_long_and_flat_has_both_sides():
+    assert View(np.zeros(2), np.array([1000.0, 0.1]), (400, 300)).image.size == (400 * FINER, FINER)
+
+
+@pytest.mark.parametrize(("low", "high"), [(-0.3, 0.9), (0.0, 1e-3), (-5e4, 7e4), (0.94, 1.06)])
+def test_ticks_are_a_handful_of_round_numbers(low, high):
+    marks = ticks(low, high)
+    assert 2 <= len(marks) <= 7
+    assert low <= marks[0] < marks[-1] <= high
+    np.testing.assert_allclose(np.diff(marks), marks[1] - marks[0])
+    assert len(f"{marks[1] - marks[0]:.6g}".strip("0.e-+")) <= 4
 
 
 def _pixels_of(picture, colour):

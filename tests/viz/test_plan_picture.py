@@ -9,7 +9,8 @@ from PIL import Image
 from evenroad.errors import BrokenFile
 from evenroad.points import draw
 from evenroad.roadmap import find_path, plan
-from evenroad.viz import draw_plan, save_plan_picture, style
+from evenroad.viz import style
+from evenroad.viz.plan import draw_plan, save_plan_picture
 from evenroad.world import GridMap, MapFrame
 
 

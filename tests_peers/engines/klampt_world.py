@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._extras import require_extra
+from evenroad._checks import require_extra
 from evenroad.errors import BrokenFile
 from evenroad.geometry.mesh import merged
 from evenroad.robot.kinematics import joint_values

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._extras import require_extra
+from evenroad._checks import require_extra
 from evenroad.geometry.shapes import Shape
 from evenroad.robot.kinematics import joint_values
 from evenroad.robot.reference.coal_world import asking_for_contacts, coal_shape, tests_of

@@ -14,6 +14,7 @@ from dataclasses import MISSING, Field, dataclass, fields
 from pathlib import Path
 from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
+from evenroad._checks import require_known
 from evenroad.errors import InvalidValue, UnknownName, shown
 
 POSITIONAL, REPEATED = "positional", "repeated"
@@ -44,14 +45,9 @@ class _Option:
     def required(self) -> bool:
         return self.field.default is MISSING
 
-    def value(self, words: Sequence[str]) -> Any:
-        values = tuple(self._one(word) for word in words)
-        return values if self.several else values[0]
-
-    def _one(self, word: str) -> Any:
+    def value(self, word: str) -> Any:
         if self.known:
-            if word not in self.known:
-                raise UnknownName.among(f"{self.title}:", word, self.known)
+            require_known(f"{self.title}:", word, self.known)
             return word
         try:
             return self.kind(word)
@@ -62,10 +58,7 @@ class _Option:
 def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
     """Return a verb with the options that its words give; of an option given twice the last one counts.
 
-    Raises
-    ------
-    InvalidValue, UnknownName
-        For an option that the verb lacks, a value that is none of its kind, and for what is missing.
+    Raises InvalidValue or UnknownName for what the verb lacks or needs, and for a value that is none of its kind.
     """
     options = _options(kind)
     by_name = {name: option for option in options for name in option.names}
@@ -78,7 +71,7 @@ def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
             if not places:
                 raise InvalidValue(f"evenroad {verb} has no use for the word {shown(word)}")
             option = places.pop(0)
-            values[option.field.name] = option.value([word])
+            values[option.field.name] = option.value(word)
             continue
         name, equals, value = word.partition("=")
         name = name.replace("_", "-")
@@ -90,26 +83,20 @@ def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
                 raise InvalidValue(f"{name} takes no value, got {shown(value)}")
             values[option.field.name] = True
             continue
-        taken = [value] if equals else _values(rest, option.several)
+        taken = [value] * bool(equals)
+        while not equals and rest and not _OPTION.match(rest[0]) and (option.several or not taken):
+            taken.append(rest.pop(0))
         if not taken:
             raise InvalidValue(f"{name} needs a value")
-        if option.repeats:
-            values.setdefault(option.field.name, [])
-            values[option.field.name] += [option.value(taken)]
-        else:
-            values[option.field.name] = option.value(taken)
+        given = tuple(map(option.value, taken))
+        earlier = values.get(option.field.name, ()) if option.repeats else ()
+        values[option.field.name] = (
+            (*earlier, given) if option.repeats else given if option.several else given[0]
+        )
     missing = [each.title for each in options if each.required and each.field.name not in values]
     if missing:
         raise InvalidValue(f"evenroad {verb} needs {', '.join(missing)}; all options: evenroad {verb} --help")
-    return kind(**{name: tuple(value) if type(value) is list else value for name, value in values.items()})
-
-
-def _values(rest: list[str], several: bool) -> list[str]:
-    """Take the next word from `rest`, or all of them, up to the next option."""
-    taken: list[str] = []
-    while rest and not _OPTION.match(rest[0]) and (several or not taken):
-        taken.append(rest.pop(0))
-    return taken
+    return kind(**values)
 
 
 def _options(kind: type) -> list[_Option]:
@@ -154,16 +141,13 @@ def help_text(verb: str, kind: type, width: int) -> str:
     lines = [usage, *("\n" + fill(" ".join(text.split()), width) for text in about)]
     lines += ["", "options:", "  -h, --help"]
     for option in options:
-        default = option.field.default
+        default, indent = option.field.default, " " * 6
         note = " (required)" if option.required else f" (default: {default})"
         if default is None or default is False or default in ("", ()):
             note = ""
-        indent = " " * 6
-        text = texts.get(option.field.name, "") + note
-        lines += [
-            f"  {_with_value(', '.join(option.names) or option.title, option)}",
-            fill(text, width, initial_indent=indent, subsequent_indent=indent),
-        ]
+        lines.append(f"  {_with_value(', '.join(option.names) or option.title, option)}")
+        text = texts[option.field.name] + note
+        lines.append(fill(text, width, initial_indent=indent, subsequent_indent=indent))
     return "\n".join(lines)
 
 

@@ -1,17 +1,73 @@
-"""``evenroad plan``: a path for a disk on a map, or for an arm in a scene."""
+"""``evenroad plan``, for a disk on a map or for an arm in a scene, and ``evenroad demo``: what they are told."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import sys
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Annotated, Any, ClassVar
 
 from evenroad.cli.options import HELP, option_names
-from evenroad.cli.plan_options import ArmOptions, DiskOptions
 from evenroad.errors import InvalidValue
 
 
 @dataclass(frozen=True, kw_only=True)
-class PlanDisk(DiskOptions):
+class PlanOptions:
+    """What every plan is told."""
+
+    planner: ClassVar[str]
+    """The function that plans, loaded when it is asked to."""
+
+    world: Annotated[Path, "positional"]
+    """The file of the world."""
+    start: tuple[str, ...]
+    """Where to start."""
+    goal: tuple[tuple[str, ...], ...]
+    """As start; given more than once, the path ends at one of the goals: the first that is reached, with
+    points or --improve the cheapest."""
+    n: Annotated[int | None, "-n"] = None
+    """Plan on a roadmap of exactly so many points (ps-PRM).  Default: no points, but until there is a path or a proof
+    that there is none, or the time is over; where another option speaks of points: 512."""
+    time: float | None = None
+    """Seconds to plan at most, > 0 (default 5; with points 60)."""
+    improve: bool = False
+    """Use up the time: plan again in other ways, and keep the shortest path.  Not with points."""
+    certified: bool = False
+    """The path must be proved free throughout; else the answer says which of its motions is not."""
+    k: Annotated[int | None, "-k"] = None
+    """Connect each milestone with its k nearest, symmetrised (default 10; 20 from six joints on)."""
+    connect_radius: float | None = None
+    """Connect milestones up to this distance instead, in map units or radians."""
+    sampler: str = "auto"
+    """even, hickernell, mpmc, korobov, lattice, halton, sobol, sukharev or uniform; auto, the default, is
+    even."""
+    plain: bool = False
+    """halton and sobol: the plain sequence instead of the scrambled one."""
+    skip: int = 0
+    """halton and sobol: index of the first point of the sequence."""
+    allow_fewer: bool = False
+    """sukharev: take the largest grid with at most n points."""
+    seed: int = 0
+    """Seed of everything random; the same command gives the same path."""
+    raw: bool = False
+    """Leave the path as it was found, without shortcutting it."""
+    out: Path | None = None
+    """Where results go: OUT.json, OUT.png and, for an arm, OUT.csv. Default: the world's stem in the current folder,
+    with -plan added where that would overwrite an input."""
+    no_picture: bool = False
+    """Draw no picture."""
+
+    def run(self) -> int:
+        """Plan, write, report; return 0 when solved, else 1."""
+        module, _, name = self.planner.partition(":")
+        code: int = getattr(import_module(module), name)(self)
+        return code
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlanDisk(PlanOptions):
     """Plan a short path for a disk on a map, write a JSON result and a picture.
 
     A disk (--robot-radius) moves on a bare image (.png, .pgm): unit = pixel, x right, y DOWN, origin in the top-left
@@ -20,15 +76,72 @@ class PlanDisk(DiskOptions):
     For an arm in a scene give --robot instead; its options: evenroad plan --robot ur5 --help
     """
 
-    def run(self) -> int:
-        """Plan, write, report; return 0 when solved, else 1."""
-        from evenroad.cli.plan_disk import plan_disk
+    planner = "evenroad.cli.plan_disk:plan_disk"
 
-        return plan_disk(self)
+    world: Annotated[Path, "positional"]
+    """A map: a .png or .pgm image, or a ROS map_server .yaml."""
+    start: tuple[str, ...]
+    """x y in map units."""
+    robot_radius: float
+    """Plan for a disk of this radius, > 0, in map units."""
+    clearance: float = 0.0
+    """Margin to keep from every obstacle, added to the radius, >= 0."""
+    unknown_is_free: bool = False
+    """May pass through unknown cells of a ROS map."""
+    csv: bool = False
+    """Also write the path as OUT.csv."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class PlanArm(ArmOptions):
+class RobotOptions:
+    """How a robot is made of its file."""
+
+    srdf: Path | None = None
+    """Its SRDF, with groups, named states and pairs of links that need no test."""
+    group: Annotated[tuple[str, ...], "repeated"] = ()
+    """Groups of the SRDF, or joints, with commas between them, planned for together in this order; may be given more
+    than once.  The others are held where the named states of start and goal have them, else at 0."""
+    bodies: Path | None = None
+    """A YAML file of capsules and spheres in place of the robot's collision geometry."""
+    use_visuals: bool = False
+    """Links without collision geometry get what is drawn of them."""
+    package: Annotated[tuple[str, ...], "repeated"] = ()
+    """NAME=FOLDER: where a ROS package is that meshes are in; may be given more than once."""
+    xacro: Annotated[tuple[str, ...], "repeated"] = ()
+    """NAME=VALUE: an argument of a xacro; may be given more than once."""
+
+    def options(self) -> dict[str, Any]:
+        """Return what `load_model` takes; the bodies that are fitted are said on standard error."""
+        return {
+            "srdf": self.srdf,
+            "group": ",".join(self.group) or None,
+            "bodies": self.bodies,
+            "use_visuals": self.use_visuals,
+            "packages": _pairs("package", self.package),
+            "arguments": _pairs("xacro", self.xacro),
+            "progress": say_fitting,
+        }
+
+
+def say_fitting(step: int, steps: int, what: str) -> None:
+    """Say on standard error which body capsules are being fitted to: each one to a person, every tenth in a log."""
+    line = f"evenroad: fitting capsules, once: {step + 1}/{steps} {what}"
+    if sys.stderr.isatty():
+        print(f"\r\x1b[K{line}", end="\n" if step + 1 == steps else "", file=sys.stderr, flush=True)
+    elif step % 10 == 0:
+        print(line, file=sys.stderr, flush=True)
+
+
+def _pairs(option: str, texts: Iterable[str]) -> dict[str, str]:
+    pairs = [text.partition("=") for text in texts]
+    for name, separator, value in pairs:
+        if not (name and separator and value):
+            raise InvalidValue(f"--{option} must be of the form NAME=VALUE, got {name + separator + value!r}")
+    return {name: value for name, _, value in pairs}
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlanArm(PlanOptions, RobotOptions):
     """Plan a short path for an arm in a scene, write a JSON result, the path as CSV and a picture.
 
     An arm (--robot) moves in a scene file (.yaml): metres and radians, frame of the robot's root link.
@@ -36,21 +149,48 @@ class PlanArm(ArmOptions):
     For a disk on a map give --robot-radius instead; its options: evenroad plan --help
     """
 
-    def run(self) -> int:
-        """Plan, write, report; return 0 when solved, else 1."""
-        from evenroad.cli.plan_arm import plan_arm
+    planner = "evenroad.cli.plan_arm:plan_arm"
 
-        return plan_arm(self)
+    world: Annotated[Path, "positional"]
+    """A scene (.yaml; shipped: box-reach.yaml, box-reach-narrow.yaml)."""
+    start: tuple[str, ...]
+    """One number a joint with commas between them, name=value,..., or a named state."""
+    robot: str
+    """Plan for this arm: a URDF, xacro or MJCF file, or the name of a shipped one (ur5, arm7)."""
+    deg: bool = False
+    """Angles of start and goal are in degrees."""
+    resolution: float = 0.05
+    """Largest step of a motion check, > 0, in radians."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Demo:
+    """Plan through a maze that ships with evenroad."""
+
+    level: int = 3
+    """Which maze: 1, 2 or 3, of rising difficulty."""
+    n: Annotated[int, "-n"] = 1024
+    """How many points to draw."""
+    out: Path = Path("demo")
+    """Where results go: OUT.png and OUT.json."""
+
+    def run(self) -> int:
+        """Run ``evenroad plan`` on the maze with its own start and goal."""
+        from evenroad.research.mazes import load_maze
+
+        maze = load_maze(self.level)
+        return PlanDisk(
+            world=maze.path,
+            start=tuple(map(str, maze.start)),
+            goal=(tuple(map(str, maze.goal)),),
+            robot_radius=maze.robot_radius,
+            n=self.n,
+            out=self.out,
+        ).run()
 
 
 def plan_type(words: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
-    """Return which of the two the words of a command line ask for, by the robot that is given.
-
-    Raises
-    ------
-    InvalidValue
-        If no robot or two are given, or an option that only the other kind has.
-    """
+    """Return which of the two a command line asks for, by its robot; InvalidValue if its options do not go together."""
     given = {word.partition("=")[0].replace("_", "-") for word in words if word.startswith("--")}
     chosen: type[PlanDisk] | type[PlanArm] = PlanArm if "--robot" in given else PlanDisk
     if not HELP.isdisjoint(words):

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
 from evenroad import roadmap
 from evenroad._compiled import say_if_compiling
 from evenroad._rng import generator
-from evenroad.cli.plan_options import DiskOptions
+from evenroad.cli.plan import PlanDisk
 from evenroad.cli.plan_parts import (
     chosen_budget,
     chosen_rule,
     common_query,
     draw_points,
+    finish,
     load_compiled_code,
     output_files,
-    print_plan,
-    save_plan,
     wants_points,
 )
 from evenroad.errors import InvalidValue
@@ -31,7 +31,7 @@ from evenroad.world import GridMap, load_map
 from evenroad.world.gridmap.load import map_files
 
 
-def plan_disk(plan: DiskOptions) -> int:
+def plan_disk(plan: PlanDisk) -> int:
     """Plan, write, report; return 0 when solved, else 1."""
     rule = chosen_rule(plan, default_k=10)
     generator(plan.seed)
@@ -76,14 +76,13 @@ def plan_disk(plan: DiskOptions) -> int:
         "unknown_is_free": plan.unknown_is_free,
         **common_query(plan),
     }
-    save_plan(files, result, plan_record(result, query), ("x", "y"))
-    print_plan(result, files.values())
-    if "png" in files:
-        # Last, and loaded only now: nobody waits for the picture.
-        from evenroad.viz import save_plan_picture
 
-        save_plan_picture(files["png"], result, world)
-    return 0 if result.solved else 1
+    def draw(file: Path) -> None:
+        from evenroad.viz.plan import save_plan_picture
+
+        save_plan_picture(file, result, world)
+
+    return finish(files, result, plan_record(result, query), ("x", "y"), draw)
 
 
 def _position(name: str, words: tuple[str, ...]) -> tuple[float, float]:

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from rich.table import Table
-from rich.text import Text
 
 from evenroad import roadmap
 from evenroad._checks import require_count, require_known, require_positive
 from evenroad._files import require_writable_folder
 from evenroad._rng import generator
-from evenroad._terminal import print_table
-from evenroad.cli.plan_options import PlanOptions
+from evenroad._terminal import GREEN, RED, print_table
+from evenroad.cli.plan import PlanOptions
 from evenroad.errors import InvalidValue
 from evenroad.io import save_json, save_path_csv
 from evenroad.points import SAMPLERS, PointSet, make_sampler
@@ -133,24 +131,33 @@ def common_query(plan: PlanOptions) -> dict[str, Any]:
     return {name: getattr(plan, name) for name in names} | {"time": chosen_budget(plan).seconds}
 
 
-def save_plan(
-    files: dict[str, Path], result: PlanResult, record: dict[str, Any], columns: Sequence[str]
-) -> None:
-    """Write record and path to those files that are wanted; of `files` only those remain that there are now."""
+def finish(
+    files: dict[str, Path],
+    result: PlanResult,
+    record: dict[str, Any],
+    columns: Sequence[str],
+    draw: Callable[[Path], None],
+    more: Sequence[tuple[str, str]] = (),
+) -> int:
+    """Write record and path, print, draw the picture; return 0 when solved, else 1."""
     save_json(files["json"], record)
-    if "csv" not in files:
-        return
-    # An earlier run's path must not pass for this one's, nor one in collision for a free one.
-    files["csv"].unlink(missing_ok=True)
-    if result.path is None or not result.solved:
-        del files["csv"]
-    else:
-        save_path_csv(files["csv"], result.path, columns)
+    if "csv" in files:
+        # An earlier run's path must not pass for this one's, nor one in collision for a free one.
+        files["csv"].unlink(missing_ok=True)
+        if result.path is None or not result.solved:
+            del files["csv"]
+        else:
+            save_path_csv(files["csv"], result.path, columns)
+    print_plan(result, files.values(), more)
+    if "png" in files:
+        # Last, and what it needs is loaded only now: nobody waits for the picture.
+        draw(files["png"])
+    return 0 if result.solved else 1
 
 
 def print_plan(result: PlanResult, files: Iterable[Path], more: Sequence[tuple[str, str]] = ()) -> None:
     """Print a plan as a table of two columns; `more` are rows of its own."""
-    rows: list[tuple[str, str]] = []
+    rows = [("status", f"{result.status}: {result.message}")]
     counts = result.counts
     if result.rule != "none":
         rows.append(("points", str(result.origin)))
@@ -173,15 +180,8 @@ def print_plan(result: PlanResult, files: Iterable[Path], more: Sequence[tuple[s
         rows.append(("improved", f"from {after}, in {counts['rounds']} rounds"))
     if result.proof is not None:
         rows.append(("proved", PROOFS[result.proof]))
-    rows.append(
-        ("time [ms]", ", ".join(f"{phase} {1e3 * took:.1f}" for phase, took in result.seconds.items()))
-    )
+    # Without digits that say nothing, so that all phases fit into one line.
+    times = {phase: 1e3 * seconds for phase, seconds in result.seconds.items()}
+    rows.append(("time [ms]", ", ".join(f"{phase} {ms:.{int(ms < 10)}f}" for phase, ms in times.items())))
     rows += [*more, ("files", ", ".join(map(str, files)))]
-    table = Table(show_header=False, box=None, pad_edge=False)
-    table.add_column(style="bold", no_wrap=True)
-    table.add_column(overflow="fold")
-    colour = "green" if result.solved else "red"
-    table.add_row("status", Text.assemble((str(result.status), colour), f": {result.message}"))
-    for name, text in rows:
-        table.add_row(name, text)
-    print_table(table)
+    print_table(rows, first=GREEN if result.solved else RED)

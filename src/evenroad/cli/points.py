@@ -11,10 +11,9 @@ from pathlib import Path
 from typing import Annotated
 
 import numpy as np
-from rich.table import Table
 
 from evenroad._files import require_writable_folder
-from evenroad._terminal import print_table, progress_bar
+from evenroad._terminal import print_table, progress_shown
 from evenroad.errors import EvenroadError, InvalidValue, UnknownName, shown
 from evenroad.points import PointSet, make_sampler, measures
 from evenroad.points.bank import TRAINED_FAMILIES, Trained
@@ -59,7 +58,7 @@ class Points:
             if self.no_train:
                 raise InvalidValue(f"--no-train does not go with {self.family!r}, whose sets are constructed")
             return sampler.draw(self.n, self.d, rng=self.seed), "exact"
-        with progress_bar(f"annealing {self.family} n={self.n} d={self.d}") as callback:
+        with progress_shown(f"annealing {self.family} n={self.n} d={self.d}") as callback:
             family = Trained(self.family, train=not self.no_train, callback=callback)
             return family.find(self.n, self.d, rng=self.seed)
 
@@ -83,7 +82,9 @@ class Measure:
             record = {"file": str(self.file), "n": points.n, "d": points.d, "hash": points.hash}
             print(json.dumps(record | {name: value for name, value, _ in rows}, indent=2, allow_nan=False))
         else:
-            _print_table(f"{self.file}: n={points.n}, d={points.d}, {points.origin}", rows)
+            title = f"{self.file}: n={points.n}, d={points.d}, {points.origin}"
+            shown = [(name, "-" if value is None else f"{value:.6g}", note) for name, value, note in rows]
+            print_table(shown, ("measure", "value", ""), title, right=(1,))
         return 0
 
 
@@ -121,14 +122,3 @@ def _finite(name: str, value: float | None, note: str) -> tuple[str, float | Non
     if value is None or math.isfinite(value):
         return name, None if value is None else float(value), note
     return name, None, f"{note}: beyond the range of a float"
-
-
-def _print_table(title: str, rows: list[tuple[str, float | None, str]]) -> None:
-
-    table = Table(title=title, title_justify="left", box=None, pad_edge=False)
-    table.add_column("measure", no_wrap=True)
-    table.add_column("value", justify="right", no_wrap=True)
-    table.add_column("")
-    for name, value, note in rows:
-        table.add_row(name, "-" if value is None else f"{value:.6g}", note)
-    print_table(table)

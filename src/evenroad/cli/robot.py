@@ -2,11 +2,41 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+import time
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict, dataclass
+from json import dumps
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
-from evenroad.cli.plan_options import RobotOptions
+import numpy as np
+
+from evenroad._compiled import say_if_compiling
+from evenroad._files import atomic_write, require_writable_folder
+from evenroad._rng import generator
+from evenroad._terminal import print_table
+from evenroad.cli.plan import RobotOptions
+from evenroad.robot import (
+    ArmWorld,
+    Joint,
+    RobotModel,
+    Scene,
+    held_values,
+    in_scene,
+    load_model,
+    load_scene,
+)
+from evenroad.robot import Robot as Arm
+from evenroad.robot.srdf_writer import srdf_text
+
+_CONFIGURATIONS = 4096
+_MOTIONS = 256
+_MOST_SEGMENTS = 1000
+"""Motions that are timed are cut off there: between limits of a million radians each would take ten seconds."""
+
+_SECONDS = 0.2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,14 +54,6 @@ class Robot(RobotOptions):
 
     def run(self) -> int:
         """Load, measure, print; return 0."""
-        from json import dumps
-
-        from evenroad._compiled import say_if_compiling
-        from evenroad._files import atomic_write, require_writable_folder
-        from evenroad.cli.robot_tables import print_robot, robot_record
-        from evenroad.robot import ArmWorld, Scene, in_scene, load_model, load_scene
-        from evenroad.robot.srdf_writer import srdf_text
-
         if self.write_srdf is not None:
             require_writable_folder(self.write_srdf)
         model = load_model(self.robot, **self.options())
@@ -42,7 +64,153 @@ class Robot(RobotOptions):
             with atomic_write(self.write_srdf) as file:
                 file.write(srdf_text(model).encode())
         if self.json:
-            print(dumps(robot_record(model, world), indent=2, allow_nan=False))
-        else:
-            print_robot(model, world)
+            print(dumps(_record(model, world), indent=2, allow_nan=False))
+            return 0
+        print_table(_joints(model.robot), ("joint", "kind", "limits", "velocity", "use"))
+        print()
+        print_table(_bodies(model), ("link", "given as", "capsules", "volume added"))
+        print()
+        print_table(_summary(model, world))
         return 0
+
+
+def bodiless_rows(model: RobotModel) -> list[tuple[str, str]]:
+    """Return rows, name and text: what was read otherwise, links that nothing touches, pairs that always touch."""
+    rows = [("note", note) for note in model.notes]
+    if model.bodiless:
+        rows.append(("no body", ", ".join(model.bodiless)))
+    if model.drawn_only:
+        text = "drawn, but without collision geometry, so that nothing is found to touch: "
+        rows.append(("WARNING", text + ", ".join(model.drawn_only)))
+    if model.always_touching:
+        text = "in collision in every sampled configuration, so that none is free: "
+        pairs = (f"{first} and {second}" for first, second in model.always_touching)
+        rows.append(("WARNING", text + ", ".join(pairs)))
+    elif model.never_free:
+        rows.append(("WARNING", model.never_free))
+    return rows
+
+
+def _joints(robot: Arm) -> list[tuple[str, ...]]:
+    rows: list[tuple[str, ...]] = []
+    for joint in robot.joints:
+        if joint.kind != "fixed":
+            unit = "m" if joint.kind == "prismatic" else "rad"
+            velocity = f"{joint.velocity:.4g} {unit}/s" if math.isfinite(joint.velocity) else "not given"
+            rows.append((joint.name, joint.kind, f"{_limits(joint)} {unit}", velocity, _use(robot, joint)))
+    return rows
+
+
+def _limits(joint: Joint) -> str:
+    if joint.kind == "continuous":
+        return "any"
+    both = f"±{joint.upper:.5g}"
+    return both if joint.lower == -joint.upper else f"{joint.lower:.5g} .. {joint.upper:.5g}"
+
+
+def _use(robot: Arm, joint: Joint) -> str:
+    if joint.mimic is not None:
+        offset = f" + {joint.mimic.offset:g}" if joint.mimic.offset else ""
+        return f"= {joint.mimic.multiplier:g} {joint.mimic.joint}{offset}"
+    if joint.name in robot.group:
+        return f"planned, #{robot.group.index(joint.name) + 1}"
+    return f"held at {held_values(robot)[joint.name]:g}"
+
+
+def _bodies(model: RobotModel) -> list[tuple[str, str, str, str]]:
+    rows = []
+    for body in model.bodies:
+        exact = set(body.shapes) <= {"capsule", "sphere"} and not body.given
+        added = "none: kept as they are" if exact else f"{100.0 * body.added:.0f} %"
+        if body.given and not body.shapes:
+            added = "nothing to compare with"
+        shapes = [f"{body.shapes.count(shape)} x {shape}" for shape in dict.fromkeys(body.shapes)]
+        given = "the user's" if body.given else ", ".join(shapes)
+        rows.append((body.link, given, str(body.capsules), added))
+    return rows
+
+
+def _summary(model: RobotModel, world: ArmWorld) -> list[tuple[str, str]]:
+    robot = model.robot
+    tested = f"{len(robot.pairs)} tested ({model.pairs_from}): {_by_first(robot.pairs)}"
+    rows = [*bodiless_rows(model), ("self pairs", tested)]
+    for reason in dict.fromkeys(reason for _, _, reason in model.dropped):
+        pairs = [(first, second) for first, second, why in model.dropped if why == reason]
+        rows.append(("not tested", f"{reason}: {_by_first(pairs)}"))
+    if robot.states:
+        rows.append(("states", ", ".join(robot.states)))
+    measured = _measured(world)
+    rows += [("obstacles", _conservatism(model, world)), ("checks", _speed(world, measured))]
+    if measured["blocking"] is not None and not (model.never_free or model.always_touching):
+        text = f"no random configuration is free in {world.scene.name}; most often {measured['blocking']}"
+        rows.append(("WARNING", text))
+    return rows
+
+
+def _conservatism(model: RobotModel, world: ArmWorld) -> str:
+    text = f"capsules tested as {world.spheres} spheres, up to {1e3 * world.excess:.1f} mm larger"
+    shapes = sum(body.shape_volume for body in model.bodies)
+    if not shapes:
+        return text
+    more = max(sum(body.capsule_volume for body in model.bodies) / shapes - 1.0, 0.0)
+    return f"{100.0 * more:.0f} % more volume than the URDF's shapes; {text}"
+
+
+def _measured(world: ArmWorld) -> dict[str, Any]:
+    """Return how fast random configurations and motions are checked, how many are free, and what blocks all."""
+    q = world.space.from_cube(generator(0).random((_CONFIGURATIONS, world.space.cube_dim)))
+    free = q[world.valid(q)]
+    found: dict[str, Any] = {
+        "configurations_per_second": _per_second(lambda: world.valid(q), len(q)),
+        "free_percent": 100.0 * len(free) / len(q),
+        "motions_per_second": None,
+        "free_motions_percent": None,
+        "blocking": None,
+    }
+    if len(free) > 1:
+        half = min(len(free) // 2, _MOTIONS)
+        a, b = free[:half], free[len(free) // 2 :][:half]
+        lengths = np.maximum(world.space.distance(a, b), world.resolution)
+        b = world.space.interpolate(a, b, np.minimum(_MOST_SEGMENTS * world.resolution / lengths, 1.0))
+        found["free_motions_percent"] = 100.0 * float(np.mean(world.motion_valid(a, b)))
+        found["motions_per_second"] = _per_second(lambda: world.motion_valid(a, b), len(a))
+    elif len(free) == 0:
+        ((found["blocking"], _),) = Counter(map(world.explain, q[:_MOTIONS])).most_common(1)
+    return found
+
+
+def _speed(world: ArmWorld, measured: dict[str, Any]) -> str:
+    text = "{configurations_per_second:,.0f} random configurations/s ({free_percent:.0f} % free)"
+    if measured["motions_per_second"] is not None:
+        text += ", {motions_per_second:,.0f} motions/s between free ones ({free_motions_percent:.0f} % free)"
+    return f"{text.format(**measured)}, one core, with {world.checked_with}, in {world.scene.name}"
+
+
+def _record(model: RobotModel, world: ArmWorld) -> dict[str, Any]:
+    """Return all that is known of a robot as what JSON has; limits of joints that have none are null."""
+    record = asdict(model) | {"file": None if model.file is None else str(model.file.path)}
+    record["held"] = held_values(world.robot)
+    record["robot"]["hulls"] = dict(Counter(hull.link for hull in model.robot.hulls))
+    for joint in record["robot"]["joints"]:
+        joint |= {key: None for key in ("lower", "upper", "velocity") if math.isinf(joint[key])}
+    checks = {"scene": world.scene.name, "with": world.checked_with, **_measured(world)}
+    return record | {"no_body": list(model.bodiless), "checks": checks}
+
+
+def _per_second(call: Callable[[], object], count: int) -> float:
+    """Return how many are done a second; the median of repeats, after one that loads compiled code."""
+    call()
+    times: list[float] = []
+    start = time.perf_counter()
+    while len(times) < 3 or (time.perf_counter() - start < _SECONDS and len(times) < 1000):
+        before = time.perf_counter()
+        call()
+        times.append(time.perf_counter() - before)
+    return count / float(np.median(times))
+
+
+def _by_first(pairs: Iterable[Sequence[str]]) -> str:
+    partners: dict[str, list[str]] = {}
+    for first, second in pairs:
+        partners.setdefault(first, []).append(second)
+    return "; ".join(f"{first} with {', '.join(seconds)}" for first, seconds in partners.items()) or "none"

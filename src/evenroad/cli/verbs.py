@@ -5,14 +5,13 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from importlib import import_module
-from shutil import get_terminal_size
 from textwrap import fill
-from typing import Any
 
 from evenroad import __version__
-from evenroad._terminal import WIDTH, leave_output
+from evenroad._checks import require_known
+from evenroad._terminal import leave_output, table_width
 from evenroad.cli.options import HELP, help_text, read_options
-from evenroad.errors import EvenroadError, UnknownName
+from evenroad.errors import EvenroadError
 
 DONE = 0
 BAD_INPUT = 2
@@ -32,7 +31,7 @@ VERBS = {
     "report": ("evenroad.research.commands.report:Report", "page, figures and tables of a store"),
     "robot": ("evenroad.cli.robot:Robot", "what an arm is made of, and how fast it is checked"),
     "export": ("evenroad.research.commands.export:Export", "a store for OMPL's Planner Arena"),
-    "demo": ("evenroad.cli.demo:Demo", "plan through a maze that ships with evenroad"),
+    "demo": ("evenroad.cli.plan:Demo", "plan through a maze that ships with evenroad"),
 }
 """Name of a verb -> where it is, loaded when it is asked for, and what it does."""
 
@@ -66,7 +65,7 @@ def _run(arguments: list[str]) -> int:
     if verb == "--version":
         print(f"evenroad {__version__}")
         return DONE
-    width = min(WIDTH, get_terminal_size().columns)
+    width = table_width()
     if verb in HELP:
         lines = [
             fill(f"  {name:8} {about}", width, subsequent_indent=" " * 11)
@@ -74,21 +73,16 @@ def _run(arguments: list[str]) -> int:
         ]
         print(DESCRIPTION + "\n".join(lines))
         return DONE
-    if verb not in VERBS:
-        raise UnknownName.among("verb", verb, VERBS)
-    kind = _kind(verb, words)
+    require_known("verb", verb, VERBS)
+    module, _, name = VERBS[verb][0].partition(":")
+    home = import_module(module)
+    # Of `plan` there are two: one for each kind of robot.
+    kind = home.plan_type(words) if verb == "plan" else getattr(home, name)
     if not HELP.isdisjoint(words):
         print(help_text(verb, kind, width))
         return DONE
     code: int = read_options(verb, kind, words).run()
     return code
-
-
-def _kind(verb: str, words: Sequence[str]) -> Any:
-    """Return the class of a verb; of `plan` the one for the robot that its words give."""
-    module, _, name = VERBS[verb][0].partition(":")
-    home = import_module(module)
-    return home.plan_type(words) if verb == "plan" else getattr(home, name)
 
 
 def _in_one_line(text: str) -> str:

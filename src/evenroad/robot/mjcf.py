@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad._extras import require_extra
+from evenroad._checks import require_extra
 from evenroad.errors import BrokenFile
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import Mesh, Shape, shape_of

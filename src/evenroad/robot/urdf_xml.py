@@ -15,7 +15,7 @@ from urllib.parse import unquote
 from xml.etree.ElementTree import Element, TreeBuilder
 from xml.parsers import expat
 
-from evenroad._extras import require_extra
+from evenroad._checks import require_extra
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.shapes import PRIMITIVES
 

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -21,20 +22,13 @@ _VOLUME_TOLERANCE = 0.06
 
 
 class SpaceContract:
-    """Tests of a space: its cube, its metric and its interpolation, batch = loop, and errors for bad input.
-
-    Attributes
-    ----------
-    space : Space
-        Set it in the subclass.
-    measure_is_the_metrics : bool
-        Whether balls of one small radius have one measure everywhere, as they have in boxes, tori and
-        rotation groups.  Set it to False for a metric that is not of that kind; what `from_cube` does to
-        volumes is then not tested.
-    """
+    """Tests of a space: its cube, its metric and its interpolation, batch = loop, and errors for bad input."""
 
     space: Space
+    """Set it in the subclass."""
     measure_is_the_metrics = True
+    """Whether balls of one small radius have one measure everywhere, as they have in boxes, tori and rotation groups.
+    Where it is False, what `from_cube` does to volumes is not tested."""
 
     def configurations(self, n: int, seed: int = 7) -> Floats:
         """Return `n` random configurations of the space, (n, dim)."""
@@ -42,16 +36,12 @@ class SpaceContract:
 
     def pairs(self) -> tuple[Floats, Floats, float]:
         """Return the ends of 30 random motions, two (30, dim) arrays, and a tolerance for their lengths."""
-        q = self.configurations(60)
-        a, b = q[:30], q[30:]
+        a, b = np.split(self.configurations(60), 2)
         return a, b, _TOLERANCE * float(self.space.distance(a, b).max())
-
-    # ---- the map from the cube
 
     def test_from_cube_gives_one_finite_configuration_of_the_space_a_point(self) -> None:
         q = self.configurations(60)
-        assert q.shape == (60, self.space.dim)
-        assert q.dtype == np.float64
+        assert (q.shape, q.dtype) == ((60, self.space.dim), np.float64)
         assert np.isfinite(q).all()
         assert self.space.contains(q).all()
 
@@ -85,8 +75,6 @@ class SpaceContract:
         there = self.space.from_cube(place + shrink[:, np.newaxis] * steps)
         return self.space.distance(here, there) / shrink
 
-    # ---- the metric
-
     def test_distance_is_zero_to_itself_and_positive_to_others(self) -> None:
         q = self.configurations(60)
         _, _, tolerance = self.pairs()
@@ -108,8 +96,6 @@ class SpaceContract:
         a, b, tolerance = self.pairs()
         assert self.space.flat.dim == self.space.dim
         np.testing.assert_allclose(self.space.flat.distance(a, b), self.space.distance(a, b), atol=tolerance)
-
-    # ---- interpolation
 
     def test_interpolation_starts_and_ends_at_its_ends(self) -> None:
         a, b, tolerance = self.pairs()
@@ -140,17 +126,16 @@ class SpaceContract:
         each = np.full(len(a), 0.3)
         np.testing.assert_array_equal(self.space.interpolate(a, b, 0.3), self.space.interpolate(a, b, each))
 
-    # ---- batches
-
     def test_batches_give_what_their_rows_give(self) -> None:
         a, b, _ = self.pairs()
         t, rows = np.linspace(0.0, 1.0, len(a)), [slice(i, i + 1) for i in range(len(a))]
         space = self.space
-        np.testing.assert_array_equal(space.distance(a, b), [space.distance(a[i], b[i])[0] for i in rows])
-        np.testing.assert_array_equal(
-            space.interpolate(a, b, t), [space.interpolate(a[i], b[i], t[i])[0] for i in rows]
-        )
-        np.testing.assert_array_equal(space.contains(a), [space.contains(a[i])[0] for i in rows])
+        for batch, loop in (
+            (space.distance(a, b), [space.distance(a[i], b[i])[0] for i in rows]),
+            (space.interpolate(a, b, t), [space.interpolate(a[i], b[i], t[i])[0] for i in rows]),
+            (space.contains(a), [space.contains(a[i])[0] for i in rows]),
+        ):
+            np.testing.assert_array_equal(batch, loop)
 
     def test_an_empty_batch_gives_an_empty_answer(self) -> None:
         empty = np.empty((0, self.space.dim))
@@ -161,61 +146,50 @@ class SpaceContract:
 
     def test_arguments_are_left_alone_and_may_be_read_only_or_strided(self) -> None:
         a, b, _ = self.pairs()
-        u = np.random.default_rng(2).random((5, self.space.cube_dim))
-        arguments = [u, a.copy(), b.copy()]
+        u, a, b = arguments = [np.random.default_rng(2).random((5, self.space.cube_dim)), a.copy(), b.copy()]
         before = [argument.copy() for argument in arguments]
         for argument in arguments:
             argument.setflags(write=False)
-        u, a, b = arguments
-        space = self.space
-        np.testing.assert_array_equal(space.from_cube(np.asfortranarray(u)), space.from_cube(u))
-        np.testing.assert_array_equal(space.distance(np.asfortranarray(a), b), space.distance(a, b))
-        np.testing.assert_array_equal(space.distance(a[::2], b[::2]), space.distance(a, b)[::2])
-        np.testing.assert_array_equal(
-            space.interpolate(np.asfortranarray(a), b, 0.25), space.interpolate(a, b, 0.25)
-        )
-        space.contains(a)
-        for argument, copy in zip(arguments, before, strict=True):
-            np.testing.assert_array_equal(argument, copy)
-
-    # ---- bad input
+        space, turned = self.space, np.asfortranarray
+        for other, same in (
+            (space.from_cube(turned(u)), space.from_cube(u)),
+            (space.distance(turned(a), b), space.distance(a, b)),
+            (space.distance(a[::2], b[::2]), space.distance(a, b)[::2]),
+            (space.interpolate(turned(a), b, 0.25), space.interpolate(a, b, 0.25)),
+            (space.contains(turned(a)), space.contains(a)),
+            *zip(arguments, before, strict=True),
+        ):
+            np.testing.assert_array_equal(other, same)
 
     def test_a_wrong_shape_is_refused(self) -> None:
         q, dim, cube_dim = self.configurations(4), self.space.dim, self.space.cube_dim
         for wrong in (np.array(0.5), q[0], np.zeros((4, dim + 1)), q[np.newaxis]):
-            with pytest.raises(InvalidValue):
-                self.space.distance(wrong, wrong)
-            with pytest.raises(InvalidValue):
-                self.space.interpolate(wrong, wrong, 0.5)
-            with pytest.raises(InvalidValue):
-                self.space.contains(wrong)
+            _refused(self.space.distance, wrong, wrong)
+            _refused(self.space.interpolate, wrong, wrong, 0.5)
+            _refused(self.space.contains, wrong)
         for wrong in (np.array(0.5), np.zeros(cube_dim), np.zeros((4, cube_dim + 1))):
-            with pytest.raises(InvalidValue):
-                self.space.from_cube(wrong)
-        with pytest.raises(InvalidValue):
-            self.space.distance(q[:3], q[:4])
+            _refused(self.space.from_cube, wrong)
+        _refused(self.space.distance, q[:3], q[:4])
 
     @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
     def test_an_entry_that_is_not_finite_is_refused(self, bad: float) -> None:
         q = self.configurations(4)
         wrong, wrong_u = q.copy(), np.full((4, self.space.cube_dim), 0.5)
         wrong[3, -1] = wrong_u[3, -1] = bad
-        with pytest.raises(InvalidValue):
-            self.space.from_cube(wrong_u)
-        with pytest.raises(InvalidValue):
-            self.space.distance(wrong, q)
-        with pytest.raises(InvalidValue):
-            self.space.interpolate(q, wrong, 0.5)
+        _refused(self.space.from_cube, wrong_u)
+        _refused(self.space.distance, wrong, q)
+        _refused(self.space.interpolate, q, wrong, 0.5)
 
     def test_a_point_outside_the_cube_is_refused(self) -> None:
         for wrong in (-1e-9, 1.0 + 1e-9):
-            with pytest.raises(InvalidValue):
-                self.space.from_cube(np.full((2, self.space.cube_dim), wrong))
+            _refused(self.space.from_cube, np.full((2, self.space.cube_dim), wrong))
 
     def test_a_fraction_outside_zero_to_one_is_refused(self) -> None:
         q = self.configurations(4)
-        for wrong in (-0.1, 1.1, np.nan):
-            with pytest.raises(InvalidValue):
-                self.space.interpolate(q, q, wrong)
-        with pytest.raises(InvalidValue):
-            self.space.interpolate(q, q, np.zeros(len(q) + 1))
+        for wrong in (-0.1, 1.1, np.nan, np.zeros(len(q) + 1)):
+            _refused(self.space.interpolate, q, q, wrong)
+
+
+def _refused(method: Callable[..., object], *arguments: object) -> None:
+    with pytest.raises(InvalidValue):
+        method(*arguments)

@@ -13,20 +13,13 @@ from evenroad.world import World
 
 
 class WorldContract:
-    """Tests of a world: batch = loop, symmetry, free motions have free ends, and errors for bad batches.
-
-    Attributes
-    ----------
-    world : World
-        Set it in the subclass.  It must have free and blocked places, and free and blocked motions, among
-        400 random ones.
-    free_between : bool
-        Whether places of a free motion are free wherever they are, as in a world that tests motions
-        exactly.  Set it to False for one that tests states some way apart.
-    """
+    """Tests of a world: batch = loop, symmetry, free motions have free ends, and errors for bad batches."""
 
     world: World
+    """Set it in the subclass.  Of 400 random places and motions some must be free and some blocked."""
     free_between = True
+    """Whether all places of a free motion are free, as in a world that tests motions exactly.  Set it to False for one
+    that tests states some way apart."""
 
     def places(self) -> Floats:
         """Return 400 random configurations, (400, dim)."""
@@ -82,16 +75,17 @@ class WorldContract:
 
     def test_arguments_are_left_alone_and_may_be_read_only_or_strided(self) -> None:
         a, b = self.motions()
-        expected = self.world.motion_valid(a, b)
-        a_before, b_before = a.copy(), b.copy()
+        expected, before = self.world.motion_valid(a, b), (a.copy(), b.copy())
         a.setflags(write=False)
         b.setflags(write=False)
-        np.testing.assert_array_equal(self.world.motion_valid(a, b), expected)
-        np.testing.assert_array_equal(self.world.motion_valid(np.asfortranarray(a), b), expected)
-        np.testing.assert_array_equal(self.world.motion_valid(a[::2], b[::2]), expected[::2])
-        np.testing.assert_array_equal(self.world.valid(np.repeat(a, 2, axis=0)[::2]), self.world.valid(a))
-        np.testing.assert_array_equal(a, a_before)
-        np.testing.assert_array_equal(b, b_before)
+        for other, same in (
+            (self.world.motion_valid(a, b), expected),
+            (self.world.motion_valid(np.asfortranarray(a), b), expected),
+            (self.world.motion_valid(a[::2], b[::2]), expected[::2]),
+            (self.world.valid(np.repeat(a, 2, axis=0)[::2]), self.world.valid(a)),
+            *zip((a, b), before, strict=True),
+        ):
+            np.testing.assert_array_equal(other, same)
 
     def test_a_wrong_shape_is_refused(self) -> None:
         q = self.places()

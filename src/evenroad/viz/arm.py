@@ -6,13 +6,7 @@ import os
 from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.collections import PolyCollection
-from matplotlib.colors import to_rgb
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
+from PIL import Image, ImageColor
 
 from evenroad._arrays import Floats
 from evenroad._files import atomic_write
@@ -21,13 +15,15 @@ from evenroad.robot.kinematics import capsule_ends, link_poses
 from evenroad.space.path import resample
 from evenroad.viz import style
 from evenroad.viz.outline import obstacle_bounds, obstacle_outline, stadium
+from evenroad.viz.sheet import Colour, Sheet, View
 
 if TYPE_CHECKING:
     from evenroad.robot import ArmWorld, Robot
 
 VIEWS = (("from above", (0, 1)), ("from the side", (0, 2)), ("from the front", (1, 2)))
 """Title of a view, and the two axes of the robot's root link that it shows."""
-DPI = 120
+SIZE = (1920, 744)
+"""Pixels of the picture."""
 _AXES = "xyz"
 _BETWEEN = 7
 """Places between start and goal at which the arm is shown."""
@@ -36,77 +32,51 @@ _STEP = 0.05
 
 
 def save_arm_picture(path: str | os.PathLike[str], result: PlanResult, world: ArmWorld) -> None:
-    """Save the figure of :func:`draw_arm_plan` as PNG, atomically."""
-    figure = draw_arm_plan(result, world)
+    """Save the picture of :func:`draw_arm_plan` as PNG, atomically."""
+    picture = draw_arm_plan(result, world)
     with atomic_write(path) as file:
         # Compressing more takes longer than drawing a view, for a tenth of the bytes.
-        figure.savefig(file, format="png", pil_kwargs={"compress_level": 1})
+        picture.save(file, format="png", compress_level=1)
 
 
-def draw_arm_plan(result: PlanResult, world: ArmWorld) -> Figure:
-    """Return a figure of a plan of an arm: from above, from the side and from the front.
+def draw_arm_plan(result: PlanResult, world: ArmWorld) -> Image.Image:
+    """Return a picture of a plan of an arm: from above, from the side and from the front.
 
     The start is green, the goal blue, with the arm along the path between them and the path of its tip in red.  Without
     a path start and goal are shown; a body in collision is red.
     """
-    figure = Figure(figsize=(16.0, 6.2), dpi=DPI)
-    FigureCanvasAgg(figure)
-    shown = _shown(result, world)
-    low, high = _limits(world, shown)
-    # Fixed margins: a layout that fits itself takes as long as the drawing.
-    figure.subplots_adjust(left=0.045, right=0.99, bottom=0.17, top=0.87, wspace=0.16)
-    for axes, (title, pair) in zip(figure.subplots(1, len(VIEWS)), VIEWS, strict=True):
-        draw_arm_view(axes, result, world, pair)
-        first, second = pair
-        axes.set(
-            title=f"{title} ({_AXES[first]}, {_AXES[second]})",
-            xlim=(low[first], high[first]),
-            ylim=(low[second], high[second]),
-            xlabel=f"{_AXES[first]} [m]",
-            ylabel=f"{_AXES[second]} [m]",
-        )
-        axes.set_aspect("equal")
-        # Texts are what takes longest to draw.
-        axes.locator_params(nbins=6)
-        axes.grid(visible=True, color=style.EDGE, linewidth=0.4, alpha=0.5)
-    figure.legend(handles=_legend(result, world), loc="lower center", ncols=6, frameon=False)
     title = f"{world.robot.name} in {world.scene.name}: {result.status}; {result.message}"
-    figure.suptitle(style.without_math(title), fontsize=11)
-    return figure
+    sheet = Sheet(SIZE, len(VIEWS), title)
+    low, high = _limits(world, _shown(result, world))
+    for i, (name, pair) in enumerate(VIEWS):
+        view = View(low[list(pair)], high[list(pair)], sheet.room)
+        draw_arm_view(view, result, world, pair)
+        first, second = (_AXES[axis] for axis in pair)
+        sheet.add(view, i, f"{name} ({first}, {second})", (f"{first} [m]", f"{second} [m]"))
+    sheet.legend(_legend(result, world))
+    return sheet.image
 
 
-def draw_arm_view(axes: Axes, result: PlanResult, world: ArmWorld, pair: tuple[int, int]) -> None:
-    """Draw one view, in the plane of two of the axes x, y, z, into matplotlib axes, in metres."""
-    # What is higher along the third axis (nearer along y, seen from the side) is drawn later.
-    for obstacle in world.scene.obstacles:
-        axes.add_collection(
-            PolyCollection(
-                [obstacle_outline(obstacle, pair)],
-                facecolors=[(*to_rgb(style.OUTSIDE if obstacle.cell else style.OBSTACLE), 0.16)],
-                edgecolors=style.OBSTACLE,
-                linewidths=0.8,
-                zorder=4,
-            )
-        )
+def draw_arm_view(view: View, result: PlanResult, world: ArmWorld, pair: tuple[int, int]) -> None:
+    """Draw what is seen in the plane of two of the axes x, y, z; what is drawn later is in front."""
     shown = _shown(result, world)
-    for i, ends in enumerate(capsule_ends(world.robot, shown)):
-        share = i / max(len(shown) - 1, 1)
-        at_end = i in (0, len(shown) - 1)
-        axes.add_collection(
-            PolyCollection(
-                _bodies(world.robot, ends, pair),
-                facecolors=_tint(share, 0.55 if at_end else 0.25),
-                edgecolors=_tint(share, 1.0 if at_end else 0.45),
-                linewidths=0.8 if at_end else 0.4,
-                zorder=3 if at_end else 2,
-            )
-        )
+    places = list(enumerate(capsule_ends(world.robot, shown)))
+    for i, ends in [*places[1:-1], places[0], places[-1]]:
+        share, at_end = i / (len(shown) - 1), i in (0, len(shown) - 1)
+        fill, edge = _tint(share, 0.55 if at_end else 0.25), _tint(share, 1.0 if at_end else 0.45)
+        for outline in _bodies(world.robot, ends, pair):
+            view.polygon(outline, fill, edge, 1.5 if at_end else 1.0)
+    for obstacle in world.scene.obstacles:
+        colour = style.OUTSIDE if obstacle.cell else style.OBSTACLE
+        view.polygon(obstacle_outline(obstacle, pair), _faint(colour, 0.16), style.OBSTACLE, 1.5)
     if result.path is not None:
-        tip = _tip_path(result.path, world)[:, pair]
-        axes.plot(*tip.T, color=style.PATH, linewidth=1.8, zorder=6)
-    _draw_tips(axes, result, world, pair)
+        view.line(_tips(result.path, world, _STEP)[:, pair], style.PATH, 3)
     if result.status in (Status.START_INVALID, Status.GOAL_INVALID):
-        _mark_collision(axes, result, world, pair)
+        for outline in _colliding(result, world, pair):
+            view.polygon(outline, _faint(style.COLLISION, 0.35), style.COLLISION, 3)
+    ends = _tips(np.stack([result.start, result.goal]), world)[:, pair]
+    for place, colour in zip(ends, (style.START, style.GOAL), strict=True):
+        view.dot(place, colour, 6)
 
 
 def _shown(result: PlanResult, world: ArmWorld) -> Floats:
@@ -136,46 +106,36 @@ def _tip(robot: Robot) -> int:
     return robot.links.index(tip)
 
 
-def _tip_path(path: Floats, world: ArmWorld) -> Floats:
-    return link_poses(world.robot, resample(path, world.space, _STEP)[0])[:, _tip(world.robot), :3, 3]
+def _tips(path: Floats, world: ArmWorld, step: float | None = None) -> Floats:
+    """Return where the tip is at configurations, (n, dim), or every `step` on the path through them."""
+    dense = path if step is None else resample(path, world.space, step)[0]
+    return link_poses(world.robot, dense)[:, _tip(world.robot), :3, 3]
 
 
-def _draw_tips(axes: Axes, result: PlanResult, world: ArmWorld, pair: tuple[int, int]) -> None:
-    tips = link_poses(world.robot, np.stack([result.start, result.goal]))[:, _tip(world.robot), :3, 3]
-    for place, colour in zip(tips, (style.START, style.GOAL), strict=True):
-        axes.plot(*place[list(pair)], "o", color=colour, markersize=7, markeredgecolor="white", zorder=8)
-
-
-def _mark_collision(axes: Axes, result: PlanResult, world: ArmWorld, pair: tuple[int, int]) -> None:
-    """Redden the bodies that the message names."""
+def _colliding(result: PlanResult, world: ArmWorld, pair: tuple[int, int]) -> list[Floats]:
+    """Return the outlines of the bodies that the message names."""
     end = result.start if result.status is Status.START_INVALID else result.goal
     reason = world.explain(end)
-    ends = capsule_ends(world.robot, end[np.newaxis])[0]
-    outlines = [
-        outline
-        for capsule, outline in zip(world.robot.capsules, _bodies(world.robot, ends, pair), strict=True)
-        if repr(capsule.link) in reason
+    bodies = _bodies(world.robot, capsule_ends(world.robot, end[np.newaxis])[0], pair)
+    named = [
+        body for body, each in zip(bodies, world.robot.capsules, strict=True) if repr(each.link) in reason
     ]
-    outlines += [
-        obstacle_outline(obstacle, pair)
-        for obstacle in world.scene.obstacles
-        if repr(obstacle.name) in reason
-    ]
-    axes.add_collection(
-        PolyCollection(
-            outlines,
-            facecolors=[(*to_rgb(style.COLLISION), 0.35)],
-            edgecolors=style.COLLISION,
-            linewidths=1.6,
-            zorder=7,
-        )
-    )
+    obstacles = [each for each in world.scene.obstacles if repr(each.name) in reason]
+    return named + [obstacle_outline(each, pair) for each in obstacles]
 
 
-def _tint(share: float, strength: float) -> tuple[float, ...]:
+def _tint(share: float, strength: float) -> Colour:
     """Return the colour between start and goal, paler for less strength."""
-    colour = (1.0 - share) * np.array(to_rgb(style.START)) + share * np.array(to_rgb(style.GOAL))
-    return tuple((1.0 - strength * (1.0 - colour)).tolist())
+    start, goal = (np.array(ImageColor.getrgb(colour)) for colour in (style.START, style.GOAL))
+    red, green, blue = (
+        np.rint(255 - strength * (255 - (1.0 - share) * start - share * goal)).astype(int).tolist()
+    )
+    return red, green, blue
+
+
+def _faint(colour: str, opacity: float) -> Colour:
+    red, green, blue = ImageColor.getrgb(colour)[:3]
+    return red, green, blue, round(255 * opacity)
 
 
 def _limits(world: ArmWorld, shown: Floats) -> tuple[Floats, Floats]:
@@ -193,19 +153,17 @@ def _limits(world: ArmWorld, shown: Floats) -> tuple[Floats, Floats]:
     return least - margin, most + margin
 
 
-def _legend(result: PlanResult, world: ArmWorld) -> list[Patch | Line2D]:
-    handles: list[Patch | Line2D] = [
-        Patch(facecolor=_tint(0.0, 0.55), edgecolor=style.START, label="start"),
-        Patch(facecolor=_tint(1.0, 0.55), edgecolor=style.GOAL, label="goal"),
+def _legend(result: PlanResult, world: ArmWorld) -> list[tuple[str, Colour, Colour | None]]:
+    """Return name, colour and colour of the edge of what is shown."""
+    entries: list[tuple[str, Colour, Colour | None]] = [
+        ("start", _tint(0.0, 0.55), style.START),
+        ("goal", _tint(1.0, 0.55), style.GOAL),
     ]
     if result.path is not None:
-        tip = style.without_math(world.robot.links[_tip(world.robot)])
-        handles.append(Patch(facecolor=_tint(0.5, 0.25), edgecolor=_tint(0.5, 0.45), label="along the path"))
-        handles.append(Line2D([], [], color=style.PATH, linewidth=1.8, label=f"path of {tip}"))
+        entries.append(("along the path", _tint(0.5, 0.25), _tint(0.5, 0.45)))
+        entries.append((f"path of {world.robot.links[_tip(world.robot)]}", style.PATH, None))
     elif result.status in (Status.START_INVALID, Status.GOAL_INVALID):
-        handles.append(Patch(facecolor=style.COLLISION, alpha=0.35, label="in collision"))
+        entries.append(("in collision", _faint(style.COLLISION, 0.35), style.COLLISION))
     if world.scene.obstacles:
-        handles.append(
-            Patch(facecolor=(*to_rgb(style.OBSTACLE), 0.16), edgecolor=style.OBSTACLE, label="obstacles")
-        )
-    return handles
+        entries.append(("obstacles", _faint(style.OBSTACLE, 0.16), style.OBSTACLE))
+    return entries

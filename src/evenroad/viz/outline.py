@@ -32,8 +32,7 @@ def obstacle_outline(obstacle: Obstacle, axes: tuple[int, int]) -> Floats:
     if obstacle.shape == "capsule":
         end = rotation @ np.array([0.0, 0.0, 0.5 * obstacle.size[1]])
         return stadium((centre - end)[list(axes)], (centre + end)[list(axes)], obstacle.size[0])
-    sides = (rotation @ _sides(obstacle))[list(axes)].T
-    return _sum_of_segments(centre[list(axes)], sides)
+    return _sum_of_segments(centre[list(axes)], (rotation @ _sides(obstacle))[list(axes)].T)
 
 
 def obstacle_bounds(obstacle: Obstacle) -> tuple[Floats, Floats]:
@@ -54,10 +53,7 @@ def _sides(obstacle: Obstacle) -> Floats:
 
 
 def _sum_of_segments(centre: Floats, sides: Floats) -> Floats:
-    """Return the outline, (2 s, 2), of the Minkowski sum of segments, (s, 2), around `centre`.
-
-    Its sides are the segments in the order of their angles, there and back.
-    """
+    """Return the outline, (2 s, 2), of a Minkowski sum of segments, (s, 2): each twice, in the order of angles."""
     upward = np.where((sides[:, 1:] < 0) | ((sides[:, 1:] == 0) & (sides[:, :1] < 0)), -sides, sides)
     upward = upward[np.argsort(np.arctan2(upward[:, 1], upward[:, 0]))]
     half_way = np.cumsum(upward, axis=0) - 0.5 * upward.sum(axis=0)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import os
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -29,11 +30,8 @@ DPI = 130
 def save_plan_picture(path: str | os.PathLike[str], result: PlanResult, world: DiskWorld) -> None:
     """Draw a plan as PNG, atomically; see :func:`draw_plan`."""
     low, high = _shown(result, world)
-    width, height = high - low
-    scale = LONG_SIDE_INCHES / max(width, height)
-    figure = Figure(
-        figsize=(max(4.0, width * scale), max(3.0, height * scale) + 0.8), dpi=DPI, layout="constrained"
-    )
+    width, height = LONG_SIDE_INCHES * (high - low) / (high - low).max()
+    figure = Figure(figsize=(max(4.0, width), max(3.0, height) + 0.8), dpi=DPI, layout="constrained")
     FigureCanvasAgg(figure)
     draw_plan(figure.add_subplot(), result, world)
     with atomic_write(path) as file:
@@ -86,61 +84,35 @@ def _draw_map(axes: Axes, gridmap: Grid, kinds: np.ndarray) -> None:
     # imshow draws in pixel coordinates; the affine map takes those to map units, yaw included.
     corners = frame.to_map(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))
     (a, b), (c, d), (e, f) = corners[1] - corners[0], corners[2] - corners[0], corners[0]
-    axes.imshow(
-        kinds,
-        extent=(0.0, frame.cols, frame.rows, 0.0),
-        cmap=ListedColormap(_MAP_COLOURS),
-        vmin=0,
-        vmax=len(_MAP_COLOURS) - 1,
-        interpolation="nearest",
-        transform=Affine2D.from_values(a, b, c, d, e, f) + axes.transData,
-        zorder=1,
-    )
+    place = Affine2D.from_values(a, b, c, d, e, f) + axes.transData
+    extent = (0.0, frame.cols, frame.rows, 0.0)
+    colours: dict[str, Any] = dict(cmap=ListedColormap(_MAP_COLOURS), vmin=0, vmax=len(_MAP_COLOURS) - 1)
+    axes.imshow(kinds, extent=extent, interpolation="nearest", transform=place, zorder=1, **colours)
 
 
 def _draw_swept_disks(axes: Axes, path: np.ndarray, radius: float) -> None:
     """Show the robot itself at each waypoint, so that one sees how close it passes."""
     size = np.full(len(path), 2 * radius)
-    disks = EllipseCollection(
-        size,
-        size,
-        np.zeros(len(path)),
-        units="xy",
-        offsets=path,
-        offset_transform=axes.transData,
-        facecolors="none",
-        edgecolors=style.PATH,
-        linewidths=0.8,
-        zorder=5,
-    )
-    axes.add_collection(disks)
+    look: dict[str, Any] = dict(facecolors="none", edgecolors=style.PATH, linewidths=0.8, zorder=5)
+    places: dict[str, Any] = dict(units="xy", offsets=path, offset_transform=axes.transData)
+    axes.add_collection(EllipseCollection(size, size, np.zeros(len(path)), **places, **look))
 
 
 def _mark_collision(axes: Axes, result: PlanResult, world: DiskWorld) -> None:
     end = result.start if result.status is Status.START_INVALID else result.goal
     touched = world.nearest_obstacle(end[np.newaxis])[0]
-    axes.add_patch(Circle(tuple(end), world.radius, fill=False, color=style.COLLISION, linewidth=2, zorder=9))
-    axes.plot(*np.stack([end, touched]).T, color=style.COLLISION, linewidth=2, zorder=9)
-    axes.plot(
-        *touched,
-        "X",
-        color=style.COLLISION,
-        markersize=11,
-        markeredgecolor="white",
-        zorder=10,
-        label="collision",
-    )
+    look: dict[str, Any] = dict(color=style.COLLISION, linewidth=2, zorder=9)
+    axes.add_patch(Circle(tuple(end), world.radius, fill=False, **look))
+    axes.plot(*np.stack([end, touched]).T, **look)
+    marker: dict[str, Any] = dict(marker="X", markersize=11, markeredgecolor="white", linewidth=0)
+    axes.plot(*touched, color=style.COLLISION, zorder=10, label="collision", **marker)
 
 
 def _set_frame(axes: Axes, result: PlanResult, world: DiskWorld) -> None:
-    gridmap = world.grid
     low, high = _shown(result, world)
-    axes.set_xlim(low[0], high[0])
-    axes.set_ylim(*((low[1], high[1]) if gridmap.frame.y_up else (high[1], low[1])))
-    axes.set_aspect("equal")
-    axes.set_facecolor(style.OUTSIDE)
-    axes.set_xlabel("x" if gridmap.frame.y_up else "x (right)")
-    axes.set_ylabel("y" if gridmap.frame.y_up else "y (down)")
+    up = world.grid.frame.y_up
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]) if up else (high[1], low[1]), aspect="equal")
+    axes.set(facecolor=style.OUTSIDE, xlabel="x" if up else "x (right)", ylabel="y" if up else "y (down)")
     title = f"{result.status}: {result.message}"
     if result.rule != "none":
         title += f"\n{result.origin}, {result.rule}"
@@ -154,10 +126,8 @@ def _shown(result: PlanResult, world: DiskWorld) -> tuple[np.ndarray, np.ndarray
     rows, cols = (np.flatnonzero(known.any(axis=axis)) for axis in (1, 0))
     if not rows.size:
         rows, cols = np.arange(frame.rows), np.arange(frame.cols)
-    top, bottom, left, right = rows[0], rows[-1] + 1, cols[0], cols[-1] + 1
-    corners = frame.to_map(
-        np.array([[left, top], [right, top], [left, bottom], [right, bottom]], dtype=float)
-    )
+    sides = itertools.product((cols[0], cols[-1] + 1), (rows[0], rows[-1] + 1))
+    corners = frame.to_map(np.array(list(sides), dtype=float))
     if known.all():
         return corners.min(axis=0), corners.max(axis=0)
     disks = [place + world.radius * np.array([[-1.0], [1.0]]) for place in (result.start, result.goal)]

@@ -8,10 +8,8 @@ from pathlib import Path
 from typing import Annotated
 
 import numpy as np
-from rich.table import Table
-from rich.text import Text
 
-from evenroad._terminal import interrupt_between_steps, print_table, progress_bar
+from evenroad._terminal import print_table, progress_shown
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.research.bench.execute import DEFAULT_LIMIT, require_limit
 from evenroad.research.bench.rows import Rows
@@ -19,6 +17,7 @@ from evenroad.research.bench.runner import Report, run_tasks
 from evenroad.research.bench.samplers import SAMPLERS
 from evenroad.research.bench.store import open_store, read_rows
 from evenroad.research.bench.task import Task
+from evenroad.research.commands.interrupt import interrupt_between_steps
 from evenroad.research.problems import PROBLEMS
 from evenroad.research.report.analysis import failures_of
 from evenroad.research.suites import SUITES, Suite
@@ -95,7 +94,7 @@ class Bench:
         with (
             open_store(self.store) as store,
             interrupt_between_steps() as check,
-            progress_bar(f"bench {suite.name}, {len(suite.tasks)} tasks") as show,
+            progress_shown(f"bench {suite.name}, {len(suite.tasks)} tasks") as show,
         ):
 
             def callback(finished: int, tasks: int) -> None:
@@ -118,17 +117,8 @@ def _print_catalogue() -> None:
     """Print the problems of each suite, and the samplers, a line each."""
     for name, make in SUITES.items():
         problems = dict.fromkeys(task.problem for task in make(runs=1).tasks)
-        _print_glossary(f"suite {name}", {each: PROBLEMS[each].about for each in problems})
-    _print_glossary("samplers", {name: sampler.about for name, sampler in SAMPLERS.items()})
-
-
-def _print_glossary(title: str, lines: dict[str, str]) -> None:
-    table = Table(title=title, title_justify="left", show_header=False, box=None, pad_edge=False)
-    table.add_column(style="bold", no_wrap=True)
-    table.add_column()
-    for name, about in lines.items():
-        table.add_row(Text(name), Text(about))
-    print_table(table)
+        print_table([(each, PROBLEMS[each].about) for each in problems], title=f"suite {name}")
+    print_table([(name, sampler.about) for name, sampler in SAMPLERS.items()], title="samplers")
 
 
 def print_success(suite: Suite, rows: Rows) -> None:

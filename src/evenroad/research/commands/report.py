@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-from rich.table import Table
-
 from evenroad._terminal import WIDTH, print_table, table_width
 from evenroad.research import report
 from evenroad.research.bench.store import rescue_file
@@ -47,9 +45,9 @@ def _print_report(written: report.Report) -> None:
     analysis = written.analysis
     settings = [setting for setting in analysis.runs.settings if not is_fair(setting)]
     if settings:
-        print_table(_needed_table(analysis, settings))
+        _print_needed(analysis, settings)
     if "all" in analysis.pooled:
-        print_table(_fair_table(analysis))
+        _print_fair(analysis)
     for table, verdicts in analysis.verdicts.values():
         print(f"{table.title}: {verdict_counts(verdicts)}")
     failed = sum(each.runs for each in analysis.failures)
@@ -58,27 +56,18 @@ def _print_report(written: report.Report) -> None:
     print(f"{written.files[0]} and {len(written.files) - 1} more files")
 
 
-def _needed_table(analysis: Analysis, settings: list[Setting]) -> Table:
+def _print_needed(analysis: Analysis, settings: list[Setting]) -> None:
     # In a narrow terminal every row stays on its line, and the numbers of runs are left to the page.
-    shows_runs = table_width() >= WIDTH
-    table = Table(
-        title="Samples for 90 % success",
-        title_justify="left",
-        box=None,
-        pad_edge=False,
-        padding=(0, 1, 0, 0),
-    )
-    for name in ("problem", "rule"):
-        table.add_column(name, no_wrap=True)
-    for name in ("runs",) * shows_runs + REFERENCES:
-        table.add_column(name.replace(" ", "\n"), justify="right", no_wrap=True)
-    table.add_column("fewest", no_wrap=True)
+    columns = ("runs",) * (table_width() >= WIDTH) + REFERENCES
+    rows = []
     for setting in settings:
         needed = [analysis.needed.get((setting, sampler)) for sampler in REFERENCES]
-        short = ["–" if each is None or not each.has_interval else each.short for each in needed]
-        runs = [str(sum(cell.runs for cell in analysis.cells_of(setting)))] * shows_runs
-        table.add_row(setting.problem, setting.rule, *runs, *short, _fewest(analysis, setting))
-    return table
+        numbers = ["–" if each is None or not each.has_interval else each.short for each in needed]
+        if columns[0] == "runs":
+            numbers.insert(0, str(sum(cell.runs for cell in analysis.cells_of(setting))))
+        rows.append((setting.problem, setting.rule, *numbers, _fewest(analysis, setting)))
+    headings = ("problem", "rule", *(name.replace(" ", "\n") for name in columns), "fewest")
+    print_table(rows, headings, "Samples for 90 % success", right=range(2, 2 + len(columns)), gap=1)
 
 
 def _fewest(analysis: Analysis, setting: Setting) -> str:
@@ -101,13 +90,10 @@ def _fewest(analysis: Analysis, setting: Setting) -> str:
     return f"{best.short}: {names[0] if len(names) == 1 else f'{len(names)} samplers'}"
 
 
-def _fair_table(analysis: Analysis) -> Table:
+def _print_fair(analysis: Analysis) -> None:
+    rows = [
+        (each.sampler, str(each.instances), str(each.pairs), difference(each.difference, each.interval))
+        for each in analysis.pooled["all"]
+    ]
     title = f"Fair suite, {pooled_rules(analysis.runs.settings)}: success minus uniform's [points]"
-    table = Table(title=title, title_justify="left", box=None, pad_edge=False)
-    table.add_column("sampler", no_wrap=True)
-    for name in ("worlds", "runs", "difference"):
-        table.add_column(name, justify="right", no_wrap=True)
-    for each in analysis.pooled["all"]:
-        change = difference(each.difference, each.interval)
-        table.add_row(each.sampler, str(each.instances), str(each.pairs), change)
-    return table
+    print_table(rows, ("sampler", "worlds", "runs", "difference"), title, right=(1, 2, 3))

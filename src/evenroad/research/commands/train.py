@@ -10,12 +10,13 @@ import numpy as np
 
 from evenroad._checks import require_count
 from evenroad._files import require_writable_folder
-from evenroad._terminal import interrupt_between_steps, progress_bar
+from evenroad._terminal import progress_shown
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.points import PointSet, load_points, save_points
 from evenroad.points.optimise import SCHEDULE, parse_objective
 from evenroad.points.optimise.anneal import Callback
 from evenroad.points.optimise.objective import require_points_for
+from evenroad.research.commands.interrupt import interrupt_between_steps
 from evenroad.research.training import anneal_many
 from evenroad.research.training.folder import claim_folder
 
@@ -55,7 +56,7 @@ class Train:
         self._check()
         self._make_folder()
         title = f"{self.method} n={self.n} d={self.d} x {self.sets}"
-        with interrupt_between_steps() as check, progress_bar(title) as report:
+        with interrupt_between_steps() as check, progress_shown(title) as report:
 
             def callback(step: int, steps: int, best: float) -> None:
                 check()

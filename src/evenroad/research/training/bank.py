@@ -17,12 +17,13 @@ from pathlib import Path
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad._files import atomic_write, one_at_a_time
+from evenroad._files import atomic_write
 from evenroad._terminal import LineProgress
 from evenroad.points.bank.bank import DATA, INDEX, SEED, Bank, cell_name
 from evenroad.points.measures import MEASURES, separation
 from evenroad.points.pointset import BELOW_ONE, PointSet
 from evenroad.research.training import anneal_many
+from evenroad.research.training.folder import one_at_a_time
 
 COUNTS = (16, 32, 64, 128, 256, 512, 1024, 2048)
 """Numbers of points."""

@@ -6,6 +6,8 @@ The request is written beside the sets, so sets of two requests never mix unnoti
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -120,3 +122,17 @@ def request_of(task: SetTask) -> dict[str, Any]:
         "entropy": str(task.entropy),
         "spawn_key": list(task.spawn_key[:-1]),
     }
+
+
+@contextmanager
+def one_at_a_time(path: Path) -> Iterator[None]:
+    """Hold the lock file `path` for the block: other processes that want it wait.
+
+    The lock goes with the process, so a killed one leaves none.  Without ``flock`` (Windows) nothing is locked.
+    """
+    with open(path, "w", encoding="utf-8") as file:
+        with suppress(ImportError):
+            import fcntl
+
+            fcntl.flock(file, fcntl.LOCK_EX)
+        yield

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from evenroad._arrays import Floats, Ints
-from evenroad._extras import require_extra
+from evenroad._checks import require_extra
 from evenroad.errors import BrokenFile
 from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.pose import rotations_from_quaternions

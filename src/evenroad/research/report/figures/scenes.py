@@ -17,13 +17,14 @@ from evenroad.geometry import rotation_from_quaternion
 from evenroad.points import draw
 from evenroad.research.bench.task import Problem
 from evenroad.research.problems import PROBLEMS
-from evenroad.research.report.figures.canvas import new_figure
+from evenroad.research.report.figures.canvas import DPI, new_figure
 from evenroad.research.worlds.chain import ChainWorld
 from evenroad.roadmap import KNearest, PlanResult, plan
 from evenroad.robot import ArmWorld
 from evenroad.space.path import place_at
-from evenroad.viz import draw_plan, style
+from evenroad.viz import style
 from evenroad.viz.arm import draw_arm_plan
+from evenroad.viz.plan import draw_plan
 from evenroad.world.gridmap.disk import DiskWorld
 from evenroad.world.solids import OrientedBox, SolidWorld
 
@@ -60,13 +61,20 @@ def draw_scene(name: str) -> Figure:
         case SolidWorld():
             return draw_solids(problem, problem.world, name)
         case ArmWorld():
-            return draw_arm_plan(find_path(problem), problem.world)
+            return _draw_arm(problem, problem.world)
     raise NotAvailable(f"there is no picture of the scene of {name}")
 
 
 def _draw_maze(problem: Problem, world: DiskWorld) -> Figure:
     figure = new_figure(8.4, 7.4)
     draw_plan(figure.add_subplot(), find_path(problem), world)
+    return figure
+
+
+def _draw_arm(problem: Problem, world: ArmWorld) -> Figure:
+    picture = draw_arm_plan(find_path(problem), world)
+    figure = new_figure(picture.width / DPI, picture.height / DPI, layout=None)
+    figure.figimage(np.asarray(picture))
     return figure
 
 

@@ -1,4 +1,4 @@
-"""A plan on disk: a JSON record of what was asked, what came out and what made it; and its path as CSV."""
+"""A plan on disk: JSON of what was asked, what came out and what made it; and its path as CSV."""
 
 from __future__ import annotations
 
@@ -19,34 +19,19 @@ from evenroad.roadmap import PlanResult
 
 
 def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
-    """Return a plan as plain JSON values.
+    """Return a plan as plain JSON values, in the units of its space.
 
-    Parameters
-    ----------
-    result : PlanResult
-        The answer; configurations are written in the units of its space.
-    query : dict
-        What was asked (map, radius, seed, ...), stored under ``query`` together with start and goal.
+    `query` is what was asked (map, radius, seed, ...), stored under ``query`` together with start and goals.
     """
+    places = {name: getattr(result, name).tolist() for name in ("start", "goal", "goals")}
+    paths = {name: getattr(result, name) for name in ("path", "milestone_path")}
+    same = ("cost", "milestone_cost", "proof", "goal_index", "planner", "rule", "links", "counts")
     return {
         "status": str(result.status),
         "message": result.message,
-        "query": {
-            "start": result.start.tolist(),
-            "goal": result.goal.tolist(),
-            "goals": result.goals.tolist(),
-            **query,
-        },
-        "path": None if result.path is None else result.path.tolist(),
-        "milestone_path": None if result.milestone_path is None else result.milestone_path.tolist(),
-        "cost": result.cost,
-        "milestone_cost": result.milestone_cost,
-        "proof": result.proof,
-        "goal_index": result.goal_index,
-        "planner": result.planner,
-        "rule": result.rule,
-        "links": result.links,
-        "counts": result.counts,
+        "query": places | query,
+        **{name: None if path is None else path.tolist() for name, path in paths.items()},
+        **{name: getattr(result, name) for name in same},
         "seconds": {phase: round(value, 6) for phase, value in result.seconds.items()},
         "stages": [asdict(stage) for stage in result.stages],
         "origin": asdict(result.origin),
@@ -69,9 +54,6 @@ def save_json(path: str | os.PathLike[str], record: dict[str, Any]) -> None:
 
 def save_path_csv(path: str | os.PathLike[str], waypoints: npt.ArrayLike, names: Sequence[str]) -> None:
     """Write waypoints, shape (p, dim), under a header of column names, atomically; floats round-trip."""
-    rows = [
-        ",".join(names),
-        *(",".join(map(repr, row)) for row in np.asarray(waypoints, dtype=float).tolist()),
-    ]
+    rows = [names, *(map(repr, row) for row in np.asarray(waypoints, dtype=float).tolist())]
     with atomic_write(path) as file:
-        file.write(("\n".join(rows) + "\n").encode())
+        file.write("".join(",".join(row) + "\n" for row in rows).encode())
