@@ -52,11 +52,11 @@ def main() -> None:
         )
         for name, connect in (("roadmap", False), ("roadmap, then trees", True)):
             known = roadmap.in_world(world)
-            known.query(*pairs[0], shorten=True)
+            known.query(*pairs[0])
             known = roadmap.in_world(world)
 
             def ask(start, goal, known=known, connect=connect):  # type: ignore[no-untyped-def]
-                return known.query(start, goal, connect=connect, shorten=True, budget=MOST)
+                return known.query(start, goal, connect=connect, budget=MOST)
 
             print(line(name, ask, pairs), flush=True)
         print(

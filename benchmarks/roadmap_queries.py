@@ -34,7 +34,7 @@ def measure(level: int, n: int, k: int, queries: int, links: int | None = None) 
     seconds, checks, solved = [], [], 0
     for start, goal in pairs:
         before = time.perf_counter()
-        result = known.query(start, goal, links=links)
+        result = known.query(start, goal, links=links, shorten=False)
         seconds.append(time.perf_counter() - before)
         checks.append(result.counts["edges_checked"])
         solved += result.solved

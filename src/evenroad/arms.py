@@ -10,6 +10,7 @@ from typing import Unpack
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue
 from evenroad.points import PointSet, draw
@@ -49,25 +50,15 @@ SEARCH = "lazy"
 class ArmQuery:
     """An arm in its scene, with where it is to go from and to.
 
-    Attributes
-    ----------
-    world : ArmWorld
-        The robot, held where named states have the joints that are not planned for, within the scene's ranges.
-    start : ndarray, shape (dim,)
-        A configuration [rad or m].
-    goals : ndarray, shape (g, dim)
-        Configurations of which one is to be reached.
-    goal_names : tuple of str
-        What the caller called each of them: its text; of numbers, nothing.
-    source : RobotFile or None
-        Where the robot was read; None for a robot that was given as a value.
-    model : RobotModel or None
-        How the robot was made from its files; None as for `source`.
+    The world's robot is held where named states have the joints that are not planned for, within the scene's ranges.
+    Start, (dim,), and goals, (g, dim), are in rad or m.  `goal_names` are the texts by which the caller called them, or
+    nothing.  `source`, where the robot was read, and `model`, how it was made, are None for a robot that was given as a
+    value.
     """
 
     world: ArmWorld
-    start: npt.NDArray[np.float64]
-    goals: npt.NDArray[np.float64]
+    start: Floats
+    goals: Floats
     goal_names: tuple[str, ...]
     source: RobotFile | None = None
     model: RobotModel | None = None
@@ -95,10 +86,9 @@ def plan_arm(
 
     Parameters
     ----------
-    robot : str, path-like or Robot
-        A URDF file, the name of a shipped robot (``ur5``, ``arm7``), or a robot.
-    scene : str, path-like or Scene
-        A scene file, the name of a shipped one (``box-reach``, ...), or a scene.
+    robot, scene : path-like, Robot and Scene
+        A URDF or the name of a shipped robot (``ur5``, ``arm7``), a scene file or that of a shipped one
+        (``box-reach``, ...), or values.
     start : str or array_like, shape (dim,)
         Numbers in the order of the group [rad or m], or a text: the name of a state, ``0,-1.57,...`` or ``name=value``.
         A value that is outside of its joint's limits by no more than 1e-6 is brought to the limit.
@@ -118,10 +108,8 @@ def plan_arm(
         status is ``not_certified`` and the message says which.
     rng : int, SeedSequence or Generator
         For points that are drawn.
-    rule : Rule, optional
-        Which pairs of points to try; default: that of :func:`evenroad.roadmap.default_rule`.
-    shorten : bool
-        Also shortcut the path (the raw one is kept).
+    rule, shorten
+        As in :func:`evenroad.roadmap.plan`; a rule goes with points.
     resolution : float
         Largest step of a motion check, > 0 [rad].
     degrees : bool
@@ -146,25 +134,16 @@ def plan_arm(
     >>> er.plan_arm("ur5", "box-reach", "home", "inside").status
     <Status.SOLVED: 'solved'>
     """
-    query = arm_query(
-        robot,
-        scene,
-        start,
-        goal,
-        resolution=resolution,
-        degrees=degrees,
-        **options,
-    )
+    if points is None and rule is not None:
+        raise InvalidValue(f"rule says how points are joined, so it goes with points=N, got {rule!r}")
+    if points is not None and improve:
+        raise InvalidValue("improve goes without points: a roadmap of exactly so many has one best path")
+    query = arm_query(robot, scene, start, goal, resolution=resolution, degrees=degrees, **options)
     budget = Budget(seconds=seconds) if budget is None else budget
     if points is None:
-        if rule is not None:
-            raise InvalidValue(f"rule says how points are joined, so it goes with points=N, got {rule!r}")
-        result = find_path(
-            query.world, query.start, query.goals, budget=budget, shorten=shorten, improve=improve
-        )
+        places = query.world, query.start, query.goals
+        result = find_path(*places, budget=budget, shorten=shorten, improve=improve)
     else:
-        if improve:
-            raise InvalidValue("improve goes without points: a roadmap of exactly so many has one best path")
         if not isinstance(points, PointSet):
             points = draw("even", points, query.world.space.cube_dim, rng=rng)
         result = plan_on_points(query, points, rule=rule, shorten=shorten, budget=budget)
@@ -175,30 +154,39 @@ def plan_on_points(
     query: ArmQuery, points: PointSet, *, rule: Rule | None, shorten: bool, budget: Budget
 ) -> PlanResult:
     """Plan on a roadmap of these points; where they do not suffice, the message says what hems in start and goals."""
-    result = plan(
-        query.world,
-        query.start,
-        query.goals,
-        points,
-        rule=rule,
-        search=SEARCH,
-        shorten=shorten,
-        budget=budget,
-    )
+    places = query.world, query.start, query.goals
+    result = plan(*places, points, rule=rule, search=SEARCH, shorten=shorten, budget=budget)
     return with_reasons(query.world, result)
 
 
 def finished(
     query: ArmQuery, result: PlanResult, *, certified: bool = False
 ) -> tuple[PlanResult, MeshCheck | None]:
-    """Return a plan with the name of its goal, after its last checks, and what the meshes say (see `ask_meshes`)."""
+    """Return a plan with the name of its goal and the status that its path has after the last checks.
+
+    The meshes of the robot's URDF are asked where it has some or where capsules always touch; what they say is None
+    where there is no path, or nothing to ask.
+    """
     name = "" if result.goal_index is None else query.goal_names[result.goal_index]
     if name and len(query.goals) > 1:
         to = f"to goal {result.goal_index}"
         result = replace(result, message=result.message.replace(to, f"{to} ({name})", 1))
+    world, source, model = query.world, query.source, query.model
     if certified:
-        result = require_certified(query.world, result)
-    return ask_meshes(query, result)
+        result = require_certified(world, result)
+    if not result.solved or result.path is None or source is None or model is None:
+        return result, None
+    unseen = unseen_pairs(model)
+    if not (has_meshes(model) or unseen):
+        return result, None
+    meshes = recheck(source, world.robot, world.scene, result.path, world.resolution, unseen)
+    if meshes.verdict != "in collision":
+        return result, meshes
+    message = (
+        "the path is free for the robot's capsules, but not for the shapes that they stand for: in collision"
+        f" {meshes.message}"
+    )
+    return replace(result, status=Status.MESH_COLLISION, message=message), meshes
 
 
 def arm_query(
@@ -231,32 +219,6 @@ def arm_query(
     return ArmQuery(world, first, np.reshape(others, (-1, dim)), names, source, model)
 
 
-def ask_meshes(query: ArmQuery, result: PlanResult) -> tuple[PlanResult, MeshCheck | None]:
-    """Check a path with the meshes of the robot's URDF, where it has some or where capsules always touch.
-
-    Returns
-    -------
-    result : PlanResult
-        The plan, with the status that its path has when the meshes are asked, too.
-    meshes : MeshCheck or None
-        What they say; None where there is no path or there are no meshes.
-    """
-    if not result.solved or result.path is None or query.source is None or query.model is None:
-        return result, None
-    unseen = unseen_pairs(query.model)
-    if not (has_meshes(query.model) or unseen):
-        return result, None
-    world = query.world
-    meshes = recheck(query.source, world.robot, world.scene, result.path, world.resolution, unseen)
-    if meshes.verdict != "in collision":
-        return result, meshes
-    message = (
-        "the path is free for the robot's capsules, but not for the shapes that they stand for: in collision"
-        f" {meshes.message}"
-    )
-    return replace(result, status=Status.MESH_COLLISION, message=message), meshes
-
-
 def _places(goal: Place | Sequence[Place]) -> list[Place]:
     """Return one goal or several as a list."""
     if isinstance(goal, str):
@@ -267,9 +229,7 @@ def _places(goal: Place | Sequence[Place]) -> list[Place]:
     return list(goal) if several else [goal]  # type: ignore[arg-type, list-item]
 
 
-def _configuration(
-    robot: Robot, scene: Scene, name: str, place: Place, degrees: bool
-) -> npt.NDArray[np.float64]:
+def _configuration(robot: Robot, scene: Scene, name: str, place: Place, degrees: bool) -> Floats:
     """Return a configuration, (dim,), from a text or numbers; `name` says what it is in an error."""
     if isinstance(place, str):
         return configuration(robot, place, scene, degrees=degrees)

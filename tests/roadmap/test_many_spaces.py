@@ -46,7 +46,7 @@ def test_every_planner_works_in_every_space_and_lazy_equals_full(case, rule):
     tree = fmt(world, start, goal, points, rule=rule, shorten=False)
     assert full.solved or not tree.solved
     known = Roadmap.build(world.space, points, rule).in_world(world)
-    once, twice = (known.query(start, goal) for _ in range(2))
+    once, twice = (known.query(start, goal, shorten=False) for _ in range(2))
     assert once.status is twice.status
     if once.solved:
         assert once.path.tobytes() == twice.path.tobytes()

@@ -5,7 +5,6 @@ from hypothesis import strategies as st
 
 from evenroad.points import draw
 from evenroad.roadmap.neighbours import nearest, within
-from evenroad.roadmap.neighbours.kdtree import k_nearest, pairs_within
 from tests.roadmap.clouds import clouds, nearest_by_sorting
 from tests.roadmap.spaces import Great, Torus
 
@@ -13,14 +12,14 @@ from tests.roadmap.spaces import Great, Torus
 @settings(max_examples=200, deadline=None)
 @given(points=clouds(), k=st.integers(1, 12))
 def test_k_nearest_equals_sorting_with_ties_to_the_lower_index(points, k):
-    np.testing.assert_array_equal(k_nearest(points, k), nearest_by_sorting(points, k))
+    np.testing.assert_array_equal(nearest(points, k), nearest_by_sorting(points, k))
 
 
 @pytest.mark.parametrize("n", [1000, 5000])
 def test_k_nearest_equals_sorting_on_a_large_set_too(n):
     points = draw("uniform", n, 3, rng=1).points
     some = np.random.default_rng(0).integers(n, size=50)
-    found = k_nearest(points, 7)
+    found = nearest(points, 7)
     for i in some:
         squared = ((points - points[i]) ** 2).sum(axis=1)
         squared[i] = np.inf
@@ -36,7 +35,7 @@ def test_pairs_within_a_radius_are_those_that_a_double_loop_finds(points, radius
         for j in range(i + 1, len(points))
         if ((points[i] - points[j]) ** 2).sum() <= radius * radius
     }
-    found = [tuple(pair) for pair in pairs_within(points, radius).tolist()]
+    found = [tuple(pair) for pair in within(points, radius).tolist()]
     assert len(found) == len(set(found))
     # Sums of squares may round differently in another order: only pairs at the very radius may differ.
     for i, j in set(found) ^ expected:
@@ -110,6 +109,6 @@ def test_any_metric_is_searched_by_all_distances_with_the_same_rule_for_ties(poi
 def test_blocks_of_rows_give_what_one_block_gives(monkeypatch):
     points = np.floor(draw("uniform", 50, 2, rng=4).points * 6)
     whole = nearest(points, 6, Great()), within(points, 2.0, Great())
-    monkeypatch.setattr("evenroad.roadmap.neighbours.find.BLOCK", 120)
+    monkeypatch.setattr("evenroad.roadmap.neighbours.BLOCK", 120)
     np.testing.assert_array_equal(nearest(points, 6, Great()), whole[0])
     np.testing.assert_array_equal(within(points, 2.0, Great()), whole[1])

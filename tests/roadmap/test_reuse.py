@@ -1,3 +1,4 @@
+import inspect
 import pickle
 from concurrent.futures import ThreadPoolExecutor
 
@@ -6,11 +7,24 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from evenroad.arms import plan_arm
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points import PointSet, draw
 from evenroad.research.mazes import load_maze
-from evenroad.roadmap import Budget, Complete, KNearest, Radius, Roadmap, Status
-from evenroad.roadmap.neighbours.find import Surroundings, nearest_of
+from evenroad.roadmap import (
+    Budget,
+    Complete,
+    KNearest,
+    Radius,
+    Roadmap,
+    Status,
+    WorldRoadmap,
+    find_path,
+    fmt,
+    plan,
+    plan_anytime,
+)
+from evenroad.roadmap.neighbours import Surroundings, nearest_of
 from evenroad.space import Rectangle, Space
 from evenroad.world import GridMap
 from tests.roadmap.spaces import Great, Torus
@@ -66,7 +80,7 @@ def test_a_query_finds_the_shortest_path_of_the_roadmap_and_its_two_ends(reuse, 
     roadmap, world, queries = reuse
     known = roadmap.in_world(world, lazy_milestones=lazy_milestones)
     for start, goal in queries:
-        result = known.query(start, goal, links=links)
+        result = known.query(start, goal, links=links, shorten=False)
         expected = _cheapest(roadmap, world, start, goal, lazy_milestones, links)
         assert result.solved == np.isfinite(expected)
         if result.solved:
@@ -81,8 +95,9 @@ def test_an_answer_does_not_depend_on_what_was_asked_before(reuse, lazy_mileston
     roadmap, world, queries = reuse
     known = roadmap.in_world(world, lazy_milestones=lazy_milestones)
     for start, goal in queries:
-        late = known.query(start, goal)
-        fresh = roadmap.in_world(world, lazy_milestones=lazy_milestones).query(start, goal, search=search)
+        late = known.query(start, goal, shorten=False)
+        again = roadmap.in_world(world, lazy_milestones=lazy_milestones)
+        fresh = again.query(start, goal, search=search, shorten=False)
         assert late.status is fresh.status
         assert late.counts["edges_checked"] <= fresh.counts["edges_checked"]
         if late.solved:
@@ -96,9 +111,9 @@ def test_no_edge_of_the_roadmap_is_asked_about_twice():
     known = roadmap.in_world(world)
     assert world.asked_configurations == 64
     for _ in range(2):
-        known.query(CORNERS[0], CORNERS[3], search="full")
+        known.query(CORNERS[0], CORNERS[3], search="full", shorten=False)
     asked = world.asked_motions
-    again = known.query(CORNERS[0], CORNERS[3])
+    again = known.query(CORNERS[0], CORNERS[3], shorten=False)
     assert world.asked_motions - asked == again.counts["edges_checked"] <= 13
     assert again.counts["configurations_checked"] == 2
     states = known.known
@@ -120,6 +135,11 @@ def test_one_roadmap_serves_several_worlds():
     assert roadmap.in_world(ChanceWorld(1, 1.0, 1.0)).query(*CORNERS[::3]).solved
 
 
+def test_every_planner_shortens_its_paths_unless_told_not_to():
+    planners = plan, fmt, plan_anytime, find_path, plan_arm, WorldRoadmap.query
+    assert [inspect.signature(planner).parameters["shorten"].default for planner in planners] == [True] * 6
+
+
 def test_statuses_counts_and_names_of_a_query():
     world = GridMap(np.eye(20, dtype=bool)).world(0.5)
     known = Roadmap.build(world.space, draw("sobol", 64, 2), KNearest(8)).in_world(world)
@@ -128,7 +148,7 @@ def test_statuses_counts_and_names_of_a_query():
     apart = known.query((5, 15), (15, 5))
     assert apart.status is Status.NOT_CONNECTED
     assert 0 < apart.counts["start_component"] < apart.counts["valid"]
-    joined = known.query((5, 15), (5, 18), keep_graph=True, shorten=True)
+    joined = known.query((5, 15), (5, 18), keep_graph=True)
     assert joined.solved
     assert joined.rule == "k=8 symmetrised of all points"
     assert joined.planner == "prm lazy"
@@ -166,7 +186,8 @@ def test_an_edge_cost_is_kept_over_all_queries():
     known = roadmap.in_world(ChanceWorld(5, 1.0, 0.8), edge_cost=twice)
     plain = roadmap.in_world(ChanceWorld(5, 1.0, 0.8))
     for goal in CORNERS[1:]:
-        assert known.query(CORNERS[0], goal).cost == pytest.approx(2.0 * plain.query(CORNERS[0], goal).cost)
+        costs = [each.query(CORNERS[0], goal).milestone_cost for each in (known, plain)]
+        assert costs[0] == pytest.approx(2.0 * costs[1])
 
 
 @settings(max_examples=60, deadline=None)
@@ -196,7 +217,7 @@ def test_queries_between_many_places_of_a_maze_soon_need_few_checks():
     known = Roadmap.build(world.space, draw("sobol", 1024, 2), KNearest(10)).in_world(world)
     places = world.space.from_cube(draw("uniform", 400, 2, rng=1).points)
     places = places[world.valid(places)][:200].reshape(-1, 2, 2)
-    checks = [known.query(*pair).counts["edges_checked"] for pair in places]
+    checks = [known.query(*pair, shorten=False).counts["edges_checked"] for pair in places]
     assert np.median(checks[-50:]) < np.median(checks[:10])
 
 
@@ -219,10 +240,12 @@ def test_threads_that_share_a_roadmap_get_the_answers_that_each_would_get_alone(
     known = Roadmap.build(world.space, draw("sobol", 256, 2, rng=1), KNearest(10)).in_world(world)
     places = world.space.from_cube(draw("uniform", 400, 2, rng=5).points)
     queries = places[world.valid(places)][:120].reshape(-1, 2, 2)
-    alone = [known.query(start, goal) for start, goal in queries]
+    alone = [known.query(start, goal, shorten=False) for start, goal in queries]
     shared = known.roadmap.in_world(world)
     with ThreadPoolExecutor(8) as pool:
-        together = list(pool.map(lambda query: shared.query(*query), [*queries, *queries, *queries]))
+        together = list(
+            pool.map(lambda query: shared.query(*query, shorten=False), [*queries, *queries, *queries])
+        )
     for mine, expected in zip(together, 3 * alone, strict=True):
         assert (mine.status, mine.cost) == (expected.status, expected.cost)
         assert mine.path is expected.path or mine.path.tobytes() == expected.path.tobytes()
@@ -261,7 +284,7 @@ def test_a_roadmap_measures_its_edges_once_and_only_when_asked():
     known = [roadmap.in_world(world) for world in worlds]
     assert Ruled.measured == 0
     for one in known:
-        one.query(*CORNERS[::3])
+        one.query(*CORNERS[::3], shorten=False)
     # The edges once, and what each query measures of all milestones.
     assert len(roadmap.edges) <= Ruled.measured < 2 * len(roadmap.edges) + 3 * 3 * 300
     assert np.array_equal(roadmap.lengths, space.distance(*roadmap.configurations[roadmap.edges.T]))

@@ -85,7 +85,7 @@ def test_the_two_ends_are_neighbours_of_one_another_under_earlier():
 
 def test_the_prm_star_rules_are_the_formulas_of_karaman_and_frazzoli():
     points = draw("sobol", 200, 3).points
-    assert KStar().k(200, 3) == math.ceil(math.e * (1 + 1 / 3) * math.log(200)) == 20
+    assert KStar().at(200, 3).k == math.ceil(math.e * (1 + 1 / 3) * math.log(200)) == 20
     assert _as_set(KStar().edges(points)) == _as_set(KNearest(20).edges(points))
     radius = 1.2 * (math.log(200) / 200) ** (1 / 3)
     assert _as_set(RadiusStar(1.2).edges(points)) == _as_set(Radius(radius).edges(points))

@@ -12,7 +12,9 @@ from evenroad.robot.certified import CertifiedWorld
 from evenroad.robot.joint import Joint
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle, Scene
+from evenroad.space.path import path_length
 from evenroad.testing import WorldContract
+from evenroad.world import Shortens
 from tests.robot.kernel_arms import STRAIGHT, Z, box_scene, random_scene, random_tree, seven_joint_arm, ur5
 
 WORLDS = {
@@ -51,6 +53,27 @@ def test_what_the_states_say_is_blocked_is_not_certified(world):
     a, b = free_motions(world, 300, seed=2)
     certified = CertifiedWorld(world).motion_valid(a, b)
     assert not (certified & ~world.motion_valid(a, b)).any()
+
+
+def test_paths_are_shortened_by_compiled_code_and_stay_proved():
+    world = CertifiedWorld(WORLDS["ur5"])
+    assert isinstance(world, Shortens)
+    a, b = free_motions(world.world, 200, seed=4)
+    hop = np.flatnonzero(world.motion_valid(a[:-1], b[:-1]) & world.motion_valid(b[:-1], a[1:]))
+    paths = [np.stack([a[i], b[i], a[i + 1]]) for i in hop]
+    lengths = [[path_length(path, world.space) for path in (each, world.shorten(each)[0])] for each in paths]
+    assert all(world.recheck(world.shorten(each)[0]).all() for each in paths)
+    before, after = np.transpose(lengths)
+    assert (after <= before * (1 + 1e-12)).all()
+    assert after.sum() < 0.95 * before.sum()
+
+
+def test_with_a_tolerance_that_shorter_motions_do_not_keep_a_path_stays_as_it_was():
+    world = CertifiedWorld(WORLDS["ur5"], 0.5)
+    a, b = free_motions(world.world, 20, seed=4)
+    for path in np.stack([a, b, a[::-1]], axis=1):
+        shorter, _ = world.shorten(path)
+        assert np.array_equal(shorter, path) or world.recheck(shorter).all()
 
 
 @pytest.mark.parametrize("world", WORLDS.values(), ids=WORLDS)

@@ -88,11 +88,9 @@ def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
             taken.append(rest.pop(0))
         if not taken:
             raise InvalidValue(f"{name} needs a value")
-        given = tuple(map(option.value, taken))
-        earlier = values.get(option.field.name, ()) if option.repeats else ()
-        values[option.field.name] = (
-            (*earlier, given) if option.repeats else given if option.several else given[0]
-        )
+        given = tuple(map(option.value, taken)) if option.several else option.value(taken[0])
+        earlier = values.get(option.field.name, ())
+        values[option.field.name] = (*earlier, given) if option.repeats else given
     missing = [each.title for each in options if each.required and each.field.name not in values]
     if missing:
         raise InvalidValue(f"evenroad {verb} needs {', '.join(missing)}; all options: evenroad {verb} --help")

@@ -5,15 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad.roadmap.attempt import Attempt, Searched
 from evenroad.roadmap.proof import proof_of
 from evenroad.roadmap.result import PlanResult, SearchedGraph, Status
-from evenroad.roadmap.search import BLOCKED, FREE, EdgeStates, components, length_along
+from evenroad.roadmap.search import BLOCKED, FREE, EdgeStates, components
 from evenroad.roadmap.shortcut import shortcut
-from evenroad.space.path import motion_lengths
-from evenroad.world import Connection, Explains, Rechecks, Separates
+from evenroad.space.path import path_length
+from evenroad.world import Connection, Explains, Rechecks, Separates, Shortens
 
 PROVED = "proved: there is no path; start and goal lie in two components of the free space"
 
@@ -38,50 +38,47 @@ def answer(
     *,
     best: Searched | None = None,
     keep_graph: bool = True,
-    reached: int | None = None,
 ) -> PlanResult:
-    """Return the result of a search over so many points.
+    """Return the result of a search over so many points, with its graph unless that is not to be kept.
 
-    Parameters
-    ----------
-    attempt : Attempt
-        Which searched.
-    searched : Searched
-        The search whose graph is counted and kept.
-    points : int
-        How many were given or drawn.
-    best : Searched, optional
-        The search whose path is the answer; default: `searched`.
-    keep_graph : bool
-        Whether the result has a `roadmap`.
-    reached : int, optional
-        Nodes in the tree, if the planner grew one.
+    Where another search had the `best` path, that is the answer.
     """
     states = searched.states
-    counts = _counts(attempt, states, points)
-    graph = searched_graph(states, 1 + len(attempt.goals)) if keep_graph else None
+    counts = dict(
+        points=points,
+        valid=int(np.count_nonzero(states.node_states[: -1 - len(attempt.goals)] == FREE)),
+        configurations_checked=attempt.checked + states.configurations_checked,
+        edges_considered=len(states.edges),
+        edges_checked=states.motions_checked,
+        edges_free=int(np.count_nonzero(states.edge_states == FREE)),
+    )
+    graph = _searched_graph(states, 1 + len(attempt.goals)) if keep_graph else None
     best = searched if best is None else best
-    if best.solved:
-        return _solved(attempt, best, counts, graph)
-    message = _not_connected(attempt, states, counts, reached)
+    if best.cost is not None:
+        nodes, q = best.found.nodes, best.states.configurations
+        goal = attempt.goals[nodes[-1] - len(q)]
+        # A disk's paths along a roadmap keep the bits that published rows have.
+        by_world = attempt.query.edge_cost is None and isinstance(attempt.world, Rechecks)
+        result = _with_path(attempt, q[nodes], best.cost, int(goal), counts, by_world=by_world)
+        return replace(result, roadmap=graph)
+    so_far, missing = _reach(attempt, searched, counts)
+    made = f"(n={points}, {attempt.rule})"
     if attempt.spent:
         limits = attempt.query.budget.text(samples=attempt.grows)
-        status, message = Status.BUDGET_SPENT, f"no path within {limits}; {message.partition(':')[0]}"
+        failed = _result(attempt, Status.BUDGET_SPENT, f"no path within {limits}; {so_far} {made}")
     else:
-        status = Status.NOT_CONNECTED
-    return replace(_result(attempt, status, message), counts=counts, roadmap=graph)
+        # Under ``complete`` nothing but more points helps.
+        wider = "radius" if "radius" in attempt.rule else "k" if attempt.rule.startswith("k") else ""
+        advice = f"try n={2 * points}" + (f" or a larger {wider}" if wider else "")
+        failed = _result(attempt, Status.NOT_CONNECTED, f"{so_far}, {missing} {made}: {advice}")
+    return replace(failed, counts=counts, roadmap=graph)
 
 
 def connected(attempt: Attempt, connection: Connection) -> PlanResult:
     """Return the result of a world that found a path by itself."""
-    return _with_path(
-        attempt,
-        connection.path,
-        float(np.sum(motion_lengths(connection.path, attempt.world.space))),
-        int(attempt.goals[connection.goal]),
-        _counts_of(attempt, connection),
-        by_world=True,
-    )
+    path, goal = connection.path, int(attempt.goals[connection.goal])
+    length = path_length(path, attempt.world.space)
+    return _with_path(attempt, path, length, goal, _counts_of(attempt, connection), by_world=True)
 
 
 def gave_up(attempt: Attempt, connection: Connection) -> PlanResult:
@@ -93,17 +90,14 @@ def gave_up(attempt: Attempt, connection: Connection) -> PlanResult:
     return replace(_result(attempt, Status.BUDGET_SPENT, message), counts=_counts_of(attempt, connection))
 
 
-def proved_apart(attempt: Attempt) -> PlanResult:
-    """Return the result of a world in which no path can join the start to a goal."""
-    return _result(attempt, Status.NOT_CONNECTED, PROVED)
-
-
-def are_apart(attempt: Attempt) -> bool:
-    """Return whether the world can prove that no path leads from the start to any goal."""
+def proved_apart(attempt: Attempt) -> PlanResult | None:
+    """Return the result where the world can prove that no path leads from the start to any goal; else None."""
     world, query = attempt.world, attempt.query
-    return isinstance(world, Separates) and not any(
+    if not isinstance(world, Separates) or any(
         world.may_connect(query.start, goal) for goal in query.goals[attempt.goals]
-    )
+    ):
+        return None
+    return _result(attempt, Status.NOT_CONNECTED, PROVED)
 
 
 def _counts_of(attempt: Attempt, connection: Connection) -> dict[str, int]:
@@ -114,47 +108,16 @@ def _counts_of(attempt: Attempt, connection: Connection) -> dict[str, int]:
     )
 
 
-def _counts(attempt: Attempt, states: EdgeStates, points: int) -> dict[str, int]:
-    return dict(
-        points=points,
-        valid=int(np.count_nonzero(states.node_states[: -1 - len(attempt.goals)] == FREE)),
-        configurations_checked=attempt.checked + states.configurations_checked,
-        edges_considered=len(states.edges),
-        edges_checked=states.motions_checked,
-        edges_free=int(np.count_nonzero(states.edge_states == FREE)),
-    )
-
-
-def _solved(
-    attempt: Attempt, searched: Searched, counts: dict[str, int], graph: SearchedGraph | None
-) -> PlanResult:
-    nodes, along = searched.found
-    states, goals = searched.states, attempt.goals
-    goal = int(goals[int(nodes[-1]) - (len(states.configurations) - len(goals))])
-    raw = states.configurations[nodes]
-    # A disk's paths along a roadmap keep the bits that published rows have.
-    by_world = attempt.query.edge_cost is None and isinstance(attempt.world, Rechecks)
-    cost = length_along(searched.costs, along)
-    return _with_path(attempt, raw, cost, goal, counts, by_world=by_world, graph=graph)
-
-
 def _with_path(
-    attempt: Attempt,
-    raw: npt.NDArray[np.float64],
-    raw_cost: float,
-    goal: int,
-    counts: dict[str, int],
-    *,
-    by_world: bool,
-    graph: SearchedGraph | None = None,
+    attempt: Attempt, raw: Floats, raw_cost: float, goal: int, counts: dict[str, int], *, by_world: bool
 ) -> PlanResult:
     """Return the result with a path, shortened if wanted: by the world itself where it can and may."""
     world, query = attempt.world, attempt.query
     path, length, cost = raw, raw_cost, query.edge_cost
     if query.shorten:
         with attempt.watch("shortcut"):
-            if by_world and attempt.own_planner is not None:
-                path, counts["shortcut_motions"] = attempt.own_planner.shorten(raw)
+            if by_world and isinstance(world, Shortens):
+                path, counts["shortcut_motions"] = world.shorten(raw)
             else:
                 path, counts["shortcut_motions"] = shortcut(raw, world, cost, attempt.deadline)
             measure = world.space.distance if cost is None else cost
@@ -170,23 +133,20 @@ def _with_path(
         cost=length,
         milestone_cost=raw_cost,
         counts=counts,
-        roadmap=graph,
     )
 
 
-def _not_connected(attempt: Attempt, states: EdgeStates, counts: dict[str, int], reached: int | None) -> str:
-    """Return in words how far start and goals reach, and count it."""
-    n, rule = counts["points"], attempt.rule
-    if reached is not None:
-        counts["start_component"] = reached - 1
-        return (
-            f"the tree reached {reached - 1} of {counts['valid']} valid milestones, but not the goal"
-            f" (n={n}, {rule}): try n={2 * n} or a larger k"
-        )
+def _reach(attempt: Attempt, searched: Searched, counts: dict[str, int]) -> tuple[str, str]:
+    """Return in words how far start and goals reach, and count it; and what is missing."""
+    states = searched.states
+    if searched.found.reached is not None:
+        counts["start_component"] = reached = searched.found.reached - 1
+        return f"the tree reached {reached} of {counts['valid']} valid milestones", "but not the goal"
     start = len(states.node_states) - 1 - len(attempt.goals)
     goals = np.arange(start + 1, len(states.node_states), dtype=np.int32)
+    is_open = (states.node_states[states.edges] != BLOCKED).all(axis=1) & (states.edge_states != BLOCKED)
     # The goals are one virtual node.
-    edges = np.concatenate([states.open_edges(), np.stack([goals, np.roll(goals, 1)], axis=1)])
+    edges = np.concatenate([states.edges[is_open], np.stack([goals, np.roll(goals, 1)], axis=1)])
     label = components(len(states.node_states), edges)
     open_nodes = states.node_states[:start] != BLOCKED
     for end, name in ((start, "start_component"), (start + 1, "goal_component")):
@@ -194,10 +154,8 @@ def _not_connected(attempt: Attempt, states: EdgeStates, counts: dict[str, int],
     among = f"{counts['valid']} valid milestones"
     if (open_nodes & (states.node_states[:start] != FREE)).any():
         among = f"{int(np.count_nonzero(open_nodes))} milestones not known to be invalid"
-    return (
-        f"start reaches {counts['start_component']} and goal {counts['goal_component']} of {among},"
-        f" and the two components do not meet (n={n}, {rule}): try n={2 * n}{_hint(rule)}"
-    )
+    so_far = f"start reaches {counts['start_component']} and goal {counts['goal_component']} of {among}"
+    return so_far, "and the two components do not meet"
 
 
 def _result(attempt: Attempt, status: Status, message: str) -> PlanResult:
@@ -214,16 +172,9 @@ def _result(attempt: Attempt, status: Status, message: str) -> PlanResult:
     )
 
 
-def searched_graph(states: EdgeStates, ends: int) -> SearchedGraph:
+def _searched_graph(states: EdgeStates, ends: int) -> SearchedGraph:
     """Return what is not known to be invalid, with start and goals as the last `ends`, and the free edges."""
     kept = states.node_states != BLOCKED
     number = np.cumsum(kept, dtype=np.int32) - 1
     edges = states.edges[states.edge_states == FREE]
     return SearchedGraph(states.configurations[kept], number[edges].astype(np.int32), int(kept.sum()) - ends)
-
-
-def _hint(rule: str) -> str:
-    """Return what else may help under this rule; under ``complete`` nothing does."""
-    if "radius" in rule:
-        return " or a larger radius"
-    return " or a larger k" if rule.startswith("k") else ""

@@ -46,8 +46,8 @@ def plan_anytime(
 ) -> PlanResult:
     """Plan with `first` points, then with twice as many, and so on, lazily, until the answer is good enough.
 
-    Each stage finds what ``plan(..., search="lazy")`` finds with its points, but milestones and motions that an earlier
-    stage has checked are not checked again.  The best path of all stages is the answer.
+    Each stage finds what ``plan(..., search="lazy")`` finds with its points, but nothing that an earlier stage has
+    checked is checked again.  The best path of all stages is the answer.
 
     Parameters
     ----------
@@ -73,42 +73,33 @@ def plan_anytime(
 
     Raises
     ------
-    InvalidValue
+    InvalidValue, UnknownName
         As in :func:`plan`, and if the sampler's sets do not begin with the smaller ones.
-    UnknownName
-        If there is no such `until`.
     """
     if until not in UNTIL:
         raise UnknownName.among("until", until, UNTIL)
     first = require_count("first", first)
     rule = default_rule(world.space) if rule is None else rule
-    budget = Budget() if budget is None else budget
-    query = Query(
-        *read_places(start, goal, world.space),
-        shorten=shorten,
-        edge_cost=edge_cost,
-        links=links,
-        budget=budget,
-    )
+    budget = budget or Budget()
+    places = read_places(start, goal, world.space)
+    query = Query(*places, shorten=shorten, edge_cost=edge_cost, links=links, budget=budget)
     # By name: the module of the sequences imports scipy.stats, half a second that only this default needs.
     sampler = make_sampler("sobol") if sampler is None else sampler
     points = _draw(sampler, min(first, budget.samples), world, rng, None)
     attempt = Attempt(world, query, points.origin, str(rule), "prm anytime", grows=True)
     if (refused := refusal(attempt)) is not None:
         return refused
-    growth = Growth(attempt, rule)
+    growth = _Growth(attempt, rule)
     while growth.take(points) and not growth.is_done(until) and points.n < budget.samples:
         points = _draw(sampler, min(2 * points.n, budget.samples), world, rng, points)
     return growth.result(points.n)
 
 
-class Growth:
+class _Growth:
     """A roadmap that grows point by point: the milestones so far, what is known of them, and the best path."""
 
     def __init__(self, attempt: Attempt, rule: Rule) -> None:
-        self.attempt, self.rule = attempt, rule
-        self.pairs = KnownPairs()
-        self.drawn = 0
+        self.attempt, self.rule, self.pairs, self.drawn = attempt, rule, KnownPairs(), 0
         self.names = np.empty(0, dtype=np.int64)
         self.milestones = np.empty((0, attempt.world.space.dim))
         self.stages: list[Stage] = []
@@ -117,25 +108,27 @@ class Growth:
 
     def take(self, points: PointSet) -> bool:
         """Search with these points, of which the first are known; return whether the budget was enough."""
-        attempt = self.attempt
-        self._add_valid(points)
-        states = attempt.candidates(self.rule, self.milestones)
+        attempt, ends = self.attempt, len(self.attempt.start_and_goals)
+        samples = attempt.world.space.from_cube(points.points[self.drawn :])
+        valid = attempt.valid(samples)
         # Names of nodes: start and goals are the first, point i comes so many later.
-        names = np.concatenate([self.names, np.arange(len(attempt.start_and_goals))])
+        self.names = np.concatenate([self.names, ends + self.drawn + np.flatnonzero(valid)])
+        self.milestones = np.concatenate([self.milestones, samples[valid]])
+        self.drawn = points.n
+        states = attempt.candidates(self.rule, self.milestones)
         states.node_states[:] = FREE
         with attempt.watch("search"):
-            states.edge_states[:] = self.pairs.recall(names[states.edges])
+            named = np.concatenate([self.names, np.arange(ends)])[states.edges]
+            states.edge_states[:] = self.pairs.recall(named)
         self.last = attempt.search(find_lazily, states)
         with attempt.watch("search"):
-            self.pairs.learn(names[states.edges], states.edge_states)
+            self.pairs.learn(named, states.edge_states)
         attempt.motions_checked += states.motions_checked
-        cost = float(np.sum(self.last.costs[self.last.found[1]])) if self.last.solved else None
-        if cost is not None and (self.best is None or cost < min(self._costs())):
+        cost, checked = self.last.cost, attempt.motions_checked
+        if cost is not None and cost < min(self._costs(), default=np.inf):
             self.best = self.last
-        self.stages.append(
-            Stage(points.n, len(self.milestones), attempt.motions_checked, cost, attempt.elapsed())
-        )
-        return not self.last.spent and time.perf_counter() < attempt.deadline
+        self.stages.append(Stage(points.n, len(self.milestones), checked, cost, attempt.elapsed()))
+        return not attempt.spent and time.perf_counter() < attempt.deadline
 
     def is_done(self, until: str) -> bool:
         """Return whether the last stage ends the work."""
@@ -143,7 +136,7 @@ class Growth:
             return False
         if until == "solved":
             return True
-        before = self._costs()[:-1] if self.last.solved else self._costs()
+        before = self._costs()[:-1] if self.last.cost is not None else self._costs()
         return bool(before) and min(self._costs()) >= (1.0 - SETTLED) * min(before)
 
     def result(self, points: int) -> PlanResult:
@@ -156,43 +149,25 @@ class Growth:
     def _costs(self) -> list[float]:
         return [stage.cost for stage in self.stages if stage.cost is not None]
 
-    def _add_valid(self, points: PointSet) -> None:
-        samples = self.attempt.world.space.from_cube(points.points[self.drawn :])
-        valid = self.attempt.valid(samples)
-        first = len(self.attempt.start_and_goals)
-        self.names = np.concatenate([self.names, first + self.drawn + np.flatnonzero(valid)])
-        self.milestones = np.concatenate([self.milestones, samples[valid]])
-        self.drawn = points.n
-
 
 class KnownPairs:
-    """Verdicts on pairs of names, which stay while the numbers of nodes change; memory O(pairs)."""
+    """Verdicts on pairs of names below 2^31, which stay while the numbers of nodes change; memory O(pairs)."""
 
     def __init__(self) -> None:
-        self._keys = np.empty(0, dtype=np.int64)
-        self._states = np.empty(0, dtype=np.int8)
+        self._states: dict[int, int] = {}
 
     def recall(self, pairs: npt.NDArray[np.int64]) -> npt.NDArray[np.int8]:
-        """Return what is known of each pair of names below 2^31, (m, 2) -> (m,)."""
-        keys = _keys(pairs)
-        states = np.full(len(keys), UNKNOWN)
-        if len(self._keys):
-            place = np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)
-            known = self._keys[place] == keys
-            states[known] = self._states[place[known]]
-        return states
+        """Return what is known of each pair, (m, 2) -> (m,)."""
+        return np.array([self._states.get(key, UNKNOWN) for key in _keys(pairs)], dtype=np.int8)
 
     def learn(self, pairs: npt.NDArray[np.int64], states: npt.NDArray[np.int8]) -> None:
         """Take note of verdicts, the later one of two; those that are `UNKNOWN` are passed over."""
         new = states != UNKNOWN
-        keys = np.concatenate([_keys(pairs[new]), self._keys])
-        states = np.concatenate([states[new], self._states])
-        self._keys, first = np.unique(keys, return_index=True)
-        self._states = states[first]
+        self._states.update(zip(_keys(pairs[new]), states[new].tolist(), strict=True))
 
 
-def _keys(pairs: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
-    return pairs.min(axis=1) << 32 | pairs.max(axis=1)
+def _keys(pairs: npt.NDArray[np.int64]) -> list[int]:
+    return (pairs.min(axis=1) << 32 | pairs.max(axis=1)).tolist()
 
 
 def _draw(sampler: Sampler, n: int, world: World, rng: RngLike, before: PointSet | None) -> PointSet:

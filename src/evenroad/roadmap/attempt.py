@@ -3,31 +3,31 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Bools, Floats, Ints32
 from evenroad.points.pointset import Origin
-from evenroad.roadmap.budget import Budget
+from evenroad.roadmap.budget import Budget, BudgetSpent, Stopwatch
 from evenroad.roadmap.cost import BOUND, edge_costs
-from evenroad.roadmap.neighbours.find import Surroundings, nearest_of
+from evenroad.roadmap.neighbours import Surroundings, nearest_of
 from evenroad.roadmap.proof import confirm
 from evenroad.roadmap.query import Query
 from evenroad.roadmap.rules import Rule
 from evenroad.roadmap.rules.near import ascending
 from evenroad.roadmap.search import (
-    BudgetSpent,
+    FREE,
+    NOT_FOUND,
     EdgeStates,
+    Ends,
+    Finder,
     Found,
+    Known,
     SearchProblem,
+    length_along,
     search_problem,
 )
-from evenroad.roadmap.search.edge_states import Known, in_time
-from evenroad.roadmap.search.finders import NOT_FOUND
-from evenroad.roadmap.stopwatch import Stopwatch
 from evenroad.world import Connection, ConnectsAnew, ConnectsItself, World
 
 _LONG = 1e8
@@ -36,51 +36,21 @@ _LONG = 1e8
 
 @dataclass(frozen=True, eq=False)
 class Searched:
-    """A graph after a search of it.
-
-    Attributes
-    ----------
-    states : EdgeStates
-        What is known of it; its last nodes are the start and the goals.
-    costs : ndarray, shape (m,)
-        Of the edges.
-    found : Found
-        The path, if there is one.
-    spent : bool
-        Whether the budget was spent before the search had an answer.
-    """
+    """What is known of a graph after a search of it, and the path with its cost, if there is one."""
 
     states: EdgeStates
-    costs: npt.NDArray[np.float64]
-    found: Found
-    spent: bool = False
-
-    @property
-    def solved(self) -> bool:
-        """Whether there is a path."""
-        return self.found[0].size > 0
+    found: Found = NOT_FOUND
+    cost: float | None = None
 
 
 @dataclass(eq=False)
 class Attempt:
     """One query on its way to a result; of one thread.
 
-    Attributes
-    ----------
-    world, query
-        Who is asked, and what.
-    origin, rule, planner
-        As in :class:`PlanResult`.
-    goals : ndarray of int64, shape (g,)
-        Rows of the query's goals that are free, once `valid_ends` was asked; the others are left out.
-    grows : bool
-        Whether the planner draws its points itself, until the budget is spent.
-    checked : int
-        Configurations checked outside of a graph.
-    motions_checked : int
-        Motions checked in earlier graphs, which count for the budget.
-    spent : bool
-        Whether the budget was spent too early.
+    `origin`, `rule` and `planner` are those of :class:`PlanResult`.  `grows` says whether the planner draws its points
+    itself, until the budget is spent.  `checked` configurations were checked outside of a graph, and `motions_checked`
+    motions in earlier graphs: they count for the budget.  `spent` says whether that was over too early.  `goals` are
+    the rows of the query's goals that are free, (g,), once `valid_ends` was asked; the others are left out.
     """
 
     world: World
@@ -99,17 +69,12 @@ class Attempt:
         self.deadline = self.query.budget.deadline()
         self.goals = np.arange(len(self.query.goals))
 
-    @cached_property
-    def own_planner(self) -> ConnectsItself | None:
-        """The world, if it connects itself; asked once, for the question takes as long as some checks."""
-        return self.world if isinstance(self.world, ConnectsItself) else None
-
     @property
-    def start_and_goals(self) -> npt.NDArray[np.float64]:
+    def start_and_goals(self) -> Floats:
         """The start, then the goals that are free, (1 + g, dim)."""
         return self.query.start_and_goals[np.append(0, 1 + self.goals)]
 
-    def valid_ends(self) -> npt.NDArray[np.bool_]:
+    def valid_ends(self) -> Bools:
         """Return which of the start and all goals are free, (1 + g,); the others are no goals from now on."""
         places = self.query.start_and_goals
         with self.watch("validity"):
@@ -118,19 +83,17 @@ class Attempt:
         self.goals = np.flatnonzero(free[1:])
         return free
 
-    def valid(self, samples: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def valid(self, samples: Floats) -> Bools:
         """Return which of the samples, (n, dim), are known to be free, as far as the time allows: (n,)."""
-        free = np.zeros(len(samples), dtype=np.bool_)
-        with self.watch("validity"):
-            try:
-                for rows in in_time(np.arange(len(samples)), self.deadline):
-                    free[rows] = self.world.valid(samples[rows])
-                    self.checked += len(rows)
-            except BudgetSpent:
-                self.spent = True
-        return free
+        states = self.states(samples, np.empty((0, 2), dtype=np.int32))
+        try:
+            states.ask_nodes(np.arange(len(samples)))
+        except BudgetSpent:
+            self.spent = True
+        self.checked += states.configurations_checked
+        return states.node_states == FREE
 
-    def candidates(self, rule: Rule, milestones: npt.NDArray[np.float64]) -> EdgeStates:
+    def candidates(self, rule: Rule, milestones: Floats) -> EdgeStates:
         """Return the graph of milestones, start and goals: the edges of the rule, and the links that the query adds."""
         space, ends = self.world.space, self.start_and_goals
         configurations = np.concatenate([milestones, ends])
@@ -144,39 +107,31 @@ class Attempt:
                 edges = ascending(np.concatenate([edges, *links]), len(configurations))
         return self.states(configurations, edges)
 
-    def states(
-        self,
-        configurations: npt.NDArray[np.float64],
-        edges: npt.NDArray[np.int32],
-        known: Known | None = None,
-    ) -> EdgeStates:
+    def states(self, configurations: Floats, edges: Ints32, known: Known | None = None) -> EdgeStates:
         """Return what is known of a graph (default: nothing), with what is left of the budget for asking more."""
         most = self.query.budget.motions
         most = None if most is None else most - self.motions_checked
         return EdgeStates(self.world, configurations, edges, self.watch, most, self.deadline, known)
 
-    def search(
-        self,
-        find: Callable[[SearchProblem, EdgeStates], Found],
-        states: EdgeStates,
-        costs: npt.NDArray[np.float64] | None = None,
-        problem: SearchProblem | None = None,
-    ) -> Searched:
+    def search(self, find: Finder, states: EdgeStates, problem: SearchProblem | None = None) -> Searched:
         """Find a path that the world confirms, over all edges of `states`, or as `problem` says."""
-        query = self.query
+        space, q, edges = self.world.space, states.configurations, states.edges
+        cost, goals = self.query.edge_cost, len(self.goals)
         with self.watch("search"):
-            if costs is None:
-                costs = edge_costs(self.world.space, states.configurations, states.edges, query.edge_cost)
-            if problem is None:
-                bound = 1.0 if query.edge_cost is None else BOUND
-                problem = search_problem(states, costs, len(self.goals), bound=bound)
+            if problem is not None or self.query.success_only:
+                what = problem or Ends.last(len(q), goals)
+            else:
+                costs, bound = edge_costs(space, q, edges, cost), 1.0 if cost is None else BOUND
+                what = search_problem(states, costs, goals, bound=bound)
             try:
-                while not confirm(states, found := find(problem, states)):
+                while not confirm(states, found := find(what, states)):
                     pass
             except BudgetSpent:
                 self.spent = True
-                return Searched(states, costs, NOT_FOUND, spent=True)
-        return Searched(states, costs, found)
+                return Searched(states)
+            if not len(found.nodes):
+                return Searched(states, found)
+            return Searched(states, found, length_along(edge_costs(space, q, edges[found.edges], cost)))
 
     def connect(self, world: ConnectsItself, variant: int = 0, most: int = 2**31 - 1) -> Connection:
         """Let the world join the start to one of the free goals, within what is left of the budget.
@@ -202,12 +157,12 @@ class Attempt:
 
     def left(self) -> Budget | None:
         """Return what is left of the budget, or None when nothing is."""
-        budget = self.query.budget
+        budget, motions = self.query.budget, self.query.budget.motions
         seconds = self.deadline - time.perf_counter()
-        if seconds <= 0.0 or (budget.motions is not None and budget.motions <= self.motions_checked):
+        if seconds <= 0.0 or (motions is not None and motions <= self.motions_checked):
             return None
         return replace(
             budget,
             seconds=None if budget.seconds is None else seconds,
-            motions=None if budget.motions is None else budget.motions - self.motions_checked,
+            motions=None if motions is None else motions - self.motions_checked,
         )

@@ -21,8 +21,7 @@ BOUND = 1.0 - 1e-9
 def edge_costs(space: Space, q: Floats, edges: Ints32, cost: EdgeCost | None = None) -> Floats:
     """Return what the edges between rows of `q` cost, (m,): by default their lengths.
 
-    Raises InvalidValue if `cost` returns another shape, or a cost that is not finite or below the length: the metric
-    could then not serve as a bound, and the path found would not be the cheapest.
+    InvalidValue for a `cost` of another shape, not finite or below the length: the metric then is no bound.
     """
     a, b = q[edges[:, 0]], q[edges[:, 1]]
     lengths = space.distance(a, b)

@@ -1,24 +1,37 @@
-"""A path without a number of points: by the world's own planner where it has one, else with points that grow."""
+"""A path without a number of points: by the world's own planner where it has one, else with points that grow.
+
+More time buys better paths: `improve` plans again in other ways, and keeps the best.
+"""
 
 from __future__ import annotations
 
+import time
+from dataclasses import replace
+from itertools import count
+
+import numpy as np
 import numpy.typing as npt
 
 from evenroad.points.pointset import Origin
-from evenroad.roadmap.answer import are_apart, connected, gave_up, proved_apart, refusal
+from evenroad.roadmap.answer import connected, gave_up, proved_apart, refusal
 from evenroad.roadmap.anytime import plan_anytime
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.hemmed import with_reasons
-from evenroad.roadmap.improve import improved
 from evenroad.roadmap.query import Query, read_places
-from evenroad.roadmap.result import PlanResult
-from evenroad.world import World
+from evenroad.roadmap.result import PlanResult, Stage
+from evenroad.world import ConnectsAnew, ConnectsItself, World
 
 SECONDS = 5.0
 """Wall time of a budget that is not given."""
 
 NO_POINTS = Origin(family="none", method="no points")
+
+NO_BETTER = 1e-9
+"""A path is not improved on that exceeds the shortest possible by no more than this share."""
+
+LEAST_MOTIONS, LONGER = 1000, 4
+"""A round gives up after so many motions, or after so many times those of the first path, whichever is more."""
 
 
 def find_path(
@@ -42,7 +55,8 @@ def find_path(
     budget : Budget, optional
         Default: five seconds.
     improve : bool
-        Go on after the first path, until the budget is spent, and return the best of all.
+        Go on after the first path, until the budget is spent, and return the best of all.  The count ``rounds`` then
+        says how often it was planned anew, and `stages` when better paths were found.
 
     Returns
     -------
@@ -55,23 +69,86 @@ def find_path(
     InvalidValue
         If start or goal does not have the dimension of the space, or is not finite.
     """
-    budget = Budget(seconds=SECONDS) if budget is None else budget
+    budget = budget or Budget(seconds=SECONDS)
     query = Query(*read_places(start, goal, world.space), shorten=shorten, budget=budget)
     attempt = Attempt(world, query, NO_POINTS, "none", "none")
-    if attempt.own_planner is not None:
-        attempt.planner = attempt.own_planner.planner
+    if isinstance(world, ConnectsItself):
+        attempt.planner = world.planner
         if (refused := refusal(attempt)) is not None:
             return refused
-        connection = attempt.connect(attempt.own_planner)
+        connection = attempt.connect(world)
         if connection.goal >= 0:
             result = connected(attempt, connection)
-            return improved(attempt, result) if improve else result
-        if are_apart(attempt):
-            return proved_apart(attempt)
-        left = attempt.left()
-        if left is None:
+            return _improved(attempt, result) if improve else result
+        if (apart := proved_apart(attempt)) is not None:
+            return apart
+        if (left := attempt.left()) is None:
             return with_reasons(world, gave_up(attempt, connection))
         budget = left
     until = "budget" if improve else "solved"
     grown = plan_anytime(world, query.start, query.goals, until=until, budget=budget, shorten=shorten)
     return with_reasons(world, grown)
+
+
+def _improved(attempt: Attempt, first: PlanResult) -> PlanResult:
+    """Return the best path within what is left of the budget, or of its rounds; never a worse one than the first."""
+    nodes = first.counts["nodes"]
+    stage = Stage(nodes, nodes, attempt.motions_checked, first.cost, attempt.elapsed())
+    if isinstance(attempt.world, ConnectsAnew):
+        return _by_rounds(attempt, attempt.world, first, stage)
+    return _by_growth(attempt, first, stage)
+
+
+def _by_rounds(attempt: Attempt, world: ConnectsAnew, first: PlanResult, stage: Stage) -> PlanResult:
+    """Let the world plan again and again, each time driven by another sequence."""
+    best, stages, nodes, counts, done = first, [stage], stage.points, dict(first.counts), 0
+    # A round that is much longer than the first was takes the time of many others.
+    most = max(LEAST_MOTIONS, LONGER * attempt.motions_checked)
+    for variant in count(1):
+        if not _goes_on(attempt, best, variant):
+            break
+        connection = attempt.connect(world, variant, most)
+        done, nodes = variant, nodes + connection.nodes
+        counts["configurations_checked"] += connection.configurations
+        if connection.goal < 0:
+            continue
+        result = connected(attempt, connection)
+        if attempt.query.shorten:
+            counts["shortcut_motions"] += result.counts["shortcut_motions"]
+        if _cost(result) < _cost(best):
+            best = result
+            stages.append(Stage(nodes, nodes, attempt.motions_checked, best.cost, attempt.elapsed()))
+    counts |= {"nodes": nodes, "edges_checked": attempt.motions_checked, "rounds": done}
+    message = f"{best.message}, the best of {done + 1}" if done else best.message
+    return replace(best, message=message, counts=counts, stages=tuple(stages), seconds=attempt.watch.seconds)
+
+
+def _by_growth(attempt: Attempt, first: PlanResult, stage: Stage) -> PlanResult:
+    """Grow a roadmap beside the first path."""
+    query, left = attempt.query, attempt.left()
+    if left is None or not _goes_on(attempt, first, 1):
+        return replace(first, counts=first.counts | {"rounds": 0}, stages=(stage,))
+    before = attempt.elapsed()
+    grown = plan_anytime(
+        attempt.world, query.start, query.goals, until="budget", budget=left, shorten=query.shorten
+    )
+    stages = [stage, *(replace(each, seconds=before + each.seconds) for each in grown.stages)]
+    best = grown if grown.cost is not None and grown.cost < _cost(first) else first
+    return replace(best, counts=best.counts | {"rounds": len(grown.stages)}, stages=tuple(stages))
+
+
+def _goes_on(attempt: Attempt, best: PlanResult, variant: int) -> bool:
+    """Return whether the budget allows this round, and the path exceeds the distance to the nearest goal."""
+    budget, start, goals = attempt.query.budget, attempt.query.start, attempt.query.goals[attempt.goals]
+    least = float(attempt.world.space.distance(np.broadcast_to(start, goals.shape), goals).min())
+    return (
+        time.perf_counter() < attempt.deadline
+        and (budget.rounds is None or variant <= budget.rounds)
+        and (budget.motions is None or attempt.motions_checked < budget.motions)
+        and _cost(best) > (1.0 + NO_BETTER) * least
+    )
+
+
+def _cost(result: PlanResult) -> float:
+    assert result.cost is not None
+    return result.cost

@@ -6,8 +6,8 @@ from collections import Counter
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad.roadmap.query import as_points
 from evenroad.roadmap.result import PlanResult, Status
 from evenroad.world import Explains, World
@@ -44,7 +44,7 @@ def with_reasons(world: World, result: PlanResult) -> PlanResult:
     return replace(result, message=". ".join(sentences)) if reasons else result
 
 
-def why_hemmed(world: World, name: str, place: npt.NDArray[np.float64]) -> str | None:
+def why_hemmed(world: World, name: str, place: Floats) -> str | None:
     """Return in words how few short motions leave a free place, (dim,), and what touches; None where enough do."""
     samples = world.space.from_cube(as_points(DIRECTIONS, world.space).points)
     here = np.broadcast_to(place, samples.shape)
@@ -64,7 +64,7 @@ def why_hemmed(world: World, name: str, place: npt.NDArray[np.float64]) -> str |
     return f"{text}; the nearest free sample is {away:.3g} away" if np.isfinite(away) else text
 
 
-def _what_touches(world: World, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> str:
+def _what_touches(world: World, a: Floats, b: Floats) -> str:
     """Return what most of the blocked motions meet first, where the world can tell."""
     if not isinstance(world, Explains):
         return ""

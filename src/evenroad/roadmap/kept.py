@@ -6,25 +6,42 @@ import threading
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._arrays import Floats, Ints, Ints32
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import PointSet
-from evenroad.roadmap.answer import answer, are_apart, connected, refusal
+from evenroad.roadmap.answer import answer, connected, proved_apart, refusal
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.cost import BOUND, EdgeCost, edge_costs
-from evenroad.roadmap.neighbours.find import Surroundings, nearest_of
+from evenroad.roadmap.neighbours import Surroundings, nearest_of
 from evenroad.roadmap.query import LINKS, Query, as_points, read_places
 from evenroad.roadmap.result import PlanResult
 from evenroad.roadmap.rules import KNearest, Rule
-from evenroad.roadmap.search import BLOCKED, FREE, UNKNOWN, EdgeStates, FixedPoint, Graph, SearchProblem
-from evenroad.roadmap.search.edge_states import Known
+from evenroad.roadmap.search import (
+    BLOCKED,
+    FREE,
+    UNKNOWN,
+    EdgeStates,
+    FixedPoint,
+    Graph,
+    Known,
+    SearchProblem,
+)
 from evenroad.space import Space
 from evenroad.world import ConnectsItself, World
+
+
+class Prices(NamedTuple):
+    """What the edges of a roadmap cost, as integers (m,) of a unit that is large enough for nearly all links."""
+
+    longest: float
+    unit: FixedPoint
+    weights: Ints
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,12 +53,8 @@ class Roadmap:
 
     Attributes
     ----------
-    space : Space
-        Where the milestones are.
-    points : PointSet
-        Of its unit cube.
-    rule : Rule
-        Which joined them.
+    space, points, rule
+        Where the milestones are, the points of its unit cube, and what joined them.
     configurations : ndarray, shape (n, dim)
         The milestones, in the order of the points; read-only.
     edges : ndarray of int32, shape (m, 2)
@@ -51,19 +64,15 @@ class Roadmap:
     space: Space
     points: PointSet
     rule: Rule
-    configurations: npt.NDArray[np.float64]
-    edges: npt.NDArray[np.int32]
+    configurations: Floats
+    edges: Ints32
 
     @classmethod
     def build(cls, space: Space, points: PointSet | int, rule: Rule | None = None) -> Roadmap:
         """Join the points (or so many even ones) by the rule, by default ``KNearest(20)``; memory O(m).
 
         The graphs of the last 64 sets that came from a pool (the bank, or the user's cache) are kept for the process.
-
-        Raises
-        ------
-        InvalidValue
-            If the points do not have the dimension of the space's cube.
+        Raises InvalidValue if the points do not have the dimension of the space's cube.
         """
         points = as_points(points, space)
         rule = KNearest(20) if rule is None else rule
@@ -73,7 +82,7 @@ class Roadmap:
         return cls(space, points, rule, *joined(space, points, rule))
 
     @cached_property
-    def lengths(self) -> npt.NDArray[np.float64]:
+    def lengths(self) -> Floats:
         """Lengths of the edges in the metric of the space, (m,), measured when first asked for; read-only."""
         lengths = edge_costs(self.space, self.configurations, self.edges)
         lengths.setflags(write=False)
@@ -90,19 +99,18 @@ class Roadmap:
         return Surroundings(self.configurations, self.space)
 
     @cached_property
-    def across(self) -> float:
-        """A length that hardly any link to a start or goal exceeds: any two milestones are at most so far apart."""
-        if not len(self.configurations):
-            return 0.0
-        return 2.0 * float(self.surroundings.distances(self.configurations[0]).max())
+    def prices(self) -> Prices:
+        """The lengths as integers."""
+        return self.priced(self.lengths)
 
-    @cached_property
-    def weights(self) -> npt.NDArray[np.int64]:
-        """The lengths as integers, (m,); read-only."""
-        longest = max(float(self.lengths.max(initial=0.0)), self.across)
-        weights = FixedPoint.of(longest, len(self.configurations) + 2).weights(self.lengths)
-        weights.setflags(write=False)
-        return weights
+    def priced(self, costs: Floats) -> Prices:
+        """Return such costs of the edges, (m,), as integers."""
+        n = len(self.configurations)
+        # Two milestones are at most so far apart.
+        across = 2.0 * float(self.surroundings.distances(self.configurations[0]).max()) if n else 0.0
+        longest = max(float(costs.max(initial=0.0)), across)
+        unit = FixedPoint.of(longest, n + 2)
+        return Prices(longest, unit, unit.weights(costs))
 
     def in_world(
         self, world: World, *, lazy_milestones: bool = False, edge_cost: EdgeCost | None = None
@@ -111,33 +119,22 @@ class Roadmap:
 
         Nothing is computed or asked for edges until a query needs them, unless there is an `edge_cost`.
 
-        Parameters
-        ----------
-        world : World
-            Of the same space.
-        lazy_milestones : bool
-            Do not check the milestones now but where they could lie on a path.  Starts and goals are then
-            joined to the nearest of all milestones, else to the nearest of the valid ones.
-        edge_cost : callable, optional
-            As in `plan`.
-
-        Raises
-        ------
-        InvalidValue
-            If the world has another space: the points, or the distances along the edges, differ there.
+        With `lazy_milestones` these are not checked now but where they could lie on a path; starts and goals are then
+        joined to the nearest of all milestones, else to the nearest of the valid ones.  InvalidValue if the world has
+        another space: the points, or the distances along the edges, differ there.
         """
-        self._require_space(world.space)
+        if not self._fits(world.space):
+            raise InvalidValue(f"the roadmap was built for {self.space!r}, the world has {world.space!r}")
         return WorldRoadmap(self, world, lazy_milestones=lazy_milestones, edge_cost=edge_cost)
 
-    def _require_space(self, space: Space) -> None:
+    def _fits(self, space: Space) -> bool:
         if space is self.space or space == self.space:
-            return
-        if (space.dim, space.cube_dim) == (self.space.dim, self.space.cube_dim):
-            a, b = self.configurations[self.edges[:, 0]], self.configurations[self.edges[:, 1]]
-            same_points = np.array_equal(space.from_cube(self.points.points), self.configurations)
-            if same_points and np.array_equal(space.distance(a, b), self.lengths):
-                return
-        raise InvalidValue(f"the roadmap was built for {self.space!r}, the world has {space!r}")
+            return True
+        if (space.dim, space.cube_dim) != (self.space.dim, self.space.cube_dim):
+            return False
+        a, b = self.configurations[self.edges[:, 0]], self.configurations[self.edges[:, 1]]
+        same_points = np.array_equal(space.from_cube(self.points.points), self.configurations)
+        return same_points and np.array_equal(space.distance(a, b), self.lengths)
 
 
 class WorldRoadmap:
@@ -146,31 +143,20 @@ class WorldRoadmap:
     A query's answer depends on the roadmap, the world and the query alone, not on what was asked before: earlier
     queries only save checks.  Threads may share it; their queries are answered one after the other.
 
-    Attributes
-    ----------
-    roadmap : Roadmap
-        The milestones and candidate edges.
-    world : World
-        Who is asked about them.
-    lazy_milestones : bool
-        Whether milestones are checked only where they could lie on a path.
+    `roadmap` has the milestones and candidate edges, `world` is asked about them, and with `lazy_milestones` about
+    milestones only where they could lie on a path.
     """
 
     def __init__(
-        self,
-        roadmap: Roadmap,
-        world: World,
-        *,
-        lazy_milestones: bool = False,
-        edge_cost: EdgeCost | None = None,
+        self, roadmap: Roadmap, world: World, *, lazy_milestones: bool, edge_cost: EdgeCost | None
     ) -> None:
         self.roadmap, self.world, self.lazy_milestones = roadmap, world, lazy_milestones
         self._edge_cost = edge_cost
         self._lock = threading.Lock()
         # Of milestones and edges first; behind them there is room for the start, the goals and their links.
         self._configurations, self._edges = roadmap.configurations, roadmap.edges
+        self._weights: Ints | None = None
         self._known = Known.nothing(len(self._configurations), len(self._edges))
-        self._priced = False
         if edge_cost is not None:
             # Now, so that a cost that cannot be one is refused here.
             self._costs = edge_costs(world.space, self._configurations, self._edges, edge_cost)
@@ -214,7 +200,7 @@ class WorldRoadmap:
         *,
         search: str = "lazy",
         success_only: bool = False,
-        shorten: bool = False,
+        shorten: bool = True,
         keep_graph: bool = False,
         links: int | None = LINKS,
         connect: bool = True,
@@ -227,10 +213,8 @@ class WorldRoadmap:
 
         Parameters
         ----------
-        start, goal, search, success_only, links, budget
+        start, goal, search, success_only, shorten, links, budget
             As in :func:`plan`; by default lazily.  What is known is never asked again.
-        shorten : bool
-            Also shortcut the path, which takes longer than finding it.
         connect : bool
             Let a world that connects itself look for a path where the roadmap has none; not with an `edge_cost`.
         keep_graph : bool
@@ -244,10 +228,8 @@ class WorldRoadmap:
 
         Raises
         ------
-        InvalidValue
-            If start or goal are not finite or of another dimension.
-        UnknownName
-            If there is no such search.
+        InvalidValue, UnknownName
+            As :func:`plan`.
         """
         query = Query(
             *read_places(start, goal, self.world.space),
@@ -256,7 +238,7 @@ class WorldRoadmap:
             shorten=shorten,
             edge_cost=self._edge_cost,
             links=links,
-            budget=Budget() if budget is None else budget,
+            budget=budget or Budget(),
         )
         roadmap = self.roadmap
         rule, planner = f"{roadmap.rule} of all points", query.planner(self.lazy_milestones)
@@ -265,18 +247,18 @@ class WorldRoadmap:
             if (refused := refusal(attempt)) is not None:
                 return refused
             with attempt.watch("neighbours"):
-                states, costs, problem = self._link(attempt)
-            searched = attempt.search(query.find, states, costs, problem)
-            if connect and not (searched.solved or searched.spent) and isinstance(self.world, ConnectsItself):
-                joined = self._connect(attempt, self.world, states)
+                states, problem = self._link(attempt)
+            searched = attempt.search(query.find, states, problem)
+            if connect and searched.cost is None and not attempt.spent:
+                joined = self._connect(attempt, states)
                 if joined is not None:
                     return joined
             return answer(attempt, searched, roadmap.points.n, keep_graph=keep_graph)
 
-    def _connect(self, attempt: Attempt, world: ConnectsItself, states: EdgeStates) -> PlanResult | None:
-        """Return the result of the world's own planner, or None where it finds nothing."""
-        query = attempt.query
-        if query.edge_cost is not None or are_apart(attempt):
+    def _connect(self, attempt: Attempt, states: EdgeStates) -> PlanResult | None:
+        """Return the result of the world's own planner, or None where there is none, or it finds nothing."""
+        world = self.world
+        if self._edge_cost is not None or not isinstance(world, ConnectsItself) or proved_apart(attempt):
             return None
         attempt.motions_checked += states.motions_checked
         connection = attempt.connect(world)
@@ -287,37 +269,33 @@ class WorldRoadmap:
         result = connected(attempt, connection)
         return replace(result, counts=result.counts | {"edges_checked": attempt.motions_checked})
 
-    def _link(self, attempt: Attempt) -> tuple[EdgeStates, npt.NDArray[np.float64], SearchProblem]:
+    def _link(self, attempt: Attempt) -> tuple[EdgeStates, SearchProblem]:
         """Put start and goals behind the milestones, and their links behind the edges."""
-        roadmap, ends = self.roadmap, attempt.start_and_goals
-        n, m, nodes = len(roadmap.configurations), len(roadmap.edges), len(roadmap.configurations) + len(ends)
+        roadmap, ends, space = self.roadmap, attempt.start_and_goals, self.world.space
         distances = [roadmap.surroundings.distances(end) for end in ends]
         links = self._links(distances, attempt.query)
-        self._make_room(nodes, m + len(links))
-        q, edges = self._configurations[:nodes], self._edges[: m + len(links)]
-        costs, weights = self._costs[: len(edges)], self._weights[: len(edges)]
-        q[n:], edges[m:] = ends, links
-        known = Known(
-            self._known.nodes[:nodes], self._known.edges[: len(edges)], self._known.confirmed[: len(edges)]
+        n, m = len(roadmap.configurations), len(roadmap.edges)
+        nodes, edges = n + len(ends), m + len(links)
+        known = self._known = Known(
+            _with_room(self._known.nodes, n, len(ends)),
+            _with_room(self._known.edges, m, len(links)),
+            _with_room(self._known.confirmed, m, len(links)),
         )
-        known.nodes[n:], known.edges[m:], known.confirmed[m:] = FREE, UNKNOWN, False
-        costs[m:] = edge_costs(self.world.space, q, links, self._edge_cost)
-        fixed_point = FixedPoint.of(max(self._longest, float(costs[m:].max())), nodes)
-        if fixed_point == self._fixed_point:
-            weights[m:] = fixed_point.weights(costs[m:])
-        else:
-            weights = fixed_point.weights(costs)
-        between = [self.world.space.distance(ends, np.broadcast_to(goal, ends.shape)) for goal in ends[1:]]
+        self._configurations = _with_room(self._configurations, n, len(ends))
+        self._edges = _with_room(self._edges, m, len(links))
+        self._configurations[n:nodes], self._edges[m:edges] = ends, links
+        known.nodes[n:nodes], known.edges[m:edges], known.confirmed[m:edges] = FREE, UNKNOWN, False
+        q = self._configurations[:nodes]
+        weights, unit = self._weigh(edge_costs(space, q, links, self._edge_cost), nodes)
+        between = [space.distance(ends, np.broadcast_to(goal, ends.shape)) for goal in ends[1:]]
         to_goal = np.min([np.append(*both) for both in zip(distances[1:], between, strict=True)], axis=0)
-        bounds = fixed_point.bounds(to_goal if self._edge_cost is None else BOUND * to_goal)
+        bounds = unit.bounds(to_goal if self._edge_cost is None else BOUND * to_goal)
         graph = roadmap.graph.with_links(nodes, links, m)
-        return (
-            attempt.states(q, edges, known=known),
-            costs,
-            SearchProblem(graph, weights, bounds, n, np.arange(n + 1, nodes)),
-        )
+        known = Known(known.nodes[:nodes], known.edges[:edges], known.confirmed[:edges])
+        states = attempt.states(q, self._edges[:edges], known=known)
+        return states, SearchProblem(n, np.arange(n + 1, nodes), graph, weights, bounds)
 
-    def _links(self, distances: list[npt.NDArray[np.float64]], query: Query) -> npt.NDArray[np.int32]:
+    def _links(self, distances: list[Floats], query: Query) -> Ints32:
         """Return the links of the start and the goals, at such distances from the milestones, (l, 2)."""
         n = len(self.roadmap.configurations)
         reach = self.roadmap.rule.reach(n, self.roadmap.space)
@@ -332,43 +310,33 @@ class WorldRoadmap:
         links.append(np.stack([np.full(len(goals), n), goals], axis=1))
         return np.concatenate(links).astype(np.int32)
 
-    def _price(self) -> None:
-        """Know what the edges of the roadmap cost, before the first query."""
-        if self._edge_cost is None:
-            self._costs, self._weights = self.roadmap.lengths, self.roadmap.weights
-        self._longest = max(float(self._costs.max(initial=0.0)), self.roadmap.across)
-        self._fixed_point = FixedPoint.of(self._longest, len(self.roadmap.configurations) + 2)
-        if self._edge_cost is not None:
-            self._weights = self._fixed_point.weights(self._costs)
-        self._priced = True
+    def _weigh(self, links: Floats, nodes: int) -> tuple[Ints, FixedPoint]:
+        """Return the costs of the edges and then of these links, (l,), as integers, and their unit."""
+        prices, m = self._prices, len(self.roadmap.edges)
+        unit = FixedPoint.of(max(prices.longest, float(links.max())), nodes)
+        if unit != prices.unit:
+            costs = self.roadmap.lengths if self._edge_cost is None else self._costs
+            return unit.weights(np.concatenate([costs, links])), unit
+        self._weights = _with_room(prices.weights if self._weights is None else self._weights, m, len(links))
+        self._weights[m : m + len(links)] = unit.weights(links)
+        return self._weights[: m + len(links)], unit
 
-    def _make_room(self, nodes: int, edges: int) -> None:
-        """Have room for so many nodes and edges, and know what the edges of the roadmap cost."""
-        roadmap, known = self.roadmap, self._known
-        if not self._priced:
-            self._price()
-        if len(self._configurations) < nodes:
-            self._configurations = _lengthened(self._configurations, nodes)
-            self._known = known = replace(known, nodes=_lengthened(known.nodes, nodes))
-        if len(self._edges) < edges:
-            # Twice the links, so that few queries have to copy.
-            size = 2 * edges - len(roadmap.edges)
-            self._edges = _lengthened(self._edges, size)
-            self._costs, self._weights = _lengthened(self._costs, size), _lengthened(self._weights, size)
-            self._known = replace(
-                known, edges=_lengthened(known.edges, size), confirmed=_lengthened(known.confirmed, size)
-            )
+    @cached_property
+    def _prices(self) -> Prices:
+        return self.roadmap.prices if self._edge_cost is None else self.roadmap.priced(self._costs)
 
 
-def _lengthened(array: npt.NDArray[Any], size: int) -> npt.NDArray[Any]:
-    longer = np.zeros((size, *array.shape[1:]), dtype=array.dtype)
-    longer[: len(array)] = array
+def _with_room(array: npt.NDArray[Any], kept: int, more: int) -> npt.NDArray[Any]:
+    """Return an array with room for so many rows behind those that are kept: itself, or a longer copy."""
+    if len(array) >= kept + more:
+        return array
+    # Twice as many, so that few queries have to copy.
+    longer = np.zeros((kept + 2 * more, *array.shape[1:]), dtype=array.dtype)
+    longer[:kept] = array[:kept]
     return longer
 
 
-def _joined(
-    space: Space, points: PointSet, rule: Rule
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]:
+def _joined(space: Space, points: PointSet, rule: Rule) -> tuple[Floats, Ints32]:
     """Return the milestones and the candidate edges, both read-only."""
     configurations = np.array(space.from_cube(points.points), dtype=np.float64)
     edges = rule.edges(configurations, space)

@@ -6,7 +6,6 @@ import json
 from dataclasses import asdict, fields
 
 import numpy as np
-import numpy.typing as npt
 
 from evenroad._fingerprint import Fingerprinted
 from evenroad._npz import Arrays, Path, digest, read_json, read_npz, require_array, write_npz
@@ -33,26 +32,21 @@ def save_roadmap(path: Path, roadmap: Roadmap) -> None:
 
 
 def save_world_roadmap(path: Path, known: WorldRoadmap) -> None:
-    """Write a roadmap with all that is known of it in its world, atomically.
+    """Write a roadmap with all that is known of it in its world, atomically; errors as :func:`save_roadmap`, and:
 
     Raises
     ------
     NotAvailable
         If the world cannot say which it is (`Fingerprinted`), so that a wrong one could not be refused later.
-    BrokenFile
-        If the file cannot be written; whatever was at `path` is then untouched.
     """
     node_states, edge_states = known.states
-    _write(
-        path,
-        _arrays(known.roadmap)
-        | dict(
-            fingerprint=np.array(_fingerprint(known.world)),
-            lazy_milestones=np.array(known.lazy_milestones),
-            node_states=node_states,
-            edge_states=edge_states,
-        ),
+    in_world = dict(
+        fingerprint=np.array(_fingerprint(known.world)),
+        lazy_milestones=np.array(known.lazy_milestones),
+        node_states=node_states,
+        edge_states=edge_states,
     )
+    _write(path, _arrays(known.roadmap) | in_world)
 
 
 def load_roadmap(path: Path, space: Space) -> Roadmap:
@@ -87,9 +81,14 @@ def load_world_roadmap(path: Path, world: World, *, edge_cost: EdgeCost | None =
             f"{path} was saved in another world: its fingerprint is {saved[:12]}, that of this one {here[:12]}"
         )
     roadmap = _roadmap(path, arrays, world.space)
+    for name, among in (("node_states", roadmap.configurations), ("edge_states", roadmap.edges)):
+        require_array(path, name, arrays[name], np.int8, (len(among),))
+        if not np.isin(arrays[name], (UNKNOWN, FREE, BLOCKED)).all():
+            raise BrokenFile(f"{path}: {name} must be {UNKNOWN}, {FREE} or {BLOCKED}")
+    require_array(path, "lazy_milestones", arrays["lazy_milestones"], np.bool_, ())
     # Nothing is asked of the world here: what the file knows is put in first.
     known = roadmap.in_world(world, lazy_milestones=True, edge_cost=edge_cost)
-    known.recall(*_states(path, arrays, roadmap))
+    known.recall(arrays["node_states"], arrays["edge_states"])
     known.lazy_milestones = bool(arrays["lazy_milestones"])
     return known
 
@@ -149,14 +148,3 @@ def _roadmap(path: Path, arrays: Arrays, space: Space) -> Roadmap:
     for array in (configurations, edges):
         array.setflags(write=False)
     return Roadmap(space, points, rule, configurations, edges)
-
-
-def _states(
-    path: Path, arrays: Arrays, roadmap: Roadmap
-) -> tuple[npt.NDArray[np.int8], npt.NDArray[np.int8]]:
-    for name, among in (("node_states", roadmap.configurations), ("edge_states", roadmap.edges)):
-        require_array(path, name, arrays[name], np.int8, (len(among),))
-        if not np.isin(arrays[name], (UNKNOWN, FREE, BLOCKED)).all():
-            raise BrokenFile(f"{path}: {name} must be {UNKNOWN}, {FREE} or {BLOCKED}")
-    require_array(path, "lazy_milestones", arrays["lazy_milestones"], np.bool_, ())
-    return arrays["node_states"], arrays["edge_states"]

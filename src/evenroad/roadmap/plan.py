@@ -1,4 +1,4 @@
-"""ps-PRM: plan on a roadmap of points that were drawn beforehand (Chahine et al. 2025, Algorithm 1)."""
+"""ps-PRM (Chahine et al. 2025, Algorithm 1) and FMT*: plan on points that were drawn beforehand."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from evenroad.roadmap.cost import EdgeCost
 from evenroad.roadmap.query import LINKS, Query, as_points, read_places
 from evenroad.roadmap.result import PlanResult
 from evenroad.roadmap.rules import Rule, default_rule
-from evenroad.roadmap.search import FREE
+from evenroad.roadmap.search import FREE, Finder, march
 from evenroad.world import World
 
 
@@ -83,11 +83,50 @@ def plan(
         shorten=shorten,
         edge_cost=edge_cost,
         links=links,
-        budget=Budget() if budget is None else budget,
+        budget=budget or Budget(),
     )
+    planner = query.planner(lazy_milestones)
+    return _on_points(world, query, points, rule, planner, query.find, lazy_milestones=lazy_milestones)
+
+
+def fmt(
+    world: World,
+    start: npt.ArrayLike,
+    goal: npt.ArrayLike,
+    points: PointSet | int,
+    *,
+    rule: Rule | None = None,
+    edge_cost: EdgeCost | None = None,
+    shorten: bool = True,
+    links: int | None = LINKS,
+    budget: Budget | None = None,
+) -> PlanResult:
+    """Find a short free path with a tree that grows outwards in the order of cost: FMT* (Janson et al. 2015).
+
+    Each milestone is joined to the tree over the neighbour that would be best if nothing were in the way, and only that
+    motion is checked; so the tree is nearly the shortest one, for about one check a milestone.  It can miss a path that
+    `plan` finds on the same roadmap.  When not connected, the count ``start_component`` is the size of the tree.
+    Parameters and errors are those of :func:`plan`.
+    """
+    places = read_places(start, goal, world.space)
+    query = Query(*places, shorten=shorten, edge_cost=edge_cost, links=links, budget=budget or Budget())
+    return _on_points(world, query, points, rule, "fmt*", march)
+
+
+def _on_points(
+    world: World,
+    query: Query,
+    points: PointSet | int,
+    rule: Rule | None,
+    planner: str,
+    find: Finder,
+    *,
+    lazy_milestones: bool = False,
+) -> PlanResult:
+    """Map the points into the space, join them by the rule, and find a path along what the world calls free."""
     points = as_points(points, world.space)
     rule = default_rule(world.space) if rule is None else rule
-    attempt = Attempt(world, query, points.origin, str(rule), query.planner(lazy_milestones))
+    attempt = Attempt(world, query, points.origin, str(rule), planner)
     if (refused := refusal(attempt)) is not None:
         return refused
     milestones = world.space.from_cube(points.points)
@@ -95,4 +134,4 @@ def plan(
         milestones = milestones[attempt.valid(milestones)]
     states = attempt.candidates(rule, milestones)
     states.node_states[len(milestones) if lazy_milestones else 0 :] = FREE
-    return answer(attempt, attempt.search(query.find, states), points.n)
+    return answer(attempt, attempt.search(find, states), points.n)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Bools, Floats
 from evenroad.roadmap.result import PlanResult, Status
 from evenroad.roadmap.search import BLOCKED, EdgeStates, Found
 from evenroad.world import Rechecks, World
@@ -18,19 +18,10 @@ def proof_of(world: World) -> str:
     return str(getattr(world, "proof", "resolution"))
 
 
-def confirmed(
-    world: World, path: npt.NDArray[np.float64], doubtful: npt.NDArray[np.bool_]
-) -> npt.NDArray[np.bool_]:
-    """Return which motions of a path pass the world's strict check, (p - 1,).
+def confirmed(world: World, path: Floats, doubtful: Bools) -> Bools:
+    """Return which motions of a path, (p, dim), pass the world's strict check, (p - 1,); all where it has none.
 
-    Parameters
-    ----------
-    world : World
-        All motions pass where it has none.
-    path : ndarray, shape (p, dim)
-        Waypoints.
-    doubtful : ndarray of bool, shape (p - 1,)
-        Which motions have to be checked; the others passed before.
+    Only the doubtful ones, (p - 1,), have to be checked: the others passed before.
     """
     passed = ~doubtful
     if not isinstance(world, Rechecks):
@@ -44,7 +35,7 @@ def confirmed(
 
 def confirm(states: EdgeStates, found: Found) -> bool:
     """Return whether the world confirms all motions of a path; those that fail are blocked from now on."""
-    nodes, along = found
+    nodes, along, _ = found
     passed = confirmed(states.world, states.configurations[nodes], ~states.confirmed[along])
     states.confirmed[along] = passed
     states.edge_states[along[~passed]] = BLOCKED

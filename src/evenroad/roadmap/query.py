@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad._checks import require_count
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points.pointset import PointSet
 from evenroad.points.samplers import make_sampler
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.cost import EdgeCost
-from evenroad.roadmap.search import FINDERS, EdgeStates, Found, SearchProblem, find_any
+from evenroad.roadmap.search import FINDERS, Finder, find_any
 from evenroad.space import Space
 
 LINKS = 100
@@ -32,22 +32,12 @@ FEW = 256
 class Query:
     """From where to where, and how; never changed.
 
-    Attributes
-    ----------
-    start : float64 ndarray, shape (dim,)
-    goals : float64 ndarray, shape (g, dim), g >= 1
-        As :func:`read_places` gives them; the path ends at the goal that is cheapest to reach.
-    search, success_only, shorten, edge_cost, links, budget
-        As in :func:`plan`.
-
-    Raises
-    ------
-    UnknownName
-        If there is no such search.
+    `start`, (dim,), and `goals`, (g, dim), are what :func:`read_places` gives; the others are as in :func:`plan`.
+    UnknownName if there is no such search.
     """
 
-    start: npt.NDArray[np.float64]
-    goals: npt.NDArray[np.float64]
+    start: Floats
+    goals: Floats
     _: KW_ONLY
     search: str = "full"
     success_only: bool = False
@@ -65,7 +55,7 @@ class Query:
             array.setflags(write=False)
 
     @property
-    def start_and_goals(self) -> npt.NDArray[np.float64]:
+    def start_and_goals(self) -> Floats:
         """The start, then the goals, (1 + g, dim)."""
         return np.concatenate([self.start[np.newaxis], self.goals])
 
@@ -76,7 +66,7 @@ class Query:
         return milestones if milestones <= FEW else min(self.links, milestones)
 
     @property
-    def find(self) -> Callable[[SearchProblem, EdgeStates], Found]:
+    def find(self) -> Finder:
         """The search."""
         return find_any if self.success_only else FINDERS[self.search]
 
@@ -86,15 +76,10 @@ class Query:
         return f"prm {name}{' + lazy milestones' if lazy_milestones else ''}"
 
 
-def read_places(
-    start: npt.ArrayLike, goal: npt.ArrayLike, space: Space
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def read_places(start: npt.ArrayLike, goal: npt.ArrayLike, space: Space) -> tuple[Floats, Floats]:
     """Return start, (dim,), and goals, (g, dim), from one start and one or more goals.
 
-    Raises
-    ------
-    InvalidValue
-        If they do not have the dimension of the space, or are not finite.
+    Raises InvalidValue if they do not have the dimension of the space, or are not finite.
     """
     dim = space.dim
     first, goals = _finite(start), _finite(goal)
@@ -108,13 +93,7 @@ def read_places(
 
 
 def as_points(points: PointSet | int, space: Space) -> PointSet:
-    """Return points of the space's cube: those given, or so many even ones.
-
-    Raises
-    ------
-    InvalidValue
-        If `points` is neither a point set of the dimension of the cube nor a number >= 1.
-    """
+    """Return points of the space's cube: those given, or so many even ones; InvalidValue for anything else."""
     if not isinstance(points, PointSet):
         if isinstance(points, bool) or not isinstance(points, int | np.integer):
             raise InvalidValue(
@@ -127,7 +106,7 @@ def as_points(points: PointSet | int, space: Space) -> PointSet:
     return points
 
 
-def _finite(value: npt.ArrayLike) -> npt.NDArray[np.float64]:
+def _finite(value: npt.ArrayLike) -> Floats:
     """Return a copy as floats; of what is not finite numbers, an array whose shape nobody asks for."""
     try:
         array = np.array(value, dtype=np.float64)

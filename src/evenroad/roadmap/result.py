@@ -5,9 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-import numpy as np
-import numpy.typing as npt
-
+from evenroad._arrays import Floats, Ints32
 from evenroad.points.pointset import Origin
 
 
@@ -27,18 +25,12 @@ class Status(StrEnum):
 class SearchedGraph:
     """The milestones and motions known to be free in one query: what pictures show.
 
-    Attributes
-    ----------
-    configurations : ndarray, shape (v, dim)
-        Milestones not known to be invalid, then the start, then the goals.
-    edges : ndarray of int32, shape (m, 2)
-        Motions found free, as pairs of rows, smaller first.
-    milestones : int
-        How many of the rows are milestones.
+    `configurations`, (v, dim), are `milestones` ones not known to be invalid, then the start, then the goals; `edges`,
+    (m, 2), are motions found free, as pairs of rows, smaller first.
     """
 
-    configurations: npt.NDArray[np.float64]
-    edges: npt.NDArray[np.int32]
+    configurations: Floats
+    edges: Ints32
     milestones: int
 
 
@@ -46,16 +38,9 @@ class SearchedGraph:
 class Stage:
     """One stage of a plan that grows, or a round of one that improves in which a better path was found.
 
-    Attributes
-    ----------
-    points, valid : int
-        N so far, and how many of them are valid; of a round, the nodes of all trees so far, all valid.
-    edges_checked : int
-        Motions checked up to the end of this stage.
-    cost : float or None
-        Of this stage's path along the roadmap, of a round's path after shortcutting; None when there was none.
-    seconds : float
-        Wall time from the start of the query to the end of this stage; not compared.
+    `points` are N so far, of which `valid` ones are; of a round, the nodes of all trees so far, all valid.
+    `edges_checked` motions were checked up to its end, `seconds` after the query began (not compared).  `cost` is that
+    of this stage's path along the roadmap, of a round's path after shortcutting; None when there was none.
     """
 
     points: int
@@ -72,14 +57,11 @@ class PlanResult:
     Attributes
     ----------
     status : Status
-        ``solved``, ``start_invalid``, ``goal_invalid`` (all goals), ``not_connected``, ``budget_spent``; or
-        ``mesh_collision``: the path is free in its world, but the robot's meshes touch something; or
-        ``not_certified``: a proof was asked for, and the path is free only at the states that were tested.
+        ``goal_invalid``: all goals are.  ``mesh_collision``: the path is free in its world, but the robot's meshes
+        touch something.  ``not_certified``: a proof was asked for, and the path is free only at states tested.
     message : str
         One sentence for people: what happened and, without a path, what to try.
-    start : ndarray, shape (dim,)
-        Of the query.
-    goals : ndarray, shape (g, dim)
+    start, goals : ndarrays, shapes (dim,) and (g, dim)
         Of the query.
     goal_index : int or None
         Which of the goals the path ends at; None without a path.
@@ -105,7 +87,7 @@ class PlanResult:
     rule : str
         The connection rule, by name.
     links : int or None
-        To how many of the nearest milestones start and goals were linked besides (to all, up to 256); None: to none.
+        As asked for; see :func:`plan`.
     planner : str
         Who searched: ``prm full``, ``prm lazy``, ``prm any`` (some path, not the shortest), each with
         ``+ lazy milestones`` where those were checked late; ``prm anytime``, ``fmt*``; or the world itself, with
@@ -118,15 +100,15 @@ class PlanResult:
 
     status: Status
     message: str
-    start: npt.NDArray[np.float64]
-    goals: npt.NDArray[np.float64]
+    start: Floats
+    goals: Floats
     origin: Origin
     rule: str
     links: int | None = None
     planner: str = "prm full"
     goal_index: int | None = None
-    path: npt.NDArray[np.float64] | None = None
-    milestone_path: npt.NDArray[np.float64] | None = None
+    path: Floats | None = None
+    milestone_path: Floats | None = None
     proof: str | None = None
     cost: float | None = None
     milestone_cost: float | None = None
@@ -141,6 +123,6 @@ class PlanResult:
         return self.status is Status.SOLVED
 
     @property
-    def goal(self) -> npt.NDArray[np.float64]:
+    def goal(self) -> Floats:
         """The goal that the path ends at, (dim,); without a path the first one."""
         return self.goals[0 if self.goal_index is None else self.goal_index]

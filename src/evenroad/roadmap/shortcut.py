@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import math
 import time
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats, Ints
+from evenroad.roadmap.budget import BudgetSpent, in_time
 from evenroad.roadmap.cost import EdgeCost
 from evenroad.roadmap.proof import confirmed
-from evenroad.roadmap.search import BudgetSpent, shortest_path
-from evenroad.roadmap.search.edge_states import in_time
+from evenroad.roadmap.search import shortest_path
 from evenroad.space import Space
 from evenroad.space.path import motion_lengths, subdivide
 from evenroad.world import World
+
+Indices: TypeAlias = npt.NDArray[np.integer]
 
 SPREADS = (32, 96)
 """Waypoints offered to a round, first of the coarse rounds, then of the fine ones; all pairs of them are checked.
@@ -41,23 +44,9 @@ def shortcut(
     Where the world has a strict check (`Rechecks`), the motions of a round's way have to pass it, too; those that
     fail are taken away, in time with those beside them, and the next shortest way is tried.
 
-    Parameters
-    ----------
-    path : ndarray, shape (p, dim), p >= 2
-        A path whose motions are free.
-    world : World
-        Whose ``motion_valid`` decides, and its ``recheck`` if there is one.
-    cost : callable, optional
-        What a motion costs; default: its length in the metric of the space.
-    deadline : float
-        When to stop with what was reached, on the clock of ``time.perf_counter``.
-
-    Returns
-    -------
-    path : ndarray, shape (q, dim)
-        From the same start to the same goal.
-    motions : int
-        How many motions were checked, rechecks apart.
+    `path`, (p, dim), p >= 2, has free motions; costs are lengths by default.  At the deadline, on the clock of
+    ``time.perf_counter``, what was reached so far is the answer.  The second number are the motions checked, rechecks
+    apart.
     """
     work = _Shortcut(path, world, world.space.distance if cost is None else cost, deadline)
     try:
@@ -118,7 +107,7 @@ class _Shortcut:
         if self._total(path[way]) <= self.length * (1.0 + 1e-12):
             self.path = path[way]
 
-    def _holds(self, waypoints: Floats, way: npt.NDArray[np.integer], pairs: _Pairs) -> bool:
+    def _holds(self, waypoints: Floats, way: Indices, pairs: _Pairs) -> bool:
         """Return whether the world confirms a way; if it does not, some of its pairs are not usable any more."""
         if time.perf_counter() >= self.deadline:
             raise BudgetSpent
@@ -146,15 +135,11 @@ class _Shortcut:
 class _Pairs:
     """Pairs of waypoints that can be joined, among them the steps from each of a path's `own` ones to the next.
 
-    Attributes
-    ----------
-    edges : ndarray of int32, shape (m, 2)
-        The pairs, smaller first.
-    trusted, usable : ndarray of bool, shape (m,)
-        Which have passed the strict check, and which have not failed it.
+    Of the `edges`, (m, 2), smaller first, `trusted` ones have passed the strict check, and `usable` ones have not
+    failed it, (m,) each.
     """
 
-    def __init__(self, free: Bools, own: npt.NDArray[np.integer]) -> None:
+    def __init__(self, free: Bools, own: Indices) -> None:
         free = free.copy()
         free[own[:-1], own[1:]] = True
         self.edges = np.argwhere(free).astype(np.int32)
@@ -165,11 +150,11 @@ class _Pairs:
         self.trusted[self._number[own[:-1], own[1:]]] = True
         self._failures = 0
 
-    def along(self, way: npt.NDArray[np.integer]) -> npt.NDArray[np.intp]:
+    def along(self, way: Indices) -> Indices:
         """Return the numbers of the pairs along a way."""
         return self._number[np.minimum(way[:-1], way[1:]), np.maximum(way[:-1], way[1:])]
 
-    def give_up(self, failed: npt.NDArray[np.intp]) -> None:
+    def give_up(self, failed: Indices) -> None:
         """Use these pairs no more, nor those beside them that were not checked: the more, the more have failed.
 
         What is in the way of one motion mostly is in that of its neighbours; one by one, thousands would be tried.

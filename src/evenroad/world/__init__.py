@@ -16,6 +16,7 @@ from evenroad.world.protocol import Explains as Explains
 from evenroad.world.protocol import Proves as Proves
 from evenroad.world.protocol import Rechecks as Rechecks
 from evenroad.world.protocol import Separates as Separates
+from evenroad.world.protocol import Shortens as Shortens
 from evenroad.world.protocol import World as World
 from evenroad.world.solids import OrientedBox as OrientedBox
 from evenroad.world.solids import SolidWorld as SolidWorld

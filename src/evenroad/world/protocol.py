@@ -86,7 +86,16 @@ class Connection:
 
 
 @runtime_checkable
-class ConnectsItself(Protocol):
+class Shortens(Protocol):
+    """A world with a compiled way of making paths shorter."""
+
+    def shorten(self, path: Floats) -> tuple[Floats, int]:
+        """Return a path that is not longer and passes the strict check, and how many motions were checked."""
+        ...
+
+
+@runtime_checkable
+class ConnectsItself(Shortens, Protocol):
     """A world with a compiled planner of its own; planners ask it before they build a roadmap."""
 
     @property
@@ -96,10 +105,6 @@ class ConnectsItself(Protocol):
 
     def connect(self, start: Floats, goals: Floats, *, most_motions: int, seconds: float) -> Connection:
         """Join the start, (dim,), to the first of the goals, (g, dim), that can be reached within the budget."""
-        ...
-
-    def shorten(self, path: Floats) -> tuple[Floats, int]:
-        """Return a path that is not longer and passes the strict check, and how many motions were checked."""
         ...
 
 

@@ -48,10 +48,10 @@ def _stock(states: EdgeStates) -> Finding:
 
 def _shortest(search: str, states: EdgeStates) -> Finding:
     costs = edge_costs(states.world.space, states.configurations, states.edges)
-    nodes, along = FINDERS[search](search_problem(states, costs), states)
-    if not nodes.size:
+    found = FINDERS[search](search_problem(states, costs), states)
+    if not found.nodes.size:
         return Finding(False)
-    return Finding(True, length=length_along(costs, along))
+    return Finding(True, length=length_along(costs[found.edges]))
 
 
 SEARCHES: dict[str, Callable[[EdgeStates], Finding]] = {

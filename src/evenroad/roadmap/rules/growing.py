@@ -9,25 +9,39 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 from evenroad._arrays import Floats, Ints32
 from evenroad._checks import require_count, require_positive
 from evenroad.errors import InvalidValue, NotAvailable
-from evenroad.roadmap.neighbours.find import flat_metric
-from evenroad.roadmap.rules.near import KNearest, Radius, Reach, manifold_dimension, plain
+from evenroad.roadmap.neighbours import flat_metric
+from evenroad.roadmap.rules.near import KNearest, Radius, Reach, Rule, plain
 from evenroad.space import Space
 
 
+class _Growing(Rule, Protocol):
+    """A rule that is another one for each number of configurations."""
+
+    def at(self, n: int, d: int) -> Rule:
+        """Return the rule for n configurations in d dimensions."""
+        ...
+
+    def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
+        """Return the pairs of the rule for so many; see :class:`Rule`."""
+        return self.at(len(q), q.shape[1] if space is None else space.cube_dim).edges(q, space)
+
+    def reach(self, milestones: int, space: Space) -> Reach:
+        """Return how that rule joins an end; see :class:`Rule`."""
+        return self.at(milestones, space.cube_dim).reach(milestones, space)
+
+
 @dataclass(frozen=True)
-class RadiusStar:
+class RadiusStar(_Growing):
     """``radius*``: all pairs at most ``r = gamma (log n / n)^(1/d)`` apart.
 
-    Parameters
-    ----------
-    gamma : float
-        In the units of the space, > 0; asymptotically optimal above :func:`prm_star_gamma`.
+    `gamma` is in the units of the space, > 0; asymptotically optimal above :func:`prm_star_gamma`.
     """
 
     gamma: float
@@ -38,38 +52,22 @@ class RadiusStar:
     def __str__(self) -> str:
         return f"radius* gamma={plain(self.gamma)}"
 
-    def radius(self, n: int, d: int) -> float:
-        """Return r for n >= 2 configurations in d dimensions; 1 configuration has no log to speak of."""
+    def at(self, n: int, d: int) -> Radius:
+        """Return the radius for n >= 2 configurations in d dimensions; 1 has no log to speak of."""
         n = max(n, 2)
-        return self.gamma * (math.log(n) / n) ** (1 / d)
-
-    def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
-        """Return the pairs within the radius of this many; see :class:`Rule`."""
-        return Radius(self.radius(len(q), manifold_dimension(q, space))).edges(q, space)
-
-    def reach(self, milestones: int, space: Space) -> Reach:
-        """Return that an end is joined to all within the radius; see :class:`Rule`."""
-        return Reach(radius=self.radius(milestones, space.cube_dim))
+        return Radius(self.gamma * (math.log(n) / n) ** (1 / d))
 
 
 @dataclass(frozen=True)
-class KStar:
+class KStar(_Growing):
     """``k*``: the ``k = ceil(e (1 + 1/d) log n)`` nearest, symmetrised."""
 
     def __str__(self) -> str:
         return "k*"
 
-    def k(self, n: int, d: int) -> int:
+    def at(self, n: int, d: int) -> KNearest:
         """Return k for n >= 2 configurations in d dimensions."""
-        return math.ceil(math.e * (1 + 1 / d) * math.log(max(n, 2)))
-
-    def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
-        """Return the symmetrised pairs for the k of this many; see :class:`Rule`."""
-        return KNearest(self.k(len(q), manifold_dimension(q, space))).edges(q, space)
-
-    def reach(self, milestones: int, space: Space) -> Reach:
-        """Return that an end is joined to its k nearest; see :class:`Rule`."""
-        return Reach(k=self.k(milestones, space.cube_dim))
+        return KNearest(math.ceil(math.e * (1 + 1 / d) * math.log(max(n, 2))))
 
 
 def prm_star_gamma(d: int, free_measure: float) -> float:
@@ -85,7 +83,7 @@ def prm_star_gamma(d: int, free_measure: float) -> float:
 
 
 @dataclass(frozen=True, kw_only=True)
-class TheoryRadius:
+class TheoryRadius(Rule):
     """``theory radius``: all pairs at most ``r = 2 alpha sqrt(d) D`` apart, D a bound of the l-infinity dispersion.
 
     With a path of enough clearance, the shortest one of the roadmap is then within a factor
@@ -95,18 +93,9 @@ class TheoryRadius:
     (0, .375) and (.55, .975) leave a hole of .975 with a star discrepancy of .5.  In a space whose sides are not 1,
     ``sqrt(d)`` becomes the length of the diagonal.
 
-    Parameters
-    ----------
-    alpha : float
-        Above 1.
-    star_discrepancy, dispersion : float
-        Exactly one of the two, of the points in the unit cube, in (0, 1].
-
-    Raises
-    ------
-    InvalidValue
-        For other values; and from `edges`, where the radius is no less than the diameter of the space, so that it
-        says nothing: in ten dimensions that is so for every set of a feasible size.
+    `alpha` is above 1, and exactly one of the others is given, in (0, 1], of the points in the unit cube.  InvalidValue
+    for other values; and from `edges`, where the radius is no less than the diameter of the space, so that it says
+    nothing: in ten dimensions that is so for every set of a feasible size.
     """
 
     alpha: float

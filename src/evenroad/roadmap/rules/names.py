@@ -32,13 +32,9 @@ _FORMS: dict[str, tuple[str, Callable[..., Rule]]] = {
     "radius=R": (rf"radius={_NUMBER}", lambda r: Radius(float(r))),
     "radius* gamma=G": (rf"radius\* gamma={_NUMBER}", lambda gamma: RadiusStar(float(gamma))),
     "complete": (r"complete", Complete),
-    "theory radius alpha=A star_discrepancy=D": (
-        rf"theory radius alpha={_NUMBER} star_discrepancy={_NUMBER}",
-        lambda alpha, bound: TheoryRadius(alpha=float(alpha), star_discrepancy=float(bound)),
-    ),
-    "theory radius alpha=A dispersion=D": (
-        rf"theory radius alpha={_NUMBER} dispersion={_NUMBER}",
-        lambda alpha, bound: TheoryRadius(alpha=float(alpha), dispersion=float(bound)),
+    "theory radius alpha=A star_discrepancy|dispersion=D": (
+        rf"theory radius alpha={_NUMBER} (star_discrepancy|dispersion)={_NUMBER}",
+        lambda alpha, name, bound: TheoryRadius(**{"alpha": float(alpha), name: float(bound)}),
     ),
 }
 

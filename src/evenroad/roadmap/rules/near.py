@@ -8,7 +8,7 @@ they are the first.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -67,13 +67,8 @@ def plain(number: float) -> str:
     return short if float(short) == number else repr(number)
 
 
-def manifold_dimension(q: Floats, space: Space | None) -> int:
-    """Return the dimension d of the formulas: that of the space's cube, else the number of coordinates."""
-    return q.shape[1] if space is None else space.cube_dim
-
-
 @dataclass(frozen=True)
-class Complete:
+class Complete(Rule):
     """``complete``: every pair is an edge; O(n^2) of them."""
 
     def __str__(self) -> str:
@@ -89,20 +84,17 @@ class Complete:
 
 
 @dataclass(frozen=True)
-class KNearest:
-    """``k symmetrised``: edge i-j iff i is among the k nearest of j, or j among those of i."""
+class _ByNumber(Rule):
+    """A rule of so many neighbours."""
 
     k: int = 10
+    which: ClassVar[str]
 
     def __post_init__(self) -> None:
         require_count("k", self.k)
 
     def __str__(self) -> str:
-        return f"k={self.k} symmetrised"
-
-    def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
-        """Return the symmetrised k-nearest pairs; see :class:`Rule`."""
-        return ascending(_arcs(nearest(q, self.k, space)), len(q))
+        return f"k={self.k} {self.which}"
 
     def reach(self, milestones: int, space: Space) -> Reach:
         """Return that an end is joined to its k nearest; see :class:`Rule`."""
@@ -110,16 +102,21 @@ class KNearest:
 
 
 @dataclass(frozen=True)
-class KMutual:
+class KNearest(_ByNumber):
+    """``k symmetrised``: edge i-j iff i is among the k nearest of j, or j among those of i."""
+
+    which = "symmetrised"
+
+    def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
+        """Return the pairs of each with its k nearest; see :class:`Rule`."""
+        return ascending(_arcs(nearest(q, self.k, space)), len(q))
+
+
+@dataclass(frozen=True)
+class KMutual(_ByNumber):
     """``k mutual``: edge i-j iff i is among the k nearest of j, and j among those of i."""
 
-    k: int = 10
-
-    def __post_init__(self) -> None:
-        require_count("k", self.k)
-
-    def __str__(self) -> str:
-        return f"k={self.k} mutual"
+    which = "mutual"
 
     def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
         """Return the pairs that are near each other both ways; see :class:`Rule`."""
@@ -129,37 +126,23 @@ class KMutual:
         back = arcs[:, 1] * n + arcs[:, 0]
         return ascending(arcs[np.isin(there, back)], n)
 
-    def reach(self, milestones: int, space: Space) -> Reach:
-        """Return that an end is joined to its k nearest; see :class:`Rule`."""
-        return Reach(k=self.k)
-
 
 @dataclass(frozen=True)
-class KEarlier:
+class KEarlier(_ByNumber):
     """``k earlier``: each configuration is joined to its k nearest among those inserted before it.
 
     Start and goal are inserted first, then the milestones by their index: the order of OMPL's PRM, whose
     default strategy this is (k = 10).
     """
 
-    k: int = 10
-
-    def __post_init__(self) -> None:
-        require_count("k", self.k)
-
-    def __str__(self) -> str:
-        return f"k={self.k} earlier"
+    which = "earlier"
 
     def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
-        """Return the pairs of each configuration with its k nearest earlier ones; see :class:`Rule`."""
+        """Return the pairs of each with its k nearest earlier ones; see :class:`Rule`."""
         n = len(q)
         inserted = np.concatenate([np.arange(n - ends, n), np.arange(n - ends)])
         arcs = _arcs(nearest(q[inserted], self.k, space, earlier=True))
         return ascending(inserted[arcs], n)
-
-    def reach(self, milestones: int, space: Space) -> Reach:
-        """Return that an end that comes late is joined to its k nearest; see :class:`Rule`."""
-        return Reach(k=self.k)
 
 
 def _arcs(neighbours: Ints32) -> Ints32:
@@ -170,7 +153,7 @@ def _arcs(neighbours: Ints32) -> Ints32:
 
 
 @dataclass(frozen=True)
-class Radius:
+class Radius(Rule):
     """``radius``: edge i-j iff the distance is at most r, in the units of the space (Algorithm 1's r_N)."""
 
     r: float

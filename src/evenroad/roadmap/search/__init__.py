@@ -3,11 +3,10 @@
 from evenroad.roadmap.search.edge_states import BLOCKED as BLOCKED
 from evenroad.roadmap.search.edge_states import FREE as FREE
 from evenroad.roadmap.search.edge_states import UNKNOWN as UNKNOWN
-from evenroad.roadmap.search.edge_states import BudgetSpent as BudgetSpent
 from evenroad.roadmap.search.edge_states import EdgeStates as EdgeStates
+from evenroad.roadmap.search.edge_states import Known as Known
 from evenroad.roadmap.search.finders import FINDERS as FINDERS
-from evenroad.roadmap.search.finders import Found as Found
-from evenroad.roadmap.search.finders import SearchProblem as SearchProblem
+from evenroad.roadmap.search.finders import Finder as Finder
 from evenroad.roadmap.search.finders import find_any as find_any
 from evenroad.roadmap.search.finders import find_lazily as find_lazily
 from evenroad.roadmap.search.finders import march as march
@@ -15,7 +14,11 @@ from evenroad.roadmap.search.finders import search_problem as search_problem
 from evenroad.roadmap.search.graph import Graph as Graph
 from evenroad.roadmap.search.graph import components as components
 from evenroad.roadmap.search.graph import join as join
+from evenroad.roadmap.search.shortest import NOT_FOUND as NOT_FOUND
+from evenroad.roadmap.search.shortest import Ends as Ends
 from evenroad.roadmap.search.shortest import FixedPoint as FixedPoint
+from evenroad.roadmap.search.shortest import Found as Found
+from evenroad.roadmap.search.shortest import SearchProblem as SearchProblem
 from evenroad.roadmap.search.shortest import best_path as best_path
 from evenroad.roadmap.search.shortest import length_along as length_along
 from evenroad.roadmap.search.shortest import shortest_path as shortest_path

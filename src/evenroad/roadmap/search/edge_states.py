@@ -3,44 +3,17 @@
 from __future__ import annotations
 
 import math
-import time
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats, Ints32
-from evenroad.roadmap.stopwatch import Stopwatch
+from evenroad.roadmap.budget import BudgetSpent, Stopwatch, in_time
 from evenroad.world import World
 
 UNKNOWN, FREE, BLOCKED = np.int8(0), np.int8(1), np.int8(2)
 """What is known of an edge or a node."""
-
-_FIRST_BATCH = 32
-"""Rows asked about at first where time is limited."""
-_FAST = 0.02
-"""Seconds.  While batches take less, they grow; while they take more, they shrink."""
-
-
-class BudgetSpent(Exception):
-    """Nothing more may be checked; caught where the budget was given."""
-
-
-def in_time(rows: npt.NDArray[np.integer], deadline: float) -> Iterator[npt.NDArray[np.integer]]:
-    """Yield `rows` in batches, all at once if there is no deadline.
-
-    Raises BudgetSpent when the deadline (on the clock of ``time.perf_counter``) has passed and there are rows left.
-    """
-    size = _FIRST_BATCH if math.isfinite(deadline) else max(len(rows), 1)
-    first = 0
-    while first < len(rows):
-        began = time.perf_counter()
-        if began >= deadline:
-            raise BudgetSpent
-        yield rows[first : first + size]
-        first += size
-        size = 2 * size if time.perf_counter() - began < _FAST else max(size // 2, 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,24 +36,9 @@ class Known:
 class EdgeStates:
     """The states of nodes and edges, filled in as the world checks them; nothing is ever checked twice.
 
-    Parameters
-    ----------
-    configurations, edges : ndarray, shapes (nodes, dim) and (m, 2)
-        The graph; motions are checked from the first node of an edge to the second.
-    watch : Stopwatch, optional
-        Gets the seconds of the world's answers, as the phases ``validity`` and ``motions``.
-    most_motions : int, optional
-        How many motions may be checked.
-    deadline : float
-        When nothing may be checked any more, on the clock of ``time.perf_counter``.
-    known : Known, optional
-        What is known already, to be added to in place; its arrays are `node_states`, `edge_states` and `confirmed`
-        here.
-
-    Attributes
-    ----------
-    configurations_checked, motions_checked : int
-        How much was checked here.
+    Of `configurations`, (nodes, dim), and `edges`, (m, 2), whose motions are checked from the first node to the second.
+    What is `known` already is added to in place.  At most so many motions are checked, before the deadline, and
+    `configurations_checked` and `motions_checked` count; `watch` gets the phases ``validity`` and ``motions``.
     """
 
     def __init__(
@@ -101,10 +59,7 @@ class EdgeStates:
         self.most_motions, self.deadline = most_motions, deadline
 
     def ask_nodes(self, nodes: npt.NDArray[np.integer]) -> None:
-        """Ask the world about those of the nodes that are not known yet.
-
-        Raises BudgetSpent if the time was over before; what was asked is kept.
-        """
+        """Ask the world about those of the nodes that are not known yet; BudgetSpent if time does not allow all."""
         unknown = nodes[self.node_states[nodes] == UNKNOWN]
         for rows in in_time(unknown, self.deadline):
             with self.watch("validity"):
@@ -113,10 +68,7 @@ class EdgeStates:
             self.configurations_checked += len(rows)
 
     def ask_edges(self, edges: npt.NDArray[np.integer]) -> None:
-        """Ask the world about those of the edges that are not known yet, as many as the budget allows.
-
-        Raises BudgetSpent if there were more of them; what was asked is kept.
-        """
+        """Ask the world about those of the edges that are not known yet; BudgetSpent if there are too many."""
         unknown = edges[self.edge_states[edges] == UNKNOWN]
         wanted = len(unknown)
         if self.most_motions is not None:
@@ -130,8 +82,3 @@ class EdgeStates:
             self.motions_checked += len(rows)
         if len(unknown) < wanted:
             raise BudgetSpent
-
-    def open_edges(self) -> Ints32:
-        """Return the edges that are not known to be blocked, nor their nodes, shape (m', 2)."""
-        open_nodes = (self.node_states[self.edges] != BLOCKED).all(axis=1)
-        return self.edges[open_nodes & (self.edge_states != BLOCKED)]

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
-from evenroad._arrays import Bools, Ints, Ints32
+from evenroad._arrays import Ints, Ints32
 
 
 class Rows(NamedTuple):
@@ -23,13 +22,12 @@ class Rows(NamedTuple):
     edge: Ints32
 
     @classmethod
-    def of(cls, nodes: int, edges: Ints32, *, numbered_from: int = 0) -> Rows:
+    def of(cls, nodes: int, edges: Ints32, numbered_from: int = 0) -> Rows:
         """Return the rows of undirected edges, (m, 2), whose numbers begin with `numbered_from`."""
         return cls(*_rows(nodes, np.array(edges, dtype=np.int32), numbered_from))
 
 
-@dataclass(frozen=True, eq=False)
-class Graph:
+class Graph(NamedTuple):
     """Undirected edges, by node: fixed ones, and links of one query beside them.
 
     Both may be rows of the first nodes only: the others have no arcs there.
@@ -46,7 +44,7 @@ class Graph:
 
     def with_links(self, nodes: int, edges: Ints32, numbered_from: int) -> Graph:
         """Return this graph with so many nodes, and links instead of those that it has; O(nodes)."""
-        return replace(self, nodes=nodes, links=Rows.of(nodes, edges, numbered_from=numbered_from))
+        return Graph(nodes, self.fixed, Rows.of(nodes, edges, numbered_from))
 
 
 def components(nodes: int, edges: Ints32) -> Ints32:
@@ -56,22 +54,17 @@ def components(nodes: int, edges: Ints32) -> Ints32:
     return label
 
 
-def join(label: Ints32, edges: Ints32) -> Bools:
-    """Join components along edges, one after the other, in place; return for each edge whether it joined two.
-
-    `label` holds for every node the lowest node of its component, before and after.
-    """
-    return _join(label, np.array(edges, dtype=np.int32))
+def join(label: Ints32, edges: Ints32) -> None:
+    """Join components along edges, in place: `label` holds for every node the lowest node of its component."""
+    _join(label, np.array(edges, dtype=np.int32))
 
 
 @njit(cache=True, nogil=True)
 def _rows(nodes, edges, numbered_from):  # type: ignore[no-untyped-def]
     first = np.zeros(nodes + 1, dtype=np.int64)
-    for e in range(edges.shape[0]):
-        first[edges[e, 0] + 1] += 1
-        first[edges[e, 1] + 1] += 1
-    for v in range(nodes):
-        first[v + 1] += first[v]
+    for v in edges.ravel():
+        first[v + 1] += 1
+    first = np.cumsum(first)
     place = first[:-1].copy()
     other = np.empty(first[nodes], dtype=np.int32)
     edge = np.empty(first[nodes], dtype=np.int32)
@@ -90,7 +83,6 @@ _NO_LINKS = Rows(np.zeros(1, dtype=np.int64), np.empty(0, dtype=np.int32), np.em
 @njit(cache=True, nogil=True)
 def _join(root, edges):  # type: ignore[no-untyped-def]
     """Union-find; the root of a component is always its lowest node."""
-    joined = np.zeros(edges.shape[0], dtype=np.bool_)
     for e in range(edges.shape[0]):
         a, b = edges[e, 0], edges[e, 1]
         while root[a] != a:
@@ -99,7 +91,6 @@ def _join(root, edges):  # type: ignore[no-untyped-def]
         while root[b] != b:
             root[b] = root[root[b]]
             b = root[b]
-        joined[e] = a != b
         if a < b:
             root[b] = a
         else:
@@ -107,4 +98,3 @@ def _join(root, edges):  # type: ignore[no-untyped-def]
     for v in range(root.shape[0]):
         # Roots are lower than their children, so one ascending sweep flattens every tree.
         root[v] = root[root[v]]
-    return joined

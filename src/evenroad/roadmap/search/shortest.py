@@ -8,6 +8,7 @@ lower node, one well-defined path: a lazy search and a full one must find the sa
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +17,20 @@ from numba import njit
 from evenroad._arrays import Floats, Ints, Ints32
 from evenroad.roadmap.search.edge_states import BLOCKED, FREE
 from evenroad.roadmap.search.graph import Graph
+
+
+class Found(NamedTuple):
+    """The nodes of a path, start first, and its edges; both empty when there is none.
+
+    `reached` are the nodes of the tree, where one grew that says so.
+    """
+
+    nodes: Ints32
+    edges: Ints32
+    reached: int | None = None
+
+
+NOT_FOUND = Found(np.empty(0, dtype=np.int32), np.empty(0, dtype=np.int32))
 
 MOST = 1 << 61
 """What bounds are cut to: the sum of one and any path is still a 64-bit integer."""
@@ -52,86 +67,65 @@ class FixedPoint:
         return np.clip(least, 0.0, float(MOST)).astype(np.int64)
 
 
+@dataclass(frozen=True, eq=False)
+class Ends:
+    """From which node to which goals, (g,)."""
+
+    start: int
+    goals: Ints
+
+    @classmethod
+    def last(cls, nodes: int, goals: int) -> Ends:
+        """Return that of so many nodes the last ones are the start and then so many goals."""
+        return cls(nodes - goals - 1, np.arange(nodes - goals, nodes))
+
+
+@dataclass(frozen=True, eq=False)
+class SearchProblem(Ends):
+    """The ends in a graph: `weights`, (m,), are lengths of its edges, >= 1 (see `FixedPoint`).
+
+    `bounds`, (nodes,), are lower ones of the path from each node to the nearest goal.
+    """
+
+    graph: Graph
+    weights: Ints
+    bounds: Ints
+
+
 def best_path(
-    graph: Graph,
-    weights: Ints,
-    edge_states: npt.NDArray[np.int8],
-    node_states: npt.NDArray[np.int8],
-    bounds: Ints,
-    start: int,
-    goals: Ints,
-) -> tuple[Ints32, Ints32]:
+    problem: SearchProblem, edge_states: npt.NDArray[np.int8], node_states: npt.NDArray[np.int8]
+) -> Found:
     """Return the one shortest path from start to the nearest goal over nodes and edges that are not `BLOCKED`.
 
     The goals are one virtual node: each has an edge of length 0 to it, and the path to it is the answer.  Among
     equally short paths it is the one that, followed back from there, always goes to the lowest node.
     So it depends on the graph alone, and stays the answer when edges off it are removed: if all of a path
     found among unchecked edges turns out to be free, it is the path that a search of the free edges finds.
-
-    Parameters
-    ----------
-    graph : Graph
-        With the nodes `start` and `goals`.
-    weights : ndarray of int64, shape (m,)
-        Length of each edge, >= 1 (see `FixedPoint`).
-    edge_states, node_states : ndarray of int8, shape (m,) and (nodes,)
-        `UNKNOWN`, `FREE` or `BLOCKED`.
-    bounds : ndarray of int64, shape (nodes,)
-        Lower bounds of the path from each node to the nearest goal.
-    start : int
-        Node number.
-    goals : ndarray of int64, shape (g,)
-        Node numbers.
-
-    Returns
-    -------
-    nodes : ndarray of int32, shape (p,)
-        Start first, a goal last; empty when there is no path.
-    edges : ndarray of int32, shape (max(p - 1, 0),)
-        The edges along it.
     """
-    return _a_star(
-        graph.nodes, graph.fixed, graph.links, weights, edge_states, node_states, bounds, start, goals
-    )
+    graph, weights, bounds = problem.graph, problem.weights, problem.bounds
+    states, ends = (edge_states, node_states), (problem.start, problem.goals)
+    return Found(*_a_star(graph.nodes, graph.fixed, graph.links, weights, *states, bounds, *ends))
 
 
 def shortest_path(
     nodes: int, edges: Ints32, lengths: Floats, bounds: Floats, start: int, goal: int
 ) -> tuple[Ints32, float]:
-    """Return the shortest path from start to goal over edges, (m, 2), that are all free, and its length.
+    """Return the :func:`best_path` over edges, (m, 2), that are all free, and its length.
 
-    Parameters
-    ----------
-    lengths : ndarray, shape (m,)
-        Length of each edge, >= 0.
-    bounds : ndarray, shape (nodes,)
-        Consistent lower bound of the path from each node to the goal, e.g. its distance in the space.
-
-    Returns
-    -------
-    path : ndarray of int32, shape (p,)
-        Node numbers, start first; empty when the goal cannot be reached.  Of equally short paths, the one of
-        :func:`best_path`.
-    length : float
-        Its length, summed from the start; inf when there is none.
+    `lengths`, (m,), are >= 0, and `bounds`, (nodes,), consistent lower ones of the paths to the goal.  Where it cannot
+    be reached the path is empty and its length inf.
     """
-    fixed_point = FixedPoint.of(float(lengths.max(initial=0.0)), nodes)
-    path, along = best_path(
-        Graph.of(nodes, edges),
-        fixed_point.weights(lengths),
-        np.full(len(edges), FREE),
-        np.full(nodes, FREE),
-        fixed_point.bounds(bounds),
-        start,
-        np.array([goal]),
-    )
-    return path, length_along(lengths, along) if path.size else np.inf
+    unit = FixedPoint.of(float(lengths.max(initial=0.0)), nodes)
+    graph, weights, to_goal = Graph.of(nodes, edges), unit.weights(lengths), unit.bounds(bounds)
+    problem = SearchProblem(start, np.array([goal]), graph, weights, to_goal)
+    path, along, _ = best_path(problem, np.full(len(edges), FREE), np.full(nodes, FREE))
+    return path, length_along(lengths[along]) if path.size else np.inf
 
 
-def length_along(lengths: Floats, along: Ints32) -> float:
-    """Return the sum of the lengths of the edges `along` a path, from its start on."""
+def length_along(lengths: Floats) -> float:
+    """Return the sum of the lengths along a path, (p - 1,), one after the other from its start on."""
     total = 0.0
-    for length in lengths[along].tolist():
+    for length in lengths.tolist():
         total += length
     return total
 
@@ -141,11 +135,12 @@ def _a_star(nodes, fixed, links, weights, edge_states, node_states, bounds, star
     unseen = np.iinfo(np.int64).max
     is_goal = np.zeros(nodes, dtype=np.bool_)
     is_goal[goals] = True
-    reached_goal = -1
+    end = -1
     cost = np.full(nodes, unseen)
     parent = np.full(nodes, -1, dtype=np.int32)
     via = np.full(nodes, -1, dtype=np.int32)
-    # A binary heap of nodes by estimate, with the place of each node in it, -1 while it is not there.
+    # A binary heap of nodes by estimate, with the place of each node in it, -1 while it is not there: five times as
+    # fast as heapq.
     heap = np.empty(nodes, dtype=np.int32)
     keys = np.empty(nodes, dtype=np.int64)
     place = np.full(nodes, -1, dtype=np.int32)
@@ -153,62 +148,40 @@ def _a_star(nodes, fixed, links, weights, edge_states, node_states, bounds, star
     heap[0], keys[0], place[start] = start, bounds[start], 0
     size = 1
     # Ties with the goal are looked at too: one of them may have the lower node.
-    while size > 0 and (reached_goal < 0 or keys[0] <= cost[reached_goal]):
+    while size > 0 and (end < 0 or keys[0] <= cost[end]):
         node = heap[0]
         place[node] = -1
         size -= 1
         if size > 0:
             _sink(heap, keys, place, heap[size], keys[size], size)
         if is_goal[node]:
-            if (
-                reached_goal < 0
-                or cost[node] < cost[reached_goal]
-                or (cost[node] == cost[reached_goal] and node < reached_goal)
-            ):
-                reached_goal = node
+            if end < 0 or cost[node] < cost[end] or (cost[node] == cost[end] and node < end):
+                end = node
             continue
-        fixed_slot = fixed.first[node] if node + 1 < fixed.first.shape[0] else 0
-        fixed_end = fixed.first[node + 1] if node + 1 < fixed.first.shape[0] else 0
-        link_slot = links.first[node] if node + 1 < links.first.shape[0] else 0
-        link_end = links.first[node + 1] if node + 1 < links.first.shape[0] else 0
-        while fixed_slot < fixed_end or link_slot < link_end:
-            if fixed_slot < fixed_end:
-                e, neighbour = fixed.edge[fixed_slot], fixed.other[fixed_slot]
-                fixed_slot += 1
-            else:
-                e, neighbour = links.edge[link_slot], links.other[link_slot]
-                link_slot += 1
-            if edge_states[e] == BLOCKED or node_states[neighbour] == BLOCKED:
+        for rows in (fixed, links):
+            if node + 1 >= rows.first.shape[0]:
                 continue
-            reached = cost[node] + weights[e]
-            if reached < cost[neighbour]:
-                cost[neighbour] = reached
-                parent[neighbour] = node
-                via[neighbour] = e
-                hole = place[neighbour]
-                if hole < 0:
-                    hole = size
-                    size += 1
-                _rise(heap, keys, place, neighbour, reached + bounds[neighbour], hole)
-            elif reached == cost[neighbour] and node < parent[neighbour]:
-                parent[neighbour] = node
-                via[neighbour] = e
-    if reached_goal < 0:
+            for slot in range(rows.first[node], rows.first[node + 1]):
+                e, neighbour = rows.edge[slot], rows.other[slot]
+                if edge_states[e] == BLOCKED or node_states[neighbour] == BLOCKED:
+                    continue
+                reached = cost[node] + weights[e]
+                if reached < cost[neighbour]:
+                    cost[neighbour], parent[neighbour], via[neighbour] = reached, node, e
+                    hole = place[neighbour]
+                    if hole < 0:
+                        hole = size
+                        size += 1
+                    _rise(heap, keys, place, neighbour, reached + bounds[neighbour], hole)
+                elif reached == cost[neighbour] and node < parent[neighbour]:
+                    parent[neighbour], via[neighbour] = node, e
+    if end < 0:
         return np.empty(0, dtype=np.int32), np.empty(0, dtype=np.int32)
-    steps = 0
-    node = reached_goal
-    while node != start:
-        node = parent[node]
-        steps += 1
-    path_nodes = np.empty(steps + 1, dtype=np.int32)
-    path_edges = np.empty(steps, dtype=np.int32)
-    node = reached_goal
-    for i in range(steps, 0, -1):
-        path_nodes[i] = node
-        path_edges[i - 1] = via[node]
-        node = parent[node]
-    path_nodes[0] = start
-    return path_nodes, path_edges
+    path, along = [end], [np.int32(0) for _ in range(0)]
+    while path[-1] != start:
+        along.append(via[path[-1]])
+        path.append(parent[path[-1]])
+    return np.array(path, dtype=np.int32)[::-1].copy(), np.array(along, dtype=np.int32)[::-1].copy()
 
 
 @njit(cache=True, nogil=True, inline="always")

@@ -8,45 +8,47 @@ import numpy as np
 from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints32
-from evenroad.roadmap.neighbours.kdtree import k_nearest, pairs_within
+from evenroad.roadmap.kdtree import k_nearest, pairs_within
 from evenroad.space import Space
 from evenroad.space.flat import FlatMetric
 from evenroad.space.protocol import all_distances
 
+BLOCK = 1 << 16
+"""Distances held at once."""
+
 
 def nearest(q: Floats, k: int, space: Space | None = None, *, earlier: bool = False) -> Ints32:
-    """Return the k nearest other rows of every row, nearest first, ties to the lower index.
+    """Return the k nearest other rows of every row of `q`, (n, dim), nearest first, ties to the lower index.
 
-    Parameters
-    ----------
-    q : ndarray, shape (n, dim)
-        Configurations.
-    k : int
-        At least 1.
-    space : Space, optional
-        Whose metric counts; default: the Euclidean one.
-    earlier : bool
-        Only rows of a lower index count.
-
-    Returns
-    -------
-    ndarray of int32, shape (n, min(k, n - 1))
-        With `earlier`, row i ends with -1 where there are fewer than k.
+    By the metric of the space, or else the Euclidean one; shape (n, min(k, n - 1)).  With `earlier` only rows of a
+    lower index count, and row i ends with -1 where there are fewer than k.
     """
-    metric = flat_metric(space)
-    if space is not None and metric is None:
-        return k_nearest_in(space, q, k, earlier=earlier)
-    points, period = in_metric(q, metric)
-    return k_nearest(points, k, period, earlier=earlier)
+    n, metric = len(q), flat_metric(space)
+    k = min(k, n - 1)
+    if k < 1:
+        return np.empty((n, 0), dtype=np.int32)
+    if space is None or metric is not None:
+        return k_nearest(*in_metric(q, metric), k, earlier)
+    found = np.full((n, k), -1, dtype=np.int32)
+    for rows, distances in _blocks(space, q, earlier=earlier):
+        columns = np.arange(distances.shape[1])
+        for row, away in zip(range(n)[rows], distances, strict=True):
+            near = nearest_of(away, columns < row if earlier else columns != row, k)
+            found[row, : len(near)] = near
+    return found
 
 
 def within(q: Floats, radius: float, space: Space | None = None) -> Ints32:
     """Return every pair of rows i < j at distance <= `radius`, shape (m, 2), in no particular order."""
     metric = flat_metric(space)
-    if space is not None and metric is None:
-        return pairs_within_in(space, q, radius)
-    points, period = in_metric(q, metric)
-    return pairs_within(points, radius, period)
+    found = [np.empty((0, 2), dtype=np.int32)]
+    if space is None or metric is not None:
+        return pairs_within(*in_metric(q, metric), radius) if len(q) else found[0]
+    for rows, distances in _blocks(space, q):
+        row, column = np.nonzero(distances <= radius)
+        later = column > row + rows.start
+        found.append(np.stack([row[later] + rows.start, column[later]], axis=1).astype(np.int32))
+    return np.concatenate(found)
 
 
 def flat_metric(space: Space | None) -> FlatMetric | None:
@@ -66,43 +68,6 @@ def in_metric(q: Floats, metric: FlatMetric | None) -> tuple[Floats, Floats]:
         # The remainder of a tiny negative number rounds up to the period itself.
         points[points[:, axis] >= period[axis], axis] = 0.0
     return points, period
-
-
-BLOCK = 1 << 16
-"""Distances held at once."""
-
-
-def k_nearest_in(space: Space, q: Floats, k: int, *, earlier: bool = False) -> Ints32:
-    """Return what `kdtree.k_nearest` returns, by the distances of all pairs: O(n^2) time, O(n k) memory."""
-    n = len(q)
-    k = min(k, n - 1)
-    if k < 1:
-        return np.empty((n, 0), dtype=np.int32)
-    nearest = np.full((n, k), -1, dtype=np.int32)
-    for rows, distance in _blocks(space, q, earlier=earlier):
-        own = np.arange(rows.start, rows.stop)[:, np.newaxis]
-        others = np.arange(distance.shape[1])[np.newaxis]
-        distance[others >= own if earlier else others == own] = np.inf
-        last = min(k, distance.shape[1]) - 1
-        furthest = np.partition(distance, last, axis=1)[:, last : last + 1]
-        row, column = np.nonzero((distance <= furthest) & np.isfinite(distance))
-        # All that tie with the k-th are still here; sorting puts the lower index first.
-        order = np.lexsort((column, distance[row, column], row))
-        row, column = row[order], column[order]
-        rank = np.arange(len(row)) - np.searchsorted(row, row)
-        kept = rank < k
-        nearest[rows.start + row[kept], rank[kept]] = column[kept]
-    return nearest
-
-
-def pairs_within_in(space: Space, q: Floats, radius: float) -> Ints32:
-    """Return every pair i < j with ``space.distance`` <= `radius`, shape (m, 2), ascending."""
-    found = [np.empty((0, 2), dtype=np.int32)]
-    for rows, distance in _blocks(space, q):
-        row, column = np.nonzero(distance <= radius)
-        later = column > row + rows.start
-        found.append(np.stack([row[later] + rows.start, column[later]], axis=1).astype(np.int32))
-    return np.concatenate(found)
 
 
 def _blocks(space: Space, q: Floats, *, earlier: bool = False) -> Iterator[tuple[slice, Floats]]:
@@ -164,10 +129,8 @@ def _k_smallest(distances, usable, k, radius):  # type: ignore[no-untyped-def]
             continue
         slot = min(count, k - 1)
         while slot > 0 and nearest[slot - 1] > distance:
-            nearest[slot] = nearest[slot - 1]
-            rows[slot] = rows[slot - 1]
+            nearest[slot], rows[slot] = nearest[slot - 1], rows[slot - 1]
             slot -= 1
-        nearest[slot] = distance
-        rows[slot] = row
+        nearest[slot], rows[slot] = distance, row
         count = min(count + 1, k)
     return rows[:count].copy()
