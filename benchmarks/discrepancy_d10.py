@@ -21,9 +21,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from evenroad.points import PointSet, draw
-from evenroad.points.bank import open_bank
+from evenroad.points.bank import Bank
 from evenroad.points.measures import MEASURES
-from evenroad.points.samplers.sequences import Halton, Sobol
+from evenroad.points.samplers import Halton, Sobol
 
 D = 10
 COUNTS = (128, 256, 512, 1024)
@@ -31,7 +31,7 @@ DRAWS = 20
 
 
 def _pool(family: str, n: int, d: int) -> list[PointSet]:
-    bank = open_bank()
+    bank = Bank()
     return [PointSet(each) for each in bank.cell(family, n, d).load()] if bank.has(family, n, d) else []
 
 

@@ -26,8 +26,15 @@ import numpy as np
 
 from benchmarks.nested_k import NEVER, smallest_k
 from evenroad.research.bench.task import Problem
-from evenroad.research.problems.fair import CALIBRATED_AT
-from evenroad.research.problems.fair_worlds import BALLS, BOUNDED_AXES, BOXES, Family, Stream, make_instance
+from evenroad.research.problems.fair import (
+    BALLS,
+    BOUNDED_AXES,
+    BOXES,
+    CALIBRATED_AT,
+    Family,
+    Stream,
+    make_instance,
+)
 
 DENSE_WORLDS = {Family.SE3: 10}
 """Family -> worlds for the dense roadmap, where neighbours take seconds; 100 elsewhere."""

@@ -19,8 +19,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.stats import qmc
 
-from evenroad.points.measures import MEASURES, riesz_rooted_with_gradient
-from evenroad.points.optimise import anneal
+from evenroad.points.bank.anneal import anneal
+from evenroad.points.measures import MEASURES
+from evenroad.research.training.objective import parse_objective
 
 COUNTS = (128, 512, 1024, 2048)
 D = 10
@@ -67,6 +68,7 @@ def speed_table() -> None:
     print(
         f"{'measure':16} {'n':>5} {'value':>9} {'+gradient':>10} {'scipy/value':>12} {'autograd/+gradient':>19}"
     )
+    riesz = parse_objective("riesz")
     for n in COUNTS:
         points = np.random.default_rng(0).random((n, D))
         for name, measure in MEASURES.items():
@@ -82,16 +84,19 @@ def speed_table() -> None:
                 slow = milliseconds(lambda x=points: autograd_hickernell(torch, x), repeats=5)
                 autograd_ratio = f"{slow / both:.0f}"
             print(f"{name:16} {n:5} {value:9.3f} {both:10.3f} {scipy_ratio:>12} {autograd_ratio:>19}")
-        both = milliseconds(lambda x=points: riesz_rooted_with_gradient(x))
+        both = milliseconds(lambda x=points: riesz.with_gradient(x))
         print(f"{'riesz, s = 2d':16} {n:5} {'':9} {both:10.3f}")
 
 
 def annealing_table(counts: list[int], d: int, objective: str, steps: int, sets: int) -> None:
     print(f"d = {d}, {objective}, {steps} steps, seeds 0 .. {sets - 1}, one thread")
+    target = parse_objective(objective)
+    anneal(2, 2, target, steps=1)  # compiles
     for n in counts:
-        results = [anneal(n, d, objective, steps=steps, rng=seed) for seed in range(sets)]
+        began = time.perf_counter()
+        results = [anneal(n, d, target, steps=steps, rng=seed) for seed in range(sets)]
+        seconds = (time.perf_counter() - began) / sets
         values = [result.value for result in results]
-        seconds = statistics.median(result.seconds for result in results)
         print(
             f"n = {n:5}: mean {statistics.mean(values):.5f}, best {min(values):.5f}"
             f" (seed {int(np.argmin(values))}), {seconds:.1f} s a set",

@@ -20,7 +20,7 @@ from evenroad.geometry.mesh import merged
 from evenroad.research.problems import source_named
 from evenroad.roadmap import KNearest
 from evenroad.world import MeshWorld, SolidWorld, World
-from evenroad.world.mesh import surface_of
+from evenroad.world.solids import surface_of
 
 REPEATS = 7
 

@@ -98,29 +98,28 @@ class Truth:
         items = self.geometry.geometryObjects
         request, result = coal.CollisionRequest(), coal.CollisionResult()
         request.enable_contact = True
-        reach = []
         for item in items:
             item.geometry.computeLocalAABB()
-            reach.append((np.array(item.geometry.aabb_center), item.geometry.aabb_radius))
+        middles = [np.array(item.geometry.aabb_center) for item in items]
+        radii = np.array([item.geometry.aabb_radius for item in items])
+        every = [
+            (column, i, k)
+            for column, (first, second) in enumerate(self.pairs)
+            for i in self.of_link[first]
+            for k in self.of_link[second]
+        ]
+        _, one, two = np.array(every).T
         for row, values in enumerate(q):
             pinocchio.framesForwardKinematics(self.model, self.data, self._state(values))
             places = [self.data.oMi[item.parentJoint] * item.placement for item in items]
-            centres = [place.act(centre) for place, (centre, _) in zip(places, reach, strict=True)]
+            centres = np.array([place.act(middle) for place, middle in zip(places, middles, strict=True)])
             solid = [coal.Transform3s(place.rotation, place.translation) for place in places]
-            for column, (first, second) in enumerate(self.pairs):
-                for i in self.of_link[first]:
-                    for k in self.of_link[second]:
-                        if (
-                            hits[row, column]
-                            or np.linalg.norm(centres[i] - centres[k]) > reach[i][1] + reach[k][1]
-                        ):
-                            continue
-                        result.clear()
-                        hits[row, column] = bool(
-                            coal.collide(
-                                items[i].geometry, solid[i], items[k].geometry, solid[k], request, result
-                            )
-                        )
+            near = np.linalg.norm(centres[one] - centres[two], axis=1) <= radii[one] + radii[two]
+            for column, i, k in np.array(every)[near].tolist():
+                result.clear()
+                if not hits[row, column]:
+                    pair = items[i].geometry, solid[i], items[k].geometry, solid[k]
+                    hits[row, column] = bool(coal.collide(*pair, request, result))
         return hits
 
     def _state(self, values: np.ndarray) -> np.ndarray:

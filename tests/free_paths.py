@@ -15,7 +15,7 @@ from evenroad.robot.certified import CertifiedWorld
 from evenroad.space import SE2, SE3, Box
 from evenroad.space.path import subdivide
 from evenroad.world import FunctionWorld, GridMap
-from evenroad.world.gridmap.disk import DiskWorld
+from evenroad.world.gridmap import DiskWorld
 from evenroad.world.solids import OrientedBox, SolidWorld
 from tests.robot.kernel_arms import random_rotation
 from tests.robot.oracle import clearance

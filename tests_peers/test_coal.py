@@ -6,15 +6,15 @@ import coal
 import numpy as np
 import pytest
 
+from evenroad.geometry import TriangleMesh, load_mesh
 from evenroad.geometry.mesh import merged
 from evenroad.geometry.pose import rotation_from_quaternion, rotations_from_quaternions
 from evenroad.research.problems import source_named
 from evenroad.space import SE3, Box
 from evenroad.testing import WorldContract
 from evenroad.world import OrientedBox, SolidWorld
-from evenroad.world.mesh import MeshWorld, TriangleMesh, load_mesh, surface_of
-from evenroad.world.mesh.coal import Collider
-from evenroad.world.solids import shell
+from evenroad.world.mesh import Collider, MeshWorld
+from evenroad.world.solids import shell, surface_of
 from evenroad.world.solids.poses import as_poses
 
 NEAR = 1e-5

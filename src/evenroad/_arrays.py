@@ -1,4 +1,4 @@
-"""Arrays by what they hold; their shapes are said where they are used."""
+"""Arrays by what they hold, their shapes said where they are used; and the fields of frozen values."""
 
 from __future__ import annotations
 
@@ -11,3 +11,11 @@ Floats: TypeAlias = npt.NDArray[np.float64]
 Bools: TypeAlias = npt.NDArray[np.bool_]
 Ints: TypeAlias = npt.NDArray[np.int64]
 Ints32: TypeAlias = npt.NDArray[np.int32]
+
+
+def set_fields(value: object, **fields: object) -> None:
+    """Set fields of a frozen value while it is made; arrays become read-only."""
+    for name, field in fields.items():
+        if isinstance(field, np.ndarray):
+            field.setflags(write=False)
+        object.__setattr__(value, name, field)

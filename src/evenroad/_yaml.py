@@ -10,7 +10,8 @@ from typing import Any
 
 import yaml
 
-from evenroad.errors import BrokenFile, InvalidValue, UnknownName
+from evenroad._checks import require_known
+from evenroad.errors import BrokenFile, InvalidValue
 
 # libyaml where PyYAML was built with it: ten times as fast.
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -92,12 +93,12 @@ def require_keys(
 ) -> None:
     """Raise UnknownName for a key that is neither required nor optional, BrokenFile for one that is missing."""
     required = tuple(required)
+    known = (*required, *optional)
     for key in entry:
-        if key not in (*required, *optional):
-            raise UnknownName.among(f"key of {where}:", key, (*required, *optional))
+        require_known(f"key of {where}:", key, known)
     missing = [key for key in required if key not in entry]
     if missing:
-        raise BrokenFile(f"{where} lacks {', '.join(missing)}")
+        raise BrokenFile(f"{where} lacks {', '.join(missing)}; it needs {', '.join(required)}")
 
 
 def numbers(value: object, count: int, what: str) -> tuple[float, ...]:

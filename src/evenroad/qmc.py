@@ -61,8 +61,9 @@ class FamilyEngine(QMCEngine):
         super().__init__(d=d, optimization=optimization, rng=random)
         # What qmc_quad builds its further engines from.
         self._init_quad = {"d": d, "n": n, "optimization": optimization, **options}
-        drawn = make_sampler(self.family, **options).draw(self.n, d, rng=self.rng)
-        self.points: PointSet = randomise(drawn, rng=self.rng)
+        sampler = make_sampler(self.family, **options)
+        drawn = sampler.draw(self.n, d, rng=self.rng)
+        self.points: PointSet = randomise(drawn, sampler.symmetries, rng=self.rng)
 
     def fast_forward(self, n: object) -> FamilyEngine:
         """Skip the next n points; raises as :meth:`random` does."""

@@ -1,7 +1,7 @@
 import pytest
 
 from evenroad.research.report import page
-from evenroad.research.report.figures.canvas import new_figure
+from evenroad.research.report.charts import new_figure
 from tests.research.report.stores import made_up, solved, task, write_store
 
 

@@ -4,8 +4,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue, UnknownName
+from evenroad.points.samplers import Halton, Sobol
 from evenroad.points.samplers.lattice import Lattice
-from evenroad.points.samplers.sequences import Halton, Sobol
 from evenroad.research.mazes import load_maze
 from evenroad.roadmap import Budget, KEarlier, KNearest, Radius, Status, plan, plan_anytime
 from evenroad.roadmap.anytime import KnownPairs

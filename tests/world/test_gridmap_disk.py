@@ -10,7 +10,7 @@ import pytest
 from evenroad.errors import InvalidValue
 from evenroad.testing import WorldContract
 from evenroad.world import GridMap, MapFrame
-from evenroad.world.gridmap.disk import DiskWorld
+from evenroad.world.gridmap import DiskWorld
 from tests.world.gridmap_oracle import distance_to_obstacles
 
 

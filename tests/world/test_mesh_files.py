@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
+from evenroad.geometry import TriangleMesh, load_mesh
 from evenroad.geometry.mesh import merged
 from evenroad.space import SE2, SE3
-from evenroad.world import OrientedBox
-from evenroad.world.mesh import MeshWorld, TriangleMesh, load_mesh, surface_of
+from evenroad.world import MeshWorld, OrientedBox
+from evenroad.world.solids import surface_of
 
 CUBE = surface_of(OrientedBox.spanning((0, 0, 0), (1, 2, 3), name="cube"))
 SPACE = SE3([0, 0, 0], [1, 1, 1])

@@ -16,7 +16,7 @@ from evenroad.robot.reference.coal_world import asking_for_contacts, coal_shape,
 from evenroad.robot.reference.engine_world import EngineWorld
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
-from evenroad.world.mesh.coal import require_coal
+from evenroad.world.mesh import require_coal
 from tests_peers.engines.urdf_text import as_urdf
 
 

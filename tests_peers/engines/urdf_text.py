@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from xml.sax.saxutils import quoteattr
 
-from evenroad.geometry.pose import rpy_from_rotation
+import numpy as np
+
+from evenroad.geometry.pose import rotation_from_rpy
 from evenroad.robot.robot import Robot
 
 
@@ -34,7 +37,7 @@ def as_urdf(robot: Robot, meshes: Mapping[str, str] | None = None) -> str:
         lines += [
             f"<joint name={quoteattr(joint.name)} type={quoteattr(kind)}>",
             f"<parent link={quoteattr(joint.parent)}/><child link={quoteattr(joint.child)}/>",
-            f'<origin xyz="{_numbers(joint.xyz)}" rpy="{_numbers(rpy_from_rotation(joint.rotation))}"/>',
+            f'<origin xyz="{_numbers(joint.xyz)}" rpy="{_numbers(_rpy(joint.rotation))}"/>',
             f'<axis xyz="{_numbers(joint.axis)}"/><limit lower="-1e3" upper="1e3" velocity="1" effort="1"/>',
             "</joint>",
         ]
@@ -43,3 +46,13 @@ def as_urdf(robot: Robot, meshes: Mapping[str, str] | None = None) -> str:
 
 def _numbers(row: tuple[float, ...]) -> str:
     return " ".join(repr(float(number)) for number in row)
+
+
+def _rpy(rotation: tuple[float, ...]) -> tuple[float, ...]:
+    """Return roll, pitch and yaw of a rotation, (9,)."""
+    r = np.reshape(rotation, (3, 3))
+    pitch, yaw = math.atan2(-r[2, 0], math.hypot(r[0, 0], r[1, 0])), math.atan2(r[1, 0], r[0, 0])
+    # From the remaining rotation, not from the last row: near pitch = +-90 degrees yaw is ill-conditioned, and
+    # roll then compensates for it.
+    remaining = np.reshape(rotation_from_rpy(0.0, pitch, yaw), (3, 3)).T @ r
+    return math.atan2(remaining[2, 1], remaining[1, 1]), pitch, yaw

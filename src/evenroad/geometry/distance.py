@@ -10,10 +10,10 @@ from evenroad._arrays import Floats
 def segment_distance(first: Floats, second: Floats) -> Floats:
     """Return the distances of pairs of segments, (n, 2, 3) each, end points in the second axis: (n,).
 
-    Closest points of two segments after C. Ericson, Real-Time Collision Detection (2005), section 5.1.9: the
-    parameter on the second is that of the two lines, clamped; that on the first follows, clamped; the second
-    follows once more.  That of the lines comes from the parts across the first segment, which keeps its digits
-    where the two are nearly parallel.  A segment may be a point.
+    After C. Ericson, Real-Time Collision Detection (2005), section 5.1.9: the parameter on the second segment is that
+    of the two lines, clamped; that on the first follows, clamped; the second follows once more.  That of the lines
+    comes from the parts across the first segment, which keeps its digits where the two are nearly parallel.  A segment
+    may be a point.
     """
     along, other = first[:, 1] - first[:, 0], second[:, 1] - second[:, 0]
     between = first[:, 0] - second[:, 0]

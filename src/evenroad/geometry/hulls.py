@@ -17,8 +17,9 @@ SIDES = 32
 """Of the prism that stands for a cylinder: it reaches half a per cent of the radius beyond."""
 _FEW = 64
 """A hull of more corners is thinned."""
-_THINNED = 3e-4
-"""A thinned hull is widened by no more [m]."""
+_THINNED, _SHARE = 3e-4, 5e-3
+"""Thinned away is what sticks out of a hull by no more [m], or by no more in parts of its extent."""
+_SIDES_TRIED = 8
 _ROUNDING = 1e-9
 
 
@@ -59,15 +60,26 @@ def hull_around(points: Floats, radius: float, link: str) -> Hull:
 
 def _thinned(corners: Floats) -> tuple[Floats, float]:
     """Return some of a hull's corners, (n, 3), and a length that no other is farther away from their hull [m]."""
-    kept = np.unique((corners @ _directions(_FEW).T).argmax(axis=0))
+    from scipy.spatial import ConvexHull, QhullError
+
+    little = max(_THINNED, _SHARE * float(np.ptp(corners, axis=0).max()))
+    kept = np.unique((corners @ _directions(_FEW // 2).T).argmax(axis=0))
     while True:
-        away = _distances_from_hull(corners, corners[kept])
-        if away is None or len(kept) == len(corners):
+        few = corners[kept]
+        try:
+            hull = ConvexHull(few)
+        except QhullError:
             return corners, 0.0
-        away[kept] = 0.0
-        if away.max() <= _THINNED:
-            return corners[kept], float(away.max())
-        kept = np.union1d(kept, np.argsort(-away)[: _FEW // 4])
+        beyond = corners @ hull.equations[:, :3].T + hull.equations[:, 3]
+        most = beyond.max(axis=0)
+        if most.max() <= little:
+            break
+        kept = np.union1d(kept, beyond[:, most > max(0.7 * most.max(), little)].argmax(axis=0))
+    out = beyond.max(axis=1) > _ROUNDING
+    # The nearest side is one of those that a point is farthest beyond; any of them bounds its distance.
+    sides = few[hull.simplices[np.argsort(-beyond[out], axis=1)[:, :_SIDES_TRIED]]]
+    nearest = [_distances(corners[out], sides[:, k]) for k in range(sides.shape[1])]
+    return few, float(np.min(nearest, axis=0).max(initial=_ROUNDING))
 
 
 def _directions(count: int) -> Floats:
@@ -78,28 +90,18 @@ def _directions(count: int) -> Floats:
     return np.stack([around * np.cos(turn), around * np.sin(turn), z], axis=1)
 
 
-def _distances_from_hull(points: Floats, few: Floats) -> Floats | None:
-    """Return lengths, (n,), than which points are no farther away from the hull of a few; None where these are flat."""
-    from scipy.spatial import ConvexHull, QhullError
-
-    try:
-        hull = ConvexHull(few)
-    except QhullError:
-        return None
-    beyond = points @ hull.equations[:, :3].T + hull.equations[:, 3]
-    side = beyond.argmax(axis=1)
-    a, b, c = few[hull.simplices[side]].transpose(1, 0, 2)
-    # A point of the side that it is farthest beyond: its weights by least squares, those below zero cut.
-    e, f, r = b - a, c - a, points - a
-    ee, ef, ff, er, fr = (np.einsum("ni,ni->n", u, v) for u, v in ((e, e), (e, f), (f, f), (e, r), (f, r)))
-    area = np.maximum(ee * ff - ef * ef, 1e-300)
-    second, third = (
-        np.clip((ff * er - ef * fr) / area, 0.0, 1.0),
-        np.clip((ee * fr - ef * er) / area, 0.0, 1.0),
-    )
-    most = np.maximum(second + third, 1.0)
-    nearest = a + (second / most)[:, np.newaxis] * e + (third / most)[:, np.newaxis] * f
-    return np.where(beyond.max(axis=1) <= _ROUNDING, _ROUNDING, np.linalg.norm(points - nearest, axis=1))
+def _distances(points: Floats, sides: Floats) -> Floats:
+    """Return the distances of points, (n, 3), from triangles, (n, 3, 3)."""
+    normal = np.cross(sides[:, 1] - sides[:, 0], sides[:, 2] - sides[:, 0])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+    least, inside = np.full(len(points), np.inf), np.ones(len(points), dtype=np.bool_)
+    for i in range(3):
+        along, from_corner = sides[:, (i + 1) % 3] - sides[:, i], points - sides[:, i]
+        share = np.einsum("ni,ni->n", from_corner, along) / np.einsum("ni,ni->n", along, along)
+        apart = from_corner - np.clip(share, 0.0, 1.0)[:, np.newaxis] * along
+        least = np.minimum(least, np.linalg.norm(apart, axis=1))
+        inside &= np.einsum("ni,ni->n", np.cross(along, from_corner), normal) > 0.0
+    return np.where(inside, np.abs(np.einsum("ni,ni->n", points - sides[:, 0], normal)), least)
 
 
 @dataclass(frozen=True, eq=False)

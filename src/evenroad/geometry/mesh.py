@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from evenroad._arrays import Floats, Ints
+from evenroad._arrays import Floats, Ints, set_fields
 from evenroad._checks import as_batch, require_positive
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 
@@ -40,24 +40,20 @@ class TriangleMesh:
 
     def __post_init__(self) -> None:
         vertices = np.array(as_batch("vertices", self.vertices, 3))
+        wanted = "triangles must be a (t, 3) array of integers"
         try:
             triangles = np.array(self.triangles)
         except ValueError as error:
-            raise InvalidValue(f"triangles must be a (t, 3) array of integers: {error}") from None
+            raise InvalidValue(f"{wanted}: {error}") from None
         if triangles.ndim != 2 or triangles.shape[1] != 3 or not np.issubdtype(triangles.dtype, np.integer):
-            raise InvalidValue(
-                f"triangles must be a (t, 3) array of integers, got {triangles.dtype} of shape {triangles.shape}"
-            )
+            raise InvalidValue(f"{wanted}, got {triangles.dtype} of shape {triangles.shape}")
         if len(triangles) == 0:
             raise InvalidValue("a mesh must have one triangle or more: one without would never collide")
         if triangles.min() < 0 or triangles.max() >= len(vertices):
             raise InvalidValue(
                 f"triangles must name rows of the {len(vertices)} vertices, got {triangles.min()} .. {triangles.max()}"
             )
-        triangles = triangles.astype(np.int64)
-        for field, array in (("vertices", vertices), ("triangles", triangles)):
-            array.setflags(write=False)
-            object.__setattr__(self, field, array)
+        set_fields(self, vertices=vertices, triangles=triangles.astype(np.int64))
 
 
 def merged(meshes: tuple[TriangleMesh, ...]) -> TriangleMesh:
@@ -99,14 +95,9 @@ def load_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> TriangleMe
     Parameters
     ----------
     path : str or path
-        The file.  A scene of several meshes becomes one, each part where the scene has it.
+        A scene of several meshes becomes one, each part where the scene has it, named like the file.
     scale : float
         What the coordinates are multiplied by, > 0: 0.001 for an .stl in millimetres.
-
-    Returns
-    -------
-    TriangleMesh
-        Named like the file.
 
     Raises
     ------

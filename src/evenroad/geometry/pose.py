@@ -10,11 +10,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from operator import mul
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._arrays import Floats
+from evenroad._arrays import Floats, set_fields
 from evenroad._checks import FARTHEST, as_row
 from evenroad.errors import InvalidValue
 
@@ -36,23 +37,10 @@ def rotation_from_rpy(roll: float, pitch: float, yaw: float) -> tuple[float, ...
     )
 
 
-def rpy_from_rotation(rotation: Sequence[float]) -> Vector:
-    """Return roll, pitch and yaw of a rotation, (9,): the inverse of :func:`rotation_from_rpy`."""
-    r = np.reshape(rotation, (3, 3))
-    pitch, yaw = math.atan2(-r[2, 0], math.hypot(r[0, 0], r[1, 0])), math.atan2(r[1, 0], r[0, 0])
-    # From the remaining rotation, not from the last row: near pitch = +-90 degrees yaw is ill-conditioned, and
-    # roll then compensates for it.
-    remaining = np.reshape(rotation_from_rpy(0.0, pitch, yaw), (3, 3)).T @ r
-    return math.atan2(remaining[2, 1], remaining[1, 1]), pitch, yaw
-
-
 def rotation_from_heading(heading: float) -> tuple[float, ...]:
     """Return the rotation of the plane by `heading` radians, counter-clockwise, as (4,) rows.
 
-    Raises
-    ------
-    InvalidValue
-        If `heading` is not a finite number.
+    Raises InvalidValue if `heading` is not a finite number.
     """
     (angle,) = as_row("heading", [heading])
     return (math.cos(angle), -math.sin(angle), math.sin(angle), math.cos(angle))
@@ -61,16 +49,24 @@ def rotation_from_heading(heading: float) -> tuple[float, ...]:
 def rotation_from_quaternion(quaternion: Sequence[float]) -> tuple[float, ...]:
     """Return the rotation of a quaternion (w, x, y, z), which need not be of norm 1, as (9,) rows.
 
-    Raises
-    ------
-    InvalidValue
-        If it is not four finite numbers, or its norm is 0.
+    Raises InvalidValue if it is not four finite numbers, or its norm is 0.
     """
     row = as_row("quaternion", quaternion, 4)
     norm = math.hypot(*row)
     if norm == 0.0:
         raise InvalidValue("quaternion must have a norm > 0, got zeros")
     w, x, y, z = (number / norm for number in row)
+    return _of_unit_quaternion(w, x, y, z)
+
+
+def rotations_from_quaternions(quaternions: Floats) -> Floats:
+    """Return the matrices, (n, 3, 3), of quaternions (n, 4), w first and of any norm > 0."""
+    w, x, y, z = (quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)).T
+    return np.stack(_of_unit_quaternion(w, x, y, z), axis=1).reshape(-1, 3, 3)
+
+
+def _of_unit_quaternion(w: Any, x: Any, y: Any, z: Any) -> tuple[Any, ...]:
+    """Return the nine numbers of the rotation, row by row; of numbers or of arrays."""
     return (
         1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y),
         2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x),
@@ -78,22 +74,8 @@ def rotation_from_quaternion(quaternion: Sequence[float]) -> tuple[float, ...]:
     )  # fmt: skip
 
 
-def rotations_from_quaternions(quaternions: Floats) -> Floats:
-    """Return the matrices, (n, 3, 3), of quaternions (n, 4), w first and of any norm > 0."""
-    w, x, y, z = (quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)).T
-    rows = [
-        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-        [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-        [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
-    ]
-    return np.moveaxis(np.array(rows), 2, 0).copy()
-
-
 def rotation_from_z(axis: Sequence[float]) -> Floats:
-    """Return a rotation (3, 3) that takes the z axis to the direction `axis`.
-
-    Raises InvalidValue if `axis` has no direction.
-    """
+    """Return a rotation (3, 3) that takes the z axis to `axis`; InvalidValue if that has no direction."""
     z = np.array(axis, dtype=np.float64)
     length = float(np.linalg.norm(z))
     if not (math.isfinite(length) and length > 0.0):
@@ -108,10 +90,9 @@ def rotation_from_z(axis: Sequence[float]) -> Floats:
 
 
 def as_rotation(rotation: Sequence[float] | None, dim: int = 3) -> tuple[float, ...]:
-    """Return `rotation` as the (dim * dim,) rows of a rotation matrix; None is the identity.
+    """Return `rotation` as the (dim * dim,) rows of a rotation matrix, up to 1e-6; None is the identity.
 
-    Raises InvalidValue if it is not so many finite numbers, its rows are not perpendicular and of length 1 up to 1e-6,
-    or it is a reflection.
+    Raises InvalidValue if it is no rotation, or a reflection.
     """
     if rotation is None:
         return tuple(1.0 if i == j else 0.0 for i in range(dim) for j in range(dim))
@@ -131,6 +112,11 @@ def _determinant(rows: list[tuple[float, ...]]) -> float:
         return rows[0][0] * rows[1][1] - rows[0][1] * rows[1][0]
     (a, b, c), (d, e, f), (g, h, i) = rows
     return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
+
+
+def _three(xyz: Sequence[float]) -> Vector:
+    x, y, z = as_row("xyz", xyz, 3, within=FARTHEST)
+    return x, y, z
 
 
 @dataclass(frozen=True)
@@ -154,22 +140,21 @@ class Pose:
     rotation: tuple[float, ...] = NO_ROTATION
 
     def __post_init__(self) -> None:
-        x, y, z = as_row("xyz", self.xyz, 3, within=FARTHEST)
-        object.__setattr__(self, "xyz", (x, y, z))
+        set_fields(self, xyz=_three(self.xyz))
         if self.rotation is not NO_ROTATION:
             rotation = self.rotation.ravel() if isinstance(self.rotation, np.ndarray) else self.rotation
-            object.__setattr__(self, "rotation", as_rotation(rotation))
+            set_fields(self, rotation=as_rotation(rotation))
 
     @classmethod
     def from_rpy(cls, xyz: Sequence[float], rpy: Sequence[float]) -> Pose:
         """Return the pose of an origin [m], and roll, pitch and yaw [rad] as URDF has them."""
         roll, pitch, yaw = as_row("rpy", rpy, 3)
-        return cls._made(_three(xyz), rotation_from_rpy(roll, pitch, yaw))
+        return cls._made(xyz, rotation_from_rpy(roll, pitch, yaw))
 
     @classmethod
     def from_quaternion(cls, xyz: Sequence[float], quaternion: Sequence[float]) -> Pose:
         """Return the pose of an origin [m] and a quaternion (w, x, y, z) of any norm > 0."""
-        return cls._made(_three(xyz), rotation_from_quaternion(quaternion))
+        return cls._made(xyz, rotation_from_quaternion(quaternion))
 
     @classmethod
     def from_matrix(cls, matrix: npt.ArrayLike) -> Pose:
@@ -183,11 +168,10 @@ class Pose:
         return cls(_three(array[:3, 3].tolist()), tuple(array[:3, :3].ravel().tolist()))
 
     @classmethod
-    def _made(cls, xyz: Vector, rotation: tuple[float, ...]) -> Pose:
-        """Return a pose without checks: they take longest, and a rotation of angles or a quaternion is one."""
+    def _made(cls, xyz: Sequence[float], rotation: tuple[float, ...]) -> Pose:
+        """Return a pose whose rotation is one: to check that takes longest."""
         pose = object.__new__(cls)
-        object.__setattr__(pose, "xyz", xyz)
-        object.__setattr__(pose, "rotation", rotation)
+        set_fields(pose, xyz=_three(xyz), rotation=rotation)
         return pose
 
     @property
@@ -224,8 +208,3 @@ class Pose:
 
 
 IDENTITY = Pose()
-
-
-def _three(xyz: Sequence[float]) -> Vector:
-    x, y, z = as_row("xyz", xyz, 3, within=FARTHEST)
-    return x, y, z

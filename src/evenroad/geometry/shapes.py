@@ -7,14 +7,14 @@ world).  A new one is a class here, with its distance (``distance.py``) and its 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
 
-from evenroad._arrays import Floats
+from evenroad._arrays import Floats, set_fields
 from evenroad._checks import FARTHEST, as_row, require_known, require_positive
 from evenroad.errors import InvalidValue
 from evenroad.geometry.mesh import TriangleMesh, load_mesh, scaled, volume_of
@@ -42,7 +42,7 @@ class Shape:
     @property
     def size(self) -> tuple[float, ...]:
         """Its dimensions in a row, in the order of `dimensions` [m]."""
-        raise NotImplementedError
+        return tuple(getattr(self, name) for name, _ in self.dimensions)
 
     @property
     def volume(self) -> float:
@@ -51,6 +51,12 @@ class Shape:
 
     def __str__(self) -> str:
         return self.kind
+
+    def _require_lengths(self, *names: str) -> None:
+        """Keep dimensions as floats; InvalidValue for one that is no length > 0 [m]."""
+        for name in names:
+            what = f"the {name} of a {self.kind}"
+            set_fields(self, **{name: require_positive(what, getattr(self, name), at_most=FARTHEST)})
 
 
 @dataclass(frozen=True)
@@ -63,10 +69,9 @@ class Box(Shape):
     extents: Vector
 
     def __post_init__(self) -> None:
-        extents = as_row("the size of a box", self.extents, 3)
-        for extent in extents:
+        set_fields(self, extents=as_row("the size of a box", self.extents, 3))
+        for extent in self.extents:
             require_positive("the size of a box", extent, at_most=FARTHEST)
-        object.__setattr__(self, "extents", extents)
 
     @property
     def size(self) -> tuple[float, ...]:
@@ -89,14 +94,7 @@ class Sphere(Shape):
     radius: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(
-            self, "radius", require_positive("the radius of a sphere", self.radius, at_most=FARTHEST)
-        )
-
-    @property
-    def size(self) -> tuple[float, ...]:
-        """The radius [m]."""
-        return (self.radius,)
+        self._require_lengths("radius")
 
     @property
     def volume(self) -> float:
@@ -115,14 +113,7 @@ class Cylinder(Shape):
     length: float
 
     def __post_init__(self) -> None:
-        for name in ("radius", "length"):
-            number = require_positive(f"the {name} of a cylinder", getattr(self, name), at_most=FARTHEST)
-            object.__setattr__(self, name, number)
-
-    @property
-    def size(self) -> tuple[float, ...]:
-        """Radius and length [m]."""
-        return (self.radius, self.length)
+        self._require_lengths("radius", "length")
 
     @property
     def volume(self) -> float:
@@ -146,12 +137,9 @@ class Capsule(Shape):
 
     def __post_init__(self) -> None:
         for name in ("a", "b"):
-            object.__setattr__(
-                self, name, as_row(f"the end {name} of a capsule", getattr(self, name), 3, within=FARTHEST)
-            )
-        object.__setattr__(
-            self, "radius", require_positive("the radius of a capsule", self.radius, at_most=FARTHEST)
-        )
+            end = as_row(f"the end {name} of a capsule", getattr(self, name), 3, within=FARTHEST)
+            set_fields(self, **{name: end})
+        self._require_lengths("radius")
 
     @classmethod
     def along_z(cls, radius: float, length: float, pose: Pose = IDENTITY, link: str = WORLD) -> Capsule:
@@ -163,11 +151,6 @@ class Capsule(Shape):
     def length(self) -> float:
         """Length of the segment, without the caps [m]."""
         return math.dist(self.a, self.b)
-
-    @property
-    def size(self) -> tuple[float, ...]:
-        """Radius and length [m]."""
-        return (self.radius, self.length)
 
     @property
     def volume(self) -> float:
@@ -191,9 +174,8 @@ class Mesh(Shape):
         scale = as_row("the scale of a mesh", self.scale, 3)
         if 0.0 in scale:
             raise InvalidValue(f"the scale of {self} must not be 0, got {scale}: it would be flat")
-        object.__setattr__(self, "scale", scale)
-        if not isinstance(self.source, TriangleMesh):
-            object.__setattr__(self, "source", Path(self.source))
+        source = self.source if isinstance(self.source, TriangleMesh) else Path(self.source)
+        set_fields(self, scale=scale, source=source)
 
     @property
     def triangles(self) -> TriangleMesh:
@@ -225,10 +207,8 @@ class PointCloud(Shape):
             raise InvalidValue(
                 f"a point cloud must be an (n, 3) array of finite numbers, n >= 1, got shape {points.shape}"
             )
-        points.setflags(write=False)
-        object.__setattr__(self, "points", points)
         radius = require_positive("the radius of a point cloud", self.radius, or_zero=True)
-        object.__setattr__(self, "radius", radius)
+        set_fields(self, points=points, radius=radius)
 
 
 PRIMITIVES: dict[str, type[Shape]] = {shape.kind: shape for shape in (Box, Sphere, Cylinder, Capsule)}
@@ -255,17 +235,12 @@ def shape_of(kind: str, size: Sequence[float], pose: Pose = IDENTITY, link: str 
         If it has other dimensions, or one that is not a finite number > 0.
     """
     require_known("shape", kind, PRIMITIVES)
-    shape = PRIMITIVES[kind]
-    count = sum(count for _, count in shape.dimensions)
+    count = sum(count for _, count in PRIMITIVES[kind].dimensions)
     if len(size) != count:
         raise InvalidValue(f"a {kind} must have {count} size(s), got {size!r}")
-    if shape is Box:
-        return Box((size[0], size[1], size[2]), pose=pose, link=link)
-    if shape is Sphere:
-        return Sphere(size[0], pose=pose, link=link)
-    if shape is Cylinder:
-        return Cylinder(size[0], size[1], pose=pose, link=link)
-    return Capsule.along_z(size[0], size[1], pose, link)
+    numbers = [tuple(size)] if kind == Box.kind else size
+    make: Callable[..., Shape] = Capsule.along_z if kind == Capsule.kind else PRIMITIVES[kind]
+    return make(*numbers, pose=pose, link=link)
 
 
 def along_z(capsule: Capsule) -> Capsule | Sphere:
@@ -273,25 +248,23 @@ def along_z(capsule: Capsule) -> Capsule | Sphere:
     if capsule.a[:2] == capsule.b[:2] == (0.0, 0.0) and capsule.b[2] == -capsule.a[2] > 0.0:
         return capsule
     a, b = np.array(capsule.a), np.array(capsule.b)
-    x, y, z = (0.5 * (a + b)).tolist()
     length = float(np.linalg.norm(b - a))
+    axis = (b - a) / length if length > 0.0 else (0.0, 0.0, 1.0)
+    x, y, z = (0.5 * (a + b)).tolist()
+    pose = Pose((x, y, z), tuple(rotation_from_z(axis).ravel().tolist()))
+    if capsule.pose != IDENTITY:
+        pose = capsule.pose @ pose
     if length == 0.0:
-        return Sphere(capsule.radius, pose=_within(capsule.pose, Pose((x, y, z))), link=capsule.link)
-    rotation = rotation_from_z(((b - a) / length).tolist())
-    pose = _within(capsule.pose, Pose((x, y, z), tuple(rotation.ravel().tolist())))
+        return Sphere(capsule.radius, pose=pose, link=capsule.link)
     return Capsule.along_z(capsule.radius, length, pose, capsule.link)
 
 
 def without_pose(capsule: Capsule) -> Capsule:
     """Return the same body with its ends in the frame that its pose is given in."""
-    if capsule.pose is IDENTITY or capsule.pose == IDENTITY:
+    if capsule.pose == IDENTITY:
         return capsule
-    (ax, ay, az), (bx, by, bz) = (capsule.pose.apply(end).tolist() for end in (capsule.a, capsule.b))
-    return replace(capsule, a=(ax, ay, az), b=(bx, by, bz), pose=IDENTITY)
-
-
-def _within(outer: Pose, inner: Pose) -> Pose:
-    return inner if outer == IDENTITY else outer @ inner
+    a, b = (tuple(capsule.pose.apply(end).tolist()) for end in (capsule.a, capsule.b))
+    return replace(capsule, a=a, b=b, pose=IDENTITY)
 
 
 def _ball(radius: float) -> float:

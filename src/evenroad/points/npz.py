@@ -34,12 +34,7 @@ def save_array(path: Path, points: PointSet) -> None:
 def read_points(path: Path) -> PointSet:
     """Read a point set from ``.npz`` (see :func:`load_points`) or a plain ``.npy`` array, which has no origin.
 
-    Raises
-    ------
-    BrokenFile
-        If the file is missing or is neither.
-    InvalidValue
-        If a plain array is no point set: its shape, or a coordinate that is not in [0, 1).
+    Raises BrokenFile if the file is missing or is neither, InvalidValue if a plain array is no point set.
     """
     if str(path).endswith(".npz"):
         return load_points(path)

@@ -26,18 +26,17 @@ class Origin:
     Attributes
     ----------
     family, method : str
-        Name of the sampler or family (``halton``, ``hickernell``), and how it was made (``plain``, ``annealed``,
-        ``given``).
+        The sampler or family (``halton``, ``hickernell``), and how it was made (``plain``, ``annealed``, ``given``).
     objective : str
         The expression that was minimised, or "" for constructions.
     seed : int or None
-        The seed it was drawn with; None when a Generator was passed, or none was used.
+        None when a Generator was passed, or nothing was drawn.
     replica, steps : int or None
         Index of the set in its pool, and steps of the optimiser (trained families).
     start : int
-        Index of the first point in its sequence (sequences only, else 0).
+        Index of the first point (sequences only, else 0).
     version : str
-        Version of evenroad that made it.
+        Of evenroad, when it was made.
     """
 
     family: str
@@ -65,14 +64,8 @@ class PointSet:
     Parameters
     ----------
     points : array_like, shape (n, d)
-        Coordinates in [0, 1), finite, d >= 1; copied to a read-only C-contiguous float64 array.
+        Real numbers in [0, 1), d >= 1, else InvalidValue; copied to a read-only C-contiguous float64 array.
     origin : Origin
-        Where they came from.
-
-    Raises
-    ------
-    InvalidValue
-        If the array is not two-dimensional and numeric, or a coordinate is NaN or outside [0, 1).
     """
 
     points: Floats
@@ -125,16 +118,19 @@ class PointSet:
 def as_unit_points(points: object) -> Floats:
     """Return `points` as a C-contiguous float64 array of shape (n, d), checked to lie in [0, 1).
 
-    Raises InvalidValue naming the dtype where it is not one of real numbers, the shape, or the first bad coordinate
-    and its place.
+    Raises InvalidValue naming what is no real number, the shape, or the first bad coordinate and its place.
     """
     try:
         given = np.asarray(points)
-        _require_real(given)
+        # NumPy itself drops imaginary parts, parses text and counts seconds; a duration is an integer to its scalars.
+        if given.dtype.kind == "O":
+            for each in given.flat:
+                if not isinstance(each, Real | Decimal) or isinstance(each, np.timedelta64):
+                    raise TypeError(f"one is {shown(each)}")
+        elif given.dtype.kind not in "biuf":
+            raise TypeError(f"got dtype {given.dtype}")
         array = np.ascontiguousarray(given, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
-        if isinstance(error, InvalidValue):
-            raise
         raise InvalidValue(f"points must be an (n, d) array of numbers: {error}") from None
     if array.ndim != 2 or array.shape[1] < 1:
         raise InvalidValue(f"points must have shape (n, d) with d >= 1, got {array.shape}")
@@ -143,14 +139,3 @@ def as_unit_points(points: object) -> Floats:
         i, k = np.argwhere(bad)[0]
         raise InvalidValue(f"points must lie in [0, 1): coordinate [{i}, {k}] is {float(array[i, k])!r}")
     return array
-
-
-def _require_real(array: npt.NDArray[Any]) -> None:
-    """Raise InvalidValue unless all are real numbers: NumPy drops imaginary parts, parses text, counts seconds."""
-    if array.dtype.kind == "O":
-        for element in array.flat:
-            # A duration is an integer to NumPy's scalars.
-            if not isinstance(element, Real | Decimal) or isinstance(element, np.timedelta64):
-                raise InvalidValue(f"points must be an (n, d) array of numbers, one is {shown(element)}")
-    elif array.dtype.kind not in "biuf":
-        raise InvalidValue(f"points must be an (n, d) array of numbers, got dtype {array.dtype}")

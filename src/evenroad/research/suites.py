@@ -1,23 +1,20 @@
 """Suites: which tasks a benchmark has.
 
-``paper``: the experiments of Chahine et al. 2025, section 4, with more samplers and more runs.
-
-``fair``: every world is new, obstacles favour no place, and the difficulty was set by uniform points alone.  Run i
-plans in world i // 3 with set i: three sets a world, the same worlds for every sampler, N and rule.  So the three runs
-in one world are not independent of each other, and samplers are compared world by world.
+``paper``: the experiments of Chahine et al. 2025, section 4, with more samplers and more runs.  ``fair``: every world
+is new, obstacles favour no place, and the difficulty was set by uniform points alone.  Run i plans in world i // 3 with
+set i, the same worlds for every sampler, N and rule: samplers are compared world by world.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from evenroad._checks import require_count, require_known
 from evenroad.research.bench.samplers import SAMPLERS, why_not
 from evenroad.research.bench.task import Task
 from evenroad.research.problems import PROBLEMS
-from evenroad.research.problems.fair import FAIR_PROBLEMS, FairProblem
-from evenroad.research.problems.fair_worlds import Stream
+from evenroad.research.problems.fair import FAIR_PROBLEMS, FairProblem, Stream
 
 SEED = 1
 """Of the published results: it draws sets.  Widths and mazes were designed with other seeds, random worlds have one."""
@@ -25,8 +22,7 @@ SEED = 1
 COUNTS = (128, 256, 512, 1024)
 
 
-@dataclass(frozen=True)
-class Suite:
+class Suite(NamedTuple):
     """What to run: tasks in an order that suits caches, by problem and then by set; `name` labels their rows."""
 
     name: str
@@ -34,10 +30,7 @@ class Suite:
 
 
 def chosen_names(only: Iterable[str], known: Iterable[str]) -> tuple[str, ...]:
-    """Return those of the `known` problem names that `only` asks for, in the order of `known`; all if it is empty.
-
-    Raises UnknownName if one of `only` is not known; the text lists those that are.
-    """
+    """Return those of the `known` problem names that `only` asks for, in the order of `known`; all if it is empty."""
     known, wanted = tuple(known), tuple(only)
     for name in wanted:
         require_known("problem of this suite", name, known)
@@ -58,8 +51,7 @@ SYMMETRISED = "k=10 symmetrised"
 MAZE_COUNTS = (32, 64, 128, 256, 512, 1024)
 
 
-@dataclass(frozen=True)
-class Experiment:
+class Experiment(NamedTuple):
     """One row of figures: a problem with numbers of points N, and connection rules, each on the same sets.
 
     `whole_sets` says that sets give all coordinates, so that one set is one outcome; `search` is as in
@@ -101,23 +93,9 @@ EXPERIMENTS = (
 def paper_suite(runs: int = 400, seed: int = SEED, only: Iterable[str] = (), quick: bool = False) -> Suite:
     """Return the tasks of the paper's experiments with every sampler.
 
-    Parameters
-    ----------
-    runs : int
-        Runs of every cell; a sampler that has only one outcome there gets one.
-    seed : int
-        Root of all random numbers, >= 0.
-    only : iterable of str
-        Problems to keep; all if empty.
-    quick : bool
-        A taste: at most 40 runs, of at most 256 points.
-
-    Raises
-    ------
-    InvalidValue
-        If `runs` or `seed` is no such integer.
-    UnknownName
-        If `only` names a problem that the suite does not have; the text lists those that it has.
+    `runs` are those of every cell; a sampler that has only one outcome there gets one.  `seed` is the root of all
+    random numbers; `only` names the problems to keep, all if empty.  `quick` is a taste: at most 40 runs, of at most
+    256 points.
     """
     runs, seed = require_count("runs", runs), require_count("seed", seed, at_least=0)
     runs = min(runs, PAPER_QUICK_RUNS) if quick else runs
@@ -125,19 +103,21 @@ def paper_suite(runs: int = 400, seed: int = SEED, only: Iterable[str] = (), qui
     tasks: list[Task] = []
     for name in chosen_names(only, experiments):
         experiment = experiments[name]
-        for n in experiment.counts:
-            if quick and n > PAPER_QUICK_COUNT:
-                continue
-            for sampler in SAMPLERS:
-                if why_not(sampler, n, PROBLEMS[name].set_dim):
-                    continue
-                here = 1 if sampler == "sukharev" and experiment.whole_sets else runs
-                tasks += [
-                    Task(name, 0, sampler, n, rule, experiment.search, run, seed)
-                    for run in range(here)
-                    for rule in experiment.rules
-                ]
+        counts = [n for n in experiment.counts if not quick or n <= PAPER_QUICK_COUNT]
+        for sampler, n in _cells(name, counts):
+            here = 1 if sampler == "sukharev" and experiment.whole_sets else runs
+            tasks += [
+                Task(name, 0, sampler, n, rule, experiment.search, run, seed)
+                for run in range(here)
+                for rule in experiment.rules
+            ]
     return Suite("paper", tuple(tasks))
+
+
+def _cells(problem: str, counts: Iterable[int]) -> list[tuple[str, int]]:
+    """Return every sampler with every number of points that it has sets of for a problem."""
+    set_dim = PROBLEMS[problem].set_dim
+    return [(sampler, n) for n in counts for sampler in SAMPLERS if not why_not(sampler, n, set_dim)]
 
 
 # The fair suite.
@@ -160,10 +140,9 @@ FAIR_QUICK_RUNS = 30
 
 
 def fair_suite(runs: int = 400, seed: int = SEED, only: Iterable[str] = (), quick: bool = False) -> Suite:
-    """Return the tasks of the fair suite with every sampler; parameters and errors as :func:`paper_suite`.
+    """Return the tasks of the fair suite with every sampler; parameters as :func:`paper_suite`.
 
-    There are three runs in each world, but one with the Sukharev grid.  A quick suite has at most 30 runs, of the
-    middle difficulty and the calibration's N only.
+    A quick suite has at most 30 runs, of the middle difficulty and the calibration's N only.
     """
     runs, seed = require_count("runs", runs), require_count("seed", seed, at_least=0)
     runs = min(runs, FAIR_QUICK_RUNS) if quick else runs
@@ -174,13 +153,7 @@ def fair_suite(runs: int = 400, seed: int = SEED, only: Iterable[str] = (), quic
         main = problem.difficulty == MAIN_DIFFICULTY
         if quick and not main:
             continue
-        counts = tuple(sorted({*COUNTS, problem.n})) if main and not quick else (problem.n,)
-        cells = [
-            (sampler, n)
-            for n in counts
-            for sampler in SAMPLERS
-            if not why_not(sampler, n, PROBLEMS[name].set_dim)
-        ]
+        cells = _cells(name, sorted({*COUNTS, problem.n}) if main and not quick else (problem.n,))
         for instance in range(-(-runs // DRAWS)):
             for sampler, n in cells:
                 lazy = main and n == problem.n

@@ -22,10 +22,7 @@ THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"
 
 @dataclass(frozen=True)
 class Workers:
-    """How to make an executor, and again after its processes died; and how many calls one works on at a time.
-
-    `count` is asked again and again, as clusters may grow.
-    """
+    """How to make an executor, and again after its processes died; and how many calls one works on at a time now."""
 
     make: Callable[[], Executor]
     count: Callable[[Any], int]

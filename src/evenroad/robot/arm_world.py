@@ -41,8 +41,9 @@ class ArmWorld:
     """The configurations in which a robot touches neither a scene's obstacles nor itself.
 
     Configurations hold the values of the robot's group, in its order [rad or m].  Links are tested against each other
-    as capsules, in the robot's pairs; against obstacles a capsule is replaced by spheres that cover it, of at most
-    1.10 times its radius (`excess`), so that a verdict is never free where the capsule touches.
+    as capsules, in the robot's pairs, and where these touch as the robot's convex hulls, if it has any; against
+    obstacles a capsule is replaced by spheres that cover it, of at most 1.10 times its radius (`excess`), so that a
+    verdict is never free where the capsule touches.
 
     A motion is divided into ``n = ceil(distance / resolution)`` segments and free if all n + 1 ends of segments are.
     What lies between two states is not seen: `recheck` proves the motions of a path with no gap.

@@ -14,8 +14,9 @@ If at share t every capsule is farther than ``h D_c`` from every obstacle, and e
 ``h D_ce``, then nothing touches between the shares t - h and t + h.  So the motion's middle is tested with those
 margins, h one half; where that fails the motion is halved, and so on, into 2^15 pieces at most.  (The idea is
 that of F. Schwarzer, M. Saha and J.-C. Latombe, Adaptive Dynamic Collision Checking, 2005.)  Distances are those
-of the model: exact between capsules, and to obstacles from spheres that cover them.  The lanes prove sixteen pieces
-at once in single precision, with bodies larger by what that may lose; the backend "scalar" works in double precision.
+of the model: exact between capsules, and hulls, and to obstacles from spheres that cover them.  The lanes prove
+sixteen pieces at once in single precision, with bodies larger by what that may lose; the backend "scalar" works in
+double precision.
 
 "No" means blocked, or that somewhere the clearance is too small to tell.
 """

@@ -182,7 +182,9 @@ def _build(
     links = tuple(_link_body(urdf, link, capsules[link], link in given) for link in capsules)
     drawn_only = tuple(link for link in urdf.drawn_only if link not in capsules)
     return RobotModel(
-        replace(robot, pairs=pairs.tested, hulls=pairs.hulls, pairs_given=disabled is not None),
+        replace(
+            robot, pairs=pairs.tested, hulls=pairs.hulls, pairs_given=disabled is not None, resting=pairs.held
+        ),
         links,
         "computed" if disabled is None else "SRDF",
         pairs.dropped,

@@ -20,6 +20,9 @@ SAMPLES = 1000
 TOUCHING = "touch in every sample"
 """Why a pair is not tested whose shapes are in contact in all of them."""
 
+HELD_TOUCHING = "touch in every sample with the other joints where they are held"
+"""Why another is not, until these are held elsewhere."""
+
 _MOST_HULLS = 128
 """A link of so many is not split."""
 _ROUNDS = 12
@@ -36,13 +39,15 @@ Pieces = Mapping[str, Sequence[Piece]]
 class SelfPairs:
     """Pairs of links that are tested, in the order of the links; and the others with bodies, each with the reason.
 
-    Pairs in `always` are tested and touch in every sample.  `never_free` says which pair blocks most where some pair
+    Pairs in `always` are tested and touch in every sample; those in `held` are dropped only for where joints outside of
+    the group are held.  `never_free` says which pair blocks most where some pair
     touches in every sample; else it is empty.
     """
 
     tested: tuple[tuple[str, str], ...]
     dropped: tuple[tuple[str, str, str], ...]
     always: tuple[tuple[str, str], ...]
+    held: tuple[tuple[str, str], ...]
     hulls: tuple[Hull, ...]
     never_free: str
 
@@ -72,13 +77,14 @@ def self_pairs(
     candidates = [pair for pair in combinations(order, 2) if pair not in reasons]
     always = samples.judge(candidates)
     if disabled is None:
-        reasons |= dict.fromkeys(always, TOUCHING)
+        reasons |= always
     every = list(combinations(order, 2))
     tested = tuple(pair for pair in every if pair not in reasons)
     return SelfPairs(
         tested,
         tuple((*pair, reasons[pair]) for pair in every if pair in reasons),
         tuple(pair for pair in always if pair not in reasons),
+        tuple(pair for pair, why in reasons.items() if why == HELD_TOUCHING),
         _unless_round(piece.hull for link in order for piece in samples.pieces[link]),
         samples.never_free(tested),
     )
@@ -114,39 +120,45 @@ class _Samples:
     def __init__(self, robot: KinematicTree, pieces: dict[str, list[Piece]]) -> None:
         self.pieces = pieces
         self.touching: dict[tuple[str, str], Ints] = {}
+        self.looked_at = np.arange(0)
         poses = _sampled_poses(robot)
         self._poses = {link: poses[:, robot.links.index(link)] for link in pieces}
         self._parts = hull_trees({link: [(p.parts, p.radius) for p in of] for link, of in pieces.items()})
 
-    def judge(self, pairs: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
-        """Return the pairs whose shapes touch in all samples; split the hulls of others that touch too often."""
+    def judge(self, pairs: Sequence[tuple[str, str]]) -> dict[tuple[str, str], str]:
+        """Return the pairs whose shapes touch in all samples, or all of the group, each with which of the two it is.
+
+        The hulls of others that touch too often are split.
+        """
         every = np.arange(len(next(iter(self._poses.values()))))
-        some = self.looked_at = every[:: 1 + len(every) // _LOOKED_AT]
+        some, of_group = every[:: 1 + len(every) // _LOOKED_AT], every[-SAMPLES:]
+        self.looked_at = np.intersect1d(some, of_group)
         trees = self._hulls()
         balls = {link: trees.ball(link) for link in self.pieces}
         centres = {
             link: self._poses[link][some, :3, :3] @ ball[:3] + self._poses[link][some, :3, 3]
             for link, ball in balls.items()
         }
-        always, wrong = [], {}
+        always: dict[tuple[str, str], str] = {}
+        wrong = {}
         for first, second in pairs:
             reach = balls[first][3] + balls[second][3]
             rows = some[np.linalg.norm(centres[first] - centres[second], axis=1) <= reach]
             rows = rows[self._touching(trees, first, second, rows)]
             inside = self._touching(self._parts, first, second, rows)
             self.touching[first, second] = rows[inside]
-            if inside.sum() == len(some) and self._touching(self._parts, first, second, every).all():
-                always.append((first, second))
-            else:
-                wrong[first, second] = rows[~inside]
+            wrong[first, second] = rows[~inside]
+            if np.isin(self.looked_at, rows[inside]).all():
+                touching = self._touching(self._parts, first, second, every)
+                if touching[of_group].all():
+                    always[first, second] = TOUCHING if touching.all() else HELD_TOUCHING
         for _ in range(_ROUNDS):
             wrong = self._split({pair: rows for pair, rows in wrong.items() if len(rows) > _FEW * len(some)})
         return always
 
     def never_free(self, tested: Sequence[tuple[str, str]]) -> str:
         """Return which pair of those tested blocks most where one of them touches in all samples of the group."""
-        # The others are of all joints.
-        rows = self.looked_at[self.looked_at >= len(next(iter(self._poses.values()))) - SAMPLES]
+        rows = self.looked_at
         times = {pair: np.isin(rows, self.touching[pair]) for pair in tested}
         if not times or not np.any(list(times.values()), axis=0).all():
             return ""

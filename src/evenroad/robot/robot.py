@@ -47,6 +47,8 @@ class Robot:
     pairs_given : bool
         Whether `pairs` were given by somebody, as by an SRDF; else a pair that the group does not move and that touches
         where it is held is left out.
+    resting : tuple of pairs of str
+        Pairs that are not tested, for they touch whatever the group does as long as the others are held where they are.
     """
 
     name: str
@@ -59,6 +61,7 @@ class Robot:
     states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     hulls: tuple[Hull, ...] = ()
     pairs_given: bool = True
+    resting: tuple[tuple[str, str], ...] = ()
 
     def __post_init__(self) -> None:
         # The kernel takes the ends as they are: a capsule with a pose of its own gets them in its link's frame.
@@ -124,6 +127,7 @@ class Robot:
             capsules=(*self.capsules, *tool.capsules),
             held={**self.held, **tool.held},
             hulls=(*self.hulls, *tool.hulls),
+            resting=(*self.resting, *tool.resting),
         )
         between = tuple(
             pair
@@ -160,6 +164,7 @@ def _renamed(robot: Robot, prefix: str) -> Robot:
         pairs=tuple((prefix + first, prefix + second) for first, second in robot.pairs),
         held={prefix + name: value for name, value in robot.held.items()},
         hulls=tuple(replace(hull, link=prefix + hull.link) for hull in robot.hulls),
+        resting=tuple((prefix + first, prefix + second) for first, second in robot.resting),
     )
 
 
@@ -239,7 +244,10 @@ def with_group(robot: Robot, group: Sequence[str], held: Mapping[str, float] | N
         if name in group:
             raise InvalidValue(f"joint {name!r} is in the group: it is planned for and cannot be held")
         require_within(free[name], value, f"holding {robot.name!r}")
-    return replace(robot, group=tuple(group), held=held)
+    changed = replace(robot, group=tuple(group), held=held)
+    if robot.resting and (changed.group, held_values(changed)) != (robot.group, held_values(robot)):
+        return replace(changed, pairs=(*robot.pairs, *robot.resting), resting=())
+    return changed
 
 
 def in_scene(robot: Robot, scene: Scene) -> Robot:

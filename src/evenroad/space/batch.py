@@ -1,4 +1,4 @@
-"""Reading what callers give: batches of configurations and rows of parameters, with errors that name what is wrong."""
+"""Reading what callers give: batches of configurations and rows of parameters; InvalidValue names what is wrong."""
 
 from __future__ import annotations
 
@@ -14,10 +14,7 @@ from evenroad.errors import InvalidValue
 
 
 def as_batch_pair(a: object, b: object, dim: int) -> tuple[Floats, Floats]:
-    """Return the two ends `a` and `b` of a batch of motions, both checked by `as_batch`, of one length.
-
-    Raises InvalidValue as `as_batch`, or if the two have different lengths.
-    """
+    """Return the two ends of a batch of motions, both checked by `as_batch`, of one length."""
     first, second = as_batch("a", a, dim), as_batch("b", b, dim)
     if len(first) != len(second):
         raise InvalidValue(f"a and b must have the same length, got {len(first)} and {len(second)}")
@@ -25,10 +22,7 @@ def as_batch_pair(a: object, b: object, dim: int) -> tuple[Floats, Floats]:
 
 
 def as_cube_batch(u: object, cube_dim: int) -> Floats:
-    """Return `u` checked by `as_batch` and to lie in the closed unit cube.
-
-    Raises InvalidValue as `as_batch`, or naming the first entry outside [0, 1] and its place.
-    """
+    """Return `u` checked by `as_batch` and to lie in the closed unit cube."""
     unit = as_batch("u", u, cube_dim)
     outside = (unit < 0.0) | (unit > 1.0)
     if outside.any():
@@ -38,10 +32,7 @@ def as_cube_batch(u: object, cube_dim: int) -> Floats:
 
 
 def as_fractions(t: object, n: int) -> Floats:
-    """Return the fractions `t` of `n` motions, a scalar or (n,) in [0, 1], as a column (n, 1).
-
-    Raises InvalidValue if `t` has another shape, is no number, or lies outside [0, 1].
-    """
+    """Return the fractions `t` of `n` motions, a scalar or (n,) in [0, 1], as a column (n, 1)."""
     try:
         fraction = np.asarray(t, dtype=np.float64)
     except (TypeError, ValueError) as error:
@@ -54,10 +45,7 @@ def as_fractions(t: object, n: int) -> Floats:
 
 
 def as_bounds(low: Sequence[float], high: Sequence[float]) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Return `low` and `high` as rows of one length with ``low < high`` on every axis.
-
-    Raises InvalidValue naming the first axis whose bounds are not such.
-    """
+    """Return `low` and `high` as rows of one length with ``low < high`` on every axis."""
     lows = as_row("low", low)
     highs = as_row("high", high, len(lows))
     for k, (least, most) in enumerate(zip(lows, highs, strict=True)):
@@ -67,10 +55,7 @@ def as_bounds(low: Sequence[float], high: Sequence[float]) -> tuple[tuple[float,
 
 
 def as_weights(weights: Sequence[float] | None, length: int) -> tuple[float, ...]:
-    """Return `weights` as `length` floats > 0; None stands for ones.
-
-    Raises InvalidValue if they are not `length` finite numbers > 0.
-    """
+    """Return `weights` as `length` floats > 0; None stands for ones."""
     row = (1.0,) * length if weights is None else as_row("weights", weights, length)
     if min(row) <= 0.0:
         raise InvalidValue(f"weights must be > 0, got {weights!r}")

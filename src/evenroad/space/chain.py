@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from evenroad._arrays import Floats
+from evenroad._arrays import Floats, set_fields
 from evenroad._checks import require_count
 from evenroad.space.batch import as_batch, as_batch_pair
-from evenroad.space.flat import FlatSpace
+from evenroad.space.joints import FlatSpace
 
 
 @dataclass(frozen=True)
@@ -19,10 +19,9 @@ class ChainSpace(FlatSpace):
     """Angles of a chain of `joints` links, each ``1 / joints`` long, that lies in the plane and starts at the origin.
 
     A configuration is the (joints,) angles of each link against the one before, the first against the x axis, in
-    radians; any angle is taken, given back are angles in [-pi, pi).  The distance of two configurations is the sum,
-    over all links, of how far the far ends of the link are apart in the plane: the metric of OMPL's kinematic
-    chain benchmark.  Motions turn every joint the short way round at an even speed, which in this metric is neither
-    the shortest motion nor an even one.
+    radians; any angle is taken, given back are angles in [-pi, pi).  Distances are those of OMPL's kinematic chain
+    benchmark: how far the far ends of the links are apart in the plane, summed over the links.  Motions turn every
+    joint the short way round at an even speed, which in this metric is neither the shortest motion nor an even one.
 
     Parameters
     ----------
@@ -39,7 +38,7 @@ class ChainSpace(FlatSpace):
 
     def __post_init__(self) -> None:
         joints = require_count("joints", self.joints)
-        object.__setattr__(self, "joints", joints)
+        set_fields(self, joints=joints)
         self._set_axes((-math.pi,) * joints, (math.pi,) * joints, (True,) * joints, (1.0,) * joints)
 
     @property
@@ -53,26 +52,12 @@ class ChainSpace(FlatSpace):
         With the headings ``theta_j = q_1 + .. + q_j`` it is ``p_m = (1 / joints) sum_(j <= m) (cos theta_j, sin
         theta_j)``.
         """
-        first, second = as_batch_pair(a, b, self.joints)
-        return _distances(first, second)
+        return _distances(*as_batch_pair(a, b, self.joints))
 
     def all_distances(self, a: Floats, b: Floats) -> Floats:
         """Return the distances of all pairs of rows, (n, joints) and (m, joints), as (n, m)."""
-        return _all_distances(
-            _far_ends(as_batch("a", a, self.joints)), _far_ends(as_batch("b", b, self.joints))
-        )
-
-    def wrapped(self, q: Floats) -> Floats:
-        """Return `q`, (n, joints), with angles brought into [-pi, pi)."""
-        return self._canonical(as_batch("q", q, self.joints))
-
-
-@njit(cache=True, nogil=True)
-def _distances(a, b):  # type: ignore[no-untyped-def]
-    distances = np.empty(len(a))
-    for row in range(len(a)):
-        distances[row] = chain_distance(a[row], b[row])
-    return distances
+        first, second = as_batch("a", a, self.joints), as_batch("b", b, self.joints)
+        return _all_distances(_far_ends(first), _far_ends(second))
 
 
 @njit(cache=True, nogil=True)
@@ -86,6 +71,11 @@ def chain_distance(a: Floats, b: Floats) -> float:
         offset_y += math.sin(heading_a) - math.sin(heading_b)
         total += math.sqrt(offset_x * offset_x + offset_y * offset_y)
     return total / len(a)
+
+
+@njit(cache=True, nogil=True)
+def _distances(a, b):  # type: ignore[no-untyped-def]
+    return np.array([chain_distance(a[row], b[row]) for row in range(len(a))])
 
 
 @njit(cache=True, nogil=True)

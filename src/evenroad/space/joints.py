@@ -8,9 +8,97 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from evenroad._arrays import Bools, Floats, set_fields
 from evenroad.errors import InvalidValue
-from evenroad.space.batch import as_bounds, as_weights
-from evenroad.space.flat import FlatSpace
+from evenroad.space.batch import (
+    as_batch,
+    as_batch_pair,
+    as_bounds,
+    as_cube_batch,
+    as_fractions,
+    as_weights,
+)
+from evenroad.space.flat import FlatMetric
+from evenroad.space.protocol import Space
+
+
+class FlatSpace(Space):
+    """Base of the spaces whose axes are ranges, each bounded or wrapping; a subclass calls `_set_axes`.
+
+    A wrapping axis takes any number and gives one in its half-open range ``[low, high)``.
+    """
+
+    _low: Floats
+    _high: Floats
+    _flat: FlatMetric
+
+    def _set_axes(
+        self, low: Sequence[float], high: Sequence[float], wrapping: Sequence[bool], weights: Sequence[float]
+    ) -> None:
+        lows, highs = np.array(low), np.array(high)
+        period = np.where(wrapping, highs - lows, np.inf)
+        set_fields(self, _low=lows, _high=highs, _flat=FlatMetric(np.array(weights), period))
+
+    @property
+    def dim(self) -> int:
+        """Number of coordinates."""
+        return self._flat.dim
+
+    @property
+    def flat(self) -> FlatMetric:
+        """The metric as scales and periods of the coordinates."""
+        return self._flat
+
+    def from_cube(self, u: Floats) -> Floats:
+        """Return ``low + u (high - low)`` for `u` of shape (n, dim) in [0, 1]^dim, as (n, dim)."""
+        unit = as_cube_batch(u, self.dim)
+        # Rounding may carry a point past the upper bound.
+        return self._canonical(np.minimum(self._low + unit * (self._high - self._low), self._high))
+
+    def contains(self, q: Floats) -> Bools:
+        """Return for each row of `q`, (n, dim), whether its bounded axes are within their bounds: (n,)."""
+        batch = as_batch("q", q, self.dim)
+        within = (self._low <= batch) & (batch <= self._high)
+        return np.logical_and.reduce(within | self._flat.wrapping, axis=1)
+
+    def distance(self, a: Floats, b: Floats) -> Floats:
+        """Return ``sqrt(sum_k (weight_k difference_k)^2)``, wrapping axes the short way: (n, dim) twice -> (n,)."""
+        first, second = as_batch_pair(a, b, self.dim)
+        return self._flat.distance(self._canonical(first), self._canonical(second))
+
+    def all_distances(self, a: Floats, b: Floats) -> Floats:
+        """Return the distances of all pairs of rows, (n, dim) and (m, dim), as (n, m)."""
+        first, second = as_batch("a", a, self.dim), as_batch("b", b, self.dim)
+        return self._flat.all_distances(self._canonical(first), self._canonical(second))
+
+    def interpolate(self, a: Floats, b: Floats, t: Floats | float) -> Floats:
+        """Return the points a fraction `t`, scalar or (n,) in [0, 1], of the short motion from `a` to `b`.
+
+        Exact at both ends and never beyond them.  Between opposite places of a wrapping axis the motion is taken that
+        does not cross the ends of its range.
+        """
+        first, second = map(self._canonical, as_batch_pair(a, b, self.dim))
+        fraction = as_fractions(t, len(first))
+        between = first + fraction * self._flat.difference(first, second)
+        bounded = ~self._flat.wrapping
+        start, end = first[:, bounded], second[:, bounded]
+        # This form, unlike a + t (b - a), is exact at both ends; clipped, since a = b can still round.
+        straight = (1.0 - fraction) * start + fraction * end
+        between[:, bounded] = np.clip(straight, np.minimum(start, end), np.maximum(start, end))
+        return np.where(fraction == 1.0, second, self._canonical(between))
+
+    def wrapped(self, q: Floats) -> Floats:
+        """Return `q`, (n, dim), with wrapping axes brought into their ranges."""
+        return self._canonical(as_batch("q", q, self.dim))
+
+    def _canonical(self, q: Floats) -> Floats:
+        """Do as `wrapped`, for a sound batch."""
+        # What is in its range already is not rounded.
+        outside = ((q < self._low) | (q >= self._high)) & self._flat.wrapping
+        if not outside.any():
+            return q
+        wrapped = self._low + np.mod(q - self._low, self._high - self._low)
+        return np.where(outside, np.where(wrapped < self._high, wrapped, self._low), q)
 
 
 @dataclass(frozen=True)
@@ -37,8 +125,7 @@ class Box(FlatSpace):
     def __post_init__(self) -> None:
         low, high = as_bounds(self.low, self.high)
         weights = as_weights(self.weights, len(low))
-        for name, value in (("low", low), ("high", high), ("weights", weights)):
-            object.__setattr__(self, name, value)
+        set_fields(self, low=low, high=high, weights=weights)
         self._set_axes(low, high, (False,) * len(low), weights)
 
 
@@ -85,18 +172,14 @@ class JointSpace(FlatSpace):
         low, high = as_bounds(self.low, self.high)
         wrapping = _as_bools(self.wrapping, len(low))
         weights = as_weights(self.weights, len(low))
-        for name, value in (("low", low), ("high", high), ("wrapping", wrapping), ("weights", weights)):
-            object.__setattr__(self, name, value)
+        set_fields(self, low=low, high=high, wrapping=wrapping, weights=weights)
         self._set_axes(low, high, wrapping, weights)
 
 
 def _as_bools(wrapping: bool | Sequence[bool], length: int) -> tuple[bool, ...]:
     if isinstance(wrapping, bool | np.bool_):
         return (bool(wrapping),) * length
-    try:
-        row = tuple(wrapping)
-    except TypeError:
-        row = ()
+    row = tuple(wrapping) if isinstance(wrapping, Sequence | np.ndarray) else ()
     if len(row) != length or not all(isinstance(entry, bool | np.bool_) for entry in row):
         raise InvalidValue(f"wrapping must be a bool or {length} of them, got {wrapping!r}")
     return tuple(map(bool, row))

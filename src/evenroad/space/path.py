@@ -1,4 +1,4 @@
-"""Paths: waypoints, shape (p, dim), between which a robot moves by the shortest interpolation of its space."""
+"""Paths: waypoints, (p, dim), between which a robot moves by the shortest interpolation of its space."""
 
 from __future__ import annotations
 
@@ -24,12 +24,8 @@ def path_length(path: Floats, space: Space) -> float:
 def subdivide(path: Floats, space: Space, segments: npt.NDArray[np.integer]) -> tuple[Floats, Ints]:
     """Divide each motion of a path, (p, dim), p >= 1, into so many equal segments, (p - 1,), >= 1.
 
-    Returns
-    -------
-    states : ndarray, shape (s, dim)
-        The ends of all segments, ``s = 1 + sum(segments)``; waypoints are among them as they are.
-    own : ndarray of int64, shape (p,)
-        Which of the states are the waypoints.
+    Returns the ends of all segments, (1 + sum(segments), dim), waypoints as they are, and which of them are the
+    waypoints, (p,).
     """
     own = np.concatenate([[0], np.cumsum(segments)]).astype(np.int64)
     motion = np.repeat(np.arange(len(path) - 1), segments)
@@ -41,21 +37,10 @@ def subdivide(path: Floats, space: Space, segments: npt.NDArray[np.integer]) -> 
 
 
 def resample(path: Floats, space: Space, step: float) -> tuple[Floats, Ints]:
-    """Return states along a path that are at most `step` apart, its waypoints among them.
+    """Return states along a path, (s, dim), at most `step` apart, and in which motion each lies, (s,).
 
-    Each motion has ``max(1, ceil(length / step))`` equal segments; a path of one waypoint is one state.
-
-    Returns
-    -------
-    states : ndarray, shape (s, dim)
-        From the first waypoint to the last.
-    motion : ndarray of int64, shape (s,)
-        In which motion of the path each state lies; waypoints belong to the motion that ends there.
-
-    Raises
-    ------
-    InvalidValue
-        If `step` is not a finite number > 0.
+    Each motion has ``max(1, ceil(length / step))`` equal segments.  Waypoints are among the states, and belong to the
+    motion that ends there.  Raises InvalidValue if `step` is not a finite number > 0.
     """
     step = require_positive("step", step)
     segments = np.maximum(np.ceil(motion_lengths(path, space) / step), 1.0).astype(np.int64)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import reduce
 from typing import Literal
 
 import numpy as np
 
-from evenroad._arrays import Bools, Floats
+from evenroad._arrays import Bools, Floats, set_fields
 from evenroad._checks import require_known
 from evenroad.errors import InvalidValue
 from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions, as_weights
@@ -17,11 +18,9 @@ from evenroad.space.joints import Box, Circle
 from evenroad.space.protocol import Space, all_distances
 from evenroad.space.so3 import SO3
 
-_COMBINATIONS = ("sum", "l2")
-
 
 @dataclass(frozen=True)
-class Product:
+class Product(Space):
     """The space of tuples of one configuration from each part, their coordinates one after the other.
 
     A shortest path of the product is a shortest path in every part at once, each at its own even speed.
@@ -44,7 +43,7 @@ class Product:
     """
 
     parts: Sequence[Space]
-    weights: Sequence[float] | None = None
+    weights: Sequence[float] = None  # type: ignore[assignment]
     combine: Literal["sum", "l2"] = "sum"
     _flat: FlatMetric | None = field(init=False, repr=False, compare=False)
 
@@ -52,11 +51,10 @@ class Product:
         parts = tuple(self.parts)
         if not parts:
             raise InvalidValue("parts must be one space or more, got none")
-        require_known("combination", self.combine, _COMBINATIONS)
+        require_known("combination", self.combine, ("sum", "l2"))
         weights = as_weights(self.weights, len(parts))
-        object.__setattr__(self, "parts", parts)
-        object.__setattr__(self, "weights", weights)
-        object.__setattr__(self, "_flat", _flat_product(parts, weights, self.combine))
+        metric = _flat_product(parts, weights, self.combine)
+        set_fields(self, parts=parts, weights=weights, _flat=metric)
 
     @property
     def dim(self) -> int:
@@ -85,49 +83,36 @@ class Product:
 
     def distance(self, a: Floats, b: Floats) -> Floats:
         """Return the combined, weighted distances of the rows of two (n, dim) arrays, (n,)."""
-        assert self.weights is not None  # __post_init__ put numbers there
-        lengths = [w * own for w, own in zip(self.weights, self.part_distances(a, b), strict=True)]
-        total = lengths[0]
-        for length in lengths[1:]:
-            total = total + length if self.combine == "sum" else np.hypot(total, length)
-        return total
+        return self._combined(self.part_distances(a, b))
 
     def all_distances(self, a: Floats, b: Floats) -> Floats:
         """Return the distances of all pairs of rows, (n, dim) and (m, dim), as (n, m)."""
-        assert self.weights is not None  # __post_init__ put numbers there
-        first, second = self.split(as_batch("a", a, self.dim)), self.split(as_batch("b", b, self.dim))
-        total = np.zeros((len(a), len(b)))
-        for part, weight, own_first, own_second in zip(self.parts, self.weights, first, second, strict=True):
-            length = weight * all_distances(part, own_first, own_second)
-            total = total + length if self.combine == "sum" else np.hypot(total, length)
-        return total
+        first, second = as_batch("a", a, self.dim), as_batch("b", b, self.dim)
+        return self._combined(all_distances(*own) for own in self._part_by_part(first, second))
 
     def part_distances(self, a: Floats, b: Floats) -> list[Floats]:
         """Return for every part the distances in its own metric, without weights, each (n,)."""
-        first, second = as_batch_pair(a, b, self.dim)
-        return [
-            part.distance(own_first, own_second)
-            for part, own_first, own_second in zip(
-                self.parts, self.split(first), self.split(second), strict=True
-            )
-        ]
+        pairs = self._part_by_part(*as_batch_pair(a, b, self.dim))
+        return [part.distance(first, second) for part, first, second in pairs]
 
     def interpolate(self, a: Floats, b: Floats, t: Floats | float) -> Floats:
         """Return the points a fraction `t`, scalar or (n,) in [0, 1], of the motion in every part, (n, dim)."""
         first, second = as_batch_pair(a, b, self.dim)
         fraction = as_fractions(t, len(first))[:, 0]
-        return np.hstack(
-            [
-                part.interpolate(own_first, own_second, fraction)
-                for part, own_first, own_second in zip(
-                    self.parts, self.split(first), self.split(second), strict=True
-                )
-            ]
-        )
+        pairs = self._part_by_part(first, second)
+        return np.hstack([part.interpolate(start, end, fraction) for part, start, end in pairs])
 
     def split(self, q: Floats) -> list[Floats]:
         """Return the columns of `q`, (n, dim), that belong to each part."""
         return _split(q, [part.dim for part in self.parts])
+
+    def _part_by_part(self, a: Floats, b: Floats) -> Iterator[tuple[Space, Floats, Floats]]:
+        return zip(self.parts, self.split(a), self.split(b), strict=True)
+
+    def _combined(self, lengths: Iterable[Floats]) -> Floats:
+        """Return one distance out of those of the parts."""
+        weighted = (weight * length for weight, length in zip(self.weights, lengths, strict=True))
+        return reduce(np.add if self.combine == "sum" else np.hypot, weighted)
 
 
 def _split(q: Floats, widths: list[int]) -> list[Floats]:
@@ -135,11 +120,8 @@ def _split(q: Floats, widths: list[int]) -> list[Floats]:
 
 
 def _flat_product(parts: Sequence[Space], weights: Sequence[float], combine: str) -> FlatMetric | None:
-    metrics = [part.flat for part in parts]
-    if combine != "l2" and len(metrics) > 1:
-        return None
-    flat = [metric for metric in metrics if metric is not None]
-    if len(flat) < len(metrics):
+    flat = [part.flat for part in parts if part.flat is not None]
+    if len(flat) < len(parts) or (combine != "l2" and len(parts) > 1):
         return None
     return FlatMetric(
         scale=np.concatenate([weight * metric.scale for weight, metric in zip(weights, flat, strict=True)]),

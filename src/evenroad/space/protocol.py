@@ -14,9 +14,9 @@ from evenroad.space.flat import FlatMetric
 class Space(Protocol):
     """A set of configurations with a metric, and a map onto it from the unit cube, batch-first.
 
-    Implementations never write to their arguments and raise InvalidValue for a wrong shape or an entry that
-    is not finite.  A class that inherits from Space needs to write `dim`, `from_cube`, `distance` and
-    `interpolate` only; ``evenroad.testing.SpaceContract`` checks the rest.
+    Implementations never write to their arguments and raise InvalidValue for a wrong shape or an entry that is not
+    finite.  A class that inherits from Space needs to write `dim`, `from_cube`, `distance` and `interpolate` only;
+    ``evenroad.testing.SpaceContract`` checks the rest.
     """
 
     @property
@@ -54,8 +54,7 @@ class Space(Protocol):
 def all_distances(space: Space, a: Floats, b: Floats) -> Floats:
     """Return the distance of every row of `a`, (n, dim), from every row of `b`, (m, dim), as (n, m).
 
-    By the space's own ``all_distances(a, b)`` if it has one, which is a matter of speed alone: it gives what
-    ``distance`` gives, up to rounding.
+    Faster where the space has an ``all_distances(a, b)`` of its own; the same up to rounding.
     """
     own = getattr(space, "all_distances", None)
     if own is not None:

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from evenroad._arrays import Bools, Floats
+from evenroad._arrays import Bools, Floats, set_fields
 from evenroad._checks import as_row
 from evenroad.errors import InvalidValue
 from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions
 from evenroad.space.flat import FlatMetric
+from evenroad.space.protocol import Space
 
 _LARGEST_COSINE = 1e-9
 """Edges count as perpendicular up to this cosine: room for the rounding of a yaw, not for a slanted frame."""
@@ -21,7 +22,7 @@ _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
-class Rectangle:
+class Rectangle(Space):
     """The rectangle ``corner + s * edge_u + t * edge_v`` for s, t in [0, 1].
 
     Parameters
@@ -43,26 +44,18 @@ class Rectangle:
 
     def __post_init__(self) -> None:
         for name in ("corner", "edge_u", "edge_v"):
-            object.__setattr__(self, name, as_row(name, getattr(self, name), 2))
+            set_fields(self, **{name: as_row(name, getattr(self, name), 2)})
         lengths = math.hypot(*self.edge_u), math.hypot(*self.edge_v)
+        got = f"got {self.edge_u} and {self.edge_v}"
         if min(lengths) == 0.0 or not math.isfinite(lengths[0] * lengths[1]):
-            raise InvalidValue(
-                f"edge_u and edge_v must have a finite length > 0, got {self.edge_u} and {self.edge_v}"
-            )
+            raise InvalidValue(f"edge_u and edge_v must have a finite length > 0, {got}")
         cosine = sum(u / lengths[0] * (v / lengths[1]) for u, v in zip(self.edge_u, self.edge_v, strict=True))
         if abs(cosine) > _LARGEST_COSINE:
-            raise InvalidValue(
-                f"edge_u and edge_v must be perpendicular, got {self.edge_u} and {self.edge_v}"
-            )
+            raise InvalidValue(f"edge_u and edge_v must be perpendicular, {got}")
 
     @property
     def dim(self) -> int:
         """Number of coordinates: 2."""
-        return 2
-
-    @property
-    def cube_dim(self) -> int:
-        """Number of coordinates of a point of the cube: 2."""
         return 2
 
     @property

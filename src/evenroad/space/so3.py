@@ -11,16 +11,17 @@ from numba import njit
 from evenroad._arrays import Bools, Floats
 from evenroad.errors import InvalidValue
 from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions
+from evenroad.space.protocol import Space
 
 _UNIT_TOLERANCE = 1e-6
 """How far a norm may be from 1: room for quaternions read from a text file with seven digits."""
 
-_SMALL_ANGLE = 1e-8
+SMALL_ANGLE = 1e-8
 """Below it a chord and its arc agree to the last bit, and sin(angle) is too small to divide by safely."""
 
 
 @dataclass(frozen=True)
-class SO3:
+class SO3(Space):
     """The rotations of space as unit quaternions (w, x, y, z), of which q and -q are one rotation.
 
     The metric is ``arccos |q . q'|``, in radians: half the angle of the rotation from one to the other, at
@@ -36,11 +37,6 @@ class SO3:
     def cube_dim(self) -> int:
         """Number of coordinates of a point of the cube: 3."""
         return 3
-
-    @property
-    def flat(self) -> None:
-        """None: rotations are curved."""
-        return None
 
     def from_cube(self, u: Floats) -> Floats:
         """Map `u`, (n, 3) in [0, 1]^3, to quaternions, (n, 4), so that equal volumes get equal measure.
@@ -61,17 +57,14 @@ class SO3:
     def distance(self, a: Floats, b: Floats) -> Floats:
         """Return ``arccos |a . b|`` of the rows of two (n, 4) arrays, (n,), in [0, pi / 2].
 
-        Raises
-        ------
-        InvalidValue
-            If the shapes differ from that, or a row is not a unit quaternion.
+        Raises InvalidValue if a row is not a unit quaternion.
         """
-        first, second = self._unit_pair(a, b)
-        return _angle(first, _nearer_sign(first, second)[:, np.newaxis] * second)
+        return _angle(*_on_one_side(a, b))
 
     def all_distances(self, a: Floats, b: Floats) -> Floats:
         """Return the distances of all pairs of rows, (n, 4) and (m, 4), as (n, m).  Errors as `distance`."""
-        first, second = _unit_batch("a", a), _unit_batch("b", b)
+        first, second = as_batch("a", a, 4), as_batch("b", b, 4)
+        _require_units(a=first, b=second)
         return _all_angles(first, second)
 
     def interpolate(self, a: Floats, b: Floats, t: Floats | float) -> Floats:
@@ -80,31 +73,28 @@ class SO3:
         Spherical linear interpolation (K. Shoemake, SIGGRAPH 1985) towards b or -b, whichever is nearer, and
         towards b where they are equally near.  Exact at both ends.  Errors as `distance`.
         """
-        first, second = self._unit_pair(a, b)
+        first, nearer = _on_one_side(a, b)
         fraction = as_fractions(t, len(first))
-        nearer = _nearer_sign(first, second)[:, np.newaxis] * second
         angle = _angle(first, nearer)[:, np.newaxis]
-        sine = np.where(angle < _SMALL_ANGLE, 1.0, np.sin(angle))
-        from_first = np.where(angle < _SMALL_ANGLE, 1.0 - fraction, np.sin((1.0 - fraction) * angle) / sine)
-        from_second = np.where(angle < _SMALL_ANGLE, fraction, np.sin(fraction * angle) / sine)
-        between = from_first * first + from_second * nearer
+        is_small = angle < SMALL_ANGLE
+        sine = np.where(is_small, 1.0, np.sin(angle))
+        from_first = np.where(is_small, 1.0 - fraction, np.sin((1.0 - fraction) * angle) / sine)
+        from_nearer = np.where(is_small, fraction, np.sin(fraction * angle) / sine)
+        between = from_first * first + from_nearer * nearer
         between /= _norm(between)[:, np.newaxis]
-        return np.where(fraction == 0.0, first, np.where(fraction == 1.0, second, between))
-
-    def _unit_pair(self, a: object, b: object) -> tuple[Floats, Floats]:
-        first, second = as_batch_pair(a, b, 4)
-        return _unit_batch("a", first), _unit_batch("b", second)
+        # The end as it was given, with its own sign.
+        return np.where(fraction == 0.0, first, np.where(fraction == 1.0, b, between))
 
 
-def _unit_batch(name: str, q: object) -> Floats:
-    batch = as_batch(name, q, 4)
-    norm = _norm(batch)
-    wrong = np.flatnonzero(np.abs(norm - 1.0) > _UNIT_TOLERANCE)
-    if len(wrong):
-        raise InvalidValue(
-            f"{name} must hold unit quaternions: row {wrong[0]} has norm {float(norm[wrong[0]])!r}"
-        )
-    return batch
+def _require_units(**batches: Floats) -> None:
+    """Raise InvalidValue for a row that is not a quaternion of norm 1."""
+    for name, batch in batches.items():
+        norm = _norm(batch)
+        wrong = np.flatnonzero(np.abs(norm - 1.0) > _UNIT_TOLERANCE)
+        if len(wrong):
+            raise InvalidValue(
+                f"{name} must hold unit quaternions: row {wrong[0]} has norm {float(norm[wrong[0]])!r}"
+            )
 
 
 def _norm(q: Floats) -> Floats:
@@ -112,9 +102,13 @@ def _norm(q: Floats) -> Floats:
     return np.hypot(np.hypot(q[:, 0], q[:, 1]), np.hypot(q[:, 2], q[:, 3]))
 
 
-def _nearer_sign(a: Floats, b: Floats) -> Floats:
-    dot = a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2] + a[:, 3] * b[:, 3]
-    return np.where(dot < 0.0, -1.0, 1.0)
+def _on_one_side(a: Floats, b: Floats) -> tuple[Floats, Floats]:
+    """Return unit quaternions, (n, 4) each, those of `b` with the sign that brings them nearer to those of `a`."""
+    first, second = as_batch_pair(a, b, 4)
+    _require_units(a=first, b=second)
+    products = first * second
+    dot = products[:, 0] + products[:, 1] + products[:, 2] + products[:, 3]
+    return first, np.where(dot < 0.0, -1.0, 1.0)[:, np.newaxis] * second
 
 
 def _angle(a: Floats, b: Floats) -> Floats:

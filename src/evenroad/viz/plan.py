@@ -21,7 +21,7 @@ from evenroad.roadmap import PlanResult, Status
 from evenroad.viz import style
 
 if TYPE_CHECKING:
-    from evenroad.world.gridmap.disk import DiskWorld, Grid
+    from evenroad.world.gridmap import DiskWorld, GridMap
 
 LONG_SIDE_INCHES = 10.0
 DPI = 130
@@ -79,7 +79,7 @@ def _cells_with_components(result: PlanResult, world: DiskWorld) -> np.ndarray:
 _MAP_COLOURS = (style.FREE, style.OBSTACLE, style.UNKNOWN, style.START_COMPONENT, style.GOAL_COMPONENT)
 
 
-def _draw_map(axes: Axes, gridmap: Grid, kinds: np.ndarray) -> None:
+def _draw_map(axes: Axes, gridmap: GridMap, kinds: np.ndarray) -> None:
     frame = gridmap.frame
     # imshow draws in pixel coordinates; the affine map takes those to map units, yaw included.
     corners = frame.to_map(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]))

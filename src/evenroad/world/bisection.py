@@ -32,17 +32,10 @@ def require_few_segments(resolution: object, segments: float) -> None:
 
 
 def between_ends(segments: Ints, open_motions: Bools) -> Iterator[tuple[Ints, Ints]]:
-    """Yield the states of all motions level by level, as the motions' indices and the states' numbers.
+    """Yield the states between the ends of motions of so many segments, (m,), level by level, each once.
 
-    State k of n segments lies a fraction k / n along its motion.  All levels together hold each state once.
-
-    Parameters
-    ----------
-    segments : int64 array, shape (m,)
-        In how many segments each motion is divided, below 2^31.
-    open_motions : bool array, shape (m,)
-        Which motions are still of interest.  The caller may clear entries between two steps; no further
-        states of those motions are then yielded.
+    They are the motions' indices and the states' numbers; state k of n lies a fraction k / n along.  A motion is left
+    out from when the caller clears its entry in `open_motions`, (m,).
     """
     level = 1
     while True:
@@ -65,10 +58,9 @@ def between_ends(segments: Ints, open_motions: Bools) -> Iterator[tuple[Ints, In
 
 @njit(cache=True, nogil=True)
 def next_between(level: int, multiple: int, segments: int) -> tuple[int, int, int]:
-    """Return the next state between the ends of a motion of so many segments, with its place in the order.
+    """Return the next state of a motion of so many segments, after its place in the order: (level, multiple, state).
 
-    `level` and `multiple` are the place of the state before; 1 and -1 for the first.  State k of n lies a fraction k /
-    n along the motion; it is 0 where there are no more.
+    `level` and `multiple` are the place of the state before; 1 and -1 for the first.  The state is 0 after the last.
     """
     while True:
         multiple += 2

@@ -11,15 +11,13 @@ from evenroad.world.protocol import World
 
 @dataclass(eq=False)
 class Counting:
-    """Another world's answers, with counts of what was asked.  Not for several threads at once.
-
-    `configurations` counts those that `valid` was asked for, `motions` those of `motion_valid`; the states inside of
-    motions are not configurations here.
-    """
+    """Another world's answers, with counts of what was asked.  Not for several threads at once."""
 
     world: World
     configurations: int = 0
+    """That `valid` was asked for; the states inside of motions are not counted."""
     motions: int = 0
+    """That `motion_valid` was asked for."""
 
     def __post_init__(self) -> None:
         # Attributes, and only where the world has them, so that its optional protocols hold of both or of neither.
@@ -33,13 +31,13 @@ class Counting:
         return self.world.space
 
     def valid(self, q: Floats) -> Bools:
-        """Return the world's `valid`; each row counts as a configuration."""
+        """Return the world's `valid`."""
         answer = self.world.valid(q)
         self.configurations += len(answer)
         return answer
 
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
-        """Return the world's `motion_valid`; each row counts as a motion."""
+        """Return the world's `motion_valid`."""
         answer = self.world.motion_valid(a, b)
         self.motions += len(answer)
         return answer

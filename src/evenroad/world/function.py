@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from evenroad._arrays import Bools, Floats, Ints
+from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import as_row, require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.space import Product, Space
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.bisection import MOST_SEGMENTS, between_ends, require_few_segments
+
+OUTSIDE = "it lies outside the bounds of the space"
+"""Why a configuration is not free that the space does not contain."""
 
 FINER = 20
 """How many times as densely `FunctionWorld.recheck` looks at states."""
@@ -24,13 +27,12 @@ FINER = 20
 class FunctionWorld:
     """The configurations that a function calls free, and motions that are free at states close together.
 
-    A motion is divided into ``n = ceil(distance / resolution)`` segments of one length and free if all
-    n + 1 ends of segments are: the states of OMPL's DiscreteMotionValidator, which takes the first of them
-    for granted.  What lies between two states is not seen, so the resolution should be small beside the
-    thinnest obstacle.  The ends come first, then halves, quarters and so on (van der Corput's order), and a
-    motion is given up at the first state found blocked.  All motions of a batch advance together, so that
-    a vectorised function is called few times, with many states.  A path that is handed out is looked at more closely
-    (`recheck`): shortcutting tries so many motions that it would find the gaps between states.
+    A motion is divided into ``n = ceil(distance / resolution)`` segments of one length and free if all n + 1 ends of
+    segments are: the states of OMPL's DiscreteMotionValidator, which takes the first of them for granted.  What lies
+    between two states is not seen, so the resolution should be small beside the thinnest obstacle.  The ends come
+    first, then halves, quarters and so on (van der Corput's order), for all motions of a batch together, each until a
+    state of it is blocked: a vectorised function is called few times, with many states.  A path that is handed out is
+    looked at more closely (`recheck`): shortcutting tries so many motions that it would find the gaps between states.
 
     Parameters
     ----------
@@ -54,6 +56,9 @@ class FunctionWorld:
         If `is_valid` cannot be called, or `resolution` is not of that kind.
     """
 
+    proof: ClassVar[str] = "resolution"
+    """A function says nothing of what lies between two states, `recheck` or not."""
+
     space: Space
     is_valid: Callable[[Floats], Any]
     resolution: float | Sequence[float]
@@ -63,16 +68,12 @@ class FunctionWorld:
     def __post_init__(self) -> None:
         if not callable(self.is_valid):
             raise InvalidValue(f"is_valid must be a function, got {self.is_valid!r}")
-        object.__setattr__(self, "resolution", _as_resolution(self.resolution, self.space))
+        set_fields(self, resolution=_as_resolution(self.resolution, self.space))
 
     def valid(self, q: Floats) -> Bools:
         """Return which configurations, (n, dim), the space contains and the function calls free: (n,).
 
-        Raises
-        ------
-        InvalidValue
-            If `q` has another shape or an entry that is not finite, or the function's answer is not of the
-            kind described above.
+        Raises InvalidValue if `q` is no such batch, or the function's answer is not of the kind described above.
         """
         batch = as_batch("q", q, self.space.dim)
         free = self.space.contains(batch)
@@ -83,26 +84,12 @@ class FunctionWorld:
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
 
-        Raises
-        ------
-        InvalidValue
-            As `valid`; if the two differ in length; or if a motion has more than 2^30 states.
+        Raises InvalidValue as `valid`, if the two differ in length, or if a motion has more than 2^30 states.
         """
         return self._motions_free(*as_batch_pair(a, b, self.space.dim), finer=1)
 
-    @property
-    def proof(self) -> str:
-        """``resolution``: a function says nothing of what lies between two states, `recheck` or not."""
-        return "resolution"
-
     def recheck(self, path: Floats) -> Bools:
-        """Return which motions of a path, (p, dim), are free at a twentieth of the resolution: (p - 1,).
-
-        Raises
-        ------
-        InvalidValue
-            As `motion_valid`.
-        """
+        """Return which motions of a path, (p, dim), are free at a twentieth of the resolution: (p - 1,)."""
         waypoints = as_batch("path", path, self.space.dim)
         return self._motions_free(waypoints[:-1], waypoints[1:], finer=FINER)
 
@@ -122,10 +109,7 @@ class FunctionWorld:
     def fingerprint(self) -> str:
         """Return a text that two worlds of the same space, resolution and name share.
 
-        Raises
-        ------
-        NotAvailable
-            If the world has no name, or its space cannot be told from others.
+        Raises NotAvailable if the world has no name, or its space cannot be told from others.
         """
         if self.name is None:
             raise NotAvailable(
@@ -136,8 +120,12 @@ class FunctionWorld:
     def explain(self, q: Floats) -> str:
         """Return in words why one configuration, (dim,), is not free."""
         if not self.space.contains(np.asarray(q, dtype=np.float64)[np.newaxis])[0]:
-            return "it lies outside the bounds of the space"
-        return f"{_name_of(self.is_valid)} does not call it free"
+            return OUTSIDE
+        return f"{self._name} does not call it free"
+
+    @property
+    def _name(self) -> str:
+        return getattr(self.is_valid, "__name__", repr(self.is_valid))
 
     def _segments(self, a: Floats, b: Floats) -> Ints:
         if isinstance(self.resolution, float):
@@ -166,7 +154,7 @@ class FunctionWorld:
         answer = np.asarray(self.is_valid(states))
         if answer.shape != (len(states),) or answer.dtype != np.bool_:
             raise InvalidValue(
-                f"{_name_of(self.is_valid)} must return a bool array of shape ({len(states)},) for"
+                f"{self._name} must return a bool array of shape ({len(states)},) for"
                 f" configurations of shape {states.shape}, got {answer.dtype} of shape {answer.shape};"
                 " pass vectorised=False if it takes one configuration at a time"
             )
@@ -175,9 +163,7 @@ class FunctionWorld:
     def _ask_one(self, state: Floats) -> bool:
         answer = self.is_valid(state)
         if not isinstance(answer, bool | np.bool_):
-            raise InvalidValue(
-                f"{_name_of(self.is_valid)} must return a bool for one configuration, got {answer!r}"
-            )
+            raise InvalidValue(f"{self._name} must return a bool for one configuration, got {answer!r}")
         return bool(answer)
 
 
@@ -216,7 +202,3 @@ def _in_fixed_order(a: Floats, b: Floats) -> tuple[Floats, Floats]:
     first_difference = (a != b).argmax(axis=1)[:, np.newaxis]
     swap = np.take_along_axis(a, first_difference, axis=1) > np.take_along_axis(b, first_difference, axis=1)
     return np.where(swap, b, a), np.where(swap, a, b)
-
-
-def _name_of(function: Callable[..., Any]) -> str:
-    return getattr(function, "__name__", repr(function))

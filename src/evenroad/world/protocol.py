@@ -15,6 +15,9 @@ class World(Protocol):
     Implementations never write to their arguments, give every row the verdict that it would get alone, and
     raise InvalidValue for a wrong shape or an entry that is not finite.  A motion is the shortest
     interpolation of the space; it is free only if both of its ends are, and reversing it changes nothing.
+
+    A world may have a text `proof` that says what its verdict on a motion shows: ``exact`` (no gap, up to rounding),
+    ``certified`` (no gap) or ``resolution`` (states close together).  Of others nothing more is claimed than the last.
     """
 
     @property
@@ -54,35 +57,20 @@ class Rechecks(Protocol):
         ...
 
 
-@runtime_checkable
-class Proves(Protocol):
-    """A world that says what its verdict on a motion shows; of others nothing but ``resolution`` is claimed."""
-
-    @property
-    def proof(self) -> str:
-        """``exact`` (no gap, up to rounding), ``certified`` (no gap), or ``resolution`` (states close together)."""
-        ...
-
-
 @dataclass(frozen=True, eq=False)
 class Connection:
-    """What a world that plans by itself found between a start and its goals.
-
-    Attributes
-    ----------
-    path : float64 ndarray, shape (p, dim)
-        Waypoints from the start to one goal, every motion free; shape (0, dim) when there is none.
-    goal : int
-        Which of the goals the path ends at; -1 when there is none.
-    nodes, configurations, motions : int
-        Nodes grown, and states and motions checked.
-    """
+    """What a world that plans by itself found between a start and its goals."""
 
     path: Floats
+    """Waypoints from the start to one goal, (p, dim), every motion free; (0, dim) when there is none."""
     goal: int
+    """Which of the goals the path ends at; -1 when there is none."""
     nodes: int
+    """Grown."""
     configurations: int
+    """Checked."""
     motions: int
+    """Checked."""
 
 
 @runtime_checkable
@@ -113,13 +101,7 @@ class ConnectsAnew(ConnectsItself, Protocol):
     """A world whose own planner finds other paths when it is asked again; a planner that improves asks it often."""
 
     def connect_anew(
-        self,
-        start: Floats,
-        goals: Floats,
-        *,
-        variant: int,
-        most_motions: int,
-        seconds: float,
+        self, start: Floats, goals: Floats, *, variant: int, most_motions: int, seconds: float
     ) -> Connection:
         """As `connect`, planned in another way for each variant >= 1; the same one gives the same path."""
         ...

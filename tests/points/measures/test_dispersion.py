@@ -9,8 +9,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue, NotAvailable, UnknownName
-from evenroad.points.measures import dispersion_l2, dispersion_linf, dispersion_lower_bound, star_discrepancy
-from evenroad.points.optimise import anneal
+from evenroad.points.bank.anneal import anneal
+from evenroad.points.measures import (
+    MEASURES,
+    dispersion_l2,
+    dispersion_linf,
+    dispersion_lower_bound,
+    star_discrepancy,
+)
 
 GRID = {1: 501, 2: 101, 3: 31}
 
@@ -83,7 +89,7 @@ def test_the_search_goes_where_exact_does_not_and_repeats_itself():
 def test_linf_dispersion_is_at_most_the_root_of_the_star_discrepancy_on_even_sets(n, d):
     # The inequality behind the paper's guarantee for roadmaps.
     random = np.random.default_rng(n).random((n, d))
-    optimised = anneal(n, d, "star", steps=200).points
+    optimised = anneal(n, d, MEASURES["star"], steps=200).points
     for points in (random, optimised):
         assert dispersion_linf(points) <= star_discrepancy(points) ** (1 / d) + 1e-12
 

@@ -6,8 +6,7 @@ from scipy.spatial.distance import pdist
 
 from evenroad.errors import EvenroadError, InvalidValue, NotAvailable, UnknownName
 from evenroad.points import SAMPLERS, draw, make_sampler
-from evenroad.points.samplers import Lattice, Sukharev, Uniform
-from evenroad.points.samplers.sequences import Halton, Sobol
+from evenroad.points.samplers import Halton, Lattice, Sobol, Sukharev, Uniform
 from tests.points.samplers.sampler_contract import SamplerContract
 
 

@@ -13,5 +13,5 @@ def table_of(path):
     for field in fields(rows):
         if field.name not in ("seconds", "worker"):
             column = getattr(rows, field.name)
-            columns[field.name] = column.values().tolist() if isinstance(column, Labels) else column.tolist()
+            columns[field.name] = list(column) if isinstance(column, Labels) else column.tolist()
     return repr(columns)

@@ -36,7 +36,7 @@ def problems(monkeypatch):
         monkeypatch.setitem(PROBLEMS, name, source)
 
     yield add
-    for cache in (execute._fixed_problem, execute._random_problem, execute._milestones, execute._warm):
+    for cache in (execute._problem, execute._milestones, execute._warm):
         cache.cache_clear() if hasattr(cache, "cache_clear") else cache.clear()
 
 
@@ -142,7 +142,7 @@ def test_rules_share_a_set_and_its_validity(problems, monkeypatch):
         drawn.append(run)
         return uniform.draw(family, n, d, run, rng)
 
-    monkeypatch.setitem(SAMPLERS, "uniform", replace(uniform, draw=draw))
+    monkeypatch.setitem(SAMPLERS, "uniform", uniform._replace(draw=draw))
     for run in (100, 101):
         for k in (4, 6, 10):
             run_task(replace(TASK, run=run, rule=f"k={k} symmetrised"))

@@ -5,8 +5,8 @@ import pytest
 
 from evenroad.errors import NotAvailable, UnknownName
 from evenroad.points import draw
-from evenroad.points.bank import open_bank
-from evenroad.points.samplers.sequences import Halton, Sobol
+from evenroad.points.bank import Bank
+from evenroad.points.samplers import Halton, Sobol
 from evenroad.research.bench.samplers import SAMPLERS, draw_set, why_not
 
 
@@ -47,7 +47,7 @@ def test_runs_of_a_block_protocol_follow_each_other_in_the_sequence():
 
 def test_a_pool_set_is_named_by_its_number():
     points, set_id = _draw("hickernell", 64, 3, seed=4)
-    stored = open_bank().cell("hickernell", 64, 3).load()
+    stored = Bank().cell("hickernell", 64, 3).load()
     np.testing.assert_array_equal(points.points, stored[int(set_id)])
 
 
@@ -57,7 +57,7 @@ def test_many_runs_take_many_sets_of_the_pool():
 
 def test_from_five_dimensions_on_a_pool_set_comes_with_permuted_coordinates():
     points, set_id = _draw("hickernell", 64, 5, seed=4)
-    stored = open_bank().cell("hickernell", 64, 5).load()[int(set_id)]
+    stored = Bank().cell("hickernell", 64, 5).load()[int(set_id)]
     columns = {column.tobytes() for column in stored.T.astype(np.float64)}
     assert {column.tobytes() for column in points.points.T} == columns
     assert "permuted" in points.origin.method

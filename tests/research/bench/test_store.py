@@ -76,17 +76,7 @@ def test_rows_are_in_the_order_of_the_tasks_whatever_the_order_of_arrival(path, 
     ]
     _write(path, [(task, SOLVED) for task in tasks])
     rows = read_rows(path)
-    read = list(
-        zip(
-            *(
-                getattr(rows, name).values()
-                if hasattr(getattr(rows, name), "values")
-                else getattr(rows, name)
-                for name in asdict(TASK)
-            ),
-            strict=True,
-        )
-    )
+    read = list(zip(*(getattr(rows, name) for name in asdict(TASK)), strict=True))
     assert read == sorted(tuple(asdict(task).values()) for task in tasks)
     shuffled = [tasks[i] for i in np.random.default_rng(0).permutation(len(tasks))]
     _write(tmp_path / "other.db", [(task, SOLVED) for task in shuffled])
@@ -224,7 +214,7 @@ def test_an_interrupt_inside_a_commit_loses_no_row(path, after):
     _write(path, [(replace(TASK, run=5), replace(SOLVED, set_id="5"))])
     rows = read_rows(path)
     assert rows.run.tolist() == list(range(6))
-    assert rows.set_id.values().tolist() == list("012345")
+    assert [rows.set_id[row] for row in range(6)] == list("012345")
 
 
 def test_an_interrupt_inside_the_last_commit_leaves_the_rows_beside_the_store(path, tmp_path):

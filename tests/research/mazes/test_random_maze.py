@@ -7,8 +7,7 @@ import pytest
 from scipy import ndimage
 
 from evenroad.errors import InvalidValue
-from evenroad.research.mazes import LEVELS, MazeDesign, draw_maze, load_maze
-from evenroad.research.mazes.maze import FOLDER
+from evenroad.research.mazes import FOLDER, LEVELS, MazeDesign, draw_maze, load_maze
 
 SMALL = MazeDesign(cols=5, rows=4, wall=8, door=30, loops=0.2, width=300, height=240)
 

@@ -6,10 +6,10 @@ import pytest
 import torch
 
 from evenroad.errors import BrokenFile
-from evenroad.points.optimise import parse_objective
 from evenroad.research.network import NetworkConfig
 from evenroad.research.network import state as module
 from evenroad.research.network.state import advance, first_state, load_checkpoint, save_checkpoint, tensors_of
+from evenroad.research.training.objective import parse_objective
 
 CONFIG = NetworkConfig(8, 2, sets=2, width=4, layers=1, k=2, steps=10)
 CPU = torch.device("cpu")

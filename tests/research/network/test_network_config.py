@@ -1,4 +1,5 @@
 import json
+from dataclasses import asdict
 
 import numpy as np
 import pytest
@@ -47,14 +48,12 @@ def test_two_spellings_of_an_objective_are_the_same_config():
 
 def test_a_config_survives_json():
     config = NetworkConfig(16, 2, "star", radius=0.35, patience=None)
-    assert NetworkConfig(**json.loads(json.dumps(config.as_record()))) == config
+    assert NetworkConfig(**json.loads(json.dumps(asdict(config)))) == config
 
 
 def test_numbers_of_numpy_are_kept_as_plain_ones():
     config = NetworkConfig(np.int64(16), np.int32(2), rate=np.float32(0.5), radius=1)
-    assert (
-        json.loads(json.dumps(config.as_record())) == NetworkConfig(16, 2, rate=0.5, radius=1.0).as_record()
-    )
+    assert json.loads(json.dumps(asdict(config))) == asdict(NetworkConfig(16, 2, rate=0.5, radius=1.0))
 
 
 @pytest.mark.parametrize(

@@ -3,8 +3,8 @@ import pytest
 import torch
 
 from evenroad.errors import InvalidValue
-from evenroad.points.optimise import parse_objective
 from evenroad.research.network.model import objective_of_sets
+from evenroad.research.training.objective import parse_objective
 
 
 def torch_hickernell(points):

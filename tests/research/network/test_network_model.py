@@ -2,18 +2,11 @@ import numpy as np
 import pytest
 import torch
 
-from evenroad.research.network import NetworkConfig
-from evenroad.research.network.model import (
-    PointNetwork,
-    build_network,
-    draw_weights,
-    edges_of_sets,
-    instance_norm,
-)
+from evenroad.research.network.model import PointNetwork, edges_of_sets, instance_norm
 
 
 def network_for(d=2, width=8, layers=2, seed=0):
-    return build_network(NetworkConfig(16, d, width=width, layers=layers), np.random.default_rng(seed))
+    return PointNetwork(d, width, layers, np.random.default_rng(seed))
 
 
 def run(network, sets, k=3, radius=None):
@@ -47,8 +40,7 @@ def slow_layer(layer, points, edges, n):
 @pytest.mark.parametrize(("k", "radius"), [(1, None), (4, None), (4, 0.4), (4, 0.01)])
 def test_a_layer_is_the_sum_over_its_edges(k, radius):
     draws = np.random.default_rng(3)
-    network = PointNetwork(2, 6, 1).double()
-    draw_weights(network, draws)
+    network = PointNetwork(2, 6, 1, draws).double()
     layer = network.layers[0]
     edges = edges_of_sets(draws.random((2, 9, 2)), k, radius)
     points = torch.from_numpy(draws.standard_normal((18, 6)))

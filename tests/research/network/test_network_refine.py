@@ -3,8 +3,8 @@ import pytest
 
 from evenroad.errors import InvalidValue
 from evenroad.points import Origin, PointSet
-from evenroad.points.optimise import parse_objective
 from evenroad.research.network import refine
+from evenroad.research.training.objective import parse_objective
 
 TRAINED = [
     PointSet(

@@ -5,7 +5,7 @@ import signal
 import subprocess
 import sys
 import time
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -13,11 +13,11 @@ import torch
 
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 from evenroad.points import load_points
-from evenroad.points.optimise import parse_objective
 from evenroad.research.network import NetworkConfig, train
 from evenroad.research.network.config import choose_device
 from evenroad.research.network.state import TrainingState, advance, first_state, is_finished, learning_rate
 from evenroad.research.training import anneal_many
+from evenroad.research.training.objective import parse_objective
 
 TINY = NetworkConfig(16, 2, sets=3, width=8, layers=2, k=3, steps=40, seed=5)
 
@@ -219,7 +219,7 @@ def test_a_killed_training_leaves_a_checkpoint_that_resumes_bit_for_bit(tmp_path
     config = replace(TINY, steps=400)
     script = (
         "from evenroad.research.network import NetworkConfig, train\n"
-        f"train(NetworkConfig(**{config.as_record()!r}), folder={str(tmp_path)!r}, device='cpu',"
+        f"train(NetworkConfig(**{asdict(config)!r}), folder={str(tmp_path)!r}, device='cpu',"
         " checkpoint_seconds=0)\n"
     )
     process = subprocess.Popen([sys.executable, "-c", script])

@@ -7,12 +7,15 @@ import numpy as np
 import pytest
 
 from evenroad.research.problems import PROBLEMS
-from evenroad.research.problems.fair import CALIBRATED_AT, DIFFICULTIES, FAIR_PROBLEMS, SIZES
-from evenroad.research.problems.fair_worlds import (
+from evenroad.research.problems.fair import (
     BALLS,
     BODY,
     BODY_REACH,
     BOXES,
+    CALIBRATED_AT,
+    DIFFICULTIES,
+    FAIR_PROBLEMS,
+    SIZES,
     Family,
     Stream,
     draw_balls,

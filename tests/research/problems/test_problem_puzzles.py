@@ -9,8 +9,7 @@ import pytest
 
 from evenroad.points import draw
 from evenroad.research.problems import source_named
-from evenroad.research.problems.cubicles import cubicles, pillar
-from evenroad.research.problems.puzzles import twistycool
+from evenroad.research.problems.puzzles import cubicles, pillar, twistycool
 from evenroad.roadmap import KEarlier, KNearest, plan
 from evenroad.world import OrientedBox, SolidWorld
 

@@ -14,7 +14,7 @@ from evenroad.research.report.comparisons import comparisons_of
 from evenroad.research.report.fair import difficulty_of, dimension_of, generator_of, pooled
 from evenroad.research.report.runs import combined, first_rows, natural_key, sums_by_unit
 from evenroad.research.report.verdicts import load_expected, verdicts_of
-from evenroad.research.statistics import bonett_price, fisher_exact, holm, mcnemar_exact, wilson
+from evenroad.research.statistics.rates import bonett_price, fisher_exact, holm, mcnemar_exact, wilson
 from tests.research.report.stores import made_up, runs_from, solved, task, write_store
 
 LEGACY = {"rule": "k=10 earlier", "search": "stock"}
@@ -358,11 +358,10 @@ def test_sums_by_unit_are_those_of_a_loop():
     group[group == 2] = 3
     found = sums_by_unit(group, 5, unit, column)
     for g in range(5):
-        entries = found.of(g)
         of = {u: column[(group == g) & (unit == u)] for u in unit[group == g]}
-        assert found.unit[entries].tolist() == sorted(of)
-        assert found.sums[entries].tolist() == [of[u].sum() for u in sorted(of)]
-        assert found.runs[entries].tolist() == [len(of[u]) for u in sorted(of)]
+        assert found[g].unit.tolist() == sorted(of)
+        assert found[g].sums.tolist() == [of[u].sum() for u in sorted(of)]
+        assert found[g].runs.tolist() == [len(of[u]) for u in sorted(of)]
 
 
 def test_an_empty_store_is_analysed_to_nothing(tmp_path):

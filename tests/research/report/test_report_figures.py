@@ -5,15 +5,16 @@ import pytest
 from evenroad.errors import NotAvailable
 from evenroad.research.bench.samplers import SAMPLERS
 from evenroad.research.report.cells import cells_of
-from evenroad.research.report.fair import pooled
-from evenroad.research.report.figures.canvas import LOOKS, as_png
-from evenroad.research.report.figures.charts import (
+from evenroad.research.report.charts import (
+    LOOKS,
+    as_png,
     draw_curves,
     draw_fair_gains,
     draw_maze_success,
     maze_settings,
 )
-from evenroad.research.report.figures.scenes import draw_scene, scenes_among
+from evenroad.research.report.fair import pooled
+from evenroad.research.report.scenes import draw_scene, scenes_among
 from tests.research.report.stores import made_up, runs_from
 
 

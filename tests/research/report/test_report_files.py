@@ -13,7 +13,7 @@ from evenroad.errors import BrokenFile, NotAvailable, UnknownName
 from evenroad.research.bench.task import Outcome
 from evenroad.research.report import page as module
 from evenroad.research.report import write_report
-from evenroad.research.report.figures.canvas import new_figure
+from evenroad.research.report.charts import new_figure
 from tests.research.report.stores import made_up, solved, task, write_store
 
 LEGACY = {"rule": "k=10 earlier", "search": "stock"}

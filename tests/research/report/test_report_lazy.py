@@ -5,7 +5,7 @@ import pytest
 
 from evenroad.research.report.fair import lazy_checks, pooled, pooled_rules
 from evenroad.research.report.runs import Setting
-from evenroad.research.report.sections.suites import lazy_table
+from evenroad.research.report.sections import lazy_table
 from tests.research.report.stores import runs_from, solved, task
 
 RULES = ("k=4 symmetrised", "k=20 symmetrised")

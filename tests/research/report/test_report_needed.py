@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from evenroad.research.commands.report import _fewest
-from evenroad.research.report.analysis import needed_of, resampled_curves
+from evenroad.research.report.analysis import needed_of, resampled_rates
 from evenroad.research.report.cells import cells_of
-from evenroad.research.report.sections.settings import success_table
+from evenroad.research.report.sections import success_table
 from tests.research.report.stores import analysis_from, from_pool, runs_from, solved, task
 
 FRESH = ("",)
@@ -62,7 +62,7 @@ def test_runs_are_resampled_together_for_all_numbers_of_samples(tmp_path):
         rows.append((task(n=256, run=run), solved(run % 2 == 0 and run > 0)))
         rows.append((task(n=512, run=run), solved(run % 2 == 1)))
     curve = cells_of(runs_from(tmp_path / "a.db", rows))
-    (rates,) = resampled_curves([curve])
+    rates = resampled_rates(curve)
     assert np.all(rates[:, 1] <= rates[:, 0])
     assert rates[:, 0] + rates[:, 2] == pytest.approx(1.0)
     assert rates[:, 0].std() == pytest.approx(0.5 / np.sqrt(50), rel=0.06)
@@ -73,7 +73,7 @@ def test_cells_may_have_other_numbers_of_runs(tmp_path):
         "uniform", (0.8,), counts=(256,), runs=12
     )
     curve = cells_of(runs_from(tmp_path / "a.db", rows))
-    (rates,) = resampled_curves([curve])
+    rates = resampled_rates(curve)
     assert np.isfinite(rates).all()
     for column, cell in zip(rates.T, curve, strict=True):
         assert column.mean() == pytest.approx(cell.rate, abs=0.02)
@@ -86,18 +86,3 @@ def test_sixteen_sets_that_all_solve_leave_some_doubt(tmp_path):
     (needed,) = needed_of(cells_of(runs_from(tmp_path / "a.db", rows))).values()
     assert needed.low < needed.estimate < needed.high
     assert needed.high > 256
-
-
-def test_curves_that_are_resampled_together_are_as_if_alone(tmp_path):
-    rows = (
-        _curve("uniform", (0.3, 0.5, 1.0))
-        + _curve("lattice", (0.5, 0.7, 0.9))
-        + _curve("hickernell", (0.2, 0.4, 0.6), runs=30)
-    )
-    cells = cells_of(runs_from(tmp_path / "a.db", rows))
-    curves = [
-        [cell for cell in cells if cell.sampler == name] for name in ("uniform", "hickernell", "lattice")
-    ]
-    for together, curve in zip(resampled_curves(curves), curves, strict=True):
-        (alone,) = resampled_curves([curve])
-        assert np.array_equal(together, alone)

@@ -8,9 +8,9 @@ import pytest
 from evenroad.research.report.cells import cells_of
 from evenroad.research.report.comparisons import comparisons_of
 from evenroad.research.report.fair import pooled
-from evenroad.research.report.sections.settings import paired_tables, spread_table, success_table
-from evenroad.research.report.sections.suites import expected_table
-from evenroad.research.statistics import mcnemar_exact, sign_flip_test, student_interval, student_test, wilson
+from evenroad.research.report.sections import expected_table, paired_tables, spread_table, success_table
+from evenroad.research.statistics.rates import mcnemar_exact, student_interval, student_test, wilson
+from evenroad.research.statistics.units import sign_flip_test
 from tests.research.report.stores import analysis_from, from_pool, runs_from, solved, task
 
 HARD, EASY = (0.1,), (0.1, 0.9, 0.9, 0.9)

@@ -6,15 +6,8 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
-from evenroad.research.statistics import (
-    Interval,
-    clustered_rate,
-    effective_runs,
-    fisher_exact,
-    sets_difference,
-    sets_test,
-    wilson,
-)
+from evenroad.research.statistics.rates import Interval, fisher_exact, wilson
+from evenroad.research.statistics.units import clustered_rate, effective_runs, sets_difference, sets_test
 
 
 @pytest.mark.parametrize("sets", [4, 16, 40])

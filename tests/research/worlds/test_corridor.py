@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue, UnknownName
-from evenroad.research.worlds import Corridor, hypercube_legacy6
+from evenroad.research.problems import source_named
+from evenroad.research.worlds import Corridor
 from evenroad.testing import WorldContract
 
 
@@ -82,20 +83,18 @@ def test_the_two_sides_are_mirror_images_and_not_the_same():
     assert (Corridor(3, 0.3).valid(q) != Corridor(3, 0.3, side="demo").valid(q)).any()
 
 
+def free_volume(m, lam):
+    """Either all m coordinates are at most lam, or one k is the first above it and all others are on their side."""
+    return m * (1 - lam) * lam ** (m - 1) + lam**m
+
+
 @pytest.mark.parametrize(
     ("d", "lam", "checked"), [(2, 0.1, None), (3, 0.2, None), (6, 0.37, None), (4, 0.8, None), (10, 0.37, 6)]
 )
-def test_the_free_volume_is_the_share_of_free_points(d, lam, checked):
-    world = Corridor(d, lam, checked)
-    n = 200_000
-    share = world.valid(np.random.default_rng(3).random((n, d))).mean()
-    deviation = math.sqrt(world.free_volume * (1 - world.free_volume) / n)
-    assert abs(share - world.free_volume) < 4 * deviation
-
-
-def test_the_free_volumes_are_those_of_the_protocol():
-    assert Corridor(10, 0.37).free_volume == pytest.approx(0.00087, abs=1e-5)
-    assert hypercube_legacy6().free_volume == pytest.approx(6 * 0.63 * 0.37**5 + 0.37**6)
+def test_the_share_of_free_points_is_the_free_volume(d, lam, checked):
+    n, volume = 200_000, free_volume(checked or d, lam)
+    share = Corridor(d, lam, checked).valid(np.random.default_rng(3).random((n, d))).mean()
+    assert abs(share - volume) < 4 * math.sqrt(volume * (1 - volume) / n)
 
 
 @pytest.mark.parametrize(
@@ -154,11 +153,8 @@ def test_outside_the_cube_nothing_is_free():
 
 
 def test_the_legacy_problem_is_the_one_of_the_paper():
-    world = hypercube_legacy6()
+    world = source_named("hypercube-legacy6").make(0).world
     assert world == Corridor(10, 0.37, 6, "demo")
-    assert world.name == "hypercube-legacy6"
-    assert Corridor(10, 0.37).name == "hypercube"
-    assert Corridor(10, 0.37, checked=10).name == "hypercube"
     assert world.resolution == 0.001 * math.sqrt(10)
 
 

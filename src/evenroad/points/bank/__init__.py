@@ -2,6 +2,5 @@
 
 from evenroad.points.bank.bank import Bank as Bank
 from evenroad.points.bank.bank import Cell as Cell
-from evenroad.points.bank.bank import open_bank as open_bank
 from evenroad.points.bank.trained import TRAINED_FAMILIES as TRAINED_FAMILIES
 from evenroad.points.bank.trained import Trained as Trained

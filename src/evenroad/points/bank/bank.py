@@ -11,7 +11,6 @@ The index alone says what is in the bank: a file without a record is a build tha
 from __future__ import annotations
 
 import json
-import os
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -34,8 +33,7 @@ SEED = 20261121
 class Cell:
     """The pool of one family at one n and d: how its sets were made, and by which version.
 
-    `hashes` are those of the sets (``PointSet.hash`` of the stored float32 values); `measures` has the values of every
-    set.
+    `hashes` are the ``PointSet.hash`` of the stored float32 values; `measures` has the values of every set.
     """
 
     path: Path
@@ -54,7 +52,7 @@ class Cell:
         return len(self.hashes)
 
     def load(self) -> npt.NDArray[np.float32]:
-        """Return the sets, shape (sets, n, d), float32 in [0, 1), checked against the index.
+        """Return the sets, shape (sets, n, d), float32 in [0, 1).
 
         Raises BrokenFile if the file is missing or damaged, or a set does not have the hash of the index.
         """
@@ -63,19 +61,13 @@ class Cell:
 
 @dataclass(frozen=True)
 class Bank:
-    """A folder of trained sets; see the module for its layout."""
+    """A folder of trained sets, by default the one that ships; see the module for its layout."""
 
-    folder: Path
+    folder: Path = DATA
 
-    def families(self) -> list[str]:
-        """Return the names of the families, sorted."""
-        return sorted(_index(self.folder))
-
-    def counts(self, family: str, d: int) -> list[int]:
-        """Return the n that a family has in d dimensions, ascending; empty when it has none."""
-        index = _index(self.folder)
-        require_known("family in the bank:", family, index)
-        return sorted(int(n) for n in index[family].get(str(d), {}))
+    def has(self, family: str, n: int, d: int) -> bool:
+        """Say whether the bank holds a pool of this family at this n and d."""
+        return str(n) in _index(self.folder).get(family, {}).get(str(d), {})
 
     def cell(self, family: str, n: int, d: int) -> Cell:
         """Return the pool of one family at one n and d.
@@ -83,46 +75,32 @@ class Bank:
         UnknownName if the bank has no such family, NotAvailable, with what there is, if the family has no such pool;
         BrokenFile if the index is damaged.
         """
-        counts = self.counts(family, d)
-        if n not in counts:
-            raise NotAvailable(self._what_there_is(family, n, d, counts))
-        record = _index(self.folder)[family][str(d)][str(n)]
+        index = _index(self.folder)
+        require_known("family in the bank:", family, index)
+        cells = index[family].get(str(d), {})
+        if not cells:
+            raise NotAvailable(f"{family} has no sets in d={d}; it has d = {_listed(index[family])}")
+        if str(n) not in cells:
+            raise NotAvailable(f"{family} has no set of n={n} in d={d}; it has n = {_listed(cells)}")
+        record = cells[str(n)]
         try:
-            return Cell(
-                path=self.folder / family / cell_name(n, d),
-                n=n,
-                d=d,
-                method=record["method"],
-                objective=record["objective"],
-                version=record["version"],
-                steps=record["steps"],
-                hashes=tuple(record["hashes"]),
-                measures={name: tuple(values) for name, values in record["measures"].items()},
-            )
+            made_by = {name: record[name] for name in ("method", "objective", "version", "steps")}
+            measures = {name: tuple(values) for name, values in record["measures"].items()}
+            path = self.folder / family / cell_name(n, d)
+            return Cell(path, n, d, hashes=tuple(record["hashes"]), measures=measures, **made_by)
         except (KeyError, TypeError, AttributeError) as error:
             raise BrokenFile(
                 f"the index of the bank {self.folder}: {family} n={n} d={d} is no record ({shown(error)})"
             ) from error
 
-    def has(self, family: str, n: int, d: int) -> bool:
-        """Say whether the bank holds a pool of this family at this n and d."""
-        return family in _index(self.folder) and n in self.counts(family, d)
-
-    def _what_there_is(self, family: str, n: int, d: int, counts: list[int]) -> str:
-        if counts:
-            return f"{family} has no set of n={n} in d={d}; it has n = {', '.join(map(str, counts))}"
-        dimensions = sorted(int(each) for each in _index(self.folder)[family])
-        return f"{family} has no sets in d={d}; it has d = {', '.join(map(str, dimensions))}"
-
-
-def open_bank(folder: str | os.PathLike[str] | None = None) -> Bank:
-    """Return the bank in `folder`; by default the one that ships with evenroad."""
-    return Bank(Path(folder) if folder is not None else DATA)
-
 
 def cell_name(n: int, d: int) -> str:
     """Return the file name of a cell inside its family's folder."""
     return f"d{d:02d}-n{n:04d}.npy"
+
+
+def _listed(numbers: dict[str, Any]) -> str:
+    return ", ".join(sorted(numbers, key=int))
 
 
 def _index(folder: Path) -> dict[str, Any]:

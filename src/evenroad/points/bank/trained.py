@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,10 +14,13 @@ from evenroad._checks import require_count, require_known
 from evenroad._files import cache_folder, require_writable_folder
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import BrokenFile, NotAvailable, UnknownName
-from evenroad.points.bank.bank import SEED, Bank, open_bank
+from evenroad.points.bank.bank import SEED, Bank
 from evenroad.points.npz import load_points, save_points
-from evenroad.points.pointset import BELOW_ONE, Origin, PointSet
-from evenroad.points.sampler import Symmetry
+from evenroad.points.pointset import Origin, PointSet
+from evenroad.points.randomise import Symmetry
+
+if TYPE_CHECKING:
+    from evenroad.points.bank.anneal import Callback
 
 ON_DEMAND_SETS = 8
 """Size of the pool of an (n, d) that is not in the bank; its sets are made one by one, as they are drawn."""
@@ -30,32 +33,28 @@ TRAINED_FAMILIES: dict[str, str] = {
 }
 """Name -> one line about the family."""
 
-Callback = Callable[[int, int, float], object]
-
 
 @dataclass(frozen=True)
 class Trained:
-    """Draws a set of a trained family, and can make those that do not ship.
+    """Draws a set of a trained family, and can make those that do not ship (but not the network's).
 
     Which set is drawn depends on `rng` alone, never on what the cache holds.
 
     Parameters
     ----------
-    family : str
-        ``hickernell`` or ``mpmc``.
+    family : {"hickernell", "mpmc"}
     train : bool
         Anneal a set that is neither in the bank nor in the cache; else refuse, naming the n that there are.
-        The network's sets are never made on demand.
     callback : callable, optional
-        Progress of an annealing, as for :func:`evenroad.points.optimise.anneal`.
-    bank : Bank, optional
+        Called as ``callback(step, steps, best)`` after every step of an annealing.
+    bank : Bank
         By default the one that ships with evenroad.
     """
 
     family: str
     train: bool = False
     callback: Callback | None = field(default=None, compare=False)
-    bank: Bank | None = None
+    bank: Bank = field(default_factory=Bank)
     any_n = False
     symmetries = frozenset({Symmetry.PERMUTATION})
 
@@ -77,56 +76,31 @@ class Trained:
         return self.find(n, d, rng=rng)[0]
 
     def find(self, n: int, d: int, *, rng: RngLike = 0) -> tuple[PointSet, str]:
-        """Return one set of n points in d dimensions, and where it came from.
+        """Return one set of n points in d dimensions, and whether it is ``exact`` (shipped), ``cached`` or ``fresh``.
 
-        Returns
-        -------
-        points : PointSet
-        source : str
-            ``exact`` (shipped), ``cached`` (made before, on this machine) or ``fresh``.
-
-        Raises
-        ------
-        NotAvailable
-            If there is no such set and it may not be made.
-        BrokenFile
-            If a new set could not be kept; nothing is annealed then.
+        Raises NotAvailable if there is no such set and it may not be made, BrokenFile if a new one could not be kept:
+        nothing is annealed then.
         """
         n, d = require_count("n", n), require_count("d", d)
-        bank = self.bank or open_bank()
-        if bank.has(self.family, n, d):
-            return self._from_bank(bank, n, d, rng), "exact"
-        if self.family == "mpmc":
-            bank.cell(self.family, n, d)  # raises, and says what there is
+        if self.bank.has(self.family, n, d) or self.family == "mpmc":
+            return self._from_bank(n, d, rng), "exact"
         replica = int(generator(rng).integers(ON_DEMAND_SETS))
         # The family's name is that of what it minimises.
-        origin = Origin(
-            family=self.family,
-            method="annealed",
-            objective=self.family,
-            replica=replica,
-            steps=ON_DEMAND_STEPS,
-        )
+        name, steps = self.family, ON_DEMAND_STEPS
+        origin = Origin(family=name, method="annealed", objective=name, replica=replica, steps=steps)
         file = _cache_file(origin, n, d)
         points, source = _cached(file, origin, n, d), "cached"
         if points is None:
             if not self.train:
-                raise NotAvailable(self._what_there_is(bank, n, d, rng))
+                raise NotAvailable(self._advice(n, d, rng))
             points, source = self._anneal(file, origin, n, d), "fresh"
         return points.with_origin(seed=seed_of(rng)), source
 
-    def _from_bank(self, bank: Bank, n: int, d: int, rng: RngLike) -> PointSet:
-        cell = bank.cell(self.family, n, d)
+    def _from_bank(self, n: int, d: int, rng: RngLike) -> PointSet:
+        cell = self.bank.cell(self.family, n, d)
         replica = int(generator(rng).integers(cell.sets))
-        origin = Origin(
-            family=self.family,
-            method=cell.method,
-            objective=cell.objective,
-            seed=seed_of(rng),
-            replica=replica,
-            steps=cell.steps,
-            version=cell.version,
-        )
+        made_by = {name: getattr(cell, name) for name in ("method", "objective", "steps", "version")}
+        origin = Origin(family=self.family, seed=seed_of(rng), replica=replica, **made_by)
         return PointSet(cell.load()[replica], origin)
 
     def _anneal(self, file: Path, origin: Origin, n: int, d: int) -> PointSet:
@@ -135,18 +109,29 @@ class Trained:
         One kind of processor always makes the same bits, and a file appears in one step: two processes that anneal
         it at once write the same content, whichever comes last.
         """
-        from evenroad.points.optimise import anneal
+        # Here, because the kernels take numba.
+        from evenroad.points.bank.anneal import anneal
+        from evenroad.points.measures import MEASURES
 
-        _require_cache(file)
+        # Before the minutes that it may take.
+        try:
+            file.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise BrokenFile(
+                f"cannot make the cache folder {file.parent}: {error.strerror or error}"
+                " (EVENROAD_CACHE names another)"
+            ) from error
+        require_writable_folder(file)
         seed = np.random.SeedSequence(SEED, spawn_key=(origin.replica or 0,))
-        made = anneal(n, d, origin.objective, steps=ON_DEMAND_STEPS, rng=seed, callback=self.callback)
-        points = PointSet(np.minimum(made.points.astype(np.float32), np.float32(BELOW_ONE)), origin)
+        measure = MEASURES[origin.objective]
+        made = anneal(n, d, measure, steps=ON_DEMAND_STEPS, rng=seed, callback=self.callback)
+        points = PointSet(made.points.astype(np.float32), origin)
         save_points(file, points)
         return points
 
-    def _what_there_is(self, bank: Bank, n: int, d: int, rng: RngLike) -> str:
+    def _advice(self, n: int, d: int, rng: RngLike) -> str:
         try:
-            bank.cell(self.family, n, d)
+            self.bank.cell(self.family, n, d)
         except (NotAvailable, UnknownName) as error:
             known = str(error)
         command = (
@@ -170,14 +155,3 @@ def _cached(file: Path, origin: Origin, n: int, d: int) -> PointSet | None:
     except BrokenFile:
         return None
     return points if (points.n, points.d, points.origin) == (n, d, origin) else None
-
-
-def _require_cache(file: Path) -> None:
-    """Raise BrokenFile unless a set could be kept now: before the minutes that annealing it may take."""
-    try:
-        file.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise BrokenFile(
-            f"cannot make the cache folder {file.parent}: {error.strerror or error} (EVENROAD_CACHE names another)"
-        ) from error
-    require_writable_folder(file)

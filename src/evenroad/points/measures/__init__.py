@@ -8,10 +8,6 @@ from evenroad.points.measures.dispersion import dispersion_linf as dispersion_li
 from evenroad.points.measures.dispersion import dispersion_lower_bound as dispersion_lower_bound
 from evenroad.points.measures.measure import MEASURES as MEASURES
 from evenroad.points.measures.measure import Measure as Measure
-from evenroad.points.measures.measure import measure_named as measure_named
-from evenroad.points.measures.separation import riesz_energy as riesz_energy
-from evenroad.points.measures.separation import riesz_energy_with_gradient as riesz_energy_with_gradient
 from evenroad.points.measures.separation import riesz_rooted as riesz_rooted
-from evenroad.points.measures.separation import riesz_rooted_with_gradient as riesz_rooted_with_gradient
 from evenroad.points.measures.separation import separation as separation
 from evenroad.points.measures.star_discrepancy import star_discrepancy as star_discrepancy

@@ -18,8 +18,7 @@ BUDGET = 4e8
 EXACT_UP_TO = 3
 """Largest dimension with an exact algorithm."""
 
-NORMS: dict[str, float] = {"l2": 2.0, "linf": np.inf}
-"""The norms by name, as the exponent that scipy takes."""
+NORMS = {"l2": 2.0, "linf": np.inf}
 
 _SLABS = 32
 """Slabs that the search is split into; any number gives the same answer."""
@@ -28,58 +27,33 @@ _SLABS = 32
 def dispersion_l2(points: object) -> float:
     """Return the exact l2-dispersion: the supremum over [0, 1]^d of the Euclidean distance to the nearest point.
 
-    The distance is largest at a vertex of the Voronoi cells cut by the cube.  With the points mirrored at every
-    face the mirrored cells meet at the faces, so those vertices are plain Voronoi vertices.
-
-    Parameters
-    ----------
-    points : array_like or PointSet, shape (n, d)
-        Coordinates in [0, 1), n >= 1, d <= 3.
-
-    Raises
-    ------
-    InvalidValue
-        For no points or bad coordinates.
-    NotAvailable
-        For d > 3: see :func:`dispersion_lower_bound`.
+    `points`, (n, d), have coordinates in [0, 1), n >= 1, d <= 3.  Raises InvalidValue for no points or bad ones, and
+    NotAvailable for d > 3.
     """
     coordinates = _checked(points, "dispersion_l2")
-    if coordinates.shape[1] == 1:
+    d = coordinates.shape[1]
+    if d == 1:
         return _dispersion_of_line(coordinates[:, 0])
+    # The distance is largest at a vertex of the Voronoi cells cut by the cube.  With the points mirrored at every face
+    # the mirrored cells meet at the faces, so those vertices are plain Voronoi vertices.
     distinct = np.unique(coordinates, axis=0)
     mirrored = [distinct]
-    for axis in range(distinct.shape[1]):
-        for face in (0.0, 1.0):
-            image = distinct.copy()
-            image[:, axis] = 2.0 * face - image[:, axis]
-            mirrored.append(image)
+    for axis in np.eye(d, dtype=bool):
+        mirrored += [np.where(axis, 2.0 * face - distinct, distinct) for face in (0.0, 1.0)]
     vertices = Voronoi(np.unique(np.concatenate(mirrored), axis=0)).vertices
     # Rounding puts vertices of the faces slightly outside; clipped they are places of the cube again, and the
     # distance at any place of the cube is at most the supremum.
     near = ((vertices > -1e-9) & (vertices < 1.0 + 1e-9)).all(axis=1)
-    places = np.concatenate([np.clip(vertices[near], 0.0, 1.0), _corners(distinct.shape[1])])
+    places = np.concatenate([np.clip(vertices[near], 0.0, 1.0), np.indices([2] * d).reshape(d, -1).T])
     return float(np.max(cKDTree(distinct).query(places)[0]))
 
 
 def dispersion_linf(points: object, budget: float = BUDGET) -> float:
     """Return the exact linf-dispersion: half the side of the largest cube centred in [0, 1]^d without a point.
 
-    By bisection to the last bit on whether open cubes around the points cover the unit cube.
-
-    Parameters
-    ----------
-    points : array_like or PointSet, shape (n, d)
-        Coordinates in [0, 1), n >= 1, d <= 3.
-    budget : float
-        Limit on the estimated work, n^2 in d = 3 and n below: at the default n is 20000 at most in d = 3, where
-        a few thousand points take seconds.
-
-    Raises
-    ------
-    InvalidValue
-        For no points, bad coordinates or a bad budget.
-    NotAvailable
-        For d > 3, or if the estimated work exceeds the budget: see :func:`dispersion_lower_bound`.
+    By bisection to the last bit on whether open cubes around the points cover the unit cube.  `points` and errors are
+    those of :func:`dispersion_l2`; NotAvailable also if the estimated work, n^2 in d = 3 and n below, exceeds `budget`.
+    The default allows 20000 points in d = 3, where a few thousand take seconds.
     """
     coordinates = _checked(points, "dispersion_linf")
     n, d = coordinates.shape
@@ -100,27 +74,20 @@ def dispersion_lower_bound(
     """Return a lower bound of the dispersion in any dimension: the best place that a random search found.
 
     Random places and corners, then hill climbing from the best sixteenth of them with shrinking steps.  Every
-    place that is looked at gives a true lower bound; how close it comes is not known.
+    place gives a true lower bound; how close it comes is not known.
 
     Parameters
     ----------
     points : array_like or PointSet, shape (n, d)
         Coordinates in [0, 1), n >= 1.
-    norm : str
-        ``"l2"`` or ``"linf"``.
+    norm : {"l2", "linf"}
+        Another one is an UnknownName; every other bad argument an InvalidValue.
     rng : int, SeedSequence or Generator
         Draws the places.
     starts, rounds : int
-        Places drawn at first, and rounds of climbing.
-
-    Raises
-    ------
-    InvalidValue
-        For no points, bad coordinates, starts or rounds.
-    UnknownName
-        For another norm.
+        Places drawn at first, and rounds of climbing, >= 1.
     """
-    coordinates = _checked(points, None)
+    coordinates = _checked(points)
     require_known("norm", norm, NORMS)
     starts, rounds = require_count("starts", starts), require_count("rounds", rounds)
     draws = generator(rng)
@@ -148,12 +115,12 @@ def dispersion_lower_bound(
     return float(heights.max())
 
 
-def _checked(points: object, exact: str | None) -> Floats:
+def _checked(points: object, exact: str | None = None) -> Floats:
     coordinates = as_unit_points(points)
     n, d = coordinates.shape
     if n == 0:
         raise InvalidValue(f"dispersion needs at least one point, got an array of shape (0, {d})")
-    if exact is not None and d > EXACT_UP_TO:
+    if exact and d > EXACT_UP_TO:
         raise NotAvailable(
             f"{exact} is exact for d <= {EXACT_UP_TO}, got d={d}; dispersion_lower_bound searches in any dimension"
         )
@@ -165,16 +132,11 @@ def _dispersion_of_line(coordinates: Floats) -> float:
     return float(max(ordered[0], 1.0 - ordered[-1], np.diff(ordered).max(initial=0.0) / 2.0))
 
 
-def _corners(d: int) -> Floats:
-    return np.array(np.meshgrid(*[[0.0, 1.0]] * d)).reshape(d, -1).T
-
-
 def _largest_hole(coordinates: Floats) -> float:
     """Return the largest linf-distance of a place of [0, 1]^d from the nearest of (n, d) points, d = 2 or 3.
 
-    The unit cube is cut into slabs, taken in a fixed random order.  A slab is bisected only if it holds a larger
-    hole than all before: a few of them, so the whole costs little more than one test of coverage (the
-    randomised optimisation of Chan 1999).
+    The cube is cut into slabs, taken in a fixed random order.  A slab is bisected only if it holds a larger hole than
+    all before: a few of them, so the whole costs little more than one test of coverage (Chan 1999).
     """
     n, d = coordinates.shape
     ordered = coordinates[np.argsort(coordinates[:, -1], kind="stable")]
@@ -187,15 +149,12 @@ def _largest_hole(coordinates: Floats) -> float:
     by_middle = np.argsort(middle, kind="stable")
     best = 0.0
     for slab in np.random.default_rng(0).permutation(edges.size - 1):
-        low, high = edges[slab], edges[slab + 1]
-        if not _hole_exists(first, middle, last, by_middle, low, high, np.nextafter(best, 1.0)):
-            continue
+        cubes = first, middle, last, by_middle, edges[slab], edges[slab + 1]
         reached, missed = np.nextafter(best, 1.0), 2.0
-        while True:
-            radius = 0.5 * (reached + missed)
-            if radius in (reached, missed):
-                break
-            if _hole_exists(first, middle, last, by_middle, low, high, radius):
+        if not _hole_exists(*cubes, reached):
+            continue
+        while (radius := 0.5 * (reached + missed)) not in (reached, missed):
+            if _hole_exists(*cubes, radius):
                 reached = radius
             else:
                 missed = radius
@@ -207,38 +166,29 @@ def _largest_hole(coordinates: Floats) -> float:
 def _hole_exists(first, middle, last, by_middle, low, high, radius):  # type: ignore[no-untyped-def]
     """Whether a place of [low, high] x [0, 1] x [0, 1] is at least `radius` from every point.
 
-    Of all such places take the one that comes first, coordinate by coordinate: it is pushed against the low
-    side of the box or against the high side of a point's open cube.  So only those values need be tried: for
-    each in `first`, the line along `last` is swept through `middle`, and the gaps between the cubes on it are
-    counted as cubes enter and leave.  Points are sorted by `last`; `by_middle` sorts them by `middle`.
-
-    The cubes are compared by their rounded sides throughout: then a place on a side is never inside by
-    rounding, and growing the radius never uncovers a place.
+    The first such place, coordinate by coordinate, is pushed against the low side of the box or the high side of a
+    point's open cube, so only those values are tried: for each in `first`, the line along `last` is swept through
+    `middle`, and the gaps between the cubes on it are counted as cubes enter and leave.  Points are sorted by `last`;
+    `by_middle` sorts them by `middle`.  The cubes are compared by their rounded sides throughout: then a place on a
+    side is never inside by rounding, and growing the radius never uncovers a place.
     """
-    n = first.size
-    near = np.empty(n, np.int64)
-    on_line = np.zeros(n, np.bool_)
-    for candidate in range(-1, n):
-        place = low if candidate < 0 else first[candidate] + radius
+    starts, ends = first[by_middle] - radius, first[by_middle] + radius
+    on_line = np.zeros(first.size, np.bool_)
+    for place in np.append(low, first + radius):
         if place < low or place > high:
             continue
-        count = 0
-        for position in range(n):
-            i = by_middle[position]
-            on_line[i] = False
-            if first[i] - radius < place < first[i] + radius:
-                near[count] = i
-                count += 1
+        near = by_middle[(starts < place) & (place < ends)]
+        on_line[:] = False
         # With no cube the whole line is one gap.
         gaps = 1
         entering, leaving = 0, 0
         middle_place = 0.0
         while True:
-            while entering < count and middle[near[entering]] - radius < middle_place:
+            while entering < near.size and middle[near[entering]] - radius < middle_place:
                 gaps += _gaps_opened_by(near[entering], last, on_line, radius)
                 on_line[near[entering]] = True
                 entering += 1
-            while leaving < count and middle[near[leaving]] + radius <= middle_place:
+            while leaving < near.size and middle[near[leaving]] + radius <= middle_place:
                 on_line[near[leaving]] = False
                 gaps -= _gaps_opened_by(near[leaving], last, on_line, radius)
                 leaving += 1

@@ -4,9 +4,8 @@ A squared L2 discrepancy with a product kernel K(x, y) = prod_k K_k(x_k, y_k) is
 
     constant - (2/n) sum_i prod_k linear_k(x_ik) + (1/n^2) sum_ij prod_k K_k(x_ik, x_jk).
 
-Each formula gives its three parts at given points, as a function ``formula(columns, weights)`` of the points, shape
-(d, n): one coordinate of all points is contiguous, as the compiled sums read it; and of a weight of every coordinate,
-shape (d,), where its factors are 1 + weight * something.
+Each formula is a function of the points, (d, n), and of a weight g of every coordinate, (d,), where its factors are
+1 + g * something; it writes x for x_ik, y for x_jk, z for x - 1/2.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ TILE = 512
 
 
 class MaximumPairs(NamedTuple):
-    """Pair factors ``ceiling_k - slope_k * max(x, y)``, positive on the cube; all of shape (d,)."""
+    """Pair factors ``ceiling_k - slope_k * max(x, y)``, positive on the cube; both of shape (d,)."""
 
     ceiling: Floats
     slope: Floats
@@ -33,7 +32,7 @@ class MaximumPairs(NamedTuple):
 class DistancePairs(NamedTuple):
     """Pair factors ``level_k + own_k(x) + own_k(y) - slope_k * |x - y| + curvature_k * (x - y)^2``.
 
-    `level`, `slope` and `curvature` have shape (d,); `own`, the part of one point, and its derivative (d, n).
+    The part of one point, `own`, and its derivative have shape (d, n), the others (d,).
     """
 
     level: Floats
@@ -44,7 +43,7 @@ class DistancePairs(NamedTuple):
 
 
 class ProductTerms(NamedTuple):
-    """The three parts of a squared discrepancy at given points.
+    """The parts of a squared discrepancy at given points.
 
     `constant` is the double integral of the kernel; `linear` its integral over one argument, a factor a coordinate,
     (d, n), and `linear_slope` the derivative of that; `pairs` is the kernel at pairs of points.
@@ -56,144 +55,98 @@ class ProductTerms(NamedTuple):
     pairs: MaximumPairs | DistancePairs
 
 
-def star(columns: Floats, weights: Floats) -> ProductTerms:
-    """3^-d - (2/n) sum_i prod_k (1 - x_ik^2)/2 + (1/n^2) sum_ij prod_k (1 - max(x_ik, x_jk)).
+def star(points: Floats, weights: Floats) -> ProductTerms:
+    """3^-d - (2/n) sum_i prod_k (1 - x^2)/2 + (1/n^2) sum_ij prod_k (1 - max(x, y)); Warnock (1972)."""
+    one = np.ones(len(points))
+    return ProductTerms(3.0 ** -len(points), (1.0 - points * points) / 2.0, -points, MaximumPairs(one, one))
 
-    Warnock (1972).
+
+def hickernell(points: Floats, weights: Floats) -> ProductTerms:
+    """(4/3)^d - (2/n) sum_i prod_k (3 - x^2)/2 + (1/n^2) sum_ij prod_k (2 - max(x, y)); Joe (1997).
+
+    The sum of the squared L2 star discrepancies of all 2^d - 1 projections, each weighted by the product of the
+    weights of its coordinates.
     """
-    d = columns.shape[0]
+    g = weights[:, np.newaxis]
+    linear = 1.0 + g * (1.0 - points * points) / 2.0
+    pairs = MaximumPairs(1.0 + weights, weights)
+    return ProductTerms(float(np.prod(1.0 + weights / 3.0)), linear, -g * points, pairs)
+
+
+def centred(points: Floats, weights: Floats) -> ProductTerms:
+    """(13/12)^d - (2/n) sum_i prod_k (1 + |z|/2 - z^2/2) + (1/n^2) sum_ij prod_k (1 + (|z_i| + |z_j| - |x - y|)/2).
+
+    Hickernell (1998).
+    """
+    z, g = points - 0.5, weights[:, np.newaxis]
+    side, flat = np.sign(z), np.zeros_like(weights)
     return ProductTerms(
-        constant=3.0**-d,
-        linear=(1.0 - columns * columns) / 2.0,
-        linear_slope=-columns,
-        pairs=MaximumPairs(ceiling=np.ones(d), slope=np.ones(d)),
+        float(np.prod(1.0 + weights / 12.0)),
+        1.0 + g * (np.abs(z) - z * z) / 2.0,
+        g * (side / 2.0 - z),
+        DistancePairs(np.ones_like(weights), weights / 2.0, flat, g * np.abs(z) / 2.0, g * side / 2.0),
     )
 
 
-def hickernell(columns: Floats, weights: Floats) -> ProductTerms:
-    """Sum the squared L2 star discrepancies of all 2^d - 1 projections in closed form (Joe 1997).
-
-    (4/3)^d - (2/n) sum_i prod_k (3 - x_ik^2)/2 + (1/n^2) sum_ij prod_k (2 - max(x_ik, x_jk)); a projection
-    onto some coordinates is weighted by the product of their weights.
-    """
-    gamma = weights[:, np.newaxis]
-    return ProductTerms(
-        constant=float(np.prod(1.0 + weights / 3.0)),
-        linear=1.0 + gamma * (1.0 - columns * columns) / 2.0,
-        linear_slope=-gamma * columns,
-        pairs=MaximumPairs(ceiling=1.0 + weights, slope=weights),
-    )
-
-
-def centred(columns: Floats, weights: Floats) -> ProductTerms:
-    """Hickernell (1998), with z = x - 1/2.
-
-    (13/12)^d - (2/n) sum_i prod_k (1 + |z_ik|/2 - z_ik^2/2)
-    + (1/n^2) sum_ij prod_k (1 + |z_ik|/2 + |z_jk|/2 - |x_ik - x_jk|/2).
-    """
-    z, gamma = columns - 0.5, weights[:, np.newaxis]
-    side = np.sign(z)
-    return ProductTerms(
-        constant=float(np.prod(1.0 + weights / 12.0)),
-        linear=1.0 + gamma * (np.abs(z) - z * z) / 2.0,
-        linear_slope=gamma * (side / 2.0 - z),
-        pairs=DistancePairs(
-            level=np.ones_like(weights),
-            slope=weights / 2.0,
-            curvature=np.zeros_like(weights),
-            own=gamma * np.abs(z) / 2.0,
-            own_slope=gamma * side / 2.0,
-        ),
-    )
-
-
-def wrap_around(columns: Floats, weights: Floats) -> ProductTerms:
-    """-(4/3)^d + (1/n^2) sum_ij prod_k (3/2 - t(1 - t)), t = |x_ik - x_jk| (Hickernell 1998, wrap-around).
+def wrap_around(points: Floats, weights: Floats) -> ProductTerms:
+    """-(4/3)^d + (1/n^2) sum_ij prod_k (3/2 - t(1 - t)), t = |x - y|; Hickernell (1998).
 
     The kernel's integral over one argument is 4/3 everywhere, so the linear term is a constant.
     """
     level = 1.0 + weights / 3.0
-    return ProductTerms(
-        constant=float(np.prod(level)),
-        linear=np.broadcast_to(level[:, np.newaxis], columns.shape),
-        linear_slope=np.zeros_like(columns),
-        pairs=_distances_alone(columns, 1.0 + weights / 2.0, weights, weights),
-    )
+    linear, still = np.broadcast_to(level[:, np.newaxis], points.shape), np.zeros_like(points)
+    pairs = DistancePairs(1.0 + weights / 2.0, weights, weights, still, still)
+    return ProductTerms(float(np.prod(level)), linear, still, pairs)
 
 
-def mixture(columns: Floats, weights: Floats) -> ProductTerms:
-    """Zhou, Fang and Ning (2013), with z = x - 1/2.
+def mixture(points: Floats, weights: Floats) -> ProductTerms:
+    """(19/12)^d - (2/n) sum_i prod_k (5/3 - |z|/4 - z^2/4) + (1/n^2) sum_ij prod_k K_k.
 
-    (19/12)^d - (2/n) sum_i prod_k (5/3 - |z_ik|/4 - z_ik^2/4)
-    + (1/n^2) sum_ij prod_k (15/8 - |z_ik|/4 - |z_jk|/4 - 3 |x_ik - x_jk|/4 + (x_ik - x_jk)^2/2).
+    K_k = 15/8 - |z_i|/4 - |z_j|/4 - 3 |x - y|/4 + (x - y)^2/2; Zhou, Fang and Ning (2013).
     """
-    z, gamma = columns - 0.5, weights[:, np.newaxis]
-    side = np.sign(z)
+    z, g = points - 0.5, weights[:, np.newaxis]
+    side, level = np.sign(z), 1.0 + weights * 7.0 / 8.0
+    own, own_slope = -g * np.abs(z) / 4.0, -g * side / 4.0
     return ProductTerms(
-        constant=float(np.prod(1.0 + weights * 7.0 / 12.0)),
-        linear=1.0 + gamma * (2.0 / 3.0 - (np.abs(z) + z * z) / 4.0),
-        linear_slope=-gamma * (side / 4.0 + z / 2.0),
-        pairs=DistancePairs(
-            level=1.0 + weights * 7.0 / 8.0,
-            slope=weights * 3.0 / 4.0,
-            curvature=weights / 2.0,
-            own=-gamma * np.abs(z) / 4.0,
-            own_slope=-gamma * side / 4.0,
-        ),
+        float(np.prod(1.0 + weights * 7.0 / 12.0)),
+        1.0 + g * (2.0 / 3.0 - (np.abs(z) + z * z) / 4.0),
+        -g * (side / 4.0 + z / 2.0),
+        DistancePairs(level, weights * 3.0 / 4.0, weights / 2.0, own, own_slope),
     )
 
 
-def symmetric(columns: Floats, weights: Floats) -> ProductTerms:
-    """(4/3)^d - (2/n) sum_i prod_k (1 + 2x - 2x^2) + (2^d/n^2) sum_ij prod_k (1 - |x_ik - x_jk|).
+def symmetric(points: Floats, weights: Floats) -> ProductTerms:
+    """(4/3)^d - (2/n) sum_i prod_k (1 + 2x - 2x^2) + (2^d/n^2) sum_ij prod_k (1 - |x - y|); Hickernell (1998).
 
-    Hickernell (1998), symmetric discrepancy; without weights it is 4^d times the average-squared one.
+    Without weights it is 4^d times the average-squared one.
     """
-    gamma = weights[:, np.newaxis]
-    return ProductTerms(
-        constant=float(np.prod(1.0 + weights / 3.0)),
-        linear=1.0 + gamma * 2.0 * columns * (1.0 - columns),
-        linear_slope=gamma * (2.0 - 4.0 * columns),
-        pairs=_distances_alone(columns, 1.0 + weights, 2.0 * weights, np.zeros_like(weights)),
-    )
+    g, still = weights[:, np.newaxis], np.zeros_like(points)
+    linear, slope = 1.0 + g * 2.0 * points * (1.0 - points), g * (2.0 - 4.0 * points)
+    pairs = DistancePairs(1.0 + weights, 2.0 * weights, np.zeros_like(weights), still, still)
+    return ProductTerms(float(np.prod(1.0 + weights / 3.0)), linear, slope, pairs)
 
 
-def average_squared(columns: Floats, weights: Floats) -> ProductTerms:
-    """Mean of the squared L2 star discrepancy over all 2^d corners taken as the origin, in closed form.
+def average_squared(points: Floats, weights: Floats) -> ProductTerms:
+    """3^-d - (2/n) sum_i prod_k (1 + 2x - 2x^2)/4 + (1/n^2) sum_ij prod_k (1 - |x - y|)/2.
 
-    3^-d - (2/n) sum_i prod_k (1 + 2 x_ik - 2 x_ik^2)/4 + (1/n^2) sum_ij prod_k (1 - |x_ik - x_jk|)/2:
-    Warnock's formula averaged over x and 1 - x in every coordinate (Clement, Kirk, Owen and Rusch 2025).
+    The mean of the squared L2 star discrepancy over all 2^d corners taken as the origin: Warnock's formula averaged
+    over x and 1 - x in every coordinate (Clement, Kirk, Owen and Rusch 2025).
     """
-    d = columns.shape[0]
-    return ProductTerms(
-        constant=3.0**-d,
-        linear=(1.0 + 2.0 * columns * (1.0 - columns)) / 4.0,
-        linear_slope=0.5 - columns,
-        pairs=_distances_alone(columns, np.full(d, 0.5), np.full(d, 0.5), np.zeros(d)),
-    )
-
-
-def _distances_alone(columns: Floats, level: Floats, slope: Floats, curvature: Floats) -> DistancePairs:
-    """Return pair factors without a part of one point."""
-    nothing = np.zeros_like(columns)
-    return DistancePairs(level, slope, curvature, nothing, nothing)
+    half, still = np.full(len(points), 0.5), np.zeros_like(points)
+    linear = (1.0 + 2.0 * points * (1.0 - points)) / 4.0
+    pairs = DistancePairs(half, half, np.zeros_like(half), still, still)
+    return ProductTerms(3.0 ** -len(points), linear, 0.5 - points, pairs)
 
 
 def pair_sums(
     columns: Floats, pairs: MaximumPairs | DistancePairs, want_gradient: bool
 ) -> tuple[Floats, Floats]:
-    """Sum the pair products of every point with all points, itself included: O(n^2 d) time, O(n d) memory.
+    """Sum the pair products of every point with all points, itself included, (n,), and the derivative of the total.
 
-    One compiled loop is for factors in max(x, y), where the gradient needs no division, and one for factors in
-    |x - y|.  Points come in tiles that stay in the first caches, and fastmath lets the inner loops run as vectors;
-    input is finite because ``as_unit_points`` refused everything else.
-
-    Returns
-    -------
-    sums : ndarray, shape (n,)
-        ``sum_j prod_k K_k(x_ik, x_jk)`` of every i.
-    gradient : ndarray, shape (d, n)
-        Derivative of ``sums.sum()`` by every coordinate; zero, in about half the time, where it is not wanted.  Where
-        two points share a coordinate the kernels have a kink; the gradient is then one of the one-sided ones.
+    O(n^2 d) time, O(n d) memory.  The gradient, (d, n), is zero where it is not wanted, in about half the time.  Where
+    two points share a coordinate the kernels have a kink; the gradient is then one of the one-sided ones.  Points come
+    in tiles that stay in the first caches, and fastmath lets the inner loops run as vectors: input is finite because
+    ``as_unit_points`` refused everything else.
     """
     if isinstance(pairs, MaximumPairs):
         return _maximum_pair_sums(columns, *pairs, want_gradient)

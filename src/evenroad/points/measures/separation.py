@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import operator
 
 import numpy as np
 from numba import njit
@@ -18,22 +17,11 @@ from evenroad.points.pointset import as_unit_points
 def separation(points: object, periodic: bool = False) -> float:
     """Return the smallest Euclidean distance between two of the points; large is spread out.
 
-    Parameters
-    ----------
-    points : array_like or PointSet, shape (n, d)
-        Coordinates in [0, 1), n >= 2.
-    periodic : bool
-        Whether distances are those of the torus, each coordinate wrapping modulo 1.
-
-    Raises
-    ------
-    InvalidValue
-        For fewer than two points or bad coordinates.
+    `points`, (n, d), have coordinates in [0, 1), n >= 2, else InvalidValue; `periodic` measures on the torus, each
+    coordinate wrapping modulo 1.
     """
-    coordinates = as_unit_points(points)
+    coordinates = _checked(points, "separation")
     n, d = coordinates.shape
-    if n < 2:
-        raise InvalidValue(f"separation needs at least 2 points, got {n}")
     if np.unique(coordinates, axis=0).shape[0] < n:
         return 0.0
     tree = cKDTree(coordinates, boxsize=np.ones(d)) if periodic else cKDTree(coordinates)
@@ -41,8 +29,11 @@ def separation(points: object, periodic: bool = False) -> float:
     return float(distances[:, 1].min())
 
 
-def riesz_energy(points: object, s: int | None = None, periodic: bool = True) -> float:
-    """Return the normalised Riesz s-energy, (1/n) sum over i and j != i of (spacing / distance_ij)^s.
+def riesz_rooted(points: object, s: int | None = None, periodic: bool = True) -> float:
+    """Return the Riesz s-energy to the power 1/s: as s grows, the spacing n^(-1/d) over the smallest distance.
+
+    The energy is (1/n) sum over i and j != i of (spacing / distance_ij)^s, and so hardly depends on n.  The distance of
+    coincident points counts as 10^-100.  Bad arguments are an InvalidValue.
 
     Parameters
     ----------
@@ -52,52 +43,17 @@ def riesz_energy(points: object, s: int | None = None, periodic: bool = True) ->
         The exponent >= 1; 2d if not given, which makes close pairs count and far ones not.
     periodic : bool
         Whether distances are those of the torus, each coordinate wrapping modulo 1.
-
-    Returns
-    -------
-    float
-        The energy in units of ``spacing = n^(-1/d)``, so that it hardly depends on n;
-        ``inf`` where it exceeds the range of a float, as for coincident points.
-
-    Raises
-    ------
-    InvalidValue
-        For fewer than two points, bad coordinates, or an s that is not an integer >= 1.
     """
-    logarithm = log_riesz_of_columns(*_checked(points, s), periodic, want_gradient=False)[0]
-    return _exp(logarithm)
-
-
-def riesz_rooted(points: object, s: int | None = None, periodic: bool = True) -> float:
-    """Return :func:`riesz_energy` to the power 1/s: as s grows, the spacing over the smallest distance.
-
-    It stays in the range of a float where the energy does not; the distance of coincident points counts as 10^-100.
-    """
-    return riesz_rooted_with_gradient(points, s, periodic)[0]
-
-
-def riesz_energy_with_gradient(
-    points: object, s: int | None = None, periodic: bool = True
-) -> tuple[float, Floats]:
-    """Return :func:`riesz_energy` and its gradient, shape (n, d); infinite where the energy is."""
-    columns, exponent = _checked(points, s)
-    logarithm, gradient = log_riesz_of_columns(columns, exponent, periodic, want_gradient=True)
-    return _scaled(_exp(logarithm), gradient)
-
-
-def riesz_rooted_with_gradient(
-    points: object, s: int | None = None, periodic: bool = True
-) -> tuple[float, Floats]:
-    """Return :func:`riesz_rooted` and its gradient, shape (n, d)."""
-    columns, exponent = _checked(points, s)
-    logarithm, gradient = log_riesz_of_columns(columns, exponent, periodic, want_gradient=True)
-    return _scaled(_exp(logarithm / exponent), gradient / exponent)
+    coordinates = _checked(points, "an energy")
+    exponent = 2 * coordinates.shape[1] if s is None else require_count("s", s)
+    columns = np.ascontiguousarray(coordinates.T)
+    return math.exp(log_riesz_of_columns(columns, exponent, periodic, want_gradient=False)[0] / exponent)
 
 
 def log_riesz_of_columns(
     columns: Floats, s: int, periodic: bool, want_gradient: bool
 ) -> tuple[float, Floats]:
-    """Return log(riesz_energy) and its gradient, shape (d, n), at checked points of shape (d, n).
+    """Return the log of the Riesz energy and its gradient, shape (d, n), at checked points of shape (d, n).
 
     Every power is taken relative to the largest of its row, and rows are joined in the log: nothing
     overflows, whatever d.  The distance of coincident points counts as 10^-100, and they do not push each other:
@@ -115,24 +71,11 @@ def log_riesz_of_columns(
     return logarithm, pushes
 
 
-def _checked(points: object, s: int | None) -> tuple[Floats, int]:
+def _checked(points: object, what: str) -> Floats:
     coordinates = as_unit_points(points)
-    n, d = coordinates.shape
-    if n < 2:
-        raise InvalidValue(f"an energy needs at least 2 points, got {n}")
-    exponent = 2 * d if s is None else require_count("s", s)
-    return np.ascontiguousarray(coordinates.T), operator.index(exponent)
-
-
-def _exp(logarithm: float) -> float:
-    return math.exp(logarithm) if logarithm < 709.0 else math.inf
-
-
-def _scaled(value: float, log_gradient: Floats) -> tuple[float, Floats]:
-    gradient = np.ascontiguousarray(log_gradient.T)
-    if math.isinf(value):
-        return value, np.where(gradient == 0.0, 0.0, np.copysign(np.inf, gradient))
-    return value, value * gradient
+    if len(coordinates) < 2:
+        raise InvalidValue(f"{what} needs at least 2 points, got {len(coordinates)}")
+    return coordinates
 
 
 SMALLEST_SQUARED = 1e-200
@@ -143,17 +86,11 @@ SMALLEST_SQUARED = 1e-200
 def _row_energies(columns, s, periodic, want_gradient):  # type: ignore[no-untyped-def]
     """Row sums of (nearest / distance^2)^(s/2), the nearest squared distances, and the rows' gradients."""
     d, n = columns.shape
-    nearest = np.empty(n)
-    rows = np.empty(n)
-    pushes = np.zeros((d, n))
-    squared = np.empty(n)
-    inverse = np.empty(n)
-    power = np.empty(n)
-    base = np.empty(n)
+    nearest, rows, pushes = np.empty(n), np.empty(n), np.zeros((d, n))
+    squared, inverse, power, base = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     wrap = 1.0 if periodic else 0.0
     for i in range(n):
-        for j in range(n):
-            squared[j] = 0.0
+        squared[:] = 0.0
         for k in range(d):
             at, others = columns[k, i], columns[k]
             for j in range(n):

@@ -23,20 +23,8 @@ def star_discrepancy(points: object, budget: float = BUDGET) -> float:
     enumerated coordinate by coordinate, only through points that are still inside, and a branch is left where
     neither its volume nor its share of points exceeds the best found.
 
-    Parameters
-    ----------
-    points : array_like or PointSet, shape (n, d)
-        Coordinates in [0, 1), n >= 1.
-    budget : float
-        Limit on the estimated work, n^d / d!: at the default n is 140000, 3900, 700, 260 and 139 at most for
-        d = 2 .. 6.
-
-    Raises
-    ------
-    InvalidValue
-        For no points or bad coordinates.
-    NotAvailable
-        If the estimated work exceeds the budget.
+    `points`, (n, d), have coordinates in [0, 1), n >= 1, else InvalidValue.  NotAvailable if the estimated work,
+    n^d / d!, exceeds `budget`: at the default n is 140000, 3900, 700, 260 and 139 at most for d = 2 .. 6.
     """
     coordinates = as_unit_points(points)
     n, d = coordinates.shape
@@ -50,84 +38,44 @@ def star_discrepancy(points: object, budget: float = BUDGET) -> float:
             f" steps, the budget is {limit:.0e}: use fewer points, a larger budget, or the L2 star discrepancy"
         )
     by_last = np.argsort(coordinates[:, -1], kind="stable")
-    return float(_largest_deviation(np.ascontiguousarray(coordinates[by_last].T)))
+    columns = np.ascontiguousarray(coordinates[by_last].T)
+    return float(_largest_deviation(columns, np.arange(n), np.ones(n, np.bool_), 0, 1.0, 0.0))
 
 
 @njit(cache=True)
-def _largest_deviation(columns):  # type: ignore[no-untyped-def]
-    """Star discrepancy of points sorted by their last coordinate; a depth-first walk with its own stack."""
+def _largest_deviation(columns, inside, strictly, level, volume, best):  # type: ignore[no-untyped-def]
+    """Return the largest deviation, at least `best`, of the boxes whose first `level` sides are fixed.
+
+    `inside` are the points inside or on those sides, in the order of the last coordinate; `strictly` says which are not
+    on them; `volume` is that of the sides.
+    """
     d, n = columns.shape
-    # Level k has fixed the sides of coordinates 0 .. k - 1: the points inside or on them, in the order of the
-    # last coordinate, whether they are strictly inside, and the sides still to try for coordinate k.
-    inside = np.empty((d, n), np.int64)
-    strictly = np.empty((d, n), np.bool_)
-    counts = np.zeros(d, np.int64)
-    volumes = np.ones(d)
-    sides = np.empty((d, n + 1))
-    side_counts = np.zeros(d, np.int64)
-    next_side = np.zeros(d, np.int64)
-    for i in range(n):
-        inside[0, i] = i
-        strictly[0, i] = True
-    counts[0] = n
-    best = 0.0
-    level = 0
-    entering = True
-    while level >= 0:
-        if entering and level == d - 1:
-            best = max(best, _sweep_last(columns[level], inside[level], strictly[level], counts[level],
-                                         volumes[level], n))  # fmt: skip
-            level -= 1
-            entering = False
-            continue
-        if entering:
-            values = np.empty(counts[level] + 1)
-            for position in range(counts[level]):
-                values[position] = columns[level, inside[level, position]]
-            values[counts[level]] = 1.0
-            values.sort()
-            kept = 0
-            for position in range(values.size):
-                if position == 0 or values[position] != values[position - 1]:
-                    sides[level, kept] = values[position]
-                    kept += 1
-            side_counts[level] = kept
-            next_side[level] = kept - 1
-            entering = False
-        if next_side[level] < 0:
-            level -= 1
-            continue
-        side = sides[level, next_side[level]]
-        next_side[level] -= 1
-        volume = volumes[level] * side
+    if level == d - 1:
+        return _sweep_last(columns[level], inside, strictly, volume, best)
+    places = columns[level][inside]
+    inner, below = np.empty_like(inside), np.empty_like(strictly)
+    for side in np.unique(np.append(places, 1.0))[::-1]:
         count = 0
-        for position in range(counts[level]):
-            point = inside[level, position]
-            if columns[level, point] <= side:
-                inside[level + 1, count] = point
-                strictly[level + 1, count] = strictly[level, position] and columns[level, point] < side
+        for position in range(len(places)):
+            if places[position] <= side:
+                inner[count] = inside[position]
+                below[count] = strictly[position] and places[position] < side
                 count += 1
-        if max(volume, count / n) <= best:
+        if max(volume * side, count / n) <= best:
             # Sides come in falling order and both bounds fall with the side: the rest is no better.
-            level -= 1
-            continue
-        volumes[level + 1] = volume
-        counts[level + 1] = count
-        level += 1
-        entering = True
+            break
+        best = _largest_deviation(columns, inner[:count], below[:count], level + 1, volume * side, best)
     return best
 
 
 @njit(cache=True)
-def _sweep_last(last, inside, strictly, count, volume, n):  # type: ignore[no-untyped-def]
-    """Largest deviation over the sides of the last coordinate, given the points inside the other sides."""
-    best = 0.0
-    strictly_below = 0
-    position = 0
-    while position < count:
+def _sweep_last(last, inside, strictly, volume, best):  # type: ignore[no-untyped-def]
+    """Return the largest deviation, at least `best`, over the sides of the last coordinate."""
+    n, strictly_below, position = last.size, 0, 0
+    while position < inside.size:
         side = last[inside[position]]
         best = max(best, volume * side - strictly_below / n)
-        while position < count and last[inside[position]] == side:
+        while position < inside.size and last[inside[position]] == side:
             strictly_below += 1 if strictly[position] else 0
             position += 1
         best = max(best, position / n - volume * side)

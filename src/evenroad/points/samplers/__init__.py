@@ -4,21 +4,52 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import Any, Protocol
 
 from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points.bank import TRAINED_FAMILIES, Trained
 from evenroad.points.pointset import PointSet
-from evenroad.points.sampler import KnownSampler as KnownSampler
-from evenroad.points.sampler import Sampler as Sampler
+from evenroad.points.randomise import Symmetry
 from evenroad.points.samplers.korobov import Even as Even
 from evenroad.points.samplers.korobov import Korobov as Korobov
 from evenroad.points.samplers.lattice import Lattice as Lattice
+from evenroad.points.samplers.plain import Halton as Halton
+from evenroad.points.samplers.plain import Sobol as Sobol
 from evenroad.points.samplers.plain import Sukharev as Sukharev
 from evenroad.points.samplers.plain import Uniform as Uniform
-from evenroad.points.samplers.sequences import Halton as Halton
-from evenroad.points.samplers.sequences import Sobol as Sobol
+
+
+class Sampler(Protocol):
+    """Draws sets of n points in d dimensions; the same arguments give the same bits on one kind of processor."""
+
+    @property
+    def name(self) -> str:
+        """The name under which users ask for it."""
+
+    def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
+        """Return n >= 1 points of [0, 1)^d, d >= 1, with their origin; all that is random comes from `rng`.
+
+        A passed Generator is spawned.  Raises InvalidValue if n, d or rng is not of that kind, or the sampler does not
+        go up to this n or d; NotAvailable if it has no set of this n and d.
+        """
+
+
+class KnownSampler(Sampler, Protocol):
+    """A sampler of the registry says itself what lists and other verbs need to know of it."""
+
+    @property
+    def about(self) -> str:
+        """What its sets are, in one line."""
+
+    @property
+    def any_n(self) -> bool:
+        """Whether it has a set of every n, in every dimension that it takes."""
+
+    @property
+    def symmetries(self) -> frozenset[Symmetry]:
+        """Which transformations keep the quality of its sets."""
+
 
 SAMPLERS: dict[str, Callable[..., KnownSampler]] = {
     each.name: each for each in (Even, Korobov, Lattice, Halton, Sobol, Sukharev, Uniform)
@@ -29,12 +60,8 @@ SAMPLERS: dict[str, Callable[..., KnownSampler]] = {
 def make_sampler(name: str, **options: Any) -> KnownSampler:
     """Return the sampler of this name, one of :data:`SAMPLERS`, with its own parameters as options.
 
-    Raises
-    ------
-    UnknownName
-        If there is no such sampler; the text lists them.
-    InvalidValue
-        If the sampler does not take an option.
+    Raises UnknownName, which lists the samplers, if there is none of this name; InvalidValue if it does not take an
+    option.
     """
     if not isinstance(name, str) or name not in SAMPLERS:
         raise UnknownName.among("sampler", name, SAMPLERS)

@@ -1,7 +1,7 @@
 """The Korobov lattice with the smallest periodic Riesz energy, for any n and d: nothing trained, nothing stored.
 
-A rank-1 lattice looks the same from each of its points, so its energy is a single sum over the n - 1 others:
-O(n d) where a general set needs O(n^2 d).  That makes a search over all multipliers a matter of milliseconds.
+A rank-1 lattice looks the same from each of its points, so its energy is a sum over the n - 1 others: O(n d) where
+a general set needs O(n^2 d).  That makes a search over all multipliers a matter of milliseconds.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import Origin, PointSet
-from evenroad.points.sampler import ALL_SYMMETRIES
+from evenroad.points.randomise import ALL_SYMMETRIES
 
 MAX_N = 2**26
 """Up to here products of two residues, and the multiple of n next to them, are exact in float64."""
@@ -57,7 +57,8 @@ class Korobov:
         """
         n, d = require_count("n", n), require_count("d", d)
         multiplier = korobov_generator(n, d)
-        lattice = np.arange(n)[:, None] * _powers(multiplier, n, d) % n / n
+        powers = np.array([pow(multiplier, k, n) for k in range(d)], dtype=np.int64)
+        lattice = np.arange(n)[:, None] * powers % n / n
         # Both summands are >= 0, so the remainder is exact and below 1.
         points = (lattice + generator(rng).random(d)) % 1.0
         method = f"rank-1 lattice a={multiplier}, shifted"
@@ -66,28 +67,7 @@ class Korobov:
 
 @dataclass(frozen=True)
 class Even(Korobov):
-    """Our default: the Korobov lattice, in every dimension.
-
-    Evidence: success in random worlds of balls and of boxes, with 128, 256 and 512 points pooled; 1200 worlds in
-    each dimension, 2400 in d = 3 and 4.  In %, with k = 4 / 10, and the mean over k = 4, 6, 10 and 20:
-
-    ==  ===========  ===========  ===========  ===========  =====
-    d   uniform      Sobol        annealed     Korobov      mean
-    ==  ===========  ===========  ===========  ===========  =====
-    2   31.9 / 55.7  50.4 / 61.8  55.3 / 62.8  56.4 / 62.5  60.9
-    3   28.1 / 51.2  38.1 / 56.5  45.0 / 59.4  45.3 / 58.5  54.7
-    4   26.4 / 50.1  31.8 / 54.4  38.9 / 57.7  37.4 / 56.4  50.9
-    5   24.3 / 49.0  27.2 / 52.3  32.6 / 54.5  32.0 / 54.8  48.2
-    7   13.9 / 35.4  14.9 / 36.6  15.3 / 37.0  15.5 / 36.5  30.7
-    10  12.4 / 37.7  13.5 / 38.6  14.2 / 38.8  13.8 / 40.1  33.0
-    ==  ===========  ===========  ===========  ===========  =====
-
-    "Annealed" is for average-squared discrepancy + 10 x Riesz energy, in d = 4 and 10 for the energy alone; "mean" is
-    the lattice's.  Annealed sets are ahead of it by more than one standard error only in d = 3, by 0.5 (0.4) points,
-    and in d = 4, by 1.2 (0.5).  That is not worth a default that has to be stored or made first: the lattice takes
-    milliseconds and exists for every n.  Its known weakness is the plane with 64 points, where annealed sets were
-    2.6 (0.7) points ahead.  ``python -m benchmarks.decide_even`` gives all candidates, every n and every k.
-    """
+    """Our default: the Korobov lattice, in every dimension; ``benchmarks/decide_even.py`` has the evidence."""
 
     name = "even"
     about = "our default: a randomly shifted Korobov lattice"
@@ -99,17 +79,7 @@ def korobov_generator(n: int, d: int) -> int:
     a, n - a and the inverse of a modulo n give the same lattice up to a reflection or the order of the axes; one
     of the four is tried, and the smallest is returned.  While n^2 d <= 10^8 all multipliers without a common
     divisor with n are tried, so a is the best one; above that a fixed choice of them spread over 1 .. n/2, as
-    many as :data:`WORK` allows.
-
-    Parameters
-    ----------
-    n, d : int
-        Number of points, 1 .. 2**26, and dimension, >= 1.
-
-    Raises
-    ------
-    InvalidValue
-        If n or d is no such integer.
+    many as :data:`WORK` allows.  Raises InvalidValue unless n is 1 .. 2**26 and d >= 1.
     """
     n, d = require_count("n", n), require_count("d", d)
     if n > MAX_N:
@@ -122,7 +92,8 @@ def _searched(n: int, d: int) -> int:
     if n <= 2 or d == 1:
         return 1
     tried = islice(_multipliers(n), max(FEWEST_TRIED, WORK // (n // 2 * d)))
-    candidates = np.array(sorted({_smallest_equivalent(a, n) for a in tried}), dtype=np.int64)
+    pairs = ((a, pow(a, -1, n)) for a in tried)
+    candidates = np.array(sorted({min(a, n - a, b, n - b) for a, b in pairs}), dtype=np.int64)
     return _least_energy(candidates, n, d)
 
 
@@ -139,15 +110,6 @@ def _multipliers(n: int) -> Iterator[int]:
         a = 1 + i * stride % half
         if gcd(a, n) == 1:
             yield a
-
-
-def _smallest_equivalent(a: int, n: int) -> int:
-    inverse = pow(a, -1, n)
-    return min(a, n - a, inverse, n - inverse)
-
-
-def _powers(a: int, n: int, d: int) -> Ints:
-    return np.array([pow(a, k, n) for k in range(d)], dtype=np.int64)
 
 
 def _least_energy(candidates: Ints, n: int, d: int) -> int:
@@ -206,10 +168,9 @@ def _log_energies(vectors: Floats, n: int, first: int, last: int) -> Floats:
 def _integer_power(base: Floats, exponent: int) -> Floats:
     """Return base**exponent, exponent >= 1, by repeated squaring: several times faster than NumPy's power."""
     result = np.ones_like(base)
-    while True:
+    while exponent:
         if exponent % 2 == 1:
             result *= base
-        exponent //= 2
-        if exponent == 0:
-            return result
         base = base * base
+        exponent //= 2
+    return result

@@ -11,7 +11,7 @@ from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import Origin, PointSet
-from evenroad.points.sampler import Symmetry
+from evenroad.points.randomise import Symmetry
 
 MAX_D = 12
 """Beyond this the ball around the cube holds thousands of lattice points for each one inside the cube."""
@@ -21,9 +21,8 @@ MAX_D = 12
 class Lattice:
     """A_d* (Conway and Sloane 1999, chapter 4.6.6), under a random rotation and a random shift.
 
-    The rule that keeps exactly n points: around a uniformly random centre in the rotated lattice of unit density,
-    grow a cube until it holds n lattice points, go on half the distance to the point that would enter next, and scale
-    that cube to the unit cube.
+    To keep exactly n points, a cube around a uniformly random centre in the rotated lattice grows until it holds n,
+    goes on half the distance to the point that would enter next, and is scaled to the unit cube.
     """
 
     name = "lattice"
@@ -34,10 +33,7 @@ class Lattice:
     symmetries = frozenset({Symmetry.PERMUTATION, Symmetry.REFLECTION})
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
-        """Return n lattice points of the unit cube, shape (n, d); see :class:`~evenroad.points.Sampler`.
-
-        Raises InvalidValue also if d > 12.
-        """
+        """Return n lattice points, shape (n, d), d <= 12; see :class:`~evenroad.points.Sampler`."""
         n, d = require_count("n", n), require_count("d", d)
         if d > MAX_D:
             raise InvalidValue(f"d must be at most {MAX_D} for the lattice sampler, got {d}")
@@ -60,12 +56,8 @@ class Lattice:
 
 
 def _unit_density_basis(d: int) -> Floats:
-    """Return a lower-triangular basis (rows are vectors) of A_d* with determinant 1.
-
-    The rows have the Gram matrix I - J/(d+1), an obtuse superbase of A_d*, scaled to unit density.
-    """
-    gram = np.eye(d) - np.full((d, d), 1.0 / (d + 1))
-    return np.linalg.cholesky(gram) * (d + 1) ** (0.5 / d)
+    """Return a lower-triangular basis of A_d*: rows with the Gram matrix I - J/(d+1), scaled to determinant 1."""
+    return np.linalg.cholesky(np.eye(d) - np.full((d, d), 1.0 / (d + 1))) * (d + 1) ** (0.5 / d)
 
 
 def _random_rotation(d: int, random: np.random.Generator) -> Floats:

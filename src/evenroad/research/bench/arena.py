@@ -1,8 +1,6 @@
-"""Planner Arena: the rows of a store as a database of OMPL's benchmark schema.
+"""Planner Arena: the rows of a store as a database of OMPL's benchmark schema (``ompl_benchmark_statistics.py``).
 
-The schema is that of OMPL's ``ompl_benchmark_statistics.py``: experiments with twelve fixed columns and then their
-parameters, planner configurations, runs with their attributes, enums, and an empty table of progress.  An experiment is
-a problem with its N, a planner is a sampler with its connection rule and search.
+An experiment is a problem with its N, a planner is a sampler with its connection rule and search.
 """
 
 from __future__ import annotations
@@ -11,10 +9,12 @@ import os
 import sqlite3
 import tempfile
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
 
+from evenroad._arrays import Ints
 from evenroad._files import atomic_write, require_writable_folder
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.research.bench.rows import Rows
@@ -55,8 +55,7 @@ CREATE TABLE progress (runid INTEGER, time REAL, PRIMARY KEY (runid, time));
 def write_arena(store: str | os.PathLike[str], out: str | os.PathLike[str]) -> int:
     """Write a Planner Arena database of all rows of a store, atomically; return how many runs it has.
 
-    BrokenFile if the store cannot be read, or `out` not be written; NotAvailable if the store has no rows, InvalidValue
-    if both are the same file.
+    NotAvailable if the store has no rows, InvalidValue if both are the same file.
     """
     target = Path(out)
     require_writable_folder(target)
@@ -76,32 +75,29 @@ def write_arena(store: str | os.PathLike[str], out: str | os.PathLike[str]) -> i
 
 
 def _write(path: Path, rows: Rows, session: Session) -> None:
-    connection = sqlite3.connect(path)
-    try:
+    experiment, first_of_experiment = _numbers(rows, "problem", "n", "seed")
+    planner, first_of_planner = _numbers(rows, "sampler", "rule", "search")
+    with closing(sqlite3.connect(path)) as connection:
         connection.executescript(TABLES)
-        connection.executemany(
-            "INSERT INTO enums VALUES ('status', ?, ?)", [STATUSES[name] for name in STATUSES]
-        )
-        experiment = _numbers(rows, "problem", "n", "seed")
-        planner = _numbers(rows, "sampler", "rule", "search")
-        for number, row in _first_rows(experiment):
+        connection.executemany("INSERT INTO enums VALUES ('status', ?, ?)", STATUSES.values())
+        versions = f"python {session.python}, numpy {session.numpy}, numba {session.numba}"
+        for number, row in enumerate(first_of_experiment, 1):
             here = experiment == number
+            ran = (float(np.nansum(rows.seconds[here])), int(here.sum()))
+            of_session = (f"evenroad {session.evenroad}", session.platform, session.started)
             connection.execute(
                 "INSERT INTO experiments VALUES (?, ?, ?, 0, 0, ?, ?, ?, '', ?, ?, ?, ?)",
                 (
                     number,
                     rows.problem[row],
-                    float(np.nansum(rows.seconds[here])),
-                    int(here.sum()),
-                    f"evenroad {session.evenroad}",
-                    session.platform,
-                    session.started,
+                    *ran,
+                    *of_session,
                     int(rows.seed[row]),
-                    f"python {session.python}, numpy {session.numpy}, numba {session.numba}",
+                    versions,
                     int(rows.n[row]),
                 ),
             )
-        for number, row in _first_rows(planner):
+        for number, row in enumerate(first_of_planner, 1):
             sampler, rule, search = rows.sampler[row], rows.rule[row], rows.search[row]
             connection.execute(
                 "INSERT INTO plannerConfigs VALUES (?, ?, ?)",
@@ -111,24 +107,16 @@ def _write(path: Path, rows: Rows, session: Session) -> None:
             f"INSERT INTO runs VALUES ({', '.join('?' * 12)})", _runs(rows, experiment, planner)
         )
         connection.commit()
-    finally:
-        connection.close()
 
 
-def _numbers(rows: Rows, *names: str) -> np.ndarray:
-    """Return for each row which of the different combinations of these columns it has, from 1."""
+def _numbers(rows: Rows, *names: str) -> tuple[Ints, list[int]]:
+    """Return for each row which of the different combinations of these columns it has, from 1, and their first rows."""
     columns = [np.asarray(getattr(getattr(rows, name), "codes", getattr(rows, name))) for name in names]
-    _, number = np.unique(np.stack(columns, axis=1), axis=0, return_inverse=True)
-    return number.ravel() + 1
+    _, first, number = np.unique(np.stack(columns, axis=1), axis=0, return_index=True, return_inverse=True)
+    return number.ravel() + 1, first.tolist()
 
 
-def _first_rows(numbers: np.ndarray) -> Iterator[tuple[int, int]]:
-    """Yield each number with the first row that has it."""
-    values, first = np.unique(numbers, return_index=True)
-    yield from zip(values.tolist(), first.tolist(), strict=True)
-
-
-def _runs(rows: Rows, experiment: np.ndarray, planner: np.ndarray) -> Iterator[tuple[object, ...]]:
+def _runs(rows: Rows, experiment: Ints, planner: Ints) -> Iterator[tuple[object, ...]]:
     status = [STATUSES[name][0] for name in rows.status.names]
     columns = (
         range(1, len(rows) + 1),
@@ -145,4 +133,4 @@ def _runs(rows: Rows, experiment: np.ndarray, planner: np.ndarray) -> Iterator[t
         rows.run.tolist(),
         rows.instance.tolist(),
     )
-    yield from zip(*columns, strict=True)
+    return zip(*columns, strict=True)

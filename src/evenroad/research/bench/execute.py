@@ -1,10 +1,8 @@
 """Running one task in this process, within a limit on its time.
 
 The same task gives the same outcome, in any process and in any order, on one kind of processor: elsewhere the last bits
-of computed sets may differ, as those of Riesz energies do by 2e-16.
-
-The roadmap and its search are those of :func:`evenroad.roadmap.plan`, without what a benchmark does not measure: a
-shorter path afterwards, and the strict check of that path.
+of computed sets may differ.  Roadmap and search are those of :func:`evenroad.roadmap.plan`, without what a benchmark
+does not measure: a shorter path afterwards, and the strict check of that path.
 """
 
 from __future__ import annotations
@@ -29,16 +27,12 @@ from evenroad.research.problems import source_named
 from evenroad.roadmap import rule_named
 from evenroad.roadmap.search import FREE, EdgeStates
 
-Milestones = tuple[Floats, str, float]
-"""The valid configurations of a set, which set it is, and the seconds that their validity took."""
-
 
 def run_task(task: Task, limit: float | None = None) -> Outcome:
     """Run one task; whatever goes wrong is an outcome, too: ``failed``, or ``timeout`` after `limit` seconds.
 
-    What the next task is likely to need again is kept for the process: fixed problems, the last random one, and the
-    valid milestones of the last set.  So tasks should come with the rules of one set, and the sets of one random
-    problem, side by side.  Where the platform cannot (:func:`time_limit`), nothing is limited.
+    What the next task is likely to need again is kept for the process: the last problems, and the valid milestones of
+    the last set.  So tasks should come with the rules of one set, and the sets of one random problem, side by side.
     """
     try:
         with time_limit(limit):
@@ -51,7 +45,7 @@ def run_task(task: Task, limit: float | None = None) -> Outcome:
 
 def _run(task: Task) -> Outcome:
     problem = _problem(task.problem, task.instance)
-    _warm_up(task.problem, task.rule, task.search, problem)
+    _warm_up(task, problem)
     milestones, set_id, validity_seconds = _milestones(
         task.problem, task.instance, task.sampler, task.n, task.run, task.seed
     )
@@ -80,23 +74,16 @@ def _search(problem: Problem, milestones: Floats, rule: str, search: str) -> tup
     return search_named(search)(states), states
 
 
-def _problem(name: str, instance: int) -> Problem:
-    return _random_problem(name, instance) if source_named(name).random else _fixed_problem(name)
-
-
 @lru_cache(maxsize=16)
-def _fixed_problem(name: str) -> Problem:
-    return source_named(name).make(0)
-
-
-@lru_cache(maxsize=1)
-def _random_problem(name: str, instance: int) -> Problem:
+def _problem(name: str, instance: int) -> Problem:
     return source_named(name).make(instance)
 
 
 @lru_cache(maxsize=1)
-def _milestones(problem: str, instance: int, sampler: str, n: int, run: int, seed: int) -> Milestones:
-    """Return what all rules and searches share: the same arguments are the same set in the same problem."""
+def _milestones(
+    problem: str, instance: int, sampler: str, n: int, run: int, seed: int
+) -> tuple[Floats, str, float]:
+    """Return what all rules and searches share: a set's valid configurations, its id, and the seconds of validity."""
     of_set, of_missing = np.random.SeedSequence(seed, spawn_key=(run,)).spawn(2)
     here = _problem(problem, instance)
     points, set_id = draw_set(sampler, n, here.set_dim, run, np.random.default_rng(of_set))
@@ -111,15 +98,15 @@ def _milestones(problem: str, instance: int, sampler: str, n: int, run: int, see
 _warm: set[tuple[str, str, str]] = set()
 
 
-def _warm_up(name: str, rule: str, search: str, problem: Problem) -> None:
+def _warm_up(task: Task, problem: Problem) -> None:
     """Let compiled code be loaded before the clock runs: it takes longer than a task."""
-    if (name, rule, search) in _warm:
-        return
-    cube = np.random.default_rng(0).random((8, problem.world.space.cube_dim))
-    configurations = problem.world.space.from_cube(cube)
-    problem.world.valid(configurations)
-    _search(problem, configurations, rule, search)
-    _warm.add((name, rule, search))
+    kind = task.problem, task.rule, task.search
+    if kind not in _warm:
+        cube = np.random.default_rng(0).random((8, problem.world.space.cube_dim))
+        configurations = problem.world.space.from_cube(cube)
+        problem.world.valid(configurations)
+        _search(problem, configurations, task.rule, task.search)
+        _warm.add(kind)
 
 
 DEFAULT_LIMIT = 600.0
@@ -141,10 +128,9 @@ def require_limit(seconds: float | None) -> None:
 
 @contextmanager
 def time_limit(seconds: float | None) -> Iterator[None]:
-    """Raise OverTime in the block after so many seconds; None means no limit.
+    """Raise OverTime in the block after so many seconds, by a SIGALRM: where there is none nothing is limited.
 
-    It takes a SIGALRM, so nothing is limited on platforms without it, nor outside of the main thread.  Compiled code
-    is not interrupted: the error comes when it returns.
+    Nor is it outside of the main thread, and compiled code is not interrupted: the error comes when it returns.
     """
     here = threading.current_thread() is threading.main_thread()
     if seconds is None or not here or not hasattr(signal, "SIGALRM"):

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, fields, replace
+from contextlib import closing
+from dataclasses import dataclass, replace
 from operator import itemgetter
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +16,7 @@ import numpy.typing as npt
 from evenroad._arrays import Bools, Floats, Ints, Ints32
 from evenroad.research.bench.store_file import (
     COLUMNS,
+    NAMED,
     checked_rows,
     checksum_of,
     connect,
@@ -22,7 +24,7 @@ from evenroad.research.bench.store_file import (
     read_names,
     sqlite_errors,
 )
-from evenroad.research.bench.task import PROTOCOL
+from evenroad.research.bench.task import PROTOCOL, Task
 
 FAILURES = ("failed", "lost", "timeout")
 """Statuses that are failures of a run, not answers."""
@@ -43,10 +45,6 @@ class Labels:
 
     def __getitem__(self, row: int) -> str:
         return self.names[self.codes[row]]
-
-    def values(self) -> npt.NDArray[np.object_]:
-        """Return the texts, one a row."""
-        return np.array(self.names, dtype=object)[self.codes]
 
     def is_in(self, names: Iterable[str]) -> Bools:
         """Return which rows have one of these texts; those that no row has are passed over."""
@@ -101,48 +99,38 @@ class Rows:
     def where(self, chosen: Bools | npt.NDArray[np.integer]) -> Rows:
         """Return the rows that a mask or row numbers choose, in that order."""
         selected: dict[str, Any] = {}
-        for field in fields(self):
-            column = getattr(self, field.name)
-            if isinstance(column, Labels):
-                selected[field.name] = replace(column, codes=column.codes[chosen])
-                selected[field.name].codes.setflags(write=False)
-            else:
-                selected[field.name] = column[chosen]
-                selected[field.name].setflags(write=False)
+        for name, column in vars(self).items():
+            labelled = isinstance(column, Labels)
+            values = (column.codes if labelled else column)[chosen]
+            values.setflags(write=False)
+            selected[name] = replace(column, codes=values) if labelled else values
         return Rows(**selected)
 
 
 def read_rows(path: str | os.PathLike[str], *, problems: Sequence[str] | None = None) -> Rows:
     """Read finished rows of today's protocol, in the order of the tasks' fields; a million takes ten seconds.
 
-    The store may be in use by a running benchmark.  With `problems`, only their rows.  Raises BrokenFile if there is no
-    such file, it is not a store, one of another version, or damaged anywhere, also where rows are not asked for.
+    The store may be in use by a running benchmark.  With `problems`, only their rows.  BrokenFile if it is not a sound
+    store, also where rows are not asked for.
     """
     target = Path(path)
-    connection = connect(target)
-    try:
-        with sqlite_errors(target):
-            connection.execute("BEGIN")
-            texts = read_names(connection, target)
-            wanted = {number for number, text in texts.items() if problems is None or text in problems}
-            chosen = (
-                _record(row)
-                for row in checked_rows(connection, target, texts)
-                if row[_PROTOCOL] == PROTOCOL and row[_PROBLEM] in wanted
-            )
-            # Straight into one array: lists of a million tuples would take a gigabyte.
-            table = np.fromiter(chosen, dtype=_RECORD)
-    finally:
-        connection.close()
-    return _rows_from({name: table[name] for name in _RECORD.names or ()}, texts)
+    with closing(connect(target)) as connection, sqlite_errors(target):
+        connection.execute("BEGIN")
+        texts = read_names(connection, target)
+        wanted = {number for number, text in texts.items() if problems is None or text in problems}
+        chosen = (
+            _record(row)
+            for row in checked_rows(connection, target, texts)
+            if row[_PROTOCOL] == PROTOCOL and row[_PROBLEM] in wanted
+        )
+        # Straight into one array: lists of a million tuples would take a gigabyte.
+        return _rows_from(np.fromiter(chosen, dtype=_RECORD), texts)
 
 
 _PROTOCOL, _PROBLEM = COLUMNS.index("protocol"), COLUMNS.index("problem")
-_VALID_AT, _LENGTH, _SECONDS = (COLUMNS.index(name) for name in ("valid_at_solution", "length", "seconds"))
-_WITHOUT_NULL = [
-    name for name in Rows.__annotations__ if name not in ("valid_at_solution", "length", "seconds")
-]
-_pick = itemgetter(*map(COLUMNS.index, _WITHOUT_NULL))
+_WITH_NULL = ("valid_at_solution", "length", "seconds")
+_WITHOUT_NULL = [name for name in Rows.__annotations__ if name not in _WITH_NULL]
+_pick, _pick_or_null = (itemgetter(*map(COLUMNS.index, names)) for names in (_WITHOUT_NULL, _WITH_NULL))
 _RECORD = np.dtype(
     [(name, np.int64) for name in (*_WITHOUT_NULL, "valid_at_solution")]
     + [(name, np.float64) for name in ("length", "seconds")]
@@ -150,7 +138,7 @@ _RECORD = np.dtype(
 
 
 def _record(row: tuple[Any, ...]) -> tuple[Any, ...]:
-    at, length, seconds = row[_VALID_AT], row[_LENGTH], row[_SECONDS]
+    at, length, seconds = _pick_or_null(row)
     return (
         *_pick(row),
         -1 if at is None else at,
@@ -159,8 +147,7 @@ def _record(row: tuple[Any, ...]) -> tuple[Any, ...]:
     )
 
 
-@dataclass(frozen=True)
-class Session:
+class Session(NamedTuple):
     """One time that a store was written to: when, and by what."""
 
     started: str
@@ -175,32 +162,25 @@ class Session:
 def read_sessions(path: str | os.PathLike[str]) -> tuple[Session, ...]:
     """Return the sessions that wrote a store, the first one first; errors as :func:`read_rows`."""
     target = Path(path)
-    connection = connect(target)
-    try:
-        with sqlite_errors(target):
-            rows = connection.execute("SELECT * FROM sessions ORDER BY rowid").fetchall()
-    finally:
-        connection.close()
+    with closing(connect(target)) as connection, sqlite_errors(target):
+        rows = connection.execute("SELECT * FROM sessions ORDER BY rowid").fetchall()
     if any(checksum != checksum_of(texts) for *texts, checksum in rows):
         raise damaged(target, "a session is not as it was written")
     return tuple(Session(*texts) for *texts, _ in rows)
 
 
-def _rows_from(columns: dict[str, npt.NDArray[np.generic]], texts: dict[int, str]) -> Rows:
-    """Return rows, sorted by the fields of the task, from columns whose texts are numbers."""
-    in_order: dict[str, Any] = {}
-    for field in fields(Rows):
-        column = columns[field.name]
-        in_order[field.name] = _labels(column, texts) if field.type == "Labels" else column
-    of_task = ("problem", "instance", "sampler", "n", "rule", "search", "run", "seed")
-    keys = [getattr(in_order[name], "codes", in_order[name]) for name in of_task]
-    return Rows(**in_order).where(np.lexsort(keys[::-1]))
+def _rows_from(table: npt.NDArray[Any], texts: dict[int, str]) -> Rows:
+    """Return rows, sorted by the fields of the task, from records whose texts are numbers."""
+    columns: dict[str, Any] = {
+        name: _labels(table[name], texts) if name in NAMED else table[name] for name in Rows.__annotations__
+    }
+    keys = [getattr(columns[name], "codes", columns[name]) for name in Task.__annotations__]
+    return Rows(**columns).where(np.lexsort(keys[::-1]))
 
 
 def _labels(numbers: npt.NDArray[np.generic], texts: dict[int, str]) -> Labels:
     present, place = np.unique(numbers, return_inverse=True)
-    names = [texts[number] for number in present.tolist()]
-    order = sorted(range(len(names)), key=names.__getitem__)
-    rank = np.empty(len(names), dtype=np.int32)
-    rank[order] = np.arange(len(names))
-    return Labels(rank[place], tuple(names[i] for i in order))
+    names, rank = np.unique(
+        np.array([texts[number] for number in present.tolist()], dtype=object), return_inverse=True
+    )
+    return Labels(rank.astype(np.int32)[place], tuple(names.tolist()))

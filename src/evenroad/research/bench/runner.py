@@ -8,7 +8,7 @@ import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future, wait
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from evenroad.errors import WorkerLost
 from evenroad.research.bench.execute import DEFAULT_LIMIT, require_limit, run_task
@@ -31,8 +31,7 @@ DEATHS_IN_A_ROW = 8
 Callback = Callable[[int, int], object]
 
 
-@dataclass(frozen=True)
-class Report:
+class Report(NamedTuple):
     """How a run of a suite went, in tasks.
 
     `found` had a row in the store before, `found_failures` of them a failure; `finished` were run now, and `failures`
@@ -57,51 +56,20 @@ def run_tasks(
 ) -> Report:
     """Run all tasks that the store has no row of; a stopped run goes on with the next call.
 
-    Outcomes do not depend on the workers, nor on how often the run was stopped; seconds do.
-
-    Parameters
-    ----------
-    suite : str
-        Label of the rows.
-    tasks : iterable of Task
-        In an order that suits caches (see :func:`~evenroad.research.bench.execute.run_task`).
-    store : Store
-        Open for writing.
-    workers : Workers
-        Where tasks run: :func:`in_process`, :func:`processes`, :func:`dask_workers`, or any executor's.
-    callback : callable, optional
-        Called as ``callback(finished, tasks)`` a few times a second, with those found in the store counted; what it
-        raises stops the run.
-    limit : float, optional
-        Seconds for a task, at most 10^6, after which its row says ``timeout``; None means no limit.
-    retry : bool
-        Run tasks again whose row is a failure.
-
-    Returns
-    -------
-    Report
-        What was done.
-
-    Raises
-    ------
-    InvalidValue
-        If `limit` is no such number.
-    WorkerLost
-        If workers die again and again without finishing anything.
-    BrokenFile
-        If the store cannot be written any more.  What was finished waits in it for its end.
+    Outcomes do not depend on the workers, nor on how often the run was stopped; seconds do.  Tasks should come in an
+    order that suits caches (see :func:`~evenroad.research.bench.execute.run_task`); `suite` labels their rows, `limit`
+    is in seconds a task.  `callback` is called as ``callback(finished, tasks)`` a few times a second, with those found
+    in the store counted; what it raises stops the run.  With `retry` tasks whose row is a failure are run again.
+    Raises WorkerLost if workers die again and again without finishing anything.
     """
     require_limit(limit)
     tasks = tuple(tasks)
     is_answer = store.finished()
-    missing, found, found_failures = [], 0, 0
-    for task in tasks:
-        answered = is_answer.get(task.key)
-        if answered is None or (retry and not answered):
-            missing.append(task)
-        else:
-            found += 1
-            found_failures += not answered
+    # None where there is no row.
+    answered = [is_answer.get(task.key) for task in tasks]
+    is_missing = [not answer if retry else answer is None for answer in answered]
+    missing = [task for task, runs in zip(tasks, is_missing, strict=True) if runs]
+    found, found_failures = len(tasks) - len(missing), 0 if retry else answered.count(False)
     run = _Run(suite, missing, store, workers, limit)
     try:
         while run.goes_on():
@@ -239,8 +207,7 @@ FIRST_CHUNK = 2
 LARGEST_CHUNK = 500
 
 
-@dataclass(frozen=True)
-class Done:
+class Done(NamedTuple):
     """A chunk that was run: outcomes, the wall time of each with problems and sets made, and by which worker."""
 
     outcomes: tuple[Outcome, ...]
@@ -249,7 +216,7 @@ class Done:
 
 
 def run_chunk(tasks: Sequence[Task], limit: float | None) -> Done:
-    """Run tasks one after the other; `limit` as for :func:`~evenroad.research.bench.execute.run_task`."""
+    """Run tasks one after the other, each within `limit` seconds."""
     outcomes, seconds = [], []
     for task in tasks:
         began = time.perf_counter()

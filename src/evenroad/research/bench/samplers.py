@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
 from evenroad._checks import require_known
 from evenroad.errors import NotAvailable, UnknownName
 from evenroad.points import PointSet, draw, make_sampler
-from evenroad.points.bank import open_bank
-from evenroad.points.randomise import permute_coordinates
+from evenroad.points.bank import Bank
+from evenroad.points.randomise import Symmetry, randomise
+from evenroad.points.samplers import Halton, Sobol
 from evenroad.points.samplers.lattice import MAX_D
 
 PERMUTED_FROM = 5
@@ -23,23 +24,14 @@ STRETCH = 32
 """Runs of a block protocol whose points are generated together."""
 
 Drawn = tuple[PointSet, str]
-"""A set, and which one of its pool it is."""
 
 
-@dataclass(frozen=True)
-class RunSampler:
-    """How the set of a run is drawn.
+class RunSampler(NamedTuple):
+    """How the set of a run is drawn, from points of the sampler `family`.
 
-    Attributes
-    ----------
-    family : str
-        Name of the sampler whose points these are.
-    draw : callable
-        From (family, n, d, run, rng) to the set and its `set_id`.
-    why_not : callable
-        From (family, n, d) to why there is no such set, one sentence; "" if there is one.
-    protocol : str
-        What lists say of the draw, beside what the sampler says of itself.
+    `draw` goes from (family, n, d, run, rng) to the set and its `set_id`; `why_not` from (family, n, d) to why there is
+    no such set, one sentence, "" if there is one; `protocol` is what lists say of the draw, beside what the sampler
+    says of itself.
     """
 
     family: str
@@ -54,19 +46,10 @@ class RunSampler:
 
 
 def draw_set(name: str, n: int, d: int, run: int, rng: np.random.Generator) -> Drawn:
-    """Draw the set of one run, (n, d); `rng` is spawned, block protocols go by the number `run`, from 0, instead.
+    """Draw the set of one run, (n, d), and say which one of its pool it is, as `set_id` of an outcome.
 
-    Returns
-    -------
-    points : PointSet
-    set_id : str
-        The number of the set in its pool, by which statistics cluster; ``grid`` for the only set that there is;
-        empty for sets drawn afresh.
-
-    Raises
-    ------
-    UnknownName, NotAvailable
-        If there is no such sampler, or it has no such set.  Nothing is ever trained for a benchmark.
+    `rng` is spawned; block protocols go by the number `run`, from 0, instead.  Raises NotAvailable if there is no such
+    set: nothing is ever trained for a benchmark.
     """
     reason = why_not(name, n, d)
     if reason:
@@ -95,9 +78,6 @@ def _block(family: str, n: int, d: int, run: int, rng: np.random.Generator) -> D
 @lru_cache(maxsize=4)
 def _stretch(family: str, n: int, d: int, number: int) -> PointSet:
     """Return the blocks of many runs at once: SciPy's Halton engine generates all the points that it skips."""
-    # Here, because it imports scipy.stats.
-    from evenroad.points.samplers.sequences import Halton, Sobol
-
     sequence = Halton if family == "halton" else Sobol
     return sequence(scramble=False, start=number * STRETCH * n + 1).draw(STRETCH * n, d)
 
@@ -113,7 +93,7 @@ def _from_pool(family: str, n: int, d: int, run: int, rng: np.random.Generator) 
         # Constructed, as `even` is: its random shift makes it a set of its own.
         return points, ""
     if d >= PERMUTED_FROM:
-        points = permute_coordinates(points, rng=order)
+        points = randomise(points, {Symmetry.PERMUTATION}, rng=order)
     return points, str(points.origin.replica)
 
 
@@ -135,7 +115,7 @@ def _grid_exists(family: str, n: int, d: int) -> str:
 
 def _pool_exists(family: str, n: int, d: int) -> str:
     try:
-        open_bank().cell(family, n, d)
+        Bank().cell(family, n, d)
     except (NotAvailable, UnknownName) as error:
         return str(error)
     return ""

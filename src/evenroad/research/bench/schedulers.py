@@ -23,15 +23,8 @@ def dask_workers(address: str) -> Workers:
 
     The cluster may be a LocalCluster, one over SSH, or one that dask-jobqueue keeps on Slurm; evenroad must be
     installed there in the same version.  A chunk whose worker dies is sent to another one by the scheduler itself,
-    three times.  Tasks run in threads of the workers, so the limit on a task's seconds does not hold there.
-
-    Raises
-    ------
-    InvalidValue
-        If the address is not of that form.
-    NotAvailable
-        If the package is missing, Dask has no certificates for ``tls://``, no scheduler answers within seconds, it
-        has no workers, or they have another version of evenroad.
+    three times.  Tasks run in threads of the workers, so the limit on a task's seconds does not hold there.  Raises
+    NotAvailable if the package is missing, or no scheduler or no workers of our version answer within a minute.
     """
     # Not left to Dask: a client that cannot read its address takes a quarter of a minute to go away, with a traceback.
     if not ADDRESS.fullmatch(address):

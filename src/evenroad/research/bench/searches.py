@@ -4,24 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
-from evenroad._arrays import Ints, Ints32
+from evenroad._arrays import Ints32
 from evenroad._checks import require_known
 from evenroad.roadmap.cost import edge_costs
 from evenroad.roadmap.search import FINDERS, FREE, UNKNOWN, EdgeStates, join, length_along, search_problem
 
 
-@dataclass(frozen=True)
-class Finding:
-    """What a search says: whether there is a path, and its length where a shortest one was looked for and found.
-
-    `valid_at_solution`, of the search ``stock``: valid milestones that had been added when there was a path.
-    """
+class Finding(NamedTuple):
+    """What a search says: whether there is a path, and what else it knows of an :class:`Outcome`."""
 
     solved: bool
     valid_at_solution: int | None = None
@@ -29,10 +25,7 @@ class Finding:
 
 
 def search_named(name: str) -> Callable[[EdgeStates], Finding]:
-    """Return the search of this name: from a graph's states, whose last two nodes are start and goal, to what it says.
-
-    UnknownName, with the known ones, if there is none.
-    """
+    """Return the search of this name, of the states of a graph whose last two nodes are start and goal."""
     require_known("search", name, SEARCHES)
     return SEARCHES[name]
 
@@ -76,7 +69,9 @@ def is_connected(states: EdgeStates) -> bool:
     label = np.arange(len(states.node_states), dtype=np.int32)
     join(label, states.edges[states.edge_states == FREE])
     while label[-2] != label[-1]:
-        asked = min((_leaving(states, label, end) for end in (-2, -1)), key=len)
+        asked = min(
+            (_edges_leaving(states.edges, states.edge_states, label, label[end]) for end in (-2, -1)), key=len
+        )
         if not len(asked):
             return False
         states.ask_edges(asked)
@@ -111,11 +106,6 @@ def milestones_until_connected(states: EdgeStates) -> int | None:
     raise AssertionError("is_connected said that there is a path")
 
 
-def _leaving(states: EdgeStates, label: Ints32, node: int) -> Ints:
-    """Return the unknown edges with one end in the component of this node and the other outside."""
-    return _edges_leaving(states.edges, states.edge_states, label, label[node])
-
-
 def _first_to_connect(label: Ints32, edges: Ints32) -> int:
     """Return the row of the edge that, joined after those before it, connects the last two nodes."""
     row = 0
@@ -127,6 +117,7 @@ def _first_to_connect(label: Ints32, edges: Ints32) -> int:
 
 @njit(cache=True, nogil=True)
 def _edges_leaving(edges, states, label, component):  # type: ignore[no-untyped-def]
+    """Return the unknown edges with one end in a component and the other outside."""
     leaving = np.empty(edges.shape[0], dtype=np.int64)
     count = 0
     for e in range(edges.shape[0]):

@@ -10,7 +10,7 @@ import sqlite3
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -63,10 +63,7 @@ class Store:
         self._has_written = False
 
     def finished(self) -> dict[str, bool]:
-        """Return the keys of the tasks that have a row, and whether it is an answer, not a failure of the run.
-
-        Raises BrokenFile if the store is damaged.
-        """
+        """Return the keys of the tasks that have a row, and whether it is an answer, not a failure of the run."""
         texts = {number: text for text, number in self._names.items()}
         with sqlite_errors(self.path):
             rows = checked_rows(self._connection, self.path, texts)
@@ -74,44 +71,22 @@ class Store:
 
     def add(self, suite: str, task: Task, outcome: Outcome, worker: str) -> None:
         """Take the row of a finished task, in place of an earlier one, for the next commit; this cannot fail."""
-        self._waiting.append(
-            (
-                task.key,
-                PROTOCOL,
-                suite,
-                task.problem,
-                int(task.instance),
-                task.sampler,
-                int(task.n),
-                task.rule,
-                task.search,
-                int(task.run),
-                int(task.seed),
-                outcome.status,
-                int(outcome.valid),
-                None if outcome.valid_at_solution is None else int(outcome.valid_at_solution),
-                int(outcome.edges_checked),
-                _or_null(outcome.length),
-                _or_null(outcome.seconds),
-                outcome.set_id,
-                # SQLite takes no lone surrogates, as names of files can have them.
-                outcome.error.encode(errors="backslashreplace").decode(),
-                worker,
-                _now(),
-            )
-        )
+        of_task = [field if isinstance(field, str) else int(field) for field in vars(task).values()]
+        at = outcome.valid_at_solution
+        counts = (int(outcome.valid), None if at is None else int(at), int(outcome.edges_checked))
+        floats = (_or_null(outcome.length), _or_null(outcome.seconds))
+        # SQLite takes no lone surrogates, as names of files can have them.
+        error = outcome.error.encode(errors="backslashreplace").decode()
+        of_outcome = (outcome.status, *counts, *floats, outcome.set_id, error)
+        self._waiting.append((task.key, PROTOCOL, suite, *of_task, *of_outcome, worker, _now()))
 
     def commit_if_due(self) -> None:
-        """Commit, if the last time was long enough ago; errors as :meth:`commit`."""
+        """Commit, if the last time was long enough ago."""
         if time.monotonic() - self._last_commit >= COMMIT_SECONDS:
             self.commit()
 
     def commit(self) -> None:
-        """Write what was added.
-
-        Raises BrokenFile if the disk is full, or another process locks the file. Earlier rows are kept, and those that
-        were to be written wait for another commit or for :meth:`close`.
-        """
+        """Write what was added; after a BrokenFile it waits for another commit or for :meth:`close`."""
         if self._waiting:
             try:
                 with sqlite_errors(self.path):
@@ -126,7 +101,7 @@ class Store:
         self._last_commit = time.monotonic()
 
     def take_in_rescued(self) -> None:
-        """Write the rows that an earlier writer had to leave beside the store; errors as :meth:`commit`."""
+        """Write the rows that an earlier writer had to leave beside the store."""
         rescued = waiting_rows(self.path)
         if rescued:
             # An answer that was found since is not given up for what was rescued before.
@@ -141,10 +116,7 @@ class Store:
             rescue_file(self.path).unlink()
 
     def close(self) -> None:
-        """Commit; rows that the store cannot take are left in a file beside it.
-
-        Raises BrokenFile if the store cannot be written; the text says where the rows are.
-        """
+        """Commit; rows that the store cannot take are left in a file beside it, as the text of the BrokenFile says."""
         try:
             # What failed is not tried again: a locked file would be waited for once more.
             if self._failure is None:
@@ -188,27 +160,21 @@ class Store:
 def open_store(path: str | os.PathLike[str]) -> Iterator[Store]:
     """Open a store for writing, or make one; what was added is committed when the block ends, however it does.
 
-    Between the commits, and after the block, it is one file that can be copied. While it is open there is a lock
-    beside it, STORE.lock. Rows that cannot be committed are left in STORE.rescue, which the next opening takes in.
-    Raises BrokenFile if the folder cannot be written, another process writes to this store, the file is not a store,
-    it has another schema version, or it could not be written in the end; the text then says where the rows are.
+    Between the commits, and after the block, it is one file that can be copied.  While it is open there is a lock
+    beside it, STORE.lock.  Rows that cannot be committed are left in STORE.rescue, which the next opening takes in;
+    the text of the BrokenFile says so.
     """
     target = Path(path)
     require_writable_folder(target)
     with only_writer(target):
         if not target.exists() or target.stat().st_size == 0:
             create(target)
-        connection = connect(target)
-        try:
+        with closing(connect(target)) as connection:
             with sqlite_errors(target):
                 store = Store(target, connection)
-            try:
+            with closing(store):
                 store.take_in_rescued()
                 yield store
-            finally:
-                store.close()
-        finally:
-            connection.close()
 
 
 def _session() -> tuple[object, ...]:
@@ -235,10 +201,7 @@ def rescue_file(store: Path) -> Path:
 def leave_rows(store: Path, rows: Sequence[Row]) -> str:
     """Write rows into the rescue file, one JSON object a line; or, if its disk is full, into the temporary folder.
 
-    Returns
-    -------
-    str
-        Where they are, as the end of a sentence for the user.
+    Returns where they are, as the end of a sentence for the user.
     """
     text = "".join(json.dumps(dict(zip(COLUMNS, row, strict=True))) + "\n" for row in rows).encode()
     beside = rescue_file(store)
@@ -252,10 +215,7 @@ def leave_rows(store: Path, rows: Sequence[Row]) -> str:
 
 
 def waiting_rows(store: Path) -> list[Row]:
-    """Return the rows in the rescue file of a store; none where there is no such file.
-
-    Raises BrokenFile if the file is something else.
-    """
+    """Return the rows in the rescue file of a store; none where there is no such file."""
     path = rescue_file(store)
     try:
         records = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]

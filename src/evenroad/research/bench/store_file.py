@@ -6,7 +6,7 @@ import os
 import sqlite3
 import zlib
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from operator import itemgetter
 from pathlib import Path
 from typing import Any
@@ -69,7 +69,6 @@ NAMED = ("suite", "problem", "sampler", "rule", "search", "status", "set_id", "e
 """Columns whose texts are kept as numbers of names."""
 
 _names_in = itemgetter(*map(COLUMNS.index, NAMED))
-
 _READ_ROLLBACK = ("SQLITE_READONLY_ROLLBACK", "SQLITE_READONLY_RECOVERY", "SQLITE_CANTOPEN")
 """Errors of SQLite where a commit that was cut off must be undone first, and the file or folder is read-only."""
 
@@ -102,10 +101,7 @@ def damaged(path: Path, what: object) -> BrokenFile:
 
 
 def connect(path: Path) -> sqlite3.Connection:
-    """Open the file of a store for reading, and writing where that is permitted.
-
-    Raises BrokenFile if there is no such file, it is not a store, one of another version, or SQLite finds it damaged.
-    """
+    """Open the file of a store for reading, and writing where that is permitted; BrokenFile if it is no sound one."""
     # Not Path.is_file, which raises where a name is too long.
     if not os.path.isfile(path):
         raise BrokenFile(f"no such store: {path}")
@@ -116,36 +112,33 @@ def connect(path: Path) -> sqlite3.Connection:
         )
     try:
         with sqlite_errors(path):
-            application = connection.execute("PRAGMA application_id").fetchone()[0]
-            schema = connection.execute("PRAGMA user_version").fetchone()[0]
-        if application != APPLICATION:
-            raise BrokenFile(f"{path} is a SQLite file, but not a store of benchmark results")
-        if schema != SCHEMA:
-            raise BrokenFile(
-                f"{path} has schema version {schema}, this evenroad reads {SCHEMA}: use another file,"
-                " or the evenroad that wrote it"
-            )
-        with sqlite_errors(path):
-            (verdict,) = connection.execute("PRAGMA quick_check(1)").fetchone()
-        if verdict != "ok":
-            raise damaged(path, " ".join(str(verdict).split()))
+            if _pragma(connection, "application_id") != APPLICATION:
+                raise BrokenFile(f"{path} is a SQLite file, but not a store of benchmark results")
+            if (schema := _pragma(connection, "user_version")) != SCHEMA:
+                raise BrokenFile(
+                    f"{path} has schema version {schema}, this evenroad reads {SCHEMA}: use another file,"
+                    " or the evenroad that wrote it"
+                )
+            if (verdict := _pragma(connection, "quick_check(1)")) != "ok":
+                raise damaged(path, " ".join(str(verdict).split()))
     except BaseException:
         connection.close()
         raise
     return connection
 
 
+def _pragma(connection: sqlite3.Connection, name: str) -> object:
+    return connection.execute(f"PRAGMA {name}").fetchone()[0]
+
+
 def create(path: Path) -> None:
     """Make an empty store at `path`, where there is no file yet or an empty one; all of it or nothing."""
-    with sqlite_errors(path):
-        connection = sqlite3.connect(path, timeout=PATIENCE, isolation_level=None)
-        try:
-            connection.executescript(
-                f"BEGIN EXCLUSIVE; {TABLES} PRAGMA application_id = {APPLICATION};"
-                f" PRAGMA user_version = {SCHEMA}; COMMIT;"
-            )
-        finally:
-            connection.close()
+    marks = f"PRAGMA application_id = {APPLICATION}; PRAGMA user_version = {SCHEMA};"
+    with (
+        sqlite_errors(path),
+        closing(sqlite3.connect(path, timeout=PATIENCE, isolation_level=None)) as connection,
+    ):
+        connection.executescript(f"BEGIN EXCLUSIVE; {TABLES} {marks} COMMIT;")
 
 
 def checksum_of(values: Sequence[object]) -> int:
@@ -184,10 +177,9 @@ def checked_rows(
 
 @contextmanager
 def only_writer(store: Path) -> Iterator[None]:
-    """Hold the lock of a store; the lock goes with the process, and its file, STORE.lock, with the block.
+    """Hold the lock of a store, which goes with the process, and its file, STORE.lock, with the block.
 
-    A lock of SQLite's own would keep readers out, too.  Raises BrokenFile if another process holds it, or its file
-    cannot be made.
+    A lock of SQLite's own would keep readers out, too.
     """
     try:
         import fcntl

@@ -7,6 +7,7 @@ import json
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -22,8 +23,8 @@ PROTOCOL = 3
 class Problem:
     """A world with a start and a goal, (dim,) each.
 
-    `set_dim` is the dimension of the point sets, at most the space's `cube_dim`.  Where it is smaller, as for the
-    paper's SE(3) puzzles, the sets give the first coordinates of the cube and the others are drawn uniformly.
+    `set_dim` is the dimension of the point sets.  Where it is smaller than the space's `cube_dim`, as for the paper's
+    SE(3) puzzles, the sets give the first coordinates of the cube and the others are drawn uniformly.
     """
 
     world: World
@@ -60,26 +61,12 @@ class ProblemSource:
 class Task:
     """All that decides the outcome of one run.
 
-    Attributes
-    ----------
-    problem : str
-        Name in :data:`evenroad.research.problems.PROBLEMS`.
-    instance : int
-        Which of a stream of random problems; 0 for a fixed one.
-    sampler : str
-        Name in :data:`evenroad.research.bench.samplers.SAMPLERS`, e.g. ``halton paper-blocks``.
-    n : int
-        Points of the set, start and goal not counted.
-    rule : str
-        Connection rule, as :func:`evenroad.roadmap.rule_named` reads it.
-    search : str
-        ``connect`` (is there a path; no shortest one), ``stock`` (the same, adding milestones in order and noting
-        after how many valid ones there is a path: OMPL's early stop), ``full`` or ``lazy`` (shortest path).
-    run : int
-        Which draw of the sampler, from 0: run i of a block protocol takes the points i N + 1 .. (i + 1) N.
-    seed : int
-        Seed of the whole suite; the run's generator is ``SeedSequence(seed, spawn_key=(run,))``.  ``paper-blocks``
-        draw no random numbers: with another seed they are the same sets.
+    `instance` is that of a random problem, 0 of a fixed one; `n` does not count start and goal; `rule` is as
+    :func:`evenroad.roadmap.rule_named` reads it.  `search` is ``connect`` (is there a path; no shortest one), ``stock``
+    (the same, adding milestones in order and noting after how many valid ones there is a path: OMPL's early stop),
+    ``full`` or ``lazy`` (shortest path).  `run` is the draw of the sampler, from 0: run i of a block protocol takes the
+    points i N + 1 .. (i + 1) N.  `seed` is the whole suite's; the run's generator is ``SeedSequence(seed,
+    spawn_key=(run,))``, of which ``paper-blocks`` draw nothing: with another seed they are the same sets.
     """
 
     problem: str
@@ -97,18 +84,9 @@ class Task:
         return key_of(PROTOCOL, *vars(self).values())
 
 
-def key_of(
-    protocol: int,
-    problem: str,
-    instance: int,
-    sampler: str,
-    n: int,
-    rule: str,
-    search: str,
-    run: int,
-    seed: int,
-) -> str:
+def key_of(protocol: int, *fields: Any) -> str:
     """Return the key of a task of some protocol: SHA-256 of its fields as JSON with sorted names, in hexadecimal."""
+    problem, instance, sampler, n, rule, search, run, seed = fields
     # Not json.dumps, which takes three times as long: a store has a million rows whose keys are checked.
     record = (
         f'{{"instance": {instance}, "n": {n}, "problem": {_quoted(problem)}, "protocol": {protocol},'
@@ -125,26 +103,12 @@ _quoted = json.encoder.encode_basestring_ascii
 class Outcome:
     """What one task gave; a task that failed has an outcome, too.
 
-    Attributes
-    ----------
-    status : str
-        ``solved``, ``not_connected``, ``start_invalid``, ``goal_invalid``; or ``failed`` (an exception),
-        ``timeout``, ``lost`` (the worker died).  The last three are failures of the run, not answers.
-    valid : int
-        Valid milestones among all n points, start and goal not counted.
-    valid_at_solution : int or None
-        Valid milestones that had been added when start and goal were first connected (search ``stock``).
-    edges_checked : int
-        Motions asked of the world.
-    length : float
-        Length of the path in the space's metric; NaN where none was looked for or found.
-    seconds : float
-        Wall time of the run, without the making of the problem and of the set.
-    set_id : str
-        Which set of a pool it was, by which statistics cluster; ``grid`` for the only set that there is; empty for sets
-        drawn afresh.
-    error : str
-        Traceback of a failure, else empty.
+    `status` is ``solved``, ``not_connected``, ``start_invalid``, ``goal_invalid``; or a failure of the run, which is no
+    answer: ``failed`` (an exception, whose traceback is `error`), ``timeout``, ``lost`` (the worker died).  `valid`
+    counts milestones among all n points, `valid_at_solution` those that had been added when start and goal were first
+    connected (search ``stock``), `edges_checked` the motions asked of the world.  `length` is the path's in the space's
+    metric, `seconds` the wall time without the making of problem and set.  `set_id` says which set of a pool it was, by
+    which statistics cluster; ``grid`` for the only set that there is; empty for sets drawn afresh.
     """
 
     status: str

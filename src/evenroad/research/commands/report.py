@@ -14,7 +14,7 @@ from evenroad.research.report.analysis import Analysis
 from evenroad.research.report.comparisons import REFERENCES
 from evenroad.research.report.fair import is_fair, pooled_rules
 from evenroad.research.report.runs import Setting
-from evenroad.research.report.sections.suites import verdict_counts
+from evenroad.research.report.sections import verdict_counts
 from evenroad.research.report.tables import difference
 
 

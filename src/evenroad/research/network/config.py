@@ -5,14 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
 
 import torch
 
 from evenroad._checks import require_count, require_positive
 from evenroad.errors import InvalidValue, NotAvailable, shown
-from evenroad.points.optimise.objective import parse_objective, require_points_for
+from evenroad.points.bank.anneal import require_points_for
+from evenroad.research.training.objective import parse_objective
 
 POINTS_AT_ONCE = 4096
 """Number of points in memory together, unless a micro-batch is asked for."""
@@ -27,25 +27,19 @@ class NetworkConfig:
     n, d : int
         Number of points of a set, >= 2, and dimension, >= 1.
     objective : str
-        Its mean over the sets is made small, see :func:`~evenroad.points.optimise.parse_objective`.  Kept as ``str``
-        writes the parsed objective.
+        An expression (:mod:`evenroad.research.training.objective`), whose mean over the sets is made small.
     sets : int
-        Number of sets that are trained together: they share the network, and each has its own random start.
+        Trained together: they share the network, and each has its own random start.
     width, layers : int
         How many numbers describe a point inside the network; number of message-passing layers.
-    k : int
-        Number of nearest neighbours that send a point messages, at most n - 1.
-    radius : float or None
-        If given, all points within this distance send messages instead, the point itself included.
-    steps : int
-        Largest number of steps of Adam; over them the learning rate falls to zero along a half cosine.
-    rate, weight_decay : float
-        First learning rate and L2 penalty of Adam.
+    k, radius : int, float or None
+        The k nearest neighbours send a point messages; or, where `radius` is given, all points within it.
+    steps, rate, weight_decay : int, float, float
+        At most so many steps of Adam, over which the rate falls to zero along a half cosine; L2 penalty.
     micro_batch : int or None
-        Number of sets in memory at once: it bounds the memory and hardly changes the speed.  None: about 4096 points.
+        Sets in memory at once, which hardly changes the speed.  None: about 4096 points.
     patience : int or None
-        Stop after so many steps without a new best mean.  None never stops early: the last steps with their small
-        rates usually still gain.
+        Stop after so many steps without a new best mean.  None: never; the last, small steps usually still gain.
     seed : int
         Draws the starting points and the first weights; nothing is drawn later.
 
@@ -92,10 +86,6 @@ class NetworkConfig:
         """Sets of a micro-batch."""
         wanted = POINTS_AT_ONCE // self.n if self.micro_batch is None else self.micro_batch
         return min(max(wanted, 1), self.sets)
-
-    def as_record(self) -> dict[str, Any]:
-        """Return the fields as plain values, for JSON."""
-        return asdict(self)
 
 
 def choose_device(name: str) -> torch.device:

@@ -8,8 +8,7 @@ sets of 1024 points in d = 10 takes 1.3 MB, and no measure has to be written a s
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import torch
@@ -20,13 +19,11 @@ from torch.nn import functional
 
 from evenroad._arrays import Floats, Ints
 from evenroad.errors import InvalidValue
-from evenroad.points.optimise.objective import Objective, objective_of_columns
 from evenroad.points.pointset import BELOW_ONE
-from evenroad.research.network.config import NetworkConfig
+from evenroad.research.training.objective import Objective
 
 
-@dataclass(frozen=True, eq=False)
-class Edges:
+class Edges(NamedTuple):
     """Messages of a graph, sorted by receiver: number e goes from point ``sender[e]`` to ``receiver[e]``, (m,) each."""
 
     sender: Ints
@@ -123,15 +120,24 @@ def instance_norm(points: torch.Tensor, n: int) -> torch.Tensor:
 class PointNetwork(nn.Module):
     """Turn random points into even ones (Rusch, Kirk, Bronstein, Lemieux, Rus 2024).
 
-    It is built without weights; :func:`draw_weights` draws them.  `width` and `layers` are those of
-    :class:`~evenroad.research.network.NetworkConfig`.
+    `width` and `layers` are those of :class:`~evenroad.research.network.NetworkConfig`.  Weights and biases of every
+    linear map are uniform within 1 / sqrt(its inputs), as in torch, but drawn by NumPy: torch would use its global
+    generator.
     """
 
-    def __init__(self, d: int, width: int, layers: int) -> None:
+    def __init__(self, d: int, width: int, layers: int, draws: np.random.Generator) -> None:
         super().__init__()
         self.encoder = nn.utils.skip_init(nn.Linear, d, width)
         self.layers = nn.ModuleList(MessageLayer(width) for _ in range(layers))
         self.decoder = nn.utils.skip_init(nn.Linear, width, d)
+        with torch.no_grad():
+            for module in self.modules():
+                if isinstance(module, nn.Linear):
+                    bound = 1.0 / math.sqrt(module.in_features)
+                    for parameter in (module.weight, module.bias):
+                        parameter.copy_(
+                            torch.from_numpy(draws.uniform(-bound, bound, tuple(parameter.shape)))
+                        )
 
     def forward(self, starts: torch.Tensor, sender: torch.Tensor, receiver: torch.Tensor) -> torch.Tensor:
         """Return the points that the network makes of random `starts`, (sets, n, d) float32, as (sets, n, d) float64.
@@ -146,27 +152,6 @@ class PointNetwork(nn.Module):
         # In float64, where the sigmoid keeps points near a face apart that float32 would put onto it.
         inside = torch.sigmoid(self.decoder(points).double())
         return inside.clamp(1.0 - BELOW_ONE, BELOW_ONE).view(sets, n, d)
-
-
-def build_network(config: NetworkConfig, draws: np.random.Generator) -> PointNetwork:
-    """Return the network of a config with its first weights drawn."""
-    network = PointNetwork(config.d, config.width, config.layers)
-    draw_weights(network, draws)
-    return network
-
-
-def draw_weights(network: PointNetwork, draws: np.random.Generator) -> None:
-    """Draw weights and biases of every linear map uniformly within 1 / sqrt(its inputs), as torch does.
-
-    NumPy draws them: torch would use its global generator.
-    """
-    with torch.no_grad():
-        for module in network.modules():
-            if isinstance(module, nn.Linear):
-                bound = 1.0 / math.sqrt(module.in_features)
-                for parameter in (module.weight, module.bias):
-                    drawn = draws.uniform(-bound, bound, tuple(parameter.shape))
-                    parameter.copy_(torch.from_numpy(drawn))
 
 
 def objective_of_sets(points: torch.Tensor, objective: Objective) -> torch.Tensor:
@@ -186,7 +171,7 @@ class _ObjectiveOfSets(torch.autograd.Function):
         _require_finite("the network's points", given)  # before the kernels: their fastmath knows no NaN
         values, gradient = np.empty(len(given)), np.empty_like(given)
         for index, each in enumerate(given):
-            values[index], by_columns = objective_of_columns(objective, np.ascontiguousarray(each.T))
+            values[index], by_columns = objective.of_columns(np.ascontiguousarray(each.T))
             gradient[index] = by_columns.T
         _require_finite(f"the objective '{objective}'", values)
         _require_finite(f"the gradient of '{objective}'", gradient)

@@ -10,9 +10,9 @@ import hashlib
 import json
 import math
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import safetensors.torch
@@ -22,16 +22,15 @@ from safetensors import SafetensorError
 from evenroad._arrays import Floats
 from evenroad._files import atomic_write
 from evenroad.errors import BrokenFile, shown
-from evenroad.points.optimise.objective import Objective
 from evenroad.research.network.config import NetworkConfig
-from evenroad.research.network.model import PointNetwork, build_network, edges_of_sets, objective_of_sets
+from evenroad.research.network.model import PointNetwork, edges_of_sets, objective_of_sets
+from evenroad.research.training.objective import Objective
 
 CHECKPOINT_FILE = "checkpoint.json"
 FORMAT = 1
 
 
-@dataclass(frozen=True, eq=False)
-class MicroBatch:
+class MicroBatch(NamedTuple):
     """Sets that go through the network together: number `first`, ``first + 1``, ...; their starts and their graph."""
 
     first: int
@@ -44,8 +43,8 @@ class MicroBatch:
 class TrainingState:
     """All that changes during a training; a checkpoint holds it.
 
-    `best_points` and `best_values`, (sets, n, d) and (sets,), are those of every set over all steps, ``inf`` before the
-    first; `best_mean` is the smallest mean of the objective over the sets, of step `last_improved`.
+    `best_points`, (sets, n, d), and `best_values` are those of every set over all steps, ``inf`` before the first;
+    `best_mean` is the smallest mean of the objective over the sets, of step `last_improved`.
     """
 
     network: PointNetwork
@@ -61,16 +60,14 @@ def first_state(config: NetworkConfig, device: torch.device) -> tuple[TrainingSt
     """Draw weights and starting points; return the state before the first step, and the points in micro-batches."""
     for_starts, for_weights = np.random.SeedSequence(config.seed).spawn(2)
     starts = np.random.default_rng(for_starts).random((config.sets, config.n, config.d))
-    network = build_network(config, np.random.default_rng(for_weights)).to(device)
+    weights = np.random.default_rng(for_weights)
+    network = PointNetwork(config.d, config.width, config.layers, weights).to(device)
     optimiser = torch.optim.Adam(network.parameters(), lr=config.rate, weight_decay=config.weight_decay)
     batches = []
     for first in range(0, config.sets, config.sets_at_once):
         own = starts[first : first + config.sets_at_once]
-        edges = edges_of_sets(own, config.k, config.radius)
-        tensors = (
-            torch.from_numpy(array) for array in (own.astype(np.float32), edges.sender, edges.receiver)
-        )
-        batches.append(MicroBatch(first, *(tensor.to(device) for tensor in tensors)))
+        arrays = own.astype(np.float32), *edges_of_sets(own, config.k, config.radius)
+        batches.append(MicroBatch(first, *(torch.from_numpy(array).to(device) for array in arrays)))
     state = TrainingState(network, optimiser, starts.copy(), np.full(config.sets, math.inf))
     return state, tuple(batches)
 
@@ -90,7 +87,10 @@ def advance(
         points = state.network(batch.starts, batch.sender, batch.receiver)
         values = objective_of_sets(points, objective)
         (values.sum() / config.sets).backward()
-        _take_note(state, batch.first, points.detach().cpu().numpy(), values.detach().cpu().numpy())
+        now = values.detach().cpu().numpy()
+        better = np.flatnonzero(now < state.best_values[batch.first : batch.first + len(now)])
+        state.best_values[batch.first + better] = now[better]
+        state.best_points[batch.first + better] = points.detach().cpu().numpy()[better]
         total += float(values.detach().sum())
     state.optimiser.step()
     state.step += 1
@@ -110,13 +110,6 @@ def learning_rate(step: int, config: NetworkConfig) -> float:
     return config.rate * 0.5 * (1.0 + math.cos(math.pi * (step - 1) / config.steps))
 
 
-def _take_note(state: TrainingState, first: int, points: Floats, values: Floats) -> None:
-    for index, value in enumerate(values, start=first):
-        if value < state.best_values[index]:
-            state.best_values[index] = value
-            state.best_points[index] = points[index - first]
-
-
 def save_checkpoint(folder: Path, config: NetworkConfig, state: TrainingState) -> None:
     """Write a training's state into `folder`, in place of the checkpoint that is there.
 
@@ -130,7 +123,7 @@ def save_checkpoint(folder: Path, config: NetworkConfig, state: TrainingState) -
         file.write(data)
     record = {
         "format": FORMAT,
-        "config": config.as_record(),
+        "config": asdict(config),
         "step": state.step,
         "last_improved": state.last_improved,
         # JSON knows no infinity; before the first step there is no mean.
@@ -208,7 +201,7 @@ def put_tensors(state: TrainingState, tensors: dict[str, torch.Tensor], step: in
 def _steps_of(record: Any, config: NetworkConfig) -> tuple[int, int]:
     if not isinstance(record, dict) or record.get("format") != FORMAT:
         raise ValueError(f"it is no checkpoint of format {FORMAT}")
-    if record["config"] != config.as_record():
+    if record["config"] != asdict(config):
         raise ValueError("it belongs to another config")
     step, last_improved = int(record["step"]), int(record["last_improved"])
     if not 0 <= last_improved <= step <= config.steps:

@@ -5,17 +5,15 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Sequence
+from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from evenroad._arrays import Floats
 from evenroad._checks import require_count, require_positive
 from evenroad.errors import InvalidValue
+from evenroad.points.bank.anneal import Callback, anneal
 from evenroad.points.npz import save_points
-from evenroad.points.optimise import Objective, anneal, parse_objective
-from evenroad.points.optimise.anneal import Callback
 from evenroad.points.pointset import Origin, PointSet
 from evenroad.research.network.config import NetworkConfig, choose_device, same_bits
 from evenroad.research.network.state import (
@@ -28,16 +26,7 @@ from evenroad.research.network.state import (
     save_checkpoint,
 )
 from evenroad.research.training.folder import claim_folder, read_set, set_name
-
-
-def request_of(config: NetworkConfig) -> dict[str, Any]:
-    """Return the request of a training, which its folder holds."""
-    return {"method": "network", **config.as_record()}
-
-
-def point_sets(config: NetworkConfig, best_points: Floats) -> tuple[PointSet, ...]:
-    """Return the trained coordinates, shape (sets, n, d), as point sets with their origin."""
-    return tuple(PointSet(each, origin_of(config, index)) for index, each in enumerate(best_points))
+from evenroad.research.training.objective import Objective, parse_objective
 
 
 def origin_of(config: NetworkConfig, replica: int) -> Origin:
@@ -45,12 +34,6 @@ def origin_of(config: NetworkConfig, replica: int) -> Origin:
     return Origin(
         family="mpmc", method="network", objective=config.objective, seed=config.seed, replica=replica
     )
-
-
-def save_sets(folder: Path, sets: Sequence[PointSet]) -> None:
-    """Write ``set-0000.npz``, ... into `folder`."""
-    for index, points in enumerate(sets):
-        save_points(folder / set_name(index), points)
 
 
 def finished_sets(folder: Path, config: NetworkConfig) -> tuple[PointSet, ...] | None:
@@ -84,8 +67,8 @@ def train(
     config : NetworkConfig
         Everything that decides the result.
     folder : path, optional
-        An existing folder.  It gets a checkpoint every minute and ``set-0000.npz``, ... at the end; the same
-        call goes on where a stopped one was, and reads the sets if they are all there.
+        An existing folder.  It gets a checkpoint every `checkpoint_seconds` and ``set-0000.npz``, ... at the end; the
+        same call goes on where a stopped one was, and reads the sets if they are all there.
     resume : bool
         False starts over, in place of what the folder holds of the same request.
     callback : callable, optional
@@ -96,29 +79,24 @@ def train(
         ``cuda:1``.  The objective is always computed on the CPU.
     threads : int
         Threads of torch on a CPU.  Resuming continues bit for bit on a CPU with the same number.
-    checkpoint_seconds : float
-        Time between two checkpoints, >= 0.
 
     Returns
     -------
     tuple of PointSet
-        One a set, in order: its best points over all steps, with their origin.
+        The best points of every set over all steps, with their origin.
 
     Raises
     ------
-    InvalidValue
-        For an argument out of range, a folder of another request, or a training that diverges.
-    BrokenFile
-        If the folder is missing or cannot be written, or its checkpoint is damaged.
-    NotAvailable
-        If a GPU is asked for that is not there.
+    InvalidValue, BrokenFile, NotAvailable
+        For an argument out of range, a folder of another request, or a training that diverges; for a folder that is
+        missing or cannot be written, or a damaged checkpoint; for a GPU that is not there.
     """
     place = choose_device(device)
     require_count("threads", threads)
     require_positive("checkpoint_seconds", checkpoint_seconds, or_zero=True)
     home = None if folder is None else Path(folder)
     if home is not None:
-        claim_folder(home, request_of(config))
+        claim_folder(home, {"method": "network", **asdict(config)})
         if resume and (sets := finished_sets(home, config)) is not None:
             return sets
     with same_bits(place, threads):
@@ -126,9 +104,10 @@ def train(
         if home is not None and resume:
             load_checkpoint(home, config, state)
         _run(config, state, batches, home, callback, checkpoint_seconds)
-    sets = point_sets(config, state.best_points)
+    sets = tuple(PointSet(each, origin_of(config, i)) for i, each in enumerate(state.best_points))
     if home is not None:
-        save_sets(home, sets)
+        for index, points in enumerate(sets):
+            save_points(home / set_name(index), points)
     return sets
 
 
@@ -147,21 +126,17 @@ def _run(
         if home is not None and time.monotonic() - saved_at >= checkpoint_seconds:
             save_checkpoint(home, config, state)
             saved_step, saved_at = state.step, time.monotonic()
-        if callback is not None:
-            _report(callback, config, state, home)
+        try:
+            if callback is not None:
+                callback(state.step, config.steps, state.best_mean)
+        except BaseException:
+            # Between two steps the state is whole, so that nothing done so far needs to be lost.
+            if home is not None:
+                save_checkpoint(home, config, state)
+            raise
     # The last one stays: should a set's file be damaged later, it is written again without training.
     if home is not None and saved_step != state.step:
         save_checkpoint(home, config, state)
-
-
-def _report(callback: Callback, config: NetworkConfig, state: TrainingState, home: Path | None) -> None:
-    try:
-        callback(state.step, config.steps, state.best_mean)
-    except BaseException:
-        # Between two steps the state is whole, so that nothing done so far needs to be lost.
-        if home is not None:
-            save_checkpoint(home, config, state)
-        raise
 
 
 def refine(
@@ -179,24 +154,12 @@ def refine(
     Parameters
     ----------
     sets : sequence of PointSet
-        With their origin: its seed and replica seed the noise, so that the same sets give the same result.
+        With their origin: its seed and replica seed the noise, so that the same sets give the same result.  The method
+        gets ``+annealed``.
     objective : str or Objective, optional
-        What to make small; by default what the origin of every set says it was made for.
-    steps : int
-        Of the annealing, see :func:`~evenroad.points.optimise.anneal`.
-    callback : callable, optional
-        Called as ``callback(step, steps, best)`` after every step, counted over all sets, with the best value of
-        the set at work.
-
-    Returns
-    -------
-    tuple of PointSet
-        With ``+annealed`` added to the method of their origin.
-
-    Raises
-    ------
-    InvalidValue
-        For an argument out of range, or a set without an objective where none is given.
+        What to make small; by default what each set was made for (InvalidValue if its origin does not say).
+    steps, callback
+        As for :func:`~evenroad.points.bank.anneal.anneal`, the steps counted over all sets.
     """
     require_count("steps", steps)
     total = steps * len(sets)
@@ -211,15 +174,8 @@ def refine(
         annealed = anneal(
             points.n, points.d, target, steps=steps, rng=seeds, start=points.points, callback=report
         )
-        refined.append(
-            PointSet(annealed.points).with_origin(
-                family=origin.family,
-                method=f"{origin.method}+annealed",
-                objective=str(target),
-                seed=origin.seed,
-                replica=origin.replica,
-            )
-        )
+        made = Origin(family=origin.family, method=f"{origin.method}+annealed", objective=str(target))
+        refined.append(PointSet(annealed.points, replace(made, seed=origin.seed, replica=origin.replica)))
     return tuple(refined)
 
 

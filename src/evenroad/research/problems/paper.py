@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from evenroad.research.bench.task import Problem, ProblemSource
 from evenroad.research.mazes import LEVELS, load_maze
 from evenroad.research.worlds.chain import ChainWorld
-from evenroad.research.worlds.corridor import Corridor, hypercube_legacy6
+from evenroad.research.worlds.corridor import Corridor
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.load import load_robot
 from evenroad.robot.robot import in_scene, with_group
@@ -27,14 +28,10 @@ all three: from one half on the straight way is free, and just below it success 
 """
 
 
-def _corridor(d: int, lam: float, instance: int) -> Problem:
-    world = Corridor(d, lam)
-    return Problem(world, world.start, world.goal, set_dim=d)
-
-
-def _legacy6(instance: int) -> Problem:
-    world = hypercube_legacy6()
-    return Problem(world, world.start, world.goal, set_dim=world.d)
+def _published(make: Callable[[], Corridor | ChainWorld], instance: int) -> Problem:
+    """Return the problem of a world that comes with its start and goal."""
+    world = make()
+    return Problem(world, world.start, world.goal, set_dim=world.space.dim)
 
 
 CORRIDORS = (
@@ -42,7 +39,7 @@ CORRIDORS = (
         ProblemSource(
             f"corridor-{d}d-{lam:g}",
             d,
-            partial(_corridor, d, lam),
+            partial(_published, partial(Corridor, d, lam)),
             about=f"corridor along {d} edges of the cube, width {lam:g}, all coordinates tested, low ones first",
         )
         for d, widths in WIDTHS.items()
@@ -51,8 +48,17 @@ CORRIDORS = (
     ProblemSource(
         "hypercube-legacy6",
         10,
-        _legacy6,
+        partial(_published, partial(Corridor, 10, 0.37, checked=6, side="demo")),
         about="10-D corridor, width 0.37, only 6 coordinates tested, high ones first (OMPL's demo)",
+    ),
+)
+
+CHAINS = (
+    ProblemSource(
+        "chain-10d",
+        10,
+        partial(_published, partial(ChainWorld, 10)),
+        about="planar chain of 10 links that folds out of a horn, measured by its joints in the plane (OMPL's demo)",
     ),
 )
 
@@ -67,21 +73,6 @@ MAZES = tuple(
         f"maze-{level}", 2, partial(_maze, level), about=f"2-D maze, level {level}, disk of radius 6"
     )
     for level in LEVELS
-)
-
-
-def _chain(instance: int) -> Problem:
-    world = ChainWorld(10)
-    return Problem(world, world.start, world.goal, set_dim=world.links)
-
-
-CHAINS = (
-    ProblemSource(
-        "chain-10d",
-        10,
-        _chain,
-        about="planar chain of 10 links that folds out of a horn, measured by its joints in the plane (OMPL's demo)",
-    ),
 )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,15 +17,11 @@ from evenroad.research.report.comparisons import Comparison, comparisons_of
 from evenroad.research.report.fair import LazyChecks, Pooled, lazy_checks, pooled
 from evenroad.research.report.runs import Runs, Setting, runs_of
 from evenroad.research.report.verdicts import SOURCES, ExpectedTable, Verdict, load_expected, verdicts_of
-from evenroad.research.statistics import FEW_UNITS, SamplesNeeded, resampled_ratios, samples_needed
-from evenroad.research.statistics.resampling import DRAWS
-
-TARGET = 0.9
-"""Success rate that the samples needed are asked for."""
+from evenroad.research.statistics.resampling import DRAWS, SamplesNeeded, resampled_ratios, samples_needed
+from evenroad.research.statistics.units import FEW_UNITS
 
 
-@dataclass(frozen=True)
-class Failure:
+class Failure(NamedTuple):
     """Runs of one problem, sampler and rule that failed alike."""
 
     problem: str
@@ -50,57 +47,32 @@ def needed_of(cells: Sequence[Cell]) -> dict[tuple[Setting, str], SamplesNeeded]
 
     It has an interval if every cell of the curve has at least 10 units.
     """
-    curves: dict[Setting, dict[str, list[Cell]]] = {}
+    curves: dict[tuple[Setting, str], list[Cell]] = {}
     for cell in cells:
-        curves.setdefault(cell.setting, {}).setdefault(cell.sampler, []).append(cell)
+        curves.setdefault((cell.setting, cell.sampler), []).append(cell)
     found = {}
-    for setting, of_sampler in curves.items():
-        sure = [curve for curve in of_sampler.values() if _has_enough(curve)]
-        resampled = iter(resampled_curves(sure))
-        for sampler, curve in of_sampler.items():
-            found[setting, sampler] = _needed(curve, next(resampled) if _has_enough(curve) else None)
+    for key, curve in curves.items():
+        resampled = resampled_rates(curve) if min(len(cell.units) for cell in curve) >= FEW_UNITS else None
+        rates, runs = [cell.rate for cell in curve], [cell.runs for cell in curve]
+        found[key] = samples_needed([cell.n for cell in curve], rates, resampled, runs)
     return found
 
 
-def _has_enough(curve: Sequence[Cell]) -> bool:
-    return min(len(cell.units) for cell in curve) >= FEW_UNITS
-
-
-def _needed(curve: Sequence[Cell], resampled: Floats | None) -> SamplesNeeded:
-    rates, runs = [cell.rate for cell in curve], [cell.runs for cell in curve]
-    return samples_needed([cell.n for cell in curve], rates, resampled, runs, target=TARGET)
-
-
-def resampled_curves(curves: Sequence[Sequence[Cell]]) -> list[Floats]:
-    """Return bootstrap resamples of the success rates of each curve, shape (draws, cells of the curve).
+def resampled_rates(curve: Sequence[Cell]) -> Floats:
+    """Return bootstrap resamples of the success rates of a curve's cells, shape (draws, cells).
 
     A unit is resampled for all numbers of samples together, since its results at different numbers are related: one
     generator draws all sets of a run, and the first points of a larger set may be the smaller set.  If all units of a
     cell have the same result a bootstrap has no width; there, rates are drawn from Jeffreys' posterior, a beta
     distribution, with one run for each unit.
     """
-    alike: dict[bytes, list[int]] = {}
-    for place, curve in enumerate(curves):
-        labels = np.unique(np.concatenate([cell.units.unit for cell in curve]))
-        alike.setdefault(labels.tobytes(), []).append(place)
-    found: list[Floats] = [np.empty((0, 0))] * len(curves)
-    for places in alike.values():
-        # Curves with the same units are resampled together: much faster, with the same result.
-        rates = _resampled([cell for place in places for cell in curves[place]])
-        ends = np.cumsum([len(curves[place]) for place in places])
-        for place, part in zip(places, np.split(rates, ends[:-1], axis=1), strict=True):
-            found[place] = part
-    return found
-
-
-def _resampled(cells: Sequence[Cell]) -> Floats:
-    labels, place = np.unique(np.concatenate([cell.units.unit for cell in cells]), return_inverse=True)
-    column = np.repeat(np.arange(len(cells)), [len(cell.units) for cell in cells])
-    solved, runs = np.zeros((2, len(labels), len(cells)))
-    solved[place, column] = np.concatenate([cell.units.solved for cell in cells])
-    runs[place, column] = np.concatenate([cell.units.runs for cell in cells])
+    labels, place = np.unique(np.concatenate([cell.units.unit for cell in curve]), return_inverse=True)
+    column = np.repeat(np.arange(len(curve)), [len(cell.units) for cell in curve])
+    solved, runs = np.zeros((2, len(labels), len(curve)))
+    solved[place, column] = np.concatenate([cell.units.solved for cell in curve])
+    runs[place, column] = np.concatenate([cell.units.runs for cell in curve])
     rates = resampled_ratios(solved, runs)
-    for number, cell in enumerate(cells):
+    for number, cell in enumerate(curve):
         shares = cell.units.solved / cell.units.runs
         if np.all(shares == shares[0]):
             units, yes = len(shares), len(shares) * float(shares[0])
@@ -148,10 +120,6 @@ def analyse(rows: Rows) -> Analysis:
 
 
 def _verdicts(cells: tuple[Cell, ...]) -> dict[str, tuple[ExpectedTable, tuple[Verdict, ...]]]:
-    found = {}
-    for name in SOURCES:
-        table = load_expected(name)
-        verdicts = verdicts_of(table, cells)
-        if any(each.ours is not None for each in verdicts):
-            found[name] = (table, verdicts)
-    return found
+    tables = {name: load_expected(name) for name in SOURCES}
+    found = {name: (table, verdicts_of(table, cells)) for name, table in tables.items()}
+    return {name: each for name, each in found.items() if any(verdict.ours for verdict in each[1])}

@@ -19,8 +19,9 @@ import numpy as np
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad.research.bench.samplers import PERMUTED_FROM
 from evenroad.research.problems import PROBLEMS
-from evenroad.research.report.runs import Runs, Setting, UnitSums, combined, first_rows, sums_by_unit
-from evenroad.research.statistics import Interval, clustered_rate, student_interval, wilson
+from evenroad.research.report.runs import Runs, Setting, combined, first_rows, sums_by_unit
+from evenroad.research.statistics.rates import Interval, student_interval, wilson
+from evenroad.research.statistics.units import clustered_rate
 
 GRID = "grid"
 """The `set_id` of the grid."""
@@ -39,11 +40,10 @@ class Units:
 
     kind: str
     unit: Ints
-    solved: Ints
     runs: Ints
+    solved: Ints
 
     def __len__(self) -> int:
-        """Return the number of units."""
         return len(self.unit)
 
 
@@ -61,9 +61,10 @@ class Grouping:
     pooled: Bools
     permuted: Bools
 
-    def also_by_set(self, c: int) -> bool:
-        """Say whether runs of different units share sets: so it is with a pool in random worlds."""
-        return bool(self.pooled[c] and not self.permuted[c] and self.kinds[c] != "sets")
+    @property
+    def also_by_set(self) -> Bools:
+        """In which cells runs of different units share sets: so it is with a pool in random worlds."""
+        return self.pooled & ~self.permuted & (np.array(self.kinds) != "sets")
 
 
 def grouping_of(runs: Runs, cell: Ints) -> Grouping:
@@ -71,10 +72,10 @@ def grouping_of(runs: Runs, cell: Ints) -> Grouping:
     first = first_rows(cell)
     cells = len(first)
     setting = runs.setting[first]
-    has_set = np.bincount(cell, weights=runs.set > 0, minlength=cells) > 0
-    grid = np.bincount(cell, weights=runs.set == _code_of(runs.sets, GRID), minlength=cells) > 0
+    has_set = _have(cell, cells, runs.set > 0)
+    grid = _have(cell, cells, np.array([name == GRID for name in runs.sets])[runs.set])
     permuted = runs.by_setting(_is_permuted)[first] & ~grid
-    random_worlds = _varies(runs.instance, cell, cells)
+    random_worlds = _have(cell, cells, runs.instance != runs.instance[first][cell])
     by_set = has_set & ~random_worlds & ~permuted
     several = np.bincount(cell, minlength=cells) > 1
     for c in np.flatnonzero(by_set & grid & several):
@@ -86,47 +87,21 @@ def grouping_of(runs: Runs, cell: Ints) -> Grouping:
         [runs.instance, runs.set, runs.run],
         combined(runs.instance, runs.run, runs.seed),
     )
-    repeated = _repeats(cell, cells, unit)
     names = np.select([random_worlds, by_set, by_block], ["instances", "sets", "blocks"], "runs")
-    drawn_again = has_set & ~grid & _repeats(cell, cells, runs.set)
-    return Grouping(
-        cell, unit, tuple(np.where(repeated, names, "runs").tolist()), drawn_again, permuted & drawn_again
-    )
+    kinds = np.where(_repeat(cell, cells, unit), names, "runs")
+    drawn_again = has_set & ~grid & _repeat(cell, cells, runs.set)
+    return Grouping(cell, unit, tuple(kinds.tolist()), drawn_again, permuted & drawn_again)
 
 
-def _units_of(runs: Runs, grouping: Grouping) -> list[Units]:
-    """Return the units of every cell, in order."""
-    sums = sums_by_unit(grouping.cell, len(grouping.kinds), grouping.unit, runs.solved.astype(np.int64))
-    return [_units(kind, sums, c) for c, kind in enumerate(grouping.kinds)]
+def _have(cell: Ints, cells: int, such: Bools) -> Bools:
+    """Return which cells have such a run."""
+    return np.bincount(cell[such], minlength=cells) > 0
 
 
-def _sets_of(runs: Runs, grouping: Grouping) -> list[Units]:
-    """Return the sets of every cell, in order; none where sets are drawn afresh."""
-    rows, cells = np.flatnonzero(runs.set > 0), len(grouping.kinds)
-    sums = sums_by_unit(grouping.cell[rows], cells, runs.set[rows], runs.solved[rows].astype(np.int64))
-    return [_units("sets", sums, c) for c in range(cells)]
-
-
-def _units(kind: str, sums: UnitSums, c: int) -> Units:
-    entries = sums.of(c)
-    return Units(kind, sums.unit[entries], sums.sums[entries], sums.runs[entries])
-
-
-def _repeats(cell: Ints, cells: int, unit: Ints) -> Bools:
+def _repeat(cell: Ints, cells: int, unit: Ints) -> Bools:
     """Return which cells have a unit with more than one run."""
     place = combined(cell, unit)
-    several = np.bincount(place)[place] > 1
-    return np.bincount(cell[several], minlength=cells) > 0
-
-
-def _varies(column: Ints, cell: Ints, cells: int) -> Bools:
-    """Return in which cells a column has more than one value."""
-    first = column[first_rows(cell)]
-    return np.bincount(cell, weights=column != first[cell], minlength=cells) > 0
-
-
-def _code_of(names: tuple[str, ...], name: str) -> int:
-    return names.index(name) if name in names else -1
+    return _have(cell, cells, np.bincount(place)[place] > 1)
 
 
 def _is_permuted(setting: Setting) -> bool:
@@ -147,25 +122,11 @@ def _leaves_to_chance(problem: str) -> bool:
 class Cell:
     """One cell of a success table.
 
-    Attributes
-    ----------
-    runs, solved, failures : int
-        A failure (exception, time limit, dead worker) counts as not solved.
-    interval : Interval
-        Of the success rate, 95 %.
-    mean_valid, sd_valid : float
-        Number of valid milestones among all n points, without start and goal.  These and the next moments are over
-        runs that gave an answer; NaN if none did.
-    mean_early, sd_early : float
-        The same among the points that were added until there was a path.
-    mean_edges, mean_seconds : float
-        Number of motions checked; seconds of planning.
-    units : Units
-        The independent units.
-    sets : Units
-        The sets of the pool; none where sets are drawn afresh.
-    pool_given : bool
-        Whether the interval holds for the sets of this pool only: every run permutes the coordinates of one of them.
+    A failure (exception, time limit, dead worker) counts as not solved; `interval` is of the success rate.  Means and
+    standard deviations are over runs that gave an answer, NaN if none did: of valid milestones among all n points,
+    `early` among those that were added until there was a path; of motions checked; of seconds of planning.  `sets` are
+    those of the pool, none where sets are drawn afresh.  With `pool_given` the interval holds for the sets of this pool
+    only: every run permutes the coordinates of one of them.
     """
 
     setting: Setting
@@ -196,38 +157,37 @@ def cells_of(runs: Runs) -> tuple[Cell, ...]:
     if not len(runs):
         return ()
     cell = cell_codes(runs)
-    cells = int(cell.max()) + 1
     first = first_rows(cell)
-    totals = np.bincount(cell, minlength=cells)
-    solved = np.bincount(cell, weights=runs.solved, minlength=cells).astype(np.int64)
-    failures = np.bincount(cell, weights=runs.failed, minlength=cells).astype(np.int64)
+    cells = len(first)
+    grouping = grouping_of(runs, cell)
+    by_unit = sums_by_unit(cell, cells, grouping.unit, runs.solved)
+    units = [Units(kind, *sums) for kind, sums in zip(grouping.kinds, by_unit, strict=True)]
+    of_set = np.flatnonzero(runs.set > 0)
+    by_set = sums_by_unit(cell[of_set], cells, runs.set[of_set], runs.solved[of_set])
+    sets = [Units("sets", *sums) for sums in by_set]
     moments: dict[str, Floats] = {}
     for name in ("valid", "early"):
         moments[f"mean_{name}"], moments[f"sd_{name}"] = _moments(runs, cell, cells, getattr(runs, name))
     moments["mean_edges"], _ = _moments(runs, cell, cells, runs.edges_checked)
     moments["mean_seconds"], _ = _moments(runs, cell, cells, runs.seconds)
-    grouping = grouping_of(runs, cell)
-    units, sets = _units_of(runs, grouping), _sets_of(runs, grouping)
+    totals, solved, failures = (
+        np.bincount(cell[such], minlength=cells).tolist() for such in (slice(None), runs.solved, runs.failed)
+    )
     low, high = wilson(solved, totals)
-    intervals = [
-        Interval(float(low[c]), float(high[c]), "wilson")
-        if units[c].kind == "runs"
-        else clustered_rate(units[c].solved, units[c].runs, units[c].kind)
-        for c in range(cells)
-    ]
-    for c in range(cells):
-        if grouping.also_by_set(c):
-            over_sets = student_interval(sets[c].solved, sets[c].runs, "sets", lowest=0.0)
-            intervals[c] = intervals[c].or_wider(over_sets)
+    also_by_set = grouping.also_by_set
     return tuple(
         Cell(
             setting=runs.settings[runs.setting[row]],
             sampler=runs.samplers[runs.sampler[row]],
             n=int(runs.n[row]),
-            runs=int(totals[c]),
-            solved=int(solved[c]),
-            failures=int(failures[c]),
-            interval=intervals[c],
+            runs=totals[c],
+            solved=solved[c],
+            failures=failures[c],
+            interval=_interval(
+                Interval(float(low[c]), float(high[c]), "wilson"),
+                units[c],
+                sets[c] if also_by_set[c] else None,
+            ),
             units=units[c],
             sets=sets[c],
             pool_given=bool(grouping.permuted[c]) and units[c].kind == "runs",
@@ -235,6 +195,15 @@ def cells_of(runs: Runs) -> tuple[Cell, ...]:
         )
         for c, row in enumerate(first)
     )
+
+
+def _interval(of_runs: Interval, units: Units, sets: Units | None) -> Interval:
+    """Return the interval of a success rate over units, or the one over `sets`, where units share them, if wider."""
+    is_of_runs = units.kind == "runs"
+    interval = of_runs if is_of_runs else clustered_rate(units.solved, units.runs, units.kind)
+    if sets is None:
+        return interval
+    return interval.or_wider(student_interval(sets.solved, sets.runs, "sets", lowest=0.0))
 
 
 def cell_codes(runs: Runs) -> Ints:

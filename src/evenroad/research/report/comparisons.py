@@ -11,18 +11,20 @@ import numpy as np
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad.research.report.cells import Cell, cell_codes, grouping_of
 from evenroad.research.report.runs import Runs, Setting, UnitSums, combined, sums_by_unit
-from evenroad.research.statistics import (
+from evenroad.research.statistics.rates import (
     Interval,
     bonett_price,
-    clustered_difference,
-    clustered_rate,
     holm,
     mcnemar_exact,
+    student_interval,
+    student_test,
+)
+from evenroad.research.statistics.units import (
+    clustered_difference,
+    clustered_rate,
     sets_difference,
     sets_test,
     sign_flip_test,
-    student_interval,
-    student_test,
 )
 
 REFERENCES = ("uniform", "halton scrambled")
@@ -32,21 +34,15 @@ FEW_TO_TEST = 6
 """Smallest number of units that is tested: with fewer, no choice of signs has a p-value below .05."""
 
 
-def pair_codes(runs: Runs) -> Ints:
-    """Return a code for every run; the same run of another sampler has the same code."""
-    return combined(runs.setting, runs.n, runs.instance, runs.run, runs.seed)
-
-
-def differences_from(runs: Runs, pair: Ints, reference: str) -> tuple[Bools, Ints]:
+def differences_from(runs: Runs, reference: str) -> tuple[Bools, Ints]:
     """Compare every run with the same run of the reference sampler.
 
     Returns whether there is such a run, (rows,), False for runs of the reference itself; and 1 if only this run is
     solved, -1 if only the reference's is, else 0, (rows,), meaningless where there is none.
     """
+    pair = combined(runs.setting, runs.n, runs.instance, runs.run, runs.seed)
     solved = runs.solved.astype(np.int64)
-    if reference not in runs.samplers:
-        return np.zeros(len(runs), dtype=bool), np.zeros(len(runs), dtype=np.int64)
-    of_reference = runs.sampler == runs.samplers.index(reference)
+    of_reference = np.array([name == reference for name in runs.samplers])[runs.sampler]
     counterpart = np.full(int(pair.max()) + 1, -1)
     counterpart[pair[of_reference]] = solved[of_reference]
     theirs = counterpart[pair]
@@ -57,18 +53,11 @@ def differences_from(runs: Runs, pair: Ints, reference: str) -> tuple[Bools, Int
 class Comparison:
     """A cell against a reference sampler, over the runs (instance, run, seed) that both have.
 
-    Attributes
-    ----------
-    only_cell, only_reference : int
-        Pairs that only one of the two solved.
-    interval : Interval
-        Of the difference of success rates, cell minus reference.
-    test : str
-        ``McNemar`` where runs are independent, else ``Fisher over sets``, ``sign flips over blocks`` or ``sign flips
-        over instances``; ``.., Student over sets`` where both were done, and the larger p counts; ``too few sets to
-        test`` (or runs, blocks, instances) where there are fewer than six.
-    p, p_corrected : float
-        NaN if it was not tested; by Holm's method over all tested comparisons of the setting.
+    `only_cell` and `only_reference` are the pairs that only one of the two solved; `interval` is of the difference of
+    success rates, cell minus reference.  `test` is ``McNemar`` where runs are independent, else ``Fisher over sets``,
+    ``sign flips over blocks`` or ``sign flips over instances``; ``.., Student over sets`` where both were done, and the
+    larger p counts; ``too few sets to test`` (or runs, blocks, instances) where there are fewer than six.  `p` is NaN
+    if it was not tested; `p_corrected` is by Holm's method over all tested comparisons of the setting.
     """
 
     cell: Cell
@@ -103,37 +92,31 @@ def comparisons_of(runs: Runs, cells: Sequence[Cell]) -> tuple[Comparison, ...]:
         return ()
     cell = cell_codes(runs)
     grouping = grouping_of(runs, cell)
-    also_by_set = np.array([grouping.also_by_set(c) for c in range(len(cells))])
-    pair = pair_codes(runs)
+    also_by_set = grouping.also_by_set
     found = []
     for place, reference in enumerate(REFERENCES):
         # A pair of references is compared once.
         left_out = REFERENCES[: place + 1]
-        paired, difference = differences_from(runs, pair, reference)
+        paired, difference = differences_from(runs, reference)
         rows = np.flatnonzero(paired)
-        sums = sums_by_unit(cell[rows], len(cells), grouping.unit[rows], difference[rows])
-        solved = sums_by_unit(cell[rows], len(cells), grouping.unit[rows], runs.solved[rows].astype(np.int64))
-        wins = np.bincount(cell[rows], weights=difference[rows] > 0, minlength=len(cells)).astype(int)
-        losses = np.bincount(cell[rows], weights=difference[rows] < 0, minlength=len(cells)).astype(int)
+        of_unit = cell[rows], len(cells), grouping.unit[rows]
+        sums = sums_by_unit(*of_unit, difference[rows])
+        solved = sums_by_unit(*of_unit, runs.solved[rows])
+        wins, losses = (
+            np.bincount(cell[paired & (difference == who)], minlength=len(cells)).tolist() for who in (1, -1)
+        )
         rows = rows[also_by_set[cell[rows]]]
         by_set = sums_by_unit(cell[rows], len(cells), runs.set[rows], difference[rows])
         for c, each in enumerate(cells):
-            if each.sampler not in left_out and sums.of(c).stop > sums.of(c).start:
-                counts = solved.sums[solved.of(c)], int(wins[c]), int(losses[c])
-                compared = _compare(each, reference, sums, c, *counts)
-                found.append(_also_over_sets(compared, by_set, c) if also_by_set[c] else compared)
+            if each.sampler not in left_out and len(sums[c].unit):
+                compared = _compare(each, reference, sums[c], solved[c].sums, wins[c], losses[c])
+                found.append(_also_over_sets(compared, by_set[c]) if also_by_set[c] else compared)
     return _corrected(found)
 
 
-def _compare(
-    cell: Cell, reference: str, sums: UnitSums, c: int, solved: Ints, wins: int, losses: int
-) -> Comparison:
-    """Compare one cell.
-
-    `sums` has the differences by unit, those of `cell` in group `c`; `solved`, (units,), its solved runs; `wins` and
-    `losses` count the pairs that only the cell, and only the reference, solved.
-    """
-    differences, counts = sums.sums[sums.of(c)], sums.runs[sums.of(c)]
+def _compare(cell: Cell, reference: str, units: UnitSums, solved: Ints, wins: int, losses: int) -> Comparison:
+    """Compare one cell, from the differences and its solved runs by unit, and the pairs that only one solved."""
+    differences, counts = units.sums, units.runs
     pairs = int(counts.sum())
     kind = cell.units.kind
     match kind:
@@ -155,21 +138,17 @@ def _compare(
     return Comparison(cell, reference, pairs, wins, losses, interval, test, p, p)
 
 
-def _also_over_sets(compared: Comparison, by_set: UnitSums, c: int) -> Comparison:
+def _also_over_sets(compared: Comparison, by_set: UnitSums) -> Comparison:
     """Test over sets, too; return the comparison with the wider interval and the larger p of both tests."""
-    interval, p = also_over_sets(compared.interval, compared.p, by_set, c)
+    interval, p = also_over_sets(compared.interval, compared.p, by_set)
     test = f"{compared.test}, Student over sets" if compared.is_tested else compared.test
     return replace(compared, interval=interval, test=test, p=p, p_corrected=p)
 
 
-def also_over_sets(interval: Interval, p: float, by_set: UnitSums, group: int) -> tuple[Interval, float]:
-    """Return the wider interval and the larger p of those given and of Student's over the sets of a group.
-
-    A p of NaN, "not tested", stays.
-    """
-    sums, runs = by_set.sums[by_set.of(group)], by_set.runs[by_set.of(group)]
-    wider = interval.or_wider(student_interval(sums, runs, "sets"))
-    return wider, p if math.isnan(p) else max(p, student_test(sums, runs))
+def also_over_sets(interval: Interval, p: float, by_set: UnitSums) -> tuple[Interval, float]:
+    """Return the wider interval and the larger p of those given and of Student's over sets; a p of NaN stays."""
+    wider = interval.or_wider(student_interval(by_set.sums, by_set.runs, "sets"))
+    return wider, p if math.isnan(p) else max(p, student_test(by_set.sums, by_set.runs))
 
 
 def _corrected(found: list[Comparison]) -> tuple[Comparison, ...]:

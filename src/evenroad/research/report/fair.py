@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,16 +17,11 @@ from evenroad.research.report.comparisons import (
     also_over_sets,
     differences_from,
     holm_of_tested,
-    pair_codes,
 )
 from evenroad.research.report.runs import Runs, Setting, combined, first_rows, natural_key, sums_by_unit
-from evenroad.research.statistics import (
-    Interval,
-    clustered_difference,
-    percentile_interval,
-    resampled_ratios,
-    sign_flip_test,
-)
+from evenroad.research.statistics.rates import Interval
+from evenroad.research.statistics.resampling import percentile_interval, resampled_ratios
+from evenroad.research.statistics.units import clustered_difference, sign_flip_test
 
 PREFIX = "fair-"
 """Begin of the names of the suite's problems."""
@@ -87,18 +83,11 @@ def pooled_rules(settings: Iterable[Setting]) -> str:
 class Pooled:
     """A sampler against uniform in the same random worlds and runs, over a group of problems.
 
-    Attributes
-    ----------
-    group : str
-        ``all``, ``balls``, ``5d``, ``50 %``, ``256``, ``k=10 symmetrised, connect``, ...
-    instances, pairs, sets : int
-        Number of random worlds, of runs, and of sets of the sampler's pool; no sets if it draws afresh or is the grid.
-    interval : Interval
-        Of the difference of success rates, over worlds.  In fewer than 5 dimensions a pool's sets are used as they are:
-        the interval is over sets where that is wider.
-    p, p_corrected : float
-        Of sign flips over worlds, or of Student's test over sets where that is done and larger; and the same after
-        Holm's correction over the groups and samplers of a table.
+    `group` is ``all``, ``balls``, ``5d``, ``50 %``, ``256``, ``k=10 symmetrised, connect``, ...  `instances`, `pairs`
+    and `sets` count random worlds, runs, and sets of the sampler's pool; no sets if it draws afresh or is the grid.
+    `interval`, of the difference of success rates, and `p`, of sign flips, are over worlds; in fewer than 5 dimensions
+    a pool's sets are used as they are, and both are Student's over sets where that is wider, or larger.  `p_corrected`
+    is by Holm's method over the groups and samplers of a table.
     """
 
     group: str
@@ -133,7 +122,7 @@ def pooled(runs: Runs) -> dict[str, tuple[Pooled, ...]]:
     runs = fair_runs(runs)
     if not len(runs):
         return {}
-    paired, difference = differences_from(runs, pair_codes(runs), REFERENCE)
+    paired, difference = differences_from(runs, REFERENCE)
     every = _pairs_of(runs.where(paired), difference[paired])
     connecting = every.where(np.flatnonzero(every.runs.by_setting(lambda each: each.search == CONNECT)))
     chosen = {grouping: every if grouping == BY_RULE else connecting for grouping in GROUPINGS}
@@ -150,45 +139,7 @@ def world_codes(runs: Runs) -> Ints:
     return combined(runs.setting_codes(lambda setting: setting.problem), runs.instance)
 
 
-def _pooled_by(grouping: str, pairs: _Pairs) -> tuple[Pooled, ...]:
-    runs = pairs.runs
-    names, group = _groups(grouping, runs)
-    place = combined(group, runs.sampler)
-    first = first_rows(place)
-    by_world = sums_by_unit(place, len(first), pairs.world, pairs.difference)
-    of_pool = np.flatnonzero(pairs.set >= 0)
-    sets = sums_by_unit(place[of_pool], len(first), pairs.set[of_pool], pairs.difference[of_pool])
-    by_set = sums_by_unit(place, len(first), pairs.shared, pairs.difference)
-    shares_sets = np.bincount(place, weights=pairs.shared >= 0) > 0
-    solved = np.bincount(place, weights=runs.solved)
-    found = []
-    for g, row in enumerate(first):
-        entries = by_world.of(g)
-        sums, counts = by_world.sums[entries], by_world.runs[entries]
-        interval, p = clustered_difference(sums, counts, "instances"), sign_flip_test(sums)
-        if shares_sets[g]:
-            interval, p = also_over_sets(interval, p, by_set, g)
-        total, rate = int(counts.sum()), float(solved[g] / counts.sum())
-        found.append(
-            Pooled(
-                group=names[group[row]],
-                sampler=runs.samplers[runs.sampler[row]],
-                instances=len(sums),
-                pairs=total,
-                sets=sets.of(g).stop - sets.of(g).start,
-                rate=rate,
-                reference_rate=rate - float(sums.sum()) / total,
-                interval=interval,
-                p=p,
-                p_corrected=p,
-            )
-        )
-    corrected = holm_of_tested([each.p for each in found]).tolist()
-    return tuple(replace(each, p_corrected=p) for each, p in zip(found, corrected, strict=True))
-
-
-@dataclass(frozen=True)
-class _Pairs:
+class _Pairs(NamedTuple):
     """Runs that uniform has, too, and what they have in common with each other; all arrays (rows,).
 
     `difference` is 1 if only this run is solved, -1 if only uniform's is, else 0; `world` codes the random world,
@@ -203,9 +154,8 @@ class _Pairs:
     shared: Ints
 
     def where(self, rows: Ints) -> _Pairs:
-        return _Pairs(
-            self.runs.where(rows), self.difference[rows], self.world[rows], self.set[rows], self.shared[rows]
-        )
+        runs, *columns = self
+        return _Pairs(runs.where(rows), *(column[rows] for column in columns))
 
 
 def _pairs_of(runs: Runs, difference: Ints) -> _Pairs:
@@ -222,18 +172,51 @@ def _pairs_of(runs: Runs, difference: Ints) -> _Pairs:
     return _Pairs(runs, difference, world, np.where(has_set, code, -1), np.where(as_it_is, code, -1 - world))
 
 
+def _pooled_by(grouping: str, pairs: _Pairs) -> tuple[Pooled, ...]:
+    runs = pairs.runs
+    names, group = _groups(grouping, runs)
+    place = combined(group, runs.sampler)
+    first = first_rows(place)
+    by_world = sums_by_unit(place, len(first), pairs.world, pairs.difference)
+    by_set = sums_by_unit(place, len(first), pairs.shared, pairs.difference)
+    of_pool = pairs.set >= 0
+    sets = sums_by_unit(place[of_pool], len(first), pairs.set[of_pool], pairs.difference[of_pool])
+    solved = np.bincount(place, weights=runs.solved)
+    found = []
+    for g, row in enumerate(first):
+        _, counts, sums = by_world[g]
+        interval, p = clustered_difference(sums, counts, "instances"), sign_flip_test(sums)
+        if by_set[g].unit[-1] >= 0:
+            interval, p = also_over_sets(interval, p, by_set[g])
+        total, rate = int(counts.sum()), float(solved[g] / counts.sum())
+        found.append(
+            Pooled(
+                group=names[group[row]],
+                sampler=runs.samplers[runs.sampler[row]],
+                instances=len(sums),
+                pairs=total,
+                sets=len(sets[g].unit),
+                rate=rate,
+                reference_rate=rate - float(sums.sum()) / total,
+                interval=interval,
+                p=p,
+                p_corrected=p,
+            )
+        )
+    corrected = holm_of_tested([each.p for each in found]).tolist()
+    return tuple(replace(each, p_corrected=p) for each, p in zip(found, corrected, strict=True))
+
+
 def _groups(grouping: str, runs: Runs) -> tuple[list[str], Ints]:
     """Return the names of the groups and every row's number among them."""
     name_of = GROUPINGS[grouping]
     code = combined(runs.setting, runs.n)
     labels = [name_of(runs.settings[runs.setting[row]], int(runs.n[row])) for row in first_rows(code)]
     names = sorted(set(labels), key=natural_key)
-    number = {name: place for place, name in enumerate(names)}
-    return names, np.array([number[label] for label in labels])[code]
+    return names, np.array([names.index(label) for label in labels])[code]
 
 
-@dataclass(frozen=True)
-class LazyChecks:
+class LazyChecks(NamedTuple):
     """Mean numbers of motions that two searches check on the same roadmaps in random worlds, of a rule and a sampler.
 
     `instances` and `pairs` count worlds and roadmaps; `ratio` is the interval of lazy / connect, by a bootstrap over
@@ -269,8 +252,8 @@ def lazy_checks(runs: Runs) -> tuple[LazyChecks, ...]:
     for code, first in enumerate(lazy[first_rows(place)]):
         rows = np.flatnonzero(place == code)
         unit = combined(world[rows])
-        asked = runs.edges_checked[lazy[rows]], runs.edges_checked[connect[rows]]
-        sums = [np.bincount(unit, weights=column) for column in asked]
+        of_lazy, of_connect = runs.edges_checked[lazy[rows]], runs.edges_checked[connect[rows]]
+        sums = [np.bincount(unit, weights=asked) for asked in (of_lazy, of_connect)]
         if sums[1].any():
             found.append(
                 LazyChecks(
@@ -278,8 +261,8 @@ def lazy_checks(runs: Runs) -> tuple[LazyChecks, ...]:
                     runs.samplers[runs.sampler[first]],
                     len(sums[0]),
                     len(rows),
-                    float(asked[1].mean()),
-                    float(asked[0].mean()),
+                    float(of_connect.mean()),
+                    float(of_lazy.mean()),
                     Interval(*percentile_interval(resampled_ratios(*sums)), "bootstrap over instances"),
                 )
             )

@@ -5,27 +5,32 @@ from __future__ import annotations
 import base64
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from html import escape
+from typing import NamedTuple
+
+from matplotlib.figure import Figure
 
 from evenroad.research.report.analysis import Analysis
-from evenroad.research.report.fair import is_fair, pooled_rules
-from evenroad.research.report.figures.canvas import as_png
-from evenroad.research.report.figures.charts import (
+from evenroad.research.report.cells import Cell
+from evenroad.research.report.charts import (
+    as_png,
     draw_curves,
     draw_fair_gains,
     draw_maze_success,
     draw_point_sets,
     maze_settings,
 )
-from evenroad.research.report.figures.scenes import draw_scene, scenes_among
+from evenroad.research.report.fair import is_fair, pooled_rules
 from evenroad.research.report.runs import Setting
-from evenroad.research.report.sections.settings import paired_tables, spread_table, success_table
-from evenroad.research.report.sections.suites import (
+from evenroad.research.report.scenes import draw_scene, scenes_among
+from evenroad.research.report.sections import (
     expected_table,
     failure_table,
     fair_table,
     lazy_table,
+    paired_tables,
+    spread_table,
+    success_table,
     verdict_counts,
 )
 from evenroad.research.report.tables import Table, as_html
@@ -47,8 +52,7 @@ dt { font-weight: 600 } dd { margin: 0 } pre { background: #f4f6f8; padding: .5r
 """
 
 
-@dataclass(frozen=True)
-class Picture:
+class Picture(NamedTuple):
     """A PNG picture: its file's name without ending, what it shows, and its bytes."""
 
     name: str
@@ -56,8 +60,11 @@ class Picture:
     png: bytes
 
 
-@dataclass(frozen=True)
-class Section:
+def _picture(name: str, title: str, figure: Figure) -> Picture:
+    return Picture(name, title, as_png(figure))
+
+
+class Section(NamedTuple):
     """A heading, and below it text, pictures and tables, in this order."""
 
     name: str
@@ -70,36 +77,40 @@ class Section:
 def sections_of(analysis: Analysis) -> tuple[Section, ...]:
     """Return the sections of the page, those without results left out."""
     settings = [setting for setting in analysis.runs.settings if not is_fair(setting)]
-    sections = [_expected(analysis), _fair(analysis), *(_setting(analysis, each) for each in settings)]
-    sections += [_mazes(analysis, settings), _scenes(settings), _point_sets()]
+    sections = []
+    if analysis.verdicts:
+        sections.append(_expected(analysis))
+    if analysis.pooled:
+        sections.append(_fair(analysis))
+    sections += [_setting(analysis, each) for each in settings]
+    if mazes := maze_settings(settings):
+        sections.append(_mazes([cell for cell in analysis.cells if cell.setting in mazes]))
+    if scenes := scenes_among([setting.problem for setting in settings]):
+        sections.append(_scenes(scenes))
+    sections.append(_point_sets())
     if analysis.failures:
         sections.append(Section("failures", "Failures", tables=(failure_table(analysis.failures),)))
-    return tuple(section for section in sections if section is not None)
+    return tuple(sections)
 
 
-def _expected(analysis: Analysis) -> Section | None:
-    if not analysis.verdicts:
-        return None
+def _expected(analysis: Analysis) -> Section:
     found = analysis.verdicts.values()
     tables = tuple(expected_table(table, verdicts) for table, verdicts in found)
     text = " ".join(f"{table.title}: {verdict_counts(verdicts)}." for table, verdicts in found)
     return Section("expected", "Published and independent results beside ours", text, tables=tables)
 
 
-def _fair(analysis: Analysis) -> Section | None:
-    if not analysis.pooled:
-        return None
+def _fair(analysis: Analysis) -> Section:
     rules = pooled_rules(analysis.runs.settings)
     tables = [fair_table(grouping, found, rules) for grouping, found in analysis.pooled.items()]
-    if analysis.lazy:
-        tables.append(lazy_table(analysis.lazy))
-    picture = Picture("fair-gains", "Gain over uniform points", as_png(draw_fair_gains(analysis.pooled)))
+    tables += [lazy_table(analysis.lazy)] if analysis.lazy else []
+    picture = _picture("fair-gains", "Gain over uniform points", draw_fair_gains(analysis.pooled))
     return Section("fair", "Fair suite: random worlds, starts and goals", "", (picture,), tuple(tables))
 
 
 def _setting(analysis: Analysis, setting: Setting) -> Section:
     name = slug(str(setting))
-    picture = Picture(name, str(setting), as_png(draw_curves(analysis.cells_of(setting), str(setting))))
+    picture = _picture(name, str(setting), draw_curves(analysis.cells_of(setting), str(setting)))
     tables = (
         success_table(analysis, setting, f"{name}-success"),
         *paired_tables(analysis, setting, name),
@@ -108,29 +119,19 @@ def _setting(analysis: Analysis, setting: Setting) -> Section:
     return Section(name, str(setting), "", (picture,), tuple(each for each in tables if each is not None))
 
 
-def _mazes(analysis: Analysis, settings: list[Setting]) -> Section | None:
-    mazes = maze_settings(settings)
-    if not mazes:
-        return None
-    cells = [cell for cell in analysis.cells if cell.setting in mazes]
-    picture = Picture("maze-success", "Success on the mazes", as_png(draw_maze_success(cells)))
+def _mazes(cells: list[Cell]) -> Section:
+    picture = _picture("maze-success", "Success on the mazes", draw_maze_success(cells))
     text = "The paper's figure, on our mazes; the paper's own are not published."
     return Section("maze-success", "Success on the mazes", text, (picture,))
 
 
-def _scenes(settings: list[Setting]) -> Section | None:
-    problems = scenes_among([setting.problem for setting in settings])
-    if not problems:
-        return None
-    pictures = tuple(
-        Picture(f"scene-{slug(problem)}", f"{problem} with a path", as_png(draw_scene(problem)))
-        for problem in problems
-    )
-    return Section("scenes", "Scenes with a found path", pictures=pictures)
+def _scenes(names: Sequence[str]) -> Section:
+    pictures = [_picture(f"scene-{slug(name)}", f"{name} with a path", draw_scene(name)) for name in names]
+    return Section("scenes", "Scenes with a found path", pictures=tuple(pictures))
 
 
 def _point_sets() -> Section:
-    picture = Picture("point-sets", "Point sets in the unit square", as_png(draw_point_sets()))
+    picture = _picture("point-sets", "Point sets in the unit square", draw_point_sets())
     text = (
         "The first set of each sampler in two dimensions. Discrepancies in ten dimensions are drawn by"
         " `python -m benchmarks.discrepancy_d10`."

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -20,8 +20,7 @@ WIDE = 2**31
 """A column whose values span so much has its values numbered before they are multiplied."""
 
 
-@dataclass(frozen=True, order=True)
-class Setting:
+class Setting(NamedTuple):
     """What one success table is about: a problem, a connection rule and a search."""
 
     problem: str
@@ -30,22 +29,16 @@ class Setting:
 
     def __str__(self) -> str:
         """``maze-3, k=10 symmetrised, connect``."""
-        return f"{self.problem}, {self.rule}, {self.search}"
+        return ", ".join(self)
 
 
 @dataclass(frozen=True)
 class Runs:
     """The runs of a store, as arrays of one length: an entry is a run.
 
-    Attributes
-    ----------
-    settings, samplers, sets : tuple
-        The names that the codes in `setting`, `sampler` and `set` stand for; code 0 of a set is "drawn afresh".
-    solved, failed : ndarray of bool
-        The run found a path; it gave no answer (exception, time limit, dead worker).
-    valid, early : ndarray of float64
-        Number of valid milestones among all points, and among those that were added until there was a path.  The two
-        are equal if there is no path or the search does not stop early.
+    `settings`, `samplers` and `sets` are what the codes in `setting`, `sampler` and `set` stand for; code 0 of a set is
+    "drawn afresh".  `failed` runs gave no answer.  `valid` counts valid milestones among all points, `early` among
+    those that were added until there was a path: all where there is none, or the search does not stop early.
     """
 
     settings: tuple[Setting, ...]
@@ -66,14 +59,12 @@ class Runs:
     seconds: Floats
 
     def __len__(self) -> int:
-        """Return the number of runs."""
         return len(self.n)
 
     def where(self, chosen: Bools | Ints) -> Runs:
         """Return the runs that a mask or row numbers choose, in that order."""
-        columns = {field.name: getattr(self, field.name) for field in fields(self)}
         arrays: dict[str, Any] = {
-            name: each[chosen] for name, each in columns.items() if isinstance(each, np.ndarray)
+            name: column[chosen] for name, column in vars(self).items() if isinstance(column, np.ndarray)
         }
         return replace(self, **arrays)
 
@@ -90,7 +81,7 @@ class Runs:
 def runs_of(rows: Rows) -> Runs:
     """Return the runs of a store, with settings and samplers in the order of the tables."""
     samplers, sampler = _recoded(rows.sampler, sorted(rows.sampler.present(), key=sampler_place))
-    sets, set_code = _recoded(rows.set_id, ["", *(name for name in rows.set_id.present() if name)])
+    sets, set_code = _recoded(rows.set_id, ["", *filter(None, rows.set_id.present())])
     settings, setting = _settings(rows)
     valid = rows.valid.astype(np.float64)
     return Runs(
@@ -100,16 +91,11 @@ def runs_of(rows: Rows) -> Runs:
         setting=setting,
         sampler=sampler,
         set=set_code,
-        n=rows.n,
-        instance=rows.instance,
-        run=rows.run,
-        seed=rows.seed,
-        solved=rows.solved,
+        **{name: getattr(rows, name) for name in ("n", "instance", "run", "seed", "solved", "seconds")},
         failed=~rows.answered,
         valid=valid,
         early=np.where(rows.valid_at_solution >= 0, rows.valid_at_solution, valid),
         edges_checked=rows.edges_checked.astype(np.float64),
-        seconds=rows.seconds,
     )
 
 
@@ -125,10 +111,7 @@ def _settings(rows: Rows) -> tuple[tuple[Setting, ...], Ints]:
     columns = (rows.problem, rows.rule, rows.search)
     code = combined(*(column.codes.astype(np.int64) for column in columns))
     found = [Setting(*(column[int(row)] for column in columns)) for row in first_rows(code)]
-    order = sorted(
-        range(len(found)),
-        key=lambda place: [natural_key(getattr(found[place], f.name)) for f in fields(Setting)],
-    )
+    order = sorted(range(len(found)), key=lambda place: [natural_key(name) for name in found[place]])
     rank = np.empty(len(found), dtype=np.int64)
     rank[order] = np.arange(len(found))
     return tuple(found[place] for place in order), rank[code]
@@ -144,23 +127,6 @@ def natural_key(text: str) -> list[tuple[int, int, str]]:
     """Return a sort key by which numbers inside texts count as numbers: ``5d`` comes before ``10d``."""
     parts = filter(None, re.split(r"(\d+)", text))
     return [(0, int(part), "") if part.isdigit() else (1, 0, part) for part in parts]
-
-
-@dataclass(frozen=True)
-class UnitSums:
-    """Sums per (group, unit), sorted by group and then unit.
-
-    Group g has the entries ``begins[g]`` up to ``begins[g + 1]``; `runs`, (entries,), counts the rows of each.
-    """
-
-    begins: Ints
-    unit: Ints
-    runs: Ints
-    sums: Ints
-
-    def of(self, group: int) -> slice:
-        """Return where a group's entries are."""
-        return slice(int(self.begins[group]), int(self.begins[group + 1]))
 
 
 def combined(*columns: Ints) -> Ints:
@@ -180,14 +146,6 @@ def combined(*columns: Ints) -> Ints:
     return code
 
 
-def first_rows(code: Ints) -> Ints:
-    """Return the first row of every code; codes have no gaps."""
-    first = np.zeros(int(code.max()) + 1 if len(code) else 0, dtype=np.int64)
-    # Written from the end on: what is left is the earliest.
-    first[code[::-1]] = np.arange(len(code) - 1, -1, -1)
-    return first
-
-
 def _without_gaps(code: Ints) -> Ints:
     """Return codes >= 0 numbered anew from 0, in the same order."""
     span = int(code.max()) + 1
@@ -199,12 +157,29 @@ def _without_gaps(code: Ints) -> Ints:
     return (np.cumsum(occurs, dtype=np.int32)[code] - 1).astype(np.int64)
 
 
-def sums_by_unit(group: Ints, groups: int, unit: Ints, column: Ints) -> UnitSums:
+def first_rows(code: Ints) -> Ints:
+    """Return the first row of every code; codes have no gaps."""
+    first = np.zeros(int(code.max()) + 1 if len(code) else 0, dtype=np.int64)
+    # Written from the end on: what is left is the earliest.
+    first[code[::-1]] = np.arange(len(code) - 1, -1, -1)
+    return first
+
+
+class UnitSums(NamedTuple):
+    """The units of a group, in order, each with its number of runs and a sum over these; all (units,)."""
+
+    unit: Ints
+    runs: Ints
+    sums: Ints
+
+
+def sums_by_unit(group: Ints, groups: int, unit: Ints, column: Ints | Bools) -> list[UnitSums]:
     """Return the sums of a column over the units of each group; groups are in [0, groups), units any numbers."""
     place = combined(group, unit)
     first = first_rows(place)
-    begins = np.searchsorted(group[first], np.arange(groups + 1))
     runs = np.bincount(place, minlength=len(first))
     # Whole numbers below 2^53, so a float sum is exact.
     sums = np.rint(np.bincount(place, weights=column, minlength=len(first))).astype(np.int64)
-    return UnitSums(begins.astype(np.int64), unit[first], runs.astype(np.int64), sums)
+    begins = np.searchsorted(group[first], np.arange(1, groups))
+    parts = (np.split(each, begins) for each in (unit[first], runs, sums))
+    return [UnitSums(*each) for each in zip(*parts, strict=True)]

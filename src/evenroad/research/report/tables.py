@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
+from typing import NamedTuple
 
 from evenroad.errors import InvalidValue
-from evenroad.research.statistics import Interval
+from evenroad.research.statistics.rates import Interval
 
 
-@dataclass(frozen=True)
-class Entry:
+class Entry(NamedTuple):
     """One entry of a table: plain text, which each format escapes, and a mark.
 
     ``better``, ``worse`` or ``differs``: what a test has found.  ``faint``: there is no result.
@@ -19,6 +20,9 @@ class Entry:
 
     text: str
     mark: str = ""
+
+
+Row = tuple[Entry, ...]
 
 
 @dataclass(frozen=True)
@@ -31,10 +35,10 @@ class Table:
 
     name: str
     title: str
-    header: tuple[str, ...]
-    rows: tuple[tuple[Entry, ...], ...]
+    header: Sequence[str]
+    rows: Sequence[Row]
     labels: int = 1
-    notes: tuple[str, ...] = ()
+    notes: Sequence[str] = ()
 
     def __post_init__(self) -> None:
         for row in self.rows:
@@ -46,7 +50,7 @@ NOTHING = Entry("–", "faint")
 """Where there is no number."""
 
 
-def row(*parts: Entry | str | int) -> tuple[Entry, ...]:
+def row(*parts: Entry | str | int) -> Row:
     """Return a row; texts and numbers become entries without a mark."""
     return tuple(part if isinstance(part, Entry) else Entry(str(part)) for part in parts)
 
@@ -72,91 +76,64 @@ def difference(share: float, interval: Interval) -> str:
     return f"{100 * share:+.1f} {_ends(interval)}"
 
 
-def number(value: float, digits: int = 1) -> str:
-    """Write a number, or a dash where there is none."""
-    return "–" if math.isnan(value) else f"{value:.{digits}f}"
+def _ends(interval: Interval) -> str:
+    return f"[{100 * interval.low:.0f}, {100 * interval.high:.0f}]"
 
 
-def count_range(counts: tuple[int, ...]) -> str:
+def number(value: float) -> str:
+    """Write a number with one digit, or a dash where there is none."""
+    return "–" if math.isnan(value) else f"{value:.1f}"
+
+
+def count_range(counts: Sequence[int]) -> str:
     """Write the smallest and the largest of some counts: ``400`` or ``64–400``."""
     low, high = min(counts), max(counts)
     return str(low) if low == high else f"{low}–{high}"
 
 
-def _ends(interval: Interval) -> str:
-    return f"[{100 * interval.low:.0f}, {100 * interval.high:.0f}]"
-
-
 def as_html(table: Table) -> str:
     """Return a ``<figure>`` with caption, table and notes; marks become classes."""
-    head = "".join(
-        f"<th class='label'>{escape(name)}</th>" if place < table.labels else f"<th>{escape(name)}</th>"
-        for place, name in enumerate(table.header)
-    )
-    rows = "\n".join(
-        "<tr>" + "".join(_html_cell(entry, place < table.labels) for place, entry in enumerate(row)) + "</tr>"
-        for row in table.rows
-    )
+    head = _html_row("th", [Entry(name) for name in table.header], table.labels)
+    rows = "\n".join(_html_row("td", row, table.labels) for row in table.rows)
     notes = "".join(f"<p class='note'>{escape(note)}</p>" for note in table.notes)
     return (
         f"<figure id='{escape(table.name, quote=True)}'><figcaption>{escape(table.title)}</figcaption>\n"
-        f"<div class='wide'><table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n</tbody></table></div>"
+        f"<div class='wide'><table>\n<thead>{head}</thead>\n<tbody>\n{rows}\n</tbody></table></div>"
         f"{notes}</figure>\n"
     )
 
 
-def _html_cell(entry: Entry, is_label: bool) -> str:
-    classes = " ".join(filter(None, ("label" if is_label else "", entry.mark)))
-    attribute = f" class='{classes}'" if classes else ""
-    return f"<td{attribute}>{escape(entry.text)}</td>"
+def _html_row(tag: str, row: Sequence[Entry], labels: int) -> str:
+    cells = []
+    for place, (text, mark) in enumerate(row):
+        classes = " ".join(filter(None, ("label" if place < labels else "", mark)))
+        attribute = f" class='{classes}'" if classes else ""
+        cells.append(f"<{tag}{attribute}>{escape(text)}</{tag}>")
+    return f"<tr>{''.join(cells)}</tr>"
 
 
-MARKDOWN_MARKS = {"": "", "faint": "", "better": " ▲", "worse": " ▼", "differs": " ≠"}
+_MARKDOWN_MARKS = {"": "", "faint": "", "better": " ▲", "worse": " ▼", "differs": " ≠"}
 """What stands for a mark where there are no colours."""
 
 
 def as_markdown(table: Table) -> str:
     """Return a heading, a pipe table and the notes."""
-    header = _markdown_line([_markdown_escape(name) for name in table.header])
-    rule = _markdown_line([":--" if place < table.labels else "--:" for place in range(len(table.header))])
-    rows = [_markdown_line([_markdown_text(entry) for entry in row]) for row in table.rows]
-    notes = [f"\n{_markdown_escape(note)}" for note in table.notes]
-    return "\n".join([f"### {_markdown_escape(table.title)}\n", header, rule, *rows, *notes]) + "\n"
+    rule = [":--" if place < table.labels else "--:" for place in range(len(table.header))]
+    rows = [[_markdown(text) + _MARKDOWN_MARKS[mark] for text, mark in row] for row in table.rows]
+    lines = [f"| {' | '.join(cells)} |" for cells in ([*map(_markdown, table.header)], rule, *rows)]
+    notes = [f"\n{_markdown(note)}" for note in table.notes]
+    return "\n".join([f"### {_markdown(table.title)}\n", *lines, *notes]) + "\n"
 
 
-def _markdown_line(cells: list[str]) -> str:
-    return f"| {' | '.join(cells)} |"
-
-
-def _markdown_text(entry: Entry) -> str:
-    return _markdown_escape(entry.text) + MARKDOWN_MARKS[entry.mark]
-
-
-def _markdown_escape(text: str) -> str:
+def _markdown(text: str) -> str:
     return text.replace("|", "\\|").replace("\n", " ")
 
 
-_LATEX_SPECIAL = {
-    "\\": r"\textbackslash{}",
-    "&": r"\&",
-    "%": r"\%",
-    "$": r"\$",
-    "#": r"\#",
-    "_": r"\_",
-    "{": r"\{",
-    "}": r"\}",
-    "~": r"\textasciitilde{}",
-    "^": r"\textasciicircum{}",
-    "<": r"$<$",
-    ">": r"$>$",
-    "|": r"$|$",
-    "≤": r"$\leq$",
-    "±": r"$\pm$",
-    "−": r"$-$",
-    "–": "--",
-    "≠": r"$\neq$",
-    "×": r"$\times$",
-}
+_LATEX_TEXT = str.maketrans({
+    "\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}",
+    "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "<": r"$<$", ">": r"$>$", "|": r"$|$", "≤": r"$\leq$",
+    "±": r"$\pm$", "−": r"$-$", "–": "--", "≠": r"$\neq$", "×": r"$\times$", "\n": " ",
+})  # fmt: skip
 _LATEX_MARKS = {
     "": "{}",
     "faint": "{}",
@@ -169,31 +146,20 @@ _LATEX_MARKS = {
 def as_latex(table: Table) -> str:
     """Return a ``table`` environment: better is bold, worse is emphasised, what differs is underlined."""
     columns = "l" * table.labels + "r" * (len(table.header) - table.labels)
+    rows = [
+        [_LATEX_MARKS[mark].format(text.translate(_LATEX_TEXT)) for text, mark in row] for row in table.rows
+    ]
+    header, *body = (
+        " & ".join(cells) + r" \\"
+        for cells in ([name.translate(_LATEX_TEXT) for name in table.header], *rows)
+    )
     lines = [
         r"\begin{table}",
-        rf"\caption{{{_latex_escape(table.title)}}}",
+        rf"\caption{{{table.title.translate(_LATEX_TEXT)}}}",
         rf"\label{{tab:{table.name}}}",
         rf"\begin{{tabular}}{{{columns}}}",
-        r"\toprule",
-        _latex_line([_latex_escape(name) for name in table.header]),
-        r"\midrule",
-        *(_latex_line([_latex_text(entry) for entry in row]) for row in table.rows),
-        r"\bottomrule",
-        r"\end{tabular}",
-        *(rf"\par\footnotesize {_latex_escape(note)}" for note in table.notes),
+        *(r"\toprule", header, r"\midrule", *body, r"\bottomrule", r"\end{tabular}"),
+        *(rf"\par\footnotesize {note.translate(_LATEX_TEXT)}" for note in table.notes),
         r"\end{table}",
     ]
     return "\n".join(lines) + "\n"
-
-
-def _latex_line(cells: list[str]) -> str:
-    return " & ".join(cells) + r" \\"
-
-
-def _latex_text(entry: Entry) -> str:
-    text = _latex_escape(entry.text)
-    return _LATEX_MARKS[entry.mark].format(text)
-
-
-def _latex_escape(text: str) -> str:
-    return "".join(_LATEX_SPECIAL.get(character, character) for character in text.replace("\n", " "))

@@ -11,39 +11,30 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats
-from evenroad._checks import require_count
 from evenroad._rng import generator
 from evenroad.errors import InvalidValue
-from evenroad.research.statistics.rates import LEVEL, require_share
+from evenroad.research.statistics.rates import LEVEL
 
 DRAWS = 2000
-"""Resamples of every bootstrap unless asked otherwise."""
+"""Resamples of every bootstrap."""
 CACHED_UNITS = 1000
 """Up to so many units the resamples are kept, as they serve many cells; more would take too much memory."""
 BLOCK = 50
 """Resamples at a time of more units than that."""
 EXACT = 2**24
 """Whole numbers up to this are exact in single precision."""
+TARGET = 0.9
+"""Success rate that the samples needed are asked for."""
 
 
-def resampled_ratios(
-    numerators: npt.ArrayLike, denominators: npt.ArrayLike, *, draws: int = DRAWS, seed: int = 0
-) -> Floats:
+def resampled_ratios(numerators: npt.ArrayLike, denominators: npt.ArrayLike, *, draws: int = DRAWS) -> Floats:
     """Return the bootstrap distribution of ``sum(numerators) / sum(denominators)`` over units, (draws,) or (draws, m).
 
-    Units are runs, sets or instances that are independent of each other.  With solved and runs per unit the ratio is a
-    success rate; with the differences of two samplers' solved runs and the pairs it is the paired difference of their
-    rates (both samplers keep the same units in a resample: that is the pairing).  It is that of all units where a
-    resample's denominators are 0.  B. Efron and R. J. Tibshirani (1993), An Introduction to the Bootstrap, sections 6.4
-    and 8.3.
-
-    Parameters
-    ----------
-    numerators, denominators : array_like, shape (units,) or (units, m)
-        Per unit; denominators >= 0, with a positive sum; others are an InvalidValue.  The m columns are resampled
-        together: a unit that a resample has twice counts twice in each.
-    seed : int
-        The same seed and number of units give the same resamples, so that samplers are compared on equal ones.
+    Both are (units,) or (units, m), denominators >= 0 with a positive sum; a resample whose denominators are 0 has the
+    ratio of all units.  With solved and runs per unit the ratio is a success rate; with the differences of two
+    samplers' solved runs and the pairs it is the paired difference of their rates.  The m columns are resampled
+    together, and the same number of units always has the same resamples, so that samplers are compared on equal ones.
+    B. Efron and R. J. Tibshirani (1993), An Introduction to the Bootstrap, sections 6.4 and 8.3.
     """
     above = np.asarray(numerators, dtype=np.float64)
     below = np.asarray(denominators, dtype=np.float64)
@@ -54,22 +45,18 @@ def resampled_ratios(
     finite = np.all(np.isfinite(above)) and np.all(np.isfinite(below))
     if not finite or np.any(below < 0) or np.any(below.sum(axis=0) <= 0):
         raise InvalidValue("a bootstrap needs finite numbers, and denominators >= 0 with a positive sum")
-    draws, seed = require_count("draws", draws), require_count("seed", seed, 0)
     if len(above) <= CACHED_UNITS:
-        return _ratios(_cached_weights(len(above), draws, seed), above, below)
-    rng = generator(seed)
+        return _ratios(_cached_weights(len(above), draws), above, below)
+    rng = generator(0)
     blocks = range(0, draws, BLOCK)
     return np.concatenate(
         [_ratios(_weights(len(above), min(BLOCK, draws - begin), rng), above, below) for begin in blocks]
     )
 
 
-def percentile_interval(values: npt.ArrayLike, *, level: float = LEVEL) -> tuple[float, float]:
-    """Return the ends of the central share `level` of bootstrap values, themselves among the values.
-
-    Nothing is interpolated, so infinities (a target that a resample never reached) are legal values.
-    """
-    tail = 0.5 * (1.0 - require_share("level", level))
+def percentile_interval(values: npt.ArrayLike) -> tuple[float, float]:
+    """Return the ends of the central 95 % of bootstrap values, themselves among the values, which may be infinite."""
+    tail = 0.5 * (1.0 - LEVEL)
     ordered = np.sort(np.asarray(values, dtype=np.float64))
     last = len(ordered) - 1
     return float(ordered[math.floor(tail * last)]), float(ordered[math.ceil((1.0 - tail) * last)])
@@ -94,9 +81,9 @@ def _sums(weights: npt.NDArray[np.float32], values: Floats) -> Floats:
 
 
 @lru_cache(maxsize=8)
-def _cached_weights(units: int, draws: int, seed: int) -> npt.NDArray[np.float32]:
+def _cached_weights(units: int, draws: int) -> npt.NDArray[np.float32]:
     """Return the weights of all resamples: one matrix serves a whole table, whose cells have the same units."""
-    weights = _weights(units, draws, generator(seed))
+    weights = _weights(units, draws, generator(0))
     weights.setflags(write=False)
     return weights
 
@@ -114,15 +101,10 @@ UNKNOWN_INTERVAL = "[–]"
 
 @dataclass(frozen=True)
 class SamplesNeeded:
-    """Samples at which a success rate reaches a target.
+    """Samples at which a success rate reaches 90 %, of those between `smallest` and `largest` that were tried.
 
-    Attributes
-    ----------
-    estimate, low, high : float
-        The number and its interval; ``inf`` is beyond `largest`, ``-inf`` is at or below `smallest`.  NaN are the ends
-        of an interval that is not known.
-    smallest, largest : int
-        The numbers of samples that were tried.
+    Of the number and its interval ``inf`` is beyond `largest`, ``-inf`` is at or below `smallest`; NaN are the ends of
+    an interval that is not known.
     """
 
     estimate: float
@@ -155,40 +137,13 @@ class SamplesNeeded:
 
 
 def samples_needed(
-    counts: Sequence[int],
-    rates: npt.ArrayLike,
-    resampled: npt.ArrayLike | None,
-    runs: npt.ArrayLike,
-    *,
-    target: float = 0.9,
+    counts: Sequence[int], rates: npt.ArrayLike, resampled: npt.ArrayLike | None, runs: npt.ArrayLike
 ) -> SamplesNeeded:
-    """Return where a success rate reaches `target`.
+    """Return where success rates, (m,), at ascending numbers of samples reach 90 %.
 
-    The rates are first made monotone in the number of samples (isotonic regression weighted by runs: the least change
-    that never falls), then joined by straight lines over log N.  The interval is of the same number in bootstrap
-    resamples of the rates.
-
-    Parameters
-    ----------
-    counts : sequence of int, length m
-        Numbers of samples, ascending.
-    rates : array_like, shape (m,)
-        Success rate at each, in [0, 1].
-    resampled : array_like, shape (draws, m), or None
-        Bootstrap resamples of the rates; without them there is no interval.
-    runs : array_like, shape (m,)
-        Runs behind each rate.
-    target : float
-        In (0, 1).
-
-    Raises
-    ------
-    InvalidValue
-        If the counts do not ascend or the shapes differ.
-
-    References
-    ----------
-    R. E. Barlow et al. (1972), Statistical Inference under Order Restrictions (the max-min formula).
+    The rates are first made monotone (isotonic regression weighted by `runs`, (m,): the least change that never falls;
+    R. E. Barlow et al. 1972, Statistical Inference under Order Restrictions, the max-min formula), then joined by
+    straight lines over log N.  The interval is of the same number in `resampled` rates, (draws, m); None: none.
     """
     tried = np.asarray(counts, dtype=np.float64)
     rate_rows = np.asarray(rates, dtype=np.float64)[np.newaxis]
@@ -197,14 +152,13 @@ def samples_needed(
         raise InvalidValue(f"numbers of samples must ascend from 1 or more, got {counts!r}")
     if rate_rows.shape[1:] != tried.shape or weights.shape != tried.shape:
         raise InvalidValue(f"{len(tried)} numbers of samples need as many rates and runs")
-    share = require_share("target", target)
-    estimate = float(_crossing(tried, _isotonic(rate_rows, weights), share)[0])
+    estimate = float(_crossing(tried, _isotonic(rate_rows, weights))[0])
     low = high = math.nan
     if resampled is not None:
         resample_rows = np.asarray(resampled, dtype=np.float64)
         if resample_rows.ndim != 2 or resample_rows.shape[1] != len(tried) or len(resample_rows) == 0:
             raise InvalidValue(f"resamples must have shape (draws, {len(tried)}), got {resample_rows.shape}")
-        low, high = percentile_interval(_crossing(tried, _isotonic(resample_rows, weights), share))
+        low, high = percentile_interval(_crossing(tried, _isotonic(resample_rows, weights)))
         # A percentile bootstrap of a kinked function may leave its own estimate out; the interval never does.
         low, high = min(low, estimate), max(high, estimate)
     return SamplesNeeded(estimate, low, high, int(tried[0]), int(tried[-1]))
@@ -223,15 +177,15 @@ def _isotonic(rates: Floats, weights: Floats) -> Floats:
     return result
 
 
-def _crossing(counts: Floats, rates: Floats, target: float) -> Floats:
-    """Return for every row of non-decreasing rates where it first reaches `target`, linear in log N between counts."""
-    reached = rates >= target - 1e-12
+def _crossing(counts: Floats, rates: Floats) -> Floats:
+    """Return for every row of non-decreasing rates where it first reaches 90 %, linear in log N between counts."""
+    reached = rates >= TARGET - 1e-12
     first = np.where(reached.any(axis=1), np.argmax(reached, axis=1), len(counts))
     rows = np.arange(len(rates))
     upper = np.clip(first, 1, len(counts) - 1) if len(counts) > 1 else np.zeros_like(first)
     lower = np.maximum(upper - 1, 0)
     rise = rates[rows, upper] - rates[rows, lower]
-    part = np.clip((target - rates[rows, lower]) / np.where(rise > 0, rise, 1.0), 0.0, 1.0)
+    part = np.clip((TARGET - rates[rows, lower]) / np.where(rise > 0, rise, 1.0), 0.0, 1.0)
     logs = np.log(counts)
     between = np.exp(logs[lower] + part * (logs[upper] - logs[lower]))
     return np.where(first == 0, -np.inf, np.where(first == len(counts), np.inf, between))

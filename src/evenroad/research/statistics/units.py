@@ -1,32 +1,34 @@
 """Runs that are not independent: those of one trained set, or of one random world.
 
 A pool of 64 sets that is drawn from 400 times does not give 400 independent runs: on a fixed problem the same set
-gives much the same answer every time.  Only the 64 sets are independent of each other.  In a suite of random worlds,
-runs in one world resemble each other, and only the worlds are independent.  Such sets and worlds are called units here.
+gives much the same answer every time.  Only the sets are independent of each other, as in a suite of random worlds
+only the worlds are.  Such sets and worlds are called units here; counts per unit are arrays (units,), and `unit` says
+what one is, in the plural, for `Interval.kind`: ``sets``, ``blocks`` or ``instances``.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from scipy.special import gammaln, ndtri, stdtrit
+from scipy.special import gammaln, stdtrit
 
-from evenroad._arrays import Floats
+from evenroad._arrays import Floats, Ints
 from evenroad.errors import InvalidValue
-from evenroad.research.statistics.paired import bonett_price, student_interval
 from evenroad.research.statistics.rates import (
-    LEVEL,
+    UPPER,
     Interval,
+    Z,
     as_counts,
     as_successes,
+    bonett_price,
     fisher_exact,
-    require_share,
+    student_interval,
     wilson,
 )
-from evenroad.research.statistics.resampling import DRAWS, percentile_interval, resampled_ratios
+from evenroad.research.statistics.resampling import percentile_interval, resampled_ratios
 
 FEW_UNITS = 10
 """With fewer units than this a bootstrap is too narrow."""
@@ -37,57 +39,34 @@ SHORT = 4000
 """Below this, adding zeros up takes less time than leaving them out one by one."""
 
 
-def clustered_rate(
-    solved: npt.ArrayLike, runs: npt.ArrayLike, unit: str, *, level: float = LEVEL
-) -> Interval:
-    """Return the interval of a success rate whose runs come in units that are independent of each other.
+def clustered_rate(solved: npt.ArrayLike, runs: npt.ArrayLike, unit: str) -> Interval:
+    """Return Wilson's interval for as many runs as those of the units are worth (:func:`effective_runs`).
 
-    Wilson's interval for as many runs as theirs are worth (:func:`effective_runs`).  A bootstrap over so few units as a
-    pool has sets would be too narrow, most where few of them solve.
-
-    Parameters
-    ----------
-    solved, runs : array_like of int, shape (units,)
-        Successes and runs per unit, runs >= 1; other counts are an InvalidValue.
-    unit : str
-        What a unit is, in the plural, for `Interval.kind`: ``sets``, ``blocks`` or ``instances``.
+    A bootstrap over so few units as a pool has sets would be too narrow, most where few of them solve.
     """
-    successes, trials = as_successes(solved, runs)
-    worth = effective_runs(successes, trials, level=level)
+    successes, trials = _per_unit(solved, runs)
+    worth = effective_runs(successes, trials)
     rate = float(successes.sum() / trials.sum())
     # Between two counts the wider ends of both are taken.
-    low, _ = wilson(math.floor(rate * worth), worth, level=level)
-    _, high = wilson(math.ceil(rate * worth), worth, level=level)
+    low, _ = wilson(math.floor(rate * worth), worth)
+    _, high = wilson(math.ceil(rate * worth), worth)
     return Interval(float(low), float(high), f"wilson over {unit}")
 
 
-def clustered_difference(
-    sums: npt.ArrayLike,
-    pairs: npt.ArrayLike,
-    unit: str,
-    *,
-    level: float = LEVEL,
-    draws: int = DRAWS,
-    seed: int = 0,
-) -> Interval:
+def _per_unit(solved: npt.ArrayLike, runs: npt.ArrayLike) -> tuple[Ints, Ints]:
+    """Return successes and runs per unit, or raise InvalidValue if they are impossible or there is no unit."""
+    successes, trials = as_successes(solved, runs)
+    if successes.ndim != 1 or len(successes) == 0:
+        raise InvalidValue(f"counts per unit must be a list, got shape {successes.shape}")
+    return successes, trials
+
+
+def clustered_difference(sums: npt.ArrayLike, pairs: npt.ArrayLike, unit: str) -> Interval:
     """Return the interval of a paired difference of success rates, by a bootstrap over units.
 
     With more than 1000 units, where a bootstrap takes long and says the same, :func:`student_interval`; with fewer
     than 10, or where all units say the same, the interval of Bonett and Price for as many pairs as there are units.
-
-    Parameters
-    ----------
-    sums : array_like of int, shape (units,)
-        Runs of a unit that only the first solved, minus those that only the second solved.
-    pairs : array_like of int, shape (units,)
-        Pairs of runs in the unit, >= 1.
-    unit : str
-        As for :func:`clustered_rate`.
-
-    Raises
-    ------
-    InvalidValue
-        If there is no unit, or a sum is larger than its unit's pairs.
+    `sums` are the runs of a unit that only the first solved, minus those that only the second solved.
     """
     differences, totals = np.asarray(sums), as_counts("pairs", pairs)
     if differences.ndim != 1 or differences.shape != totals.shape or len(totals) == 0:
@@ -98,11 +77,21 @@ def clustered_difference(
         raise InvalidValue("a unit has at least one pair, and as many pairs as its sum")
     ratios = differences / totals
     if len(ratios) < FEW_UNITS or np.all(ratios == ratios[0]):
-        return _as_if_one_pair_a_unit(differences / totals.sum(), unit, level)
+        return _as_if_one_pair_a_unit(differences / totals.sum(), unit)
     if len(ratios) > MANY_UNITS:
-        return student_interval(differences, totals, unit, level=level)
-    values = resampled_ratios(differences, totals, draws=draws, seed=seed)
-    return Interval(*percentile_interval(values, level=level), f"paired bootstrap over {unit}")
+        return student_interval(differences, totals, unit)
+    values = resampled_ratios(differences, totals)
+    return Interval(*percentile_interval(values), f"paired bootstrap over {unit}")
+
+
+def _as_if_one_pair_a_unit(shares: Floats, unit: str) -> Interval:
+    """Return Bonett and Price's interval for as many pairs as units; `shares` add up to the difference."""
+    units = len(shares)
+    wins, losses = (units * float(np.maximum(sign * shares, 0.0).sum()) for sign in (1, -1))
+    # Rounded to whole units; the difference that was seen is always inside.
+    rounded = bonett_price(round(wins), min(round(losses), units - round(wins)), units)
+    seen = (wins - losses) / units
+    return Interval(min(rounded.low, seen), max(rounded.high, seen), f"bonett-price over {unit}")
 
 
 def sign_flip_test(sums: npt.ArrayLike) -> float:
@@ -140,37 +129,23 @@ def sign_flip_test(sums: npt.ArrayLike) -> float:
     return float(min(1.0, chance[total].sum()))
 
 
-def _as_if_one_pair_a_unit(shares: Floats, unit: str, level: float) -> Interval:
-    """Return Bonett and Price's interval for as many pairs as units; `shares` add up to the difference."""
-    units = len(shares)
-    wins, losses = (units * float(np.maximum(sign * shares, 0.0).sum()) for sign in (1, -1))
-    # Rounded to whole units; the difference that was seen is always inside.
-    rounded = bonett_price(round(wins), min(round(losses), units - round(wins)), units, level=level)
-    seen = (wins - losses) / units
-    return Interval(min(rounded.low, seen), max(rounded.high, seen), f"bonett-price over {unit}")
-
-
-def effective_runs(solved: npt.ArrayLike, runs: npt.ArrayLike, *, level: float = LEVEL) -> int:
-    """Return how many independent runs the runs of some units are worth, by successes and runs >= 1 per unit, (units,).
+def effective_runs(solved: npt.ArrayLike, runs: npt.ArrayLike) -> int:
+    """Return how many independent runs the runs of some units are worth.
 
     A rate p of variance v, estimated from the units, is as sure as p (1 - p) / v runs make it, at most all runs; fewer
     by the ratio of the normal and Student's quantile, squared.  At least as many as units, which is what units with one
     outcome each are worth; and as many as units where p is 0 or 1, as nothing is known of v: there the number jumps.
 
     E. L. Korn and B. I. Graubard (1998), Confidence intervals for proportions with small expected number of positive
-    counts estimated from survey data, Survey Methodology 24, 193-201.  Raises InvalidValue if there is no unit, or the
-    counts are impossible.
+    counts estimated from survey data, Survey Methodology 24, 193-201.
     """
-    successes, trials = as_successes(solved, runs)
-    if successes.ndim != 1 or len(successes) == 0:
-        raise InvalidValue(f"counts per unit must be a list, got shape {successes.shape}")
+    successes, trials = _per_unit(solved, runs)
     units, total = len(successes), int(trials.sum())
     rate = float(successes.sum()) / total
     if units == 1 or rate in (0.0, 1.0):
         return units
     variance = float(((successes - rate * trials) ** 2).sum()) * units / (units - 1) / total**2
-    end = 0.5 + 0.5 * require_share("level", level)
-    shrink = float(ndtri(end) / stdtrit(units - 1, end)) ** 2
+    shrink = float(Z / stdtrit(units - 1, UPPER)) ** 2
     worth = min(rate * (1.0 - rate) / variance, total) if variance > 0.0 else total
     return max(math.floor(worth * shrink), units)
 
@@ -194,46 +169,36 @@ def sets_test(solved: npt.ArrayLike, runs: npt.ArrayLike, other_solved: int, oth
 
     Fisher's exact test, with one outcome a set: the pool's rate times its sets, rounded.  Less would be claimed where
     runs of a set are nearly independent, but how nearly is not known well enough from a few sets.  No sign flips: one
-    outcome a set against the other's rate is skewed, and flips reject too often.  `solved` and `runs` are per set,
-    (sets,).
+    outcome a set against the other's rate is skewed, and flips reject too often.
     """
-    successes, trials = as_successes(solved, runs)
+    successes, trials = _per_unit(solved, runs)
     rate = float(successes.sum() / trials.sum())
     return fisher_exact((round(rate * len(trials)), len(trials)), (other_solved, other_runs))
 
 
-@dataclass(frozen=True)
-class Spread:
+class Spread(NamedTuple):
     """Success rates of single sets of a pool, each set with the same weight.
 
-    `sd` is the standard deviation over the sets that were drawn (n - 1 below; 0 for one set), and `sd_by_chance` what
-    it would be if all sets were alike, by the binomial noise of so few runs a set: an `sd` well above it says that
-    some sets are better than others on this problem.
+    `sd` is their standard deviation (n - 1 below; 0 for one set), and `sd_by_chance` what it would be if all sets were
+    alike, by the binomial noise of so few runs a set.
     """
 
-    sets: int
     mean: float
-    sd: float
     lowest: float
     highest: float
+    sd: float
     sd_by_chance: float
 
 
 def spread_over_sets(solved: npt.ArrayLike, runs: npt.ArrayLike) -> Spread:
-    """Return the spread over the sets of a pool, by their successes and runs, (sets,) each, runs >= 1.
-
-    Raises InvalidValue if there is no set, or the counts are impossible.
-    """
-    successes, trials = as_successes(solved, runs)
-    if successes.ndim != 1 or len(successes) == 0:
-        raise InvalidValue(f"counts per set must be a list, got shape {successes.shape}")
+    """Return the spread over the sets of a pool."""
+    successes, trials = _per_unit(solved, runs)
     rates = successes / trials
     overall = successes.sum() / trials.sum()
     return Spread(
-        sets=len(rates),
         mean=float(rates.mean()),
-        sd=float(rates.std(ddof=1)) if len(rates) > 1 else 0.0,
         lowest=float(rates.min()),
         highest=float(rates.max()),
+        sd=float(rates.std(ddof=1)) if len(rates) > 1 else 0.0,
         sd_by_chance=float(np.sqrt(overall * (1.0 - overall) * np.mean(1.0 / trials))),
     )

@@ -35,19 +35,16 @@ MPMC_CELLS = tuple((2, n) for n in COUNTS[1:-1]) + tuple(
 LOCK = ".lock"
 """Lock file for changes of the index: several builds may work on one bank, on different cells."""
 
-NETWORK_WIDTH = 64
-"""Half the usual width: a step takes a third of the time, and in equal time on a CPU the sets are better."""
-
-NETWORK_RATE = 3e-3
-"""First learning rate, three times the usual one, which suits a network that makes one set only."""
+NETWORK_WIDTH, NETWORK_RATE = 64, 3e-3
+"""Half the usual width: a step takes a third of the time, and in equal time on a CPU the sets are better.  Three times
+the usual first rate suits a network that makes one set only."""
 
 POINTS_OF_A_NETWORK = 256
 """Points of all sets of a network together.  In d = 10 a network of sixteen sets of 128 points is a sixth worse than a
-network of one (mean D_H .241 and .208); but a network of one set of 32 points often ends in a poor minimum (d = 2:
-.026 and .023)."""
+network of one (mean D_H .241 and .208); but one of one set of 32 points often ends in a poor minimum (d = 2: .026 and
+.023)."""
 
-MEAN_NEIGHBOURS = 4.0
-LARGEST_RADIUS = 0.35
+MEAN_NEIGHBOURS, LARGEST_RADIUS = 4.0, 0.35
 """The radius within which points send each other messages holds so many neighbours on average, but is at most the
 paper's 0.35.  In d = 10 hardly any point is so near, and the network moves each point by itself."""
 
@@ -81,11 +78,13 @@ def recipes() -> list[Recipe]:
     """Return every cell of the bank, in the order in which they are built: most wanted first."""
     first = (2, 10, 3, 5)
     order = [*first, *(d for d in HICKERNELL_DIMENSIONS if d not in first)]
-    return [_hickernell(d, n) for d in order for n in COUNTS] + [_mpmc(d, n) for d, n in MPMC_CELLS]
-
-
-def _hickernell(d: int, n: int) -> Recipe:
-    return Recipe("hickernell", d, n, sets=_sets(d, n), objective="hickernell", steps=_steps(d, n))
+    annealed = [
+        Recipe("hickernell", d, n, _sets(d, n), "hickernell", _steps(d, n)) for d in order for n in COUNTS
+    ]
+    # Pools of large sets are small: on a CPU a set of 1024 points takes a minute.
+    return annealed + [
+        Recipe("mpmc", d, n, 16 if n <= 256 else 4, "hickernell", 2_000, "network") for d, n in MPMC_CELLS
+    ]
 
 
 def _sets(d: int, n: int) -> int:
@@ -104,11 +103,6 @@ def _steps(d: int, n: int) -> int:
     if n <= 256:
         return 10_000
     return 5_000 if n <= 1024 else 3_000
-
-
-def _mpmc(d: int, n: int) -> Recipe:
-    # Pools of large sets are small: on a CPU a set of 1024 points takes a minute.
-    return Recipe("mpmc", d, n, 16 if n <= 256 else 4, "hickernell", steps=2_000, method="network")
 
 
 def build(recipe: Recipe, folder: Path, work: Path, jobs: int, report: Callable[[str], object]) -> None:
@@ -173,7 +167,7 @@ def _radius(n: int, d: int) -> float:
 
 def store(recipe: Recipe, sets: Sequence[PointSet], folder: Path) -> None:
     """Write the sets of a cell as float32, then its record in the index, with measures of the stored values."""
-    rounded = np.minimum(np.stack([each.points for each in sets]).astype(np.float32), np.float32(BELOW_ONE))
+    rounded = np.minimum(np.stack(sets).astype(np.float32), np.float32(BELOW_ONE))
     path = folder / recipe.family / cell_name(recipe.n, recipe.d)
     path.parent.mkdir(parents=True, exist_ok=True)
     with atomic_write(path) as file:
@@ -187,7 +181,7 @@ def store(recipe: Recipe, sets: Sequence[PointSet], folder: Path) -> None:
         "version": sets[0].origin.version,
         "hashes": [each.hash for each in stored],
         "measures": {
-            name: [_six_digits(value(each.points)) for each in stored] for name, value in MEASURED.items()
+            name: [float(f"{value(each.points):.6g}") for each in stored] for name, value in MEASURED.items()
         },
     }
     with one_at_a_time(folder / LOCK):
@@ -196,10 +190,6 @@ def store(recipe: Recipe, sets: Sequence[PointSet], folder: Path) -> None:
         index.setdefault(recipe.family, {}).setdefault(str(recipe.d), {})[str(recipe.n)] = record
         with atomic_write(index_path) as file:
             file.write((json.dumps(index, indent=1, sort_keys=True) + "\n").encode())
-
-
-def _six_digits(value: float) -> float:
-    return float(f"{value:.6g}")
 
 
 def main() -> None:
@@ -211,16 +201,13 @@ def main() -> None:
     )
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--family", help="only the cells of this family")
-    parser.add_argument("-d", type=int, nargs="*", help="only these dimensions")
+    parser.add_argument("-d", type=int, nargs="+", help="only these dimensions")
     parser.add_argument("--list", action="store_true", help="only name the cells that are not built yet")
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)
     bank = Bank(options.folder)
-    wanted = [
-        each
-        for each in recipes()
-        if options.family in (None, each.family) and (options.d is None or each.d in options.d)
-    ]
+    families = {options.family} if options.family else {"hickernell", "mpmc"}
+    wanted = [each for each in recipes() if each.family in families and each.d in (options.d or [each.d])]
     missing = [each for each in wanted if not bank.has(each.family, each.n, each.d)]
     print(f"{len(wanted) - len(missing)} of {len(wanted)} cells are in the bank", flush=True)
     for recipe in missing:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,9 +16,10 @@ import numpy as np
 
 from evenroad._files import atomic_write, remove_abandoned_parts
 from evenroad.errors import BrokenFile, InvalidValue, shown
+from evenroad.points.bank.anneal import SCHEDULE, Callback, anneal
 from evenroad.points.npz import load_points, save_points
-from evenroad.points.optimise.anneal import SCHEDULE, Callback, anneal
 from evenroad.points.pointset import Origin, PointSet
+from evenroad.research.training.objective import parse_objective
 
 REQUEST_FILE = "request.json"
 
@@ -72,55 +73,48 @@ def read_set(path: Path, origin: Origin, shape: tuple[int, int]) -> PointSet | N
 
 @dataclass(frozen=True)
 class SetTask:
-    """All that a process needs to anneal one set, as plain values that can be sent to it.
-
-    `n`, `d`, `objective` (as text) and `steps` are those of :func:`~evenroad.points.optimise.anneal`; `entropy` and
-    `spawn_key` make the set's own seed sequence; `family`, `seed` and `replica` go into its origin; `path` is its file.
-    """
+    """All that a process needs to anneal one set: what its origin will say, its own seeds, and its file if any."""
 
     n: int
     d: int
-    objective: str
     steps: int
-    entropy: Any
-    spawn_key: tuple[int, ...]
-    family: str
-    seed: int | None
-    replica: int
-    path: str | None
+    seeds: np.random.SeedSequence
+    origin: Origin
+    path: Path | None
+
+    @property
+    def replica(self) -> int:
+        """Number of the set in its folder."""
+        return self.origin.replica or 0
 
 
 def make_set(task: SetTask, callback: Callback) -> PointSet:
     """Anneal the set of a task, save it if it has a file, and return it."""
-    sequence = np.random.SeedSequence(task.entropy, spawn_key=task.spawn_key)
-    annealed = anneal(task.n, task.d, task.objective, steps=task.steps, rng=sequence, callback=callback)
-    points = PointSet(annealed.points, origin_of(task))
+    objective = parse_objective(task.origin.objective)
+    annealed = anneal(task.n, task.d, objective, steps=task.steps, rng=task.seeds, callback=callback)
+    points = PointSet(annealed.points, task.origin)
     if task.path is not None:
         save_points(task.path, points)
     return points
 
 
-def origin_of(task: SetTask) -> Origin:
-    """Return the origin that the set of a task gets."""
-    return Origin(
-        family=task.family, method="annealed", objective=task.objective, seed=task.seed, replica=task.replica
-    )
-
-
 def finished_set(task: SetTask) -> PointSet | None:
     """Return the set of a task from its file; None if it is missing or damaged and has to be made."""
-    return None if task.path is None else read_set(Path(task.path), origin_of(task), (task.n, task.d))
+    return None if task.path is None else read_set(task.path, task.origin, (task.n, task.d))
 
 
 def request_of(task: SetTask) -> dict[str, Any]:
     """Return what all sets of a folder have in common; their number is not part of it."""
-    request = {name: asdict(task)[name] for name in ("n", "d", "objective", "steps", "family")}
     return {
-        **request,
+        "n": task.n,
+        "d": task.d,
+        "objective": task.origin.objective,
+        "steps": task.steps,
+        "family": task.origin.family,
         "schedule": SCHEDULE,
-        "seed": task.seed,
-        "entropy": str(task.entropy),
-        "spawn_key": list(task.spawn_key[:-1]),
+        "seed": task.origin.seed,
+        "entropy": str(task.seeds.entropy),
+        "spawn_key": list(task.seeds.spawn_key[:-1]),
     }
 
 

@@ -7,6 +7,7 @@ import os
 from collections.abc import Iterator
 from concurrent.futures import Future, wait
 from concurrent.futures.process import BrokenProcessPool
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +16,8 @@ import numpy as np
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, seed_of
 from evenroad.errors import InvalidValue, WorkerLost
-from evenroad.points.optimise.anneal import Callback
-from evenroad.points.optimise.objective import Objective, parse_objective, require_points_for
-from evenroad.points.pointset import PointSet
+from evenroad.points.bank.anneal import Callback, require_points_for
+from evenroad.points.pointset import Origin, PointSet
 from evenroad.research.training.folder import (
     SetTask,
     claim_folder,
@@ -26,6 +26,7 @@ from evenroad.research.training.folder import (
     request_of,
     set_name,
 )
+from evenroad.research.training.objective import Objective, parse_objective
 from evenroad.research.workers import ProcessPool, usable_processors
 
 _POLL_SECONDS = 0.2
@@ -52,14 +53,14 @@ def anneal_many(
     Parameters
     ----------
     n, d, objective, steps
-        As for :func:`~evenroad.points.optimise.anneal`.
+        As for :func:`~evenroad.points.bank.anneal.anneal`; the objective may be text.
     sets : int
         How many sets, >= 1.
     rng : int, SeedSequence or Generator
-        Root of the seeds.  To resume, pass the same int or SeedSequence; a Generator is spawned and so gives
-        other sets in every call.
+        Root of the seeds.  A Generator is spawned and so gives other sets in every call, which cannot be resumed.
     workers : int, optional
-        Processes; by default the processors that this process may use.  1 works in this process.
+        Spawned processes, so that a script must guard its main part with ``if __name__ == "__main__"``; by default the
+        processors that this process may use.  1 works in this process.
     folder : path, optional
         An existing folder that gets ``set-0000.npz``, ... each as soon as it is finished, and a file that says
         which request they belong to.  Sets that are already there are read instead of annealed.
@@ -69,53 +70,42 @@ def anneal_many(
         Called as ``callback(step, steps, best)`` with the steps of all sets together and the best value so far
         (``inf`` before the first), a few times a second; what it raises stops the work.
 
-    Returns
-    -------
-    tuple of PointSet
-        In order, each with its origin: family, objective, seed and replica.
-
     Raises
     ------
-    InvalidValue
-        For an argument out of range, or a folder that holds sets of another request.
-    BrokenFile
-        If the folder is missing or cannot be written.
+    InvalidValue, BrokenFile
+        For an argument out of range, or a folder of another request; if the folder is missing or cannot be written.
     WorkerLost
         If a process was killed.  Finished sets are in the folder; the same call goes on.
-
-    Notes
-    -----
-    The processes are spawned: a script must guard its main part with ``if __name__ == "__main__"``.
     """
     n, d, sets = require_count("n", n), require_count("d", d), require_count("sets", sets)
     steps = require_count("steps", steps)
     processes = require_count("workers", usable_processors() if workers is None else workers)
     target = parse_objective(objective)
     require_points_for(target, n)
-    root = _root_sequence(rng)
+    root, home = _root_sequence(rng), None if folder is None else Path(folder)
+    text = str(target)
+    origin = Origin(
+        family=text if family is None else family, method="annealed", objective=text, seed=seed_of(rng)
+    )
     tasks = [
         SetTask(
-            n=n,
-            d=d,
-            objective=str(target),
-            steps=steps,
-            entropy=root.entropy,
-            spawn_key=(*root.spawn_key, i),
-            family=str(target) if family is None else family,
-            seed=seed_of(rng),
-            replica=i,
-            path=None if folder is None else str(Path(folder) / set_name(i)),
+            n,
+            d,
+            steps,
+            np.random.SeedSequence(root.entropy, spawn_key=(*root.spawn_key, i)),
+            replace(origin, replica=i),
+            home and home / set_name(i),
         )
         for i in range(sets)
     ]
-    if folder is not None:
-        claim_folder(Path(folder), request_of(tasks[0]))
+    if home is not None:
+        claim_folder(home, request_of(tasks[0]))
     done = {task.replica: points for task in tasks if (points := finished_set(task)) is not None}
     missing = [task for task in tasks if task.replica not in done]
     already = steps * len(done)
     make = _one_by_one if min(processes, len(missing)) <= 1 else _in_processes
     for points in make(missing, processes, already, steps * sets, callback):
-        done[int(points.origin.replica or 0)] = points
+        done[points.origin.replica or 0] = points
     return tuple(done[i] for i in range(sets))
 
 
@@ -192,8 +182,7 @@ def _root_sequence(rng: RngLike) -> np.random.SeedSequence:
     if isinstance(rng, np.random.SeedSequence):
         return rng
     if isinstance(rng, np.random.Generator):
-        child = rng.bit_generator.seed_seq.spawn(1)[0]  # type: ignore[attr-defined]
-        return np.random.SeedSequence(child.entropy, spawn_key=child.spawn_key)
+        return rng.bit_generator.seed_seq.spawn(1)[0]  # type: ignore[attr-defined]
     if isinstance(rng, bool) or not isinstance(rng, int | np.integer) or rng < 0:
         raise InvalidValue(f"rng must be an int >= 0, a numpy SeedSequence or a numpy Generator, got {rng!r}")
     return np.random.SeedSequence(int(rng))

@@ -2,6 +2,5 @@
 
 from evenroad.research.worlds.chain import ChainWorld as ChainWorld
 from evenroad.research.worlds.corridor import Corridor as Corridor
-from evenroad.research.worlds.corridor import hypercube_legacy6 as hypercube_legacy6
-from evenroad.research.worlds.periodic_balls import PeriodicBalls as PeriodicBalls
-from evenroad.research.worlds.periodic_boxes import PeriodicBoxes as PeriodicBoxes
+from evenroad.research.worlds.periodic import PeriodicBalls as PeriodicBalls
+from evenroad.research.worlds.periodic import PeriodicBoxes as PeriodicBoxes

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numba import njit
@@ -29,44 +30,30 @@ _REASONS = {SELF: "two links of the chain cross", WALL: "a link crosses the horn
 class ChainWorld(CompiledWorld):
     """A planar chain of equal links that must cross neither itself nor the walls of :func:`horn`.
 
-    OMPL's kinematic chain benchmark.  A configuration is free if no two of the segments (the links, and a piece of
-    .001 that goes on after the last) and no segment and wall cross.  Segments that are parallel or only touch do
-    not cross.  A motion turns all joints the short way; it is divided into ``ceil(distance / resolution)`` segments,
+    OMPL's kinematic chain benchmark.  A configuration is free if no two of the segments (the links, 2 to 1000, and a
+    piece of .001 that goes on after the last) and no segment and wall cross.  Segments that are parallel or only touch
+    do not cross.  A motion turns all joints the short way; it is divided into ``ceil(distance / resolution)`` segments,
     whose ends are tested in bisection order.
-
-    Parameters
-    ----------
-    links : int
-        Number of links, >= 2.
-
-    Raises
-    ------
-    InvalidValue
-        If `links` is not such a number.
     """
 
     links: int = 10
-    _space: ChainSpace = field(init=False, repr=False, compare=False)
-    _walls: Floats = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        links = require_count("links", self.links, at_least=2)
-        if links > 1000:
+        object.__setattr__(self, "links", require_count("links", self.links, at_least=2))
+        if self.links > 1000:
             raise InvalidValue(f"links must be at most 1000, got {self.links!r}")
-        walls = horn(links)
-        walls.setflags(write=False)
-        for name, value in (("links", links), ("_space", ChainSpace(links)), ("_walls", walls)):
-            object.__setattr__(self, name, value)
 
-    @property
+    @cached_property
     def space(self) -> ChainSpace:
         """The joint angles, measured in the plane."""
-        return self._space
+        return ChainSpace(self.links)
 
-    @property
+    @cached_property
     def walls(self) -> Floats:
-        """The walls, (4, 2 (links - 1)): a column x, y, dx, dy for each segment; read-only."""
-        return self._walls
+        """The :func:`horn`, read-only."""
+        walls = horn(self.links)
+        walls.setflags(write=False)
+        return walls
 
     @property
     def resolution(self) -> float:
@@ -84,16 +71,15 @@ class ChainWorld(CompiledWorld):
         return np.array([math.pi - 0.001] + [0.0] * (self.links - 1))
 
     def _valid(self, q: Floats) -> Bools:
-        return verdicts(q, self._walls, _END_PIECE) == FREE
+        return verdicts(q, self.walls) == FREE
 
     def _motion_valid(self, a: Floats, b: Floats) -> Bools:
-        ends = self._space.wrapped(a), self._space.wrapped(b)
-        return motions_are_free(*ends, self.resolution, self._walls, _END_PIECE)
+        return motions_are_free(self.space.wrapped(a), self.space.wrapped(b), self.resolution, self.walls)
 
     def explain(self, q: Floats) -> str:
         """Return in words why the configuration `q`, (links,), is not free."""
         batch = as_batch("q", np.asarray(q, dtype=np.float64)[np.newaxis], self.links)
-        return _REASONS[int(verdicts(batch, self._walls, _END_PIECE)[0])]
+        return _REASONS[int(verdicts(batch, self.walls)[0])]
 
 
 def horn(links: int) -> Floats:
@@ -121,22 +107,18 @@ _TOUCHING = float(np.finfo(np.float32).eps)
 
 
 @njit(cache=True, nogil=True)
-def verdicts(q: Floats, walls: Floats, end_piece: float) -> Ints:
+def verdicts(q: Floats, walls: Floats) -> Ints:
     """Return the verdict on each configuration, (n, links)."""
     found = np.empty(len(q), dtype=np.int64)
     chain = np.empty((4, q.shape[1] + 1))
     for row in range(len(q)):
-        found[row] = _verdict(q[row], walls, end_piece, chain)
+        found[row] = _verdict(q[row], walls, chain)
     return found
 
 
 @njit(cache=True, nogil=True)
-def motions_are_free(a: Floats, b: Floats, resolution: float, walls: Floats, end_piece: float) -> Bools:
-    """Return which motions are free at both ends and at states between them, in bisection order.
-
-    Both (m, links), angles in [-pi, pi).  The number of segments is the distance of the ends over `resolution`,
-    rounded up; every joint turns the short way.
-    """
+def motions_are_free(a: Floats, b: Floats, resolution: float, walls: Floats) -> Bools:
+    """Return which motions between angles in [-pi, pi), (m, links) each, are free at all states that are tested."""
     free = np.empty(len(a), dtype=np.bool_)
     links = a.shape[1]
     chain, state, difference = np.empty((4, links + 1)), np.empty(links), np.empty(links)
@@ -149,36 +131,29 @@ def motions_are_free(a: Floats, b: Floats, resolution: float, walls: Floats, end
             angle = second[k] - first[k]
             # rint takes one half to zero: of two opposite ways the one that does not cross -pi is taken.
             difference[k] = angle - 2.0 * math.pi * np.rint(angle / (2.0 * math.pi))
+        segments = math.ceil(chain_distance(first, second) / resolution)
         free[row] = (
-            _verdict(first, walls, end_piece, chain) == FREE
-            and _verdict(second, walls, end_piece, chain) == FREE
-            and _motion_is_free(
-                first,
-                difference,
-                math.ceil(chain_distance(first, second) / resolution),
-                walls,
-                end_piece,
-                chain,
-                state,
-            )
+            _verdict(first, walls, chain) == FREE
+            and _verdict(second, walls, chain) == FREE
+            and _motion_is_free(first, difference, segments, walls, chain, state)
         )
     return free
 
 
 @njit(cache=True, nogil=True)
-def _motion_is_free(start, difference, segments, walls, end_piece, chain, state):  # type: ignore[no-untyped-def]
+def _motion_is_free(start, difference, segments, walls, chain, state):  # type: ignore[no-untyped-def]
     level, multiple, number = next_between(1, -1, segments)
     while number > 0:
         for k in range(len(start)):
             state[k] = start[k] + number / segments * difference[k]
-        if _verdict(state, walls, end_piece, chain) != FREE:
+        if _verdict(state, walls, chain) != FREE:
             return False
         level, multiple, number = next_between(level, multiple, segments)
     return True
 
 
 @njit(cache=True, nogil=True)
-def _verdict(q, walls, end_piece, chain):  # type: ignore[no-untyped-def]
+def _verdict(q, walls, chain):  # type: ignore[no-untyped-def]
     links = len(q)
     heading, x, y = 0.0, 0.0, 0.0
     for k in range(links + 1):
@@ -186,7 +161,7 @@ def _verdict(q, walls, end_piece, chain):  # type: ignore[no-untyped-def]
             heading += q[k]
             along_x, along_y = math.cos(heading) / links, math.sin(heading) / links
         else:
-            along_x, along_y = along_x * links * end_piece, along_y * links * end_piece
+            along_x, along_y = along_x * links * _END_PIECE, along_y * links * _END_PIECE
         chain[0, k], chain[1, k], chain[2, k], chain[3, k] = x, y, along_x, along_y
         # The link before has a joint in common with this one, and no more.
         if _crosses_any(x, y, along_x, along_y, chain, k - 1):

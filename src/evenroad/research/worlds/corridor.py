@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -24,60 +25,40 @@ class Corridor(CompiledWorld):
 
     A configuration is free iff it lies in [0, 1]^d and there is a k with ``x_i <= lam`` for all i < k and
     ``x_i >= 1 - lam`` for all i > k: the Hypercube benchmark of OMPL's demos.  Motions are straight and
-    tested at ``n = ceil(length / resolution)`` segments' ends, the first included, in bisection order.
+    tested at ``n = ceil(length / resolution)`` segments' ends, the first included, in bisection order.  From a width of
+    one half on, the straight way from start to goal is free.
 
-    Parameters
-    ----------
-    d : int
-        Dimension, >= 1.
-    lam : float
-        Width, in (0, 1).  From one half on, the straight way from start to goal is free.
-    checked : int, optional
-        Only the first so many coordinates are tested, in [1, d]; all by default.  OMPL's demo tests 6,
-        whatever its dimension: published results for "d = 10" are of that.
-    side : {"comment", "demo"}
-        Which end of the coordinates goes first.  "comment" is the definition above, which the comment in
-        OMPL's demo states; "demo" has the two sides swapped, as its code does: ``x_i >= 1 - lam`` for i < k
-        and ``x_i <= lam`` for i > k.  It matters only where coordinates are not alike (Halton).
-
-    Raises
-    ------
-    InvalidValue
-        If a number is outside of its range.
-    UnknownName
-        If `side` is neither.
+    Only the first `checked` coordinates are tested, all by default.  OMPL's demo tests 6, whatever its dimension:
+    published results for "d = 10" are of that.  The side "demo" has the two sides swapped against the definition above,
+    as the demo's code has against its comment; it matters only where coordinates are not alike (Halton).
     """
 
     d: int
     lam: float
     checked: int | None = None
     side: Literal["comment", "demo"] = "comment"
-    _axes: Ints = field(init=False, repr=False, compare=False)
-    _space: Box = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        d = require_count("d", self.d)
-        lam = require_positive("lam", self.lam)
-        if lam >= 1.0:
+        object.__setattr__(self, "d", require_count("d", self.d))
+        object.__setattr__(self, "lam", require_positive("lam", self.lam))
+        if self.lam >= 1.0:
             raise InvalidValue(f"lam must be in (0, 1), got {self.lam!r}")
-        checked = d if self.checked is None else require_count("checked", self.checked)
-        if checked > d:
-            raise InvalidValue(f"checked must be at most d = {d}, got {self.checked!r}")
+        if self.checked is not None and require_count("checked", self.checked) > self.d:
+            raise InvalidValue(f"checked must be at most d = {self.d}, got {self.checked!r}")
         require_known("side", self.side, _SIDES)
-        axes = np.arange(checked) if self.side == "comment" else np.arange(checked)[::-1].copy()
+
+    @cached_property
+    def _axes(self) -> Ints:
+        """The coordinates that are tested, in their order along the corridor."""
+        axes = np.arange(self.d if self.checked is None else self.checked)
+        axes = axes if self.side == "comment" else axes[::-1].copy()
         axes.setflags(write=False)
-        for name, value in (("d", d), ("lam", lam), ("_axes", axes), ("_space", Box([0.0] * d, [1.0] * d))):
-            object.__setattr__(self, name, value)
+        return axes
 
-    @property
-    def name(self) -> str:
-        """The problem's name: "hypercube", or "hypercube-legacy6" with only the first 6 coordinates tested."""
-        return "hypercube" if len(self._axes) == self.d else f"hypercube-legacy{len(self._axes)}"
-
-    @property
+    @cached_property
     def space(self) -> Box:
         """The unit cube with the Euclidean metric."""
-        return self._space
+        return Box([0.0] * self.d, [1.0] * self.d)
 
     @property
     def resolution(self) -> float:
@@ -94,26 +75,11 @@ class Corridor(CompiledWorld):
         """The other end, (1, .., 1)."""
         return np.ones(self.d)
 
-    @property
-    def free_volume(self) -> float:
-        """Share of the cube that is free, ``m (1 - lam) lam^(m - 1) + lam^m`` with m coordinates tested.
-
-        Either all m are at most lam, or exactly one k is the first above it and the m - 1 others are each on
-        their side, which has the length lam before k as after it.
-        """
-        m = len(self._axes)
-        return m * (1.0 - self.lam) * self.lam ** (m - 1) + self.lam**m
-
     def _valid(self, q: Floats) -> Bools:
         return points_are_free(q, self.lam, self._axes)
 
     def _motion_valid(self, a: Floats, b: Floats) -> Bools:
         return motions_are_free(a, b, self.resolution, self.lam, self._axes)
-
-
-def hypercube_legacy6(side: Literal["comment", "demo"] = "demo") -> Corridor:
-    """Return "hypercube-legacy6": d = 10, lam = 0.37, the first 6 coordinates tested, sides as in the demo."""
-    return Corridor(10, 0.37, checked=6, side=side)
 
 
 @njit(cache=True, nogil=True)

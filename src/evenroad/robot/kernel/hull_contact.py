@@ -37,6 +37,8 @@ def _room(typing_context: Any, count: Any) -> Any:
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
         kind = ir.ArrayType(ir.DoubleType(), sig.args[0].literal_value)
+        # Not to be a part of its callers, which are fast and seldom come here.
+        builder.function.attributes.add("noinline")
         return builder.ptrtoint(cgutils.alloca_once(builder, kind), ir.IntType(64))
 
     return (types.int64(count), lower) if isinstance(count, types.IntegerLiteral) else None

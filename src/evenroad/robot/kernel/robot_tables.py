@@ -58,7 +58,7 @@ class RobotTables:
         Capsules that are tested against each other.
     pair_margins : float64 ndarray, shape (capsule pairs + pairs of bodies of which hulls decide,)
         Capsules, or hulls, of a pair nearer to each other than this may touch by `singles` [m].
-    speeds, pair_speeds : float64 ndarrays, shapes (capsules, dim) and (capsule pairs, dim)
+    speeds, pair_speeds : float64 ndarrays, shapes (capsules, dim) and (as many as margins, dim)
         How fast each coordinate moves a capsule, and the two of a pair against each other, at most [m/rad].
     fixed_contact : tuple of 2 str, or None
         Two links that no joint moves on each other and that touch, though they are to be tested.

@@ -15,7 +15,7 @@ from evenroad.robot.kinematics import link_poses
 from evenroad.robot.reference.engine_world import EngineWorld
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
-from evenroad.world.mesh.coal import require_coal, tree_of
+from evenroad.world.mesh import require_coal, tree_of
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,7 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._rng import generator
 from evenroad.errors import NotAvailable
-from evenroad.robot.pairs import TOUCHING
+from evenroad.robot.pairs import HELD_TOUCHING, TOUCHING
 from evenroad.robot.reference.coal_world import CoalWorld
 from evenroad.robot.reference.engine_world import original_shapes
 from evenroad.robot.robot import Robot, RobotModel
@@ -61,7 +61,7 @@ def has_meshes(model: RobotModel) -> bool:
 
 def unseen_pairs(model: RobotModel) -> tuple[tuple[str, str], ...]:
     """Return the pairs of links that are no neighbours and that no planner tests: their capsules touch all the time."""
-    return tuple((first, second) for first, second, why in model.dropped if why == TOUCHING)
+    return tuple((first, second) for first, second, why in model.dropped if why in (TOUCHING, HELD_TOUCHING))
 
 
 def recheck(

@@ -1,6 +1,7 @@
 """Grid maps: images and ROS maps, and the exact world of a disk robot on them."""
 
 from evenroad.world.gridmap.frame import MapFrame as MapFrame
+from evenroad.world.gridmap.gridmap import DiskWorld as DiskWorld
 from evenroad.world.gridmap.gridmap import GridMap as GridMap
 from evenroad.world.gridmap.image import load_image as load_image
 from evenroad.world.gridmap.load import load_map as load_map

@@ -1,7 +1,6 @@
 """Per-cell knowledge about a disk on a grid of occupied cells: most checks end with one look at it.
 
-The grid is *padded*: one ring of occupied cells surrounds the map, which for a point of the map is exactly
-the outside.  Lengths are in pixels.  `radius` is the disk's.
+The grid is *padded*: one ring of occupied cells around the map stands for the outside.  Lengths are in pixels.
 """
 
 from __future__ import annotations
@@ -24,25 +23,17 @@ FREE = 2
 
 
 class DiskTables(NamedTuple):
-    """What the kernels know of one disk on one map; a named tuple because compiled code takes those.
-
-    Attributes
-    ----------
-    frame : ndarray, shape (8,)
-        `MapFrame.coefficients()`.
-    cells : ndarray of uint8, shape (rows + 2, cols + 2)
-        The class of each cell of the padded grid.
-    above, below : ndarray of uint16, shape (rows + 2, cols + 2)
-        Rows to the nearest occupied cell of the column, see `vertical_runs`.
-    radius : float
-        In pixels.
-    """
+    """What the kernels know of one disk on one map; arrays over the padded grid, (rows + 2, cols + 2)."""
 
     frame: Floats
+    """`MapFrame.coefficients()`."""
     cells: npt.NDArray[np.uint8]
+    """The class of each cell, see `classify`."""
     above: npt.NDArray[np.uint16]
     below: npt.NDArray[np.uint16]
+    """Rows to the nearest occupied cell of the column, see `vertical_runs`."""
     radius: float
+    """Of the disk, in pixels."""
 
 
 _LARGEST_SLACK = 255 - FREE
@@ -51,10 +42,9 @@ _LARGEST_RUN = 65535
 
 @njit(cache=True, nogil=True)
 def vertical_runs(padded: Bools) -> tuple[npt.NDArray[np.uint16], npt.NDArray[np.uint16]]:
-    """Return how many rows up, and how many down, the nearest occupied cell of the same column is.
+    """Return how many rows up, and how many down, the nearest occupied cell of the same column is; 0 in one.
 
-    Both are 0 in an occupied cell.  Runs end at 65535: the nearest obstacle of a point is never that far in
-    any map that fits in memory (half its shorter side), so a longer run never decides anything.
+    Runs end at 65535: in no map that fits in memory is the nearest obstacle of a point that far.
     """
     rows, cols = padded.shape
     above = np.empty((rows, cols), np.uint16)
@@ -76,10 +66,10 @@ def classify(
 ) -> npt.NDArray[np.uint8]:
     """Return the class of every cell of the padded grid: BLOCKED, UNDECIDED or FREE + slack.
 
-    Two exact distances decide.  The farthest that a point of a cell can be from a square (dc, dr) cells away
-    is hypot(dc, dr), so a cell whose nearest occupied cell is nearer than the radius, centre to centre, is
-    blocked.  The nearest is hypot(max(dc - 1, 0), max(dr - 1, 0)): the distance from the obstacles grown by
-    one cell all round, so a cell where that is at least the radius is free, and the rest is slack.
+    The farthest that a point of a cell can be from a square (dc, dr) cells away is hypot(dc, dr): where that is less
+    than the radius for the nearest occupied cell, the cell is blocked.  The nearest is hypot(max(dc - 1, 0),
+    max(dr - 1, 0)), the distance from the obstacles grown by one cell all round: where that is at least the radius, the
+    cell is free, and the rest is slack.
     """
     rows, cols = above.shape
     squared_radius = radius * radius

@@ -12,8 +12,9 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from evenroad._arrays import Bools, Ints32
+from evenroad._arrays import Bools, Ints, Ints32
 from evenroad.world.gridmap.cells import BLOCKED, FREE, UNDECIDED, DiskTables
+from evenroad.world.gridmap.kernel import squared_gap
 
 _AROUND = 3
 """Cells around a place where two components come close that belong to the gate."""
@@ -35,34 +36,13 @@ def find_gates(cells: npt.NDArray[np.uint8]) -> Bools:
     owner = np.zeros(rows * cols, np.int32)
     depth = np.zeros(rows * cols, np.int32)
     queue = np.empty(rows * cols, np.int32)
-    last, begin, end = 0, 0, 0
+    components, count = 0, 0
     for cell in range(rows * cols):
-        if flat[cell] < FREE or owner[cell] != 0:
-            continue
-        last += 1
-        owner[cell] = last
-        queue[end] = cell
-        end += 1
-        while begin < end:
-            here = queue[begin]
-            begin += 1
-            # The ring of the padded grid is blocked: neighbours never leave the array.
-            for k in range(8):
-                to = here + around[k]
-                if flat[to] >= FREE and owner[to] == 0:
-                    owner[to] = last
-                    queue[end] = to
-                    end += 1
-    begin = 0
-    while begin < end:
-        here = queue[begin]
-        begin += 1
-        for k in range(8):
-            to = here + around[k]
-            if flat[to] != BLOCKED and owner[to] == 0:
-                owner[to], depth[to] = owner[here], depth[here] + 1
-                queue[end] = to
-                end += 1
+        if flat[cell] >= FREE and owner[cell] == 0:
+            components += 1
+            owner[cell], queue[count] = components, cell
+            count = _flood(flat, FREE, 0, around, owner, depth, queue, count, count + 1)
+    _flood(flat, UNDECIDED, 1, around, owner, depth, queue, 0, count)
     gates = np.zeros((rows, cols), np.bool_)
     for row in range(1, rows - 1):
         for col in range(1, cols - 1):
@@ -81,17 +61,33 @@ def find_gates(cells: npt.NDArray[np.uint8]) -> Bools:
 
 
 @njit(cache=True, nogil=True)
-def label_components(disk: DiskTables, gates: Bools) -> Ints32:
+def _flood(
+    flat: Any, least: int, deeper: int, around: Any, owner: Any, depth: Any, queue: Any, begin: int, end: int
+) -> int:
+    """Give the neighbours of queued cells, of state `least` or more, to the same owner, and so on; return the end."""
+    while begin < end:
+        here = queue[begin]
+        begin += 1
+        # The ring of the padded grid is blocked: neighbours never leave the array.
+        for k in range(8):
+            to = here + around[k]
+            if flat[to] >= least and owner[to] == 0:
+                owner[to], depth[to] = owner[here], depth[here] + deeper
+                queue[end] = to
+                end += 1
+    return end
+
+
+@njit(cache=True, nogil=True)
+def label_components(disk: DiskTables, gates: Bools) -> tuple[Ints32, Ints32, Ints]:
     """Return the component of each cell and, at gates, of each part of a cell; 0 where no disk is free.
 
     Cells that are not surely blocked hang together over their sides, and so do the parts of a cell at a gate.  A disk
     whose centre goes over a corner touches all four there, so none of them is blocked: two components are apart for
     certain.  What is in one component need not hang together, where a gate is hardly wider or narrower than the disk.
 
-    Returns
-    -------
-    labels : (rows * PARTS, cols * PARTS) would be much memory, so two arrays in one: (rows * cols + gates * PARTS**2,)
-        First of the cells, row by row, those at gates with 0; then of the parts of each cell at a gate, row by row.
+    The labels are those of the cells, (rows, cols), 0 at gates; of the parts, (g, PARTS, PARTS), of the g cells at
+    gates; and the number of each cell among those, or -1, (rows, cols).
     """
     rows, cols = gates.shape
     number = np.full((rows, cols), -1, np.int64)
@@ -101,25 +97,25 @@ def label_components(disk: DiskTables, gates: Bools) -> Ints32:
             if gates[row, col]:
                 number[row, col] = count
                 count += 1
-    total = rows * cols + count * PARTS * PARTS
-    parent = np.full(total, -1, np.int32)
+    first = rows * cols + number * PARTS * PARTS
+    parent = np.full(rows * cols + count * PARTS * PARTS, -1, np.int32)
     for row in range(rows):
         for col in range(cols):
             if number[row, col] >= 0:
-                _open_parts(row, col, rows * cols + number[row, col] * PARTS * PARTS, parent, disk)
+                _open_parts(row, col, first[row, col], parent, disk)
             elif disk.cells[row, col] != BLOCKED:
                 parent[row * cols + col] = row * cols + col
     for row in range(1, rows - 1):
         for col in range(1, cols - 1):
-            here = rows * cols + number[row, col] * PARTS * PARTS
+            here = first[row, col]
             for down in range(2):
                 to_row, to_col = row + down, col + 1 - down
-                there = rows * cols + number[to_row, to_col] * PARTS * PARTS
+                there = first[to_row, to_col]
+                a, b = row * cols + col, to_row * cols + to_col
                 if number[row, col] < 0 and number[to_row, to_col] < 0:
-                    _unite(row * cols + col, to_row * cols + to_col, parent)
+                    _unite(a, b, parent)
                     continue
                 for k in range(PARTS):
-                    a, b = row * cols + col, to_row * cols + to_col
                     if number[row, col] >= 0:
                         a = here + ((PARTS - 1) * PARTS + k if down else k * PARTS + PARTS - 1)
                     if number[to_row, to_col] >= 0:
@@ -131,45 +127,39 @@ def label_components(disk: DiskTables, gates: Bools) -> Ints32:
                         _unite(here + k, here + k + 1, parent)
                     if k < PARTS * (PARTS - 1):
                         _unite(here + k, here + k + PARTS, parent)
-    labels = np.zeros(total, np.int32)
-    for i in range(total):
+    labels = np.zeros(len(parent), np.int32)
+    for i in range(len(parent)):
         if parent[i] >= 0:
             labels[i] = _root(i, parent) + 1
-    return labels
+    of_cells = labels[: rows * cols].reshape(rows, cols)
+    return of_cells, labels[rows * cols :].reshape(count, PARTS, PARTS), number
 
 
 @njit(cache=True, nogil=True)
-def _open_parts(row: int, col: int, base: int, parent: Any, disk: DiskTables) -> None:
+def _open_parts(row: int, col: int, first: int, parent: Any, disk: DiskTables) -> None:
     """Open the parts of a cell that may have a free point: all but those whose middle is too near by their size."""
     coarse = PARTS // 4
     for i in range(16):
         top, left = (i // 4) * coarse, (i % 4) * coarse
-        x, y = col + (left + 0.5 * coarse) / PARTS, row + (top + 0.5 * coarse) / PARTS
-        distance = _distance(x, y, row, col, disk)
+        distance = _distance(row, col, top, left, coarse, disk)
         reach = math.sqrt(0.5) * coarse / PARTS
         if distance + reach < disk.radius:
             continue
         for r in range(top, top + coarse):
             for c in range(left, left + coarse):
-                if distance < disk.radius + reach:
-                    x, y = col + (c + 0.5) / PARTS, row + (r + 0.5) / PARTS
-                    if _distance(x, y, row, col, disk) + math.sqrt(0.5) / PARTS < disk.radius:
-                        continue
-                parent[base + r * PARTS + c] = base + r * PARTS + c
+                is_open = distance >= disk.radius + reach
+                if is_open or _distance(row, col, r, c, 1, disk) + math.sqrt(0.5) / PARTS >= disk.radius:
+                    parent[first + r * PARTS + c] = first + r * PARTS + c
 
 
 @njit(cache=True, nogil=True)
-def _distance(x: float, y: float, row: int, col: int, disk: DiskTables) -> float:
-    """Return the distance of a point of a cell to the nearest obstacle; beyond the radius any that is larger."""
-    reach = math.ceil(disk.radius) + 1
-    least = np.inf
-    for other in range(max(col - reach, 0), min(col + reach, disk.cells.shape[1] - 1) + 1):
-        gap_x = max(other - x, x - (other + 1), 0.0)
-        gap_y = 0.0
-        if disk.above[row, other] > 0:
-            gap_y = min(y - (row + 1 - disk.above[row, other]), row + disk.below[row, other] - y)
-        least = min(least, gap_x * gap_x + gap_y * gap_y)
-    return math.sqrt(least)
+def _distance(row: int, col: int, top: int, left: int, size: int, disk: DiskTables) -> float:
+    """Return the distance from the middle of a square of parts of a cell to the nearest obstacle.
+
+    Where that is beyond the radius, any distance that is.
+    """
+    x, y = col + (left + 0.5 * size) / PARTS, row + (top + 0.5 * size) / PARTS
+    return math.sqrt(squared_gap(x, y, row, col, math.ceil(disk.radius) + 1, 0.0, disk))
 
 
 @njit(cache=True, nogil=True)

@@ -73,10 +73,9 @@ class MapFrame:
     def coefficients(self) -> Floats:
         """Return the eight numbers with which the kernels turn map coordinates into pixels.
 
-        They are origin x, y; the map directions of increasing column (x, y) and of increasing row (x, y);
-        the resolution; and the row of the origin.  A point's column is then ``(q - origin) . direction /
-        resolution``: subtracting first and dividing last keeps round numbers round, so that a disk that
-        just touches is seen to just touch.
+        They are the origin; the map directions of increasing column and of increasing row; the resolution; and the row
+        of the origin.  A point's column is ``(q - origin) . direction / resolution``: subtracting first and dividing
+        last keeps round numbers round, so that a disk that just touches is seen to just touch.
         """
         cosine, sine = math.cos(self.yaw), math.sin(self.yaw)
         if not self.y_up:

@@ -52,10 +52,7 @@ def load_image(path: str | os.PathLike[str], *, dark: float = DARK) -> GridMap:
 
 
 def open_image(path: str | os.PathLike[str]) -> Image.Image:
-    """Return the decoded image at `path`: mode L, I;16 (grey, 16 bit), RGB or RGBA.
-
-    The size is read from the header and refused before anything is decoded.  Raises BrokenFile as `load_image`.
-    """
+    """Return the decoded image at `path`: mode L, I;16 (grey, 16 bit), RGB or RGBA.  Errors as `load_image`."""
     file = Path(path)
     try:
         with file.open("rb") as stream:

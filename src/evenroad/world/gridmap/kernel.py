@@ -1,12 +1,8 @@
 """The compiled exact tests of a disk on a grid, points and motions, and the obstacle or free place nearest to a point.
 
-Everything happens in the pixel plane of the *padded* grid (see `cells`), whose coordinates are one larger
-than the map's.  Obstacles are closed squares; a disk is free if its centre is at least `radius` from all of
-them, so touching is free.
-
-Seen from a point of cell (row, col), only one or two squares of each other column can be the nearest: the
-one in the same row if it is occupied, else the first above and the first below (`above`, `below`), because
-the point's y lies between `row` and `row + 1`.  Only columns within `reach` = ceil(radius) matter.
+All is in the pixel plane of the *padded* grid (see `cells`), whose coordinates are one larger than the map's.  Seen
+from a point of cell (row, col), only one or two squares of each column can be the nearest: the one in the same row if
+it is occupied, else the first above and the first below.  Only columns within `reach` = ceil(radius) matter.
 """
 
 from __future__ import annotations
@@ -70,27 +66,34 @@ def point_is_free(x: float, y: float, disk: DiskTables) -> bool:
     if state != UNDECIDED:
         return state >= FREE
     squared_radius = disk.radius * disk.radius
-    reach = math.ceil(disk.radius)
-    for other in range(max(col - reach, 0), min(col + reach, cols - 1) + 1):
+    return squared_gap(x, y, row, col, math.ceil(disk.radius), squared_radius, disk) >= squared_radius
+
+
+@njit(cache=True, nogil=True, inline="always")
+def squared_gap(x: float, y: float, row: int, col: int, reach: int, enough: float, disk: DiskTables) -> float:
+    """Return the squared distance from a point of a cell to the obstacles of columns within `reach`.
+
+    Once one is found nearer than `enough`, the nearest is not looked for.
+    """
+    least = np.inf
+    for other in range(max(col - reach, 0), min(col + reach, disk.cells.shape[1] - 1) + 1):
         gap_x = max(other - x, x - (other + 1), 0.0)
         gap_y = 0.0
         if disk.above[row, other] > 0:
             gap_y = min(y - (row + 1 - disk.above[row, other]), row + disk.below[row, other] - y)
-        if gap_x * gap_x + gap_y * gap_y < squared_radius:
-            return False
-    return True
+        least = min(least, gap_x * gap_x + gap_y * gap_y)
+        if least < enough:
+            break
+    return least
 
 
 @njit(cache=True, nogil=True)
 def motion_is_free(ax: float, ay: float, bx: float, by: float, disk: DiskTables) -> bool:
     """Follow the segment from a to b (ax <= bx), both free, cell by cell; parameter t runs from 0 to 1.
 
-    Every piece of the segment from one t to the next lies in the closed cell that is looked at and the pieces
-    leave no gap, so nothing is stepped over.  The grid lines' t are computed from whole numbers, never added
-    up.
-
-    Where the segment comes nearest to a square that it does not meet, either the segment ends, which was
-    tested as a point, or the square has a corner.  So corners are all that an undecided cell asks about.
+    Every piece of the segment from one t to the next lies in the closed cell that is looked at, and the pieces leave no
+    gap.  Where the segment comes nearest to a square that it does not meet, either the segment ends, which was tested
+    as a point, or the square has a corner.  So corners are all that an undecided cell asks about.
     """
     dx, dy = bx - ax, by - ay
     squared_length = dx * dx + dy * dy
@@ -132,8 +135,8 @@ def _passes_a_corner(
 ) -> bool:
     """Say whether a corner that faces cell (row, col) is nearer than the radius to the whole segment.
 
-    A square in the cell's own row or column faces it with a side, not a corner.  It needs no test from here:
-    where such a side ends, a cell of the next row or column that the segment goes to sees the corner.
+    A square in the cell's own row or column faces it with a side: where that ends, a cell of the next row or column
+    that the segment goes to sees the corner.
     """
     limit = disk.radius * disk.radius * squared_length
     reach = math.ceil(disk.radius)
@@ -153,8 +156,8 @@ def _passes_a_corner(
 def _is_too_close(x: float, y: float, dx: float, dy: float, squared_length: float, limit: float) -> bool:
     """Say whether a corner at (x, y) from the segment's start is nearer than the radius to its inside.
 
-    The ends were tested as points, so only a foot strictly between them counts; its squared distance is
-    cross**2 / length**2, compared without dividing: `limit` = radius**2 * length**2.
+    Only a foot strictly between the ends counts; its squared distance is cross**2 / length**2, compared without
+    dividing: `limit` = radius**2 * length**2.
     """
     along = x * dx + y * dy
     if along <= 0.0 or along >= squared_length:
@@ -165,10 +168,9 @@ def _is_too_close(x: float, y: float, dx: float, dy: float, squared_length: floa
 
 @njit(cache=True, nogil=True)
 def nearest_obstacle_points(q: Floats, disk: DiskTables) -> tuple[Floats, Floats]:
-    """Return the nearest obstacle point to each map point, (n, 2), and its distance, (n,), both in pixels.
+    """Return the nearest obstacle point to each map point, (n, 2), and its distance, (n,), both in the map's pixels.
 
-    The points are pixel coordinates of the map itself, not of the padded grid.  A point on or in an obstacle,
-    the border and the outside included, is its own nearest one.  Columns are visited from the point's own
+    A point in an obstacle, on the border or outside is its own nearest one.  Columns are visited from the point's own
     outwards until they are farther than the best obstacle so far.
     """
     rows, cols = disk.cells.shape
@@ -181,7 +183,7 @@ def nearest_obstacle_points(q: Floats, disk: DiskTables) -> tuple[Floats, Floats
             continue
         col, row = int(x), int(y)
         best = np.inf
-        # `away` columns off, everything is at least away - 1 away; the ring ends the search at the latest.
+        # `away` columns off, everything is at least away - 1 away.
         for away in range(cols):
             if away > 1 and (away - 1.0) ** 2 >= best:
                 break

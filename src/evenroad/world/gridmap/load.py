@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import math
 import os
-from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -15,8 +12,8 @@ from PIL import Image
 
 from evenroad._arrays import Bools
 from evenroad._checks import require_known, require_positive
-from evenroad._yaml import read_mapping
-from evenroad.errors import BrokenFile, InvalidValue, UnknownName
+from evenroad._yaml import numbers, read_mapping, require_keys
+from evenroad.errors import InvalidValue, UnknownName
 from evenroad.world.gridmap.frame import MapFrame
 from evenroad.world.gridmap.gridmap import GridMap
 from evenroad.world.gridmap.image import load_image, open_image
@@ -25,26 +22,22 @@ _IMAGES = (".png", ".pgm")
 _ROS_MAPS = (".yaml", ".yml")
 
 _REQUIRED = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
-_KNOWN = (*_REQUIRED, "mode")
 _MODES = ("trinary", "scale", "raw")
 
 
-@dataclass(frozen=True, kw_only=True)
-class RosMapMeta:
-    """What a map_server YAML file says, checked.
-
-    `resolution` is metres per pixel; `origin` x and y [m] of the lower-left corner of the lower-left pixel, and yaw
-    [rad]; `negate` says that white, not black, is occupied; ``0 <= free_thresh < occupied_thresh <= 1``; `mode` is
-    trinary, scale or raw.
-    """
+class RosMapMeta(NamedTuple):
+    """What a map_server YAML file says, checked: lengths in metres, the yaw in radians."""
 
     image: Path
     resolution: float
-    origin: tuple[float, float, float]
+    origin: tuple[float, ...]
+    """x and y of the lower-left corner of the lower-left pixel, and yaw."""
     negate: bool
+    """White, not black, is occupied."""
     occupied_thresh: float
     free_thresh: float
-    mode: str = "trinary"
+    """``0 <= free_thresh < occupied_thresh <= 1``"""
+    mode: str
 
 
 def load_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False) -> GridMap:
@@ -122,12 +115,31 @@ def read_ros_meta(path: str | os.PathLike[str]) -> RosMapMeta:
     """Read and check a map_server YAML file; the image is not opened.  Errors as `load_ros_map`."""
     file = Path(path)
     document = read_mapping(file, "map")
-    for key in document:
-        require_known(f"key in {file}:", key, _KNOWN)
-    missing = [key for key in _REQUIRED if key not in document]
-    if missing:
-        raise BrokenFile(f"{file} lacks {', '.join(missing)}; a map needs {', '.join(_REQUIRED)}")
-    return _checked_meta(document, file)
+    require_keys(document, _REQUIRED, ("mode",), str(file))
+    image, mode, negate = document["image"], document.get("mode", "trinary"), document["negate"]
+    if not isinstance(image, str) or not image:
+        raise InvalidValue(f"image in {file} must be the name of a file, got {image!r}")
+    require_known(f"mode in {file}:", mode, _MODES)
+    if negate not in (0, 1) or isinstance(negate, float):
+        raise InvalidValue(f"negate in {file} must be 0, 1, true or false, got {negate!r}")
+    resolution, occupied, free = (
+        numbers([document[key]], 1, f"{key} in {file}")[0]
+        for key in ("resolution", "occupied_thresh", "free_thresh")
+    )
+    if not 0.0 <= free < occupied <= 1.0:
+        raise InvalidValue(
+            f"the thresholds in {file} must satisfy 0 <= free_thresh < occupied_thresh <= 1,"
+            f" got free_thresh {free!r} and occupied_thresh {occupied!r}"
+        )
+    return RosMapMeta(
+        image=file.parent / image,
+        resolution=require_positive(f"resolution in {file}", resolution),
+        origin=numbers(document["origin"], 3, f"origin [x, y, yaw] in {file}"),
+        negate=bool(negate),
+        occupied_thresh=occupied,
+        free_thresh=free,
+        mode=mode,
+    )
 
 
 def classify_pixels(image: Image.Image, meta: RosMapMeta) -> tuple[Bools, Bools]:
@@ -160,47 +172,3 @@ def _summed_channels(image: Image.Image, *, with_alpha: bool) -> tuple[npt.NDArr
         return pixels, 255 if image.mode == "L" else 65535
     channels = 4 if image.mode == "RGBA" and with_alpha else 3
     return pixels[:, :, :channels].sum(axis=2, dtype=np.uint16), 255 * channels
-
-
-def _checked_meta(document: dict[str, Any], file: Path) -> RosMapMeta:
-    image, mode, negate, origin = (document.get(key) for key in ("image", "mode", "negate", "origin"))
-    if not isinstance(image, str) or not image:
-        raise InvalidValue(f"image in {file} must be the name of a file, got {image!r}")
-    if "mode" not in document:
-        mode = "trinary"
-    require_known(f"mode in {file}:", mode, _MODES)
-    if negate not in (0, 1) or isinstance(negate, float):
-        raise InvalidValue(f"negate in {file} must be 0, 1, true or false, got {negate!r}")
-    if not isinstance(origin, list) or len(origin) != 3:
-        raise InvalidValue(f"origin in {file} must be a list [x, y, yaw], got {origin!r}")
-    x, y, yaw = (_number("origin", value, file) for value in origin)
-    occupied, free = (_number(key, document[key], file) for key in ("occupied_thresh", "free_thresh"))
-    if not 0.0 <= free < occupied <= 1.0:
-        raise InvalidValue(
-            f"the thresholds in {file} must satisfy 0 <= free_thresh < occupied_thresh <= 1,"
-            f" got free_thresh {free!r} and occupied_thresh {occupied!r}"
-        )
-    return RosMapMeta(
-        image=file.parent / image,
-        resolution=require_positive(
-            f"resolution in {file}", _number("resolution", document["resolution"], file)
-        ),
-        origin=(x, y, yaw),
-        negate=bool(negate),
-        occupied_thresh=occupied,
-        free_thresh=free,
-        mode=str(mode),
-    )
-
-
-def _number(key: str, value: object, file: Path) -> float:
-    if isinstance(value, int | float) and not isinstance(value, bool):
-        # A whole number of hundreds of digits is no float.
-        with suppress(OverflowError):
-            number = float(value)
-            if math.isfinite(number):
-                return number
-    hint = ""
-    if isinstance(value, str):
-        hint = " (text; YAML reads an exponent only after a decimal point: 1.0e-2, not 1e-2)"
-    raise InvalidValue(f"{key} in {file} must be a finite number, got {value!r}{hint}")

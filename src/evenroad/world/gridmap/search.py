@@ -44,16 +44,9 @@ def find_path(
     """Find a path over the half lattice from a free point, (2,), to the nearest on it of others, (g, 2).
 
     A* over whole-number costs with buckets for the queue; a step between surely free cells that share a side or a
-    corner needs no check, every other one is tested exactly.
-
-    Returns
-    -------
-    path : (p, 2)
-        Map points, start and goal included; (0, 2) when there is none.
-    goal : int
-        Which goal, or -1.
-    expanded, motions : int
-        Lattice points looked at from, and motions tested; the search ends when `most` are.
+    corner needs no check, every other one is tested exactly.  Given back are the path in map points, start and goal
+    included, (p, 2); which goal, or -1 and an empty path; how many lattice points were looked at from; and how many
+    motions tested: the search ends when `most` are.
     """
     rows, cols = disk.cells.shape
     high, wide = 2 * rows + 1, 2 * cols + 1
@@ -112,10 +105,9 @@ def find_path(
             path = _trace(node, came, wide, start, goals[ends[node]], disk)
             return path, ends[node], expanded, motions
         r, c = divmod(node, wide)
-        x, y = 0.5 * c, 0.5 * r
-        sure = _is_centre(r, c, disk)
+        from_x, from_y = _to_map(0.5 * c, 0.5 * r, disk.frame)
         at_gate = _is_at_gate(r, c, gates)
-        for s in range(0 if sure else 8, len(STEPS) if at_gate else 8):
+        for s in range(0 if _is_centre(r, c, disk) else 8, len(STEPS) if at_gate else 8):
             to_c, to_r = c + STEPS[s, 0], r + STEPS[s, 1]
             # Never out of the array: nothing is free on its ring.
             to = to_r * wide + to_c
@@ -129,7 +121,6 @@ def find_path(
                 if not _is_at_gate(to_r, to_c, gates) or disk.cells[to_r // 2, to_c // 2] == BLOCKED:
                     continue
                 motions += 1
-                from_x, from_y = _to_map(x, y, disk.frame)
                 to_x, to_y = _to_map(0.5 * to_c, 0.5 * to_r, disk.frame)
                 if not _free_between(from_x, from_y, to_x, to_y, disk):
                     continue
@@ -137,7 +128,7 @@ def find_path(
             came[to] = s
             bucket = max(cost + _left(to_c, to_r, targets), key) % _BUCKETS
             if size == len(entries):
-                entries, links = _twice(entries), _twice(links)
+                entries, links = np.append(entries, entries), np.append(links, links)  # twice the room
             entries[size], links[size] = to, heads[bucket]
             heads[bucket] = size
             size += 1
@@ -219,26 +210,16 @@ def _is_at_gate(r: int, c: int, gates: Bools) -> bool:
 
 @njit(cache=True, nogil=True)
 def _trace(node: int, came: Any, wide: int, start: Any, goal: Any, disk: DiskTables) -> Any:
-    count = 3
-    at = node
-    while came[at] >= 0:
-        at -= STEPS[came[at], 1] * wide + STEPS[came[at], 0]
-        count += 1
-    path = np.empty((count, 2))
-    path[0, 0], path[0, 1], path[-1, 0], path[-1, 1] = start[0], start[1], goal[0], goal[1]
-    at = node
-    for i in range(count - 2, 0, -1):
-        path[i, 0], path[i, 1] = _to_map(0.5 * (at % wide), 0.5 * (at // wide), disk.frame)
-        if came[at] >= 0:
-            at -= STEPS[came[at], 1] * wide + STEPS[came[at], 0]
+    nodes = [node]
+    while came[nodes[-1]] >= 0:
+        step = STEPS[came[nodes[-1]]]
+        nodes.append(nodes[-1] - step[1] * wide - step[0])
+    path = np.empty((len(nodes) + 2, 2))
+    path[0], path[-1] = start, goal
+    for i in range(len(nodes)):
+        r, c = divmod(nodes[-1 - i], wide)
+        path[i + 1, 0], path[i + 1, 1] = _to_map(0.5 * c, 0.5 * r, disk.frame)
     return path
-
-
-@njit(cache=True, nogil=True)
-def _twice(array: Any) -> Any:
-    larger = np.empty(2 * len(array), array.dtype)
-    larger[: len(array)] = array
-    return larger
 
 
 @njit(cache=True, nogil=True)
@@ -285,10 +266,7 @@ def _skip_ahead(path: Any, disk: DiskTables) -> tuple[Floats, int]:
                 far = middle
         at = near
         kept.append(at)
-    points = np.empty((len(kept), 2))
-    for i in range(len(kept)):
-        points[i] = path[kept[i]]
-    return points, motions
+    return path[np.array(kept)], motions
 
 
 @njit(cache=True, nogil=True)
@@ -340,14 +318,7 @@ def _best_selection(points: Any, disk: DiskTables) -> tuple[Floats, int]:
             length[j], before[j] = through, i
     if not np.isfinite(length[count - 1]):
         return points, motions
-    kept = 1
-    at = count - 1
-    while at > 0:
-        at = before[at]
-        kept += 1
-    chosen = np.empty((kept, 2))
-    at = count - 1
-    for i in range(kept - 1, -1, -1):
-        chosen[i] = points[at]
-        at = before[at]
-    return chosen, motions
+    chosen = [count - 1]
+    while chosen[-1] > 0:
+        chosen.append(before[chosen[-1]])
+    return points[np.array(chosen[::-1])], motions

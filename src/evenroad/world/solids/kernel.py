@@ -8,15 +8,17 @@ import numpy as np
 from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints
+from evenroad.space.so3 import SMALL_ANGLE
 from evenroad.world.bisection import next_between
 from evenroad.world.solids.oriented_box import BoxTable
-from evenroad.world.solids.overlap import first_contact
-
-_SMALL_ANGLE = 1e-8
-"""Below it a chord and its arc agree to the last bit, and sin(angle) is too small to divide by safely."""
 
 _ROUNDING = 4e-6
 """In a proof boxes are enlarged by this share of their points' ways more: quaternions are of norm 1 up to 1e-6."""
+
+
+_PARALLEL = 1e-14
+"""Squared sine below which two edges count as parallel: an axis across both would be rounding alone, and the
+faces' axes separate boxes with such edges as well, but for gaps of 1e-7 of their size."""
 
 
 @njit(cache=True, nogil=True)
@@ -27,7 +29,7 @@ def contacts(poses: Floats, body: BoxTable, reach: float, obstacles: BoxTable, p
     work = np.empty((4, 3, 3))
     for row in range(len(poses)):
         count = _obstacles_near(poses[row], poses[row], reach, obstacles, near)
-        found[row] = first_contact(poses[row], body, obstacles, near[:count], planar, work)
+        found[row] = _first_contact(poses[row], body, obstacles, near[:count], planar, work)
     return found
 
 
@@ -53,8 +55,8 @@ def motions_are_free(
         # What is far from the whole motion is far from all of its states.
         count = _obstacles_near(a[row], b[row], reach, obstacles, near)
         free[row] = count == 0 or (
-            first_contact(a[row], body, obstacles, near[:count], planar, work) < 0
-            and first_contact(b[row], body, obstacles, near[:count], planar, work) < 0
+            _first_contact(a[row], body, obstacles, near[:count], planar, work) < 0
+            and _first_contact(b[row], body, obstacles, near[:count], planar, work) < 0
             and _motion_is_free(
                 a[row], b[row], step, rotation_step, body, obstacles, near[:count], planar, state, work
             )
@@ -70,7 +72,7 @@ def _motion_is_free(a, b, step, rotation_step, body, obstacles, near, planar, st
     while number > 0:
         # Two weights, not one fraction: a motion and its reverse then have the same states.
         _put_between(a, b, (segments - number) / segments, number / segments, angle, state)
-        if first_contact(state, body, obstacles, near, planar, work) >= 0:
+        if _first_contact(state, body, obstacles, near, planar, work) >= 0:
             return False
         level, multiple, number = next_between(level, multiple, segments)
     return True
@@ -115,13 +117,13 @@ def motions_are_proved(
                 moved = (0.5 + _ROUNDING) * share * (length + 2.0 * angle * reaches[box])
                 for k in range(3):
                     enlarged.half[box, k] = body.half[box, k] + moved
-            if first_contact(state, enlarged, obstacles, near[:count], planar, work) < 0:
+            if _first_contact(state, enlarged, obstacles, near[:count], planar, work) < 0:
                 number += 1
                 while level > 0 and number % 2 == 0:
                     level, number = level - 1, number // 2
             elif (
                 share * most < tolerance
-                or first_contact(state, body, obstacles, near[:count], planar, work) >= 0
+                or _first_contact(state, body, obstacles, near[:count], planar, work) >= 0
             ):
                 proved[row] = False
                 break
@@ -140,7 +142,7 @@ def _put_between(a, b, from_a, from_b, angle, state):  # type: ignore[no-untyped
     """Write the pose with the weights `from_a` and `from_b`: straight, and by slerp (Shoemake 1985)."""
     for k in range(3):
         state[k] = from_a * a[k] + from_b * b[k]
-    if angle >= _SMALL_ANGLE:
+    if angle >= SMALL_ANGLE:
         sine = math.sin(angle)
         from_a, from_b = math.sin(from_a * angle) / sine, math.sin(from_b * angle) / sine
     for k in range(3, 7):
@@ -170,3 +172,106 @@ def _obstacles_near(a, b, reach, obstacles, near):  # type: ignore[no-untyped-de
             near[count] = i
             count += 1
     return count
+
+
+@njit(cache=True, nogil=True)
+def _first_contact(
+    pose: Floats, body: BoxTable, obstacles: BoxTable, near: Ints, planar: bool, work: Floats
+) -> int:
+    """Return the first obstacle among `near` that a box of the body meets at a pose, (7,), or -1.
+
+    Boxes are closed: touching is meeting.  `planar` says that all boxes stand along z, where the axes across pairs
+    of edges give nothing new.  `work`, (4, 3, 3), is overwritten.
+    """
+    rotation, axes, products, vectors = work[0], work[1], work[2], work[3]
+    centre, reach = vectors[0], vectors[1]
+    _put_rotation(pose, rotation)
+    for part in range(len(body.centre)):
+        for i in range(3):
+            for j in range(3):
+                axes[i, j] = (
+                    rotation[i, 0] * body.axes[part, 0, j]
+                    + rotation[i, 1] * body.axes[part, 1, j]
+                    + rotation[i, 2] * body.axes[part, 2, j]
+                )
+            centre[i] = pose[i] + (
+                rotation[i, 0] * body.centre[part, 0]
+                + rotation[i, 1] * body.centre[part, 1]
+                + rotation[i, 2] * body.centre[part, 2]
+            )
+            reach[i] = (
+                abs(axes[i, 0]) * body.half[part, 0]
+                + abs(axes[i, 1]) * body.half[part, 1]
+                + abs(axes[i, 2]) * body.half[part, 2]
+            )
+        for obstacle in near:
+            separated = False
+            for k in range(3):
+                separated |= centre[k] + reach[k] < obstacles.low[obstacle, k]
+                separated |= obstacles.high[obstacle, k] < centre[k] - reach[k]
+            if not separated and _overlap(
+                centre, axes, body.half[part], obstacles, obstacle, planar, products, vectors[2]
+            ):
+                return obstacle
+    return -1
+
+
+@njit(cache=True, nogil=True)
+def _overlap(centre, axes, half, obstacles, obstacle, planar, products, offset):  # type: ignore[no-untyped-def]
+    """Test a box against an obstacle by separating axes (Gottschalk, Lin and Manocha, SIGGRAPH 1996, section 5)."""
+    other_axes, other_half = obstacles.axes[obstacle], obstacles.half[obstacle]
+    offset_x = obstacles.centre[obstacle, 0] - centre[0]
+    offset_y = obstacles.centre[obstacle, 1] - centre[1]
+    offset_z = obstacles.centre[obstacle, 2] - centre[2]
+    for i in range(3):
+        for j in range(3):
+            products[i, j] = (
+                axes[0, i] * other_axes[0, j] + axes[1, i] * other_axes[1, j] + axes[2, i] * other_axes[2, j]
+            )
+        # The offset in the box's own axes.
+        offset[i] = axes[0, i] * offset_x + axes[1, i] * offset_y + axes[2, i] * offset_z
+    for i in range(3):
+        other_reach = (
+            abs(products[i, 0]) * other_half[0]
+            + abs(products[i, 1]) * other_half[1]
+            + abs(products[i, 2]) * other_half[2]
+        )
+        if abs(offset[i]) > half[i] + other_reach:
+            return False
+    for j in range(3):
+        own_reach = (
+            half[0] * abs(products[0, j]) + half[1] * abs(products[1, j]) + half[2] * abs(products[2, j])
+        )
+        along = offset[0] * products[0, j] + offset[1] * products[1, j] + offset[2] * products[2, j]
+        if abs(along) > other_half[j] + own_reach:
+            return False
+    if planar:
+        return True
+    for i in range(3):
+        i1, i2 = (i + 1) % 3, (i + 2) % 3
+        for j in range(3):
+            if 1.0 - products[i, j] * products[i, j] < _PARALLEL:
+                continue
+            j1, j2 = (j + 1) % 3, (j + 2) % 3
+            own_reach = half[i1] * abs(products[i2, j]) + half[i2] * abs(products[i1, j])
+            other_reach = other_half[j1] * abs(products[i, j2]) + other_half[j2] * abs(products[i, j1])
+            along = offset[i2] * products[i1, j] - offset[i1] * products[i2, j]
+            if abs(along) > own_reach + other_reach:
+                return False
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _put_rotation(pose, rotation):  # type: ignore[no-untyped-def]
+    """Write the rotation matrix of the pose's quaternion, whatever its norm."""
+    w, x, y, z = pose[3], pose[4], pose[5], pose[6]
+    s = 2.0 / (w * w + x * x + y * y + z * z)
+    rotation[0, 0] = 1.0 - s * (y * y + z * z)
+    rotation[0, 1] = s * (x * y - w * z)
+    rotation[0, 2] = s * (x * z + w * y)
+    rotation[1, 0] = s * (x * y + w * z)
+    rotation[1, 1] = 1.0 - s * (x * x + z * z)
+    rotation[1, 2] = s * (y * z - w * x)
+    rotation[2, 0] = s * (x * z - w * y)
+    rotation[2, 1] = s * (y * z + w * x)
+    rotation[2, 2] = 1.0 - s * (x * x + y * y)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from evenroad._arrays import Floats
+from evenroad._arrays import Floats, set_fields
 from evenroad._checks import as_row
 from evenroad.errors import InvalidValue
 from evenroad.geometry.mesh import TriangleMesh
@@ -38,9 +38,8 @@ class OrientedBox:
     half_extents : sequence of as many floats
         Half of its lengths along its own axes, >= 0.
     rotation : sequence of 4 or 9 floats, optional
-        From the box's own axes to those of the frame that `centre` is in, the rows of the matrix one after the
-        other (:func:`evenroad.geometry.rotation_from_heading` and
-        :func:`evenroad.geometry.rotation_from_quaternion` make them); default: not rotated.
+        From the box's own axes, the rows of the matrix one after the other, as ``rotation_from_heading`` and
+        ``rotation_from_quaternion`` of :mod:`evenroad.geometry` make them; default: not rotated.
     name : str
         What explanations call it.
 
@@ -63,8 +62,7 @@ class OrientedBox:
         if min(half_extents) < 0.0:
             raise InvalidValue(f"half_extents must be >= 0, got {self.half_extents!r}")
         rotation = as_rotation(self.rotation, len(centre))
-        for field, value in (("centre", centre), ("half_extents", half_extents), ("rotation", rotation)):
-            object.__setattr__(self, field, value)
+        set_fields(self, centre=centre, half_extents=half_extents, rotation=rotation)
 
     @classmethod
     def spanning(cls, low: Sequence[float], high: Sequence[float], name: str = "") -> OrientedBox:
@@ -72,13 +70,11 @@ class OrientedBox:
 
         Raises InvalidValue if the two are not 2 or 3 finite numbers each with ``low <= high``.
         """
-        lows = as_row("low", low)
-        highs = as_row("high", high, len(lows))
-        if any(least > most for least, most in zip(lows, highs, strict=True)):
+        lows = np.array(as_row("low", low))
+        highs = np.array(as_row("high", high, len(lows)))
+        if (lows > highs).any():
             raise InvalidValue(f"low must not exceed high, got {low!r} and {high!r}")
-        centre = [(least + most) / 2.0 for least, most in zip(lows, highs, strict=True)]
-        half_extents = [(most - least) / 2.0 for least, most in zip(lows, highs, strict=True)]
-        return cls(centre, half_extents, name=name)
+        return cls(((lows + highs) / 2.0).tolist(), ((highs - lows) / 2.0).tolist(), name=name)
 
     @classmethod
     def of(cls, box: Box) -> OrientedBox:
@@ -103,10 +99,7 @@ class OrientedBox:
 
 
 def shell(box: OrientedBox) -> tuple[OrientedBox, ...]:
-    """Return the surface of a box in space, as six rectangles: a body that fits may be inside.
-
-    Raises InvalidValue if the box lies in the plane.
-    """
+    """Return the surface of a box in space, as six rectangles; InvalidValue if the box lies in the plane."""
     if box.dim != 3:
         raise InvalidValue("only boxes in space have a shell of rectangles")
     rectangles = []
@@ -153,6 +146,6 @@ def box_table(boxes: Sequence[OrientedBox]) -> BoxTable:
     return table
 
 
-def reach_of(boxes: Sequence[OrientedBox]) -> float:
-    """Return how far points of `boxes` are at most from the origin of their frame, with room for rounding."""
-    return (1.0 + 1e-12) * max(float(np.linalg.norm(box.corners, axis=1).max()) for box in boxes)
+def reaches_of(boxes: Sequence[OrientedBox]) -> Floats:
+    """Return how far points of each box are at most from the origin of its frame, with room for rounding: (n,)."""
+    return (1.0 + 1e-12) * np.array([np.linalg.norm(box.corners, axis=1).max() for box in boxes])

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TypeAlias
 
 import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue
+from evenroad.geometry.mesh import TriangleMesh
 from evenroad.space import SO3, Box, Circle, Product, Space
+from evenroad.world.solids.oriented_box import OrientedBox
 
 RigidSpace: TypeAlias = Product | Box
 """``SE2(..)``, ``SE3(..)``, or a `Box` of 2 or 3 axes for a body that does not rotate."""
@@ -29,9 +32,10 @@ def body_dimension(space: Space) -> int:
     raise InvalidValue(f"space must be SE2(..), SE3(..) or a Box of 2 or 3 axes, got {space!r}")
 
 
-def rotates(space: Space) -> bool:
-    """Return whether bodies rotate in such a space."""
-    return isinstance(space, Product)
+def contact_with(obstacles: Sequence[OrientedBox | TriangleMesh], number: int) -> str:
+    """Say which obstacle a body meets."""
+    name = obstacles[number].name
+    return f"the body meets obstacle {number}{f' ({name})' if name else ''}"
 
 
 def as_poses(q: Floats, space: Space) -> Floats:
@@ -43,9 +47,9 @@ def as_poses(q: Floats, space: Space) -> Floats:
     poses = np.zeros((len(q), 7))
     poses[:, :dim] = q[:, :dim]
     poses[:, 3] = 1.0
-    if rotates(space) and dim == 3:
+    if isinstance(space, Product) and dim == 3:
         poses[:, 3:] = q[:, 3:]
-    elif rotates(space):
+    elif isinstance(space, Product):
         half = _heading(q) / 2.0
         poses[:, 3], poses[:, 6] = np.cos(half), np.sin(half)
     return poses
@@ -54,20 +58,18 @@ def as_poses(q: Floats, space: Space) -> Floats:
 def as_pose_pair(a: Floats, b: Floats, space: Space) -> tuple[Floats, Floats]:
     """Return start and end poses whose quaternions have signs such that the shorter arc is the space's path."""
     first, second = as_poses(a, space), as_poses(b, space)
-    if rotates(space) and body_dimension(space) == 3:
+    if not isinstance(space, Product):
+        return first, second
+    if body_dimension(space) == 3:
         p, q = first[:, 3:].T, second[:, 3:].T
         other_sign = p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3] < 0.0
-    elif rotates(space):
+    else:
         # Exactly opposite headings: their quaternions' product is zero up to rounding and decides nothing.
         other_sign = np.abs(_heading(b) - _heading(a)) > np.pi
-    else:
-        return first, second
     second[other_sign, 3:] *= -1.0
     return first, second
 
 
 def _heading(q: Floats) -> Floats:
-    """Return the headings of planar poses in [-pi, pi), as `Circle` gives them."""
-    heading = q[:, 2]
-    wrapped = np.mod(heading + np.pi, 2.0 * np.pi) - np.pi
-    return np.where((heading >= -np.pi) & (heading < np.pi), heading, wrapped)
+    """Return the headings of planar poses in [-pi, pi)."""
+    return Circle().wrapped(q[:, 2:])[:, 0]

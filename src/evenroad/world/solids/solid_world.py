@@ -5,19 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
-from evenroad._arrays import Bools, Floats, Ints
+from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import as_row, require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
 from evenroad.space import Box, Product
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.bisection import require_few_segments
+from evenroad.world.function import OUTSIDE
 from evenroad.world.solids.kernel import contacts, motions_are_free, motions_are_proved
-from evenroad.world.solids.oriented_box import BoxTable, OrientedBox, box_table, reach_of
-from evenroad.world.solids.poses import RigidSpace, as_pose_pair, as_poses, body_dimension
+from evenroad.world.solids.oriented_box import BoxTable, OrientedBox, box_table, reaches_of
+from evenroad.world.solids.poses import RigidSpace, as_pose_pair, as_poses, body_dimension, contact_with
 
 _TOLERANCE = 1e-3
 """How near to contact `SolidWorld.recheck` still proves a motion free, as a share of the step of translations."""
@@ -53,6 +55,9 @@ class SolidWorld:
         If the space is of another kind, boxes are missing or of another dimension, or `resolution` does not fit.
     """
 
+    proof: ClassVar[str] = "certified"
+    """What `recheck` calls free is proved to be, everywhere between its ends."""
+
     space: RigidSpace
     body: Sequence[OrientedBox]
     obstacles: Sequence[OrientedBox]
@@ -68,16 +73,8 @@ class SolidWorld:
         if not body:
             raise InvalidValue("body must be one box or more, got none")
         resolution, steps = _as_steps(self.resolution, self.space)
-        for name, value in (
-            ("body", body),
-            ("obstacles", obstacles),
-            ("resolution", resolution),
-            ("_body", box_table(body)),
-            ("_obstacles", box_table(obstacles)),
-            ("_reaches", np.array([reach_of([box]) for box in body])),
-            ("_steps", steps),
-        ):
-            object.__setattr__(self, name, value)
+        set_fields(self, body=body, obstacles=obstacles, resolution=resolution, _steps=steps)
+        set_fields(self, _body=box_table(body), _obstacles=box_table(obstacles), _reaches=reaches_of(body))
 
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of space, body, obstacles and resolution: equal for worlds of the same verdicts."""
@@ -102,21 +99,11 @@ class SolidWorld:
         )
         return free
 
-    @property
-    def proof(self) -> str:
-        """``certified``: what `recheck` calls free is proved to be, everywhere between its ends."""
-        return "certified"
-
     def recheck(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, dim), are proved free: (p - 1,).
 
         Stricter than testing states, however many: no stretch of a motion is left open.  A motion is refused, too, that
         comes nearer to an obstacle than about a thousandth of `step`.
-
-        Raises
-        ------
-        InvalidValue
-            As `valid`.
         """
         waypoints = as_batch("path", path, self.space.dim)
         inside = self.space.contains(waypoints)
@@ -132,10 +119,8 @@ class SolidWorld:
         """Return in words why the pose `q`, (dim,), is not free."""
         pose = as_batch("q", np.asarray(q, dtype=np.float64)[np.newaxis], self.space.dim)
         if not self.space.contains(pose)[0]:
-            return "it lies outside the bounds of the space"
-        obstacle = int(self._contacts(pose)[0])
-        name = self.obstacles[obstacle].name
-        return f"the body meets obstacle {obstacle}{f' ({name})' if name else ''}"
+            return OUTSIDE
+        return contact_with(self.obstacles, int(self._contacts(pose)[0]))
 
     @property
     def _reach(self) -> float:

@@ -1,11 +1,14 @@
-"""Charts: success against its costs, gains in random worlds, point sets in the unit square."""
+"""Charts: success against its costs, gains in random worlds, point sets; and what all figures share."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import io
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
@@ -13,9 +16,71 @@ from evenroad._rng import generator
 from evenroad.research.bench.samplers import draw_set, why_not
 from evenroad.research.report.cells import Cell
 from evenroad.research.report.fair import Pooled
-from evenroad.research.report.figures.canvas import add_legend, look_of, new_figure
 from evenroad.research.report.runs import Setting, sampler_place
-from evenroad.research.statistics import Interval
+from evenroad.research.statistics.rates import Interval
+
+
+class Look(NamedTuple):
+    """How a sampler is drawn: the colour, marker and line that it has in every figure."""
+
+    colour: str
+    marker: str
+    line: str = "-"
+    width: float = 1.4
+    size: float = 5.0
+
+    def as_line(self) -> dict[str, Any]:
+        """Return the look as arguments of matplotlib's `plot` and `errorbar`."""
+        line = {"color": self.colour, "linestyle": self.line, "linewidth": self.width}
+        return line | {"marker": self.marker, "markersize": self.size}
+
+
+DPI = 110
+
+# Protocols of one sequence share a colour and differ in the line; the default sampler is red and thick.
+LOOKS: dict[str, Look] = {
+    "uniform": Look("#555555", "o", width=2.0),
+    "halton paper-blocks": Look("#1b9e5a", "s", "--"),
+    "halton scrambled": Look("#1b9e5a", "s"),
+    "sobol paper-blocks": Look("#2f5fd0", "^", "--"),
+    "sobol scrambled": Look("#2f5fd0", "^"),
+    "lattice": Look("#e6a23c", "v"),
+    "sukharev": Look("#12a5b5", "X", ":"),
+    "mpmc": Look("#e05fa8", "D"),
+    "hickernell": Look("#8e5bd0", "p"),
+    "even": Look("#d1343b", "*", width=2.4, size=9.0),
+}
+OTHER = Look("#000000", ".", ":")
+"""For a sampler that this version does not know."""
+
+
+def look_of(sampler: str) -> Look:
+    """Return how a sampler is drawn."""
+    return LOOKS.get(sampler, OTHER)
+
+
+def new_figure(width: float, height: float, layout: Literal["constrained"] | None = "constrained") -> Figure:
+    """Return an empty figure of this size in inches."""
+    figure = Figure(figsize=(width, height), dpi=DPI, layout=layout)
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def add_legend(figure: Figure, order: Callable[[str], Any]) -> None:
+    """Put one legend at the right of the figure; it names what any panel shows, in the order of `order`."""
+    shown = [zip(*axes.get_legend_handles_labels(), strict=True) for axes in figure.axes]
+    handles = {name: handle for panel in shown for handle, name in panel}
+    names = sorted(handles, key=order)
+    lines = [handles[name] for name in names]
+    figure.legend(lines, names, loc="outside right center", frameon=False, fontsize=9)
+
+
+def as_png(figure: Figure) -> bytes:
+    """Return the figure as a PNG file; the same figure gives the same bytes."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", metadata={"Software": None})
+    return buffer.getvalue()
+
 
 DODGE = 0.025
 """On an axis of log2 N, the distance between the error bars of two samplers at the same N."""
@@ -41,15 +106,8 @@ def draw_curves(cells: Sequence[Cell], title: str) -> Figure:
     figure.subplots_adjust(left=0.05, right=0.845, bottom=0.125, top=0.9, wspace=0.07)
     by_samples, by_edges, by_seconds = figure.subplots(1, 3, sharey=True)
     _draw_by_samples(by_samples, cells, _samplers(cells))
-    for sampler in _samplers(cells):
-        curve = [cell for cell in cells if cell.sampler == sampler]
-        _draw_against(by_edges, curve, [cell.mean_edges for cell in curve])
-        _draw_against(by_seconds, curve, [1e3 * cell.mean_seconds for cell in curve])
-    for axes, label in ((by_edges, "mean edges checked"), (by_seconds, "mean time [ms]")):
-        axes.set_xlabel(label)
-        axes.grid(alpha=0.3)
-        if axes.lines:
-            _scale_by_logarithm(axes)
+    _draw_against(by_edges, cells, [cell.mean_edges for cell in cells], "mean edges checked")
+    _draw_against(by_seconds, cells, [1e3 * cell.mean_seconds for cell in cells], "mean time [ms]")
     by_samples.set_ylabel("success [%]")
     figure.suptitle(title, fontsize=11, x=0.05, y=0.965, ha="left")
     handles, names = by_samples.get_legend_handles_labels()
@@ -121,24 +179,15 @@ def _draw_by_samples(axes: Axes, cells: Sequence[Cell], samplers: Sequence[str])
         curve = [cell for cell in cells if cell.sampler == sampler]
         if curve:
             shift = 2.0 ** (DODGE * (place - (len(samplers) - 1) / 2))
-            look = look_of(sampler)
-            _draw_intervals(
-                axes,
-                [cell.n * shift for cell in curve],
-                [cell.rate for cell in curve],
-                [cell.interval for cell in curve],
-                **look.as_line(),
-                elinewidth=0.8,
-                capsize=1.5,
-                label=sampler,
-            )
+            style = look_of(sampler).as_line() | {"elinewidth": 0.8, "capsize": 1.5, "label": sampler}
+            shares, intervals = [cell.rate for cell in curve], [cell.interval for cell in curve]
+            _draw_intervals(axes, [cell.n * shift for cell in curve], shares, intervals, style)
     counts = sorted({cell.n for cell in cells})
     axes.set_xscale("log", base=2)
     axes.set_xticks(counts, [str(n) for n in counts])
     axes.xaxis.set_minor_locator(NullLocator())
     axes.xaxis.set_minor_formatter(NullFormatter())
-    axes.set_xlabel("samples N")
-    axes.set_ylim(-3, 103)
+    axes.set(xlabel="samples N", ylim=(-3, 103))
     axes.grid(alpha=0.3)
 
 
@@ -150,16 +199,11 @@ def _draw_gains(axes: Axes, found: Sequence[Pooled]) -> None:
         mine = [each for each in found if each.sampler == sampler]
         aside = (place - 0.5 * (len(samplers) - 1)) * GROUP_DODGE
         look = look_of(sampler)
-        _draw_intervals(
-            axes,
-            [groups.index(each.group) + aside for each in mine],
-            [each.difference for each in mine],
-            [each.interval for each in mine],
-            **look.as_line() | {"linestyle": "none"},
-            markerfacecolor="white" if look.line == "--" else look.colour,
-            elinewidth=0.9,
-            label=sampler,
-        )
+        style = look.as_line() | {"linestyle": "none", "elinewidth": 0.9, "label": sampler}
+        style["markerfacecolor"] = "white" if look.line == "--" else look.colour
+        places = [groups.index(each.group) + aside for each in mine]
+        shares, intervals = [each.difference for each in mine], [each.interval for each in mine]
+        _draw_intervals(axes, places, shares, intervals, style)
     axes.axhline(0.0, color=look_of("uniform").colour, linewidth=1.2)
     names = [group.replace(" symmetrised, ", "\n") for group in groups]
     axes.set_xticks(range(len(groups)), names, fontsize=8)
@@ -167,25 +211,32 @@ def _draw_gains(axes: Axes, found: Sequence[Pooled]) -> None:
 
 
 def _draw_intervals(
-    axes: Axes, x: Sequence[float], shares: Sequence[float], intervals: Sequence[Interval], **style: object
+    axes: Axes,
+    x: Sequence[float],
+    shares: Sequence[float],
+    intervals: Sequence[Interval],
+    style: dict[str, Any],
 ) -> None:
     """Draw shares in percent with their intervals."""
     values = 100.0 * np.array(shares)
     ends = 100.0 * np.array([[each.low, each.high] for each in intervals]).T
-    # An end may miss its value by rounding, and a negative length is refused.
-    axes.errorbar(x, values, yerr=np.maximum(np.abs(ends - values), 0.0), **style)  # type: ignore[arg-type]
+    axes.errorbar(x, values, yerr=np.abs(ends - values), **style)
 
 
-def _draw_against(axes: Axes, curve: Sequence[Cell], costs: Sequence[float]) -> None:
-    known: list[tuple[float, float]] = [
-        (cost, 100 * cell.rate) for cost, cell in zip(costs, curve, strict=True) if cost > 0
-    ]
-    if known:
-        axes.plot(*zip(*known, strict=True), **look_of(curve[0].sampler).as_line())
-
-
-def _scale_by_logarithm(axes: Axes) -> None:
-    """Scale x by its logarithm, with plain numbers, few or many to a decade as there is room."""
+def _draw_against(axes: Axes, cells: Sequence[Cell], costs: Sequence[float], label: str) -> None:
+    """Draw success against a cost, of those cells that have one, with plain numbers as there is room for them."""
+    for sampler in _samplers(cells):
+        known = [
+            (cost, 100 * cell.rate)
+            for cost, cell in zip(costs, cells, strict=True)
+            if cell.sampler == sampler and cost > 0
+        ]
+        if known:
+            axes.plot(*np.array(known).T, **look_of(sampler).as_line())
+    axes.set_xlabel(label)
+    axes.grid(alpha=0.3)
+    if not axes.lines:
+        return
     axes.set_xscale("log")
     low, high = axes.get_xlim()
     steps = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0) if high < 6 * low else (1.0, 2.0, 5.0)

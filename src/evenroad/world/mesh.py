@@ -1,19 +1,65 @@
-"""MeshWorld: a rigid body among obstacles, both given as meshes."""
+"""MeshWorld: a rigid body among obstacles, both of triangles from users' files, checked by coal (extra ``mesh``)."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
-from evenroad._arrays import Bools, Floats
-from evenroad.errors import InvalidValue
+from evenroad._arrays import Bools, Floats, Ints, set_fields
+from evenroad._checks import require_extra
+from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.mesh import TriangleMesh, merged
+from evenroad.geometry.pose import rotations_from_quaternions
 from evenroad.space.batch import as_batch
-from evenroad.world.function import FunctionWorld, TestedAtStates
-from evenroad.world.mesh.coal import Collider
-from evenroad.world.solids.poses import RigidSpace, as_poses, body_dimension
+from evenroad.world.function import OUTSIDE, FunctionWorld, TestedAtStates
+from evenroad.world.solids.poses import RigidSpace, as_poses, body_dimension, contact_with
+
+
+def require_coal() -> Any:
+    """Return the module coal; NotAvailable if it is not installed."""
+    return require_extra("coal", "mesh", "checking meshes")
+
+
+def tree_of(coal: Any, mesh: TriangleMesh) -> Any:
+    """Return coal's tree of oriented boxes over the triangles of a mesh; its surface as it is, nothing made convex.
+
+    Raises BrokenFile if coal leaves triangles out.
+    """
+    tree = coal.BVHModelOBBRSS()
+    tree.beginModel(len(mesh.triangles), len(mesh.vertices))
+    tree.addVertices(mesh.vertices)
+    tree.addTriangles(mesh.triangles)
+    tree.endModel()
+    if not tree.num_tris == len(mesh.triangles) > 0:
+        raise BrokenFile(
+            f"coal took {tree.num_tris} of {len(mesh.triangles)} triangles: the others would never collide"
+        )
+    return tree
+
+
+class Collider:
+    """A body and obstacles as trees over their triangles; NotAvailable if coal is not installed."""
+
+    def __init__(self, body: TriangleMesh, obstacles: TriangleMesh) -> None:
+        coal = self._coal = require_coal()
+        self._body, self._obstacles = tree_of(coal, body), tree_of(coal, obstacles)
+
+    def first_triangles(self, poses: Floats) -> Ints:
+        """Return for each pose of the body, (n, 7), a triangle of the obstacles that it meets, or -1."""
+        coal = self._coal
+        here, there = coal.Transform3s.Identity(), coal.Transform3s.Identity()
+        request, result = coal.CollisionRequest(), coal.CollisionResult()
+        found = np.full(len(poses), -1, dtype=np.int64)
+        for row, rotation in enumerate(rotations_from_quaternions(poses[:, 3:])):
+            here.setTranslation(poses[row, :3])
+            here.setRotation(rotation)
+            result.clear()
+            if coal.collide(self._body, here, self._obstacles, there, request, result):
+                found[row] = result.getContact(0).b2
+        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,24 +107,19 @@ class MeshWorld(TestedAtStates):
             if not isinstance(mesh, TriangleMesh):
                 raise InvalidValue(f"{name} must be TriangleMesh values, got {mesh!r}")
         states = FunctionWorld(self.space, self._is_free, self.resolution)
-        for name, value in (
-            ("obstacles", obstacles),
-            ("resolution", states.resolution),
-            ("_collider", Collider(self.body, merged(obstacles))),
-            ("_states", states),
-        ):
-            object.__setattr__(self, name, value)
+        collider = Collider(self.body, merged(obstacles))
+        set_fields(
+            self, obstacles=obstacles, resolution=states.resolution, _collider=collider, _states=states
+        )
 
     def explain(self, q: Floats) -> str:
         """Return in words why the pose `q`, (dim,), is not free."""
         pose = as_batch("q", np.asarray(q, dtype=np.float64)[np.newaxis], self.space.dim)
         if not self.space.contains(pose)[0]:
-            return "it lies outside the bounds of the space"
+            return OUTSIDE
         triangle = int(self._collider.first_triangles(as_poses(pose, self.space))[0])
         ends = np.cumsum([len(mesh.triangles) for mesh in self.obstacles])
-        obstacle = int(np.searchsorted(ends, triangle, side="right"))
-        name = self.obstacles[obstacle].name
-        return f"the body meets obstacle {obstacle}{f' ({name})' if name else ''}"
+        return contact_with(self.obstacles, int(np.searchsorted(ends, triangle, side="right")))
 
     def _is_free(self, q: Floats) -> Bools:
         return self._collider.first_triangles(as_poses(q, self.space)) < 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib import colormaps
@@ -17,7 +18,7 @@ from evenroad.geometry import rotation_from_quaternion
 from evenroad.points import draw
 from evenroad.research.bench.task import Problem
 from evenroad.research.problems import PROBLEMS
-from evenroad.research.report.figures.canvas import DPI, new_figure
+from evenroad.research.report.charts import DPI, new_figure
 from evenroad.research.worlds.chain import ChainWorld
 from evenroad.roadmap import KNearest, PlanResult, plan
 from evenroad.robot import ArmWorld
@@ -25,7 +26,7 @@ from evenroad.space.path import place_at
 from evenroad.viz import style
 from evenroad.viz.arm import draw_arm_plan
 from evenroad.viz.plan import draw_plan
-from evenroad.world.gridmap.disk import DiskWorld
+from evenroad.world.gridmap import DiskWorld
 from evenroad.world.solids import OrientedBox, SolidWorld
 
 SCENES = ("maze-1", "maze-2", "maze-3", "chain-10d", "cubicles", "twistycool", "ur5-c", "ur5-a")
@@ -48,14 +49,13 @@ def scenes_among(problems: Sequence[str]) -> tuple[str, ...]:
 
 
 def draw_scene(name: str) -> Figure:
-    """Return the picture of a problem's world with a found path.
-
-    Raises NotAvailable if there is no picture of such a world.
-    """
+    """Return the picture of a problem's world with a found path; NotAvailable if there is none of such a world."""
     problem = PROBLEMS[name].make(0)
     match problem.world:
         case DiskWorld():
-            return _draw_maze(problem, problem.world)
+            figure = new_figure(8.4, 7.4)
+            draw_plan(figure.add_subplot(), find_path(problem), problem.world)
+            return figure
         case ChainWorld():
             return draw_chain(problem, problem.world, name)
         case SolidWorld():
@@ -63,12 +63,6 @@ def draw_scene(name: str) -> Figure:
         case ArmWorld():
             return _draw_arm(problem, problem.world)
     raise NotAvailable(f"there is no picture of the scene of {name}")
-
-
-def _draw_maze(problem: Problem, world: DiskWorld) -> Figure:
-    figure = new_figure(8.4, 7.4)
-    draw_plan(figure.add_subplot(), find_path(problem), world)
-    return figure
 
 
 def _draw_arm(problem: Problem, world: ArmWorld) -> Figure:
@@ -102,16 +96,13 @@ def draw_chain(problem: Problem, world: ChainWorld, title: str) -> Figure:
     result = find_path(problem)
     if result.path is not None:
         shades = colormaps["Blues"](np.linspace(0.25, 0.75, CHAIN_POSES))
-        for pose, shade in zip(
-            place_at(result.path, world.space, np.linspace(0.0, 1.0, CHAIN_POSES)), shades, strict=True
-        ):
+        poses = place_at(result.path, world.space, np.linspace(0.0, 1.0, CHAIN_POSES))
+        for pose, shade in zip(poses, shades, strict=True):
             axes.plot(*_joints(pose).T, color=shade, linewidth=1.0, zorder=2)
     for pose, colour, name in ((problem.start, style.START, "start"), (problem.goal, style.GOAL, "goal")):
         axes.plot(*_joints(pose).T, "o-", color=colour, linewidth=2.2, markersize=3.5, zorder=5, label=name)
     axes.plot(0.0, 0.0, "o", color=style.OBSTACLE, markersize=7, zorder=6)
-    axes.set_aspect("equal")
-    axes.set_xlabel("x")
-    axes.set_ylabel("y")
+    axes.set(aspect="equal", xlabel="x", ylabel="y")
     axes.set_title(f"{title}: {result.message}\n{result.origin}, {result.rule}", fontsize=9, wrap=True)
     axes.legend(fontsize=9, frameon=False, loc="upper left")
     return figure
@@ -139,16 +130,7 @@ def draw_solids(problem: Problem, world: SolidWorld, title: str) -> Figure:
     obstacles = np.concatenate([_faces(box.corners) for box in world.obstacles])
     for place, (elevation, azimuth) in enumerate(((68.0, -90.0), (24.0, -62.0)), 1):
         axes = figure.add_subplot(1, 2, place, projection="3d")
-        axes.add_collection3d(
-            Poly3DCollection(
-                obstacles,
-                facecolors=style.OBSTACLE,
-                alpha=0.13,
-                edgecolors=style.OBSTACLE,
-                linewidths=0.25,
-                clip_on=False,
-            )
-        )
+        _add_faces(axes, obstacles, (style.OBSTACLE, style.OBSTACLE), alpha=0.13, linewidths=0.25)
         _draw_body(axes, world.body, poses)
         _set_view(axes, obstacles.reshape(-1, 3), elevation, azimuth)
     figure.suptitle(f"{title}: {result.message}\n{result.origin}, {result.rule}", fontsize=9)
@@ -157,25 +139,22 @@ def draw_solids(problem: Problem, world: SolidWorld, title: str) -> Figure:
 
 def _draw_body(axes: Axes3D, body: Iterable[OrientedBox], poses: Floats) -> None:
     boxes = list(body)
+    ends = {0: style.START, len(poses) - 1: style.GOAL}
     between = colormaps["autumn"](np.linspace(0.75, 0.0, len(poses)))
     for number, (pose, shade) in enumerate(zip(poses, between, strict=True)):
-        ends = {0: style.START, len(poses) - 1: style.GOAL}
-        colour = ends.get(number, shade)
         rotation, place = np.eye(3), pose[:3]
         if len(pose) == 7:
             rotation = np.array(rotation_from_quaternion(pose[3:].tolist())).reshape(3, 3)
         faces = np.concatenate([_faces(box.corners @ rotation.T + place) for box in boxes])
-        strong = number in ends
-        axes.add_collection3d(
-            Poly3DCollection(
-                faces,
-                facecolors=colour,
-                edgecolors="black",
-                linewidths=0.4 if strong else 0.15,
-                alpha=0.95 if strong else 0.55,
-                clip_on=False,
-            )
-        )
+        alpha, width = (0.95, 0.4) if number in ends else (0.55, 0.15)
+        _add_faces(axes, faces, (ends.get(number, shade), "black"), alpha=alpha, linewidths=width)
+
+
+def _add_faces(axes: Axes3D, faces: Floats, colours: tuple[Any, Any], **look: float) -> None:
+    """Draw faces in the colours of their areas and of their edges."""
+    axes.add_collection3d(
+        Poly3DCollection(faces, facecolors=colours[0], edgecolors=colours[1], clip_on=False, **look)
+    )
 
 
 def _faces(corners: Floats) -> Floats:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points.measures import MEASURES, riesz_rooted
-from evenroad.points.optimise import Objective, Term, known_names, parse_objective
+from evenroad.research.training.objective import Objective, Term, known_names, parse_objective
 
 POINTS = np.random.default_rng(0).random((12, 3))
 

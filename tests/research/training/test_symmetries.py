@@ -1,5 +1,7 @@
 """Randomised sets: as good as before by every measure they were made for, and refused where they would not be."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -8,22 +10,17 @@ from hypothesis import strategies as st
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points import SAMPLERS, Origin, PointSet, draw
 from evenroad.points.measures import separation
-from evenroad.points.optimise import known_names, parse_objective
-from evenroad.points.randomise import (
-    Symmetry,
-    permute_coordinates,
-    randomise,
-    reflect,
-    shift,
-    symmetries_of,
-    symmetries_of_term,
-)
+from evenroad.points.randomise import Symmetry
+from evenroad.points.randomise import randomise as randomise_by
+from evenroad.research.training.objective import Term, known_names, parse_objective
+from evenroad.research.training.symmetries import move, symmetries_of
 
-VERBS = {
-    Symmetry.PERMUTATION: permute_coordinates,
-    Symmetry.REFLECTION: reflect,
-    Symmetry.SHIFT: shift,
-}
+VERBS = {symmetry: partial(move, symmetry=symmetry) for symmetry in Symmetry}
+permute, reflect, shift = VERBS.values()
+
+
+def randomise(points, rng=0):
+    return randomise_by(points, symmetries_of(points.origin), rng=rng)
 
 
 def annealed(n, d, objective, seed=0):
@@ -50,7 +47,7 @@ def test_a_symmetry_of_a_measure_leaves_its_value_and_nothing_else_does(name, sy
         points = rng.random((12, 3))
         before, after = objective.value(points), objective.value(moved_raw(points, symmetry, rng))
         changes.append(abs(after / before - 1))
-    if symmetry in symmetries_of_term(name):
+    if symmetry in Term(name).symmetries:
         assert max(changes) < 1e-12
     else:
         assert max(changes) > 1e-3
@@ -92,7 +89,7 @@ def test_a_refusal_names_the_measure_that_would_change_and_what_is_legal():
     with pytest.raises(
         InvalidValue, match="nothing is known about what a 'given' set.*legal for it: nothing"
     ):
-        permute_coordinates(PointSet([[0.1, 0.2]]))
+        permute(PointSet([[0.1, 0.2]]))
 
 
 def test_a_set_of_which_nothing_is_known_comes_back_as_it_is():
@@ -149,7 +146,7 @@ def test_the_origin_tells_how_to_make_the_set_again(seed):
 
 def test_steps_add_up_in_the_origin():
     points = annealed(4, 5, "riesz")
-    moved = permute_coordinates(permute_coordinates(points, rng=1), rng=2)
+    moved = permute(permute(points, rng=1), rng=2)
     assert moved.origin.method.count("permuted") == 2
 
 
@@ -181,7 +178,7 @@ def test_a_passed_generator_is_spawned_and_not_consumed(verb):
 def test_every_seed_permutes_all_points_alike():
     points = annealed(7, 4, "hickernell")
     for seed in range(10):
-        moved = permute_coordinates(points, rng=seed).points
+        moved = permute(points, rng=seed).points
         np.testing.assert_array_equal(np.sort(moved, axis=1), np.sort(points.points, axis=1))
         assert all(any((column == old).all() for old in points.points.T) for column in moved.T)
 

@@ -23,13 +23,14 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue, UnknownName, shown
+from evenroad.points.bank.anneal import require_points_for
 from evenroad.points.measures import MEASURES
-from evenroad.points.measures.measure import rooted_of_columns
 from evenroad.points.measures.separation import log_riesz_of_columns
 from evenroad.points.pointset import as_unit_points
+from evenroad.points.randomise import ALL_SYMMETRIES, Symmetry
 
-ENERGIES = ("riesz", "riesz_open")
-"""Riesz energies with s = 2d, rooted: on the torus, and in the open cube."""
+ENERGIES = {"riesz": ALL_SYMMETRIES, "riesz_open": ALL_SYMMETRIES - {Symmetry.SHIFT}}
+"""Riesz energies with s = 2d, rooted, on the torus and in the open cube; and what leaves each as it is."""
 
 SMALLEST_ROOT = 1e-160
 """What a discrepancy that rounds to 0 counts as inside a log."""
@@ -44,10 +45,10 @@ _TOKEN = re.compile(
 
 @dataclass(frozen=True)
 class Term:
-    """One term: ``weight * name`` or ``weight * log(name)``, weight > 0.
+    """One term: ``weight * name`` or ``weight * log(name)``.
 
-    `name` is one of ``MEASURES``, meaning its rooted value, or of ``ENERGIES``; another is an UnknownName, a weight
-    that is not a finite number > 0 an InvalidValue.
+    `name` is one of ``MEASURES``, meaning its rooted value, or of ``ENERGIES``, else UnknownName; `weight` a finite
+    number > 0, else InvalidValue.
     """
 
     name: str
@@ -59,6 +60,28 @@ class Term:
             raise UnknownName.among("term", self.name, [*MEASURES, *ENERGIES])
         require_positive("weight", self.weight)
 
+    @property
+    def symmetries(self) -> frozenset[Symmetry]:
+        """What leaves it as it is.  Coordinates have equal weights, so their order never matters."""
+        if self.name in ENERGIES:
+            return ENERGIES[self.name]
+        measure = MEASURES[self.name]
+        lost = {Symmetry.REFLECTION: not measure.reflectable, Symmetry.SHIFT: not measure.periodic}
+        return ALL_SYMMETRIES - {symmetry for symmetry, is_lost in lost.items() if is_lost}
+
+    def of_columns(self, columns: Floats) -> tuple[float, Floats]:
+        """Return the unweighted term and its gradient, (d, n), at points of shape (d, n)."""
+        if self.name in ENERGIES:
+            s = 2 * len(columns)
+            value, gradient = log_riesz_of_columns(columns, s, self.name == "riesz", want_gradient=True)
+            value, gradient = value / s, gradient / s
+            return (value, gradient) if self.logarithm else (math.exp(value), math.exp(value) * gradient)
+        value, gradient = MEASURES[self.name].of_columns(columns)
+        if not self.logarithm:
+            return value, gradient
+        value = max(value, SMALLEST_ROOT)
+        return math.log(value), gradient / value
+
     def __str__(self) -> str:
         inner = f"log({self.name})" if self.logarithm else self.name
         if self.weight == 1.0:
@@ -69,23 +92,19 @@ class Term:
 
 @dataclass(frozen=True)
 class Objective:
-    """A sum of terms, to be made small; ``str`` gives the expression that parses to it again.
-
-    Attributes
-    ----------
-    terms : tuple of Term
-        At least one.
-    """
+    """A sum of terms, to be made small; ``str`` gives the expression that parses to it again."""
 
     terms: tuple[Term, ...]
 
     @property
+    def symmetries(self) -> frozenset[Symmetry]:
+        """What leaves every term as it is."""
+        return frozenset.intersection(*(term.symmetries for term in self.terms))
+
+    @property
     def periodic(self) -> bool:
         """Whether a shift modulo 1 of all points changes nothing."""
-        return all(
-            term.name == "riesz" or (term.name in MEASURES and MEASURES[term.name].periodic)
-            for term in self.terms
-        )
+        return Symmetry.SHIFT in self.symmetries
 
     @property
     def least_points(self) -> int:
@@ -99,49 +118,21 @@ class Objective:
     def with_gradient(self, points: object) -> tuple[float, Floats]:
         """Return the objective and its gradient, shape (n, d), at `points`; errors as :meth:`value`."""
         coordinates = as_unit_points(points)
-        require_points_for(self, coordinates.shape[0])
-        value, gradient = objective_of_columns(self, np.ascontiguousarray(coordinates.T))
+        require_points_for(self, len(coordinates))
+        value, gradient = self.of_columns(np.ascontiguousarray(coordinates.T))
         return value, np.ascontiguousarray(gradient.T)
+
+    def of_columns(self, columns: Floats) -> tuple[float, Floats]:
+        """Return the objective and its gradient, (d, n), at checked points of shape (d, n)."""
+        total, total_gradient = 0.0, np.zeros_like(columns)
+        for term in self.terms:
+            value, gradient = term.of_columns(columns)
+            total += term.weight * value
+            total_gradient += term.weight * gradient
+        return total, total_gradient
 
     def __str__(self) -> str:
         return " + ".join(map(str, self.terms))
-
-
-def require_points_for(objective: Objective, n: int) -> None:
-    """Raise InvalidValue unless `n` points are enough for every term."""
-    if n < objective.least_points:
-        raise InvalidValue(
-            f"the objective '{objective}' needs at least {objective.least_points} points, got {n}"
-        )
-
-
-def objective_of_columns(objective: Objective, columns: Floats) -> tuple[float, Floats]:
-    """Return the objective and its gradient, shape (d, n), at checked points of shape (d, n)."""
-    total, total_gradient = 0.0, np.zeros_like(columns)
-    for term in objective.terms:
-        value, gradient = _term_of_columns(term, columns)
-        gradient *= term.weight
-        total += term.weight * value
-        total_gradient += gradient
-    return total, total_gradient
-
-
-def _term_of_columns(term: Term, columns: Floats) -> tuple[float, Floats]:
-    d = columns.shape[0]
-    if term.name in ENERGIES:
-        s = 2 * d
-        log_energy, log_gradient = log_riesz_of_columns(columns, s, term.name == "riesz", want_gradient=True)
-        log_root = log_energy / s
-        log_gradient /= s
-        if term.logarithm:
-            return log_root, log_gradient
-        root = math.exp(log_root)
-        return root, root * log_gradient
-    root, gradient = rooted_of_columns(MEASURES[term.name], columns, np.ones(d))
-    if not term.logarithm:
-        return root, gradient
-    root = max(root, SMALLEST_ROOT)
-    return math.log(root), gradient / root
 
 
 def parse_objective(text: str | Objective) -> Objective:
@@ -159,10 +150,10 @@ def parse_objective(text: str | Objective) -> Objective:
     if not isinstance(text, str):
         raise InvalidValue(f"an objective is text such as 'hickernell+10*riesz', got {shown(text)}")
     reader = _Reader(text)
-    terms = [_read_term(reader)]
+    terms = [reader.take_term()]
     while reader.word:
         reader.take("+", "'+' or the end")
-        terms.append(_read_term(reader))
+        terms.append(reader.take_term())
     bare_energy = any(term.name in ENERGIES and not term.logarithm for term in terms)
     if len(terms) > 1 and bare_energy:
         terms = [replace(term, logarithm=True) for term in terms]
@@ -187,45 +178,37 @@ class _Reader:
         self.kind = (match and match.lastgroup) or "end"
         self.word = match.group(self.kind) if match else ""
         self.column = 1 + (match.start(self.kind) if match else len(self.text))
+        self._place = f"objective {shown(self.text)}, column {self.column}"
 
     def take(self, wanted: str, expected: str) -> str:
         """Return the next token if its text or kind is `wanted`, else raise InvalidValue."""
         if wanted not in (self.word, self.kind):
             found = f"found {shown(self.word)}" if self.word else "the text ends"
-            raise InvalidValue(
-                f"objective {shown(self.text)}, column {self.column}: expected {expected}, {found}"
-            )
+            raise InvalidValue(f"{self._place}: expected {expected}, {found}")
         taken = self.word
         self._advance()
         return taken
 
-
-def _read_term(reader: _Reader) -> Term:
-    weight = 1.0
-    if reader.kind == "number":
-        column = reader.column
-        weight = float(reader.take("number", "a number"))
-        if not 0.0 < weight < math.inf:
-            raise InvalidValue(
-                f"objective {shown(reader.text)}, column {column}: a weight must be finite and > 0, got {weight!r}"
-            )
-        reader.take("*", "'*' after the weight")
-    if reader.word == "log":
-        reader.take("log", "log")
-        reader.take("(", "'(' after log")
-        name = _read_name(reader)
-        reader.take(")", "')'")
+    def take_term(self) -> Term:
+        """Return the term that begins at the next token."""
+        weight = 1.0
+        if self.kind == "number":
+            weight = float(self.word)
+            if not 0.0 < weight < math.inf:
+                raise InvalidValue(f"{self._place}: a weight must be finite and > 0, got {weight!r}")
+            self._advance()
+            self.take("*", "'*' after the weight")
+        if self.word != "log":
+            return Term(self._take_name(), weight)
+        self._advance()
+        self.take("(", "'(' after log")
+        name = self._take_name()
+        self.take(")", "')'")
         return Term(name, weight, logarithm=True)
-    return Term(_read_name(reader), weight)
 
-
-def _read_name(reader: _Reader) -> str:
-    column = reader.column
-    given = reader.take("name", f"a name ({', '.join(known_names())})")
-    name = ALIASES.get(given, given)
-    if name not in MEASURES and name not in ENERGIES:
-        raise UnknownName(
-            f"objective {shown(reader.text)}, column {column}: unknown name {shown(given)};"
-            f" known: {', '.join(known_names())}"
-        )
-    return name
+    def _take_name(self) -> str:
+        known, name = known_names(), ALIASES.get(self.word, self.word)
+        if self.kind == "name" and name not in known:
+            raise UnknownName(f"{self._place}: unknown name {shown(self.word)}; known: {', '.join(known)}")
+        self.take("name", f"a name ({', '.join(known)})")
+        return name

@@ -1,1 +1,0 @@
-"""Figures of the report, one a module; each returns a matplotlib Figure."""

@@ -1,1 +1,0 @@
-"""Sections of the report: from the analysis to tables, one kind a module."""
