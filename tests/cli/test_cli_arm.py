@@ -406,9 +406,12 @@ def test_robot_says_how_conservative_fitted_capsules_are(run, desk):
         joint("b", "y", "z", inside=inside),
     )
     (desk / "own.urdf").write_text(text)
-    code, out, _ = run("robot", "own.urdf")
+    code, out, err = run("robot", "own.urdf")
     shown = " ".join(out.split())
     assert code == 0
+    # Once: the next time the robot is in the cache.
+    assert "fitting capsules, once: 1/3 mesh part.stl of x" in err
+    assert "fitting" not in run("robot", "own.urdf")[2]
     assert re.search(r"x 1 x mesh part.stl \d \d+ %", shown)
     # It would turn on, but b follows twice as far and must stay within 1.
     assert re.search(r"a revolute ±0.5 rad not given planned, #1", shown)
