@@ -1,6 +1,6 @@
 """Verdicts on robots' self-collision against pinocchio and coal on the files' own shapes.
 
-    python -m benchmarks.robot_truth OUT.csv ROBOT.urdf ...
+    python -m benchmarks.robot_truth OUT.csv ROBOT.urdf FOLDER ...
 
 For each robot: how many configurations that we call free collide in truth (uniform ones, others bisected to our edge
 of contact, and states of paths), how many are blocked here and there, and how many are blocked here alone.  True pairs
@@ -210,7 +210,8 @@ def _path_states(world: ArmWorld, free: np.ndarray) -> np.ndarray:
 
 def main() -> None:
     """Write a row for each robot as soon as it is there."""
-    out, files = Path(sys.argv[1]), list(map(Path, sys.argv[2:]))
+    out, given = Path(sys.argv[1]), list(map(Path, sys.argv[2:]))
+    files = [file for path in given for file in (sorted(path.rglob("*.urdf")) if path.is_dir() else [path])]
     with out.open("a", newline="") as stream:
         writer = csv.DictWriter(stream, FIELDS)
         if out.stat().st_size == 0:

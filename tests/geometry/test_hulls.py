@@ -1,3 +1,5 @@
+from dataclasses import asdict
+
 import numpy as np
 import pytest
 import trimesh
@@ -73,6 +75,7 @@ def test_hulls_are_equal_by_value():
     first, second = (Hull(np.eye(3), 0.1, "a") for _ in range(2))
     assert first == second
     assert hash(first) == hash(second)
+    assert list(asdict(first)) == ["points", "radius", "link"], "of which fingerprints are made"
     assert first != Hull(np.eye(3), 0.1, "b")
     assert first != Hull(2 * np.eye(3), 0.1, "a")
     with pytest.raises(ValueError, match="read-only"):

@@ -225,3 +225,11 @@ def test_a_pair_that_touches_only_where_another_joint_is_held_comes_back_when_th
     assert ArmWorld(lifted, Scene("empty", ())).valid(np.zeros((1, 2))).all()
     assert ("base", "arm") in with_group(robot, ("lift", "turn", "nod")).pairs
     assert ("base", "arm") in load_model(path).robot.pairs
+
+
+def test_pairs_of_a_hundred_bodies_are_soon_judged(tmp_path):
+    box = "<collision><origin xyz='0 0 0.04'/><geometry><box size='0.03 0.03 0.06'/></geometry></collision>"
+    links = [link(f"l{i}", box) for i in range(100)]
+    joints = [joint(f"j{i}", f"l{i}", f"l{i + 1}", xyz="0 0 0.08") for i in range(99)]
+    model = load_model(write(tmp_path, urdf(*links, *joints)))
+    assert len(model.robot.pairs) == 100 * 99 // 2 - 99

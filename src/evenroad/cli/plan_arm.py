@@ -84,7 +84,7 @@ def plan_arm(plan: PlanArm) -> int:
 
 def _say_if_compiling(plan: PlanArm) -> None:
     kernel, points = "evenroad.robot.kernel", wants_points(plan)
-    said = say_if_compiling(f"{kernel}.batch", "configurations_free", 30 if points else 20)
+    said = say_if_compiling(f"{kernel}.batch", "check_configurations", 30 if points else 20)
     # Where the lanes do not work, the trees are never compiled.
     if not (said or points) and lanes_failure() is None:
         say_if_compiling(f"{kernel}.trees", "grow", 15)

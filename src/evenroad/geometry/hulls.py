@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -30,13 +31,15 @@ class Hull:
     points: Floats
     radius: float
     link: str
-    _hash: int = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         points = np.array(self.points, dtype=np.float64).reshape(-1, 3)
         points.setflags(write=False)
         object.__setattr__(self, "points", points)
-        object.__setattr__(self, "_hash", hash((points.tobytes(), self.radius, self.link)))
+
+    @cached_property
+    def _hash(self) -> int:
+        return hash((self.points.tobytes(), self.radius, self.link))
 
     def __hash__(self) -> int:
         return self._hash

@@ -11,10 +11,10 @@ from evenroad._arrays import Bools, Floats
 from evenroad._checks import require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import NotAvailable, UnknownName
-from evenroad.robot import trees
 from evenroad.robot.kernel import scalar
 from evenroad.robot.kernel.certify import motions_certified
-from evenroad.robot.kernel.obstacles import obstacle_arrays, tested_contacts
+from evenroad.robot.kernel.lane_world import LaneWorld
+from evenroad.robot.kernel.obstacles import obstacle_rows, tested_contacts
 from evenroad.robot.kernel.robot_tables import RobotTables
 from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
 from evenroad.robot.kernel.selftest import lanes_failure
@@ -64,6 +64,8 @@ class ArmWorld:
         Low, high and period of each joint; a period of inf where it does not wrap.
     robot_tables, tables : RobotTables, ArmTables
         What compiled code knows of the robot alone, made once a robot, and of the robot in this scene.
+    lanes : LaneWorld
+        The same for programs that check sixteen configurations at once.
 
     Raises
     ------
@@ -83,16 +85,20 @@ class ArmWorld:
     bounds: Floats = field(init=False, repr=False)
     robot_tables: RobotTables = field(init=False, repr=False)
     tables: ArmTables = field(init=False, repr=False)
+    lanes: LaneWorld = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "resolution", require_positive("resolution", self.resolution))
-        space, bounds, longest, of_robot = prepared(self.robot)
+        space, longest, of_robot, by_joint = prepared(self.robot)
         require_few_segments(self.resolution, longest / self.resolution)
         tested = tested_contacts(of_robot.capsules, self.robot.links, self.scene)
-        made = {"_space": space, "bounds": bounds, "robot_tables": of_robot, "backend": _chosen(self.backend)}
-        made["tables"] = arm_tables(of_robot, obstacle_arrays(self.scene), tested)
-        for name, value in made.items():
-            object.__setattr__(self, name, value)
+        tables = arm_tables(of_robot, obstacle_rows(self.scene), tested)
+        object.__setattr__(self, "_space", space)
+        object.__setattr__(self, "bounds", by_joint[: 3 * space.dim].reshape(3, space.dim))
+        object.__setattr__(self, "robot_tables", of_robot)
+        object.__setattr__(self, "tables", tables)
+        object.__setattr__(self, "lanes", LaneWorld(tables.lanes, by_joint, self.resolution))
+        object.__setattr__(self, "backend", _chosen(self.backend))
 
     @property
     def space(self) -> JointSpace:
@@ -126,8 +132,10 @@ class ArmWorld:
         tables = self.tables
         if self.backend == "scalar":
             return scalar.configurations_free(configurations, self.bounds, tables.ints, tables.floats)
-        batch, (address, _) = trees.lanes()
-        return batch.configurations_free(configurations, address, self.bounds, tables.lanes)
+        # Imported late: where the vector type cannot even be defined, all else still works.
+        from evenroad.robot.kernel.batch import configurations_free
+
+        return configurations_free(self.lanes, configurations)
 
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
@@ -142,7 +150,9 @@ class ArmWorld:
         if self.fixed_contact is not None:
             return np.zeros(len(first), dtype=np.bool_)
         if self.backend == "lanes":
-            return trees.lanes()[0].motions_free(first, second, tolerance, *trees.lane_arguments(self))
+            from evenroad.robot.kernel.batch import motions_free
+
+            return motions_free(self.lanes, first, second, tolerance)
         tables = self.tables
         return scalar.motions_free(first, second, self.resolution, self.bounds, tables.ints, tables.floats)
 

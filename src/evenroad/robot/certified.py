@@ -76,7 +76,7 @@ class CertifiedWorld:
 
         By :func:`evenroad.robot.trees.shorten`, which keeps 1 mm away; with a larger `tolerance` the path may stay.
         """
-        shorter, motions = shorten(self.world, path, proved=True)
+        shorter, motions = shorten(self.world, path)
         return (shorter if self.recheck(shorter).all() else path), motions
 
     def fingerprint(self) -> str:

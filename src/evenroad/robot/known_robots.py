@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import fields
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -44,28 +44,46 @@ def joint_space(robot: Robot) -> JointSpace:
     return JointSpace(low, high, wrapping)
 
 
-Prepared = tuple[JointSpace, Floats, float, RobotTables]
+class Prepared(NamedTuple):
+    """What is a robot's in every scene: `longest` bounds the length of a motion, `by_joint` is as in ``LaneWorld``."""
 
+    space: JointSpace
+    longest: float
+    tables: RobotTables
+    by_joint: Floats
+
+
+_recent: dict[int, tuple[Robot, dict[str, float], Prepared]] = {}
+"""By identity, which costs less to look up than a key of a robot's values; a dictionary is the only part of a robot
+that can change."""
 
 _FIELDS = tuple(each.name for each in fields(Robot) if each.name not in ("states", "held"))
 
 
 def prepared(robot: Robot) -> Prepared:
-    """Return what is a robot's in every scene: its space, bounds, the longest motion and its tables; kept."""
-    fields = tuple(getattr(robot, name) for name in _FIELDS)
+    """Return what is a robot's in every scene; kept."""
+    recent = _recent.get(id(robot))
+    if recent is not None and recent[0] is robot and recent[1] == robot.held:
+        return recent[2]
+    values = tuple(getattr(robot, name) for name in _FIELDS)
     held = tuple(sorted(robot.held.items()))
     try:
-        return _kept(fields, held)
+        found = _kept(values, held)
     except TypeError:
         # Of lists in place of tuples: no key.
-        return _kept.__wrapped__(fields, held)
+        return _kept.__wrapped__(values, held)
+    if len(_recent) >= 32:
+        _recent.clear()
+    _recent[id(robot)] = robot, dict(robot.held), found
+    return found
 
 
 @lru_cache(maxsize=32)
-def _kept(fields: tuple[Any, ...], held: tuple[tuple[str, float], ...]) -> Prepared:
-    robot = Robot(**dict(zip(_FIELDS, fields, strict=True)), held=dict(held))
+def _kept(values: tuple[Any, ...], held: tuple[tuple[str, float], ...]) -> Prepared:
+    robot = Robot(**dict(zip(_FIELDS, values, strict=True)), held=dict(held))
     space = joint_space(robot)
-    low, high = np.array(space.low), np.array(space.high)
-    bounds = np.stack([low, high, space.flat.period])
-    bounds.setflags(write=False)
-    return space, bounds, float(np.linalg.norm(high - low)), robot_tables(robot)
+    low, high, tables = np.array(space.low), np.array(space.high), robot_tables(robot)
+    arms, pair_arms = (np.ravel(speeds.T) for speeds in (tables.speeds, tables.pair_speeds))
+    by_joint = np.concatenate([low, high, space.flat.period, arms, pair_arms])
+    by_joint.setflags(write=False)
+    return Prepared(space, float(np.linalg.norm(high - low)), tables, by_joint)

@@ -45,25 +45,13 @@ def _room(typing_context: Any, count: Any) -> Any:
 
 
 @quick
-def bodies_meet(scratch: Any, frames: int, lane: int, pair: int, ints: Ints, table: Any) -> bool:
-    """Return whether the hulls of a pair of bodies come within their margin where a lane of the frames has them."""
-    row = ints[at.BODY_PAIR_INTS] + at.BODY_PAIR_INT_ROW * pair
-    a = ints[at.BODY_INTS] + at.BODY_INT_ROW * ints[row]
-    b = ints[at.BODY_INTS] + at.BODY_INT_ROW * ints[row + 1]
-    pose, step = doubles_at(_room(12), (12,)), 12 * at.LANES
-    _write_relative(scratch, frames + step * ints[a] + lane, frames + step * ints[b] + lane, at.LANES, pose)
-    margin = table[ints[at.HULL_MARGINS] + pair - (ints[at.BODY_PAIRS] - ints[at.HULL_PAIRS])]
-    return hulls_meet(ints[a + 3], ints[b + 3], pose, margin, ints, table) != APART
-
-
-@quick
-def placed_bodies_meet(frames: Floats, margin: float, pair: int, ints: Ints, table: Floats) -> bool:
-    """Return whether the hulls of a pair of bodies come within a margin where frames, rows of 12, have them."""
+def bodies_meet(places: Any, lane: int, lanes: int, margin: float, pair: int, ints: Ints, table: Any) -> bool:
+    """Return whether hulls of a pair of bodies come within a margin where a lane, of so many, of frames has them."""
     row = ints[at.BODY_PAIR_INTS] + at.BODY_PAIR_INT_ROW * pair
     a = ints[at.BODY_INTS] + at.BODY_INT_ROW * ints[row]
     b = ints[at.BODY_INTS] + at.BODY_INT_ROW * ints[row + 1]
     pose = doubles_at(_room(12), (12,))
-    _write_relative(frames.reshape(-1), 12 * ints[a], 12 * ints[b], 1, pose)
+    _write_relative(places, 12 * lanes * ints[a] + lane, 12 * lanes * ints[b] + lane, lanes, pose)
     return hulls_meet(ints[a + 3], ints[b + 3], pose, margin, ints, table) != APART
 
 

@@ -97,12 +97,8 @@ def place_hulls(hulls: Sequence[Hull], tree: MovingTree) -> PlacedHulls:
 def place_capsule(capsule: Capsule, tree: MovingTree) -> PlacedCapsule:
     """Return a capsule in its frame.
 
-    Raises
-    ------
-    InvalidValue
-        If it has a size that is not a finite number > 0, or one larger than 1e6 m.
-    UnknownName
-        If it is of a link that is not there.
+    Raises InvalidValue if it has a size that is not a finite number > 0, or one larger than 1e6 m, and UnknownName if
+    it is of a link that is not there.
     """
     if capsule.link not in tree.links:
         raise UnknownName.among("link", capsule.link, tree.links)
@@ -184,16 +180,7 @@ def speed_bounds(
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     """Return how fast each coordinate moves capsules, and those of a pair against each other, at most [m/rad].
 
-    Parameters
-    ----------
-    tree, capsules, robot : MovingTree, sequence of PlacedCapsule, Robot
-        As for `joint_arms`.
-    pairs : sequence of (int, int)
-        Numbers of two capsules.  Frames that carry both move them as one body.
-
-    Returns
-    -------
-    speeds, pair_speeds : float64 arrays, shapes (capsules, dim) and (pairs, dim)
+    The arrays have shapes (capsules, dim) and (pairs, dim).  Frames that carry both of a pair move them as one body.
     """
     by_frame = joint_arms(tree, capsules, robot)
     first, second = (by_frame[[pair[end] for pair in pairs]].reshape(-1, by_frame.shape[1]) for end in (0, 1))

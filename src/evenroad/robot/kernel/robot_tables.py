@@ -74,20 +74,15 @@ class RobotTables:
     pair_margins: Floats
     speeds: Floats
     pair_speeds: Floats
-    speeds_by_joint: tuple[Floats, Floats]
     fixed_contact: tuple[str, str] | None
 
 
 def robot_tables(robot: Robot) -> RobotTables:
     """Return the tables of a robot.
 
-    Raises
-    ------
-    InvalidValue
-        If a capsule has a size that is not a finite number > 0, the robot has no capsules, a length is larger than
-        1e6 m, or an angle, or what a mimic multiplies by or adds, larger than 1e9.
-    UnknownName
-        If capsules or pairs name a link that is not there.
+    Raises InvalidValue if a capsule has a size that is not a finite number > 0, the robot has no capsules, a length is
+    larger than 1e6 m, or an angle, or what a mimic multiplies by or adds, larger than 1e9; and UnknownName if capsules
+    or pairs name a link that is not there.
     """
     tree = moving_tree(robot)
     _require_few_turns(robot, tree)
@@ -112,8 +107,8 @@ def robot_tables(robot: Robot) -> RobotTables:
     of = _by_link(capsules)
     capsule_pairs = tuple((i, k) for a, b in pairs for i in of[a] for k in of[b])
     padding = PADDING * max(1.0, reach)
-    ints, floats = _pack(tree, capsules, pairs, hulls, len(of_hulls), 0.0)
-    padded = _pack(tree, capsules, pairs, hulls, len(of_hulls), padding)[1]
+    packed = len(robot.group), tree, capsules, pairs, hulls, len(of_hulls)
+    (ints, floats), padded = _pack(*packed, 0.0), _pack(*packed, padding)[1]
     radii = layout.PAIR_FLOAT_ROW * np.arange(len(capsule_pairs)) + ints[layout.PAIR_FLOATS] + 1
     number = {link: len(capsules) + i for i, link in enumerate(hulls)}
     every_pair = [*capsule_pairs, *((number[a], number[b]) for a, b in of_hulls)]
@@ -131,11 +126,10 @@ def robot_tables(robot: Robot) -> RobotTables:
         np.concatenate([2.0 * (padded[radii] - floats[radii]), np.full(len(of_hulls), 4.0 * padding)]),
         np.ascontiguousarray(speeds),
         np.ascontiguousarray(pair_speeds),
-        (np.ascontiguousarray(speeds.T), np.ascontiguousarray(pair_speeds.T)),
         _fixed_contact(capsules, hulls, fixed) if robot.pairs_given else None,
     )
     arrays = ints, floats, tables.singles, tables.pair_margins, tables.speeds, tables.pair_speeds
-    for array in (*arrays, *tables.speeds_by_joint):
+    for array in arrays:
         array.setflags(write=False)
     return tables
 
@@ -211,6 +205,7 @@ class _Rows:
 
 
 def _pack(
+    coordinates: int,
     tree: MovingTree,
     capsules: Sequence[PlacedCapsule],
     pairs: Sequence[tuple[str, str]],
@@ -221,6 +216,11 @@ def _pack(
     """Return integers and floats, radii larger by `padding` [m]."""
     rows = _Rows()
     rows.header[layout.FRAMES] = len(tree.frames)
+    rows.header[layout.COORDINATES] = coordinates
+    bodies = len({capsule.link for capsule in capsules})
+    rows.header[layout.SCRATCH] = layout.FRAME * (len(tree.frames) + 1) + layout.PLACED * (
+        len(capsules) + bodies
+    )
     rows.header[layout.CAPSULES] = len(capsules)
     rows.header[layout.FIXED_CAPSULES] = sum(capsule.frame == 0 for capsule in capsules)
     rows.begin(layout.FRAME_INTS, layout.FRAME_FLOATS)
@@ -240,6 +240,7 @@ def _pack(
         rows.floats += capsule.cover.places
     _pack_pairs(rows, tree, capsules, pairs, hulls, padding)
     rows.header[layout.HULL_PAIRS] = by_hulls
+    rows.header[layout.PAIRS] += by_hulls
     rows.begin(None, layout.HULL_MARGINS)
     rows.floats += [2.0 * padding] * by_hulls
     return np.array([*rows.header, *rows.ints], dtype=np.int64), np.array(rows.floats, dtype=np.float64)
@@ -276,6 +277,7 @@ def _pack_pairs(
         capsule_pairs += [(i, k) for i in of[a] for k in of[b]]
         rows.ints += [number[a], number[b], first, len(capsule_pairs)]
         rows.floats.append(balls[number[a]][1] + balls[number[b]][1] + 2.0 * padding)
+    rows.header[layout.PAIRS] = len(capsule_pairs)
     rows.begin(layout.PAIR_INTS, layout.PAIR_FLOATS)
     for i, k in capsule_pairs:
         rows.ints += [i, k]
