@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import sys
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import tyro
 
@@ -93,7 +94,55 @@ class PlanDisk(PlanOptions):
 
 
 @dataclass(frozen=True, kw_only=True)
-class PlanArm(PlanOptions):
+class RobotOptions:
+    """How a robot is made of its file."""
+
+    srdf: Path | None = None
+    """Its SRDF, with groups, named states and pairs of links that need no test."""
+    group: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    """Groups of the SRDF, or joints, with commas between them, planned for together in this order; may be given more
+    than once.  The others are held where the named states of start and goal have them, else at 0."""
+    bodies: Path | None = None
+    """A YAML file of capsules and spheres in place of the robot's collision geometry."""
+    use_visuals: bool = False
+    """Links without collision geometry get what is drawn of them."""
+    package: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    """NAME=FOLDER: where a ROS package is that meshes are in; may be given more than once."""
+    xacro: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    """NAME=VALUE: an argument of a xacro; may be given more than once."""
+
+    def options(self) -> dict[str, Any]:
+        """Return what `load_model` takes; the bodies that are fitted are said on standard error."""
+        return {
+            "srdf": self.srdf,
+            "group": ",".join(self.group) or None,
+            "bodies": self.bodies,
+            "use_visuals": self.use_visuals,
+            "packages": _pairs("package", self.package),
+            "arguments": _pairs("xacro", self.xacro),
+            "progress": say_fitting,
+        }
+
+
+def say_fitting(step: int, steps: int, what: str) -> None:
+    """Say on standard error which body capsules are being fitted to: each one to a person, every tenth in a log."""
+    line = f"evenroad: fitting capsules, once: {step + 1}/{steps} {what}"
+    if sys.stderr.isatty():
+        print(f"\r\x1b[K{line}", end="\n" if step + 1 == steps else "", file=sys.stderr, flush=True)
+    elif step % 10 == 0:
+        print(line, file=sys.stderr, flush=True)
+
+
+def _pairs(option: str, texts: Iterable[str]) -> dict[str, str]:
+    pairs = [text.partition("=") for text in texts]
+    for name, separator, value in pairs:
+        if not (name and separator and value):
+            raise InvalidValue(f"--{option} must be of the form NAME=VALUE, got {name + separator + value!r}")
+    return {name: value for name, _, value in pairs}
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlanArm(PlanOptions, RobotOptions):
     """Plan a short path for an arm in a scene, write a JSON result, the path as CSV and a picture.
 
     An arm (--robot) moves in a scene file (.yaml): metres and radians, frame of the robot's root link.
@@ -108,14 +157,7 @@ class PlanArm(PlanOptions):
     start: tuple[str, ...]
     """One number a joint with commas between them, name=value,..., or a named state."""
     robot: str
-    """Plan for this arm: a URDF file, or the name of a shipped one (ur5, arm7)."""
-    srdf: Path | None = None
-    """Its SRDF, with groups, named states and pairs of links that need no test."""
-    group: str | None = None
-    """A group of the SRDF, or joints with commas between them.
-    The others are held where the named states of start and goal have them, else at 0."""
-    bodies: Path | None = None
-    """A YAML file of capsules and spheres in place of the URDF's collision geometry."""
+    """Plan for this arm: a URDF, xacro or MJCF file, or the name of a shipped one (ur5, arm7)."""
     deg: bool = False
     """Angles of start and goal are in degrees."""
     resolution: float = 0.05

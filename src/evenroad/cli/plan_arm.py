@@ -39,9 +39,7 @@ def plan_arm(plan: PlanArm) -> int:
         [" ".join(words) for words in plan.goal],
         resolution=plan.resolution,
         degrees=plan.deg,
-        srdf=plan.srdf,
-        group=plan.group,
-        bodies=plan.bodies,
+        **plan.options(),
     )
     assert query.model is not None
     inputs = (find_scene(plan.world), *find_robot(plan.robot), plan.srdf, plan.bodies)

@@ -17,6 +17,7 @@ from evenroad.robot.reference.coal_world import CoalWorld
 from evenroad.robot.reference.engine_world import original_shapes
 from evenroad.robot.robot import Robot, RobotModel
 from evenroad.robot.scene import Scene
+from evenroad.robot.urdf_xml import RobotFile
 from evenroad.space.path import resample
 
 Verdict = Literal["free", "in collision", "not checked"]
@@ -64,7 +65,7 @@ def unseen_pairs(model: RobotModel) -> tuple[tuple[str, str], ...]:
 
 
 def recheck(
-    source: str | os.PathLike[str],
+    source: str | os.PathLike[str] | RobotFile,
     robot: Robot,
     scene: Scene,
     path: Floats,
@@ -79,8 +80,8 @@ def recheck(
 
     Parameters
     ----------
-    source : str or path-like
-        The URDF that `robot` was loaded from.
+    source : str, path-like or RobotFile
+        The file that `robot` was loaded from.
     robot, scene : Robot, Scene
         What was planned with.
     path : ndarray, shape (p, dim)
