@@ -68,7 +68,7 @@ def compare(name: str, robots: list[tuple[Robot, list[Scene]]], wanted: int) -> 
                 # Straight, or none.
                 continue
             found += 1
-            least["shortened"].append(nearest(world, shorten(world, connection.path, proved=True)[0]))
+            least["shortened"].append(nearest(world, shorten(world, connection.path)[0]))
             if found % OTHERS_SHARE == 1:
                 least["raw"].append(nearest(world, connection.path))
                 least["sampled"].append(nearest(world, shortcut(connection.path, world)[0]))

@@ -31,11 +31,9 @@ from numba import njit
 
 from benchmarks.arm_problems import KINDS, REPORTING, TUNING, Pool, Problem, arm, problems
 from evenroad.roadmap.shortcut import shortcut
-from evenroad.robot import trees
 from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.kernel import lane_check, layout
-from evenroad.robot.kernel.addresses import call_at
-from evenroad.robot.kernel.forward_kinematics import scratch_memory, unpacked
+from evenroad.robot.kernel import lane_check, lane_world, layout
+from evenroad.robot.kernel.addresses import address, call_at
 from evenroad.robot.trees import connect, shorten
 from evenroad.space.path import path_length
 from evenroad.world.protocol import Connection
@@ -54,7 +52,7 @@ world.valid(goals), world.motion_valid(goals, goals)
 before = time.perf_counter()
 path = connect(world, start, goals).path
 between = time.perf_counter()
-shorten(world, path, proved=True)
+shorten(world, path)
 print(before - begin, between - before, time.perf_counter() - between)
 """
 
@@ -76,6 +74,8 @@ class Log:
         self._callback = _CHECK(self._noted)
 
     def _noted(self, scratch: int, states: int, ints: int, table: int, enough: int) -> int:
+        if enough == 0:
+            return int(self._check(scratch, states, ints, table, enough))
         self.states.append(ctypes.string_at(states, 8 * layout.LANES * self.dim))
         radii = ctypes.string_at(table, 8 * (len(self.lanes) - self.header))
         if not self.tables or self.tables[-1] != radii:
@@ -86,28 +86,41 @@ class Log:
 
     def filled_by(self, task: Callable[[], Any]) -> None:
         """Run a task whose batches are noted."""
-        own = trees.lanes
-        batch, (_, of_motion) = own()
+        own = lane_world.check_addresses
         noting = int(ctypes.cast(self._callback, ctypes.c_void_p).value or 0)
-        trees.lanes = lambda: (batch, (noting, of_motion))  # type: ignore[assignment]
+        lane_world.check_addresses = lambda: (own()[0], noting)  # type: ignore[assignment]
         try:
             task()
         finally:
-            trees.lanes = own
+            lane_world.check_addresses = own
 
     def time_again(self) -> float:
         """Return how long the batches take by themselves, bodies as large as they were [ms]."""
         states = np.frombuffer(b"".join(self.states)).reshape(len(self.states), -1)
         tables = np.frombuffer(b"".join(self.tables), dtype=np.float32).reshape(len(self.tables), -1)
-        arguments = (states, tables, np.array(self.table), np.array(self.enough), self.lanes)
-        return best_time(partial(_again, *arguments, lane_check.check_address()))[1]
+        memory = np.empty(layout.LANES * self.dim + int(self.lanes[layout.SCRATCH]) // 2 + 8)
+        # As programs have it: lanes begin on a cache line.
+        skip = -address(memory) % 64 // 8
+        room, scratch = np.split(memory[skip:], [layout.LANES * self.dim])
+        ints, floats = self.lanes[: self.header], self.lanes[self.header :].view(np.float32)
+        arguments = (states, tables, np.array(self.table), np.array(self.enough), ints, floats)
+        return best_time(partial(_again, *arguments, room, scratch, lane_check.check_address()))[1]
 
 
 @njit(nogil=True)
-def _again(states: Any, tables: Any, table: Any, enough: Any, lanes: Any, address: int) -> int:
-    ints, floats = unpacked(lanes)
-    room, _, scratch = scratch_memory(states.shape[1] // 16, ints, floats)
+def _again(
+    states: Any,
+    tables: Any,
+    table: Any,
+    enough: Any,
+    ints: Any,
+    floats: Any,
+    room: Any,
+    scratch: Any,
+    address: int,
+) -> int:
     radii, current, blocked = floats.copy(), -1, 0
+    call_at(address, (scratch, room, ints, radii, 0))
     for i in range(len(states)):
         if table[i] != current:
             current = table[i]
@@ -133,7 +146,7 @@ def answer(world: ArmWorld, problem: Problem) -> tuple[Connection, Path]:
         world, problem.start, problem.goal[np.newaxis], most_motions=MOST_MOTIONS, seconds=60
     )
     path = connection.path
-    return connection, shorten(world, path, proved=True)[0] if connection.goal >= 0 else path
+    return connection, shorten(world, path)[0] if connection.goal >= 0 else path
 
 
 def measure(problem: Problem) -> dict[str, float] | None:
@@ -148,7 +161,7 @@ def measure(problem: Problem) -> dict[str, float] | None:
     _, path_time = best_time(
         partial(connect, world, problem.start, goals, most_motions=MOST_MOTIONS, seconds=60)
     )
-    (short, _), short_time = best_time(partial(shorten, world, connection.path, proved=True))
+    (short, _), short_time = best_time(partial(shorten, world, connection.path))
     _, again = best_time(partial(answer, world, problem))
     _, query = best_time(lambda: answer(ArmWorld(problem.robot, problem.scene), problem))
     log = Log(world)

@@ -27,7 +27,6 @@ from evenroad.errors import NotAvailable
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.robot.kernel import batch
-from evenroad.robot.kernel.lane_check import check_address
 from evenroad.robot.load import load_robot
 from evenroad.robot.reference.coal_world import CoalWorld
 from evenroad.robot.reference.engine_world import EngineWorld
@@ -144,10 +143,9 @@ def measure_call(world: ArmWorld) -> None:
     none, one = np.empty((0, 5)), np.zeros((1, 5))
     for q in (none, one):
         q.setflags(write=False)
-    tables = (check_address(), world.bounds, world.tables.lanes)
     calls = {
-        "kernel, no configuration": partial(batch.configurations_free, none, *tables),
-        "kernel, one": partial(batch.configurations_free, one, *tables),
+        "kernel, no configuration": partial(batch.configurations_free, world.lanes, none),
+        "kernel, one": partial(batch.configurations_free, world.lanes, one),
         "world.valid, one": partial(world.valid, one),
     }
     for name, call in calls.items():

@@ -16,7 +16,7 @@ import numpy as np
 
 from benchmarks.arm_speed import random_boxes, ur5_world
 from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.kernel.obstacles import obstacle_arrays, tested_contacts
+from evenroad.robot.kernel.obstacles import obstacle_rows, tested_contacts
 from evenroad.robot.kernel.scene_tables import arm_tables
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
@@ -25,7 +25,7 @@ from evenroad.robot.scene import Scene
 def tasks(robot: Robot, scene: Scene) -> dict[str, Callable[[], object]]:
     """Return what is timed."""
     world = ArmWorld(robot, scene)
-    arrays, tested = obstacle_arrays(scene), tested_contacts(world.robot_tables.capsules, robot.links, scene)
+    arrays, tested = obstacle_rows(scene), tested_contacts(world.robot_tables.capsules, robot.links, scene)
     home = np.zeros((1, world.space.dim))
     return {
         "world": lambda: ArmWorld(robot, scene),

@@ -1,18 +1,24 @@
 """Pinocchio reads URDFs by itself: its placements of links are ours to 1e-9 m, and its verdicts on meshes, too."""
 
+import os
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
+from benchmarks.robots import robots_in
 from tests.robot.kernel_arms import random_scene, random_tree, seven_joint_arm
 from tests.robot.mesh_arms import write_fork_arm
 from tests.robot.urdf_texts import LIMIT, joint, link, urdf, write
 
-from evenroad.robot import Scene, link_poses, load_robot
+from evenroad.errors import EvenroadError
+from evenroad.robot import Robot, Scene, link_poses, load_robot
 from evenroad.robot.kinematics import joint_values
 from evenroad.robot.load import find_robot
 from evenroad.robot.reference.coal_world import CoalWorld
 from evenroad.robot.reference.engine_world import original_shapes
+from evenroad.robot.srdf import choose_group
+from evenroad.robot.urdf import read_urdf
 from tests_peers.engines.pinocchio_world import PinocchioWorld, placements
 
 pinocchio = pytest.importorskip("pinocchio")
@@ -73,6 +79,25 @@ def test_links_of_a_shipped_robot_are_where_pinocchio_puts_them(name):
     robot = load_robot(name)
     q = random_configurations(robot)
     theirs = poses_by_pinocchio(find_robot(name)[0].read_text(), robot, q)
+    np.testing.assert_allclose(link_poses(robot, q), theirs, rtol=0, atol=1e-9)
+
+
+FOREIGN = [Path(folder) for folder in os.environ.get("EVENROAD_ROBOTS", "").split(os.pathsep) if folder]
+
+
+@pytest.mark.parametrize("path", [path for _, path in robots_in(FOREIGN) if path.suffix == ".urdf"], ids=str)
+def test_links_of_foreign_robots_are_where_pinocchio_puts_them(path):
+    """Of the robots in the folders of $EVENROAD_ROBOTS; those that one of the two refuses say nothing."""
+    try:
+        urdf = read_urdf(path)
+        robot = Robot(urdf.name, urdf.links, urdf.joints, (), (), choose_group(urdf, None, None))
+    except EvenroadError as error:
+        pytest.skip(str(error))
+    q = random_configurations(robot, 20)
+    try:
+        theirs = poses_by_pinocchio(path.read_text(), robot, q)
+    except ValueError as error:
+        pytest.skip(str(error))
     np.testing.assert_allclose(link_poses(robot, q), theirs, rtol=0, atol=1e-9)
 
 

@@ -1,6 +1,7 @@
 """A path that was found among capsules is checked again with the meshes, state by state."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -85,24 +86,25 @@ def test_a_mesh_that_is_gone_by_then_is_an_error(arm, tmp_path):
         recheck(arm, robot, NOTHING, np.zeros((2, 3)))
 
 
-# ---- pairs whose capsules say nothing
+# ---- pairs that the planner does not test
 
 PLATE_WAY = np.array([[0.0, -1.0, 0.0], [0.5, 0.5, 0.1], [1.0, 1.6, 0.0]])
 """The tip of the plate arm comes from above and ends in the plate."""
 
 
-def test_a_pair_whose_capsules_always_touch_is_tested_with_its_shapes(arm, tmp_path):
+def test_a_pair_that_the_planner_does_not_test_is_tested_with_its_shapes(arm, tmp_path):
     file = write_plate_arm(tmp_path)
     model = load_model(file)
-    unseen = unseen_pairs(model)
-    assert ("plate", "tip") in unseen
-    assert ("plate", "tip") not in model.robot.pairs
+    assert not ArmWorld(model.robot, NOTHING).recheck(PLATE_WAY).all(), "it sees the tip in the plate"
+    pair = ("plate", "tip")
+    robot = replace(model.robot, pairs=tuple(other for other in model.robot.pairs if other != pair))
+    unseen = (*unseen_pairs(model), pair)
     assert not has_meshes(model), "it is not for meshes alone"
-    assert ArmWorld(model.robot, NOTHING).recheck(PLATE_WAY).all(), "nobody else sees it"
-    check = recheck(file, model.robot, NOTHING, PLATE_WAY, unseen=unseen)
+    assert ArmWorld(robot, NOTHING).recheck(PLATE_WAY).all(), "nobody else sees it"
+    check = recheck(file, robot, NOTHING, PLATE_WAY, unseen=unseen)
     assert check.verdict == "in collision"
     assert "in motion 1 of the path: 'plate' touches 'tip'" in check.message
-    assert recheck(file, model.robot, NOTHING, PLATE_WAY[:2], unseen=unseen).verdict == "free"
+    assert recheck(file, robot, NOTHING, PLATE_WAY[:2], unseen=unseen).verdict == "free"
 
 
 def test_a_pair_whose_shapes_always_touch_is_left_out_and_named(arm, tmp_path):
@@ -133,7 +135,19 @@ def test_a_graze_between_the_states_of_the_planner_is_found(arm):
 def test_a_plan_into_what_only_the_shapes_see_is_not_handed_out(arm, tmp_path, capsys):
     write_plate_arm(tmp_path)
     (tmp_path / "empty.yaml").write_text("obstacles: {}\n")
-    words = ["plan", "empty.yaml", "--robot", "plate.urdf", "-n", "64", "--out", "b"]
+    (tmp_path / "bodies.yaml").write_text("tip: [{centre: [0.02, 0, 0], radius: 0.001}]\n")
+    words = [
+        "plan",
+        "empty.yaml",
+        "--robot",
+        "plate.urdf",
+        "--bodies",
+        "bodies.yaml",
+        "-n",
+        "64",
+        "--out",
+        "b",
+    ]
     assert main([*words, "--start", "0", "-1", "0", "--goal", "1", "0.2", "0"]) == 0
     assert json.loads((tmp_path / "b.json").read_text())["meshes"]["verdict"] == "free"
     assert main([*words, "--start", "0", "-1", "0", "--goal", "1", "1.6", "0"]) == 1

@@ -1,4 +1,4 @@
-"""The terminal: tables within its width, and the progress of long work."""
+"""The terminal: tables within its width, and the progress of long work.  Rich is loaded when it is to draw."""
 
 from __future__ import annotations
 
@@ -6,16 +6,11 @@ import os
 import shutil
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
-from itertools import zip_longest
-from textwrap import fill, wrap
 
 WIDTH = 100
 """Columns that a table may take."""
-
-REDRAW_SECONDS = 0.2
-BOLD, GREEN, RED = "1", "32", "31"
 
 
 def table_width() -> int:
@@ -28,47 +23,33 @@ def print_table(
     headings: Sequence[str] = (),
     title: str = "",
     *,
-    right: Sequence[int] = (),
-    first: str = BOLD,
+    right: Collection[int] = (),
+    first: str = "bold",
     gap: int = 2,
 ) -> None:
-    """Print rows of texts, those of the columns `right` at the right; the widest column is wrapped to fit.
+    """Print rows of texts as they are, those of the columns `right` at the right; the widest columns wrap to fit.
 
     Headings are bold; without any the first column is, and the first row's name is shown in the style `first`.
     """
-    table = [tuple(headings), *rows] if headings else rows
-    widths = [
-        max(len(line) for cell in column for line in cell.split("\n")) for column in zip(*table, strict=True)
-    ]
-    widest = widths.index(max(widths))
-    rest = sum(widths) - widths[widest] + gap * (len(widths) - 1)
-    widths[widest] = min(widths[widest], max(table_width() - rest, 10))
-    lines = [fill(title, table_width(), break_on_hyphens=False)] if title else []
-    for number, row in enumerate(table):
-        cells = [_lines(cell, width) for cell, width in zip(row, widths, strict=True)]
-        for parts in zip_longest(*cells, fillvalue=""):
-            shown = [
-                part.rjust(width) if i in right else part.ljust(width)
-                for i, (part, width) in enumerate(zip(parts, widths, strict=True))
-            ]
-            if headings and number == 0:
-                shown = [_styled(text, BOLD) for text in shown]
-            elif not headings:
-                shown[0] = _styled(shown[0], BOLD if number else first)
-            lines.append((" " * gap).join(shown).rstrip())
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=None, pad_edge=False, padding=(0, gap, 0, 0), show_header=bool(headings))
+    for i, heading in enumerate(headings or rows[0]):
+        table.add_column(Text(heading, "bold"), justify="right" if i in right else "left", overflow="fold")
+    for number, row in enumerate(rows):
+        name = Text(row[0], "" if headings else "bold" if number else first)
+        table.add_row(name, *map(Text, row[1:]))
+    console = Console(width=table_width(), markup=False, highlight=False, emoji=False)
+    with console.capture() as captured:
+        if title:
+            console.print(title, style="table.title")
+        console.print(table)
     try:
-        print("\n".join(lines), flush=True)
+        print("\n".join(line.rstrip() for line in captured.get().splitlines()), flush=True)
     except BrokenPipeError:
         leave_output()
-
-
-def _lines(cell: str, width: int) -> list[str]:
-    return [line for part in cell.split("\n") for line in wrap(part, width, break_on_hyphens=False) or [""]]
-
-
-def _styled(text: str, style: str) -> str:
-    """Return a text in bold or a colour, where standard output is a terminal that shows it."""
-    return f"\033[{style}m{text}\033[0m" if sys.stdout.isatty() and not os.environ.get("NO_COLOR") else text
 
 
 def leave_output() -> None:
@@ -99,16 +80,25 @@ class LineProgress:
 
 
 @contextmanager
-def progress_shown(title: str) -> Iterator[LineProgress]:
-    """Yield a ``callback(step, steps, best)`` that keeps a line on standard error up to date; in a log, lines."""
+def progress_shown(title: str) -> Iterator[Callable[..., None]]:
+    """Yield a ``callback(step, steps[, best])`` that moves a bar on standard error; in a log, writes lines."""
     if not sys.stderr.isatty():
         yield LineProgress(title, lambda line: print(line, file=sys.stderr, flush=True))
         return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-    def redraw(line: str) -> None:
-        print(f"\r\033[K{line[: table_width() - 1]}", end="", file=sys.stderr, flush=True)
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        TextColumn("{task.percentage:3.0f} %{task.fields[best]}, left"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(file=sys.stderr), transient=True) as bar:
+        task = bar.add_task(title, total=None, best="")
 
-    try:
-        yield LineProgress(title, redraw, every=REDRAW_SECONDS)
-    finally:
-        redraw("")
+        def advance(step: int, steps: int, best: float | None = None) -> None:
+            value = "" if best is None else f", best {best:.5g}"
+            bar.update(task, total=steps, completed=step, best=value)
+
+        yield advance

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -29,8 +30,10 @@ from evenroad.robot import (
     load_model,
     load_scene,
 )
+from evenroad.robot.load import RobotOptions
 from evenroad.robot.reference.recheck import MeshCheck, has_meshes, recheck, unseen_pairs
 from evenroad.robot.states import clipped
+from evenroad.robot.urdf_xml import RobotFile
 
 PathLike = str | os.PathLike[str]
 Place = str | npt.ArrayLike
@@ -49,15 +52,15 @@ class ArmQuery:
 
     The world's robot is held where named states have the joints that are not planned for, within the scene's ranges.
     Start, (dim,), and goals, (g, dim), are in rad or m.  `goal_names` are the texts by which the caller called them, or
-    nothing.  `source`, the URDF's file or shipped name, and `model`, how the robot was made of it, are None for a robot
-    that was given as a value.
+    nothing.  `source`, where the robot was read, and `model`, how it was made, are None for a robot that was given as a
+    value.
     """
 
     world: ArmWorld
     start: Floats
     goals: Floats
     goal_names: tuple[str, ...]
-    source: PathLike | None = None
+    source: RobotFile | None = None
     model: RobotModel | None = None
 
 
@@ -77,17 +80,16 @@ def plan_arm(
     shorten: bool = True,
     resolution: float = RESOLUTION,
     degrees: bool = False,
-    srdf: PathLike | None = None,
-    group: str | Sequence[str] | None = None,
-    bodies: PathLike | None = None,
+    **options: Unpack[RobotOptions],
 ) -> PlanResult:
     """Plan for an arm among obstacles, as ``evenroad plan --robot`` does: until there is a path or the time is over.
 
     Parameters
     ----------
-    robot, scene : path-like, Robot and Scene
-        A URDF or the name of a shipped robot (``ur5``, ``arm7``), a scene file or that of a shipped one
-        (``box-reach``, ...), or values.
+    robot : str, path-like or Robot
+        A URDF file, or the name of a shipped robot (``ur5``, ``arm7``).
+    scene : str, path-like or Scene
+        A scene file, or the name of a shipped one (``box-reach``, ...).
     start : str or array_like, shape (dim,)
         Numbers in the order of the group [rad or m], or a text: the name of a state, ``0,-1.57,...`` or ``name=value``.
         A value that is outside of its joint's limits by no more than 1e-6 is brought to the limit.
@@ -113,8 +115,8 @@ def plan_arm(
         Largest step of a motion check, > 0 [rad].
     degrees : bool
         Angles in texts are degrees.
-    srdf, group, bodies
-        As in :func:`evenroad.robot.load_model`; for a robot that is read from a file.
+    **options
+        ``srdf``, ``group``, ``bodies``, ... of :func:`evenroad.robot.load_model`, for a robot that is read from a file.
 
     Returns
     -------
@@ -137,8 +139,7 @@ def plan_arm(
         raise InvalidValue(f"rule says how points are joined, so it goes with points=N, got {rule!r}")
     if points is not None and improve:
         raise InvalidValue("improve goes without points: a roadmap of exactly so many has one best path")
-    asked = robot, scene, start, goal
-    query = arm_query(*asked, resolution=resolution, degrees=degrees, srdf=srdf, group=group, bodies=bodies)
+    query = arm_query(robot, scene, start, goal, resolution=resolution, degrees=degrees, **options)
     budget = Budget(seconds=seconds) if budget is None else budget
     if points is None:
         places = query.world, query.start, query.goals
@@ -197,19 +198,17 @@ def arm_query(
     *,
     resolution: float = RESOLUTION,
     degrees: bool = False,
-    srdf: PathLike | None = None,
-    group: str | Sequence[str] | None = None,
-    bodies: PathLike | None = None,
+    **options: Unpack[RobotOptions],
 ) -> ArmQuery:
     """Read robot, scene and configurations, and put them together; parameters and errors as :func:`plan_arm`."""
     scene = scene if isinstance(scene, Scene) else load_scene(scene)
     source, model = None, None
     if isinstance(robot, Robot):
-        if not (srdf is None and group is None and bodies is None):
-            raise InvalidValue("srdf, group and bodies go with the file of a robot, not with a Robot")
+        if options:
+            raise InvalidValue(f"{', '.join(options)}: for the file of a robot, not for a Robot")
     else:
-        source, model = robot, load_model(robot, srdf=srdf, group=group, bodies=bodies)
-        robot = model.robot
+        model = load_model(robot, **options)
+        source, robot = model.file, model.robot
     goals = _places(goal)
     texts = [place for place in (start, *goals) if isinstance(place, str)]
     robot = at_states(in_scene(robot, scene), texts, scene)

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from evenroad import _terminal
 from evenroad._terminal import print_table, progress_shown
 from evenroad.cli.plan_parts import print_plan
 from evenroad.points import PointSet, save_points
@@ -35,19 +34,22 @@ def test_the_widest_column_is_wrapped_and_nothing_of_it_is_lost(capsys, monkeypa
 
 
 def test_names_are_bold_on_a_terminal_alone(capsys, monkeypatch):
+    monkeypatch.setenv("TERM", "xterm")
     for terminal, shown in ((False, "a  b\n"), (True, "\033[1ma\033[0m  b\n")):
         monkeypatch.setattr(sys.stdout, "isatty", lambda terminal=terminal: terminal)
         print_table([("a", "b")])
         assert capsys.readouterr().out == shown
 
 
-def test_progress_is_one_line_on_a_terminal_and_gone_at_the_end(capsys, monkeypatch):
+def test_progress_is_a_bar_on_a_terminal_and_gone_at_the_end(capsys, monkeypatch):
+    monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    monkeypatch.setattr(_terminal, "REDRAW_SECONDS", 0.0)
-    with progress_shown("work") as report:
+    with progress_shown("work [ms]") as report:
         report(0, 4)
         report(1, 4, 0.5)
-    assert re.fullmatch(r"\r\033\[Kwork: 25 %, \d+ s left, best 0.5\r\033\[K", capsys.readouterr().err)
+    said = re.sub(r"\033\[[\d;]*m", "", capsys.readouterr().err)
+    assert re.search(r"work \[ms\] .* 25 %, best 0.5, left ", said)
+    assert said.endswith("\033[1A\033[2K")
 
 
 def test_a_plan_says_in_which_unit_its_times_are(run):

@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import pytest
+import tyro
 
-from evenroad.cli.options import help_text, read_options
+from evenroad.cli.options import read_options
 from evenroad.errors import EvenroadError
 
 
@@ -16,9 +17,9 @@ from evenroad.errors import EvenroadError
 class Bake:
     """Bake a cake."""
 
-    recipe: Annotated[Path, "positional"]
+    recipe: tyro.conf.Positional[Path]
     """Where it is written."""
-    n: Annotated[int, "-n"] = 1
+    n: Annotated[int, tyro.conf.arg(aliases=["-n"])] = 1
     """How many."""
     oven: Literal["gas", "wood"] = "gas"
     """What heats it."""
@@ -26,7 +27,7 @@ class Bake:
     """How hot."""
     fruit: tuple[str, ...] = ()
     """What is put in."""
-    layers: tuple[tuple[str, ...], ...] = ()
+    layers: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]] = ()
     """What is put between, from below."""
     glazed_twice: bool = False
     """Shiny."""
@@ -60,17 +61,17 @@ def test_of_an_option_given_twice_the_last_one_counts():
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        ("", "evenroad bake needs RECIPE; all options: evenroad bake --help"),
+        ("", "missing from evenroad bake: RECIPE; all options: evenroad bake --help"),
         ("a b", "evenroad bake has no use for the word 'b'"),
-        ("a -n many", "-n must be a whole number, got 'many'"),
-        ("a -n 1.5", "-n must be a whole number, got '1.5'"),
+        ("a -n many", "-n/--n must be a whole number, got 'many'"),
+        ("a -n 1.5", "-n/--n must be a whole number, got '1.5'"),
         ("a --heat warm", "--heat must be a number, got 'warm'"),
-        ("a --oven sun", "unknown --oven: 'sun'; known: gas, wood"),
-        ("a --heat", "--heat needs a value"),
-        ("a --fruit --heat 3", "--fruit needs a value"),
-        ("a --glazed-twice=yes", "--glazed-twice takes no value, got 'yes'"),
+        ("a --oven sun", "invalid choice 'sun' for argument '--oven'. Expected one of ('gas', 'wood')"),
+        ("a --heat", "missing value for argument '--heat'"),
+        ("a --glazed-twice=yes", "evenroad bake has no use for the word 'yes'"),
         ("a --nuts 3", "unknown option of evenroad bake: '--nuts'; known: --fruit, --glazed-twice"),
-        ("a -x", "unknown option of evenroad bake: '-x'; known: "),
+        ("--nuts 3", "unknown option of evenroad bake: '--nuts'; known: --fruit, --glazed-twice"),
+        ("a -x", "evenroad bake has no use for the word '-x'"),
     ],
 )
 def test_what_cannot_be_read_is_named_with_what_is_allowed(words, says):
@@ -79,12 +80,24 @@ def test_what_cannot_be_read_is_named_with_what_is_allowed(words, says):
     assert says in str(error.value)
 
 
-def test_the_help_tells_of_every_option_its_default_and_stays_within_the_width():
-    text = help_text("bake", Bake, 40)
-    assert text.startswith("usage: evenroad bake RECIPE [options]\n\nBake a cake.\n")
-    assert max(map(len, text.splitlines())) <= 40
-    for part in ("-n, --n NUMBER", "--oven {gas,wood}", "(default: gas)", "--layers LAYERS ...", "Shiny."):
+@pytest.mark.parametrize("width", [50, 80, 100])
+def test_the_help_tells_of_every_option_its_default_and_stays_within_the_width(width, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", str(width))
+    with pytest.raises(SystemExit, match="0"):
+        read("--help")
+    text = capsys.readouterr().out
+    assert text.startswith("usage: evenroad bake [-h] [OPTIONS] RECIPE\n\nBake a cake.\n")
+    assert max(map(len, text.splitlines())) <= width
+    for part in ("-n INT, --n INT", "{gas,wood}", "(default: gas)", "--layers", "--heat FLOAT", "Shiny."):
         assert part in text
+
+
+def test_what_completes_words_knows_every_verb(run):
+    code, out, _ = run("--tyro-print-completion", "bash")
+    assert code == 0
+    for part in ("plan", "measure", "--robot-radius", "--no-train"):
+        assert part in out
+    assert run("--tyro-print-completion")[2] == "evenroad: error: unknown shell ''; known: bash, fish, zsh\n"
 
 
 @pytest.mark.parametrize(
@@ -92,11 +105,11 @@ def test_the_help_tells_of_every_option_its_default_and_stays_within_the_width()
     [
         (
             "plan a.png --robot-radius 1 --start 1 1 --goal 2 2 -n many",
-            "-n must be a whole number, got 'many'",
+            "-n/--n must be a whole number, got 'many'",
         ),
-        ("points -n 16 -d 2", "evenroad points needs --out; all options: evenroad points --help"),
-        ("measure", "evenroad measure needs FILE"),
-        ("train -n 16 -d 2 -o a --method sgd", "unknown --method: 'sgd'; known: anneal, mpmc"),
+        ("points -n 16 -d 2", "missing from evenroad points: -o PATH, --out PATH; all options: evenroad"),
+        ("measure", "missing from evenroad measure: FILE"),
+        ("train -n 16 -d 2 -o a --method sgd", "invalid choice 'sgd' for argument '--method'. Expected"),
         ("plot", "unknown verb 'plot'; known: bench, demo, export"),
     ],
 )
@@ -106,10 +119,13 @@ def test_a_wrong_word_is_one_line_and_exit_code_2(run, words, says):
     assert err.startswith(f"evenroad: error: {says}")
 
 
-def test_a_verb_loads_only_what_it_needs():
+@pytest.mark.parametrize(
+    ("words", "unwanted"), [("plan --help", "rich"), ("--help", "tyro"), ("--version", "tyro")]
+)
+def test_only_what_is_asked_for_is_loaded(words, unwanted):
     code = (
-        "import sys, evenroad.cli.verbs as verbs; verbs.run(['plan', '--help']);"
-        "print(sorted({'numba', 'matplotlib', 'evenroad.research'} & set(sys.modules)))"
+        f"import sys, evenroad.cli.verbs as verbs; verbs.run({words.split()});"
+        f"print(sorted({{'numba', 'matplotlib', 'evenroad.research', {unwanted!r}}} & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"

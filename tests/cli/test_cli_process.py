@@ -28,7 +28,7 @@ def test_the_package_can_be_run_as_a_module():
     assert (done.returncode, done.stdout, done.stderr) == (0, f"evenroad {evenroad.__version__}\n", "")
 
 
-@pytest.mark.parametrize("module", ["evenroad.cli.verbs", "numba", "PIL"])
+@pytest.mark.parametrize("module", ["tyro", "evenroad.cli.verbs", "numba", "PIL"])
 def test_an_interrupt_while_modules_are_imported_exits_with_130_and_one_line(module):
     code = f"""
 import sys

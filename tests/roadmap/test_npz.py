@@ -205,6 +205,7 @@ def _rewritten(path, **changed):
         (dict(origin="[1]"), "object with keys among"),
         (dict(origin='{"colour": 1}'), "object with keys among"),
         (dict(origin="{}"), "Origin"),
+        (dict(origin='{"family": "even", "method": 7}'), "the origin's method cannot be 7"),
         (dict(rule="k=many"), "unknown connection rule"),
         (dict(rule="k=0 symmetrised"), "k must be"),
         (dict(points=np.full((100, 2), 1.5)), r"\[0, 1\)"),

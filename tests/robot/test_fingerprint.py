@@ -6,20 +6,20 @@ from dataclasses import replace
 import pytest
 
 from evenroad.geometry import Box, Pose, Sphere
-from evenroad.robot import Obstacle, Scene, fingerprint, load_robot, load_scene, with_group, with_limits
+from evenroad.robot import Obstacle, Scene, load_robot, load_scene, with_group, with_limits
 
 UR5 = load_robot("ur5")
 CELL = load_scene("box-reach")
-HASH = "from evenroad.robot import fingerprint, load_robot, load_scene; print({0})"
+HASH = "from evenroad.robot import load_robot, load_scene; print({0})"
 
 
 def test_robots_and_scenes_of_one_content_have_one_fingerprint_in_every_process():
-    code = HASH.format("fingerprint(load_robot('ur5')), fingerprint(load_scene('box-reach'))")
+    code = HASH.format("load_robot('ur5').fingerprint(), load_scene('box-reach').fingerprint()")
     environment = os.environ | {"PYTHONHASHSEED": "7"}
     said = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment
     )
-    assert said.stdout.split() == [fingerprint(UR5), fingerprint(CELL)]
+    assert said.stdout.split() == [UR5.fingerprint(), CELL.fingerprint()]
 
 
 @pytest.mark.parametrize(
@@ -34,7 +34,7 @@ def test_robots_and_scenes_of_one_content_have_one_fingerprint_in_every_process(
     ids=["group", "held", "limits", "pairs", "capsule"],
 )
 def test_what_decides_verdicts_changes_a_robots_fingerprint(other):
-    assert fingerprint(other) != fingerprint(UR5)
+    assert other.fingerprint() != UR5.fingerprint()
 
 
 @pytest.mark.parametrize(
@@ -48,17 +48,17 @@ def test_what_decides_verdicts_changes_a_robots_fingerprint(other):
     ids=["more", "less", "allowed", "moved"],
 )
 def test_what_decides_verdicts_changes_a_scenes_fingerprint(other):
-    assert fingerprint(other) != fingerprint(CELL)
+    assert other.fingerprint() != CELL.fingerprint()
 
 
 def test_names_and_orders_do_not_count():
-    assert fingerprint(replace(UR5, name="it", states={"home": {}})) == fingerprint(UR5)
+    assert replace(UR5, name="it", states={"home": {}}).fingerprint() == UR5.fingerprint()
     backwards = Scene("another", CELL.obstacles[::-1], CELL.allowed)
-    assert fingerprint(backwards) == fingerprint(CELL)
+    assert backwards.fingerprint() == CELL.fingerprint()
 
 
 def test_zeros_of_both_signs_are_one_number():
     plus, minus = (
         Scene("s", (Obstacle("a", Box((1, 1, 1), pose=Pose((zero, 0, 0)))),)) for zero in (0.0, -0.0)
     )
-    assert fingerprint(plus) == fingerprint(minus)
+    assert plus.fingerprint() == minus.fingerprint()

@@ -3,18 +3,27 @@
 import numpy as np
 from numba import njit
 
+from evenroad.robot.kernel.forward_kinematics import sine_and_cosine
 from evenroad.robot.kernel.lanes import (
     absolute,
     below_zero,
+    box_of_lanes,
+    column,
+    dot,
     larger,
-    largest_lane,
     load,
+    load_angles,
+    load_vector,
     lowest_bit,
-    sine_and_cosine,
+    minus,
+    plus,
+    row,
     smaller,
     smallest_lane,
     square_root,
     store,
+    store_vector,
+    times,
     with_sign_of,
 )
 
@@ -39,7 +48,7 @@ def _every_operation(a, b, number, out):
     store(out, 96, absolute(x))
     store(out, 112, square_root(absolute(x)))
     store(out, 128, with_sign_of(absolute(y), x))
-    return smallest_lane(x), largest_lane(x), below_zero(x), lowest_bit(below_zero(x))
+    return smallest_lane(x), below_zero(x), lowest_bit(below_zero(x))
 
 
 def test_sine_and_cosine_err_by_little_more_than_rounding():
@@ -58,13 +67,13 @@ def test_operations_are_those_of_sixteen_numbers():
     a, b = rng.normal(size=(2, 16)).astype(np.float32)
     number = np.float32(0.3)
     out = np.empty(144, dtype=np.float32)
-    low, high, below, first = _every_operation(a, b, number, out)
+    low, below, first = _every_operation(a, b, number, out)
     expected = [
         a + b, a - number, number * b, a / b, np.minimum(a, b), np.maximum(a, number), np.abs(a),
         np.sqrt(np.abs(a)), np.copysign(b, a),
     ]  # fmt: skip
     np.testing.assert_allclose(out.reshape(9, 16), expected, rtol=2e-7)
-    assert (low, high) == (a.min(), a.max())
+    assert low == a.min()
     assert below == sum(1 << lane for lane in range(16) if a[lane] < 0.0)
     assert first == np.flatnonzero(a < 0.0)[0]
 
@@ -73,4 +82,44 @@ def test_zero_is_not_below_zero():
     out = np.empty(144, dtype=np.float32)
     zeros, ones = np.zeros(16, dtype=np.float32), np.ones(16, dtype=np.float32)
     ones[3] = zeros[3] = -1.0
-    assert _every_operation(zeros, ones, np.float32(1.0), out)[2] == 1 << 3
+    assert _every_operation(zeros, ones, np.float32(1.0), out)[1] == 1 << 3
+
+
+@njit(cache=True)
+def _every_operation_on_vectors(a, b, ints, angles, out):
+    x, y = load_vector(a, 0), load_vector(b, 0)
+    three, number = row(b, 16, 3), column(b, 1, 2)[1]
+    store_vector(out, 0, plus(x, y))
+    store_vector(out, 48, minus(x, three))
+    store_vector(out, 96, times(x, load(b, 0)))
+    store_vector(out, 144, absolute(x))
+    store_vector(out, 192, plus(x, number))
+    store(out, 240, dot(x, y))
+    store(out, 256, dot(x, three))
+    centre, half = box_of_lanes(x, absolute(y))
+    store_vector(out, 272, centre)
+    store_vector(out, 320, half)
+    store(out, 368, load_angles(angles, 1, 3.0, 0.5, 2.0 * np.pi))
+    store(out, 384, load_angles(angles, 1, 3.0, 0.5, 0.0))
+    return row(ints, 1, 2)
+
+
+def test_operations_on_vectors_are_those_of_three_times_sixteen_numbers():
+    rng = np.random.default_rng(2)
+    x, y = rng.normal(size=(2, 3, 16)).astype(np.float32)
+    angles, out = 1e4 * rng.normal(size=17), np.empty(400, dtype=np.float32)
+    ints = np.array([5, -6, 7])
+    assert _every_operation_on_vectors(x.ravel(), y.ravel(), ints, angles, out) == (-6, 7)
+    three, number = y.ravel()[16:19], y.ravel()[17]
+    low, high = (x - np.abs(y)).min(axis=1), (x + np.abs(y)).max(axis=1)
+    expected = [
+        x + y, x - three[:, np.newaxis], x * y[0], np.abs(x), x + number,
+        (x * y).sum(axis=0), three @ x, *(np.repeat(box, 16).reshape(3, 16) for box in (low + high, high - low)),
+    ]  # fmt: skip
+    expected[-2:] = [0.5 * box for box in expected[-2:]]
+    np.testing.assert_allclose(
+        out[:368], np.concatenate([each.ravel() for each in expected]), rtol=2e-6, atol=1e-6
+    )
+    values = 3.0 * angles[1:] + 0.5
+    np.testing.assert_allclose(out[384:], values, rtol=1e-7)
+    np.testing.assert_allclose(out[368:384], np.remainder(values + np.pi, 2.0 * np.pi) - np.pi, atol=1e-6)

@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 from evenroad.geometry.distance import segment_distance
-from evenroad.robot import load_model, load_robot
+from evenroad.robot import ArmWorld, Scene, load_model, load_robot, with_group
+from tests.robot.mesh_arms import write_plate_arm
 from tests.robot.urdf_texts import LIMIT, joint, link, urdf, write
 
 
@@ -136,3 +137,99 @@ def test_a_pair_that_an_srdf_leaves_and_that_always_touches_is_named_when_the_ro
     with pytest.warns(UserWarning, match="every sampled configuration: base and neck; disable these pairs"):
         load_robot(path, srdf=srdf)
     assert load_model(path).always_touching == ()
+
+
+def test_a_pair_is_tested_whose_capsules_always_touch_but_not_its_shapes(tmp_path):
+    robot = load_model(write_plate_arm(tmp_path)).robot
+    world = ArmWorld(robot, Scene("empty", ()))
+    turn, bend = np.zeros((90, 3)), np.zeros((90, 3))
+    turn[:, 0], bend[:, 1] = np.linspace(-2.8, 2.8, 90), np.linspace(-2.8, 2.8, 90)
+    assert world.valid(turn).all()
+    # The lowest point of the tip, a ball of 12 mm 2 cm from its joint, 30 mm above the top of the plate.
+    touches = 0.03 - 0.02 * np.sin(bend[:, 1]) <= 0.012
+    assert not world.valid(bend[touches]).any()
+    assert world.valid(bend[~touches]).all()
+    assert touches.sum() > 5
+
+
+def _gripper(*, opening):
+    """An arm with two fingers that touch where they are closed, 0, and come apart by `opening` [m]."""
+    slide = f"<limit lower='0' upper='{opening}' velocity='1' effort='1'/>"
+    box = "<collision><geometry><box size='0.02 0.02 0.05'/></geometry></collision>"
+    return urdf(
+        link("base", _ball(0.05)), link("arm", _ball(0.05)), link("hand", _ball(0.02)),
+        link("left", box), link("right", box),
+        joint("j", "base", "arm", xyz="0 0 0.2"), joint("w", "arm", "hand", xyz="0 0 0.2"),
+        joint("l", "hand", "left", "prismatic", slide, "0 -0.0099 0.08", "0 -1 0"),
+        joint("r", "hand", "right", "prismatic", slide, "0 0.0099 0.08"),
+    )  # fmt: skip
+
+
+def test_fingers_that_touch_where_they_are_held_do_not_block_the_arm_that_holds_them(tmp_path):
+    path = write(tmp_path, _gripper(opening=0.03))
+    robot = load_model(path, group="j,w").robot
+    assert ("left", "right") not in robot.pairs
+    assert ArmWorld(robot, Scene("empty", ())).valid(np.zeros((1, 2))).all()
+    opened = with_group(robot, robot.group, {"l": 0.02, "r": 0.02})
+    assert ArmWorld(opened, Scene("empty", ())).valid(np.zeros((1, 2))).all()
+    whole = ArmWorld(with_group(robot, ("j", "w", "l", "r")), Scene("empty", ()))
+    assert not whole.valid(np.zeros((1, 4))).any()
+    assert whole.valid(np.array([[0, 0, 0.01, 0.01]])).all()
+
+
+def test_two_links_that_an_srdf_lets_be_tested_block_the_arm_where_they_are_held_in_contact(tmp_path):
+    srdf = "<robot name='arm'><disable_collisions link1='arm' link2='hand'/></robot>"
+    path = write(tmp_path, _gripper(opening=0.03))
+    robot = load_model(path, srdf=write(tmp_path, srdf, "arm.srdf"), group="j,w").robot
+    assert ArmWorld(robot, Scene("empty", ())).fixed_contact == ("left", "right")
+
+
+def test_a_robot_of_which_no_configuration_is_free_says_so_and_names_the_pair_that_blocks_most(tmp_path):
+    # A ball goes round among four others, which are two links: it touches now one of these, now the other.
+    two = "".join(_ball(0.14, f"{x} {y} 0.3") for x, y in ((0.2, 0), (-0.2, 0)))
+    other = "".join(_ball(0.14, f"{x} {y} 0.3") for x, y in ((0, 0.2), (0, -0.2)))
+    text = urdf(
+        link("base", _ball(0.05)), link("one", two), link("two", other), link("arm", _ball(0.02)),
+        link("tip", _ball(0.06, "0.2 0 0")), link("tail", _ball(0.02, "0 0 0.3")),
+        joint("a", "base", "one", "fixed", "", "0 0 0"), joint("b", "base", "two", "fixed", "", "0 0 0"),
+        joint("turn", "base", "arm", "continuous", "", "0 0 0.3", "0 0 1"),
+        joint("nod", "arm", "tip", xyz="0 0 0", axis="1 0 0"), joint("wag", "tip", "tail", xyz="0 0 0", axis="0 0 1"),
+    )  # fmt: skip
+    path = write(tmp_path, text)
+    model = load_model(path)
+    assert {("one", "tip"), ("two", "tip")} <= set(model.robot.pairs)
+    assert "random configurations is free of self-collision" in model.never_free
+    assert "'tip' touch in" in model.never_free
+    with pytest.warns(UserWarning, match="free of self-collision"):
+        load_robot(path)
+
+
+def test_a_pair_that_touches_only_where_another_joint_is_held_comes_back_when_that_is_held_elsewhere(
+    tmp_path,
+):
+    slide = "<limit lower='0' upper='1' velocity='1' effort='1'/>"
+    text = urdf(
+        link("base", _ball(0.1)), link("trolley", ""), link("arm", _ball(0.1, "0.1 0 0")), link("tip", _ball(0.02)),
+        joint("lift", "base", "trolley", "prismatic", slide, "0 0 0", "0 0 1"),
+        joint("turn", "trolley", "arm", "continuous", "", "0 0 0.05", "0 0 1"),
+        joint("nod", "arm", "tip", xyz="0.5 0 0"),
+    )  # fmt: skip
+    path = write(tmp_path, text)
+    model = load_model(path, group="turn,nod")
+    robot = model.robot
+    assert ("base", "arm", "touch in every sample with the other joints where they are held") in model.dropped
+    assert robot.pairs == (("base", "tip"),)
+    assert with_group(robot, ("turn", "nod"), {"lift": 0.0}).pairs == robot.pairs
+    lifted = with_group(robot, ("turn", "nod"), {"lift": 0.5})
+    assert set(lifted.pairs) == {("base", "tip"), ("base", "arm")}
+    assert ArmWorld(lifted, Scene("empty", ())).valid(np.zeros((1, 2))).all()
+    assert ("base", "arm") in with_group(robot, ("lift", "turn", "nod")).pairs
+    assert ("base", "arm") in load_model(path).robot.pairs
+
+
+def test_pairs_of_a_hundred_bodies_are_soon_judged(tmp_path):
+    box = "<collision><origin xyz='0 0 0.04'/><geometry><box size='0.03 0.03 0.06'/></geometry></collision>"
+    links = [link(f"l{i}", box) for i in range(100)]
+    joints = [joint(f"j{i}", f"l{i}", f"l{i + 1}", xyz="0 0 0.08") for i in range(99)]
+    model = load_model(write(tmp_path, urdf(*links, *joints)))
+    assert len(model.robot.pairs) == 100 * 99 // 2 - 99

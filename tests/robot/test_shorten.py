@@ -46,7 +46,7 @@ def paths(request):
 def test_no_shortened_path_touches_anything(paths):
     world, found = paths
     for path in found:
-        shorter, _ = shorten(world, path, proved=True)
+        shorter, _ = shorten(world, path)
         assert clearance(world.robot, world.scene, dense_states(world, shorter)).min() > 0.0
 
 
@@ -54,7 +54,7 @@ def test_every_motion_is_proved(paths):
     world, found = paths
     proofs = CertifiedWorld(replace(world, backend="scalar"), 1e-6)
     for path in found:
-        shorter, motions = shorten(world, path, proved=True)
+        shorter, motions = shorten(world, path)
         assert proofs.motion_valid(shorter[:-1], shorter[1:]).all()
         assert motions > 0
 
@@ -62,7 +62,7 @@ def test_every_motion_is_proved(paths):
 def test_paths_keep_their_ends_and_become_shorter(paths):
     world, found = paths
     for path in found:
-        shorter, _ = shorten(world, path, proved=True)
+        shorter, _ = shorten(world, path)
         np.testing.assert_array_equal(shorter[[0, -1]], path[[0, -1]])
         assert length(world, shorter) <= length(world, path) * (1 + 1e-12)
         assert world.space.contains(shorter).all()
@@ -70,7 +70,7 @@ def test_paths_keep_their_ends_and_become_shorter(paths):
 
 def test_paths_are_about_as_short_as_those_of_all_pairs(paths):
     world, found = paths
-    ours = sum(length(world, shorten(world, path, proved=True)[0]) for path in found)
+    ours = sum(length(world, shorten(world, path)[0]) for path in found)
     theirs = sum(length(world, shortcut(path, world)[0]) for path in found)
     assert ours <= 1.03 * theirs
 
@@ -86,7 +86,7 @@ def test_the_same_path_gives_the_same_path(paths):
 @pytest.mark.parametrize("backend", ["lanes", "scalar"])
 def test_both_backends_shorten(backend):
     world = box_world(backend)
-    path = connect(world, START, [GOAL], seconds=60).path
+    path = connect(box_world(), START, [GOAL], seconds=60).path
     detour = np.concatenate([path, path[::-1], path])
     shorter, _ = shorten(world, detour)
     assert length(world, shorter) <= length(world, path) * (1 + 1e-12)

@@ -1,7 +1,9 @@
+import numpy as np
 import pytest
 
+from evenroad.arms import plan_arm
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
-from evenroad.robot import ArmWorld, Scene, held_values, load_robot
+from evenroad.robot import ArmWorld, Scene, configuration, held_values, load_robot
 from evenroad.robot.srdf import choose_group, read_srdf
 from evenroad.robot.urdf import read_urdf
 from tests.robot.urdf_texts import LIMIT, joint, link, urdf, write
@@ -158,11 +160,54 @@ def test_without_a_wish_the_group_is_the_srdfs_only_one_or_all_that_moves_by_its
     assert choose_group(arm, None, None) == ("shoulder", "elbow", "grip")
 
 
-def test_a_list_of_joints_is_a_group_in_the_order_of_the_urdf(read):
+def test_a_list_of_joints_is_a_group_in_the_order_of_the_list(read):
     arm, srdf = read("<group name='g'><joint name='elbow'/></group>")
-    assert choose_group(arm, srdf, "grip, shoulder") == ("shoulder", "grip")
+    assert choose_group(arm, srdf, "grip, shoulder") == ("grip", "shoulder")
     assert choose_group(arm, srdf, ["grip"]) == ("grip",)
     assert choose_group(arm, srdf, "g") == ("elbow",)
+
+
+TWO_GROUPS = """
+<group name='arm'><joint name='shoulder'/><joint name='elbow'/></group>
+<group name='forearm'><joint name='elbow'/></group><group name='fingers'><joint name='grip'/></group>
+<group_state name='home' group='arm'><joint name='shoulder' value='0.1'/><joint name='elbow' value='0.2'/></group_state>
+<group_state name='home' group='fingers'><joint name='grip' value='0.3'/></group_state>
+<group_state name='open' group='fingers'><joint name='grip' value='0.4'/></group_state>
+"""
+
+
+@pytest.mark.parametrize(
+    ("wanted", "joints"),
+    [
+        ("fingers,arm", ("grip", "shoulder", "elbow")),
+        (["arm", "fingers"], ("shoulder", "elbow", "grip")),
+        ("forearm,arm", ("elbow", "shoulder")),
+        ("grip,arm", ("grip", "shoulder", "elbow")),
+    ],
+)
+def test_several_groups_are_one_in_the_order_of_the_wish(read, wanted, joints):
+    arm, srdf = read(TWO_GROUPS)
+    assert choose_group(arm, srdf, wanted) == joints
+
+
+def test_states_of_one_name_of_several_groups_are_one(tmp_path):
+    robot = load_robot(
+        write(tmp_path, ARM),
+        srdf=write(tmp_path, f"<robot name='arm'>{TWO_GROUPS}</robot>", "arm.srdf"),
+        group="fingers,arm",
+    )
+    assert robot.group == ("grip", "shoulder", "elbow")
+    assert robot.states == {"home": {"grip": 0.3, "shoulder": 0.1, "elbow": 0.2}}
+    np.testing.assert_array_equal(configuration(robot, "home"), [0.3, 0.1, 0.2])
+
+
+def test_two_groups_plan_together_in_the_order_of_the_wish(tmp_path):
+    text = ARM.replace("radius='0.05'", "radius='0.02'")
+    path, srdf = write(tmp_path, text), write(tmp_path, f"<robot name='a'>{TWO_GROUPS}</robot>", "arm.srdf")
+    turned = plan_arm(path, Scene("s"), "home", "0.1,0.3,0.5", srdf=srdf, group=("fingers", "arm"))
+    assert turned.solved, turned.message
+    np.testing.assert_allclose(turned.path[0], [0.3, 0.1, 0.2])
+    np.testing.assert_allclose(turned.path[-1], [0.1, 0.3, 0.5])
 
 
 @pytest.mark.parametrize(

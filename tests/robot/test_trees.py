@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
+from evenroad.roadmap import Budget
+from evenroad.roadmap.find_path import find_path
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.robot.joint import Joint
@@ -18,6 +20,7 @@ from evenroad.robot.tree_sequences import ball_points, cube_points, reversed_hal
 from evenroad.robot.trees import connect, shorten
 from tests.robot.kernel_arms import STRAIGHT, box_scene, random_scene, random_tree, seven_joint_arm, ur5
 from tests.robot.oracle import clearance
+from tests.robot.plain_trees import grown
 
 START = np.array([0.0, -np.pi / 2, 0.0, -np.pi / 2, 0.0])
 GOAL = np.array([-0.1216, -0.6993, 1.2160, -2.1070, 2.3023])
@@ -31,6 +34,14 @@ def box_world(backend="auto", inner=0.36):
     return ArmWorld(
         with_limits(robot, dict(zip(robot.group, bounds, strict=True))), box_scene(inner), backend=backend
     )
+
+
+def joined(world, start, goal, most_motions=1_000_000, seconds=60.0):
+    """What the trees find: those in compiled code, or for the slow backend the oracle's."""
+    if world.backend == "scalar":
+        ends = np.stack([start, goal])
+        return grown(world, ends, cube_points(world.space.dim), most_motions, seconds)
+    return connect(world, start, [goal], most_motions=most_motions, seconds=seconds)
 
 
 @pytest.fixture(scope="module")
@@ -57,7 +68,7 @@ def dense_states(world, path, share=20):
 @pytest.mark.parametrize("backend", ["lanes", "scalar"])
 def test_a_goal_deep_in_a_box_is_reached(backend):
     world = box_world(backend)
-    connection = connect(world, START, [GOAL], seconds=60)
+    connection = joined(world, START, GOAL)
     assert connection.goal == 0
     np.testing.assert_array_equal(connection.path[[0, -1]], [START, GOAL])
     assert (
@@ -152,8 +163,17 @@ def test_ends_that_are_not_free_give_no_path(backend):
     blocked = np.array([0.0, 0.9, 0.0, 0.0, 0.0])
     beyond = START + np.array([0.0, 9.0, 0.0, 0.0, 0.0])
     for start, goal in ((blocked, GOAL), (START, blocked), (beyond, GOAL), (START, beyond)):
-        none = connect(world, start, [goal])
+        none = joined(world, start, goal)
         assert (none.goal, len(none.path), none.motions) == (-1, 0, 0)
+
+
+def test_without_lanes_no_trees_grow_and_points_find_the_way():
+    world = box_world("scalar")
+    assert connect(world, START, [GOAL]).goal == -1
+    near = START + np.array([0.6, 0.3, 0.0, 0.0, 0.0])
+    result = find_path(world, START, near, budget=Budget(seconds=60))
+    assert result.solved
+    assert world.recheck(result.path).all()
 
 
 def test_start_and_goal_may_be_one(world):
@@ -171,7 +191,7 @@ def test_any_robot_gets_from_place_to_place(seed, backend):
     q = q[world.valid(q)][:4]
     solved = 0
     for start, goal in pairwise(q):
-        connection = connect(world, start, [goal], most_motions=3_000, seconds=20)
+        connection = joined(world, start, goal, 3_000, 20.0)
         if connection.goal < 0:
             continue
         solved += 1

@@ -1,12 +1,15 @@
 import math
+import re
 import warnings
 
 import numpy as np
 import pytest
 
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
+from evenroad.robot import ArmWorld, Scene, in_scene, load_model
+from evenroad.robot.reference.engine_world import original_shapes
 from evenroad.robot.urdf import read_urdf
-from evenroad.robot.urdf_xml import find_mesh
+from evenroad.robot.urdf_xml import RobotFile, find_mesh
 from tests.robot.urdf_texts import LIMIT, SPHERE, joint, link, two_joints, urdf, write
 
 
@@ -119,6 +122,125 @@ def test_links_that_are_drawn_and_nothing_more_are_known(tmp_path):
     assert read_urdf(write(tmp_path, text)).drawn_only == ("camera",)
 
 
+def _box(size):
+    return f"<collision><geometry><box size='{size}'/></geometry></collision>"
+
+
+def test_a_body_that_is_a_point_is_a_placeholder_left_out_and_said(tmp_path):
+    ball = "<collision><geometry><sphere radius='0.0'/></geometry></collision>"
+    text = urdf(link("x", SPHERE + ball), link("y", _box("0 0 0")), joint("a", "x", "y"))
+    robot = read_urdf(write(tmp_path, text))
+    assert [shape.link for shape in robot.shapes] == ["x"]
+    assert robot.notes == (
+        "the <sphere> of link 'x' with radius 0 is left out: a placeholder; --bodies gives the link a body",
+        "the <box> of link 'y' with size 0 0 0 is left out: a placeholder; --bodies gives the link a body",
+    )
+
+
+def test_a_body_that_is_flat_is_thin_and_not_left_out(tmp_path):
+    disk = "<collision><geometry><cylinder radius='0.2' length='0'/></geometry></collision>"
+    robot = read_urdf(write(tmp_path, urdf(link("x", _box("1 0 2") + disk))))
+    assert [shape.size for shape in robot.shapes] == [(1.0, 1e-6, 2.0), (0.2, 1e-6)]
+    assert [note.partition(" is ")[2] for note in robot.notes] == ["taken as 1e-06 m thick"] * 2
+
+
+@pytest.mark.parametrize(
+    ("inside", "limits", "says"),
+    [
+        (
+            "<limit effort='1' velocity='1'/>",
+            (0.0, 0.0),
+            "has no lower and upper limit: 0 by .*, so that it cannot",
+        ),
+        (
+            "<limit lower='-1' effort='1' velocity='1'/>",
+            (-1.0, 0.0),
+            "has no upper limit: 0 by the specification$",
+        ),
+    ],
+)
+def test_limits_that_are_not_given_are_0_as_the_specification_says(tmp_path, inside, limits, says):
+    text = urdf(link("x"), link("y"), joint("a", "x", "y", inside=inside))
+    robot = read_urdf(write(tmp_path, text))
+    assert (robot.joints[0].lower, robot.joints[0].upper) == limits
+    assert re.match(f"joint 'a' {says}", robot.notes[0])
+
+
+def test_a_robot_whose_joints_cannot_move_is_refused_with_the_reason(tmp_path):
+    text = urdf(link("x"), link("y"), joint("a", "x", "y", inside="<limit effort='1' velocity='1'/>"))
+    with pytest.raises(
+        InvalidValue, match="no joint that could be planned for; joint 'a' has no lower and upper"
+    ):
+        load_model(write(tmp_path, text))
+
+
+@pytest.mark.parametrize("limit", ["1e6", "1e16"])
+def test_a_joint_of_huge_limits_turns_without_end(tmp_path, limit):
+    inside = f"<limit lower='-{limit}' upper='{limit}' velocity='1' effort='1'/>"
+    path = write(tmp_path, urdf(link("x"), link("y"), joint("a", "x", "y", inside=inside)))
+    model = load_model(path)
+    assert model.robot.joints[0].kind == "continuous"
+    assert model.notes == (
+        f"joint 'a' with the limits -{float(limit):g}, {float(limit):g} turns without end",
+    )
+    assert ArmWorld(model.robot, Scene("s")).space.wrapping == (True,)
+    limited = in_scene(model.robot, Scene("s", limits={"a": (-1.0, 2.0)}))
+    assert ArmWorld(limited, Scene("s")).bounds[:2].tolist() == [[-1.0], [2.0]]
+
+
+def test_a_slide_of_huge_limits_is_held_until_a_scene_limits_it(tmp_path):
+    inside = "<limit lower='-1e6' upper='1e6' velocity='1' effort='1'/>"
+    text = urdf(*map(link, "xyz"), joint("a", "x", "y"), joint("b", "y", "z", "prismatic", inside))
+    model = load_model(write(tmp_path, text))
+    assert model.robot.group == ("a",)
+    assert "joint 'b' with the limits -1e+06, 1e+06 slides without end: it is held" in model.notes[0]
+    both = load_model(write(tmp_path, text), group="a,b").robot
+    assert ArmWorld(in_scene(both, Scene("s", limits={"b": (0.0, 0.5)})), Scene("s")).space.dim == 2
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "\n\n<?xml version='1.0'?>" + two_joints(),
+        two_joints().replace("<link", "<sensor:camera><sensor:x/></sensor:camera><link", 1),
+        two_joints().replace("<link", "<link xlink:href='somewhere'", 1),
+        two_joints() + "\n\0",
+        two_joints().replace("<axis xyz='0 1 0'/>", "<axis xyz='0 1 0'/><axis xyz='0 1 0'/>"),
+    ],
+    ids=["blank lines first", "a prefix of nobody", "an attribute of nobody", "a zero last", "an axis twice"],
+)
+def test_xml_is_read_that_other_readers_of_urdfs_take(tmp_path, text):
+    assert read_urdf(write(tmp_path, text)).order == ("a", "b")
+
+
+def test_what_is_drawn_is_the_body_where_that_is_wanted(tmp_path):
+    drawn = "<visual><origin xyz='0 0 1'/><geometry><box size='1 2 3'/></geometry></visual>"
+    path = write(tmp_path, urdf(link("x", SPHERE + drawn), link("y", drawn), joint("a", "x", "y")))
+    model = load_model(path, use_visuals=True)
+    assert [(body.link, body.shapes) for body in model.bodies] == [("x", ("sphere",)), ("y", ("box",))]
+    assert model.drawn_only == ()
+    assert model.notes == ("what is drawn of a link is its body: y",)
+    (box,) = [shape for shape in original_shapes(model.file, model.robot) if shape.link == "y"]
+    assert (box.size, box.pose.xyz) == ((1.0, 2.0, 3.0), (0.0, 0.0, 1.0))
+
+
+def test_a_robot_that_is_only_drawn_is_refused_with_what_would_help(tmp_path):
+    drawn = "<visual><geometry><box size='1 2 3'/></geometry></visual>"
+    path = write(tmp_path, urdf(link("x", drawn), link("y", drawn), joint("a", "x", "y")))
+    with pytest.raises(BrokenFile, match="no collision geometry at all: .*--use-visuals takes what is drawn"):
+        load_model(path)
+    assert len(load_model(path, use_visuals=True).bodies) == 2
+
+
+def test_a_package_is_where_it_is_said_to_be(tmp_path):
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "elsewhere" / "part.stl").write_bytes(b"")
+    file = RobotFile(tmp_path / "arm.urdf", packages=(("parts", str(tmp_path / "elsewhere")),))
+    assert find_mesh("package://parts/part.stl", file, "x") == tmp_path / "elsewhere" / "part.stl"
+    with pytest.raises(BrokenFile, match="--package parts=FOLDER says where that package is"):
+        find_mesh("package://parts/part.stl", RobotFile(tmp_path / "arm.urdf"), "x")
+
+
 def _mesh(attributes):
     return urdf(link("x", f"<collision><geometry><mesh filename={attributes}/></geometry></collision>"))
 
@@ -156,18 +278,13 @@ BROKEN = {
         "joint 'a' in .*: <joint> has more than one <origin>",
     ),
     "two limits": (
-        urdf(link("x"), link("y"), joint("a", "x", "y", inside=LIMIT + LIMIT)),
+        urdf(link("x"), link("y"), joint("a", "x", "y", inside=LIMIT + LIMIT.replace("1", "2"))),
         BrokenFile,
         "joint 'a' in .*: <joint> has more than one <limit>",
     ),
     "no XML": ("<robot name='a'><link", BrokenFile, "is not XML"),
     "an empty file": ("", BrokenFile, "is not XML"),
     "another kind of XML": ("<sdf/>", BrokenFile, "not a URDF: its outermost element is <sdf>"),
-    "a xacro": (
-        "<robot xmlns:xacro='http://wiki.ros.org/xacro'><xacro:macro name='x'/></robot>",
-        BrokenFile,
-        "is a xacro file; make a URDF of it first",
-    ),
     "no links": (urdf(), BrokenFile, "has no links"),
     "a cycle": (
         urdf(link("x"), link("y"), joint("a", "x", "y"), joint("b", "y", "x")),
@@ -230,12 +347,12 @@ BROKEN = {
     "no limits": (
         urdf(link("x"), link("y"), joint("a", "x", "y", inside="")),
         BrokenFile,
-        "joint 'a' in .* has no limits: a revolute joint needs <limit lower=... upper=...> .missing: lower, upper",
+        "joint 'a' in .* has no limits: a revolute joint needs <limit lower=... upper=...>; one that rotates",
     ),
     "half a limit": (
         urdf(link("x"), link("y"), joint("a", "x", "y", inside="<limit lower='1' velocity='1' effort='1'/>")),
-        BrokenFile,
-        "missing: upper",
+        InvalidValue,
+        "lower <= upper, got 1, 0 .upper is not given: 0 by the specification",
     ),
     "limits the wrong way round": (
         urdf(link("x"), link("y"), joint("a", "x", "y", inside="<limit lower='1' upper='-1'/>")),
@@ -310,10 +427,10 @@ BROKEN = {
         BrokenFile,
         "link 'x' in .*: <sphere> lacks 'radius'",
     ),
-    "a box without volume": (
-        urdf(link("x", "<collision><geometry><box size='1 0 1'/></geometry></collision>")),
+    "a box turned inside out": (
+        urdf(link("x", "<collision><geometry><box size='1 -1 1'/></geometry></collision>")),
         InvalidValue,
-        "size of <box> must be > 0, got '1 0 1': a body without volume would never collide",
+        "size of <box> must be >= 0, got '1 -1 1'",
     ),
     "a mesh that is missing": (
         urdf(link("x", "<collision><geometry><mesh filename='no.stl'/></geometry></collision>")),
@@ -359,12 +476,13 @@ def test_meshes_are_found_where_urdfs_and_ros_put_them(tmp_path, monkeypatch, na
     (tmp_path / "my_robot" / "meshes").mkdir()
     (tmp_path / place).parent.mkdir(parents=True, exist_ok=True)
     (tmp_path / place).write_bytes(b"")
-    found = find_mesh(name, tmp_path / "my_robot" / "urdf" / "arm.urdf", "x")
+    found = find_mesh(name, RobotFile(tmp_path / "my_robot" / "urdf" / "arm.urdf"), "x")
     assert found.resolve() == (tmp_path / place).resolve()
 
 
 def test_a_file_url_is_absolute(tmp_path):
     (tmp_path / "part.stl").write_bytes(b"")
     assert (
-        find_mesh(f"file://{tmp_path}/part.stl", tmp_path / "far" / "arm.urdf", "x") == tmp_path / "part.stl"
+        find_mesh(f"file://{tmp_path}/part.stl", RobotFile(tmp_path / "far" / "arm.urdf"), "x")
+        == tmp_path / "part.stl"
     )

@@ -171,7 +171,7 @@ def lifted(joint):
         ),
         (lambda r: replace(r, pairs=r.pairs[1:]), "among its tested pairs"),
         (lambda r: replace(r, held={"wrist_1_joint": 1.0}), "'wrist_1_joint' was held at 0, now at 1"),
-        (lambda r: replace(r, capsules=r.capsules[:-1]), "the bodies of 'wrist3' differ: 1 capsules, now 0"),
+        (lambda r: replace(r, capsules=r.capsules[:-1]), "the bodies of 'wrist3' differ: 1, now 0"),
         (
             lambda r: replace(r, joints=(lifted(r.joints[0]), *r.joints[1:])),
             "'shoulder_pan_joint' has another place",

@@ -182,12 +182,23 @@ def test_checks_run_out_and_come_back(roadmap):
     np.testing.assert_array_equal(again.path, fresh.path)
 
 
-def test_a_world_of_one_lane_leaves_all_to_the_trees(roadmap, monkeypatch):
-    known = SceneRoadmap(roadmap, box_scene())
-    known.world = ArmWorld(known.world.robot, known.world.scene, backend="scalar")
+def test_a_world_without_lanes_finds_the_same_path(roadmap):
+    known, slow = SceneRoadmap(roadmap, box_scene()), SceneRoadmap(roadmap, box_scene())
+    slow.world = ArmWorld(known.world.robot, known.world.scene, backend="scalar")
     start, goal = far_apart(known)
-    assert known.connect(start, goal).goal == -1
+    np.testing.assert_array_equal(
+        known.connect(start, goal).path, slow.connect(start, goal, seconds=1e3).path
+    )
+
+
+def test_what_the_roadmap_cannot_do_in_its_time_is_left_to_the_trees(roadmap, monkeypatch):
+    known = SceneRoadmap(roadmap, box_scene())
+    start, goal = far_apart(known)
+    assert known.connect(start, goal, seconds=1e-9).goal == -2
     monkeypatch.setattr(ArmWorld, "connect", lambda world, start, goals, **_: fake(start, goals))
+    monkeypatch.setattr(
+        known, "connect", lambda *_, **__: SceneRoadmap.connect(known, start, goal, seconds=1e-9)
+    )
     assert known.plan(start, goal[0], shorten=False).planner == "robot roadmap, then trees"
 
 

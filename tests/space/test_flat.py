@@ -145,6 +145,7 @@ def test_spaces_are_values():
         (lambda: JointSpace([0.0], [1.0], wrapping=[True, False]), "wrapping"),
         (lambda: JointSpace([0.0], [1.0], wrapping=[1]), "wrapping"),
         (lambda: JointSpace([0.0], [1.0], wrapping=None), "wrapping"),
+        (lambda: JointSpace([0.0], [1.0], wrapping=np.array(True)), "wrapping"),
         (lambda: FlatMetric([1.0, math.inf], [math.inf, 1.0]), "scale"),
         (lambda: FlatMetric([1.0], [math.nan]), "period"),
         (lambda: FlatMetric([1.0], [1.0, 1.0]), "one length"),

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import sys
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
-from evenroad.cli.options import HELP, option_names
+import tyro
+
+from evenroad.cli.options import HELP, given_options, option_names
 from evenroad.errors import InvalidValue
 
 
@@ -19,29 +22,28 @@ class PlanOptions:
     planner: ClassVar[str]
     """The function that plans, loaded when it is asked to."""
 
-    world: Annotated[Path, "positional"]
+    world: tyro.conf.Positional[Path]
     """The file of the world."""
     start: tuple[str, ...]
     """Where to start."""
-    goal: tuple[tuple[str, ...], ...]
-    """As start; given more than once, the path ends at one of the goals: the first that is reached, with
-    points or --improve the cheapest."""
-    n: Annotated[int | None, "-n"] = None
-    """Plan on a roadmap of exactly so many points (ps-PRM).  Default: no points, but until there is a path or a proof
-    that there is none, or the time is over; where another option speaks of points: 512."""
+    goal: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]]
+    """As start.  Required; given more than once, the path ends at the first one that is reached.
+    With points or --improve at the cheapest."""
+    n: Annotated[int | None, tyro.conf.arg(aliases=["-n"])] = None
+    """Plan on a roadmap of exactly so many points (ps-PRM); where only other options speak of points: 512.
+    Default: no points, but until there is a path or a proof that there is none, or the time is over."""
     time: float | None = None
     """Seconds to plan at most, > 0 (default 5; with points 60)."""
     improve: bool = False
     """Use up the time: plan again in other ways, and keep the shortest path.  Not with points."""
     certified: bool = False
     """The path must be proved free throughout; else the answer says which of its motions is not."""
-    k: Annotated[int | None, "-k"] = None
+    k: Annotated[int | None, tyro.conf.arg(aliases=["-k"])] = None
     """Connect each milestone with its k nearest, symmetrised (default 10; 20 from six joints on)."""
     connect_radius: float | None = None
     """Connect milestones up to this distance instead, in map units or radians."""
     sampler: str = "auto"
-    """even, hickernell, mpmc, korobov, lattice, halton, sobol, sukharev or uniform; auto, the default, is
-    even."""
+    """even, hickernell, mpmc, korobov, lattice, halton, sobol, sukharev or uniform; auto is even."""
     plain: bool = False
     """halton and sobol: the plain sequence instead of the scrambled one."""
     skip: int = 0
@@ -53,8 +55,8 @@ class PlanOptions:
     raw: bool = False
     """Leave the path as it was found, without shortcutting it."""
     out: Path | None = None
-    """Where results go: OUT.json, OUT.png and, for an arm, OUT.csv. Default: the world's stem in the current folder,
-    with -plan added where that would overwrite an input."""
+    """Where results go: OUT.json, OUT.png and, for an arm, OUT.csv.
+    Default: the world's stem in the current folder, with -plan added where that would overwrite an input."""
     no_picture: bool = False
     """Draw no picture."""
 
@@ -77,7 +79,7 @@ class PlanDisk(PlanOptions):
 
     planner = "evenroad.cli.plan_disk:plan_disk"
 
-    world: Annotated[Path, "positional"]
+    world: tyro.conf.Positional[Path]
     """A map: a .png or .pgm image, or a ROS map_server .yaml."""
     start: tuple[str, ...]
     """x y in map units."""
@@ -92,7 +94,55 @@ class PlanDisk(PlanOptions):
 
 
 @dataclass(frozen=True, kw_only=True)
-class PlanArm(PlanOptions):
+class RobotOptions:
+    """How a robot is made of its file."""
+
+    srdf: Path | None = None
+    """Its SRDF, with groups, named states and pairs of links that need no test."""
+    group: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    """Groups of the SRDF, or joints, with commas between them, planned for together in this order; may be given more
+    than once.  The others are held where the named states of start and goal have them, else at 0."""
+    bodies: Path | None = None
+    """A YAML file of capsules and spheres in place of the robot's collision geometry."""
+    use_visuals: bool = False
+    """Links without collision geometry get what is drawn of them."""
+    package: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    """NAME=FOLDER: where a ROS package is that meshes are in; may be given more than once."""
+    xacro: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    """NAME=VALUE: an argument of a xacro; may be given more than once."""
+
+    def options(self) -> dict[str, Any]:
+        """Return what `load_model` takes; the bodies that are fitted are said on standard error."""
+        return {
+            "srdf": self.srdf,
+            "group": ",".join(self.group) or None,
+            "bodies": self.bodies,
+            "use_visuals": self.use_visuals,
+            "packages": _pairs("package", self.package),
+            "arguments": _pairs("xacro", self.xacro),
+            "progress": say_fitting,
+        }
+
+
+def say_fitting(step: int, steps: int, what: str) -> None:
+    """Say on standard error which body capsules are being fitted to: each one to a person, every tenth in a log."""
+    line = f"evenroad: fitting capsules, once: {step + 1}/{steps} {what}"
+    if sys.stderr.isatty():
+        print(f"\r\x1b[K{line}", end="\n" if step + 1 == steps else "", file=sys.stderr, flush=True)
+    elif step % 10 == 0:
+        print(line, file=sys.stderr, flush=True)
+
+
+def _pairs(option: str, texts: Iterable[str]) -> dict[str, str]:
+    pairs = [text.partition("=") for text in texts]
+    for name, separator, value in pairs:
+        if not (name and separator and value):
+            raise InvalidValue(f"--{option} must be of the form NAME=VALUE, got {name + separator + value!r}")
+    return {name: value for name, _, value in pairs}
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlanArm(PlanOptions, RobotOptions):
     """Plan a short path for an arm in a scene, write a JSON result, the path as CSV and a picture.
 
     An arm (--robot) moves in a scene file (.yaml): metres and radians, frame of the robot's root link.
@@ -102,22 +152,15 @@ class PlanArm(PlanOptions):
 
     planner = "evenroad.cli.plan_arm:plan_arm"
 
-    world: Annotated[Path, "positional"]
+    world: tyro.conf.Positional[Path]
     """A scene (.yaml; shipped: box-reach.yaml, box-reach-narrow.yaml)."""
     start: tuple[str, ...]
     """One number a joint with commas between them, name=value,..., or a named state."""
     robot: str | None = None
-    """Plan for this arm: a URDF file, or the name of a shipped one (ur5, arm7)."""
+    """Plan for this arm: a URDF, xacro or MJCF file, or the name of a shipped one (ur5, arm7)."""
     roadmap: Path | None = None
     """Plan along this roadmap, which ``evenroad roadmap`` made and which knows its arm and its cell; --robot may be
     given, too, and then has to be that arm."""
-    srdf: Path | None = None
-    """Its SRDF, with groups, named states and pairs of links that need no test."""
-    group: str | None = None
-    """A group of the SRDF, or joints with commas between them; the others are held where the named states of start
-    and goal have them, else at 0."""
-    bodies: Path | None = None
-    """A YAML file of capsules and spheres in place of the URDF's collision geometry."""
     deg: bool = False
     """Angles of start and goal are in degrees."""
     resolution: float = 0.05
@@ -130,7 +173,7 @@ class Demo:
 
     level: int = 3
     """Which maze: 1, 2 or 3, of rising difficulty."""
-    n: Annotated[int, "-n"] = 1024
+    n: Annotated[int, tyro.conf.arg(aliases=["-n"])] = 1024
     """How many points to draw."""
     out: Path = Path("demo")
     """Where results go: OUT.png and OUT.json."""
@@ -152,7 +195,7 @@ class Demo:
 
 def plan_type(words: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
     """Return which of the two a command line asks for, by its robot; InvalidValue if its options do not go together."""
-    given = {word.partition("=")[0].replace("_", "-") for word in words if word.startswith("--")}
+    given = given_options(words)
     for_arm = not given.isdisjoint({"--robot", "--roadmap"})
     chosen: type[PlanDisk] | type[PlanArm] = PlanArm if for_arm else PlanDisk
     if not HELP.isdisjoint(words):

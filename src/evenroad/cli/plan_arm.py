@@ -47,9 +47,7 @@ def plan_arm(plan: PlanArm) -> int:
         [" ".join(words) for words in plan.goal],
         resolution=plan.resolution,
         degrees=plan.deg,
-        srdf=plan.srdf,
-        group=plan.group,
-        bodies=plan.bodies,
+        **({} if plan.robot is None else plan.options()),
     )
     known = None if kept is None else SceneRoadmap(kept, query.world.scene, query.world.robot)
     query = query if known is None else replace(query, world=known.world)
@@ -101,7 +99,7 @@ def plan_arm(plan: PlanArm) -> int:
 
 def _say_if_compiling(plan: PlanArm) -> None:
     kernel, points = "evenroad.robot.kernel", wants_points(plan)
-    said = say_if_compiling(f"{kernel}.batch", "configurations_free", 30 if points else 20)
+    said = say_if_compiling(f"{kernel}.batch", "check_configurations", 30 if points else 20)
     # Where the lanes do not work, the trees are never compiled.
     if not (said or points) and lanes_failure() is None:
         say_if_compiling(f"{kernel}.trees", "grow", 15)

@@ -13,7 +13,7 @@ from evenroad import roadmap
 from evenroad._checks import require_count, require_known, require_positive
 from evenroad._files import require_writable_folder
 from evenroad._rng import generator
-from evenroad._terminal import GREEN, RED, print_table
+from evenroad._terminal import print_table
 from evenroad.cli.plan import PlanOptions
 from evenroad.errors import InvalidValue
 from evenroad.io import save_json, save_path_csv
@@ -184,4 +184,4 @@ def print_plan(result: PlanResult, files: Iterable[Path], more: Sequence[tuple[s
     times = {phase: 1e3 * seconds for phase, seconds in result.seconds.items()}
     rows.append(("time [ms]", ", ".join(f"{phase} {ms:.{int(ms < 10)}f}" for phase, ms in times.items())))
     rows += [*more, ("files", ", ".join(map(str, files)))]
-    print_table(rows, first=GREEN if result.solved else RED)
+    print_table(rows, first="green" if result.solved else "red")

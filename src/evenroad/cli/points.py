@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Annotated
 
 import numpy as np
+import tyro
 
 from evenroad._files import require_writable_folder
 from evenroad._terminal import print_table, progress_shown
@@ -25,9 +26,9 @@ from evenroad.points.npz import read_points, save_array, save_points
 class Points:
     """Write a point set: shipped, constructed, from the cache, or annealed on demand."""
 
-    n: Annotated[int, "-n"]
+    n: Annotated[int, tyro.conf.arg(aliases=["-n"])]
     """How many points."""
-    d: Annotated[int, "-d"]
+    d: Annotated[int, tyro.conf.arg(aliases=["-d"])]
     """How many dimensions."""
     family: str = "even"
     """even, hickernell, mpmc, korobov, lattice, halton, sobol, sukharev or uniform."""
@@ -35,7 +36,7 @@ class Points:
     """Which set of the family's pool, and every other random choice."""
     no_train: bool = False
     """Refuse a set that is neither shipped nor cached, instead of annealing it now."""
-    out: Annotated[Path, "-o"]
+    out: Annotated[Path, tyro.conf.arg(aliases=["-o"])]
     """The file: .npy for the plain array, .npz to keep the origin."""
 
     def run(self) -> int:
@@ -67,7 +68,7 @@ class Points:
 class Measure:
     """Print every measure of a point set: discrepancies, dispersion, separation, energy."""
 
-    file: Annotated[Path, "positional"]
+    file: tyro.conf.Positional[Path]
     """A .npy array of shape (n, d), or a .npz point set."""
     json: bool = False
     """Print JSON instead of a table."""

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated
+
+import tyro
 
 from evenroad._compiled import say_if_compiling
 from evenroad._files import require_writable_folder
 from evenroad._terminal import print_table, progress_shown
-from evenroad.cli.plan import PlanArm
+from evenroad.cli.plan import PlanArm, RobotOptions
 from evenroad.cli.plan_parts import wants_points
 from evenroad.errors import InvalidValue
 from evenroad.robot import Scene, find_robot, find_scene, load_model, load_scene
@@ -20,34 +22,28 @@ from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
 
 
 @dataclass(frozen=True, kw_only=True)
-class MakeRoadmap:
+class MakeRoadmap(RobotOptions):
     """Make a roadmap for an arm in its cell: milestones and motions that touch neither the arm itself nor the cell.
 
     It is made once, in some seconds, and serves every scene of that cell: evenroad plan today.yaml --roadmap FILE.
     """
 
-    robot: Annotated[str, "positional"]
-    """A URDF file, or the name of a shipped robot (ur5, arm7)."""
+    robot: tyro.conf.Positional[str]
+    """A URDF, xacro or MJCF file, or the name of a shipped robot (ur5, arm7)."""
     cell: Path | None = None
     """A scene (.yaml) of what never moves: mount, fence, walls; and the ranges to plan in.  Default: nothing."""
-    n: Annotated[int, "-n"] = 1024
+    n: Annotated[int, tyro.conf.arg(aliases=["-n"])] = 1024
     """How many milestones."""
-    k: Annotated[int, "-k"] = 16
+    k: Annotated[int, tyro.conf.arg(aliases=["-k"])] = 16
     """Each is joined to so many of the nearest ones that it can reach freely."""
     gamma: float | None = None
     """Milestones are as dense as the chance of being free in random scenes to this power, >= 0.  Default: by n, and 0
     from seven joints on."""
-    srdf: Path | None = None
-    """Its SRDF, with groups, named states and pairs of links that need no test."""
-    group: str | None = None
-    """A group of the SRDF, or joints with commas between them; the others are held."""
-    bodies: Path | None = None
-    """A YAML file of capsules and spheres in place of the URDF's collision geometry."""
     resolution: float = 0.05
     """Largest step of a motion check, > 0, in radians."""
     seed: int = 0
     """Seed of everything random; the same command gives the same roadmap."""
-    out: Annotated[Path | None, "-o"] = None
+    out: Annotated[Path | None, tyro.conf.arg(aliases=["-o"])] = None
     """Where it goes.  Default: the robot's name in the current folder, with .roadmap."""
 
     def run(self) -> int:
@@ -60,9 +56,9 @@ class MakeRoadmap:
         if out.resolve() in {path.resolve() for path in inputs if path is not None}:
             raise InvalidValue(f"--out {out} would overwrite one of the files that it is made from")
         require_writable_folder(out)
-        model = load_model(self.robot, srdf=self.srdf, group=self.group, bodies=self.bodies)
+        model = load_model(self.robot, **self.options())
         cell = Scene("nothing") if self.cell is None else load_scene(self.cell)
-        say_if_compiling("evenroad.robot.kernel.batch", "configurations_free", 30)
+        say_if_compiling("evenroad.robot.kernel.batch", "check_configurations", 30)
         began = time.perf_counter()
         with progress_shown("roadmap") as shown:
             roadmap = make_roadmap(
@@ -99,12 +95,14 @@ def kept_roadmap(plan: PlanArm) -> RobotRoadmap:
             "--roadmap goes without points and without --improve: it has milestones of its own"
         )
     if plan.robot is None:
-        for option in ("srdf", "group", "bodies"):
-            if getattr(plan, option) is not None:
-                raise InvalidValue(f"--{option} goes with --robot; the roadmap knows its arm")
+        for option in fields(RobotOptions):
+            if getattr(plan, option.name) != option.default:
+                raise InvalidValue(
+                    f"--{option.name.replace('_', '-')} goes with --robot; the roadmap knows its arm"
+                )
     robot = None
     if plan.robot is not None:
-        robot = load_model(plan.robot, srdf=plan.srdf, group=plan.group, bodies=plan.bodies).robot
+        robot = load_model(plan.robot, **plan.options()).robot
     roadmap = load_robot_roadmap(plan.roadmap, robot)
     if plan.resolution not in (PlanArm.resolution, roadmap.resolution):
         raise InvalidValue(

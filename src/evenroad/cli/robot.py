@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import math
 import time
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from json import dumps
 from pathlib import Path
-from typing import Annotated
+from typing import Any
 
 import numpy as np
+import tyro
 
 from evenroad._compiled import say_if_compiling
+from evenroad._files import atomic_write, require_writable_folder
 from evenroad._rng import generator
 from evenroad._terminal import print_table
+from evenroad.cli.plan import RobotOptions
 from evenroad.robot import (
     ArmWorld,
     Joint,
@@ -25,6 +30,7 @@ from evenroad.robot import (
     load_scene,
 )
 from evenroad.robot import Robot as Arm
+from evenroad.robot.srdf_writer import srdf_text
 
 _CONFIGURATIONS = 4096
 _MOTIONS = 256
@@ -35,26 +41,32 @@ _SECONDS = 0.2
 
 
 @dataclass(frozen=True, kw_only=True)
-class Robot:
+class Robot(RobotOptions):
     """Show the joints, limits, bodies and self-collision pairs of an arm, and checks per second."""
 
-    robot: Annotated[str, "positional"]
-    """A URDF file, or the name of a shipped robot (ur5, arm7)."""
-    srdf: Path | None = None
-    """Its SRDF, with groups, named states and pairs of links that need no test."""
-    group: str | None = None
-    """A group of the SRDF, or joints with commas between them; the others are held."""
-    bodies: Path | None = None
-    """A YAML file of capsules and spheres in place of the URDF's collision geometry."""
+    robot: tyro.conf.Positional[str]
+    """A URDF, xacro or MJCF file, or the name of a shipped robot (ur5, arm7)."""
     scene: Path | None = None
     """Count checks per second in this scene (a file or box-reach.yaml) instead of in empty space."""
+    write_srdf: Path | None = None
+    """Write an SRDF to start from: groups, named states, and the pairs of links that are not tested, with reasons."""
+    json: bool = False
+    """Print all that is known as JSON in place of tables."""
 
     def run(self) -> int:
         """Load, measure, print; return 0."""
-        model = load_model(self.robot, srdf=self.srdf, group=self.group, bodies=self.bodies)
-        say_if_compiling("evenroad.robot.kernel.batch", "configurations_free", 30)
+        if self.write_srdf is not None:
+            require_writable_folder(self.write_srdf)
+        model = load_model(self.robot, **self.options())
+        say_if_compiling("evenroad.robot.kernel.batch", "check_configurations", 30)
         scene = Scene("empty space", ()) if self.scene is None else load_scene(self.scene)
         world = ArmWorld(in_scene(model.robot, scene), scene)
+        if self.write_srdf is not None:
+            with atomic_write(self.write_srdf) as file:
+                file.write(srdf_text(model).encode())
+        if self.json:
+            print(dumps(_record(model, world), indent=2, allow_nan=False))
+            return 0
         print_table(_joints(model.robot), ("joint", "kind", "limits", "velocity", "use"))
         print()
         print_table(_bodies(model), ("link", "given as", "capsules", "volume added"))
@@ -64,8 +76,8 @@ class Robot:
 
 
 def bodiless_rows(model: RobotModel) -> list[tuple[str, str]]:
-    """Return rows, name and text, about links that nothing is found to touch and pairs that always touch."""
-    rows = []
+    """Return rows, name and text: what was read otherwise, links that nothing touches, pairs that always touch."""
+    rows = [("note", note) for note in model.notes]
     if model.bodiless:
         rows.append(("no body", ", ".join(model.bodiless)))
     if model.drawn_only:
@@ -75,6 +87,8 @@ def bodiless_rows(model: RobotModel) -> list[tuple[str, str]]:
         text = "in collision in every sampled configuration, so that none is free: "
         pairs = (f"{first} and {second}" for first, second in model.always_touching)
         rows.append(("WARNING", text + ", ".join(pairs)))
+    elif model.never_free:
+        rows.append(("WARNING", model.never_free))
     return rows
 
 
@@ -126,7 +140,12 @@ def _summary(model: RobotModel, world: ArmWorld) -> list[tuple[str, str]]:
         rows.append(("not tested", f"{reason}: {_by_first(pairs)}"))
     if robot.states:
         rows.append(("states", ", ".join(robot.states)))
-    return [*rows, ("obstacles", _conservatism(model, world)), ("checks", _speed(world))]
+    measured = _measured(world)
+    rows += [("obstacles", _conservatism(model, world)), ("checks", _speed(world, measured))]
+    if measured["blocking"] is not None and not (model.never_free or model.always_touching):
+        text = f"no random configuration is free in {world.scene.name}; most often {measured['blocking']}"
+        rows.append(("WARNING", text))
+    return rows
 
 
 def _conservatism(model: RobotModel, world: ArmWorld) -> str:
@@ -138,20 +157,45 @@ def _conservatism(model: RobotModel, world: ArmWorld) -> str:
     return f"{100.0 * more:.0f} % more volume than the URDF's shapes; {text}"
 
 
-def _speed(world: ArmWorld) -> str:
+def _measured(world: ArmWorld) -> dict[str, Any]:
+    """Return how fast random configurations and motions are checked, how many are free, and what blocks all."""
     q = world.space.from_cube(generator(0).random((_CONFIGURATIONS, world.space.cube_dim)))
     free = q[world.valid(q)]
-    configurations = _per_second(lambda: world.valid(q), len(q))
-    text = f"{configurations:,.0f} random configurations/s ({100.0 * len(free) / len(q):.0f} % free)"
+    found: dict[str, Any] = {
+        "configurations_per_second": _per_second(lambda: world.valid(q), len(q)),
+        "free_percent": 100.0 * len(free) / len(q),
+        "motions_per_second": None,
+        "free_motions_percent": None,
+        "blocking": None,
+    }
     if len(free) > 1:
         half = min(len(free) // 2, _MOTIONS)
         a, b = free[:half], free[len(free) // 2 :][:half]
         lengths = np.maximum(world.space.distance(a, b), world.resolution)
         b = world.space.interpolate(a, b, np.minimum(_MOST_SEGMENTS * world.resolution / lengths, 1.0))
-        passed = float(np.mean(world.motion_valid(a, b)))
-        motions = _per_second(lambda: world.motion_valid(a, b), len(a))
-        text += f", {motions:,.0f} motions/s between free ones ({100.0 * passed:.0f} % free)"
-    return f"{text}, one core, with {world.checked_with}, in {world.scene.name}"
+        found["free_motions_percent"] = 100.0 * float(np.mean(world.motion_valid(a, b)))
+        found["motions_per_second"] = _per_second(lambda: world.motion_valid(a, b), len(a))
+    elif len(free) == 0:
+        ((found["blocking"], _),) = Counter(map(world.explain, q[:_MOTIONS])).most_common(1)
+    return found
+
+
+def _speed(world: ArmWorld, measured: dict[str, Any]) -> str:
+    text = "{configurations_per_second:,.0f} random configurations/s ({free_percent:.0f} % free)"
+    if measured["motions_per_second"] is not None:
+        text += ", {motions_per_second:,.0f} motions/s between free ones ({free_motions_percent:.0f} % free)"
+    return f"{text.format(**measured)}, one core, with {world.checked_with}, in {world.scene.name}"
+
+
+def _record(model: RobotModel, world: ArmWorld) -> dict[str, Any]:
+    """Return all that is known of a robot as what JSON has; limits of joints that have none are null."""
+    record = asdict(model) | {"file": None if model.file is None else str(model.file.path)}
+    record["held"] = held_values(world.robot)
+    record["robot"]["hulls"] = dict(Counter(hull.link for hull in model.robot.hulls))
+    for joint in record["robot"]["joints"]:
+        joint |= {key: None for key in ("lower", "upper", "velocity") if math.isinf(joint[key])}
+    checks = {"scene": world.scene.name, "with": world.checked_with, **_measured(world)}
+    return record | {"no_body": list(model.bodiless), "checks": checks}
 
 
 def _per_second(call: Callable[[], object], count: int) -> float:

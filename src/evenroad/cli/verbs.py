@@ -10,7 +10,6 @@ from textwrap import fill
 from evenroad import __version__
 from evenroad._checks import require_known
 from evenroad._terminal import leave_output, table_width
-from evenroad.cli.options import HELP, help_text, read_options
 from evenroad.errors import EvenroadError
 
 DONE = 0
@@ -39,7 +38,7 @@ VERBS = {
 }
 """Name of a verb -> where it is, loaded when it is asked for, and what it does."""
 
-DESCRIPTION = f"""usage: evenroad [-h] [--version] VERB ...
+DESCRIPTION = f"""usage: evenroad [-h] [--version] [--tyro-print-completion {{bash,zsh,fish}}] VERB ...
 
 evenroad {__version__}: point sets that make sampling-based motion planners need fewer samples.
 
@@ -69,24 +68,31 @@ def _run(arguments: list[str]) -> int:
     if verb == "--version":
         print(f"evenroad {__version__}")
         return DONE
-    width = table_width()
-    if verb in HELP:
-        lines = [
-            fill(f"  {name:8} {about}", width, subsequent_indent=" " * 11)
-            for name, (_, about) in VERBS.items()
-        ]
-        print(DESCRIPTION + "\n".join(lines))
+    if verb in ("-h", "--help"):
+        print(DESCRIPTION, end="")
+        for name, (_, about) in VERBS.items():
+            print(fill(f"  {name:8} {about}", table_width(), subsequent_indent=" " * 11))
         return DONE
-    require_known("verb", verb, VERBS)
+    # Here, since neither version nor help wait for tyro.
+    from evenroad.cli.options import print_completion, read_options
+
+    try:
+        if verb.startswith("--tyro-"):
+            print_completion({name: _kind(name, ["--help"]) for name in VERBS}, arguments)
+        require_known("verb", verb, VERBS)
+        asked = read_options(verb, _kind(verb, words), words)
+    except SystemExit:
+        return DONE
+    code: int = asked.run()
+    return code
+
+
+def _kind(verb: str, words: Sequence[str]) -> type:
     module, _, name = VERBS[verb][0].partition(":")
     home = import_module(module)
     # Of `plan` there are two: one for each kind of robot.
-    kind = home.plan_type(words) if verb == "plan" else getattr(home, name)
-    if not HELP.isdisjoint(words):
-        print(help_text(verb, kind, width))
-        return DONE
-    code: int = read_options(verb, kind, words).run()
-    return code
+    kind: type = home.plan_type(words) if verb == "plan" else getattr(home, name)
+    return kind
 
 
 def _in_one_line(text: str) -> str:

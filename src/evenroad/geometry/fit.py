@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from evenroad._arrays import Floats, Ints
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad.errors import InvalidValue
 from evenroad.geometry.fit_points import Fitted, capsule_around, rough_capsule_around, volume
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
@@ -119,7 +120,7 @@ def capsules_around_mesh(vertices: Floats, triangles: Ints) -> list[Fitted]:
     they reach furthest, their centres lie.  A capsule is convex, so it contains triangles whose corners it contains:
     what touches the surface of the mesh touches a capsule.
     """
-    corners = _divided(vertices[triangles])
+    corners = divided(vertices[triangles])
     parts = [_splittable(_Part(corners, _rough(corners)))]
     found = [parts]
     while len(parts) < MOST_CAPSULES:
@@ -152,7 +153,18 @@ def _price(parts: list[_Part]) -> float:
 
 def _splittable(part: _Part) -> _Part:
     """Return the part with its best split of those that are tried."""
-    corners = part.corners
+    below = best_cut(part.corners, lambda side: volume(_rough(side)))
+    if below is None:
+        return part
+    sides = part.corners[below], part.corners[~below]
+    return _Part(part.corners, part.capsule, tuple(_Part(side, _rough(side)) for side in sides))
+
+
+def best_cut(corners: Floats, cost: Callable[[Floats], float]) -> Bools | None:
+    """Return which triangles, (t, 3, 3), are on one side of the cut whose two sides cost least; None if none is tried.
+
+    Cuts are across the coordinate axes, and the direction in which the triangles' centres reach furthest.
+    """
     centres = corners.mean(axis=1)
     _, _, axes = np.linalg.svd(centres - centres.mean(axis=0), full_matrices=len(centres) < 3)
     shown = slice(None, None, max(1, len(corners) // _LOOKED_AT))
@@ -164,20 +176,17 @@ def _splittable(part: _Part) -> _Part:
             sides = [corners[shown][side[shown]] for side in (below, ~below)]
             if min(map(len, sides)) == 0:
                 continue
-            total = sum(volume(_rough(side)) for side in sides)
+            total = sum(map(cost, sides))
             if total < least:
                 least, best = total, below
-    if best is None:
-        return part
-    halves = tuple(_Part(corners[side], _rough(corners[side])) for side in (best, ~best))
-    return _Part(corners, part.capsule, halves)
+    return best
 
 
 def _rough(corners: Floats) -> Fitted:
     return rough_capsule_around(corners.reshape(-1, 3))
 
 
-def _divided(corners: Floats) -> Floats:
+def divided(corners: Floats) -> Floats:
     """Return triangles, (t, 3, 3), of the same surface without long edges: halved at the longest, again and again."""
     longest = _LONGEST_EDGE * float(np.ptp(corners.reshape(-1, 3), axis=0).max())
     done = []

@@ -28,7 +28,7 @@ def capsule_around(points: Floats) -> Fitted:
     """
     from scipy.optimize import minimize
 
-    points = _extreme(points)
+    points = extreme(points)
     centre, frames = _starts(points)
     frame = min(frames, key=lambda start: volume(_capsule_on(points, centre, start)))
     best = _capsule_on(points, centre, frame)
@@ -96,7 +96,7 @@ def _frame(axis: Floats) -> Floats:
     return np.stack([first, second, np.cross(first, second)])
 
 
-def _extreme(points: Floats) -> Floats:
+def extreme(points: Floats) -> Floats:
     """Return the corners of the convex hull: a capsule that contains those contains all points."""
     from scipy.spatial import ConvexHull, QhullError
 

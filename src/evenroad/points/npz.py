@@ -9,7 +9,7 @@ from typing import get_args, get_type_hints
 import numpy as np
 
 from evenroad._files import atomic_write
-from evenroad._npz import Path, read_json, read_npz, reading, write_npz
+from evenroad._npz import Arrays, Path, read_json, read_npz, reading, write_npz
 from evenroad.errors import BrokenFile, shown
 from evenroad.points.pointset import Origin, PointSet
 
@@ -51,14 +51,19 @@ def load_points(path: Path) -> PointSet:
     arrays = read_npz(path, "point set", ("points", "origin", "hash"))
     if arrays["points"].dtype != np.float64:
         raise BrokenFile(f"{path}: points have dtype {arrays['points'].dtype}, expected float64")
+    loaded = points_of(path, arrays)
+    if loaded.hash != str(arrays["hash"]):
+        raise BrokenFile(f"{path}: the points do not match their hash; the file was changed or damaged")
+    return loaded
+
+
+def points_of(path: Path, arrays: Arrays) -> PointSet:
+    """Return the point set of the arrays `points` and `origin` of a file, or raise BrokenFile."""
     record = read_json(path, "origin", arrays["origin"], _ORIGIN_TYPES)
     for name, value in record.items():
         if type(value) not in _ORIGIN_TYPES[name]:
             raise BrokenFile(f"{path}: the origin's {name} cannot be {shown(value)}")
     try:
-        loaded = PointSet(arrays["points"], Origin(**record))
+        return PointSet(arrays["points"], Origin(**record))
     except (TypeError, ValueError) as error:
         raise BrokenFile(f"{path}: {error}") from error
-    if loaded.hash != str(arrays["hash"]):
-        raise BrokenFile(f"{path}: the points do not match their hash; the file was changed or damaged")
-    return loaded

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad import __version__
-from evenroad._arrays import Floats
+from evenroad._arrays import Floats, set_fields
 from evenroad.errors import InvalidValue, shown
 
 BELOW_ONE = float(np.nextafter(np.float32(1.0), np.float32(0.0)))
@@ -72,9 +72,7 @@ class PointSet:
     origin: Origin = field(default_factory=lambda: Origin(family="given", method="given"))
 
     def __post_init__(self) -> None:
-        checked = as_unit_points(self.points).copy()
-        checked.setflags(write=False)
-        object.__setattr__(self, "points", checked)
+        set_fields(self, points=as_unit_points(self.points).copy())
 
     @property
     def n(self) -> int:

@@ -36,7 +36,8 @@ def randomise(points: PointSet, symmetries: Collection[Symmetry], *, rng: RngLik
     ----------
     points : PointSet
     symmetries : collection of Symmetry
-        ``make_sampler(name).symmetries`` are those that keep the quality of its sets.
+        ``make_sampler(name).symmetries`` are those that keep the quality of its sets; the studies' ``symmetries_of``
+        tells those of sets made for an objective.
     rng : int, SeedSequence or Generator
         A passed Generator is spawned.
     """

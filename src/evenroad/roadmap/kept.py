@@ -120,8 +120,8 @@ class Roadmap:
         Nothing is computed or asked for edges until a query needs them, unless there is an `edge_cost`.
 
         With `lazy_milestones` these are not checked now but where they could lie on a path; starts and goals are then
-        joined to the nearest of all milestones, else to the nearest of the valid ones.  InvalidValue if the world has
-        another space: the points, or the distances along the edges, differ there.
+        joined to the nearest of all milestones, else to the nearest of the valid ones.  An `edge_cost` is as in
+        :func:`plan`.  InvalidValue if the world has another space: the points, or the distances, differ there.
         """
         if not self._fits(world.space):
             raise InvalidValue(f"the roadmap was built for {self.space!r}, the world has {world.space!r}")

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, fields
+from dataclasses import asdict
 
 import numpy as np
 
 from evenroad._fingerprint import Fingerprinted
-from evenroad._npz import Arrays, Path, digest, read_json, read_npz, require_array, write_npz
+from evenroad._npz import Arrays, Path, digest, read_npz, require_array, write_npz
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, NotAvailable
-from evenroad.points.pointset import Origin, PointSet
+from evenroad.points.npz import points_of
 from evenroad.roadmap.cost import EdgeCost
 from evenroad.roadmap.kept import Roadmap, WorldRoadmap
 from evenroad.roadmap.rules import rule_named
@@ -138,10 +138,10 @@ def _roadmap(path: Path, arrays: Arrays, space: Space) -> Roadmap:
         raise BrokenFile(
             f"{path}: edges must join milestones 0 .. {n - 1}, got {edges.min()} .. {edges.max()}"
         )
-    origin = read_json(path, "origin", arrays["origin"], [field.name for field in fields(Origin)])
+    points = points_of(path, arrays)
     try:
-        points, rule = PointSet(arrays["points"], Origin(**origin)), rule_named(str(arrays["rule"]))
-    except (EvenroadError, TypeError, ValueError) as error:
+        rule = rule_named(str(arrays["rule"]))
+    except EvenroadError as error:
         raise BrokenFile(f"{path}: {error}") from error
     if points.d != space.cube_dim or not np.array_equal(space.from_cube(points.points), configurations):
         raise InvalidValue(f"{path} was built for another space than {space!r}")

@@ -6,16 +6,15 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
+from evenroad._arrays import Bools, Floats
 from evenroad._checks import require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import NotAvailable, UnknownName
-from evenroad.robot import trees
-from evenroad.robot.fingerprint import fingerprint
 from evenroad.robot.kernel import scalar
 from evenroad.robot.kernel.certify import motions_certified
-from evenroad.robot.kernel.obstacles import obstacle_arrays, tested_contacts
+from evenroad.robot.kernel.lane_world import LaneWorld
+from evenroad.robot.kernel.obstacles import obstacle_rows, tested_contacts
 from evenroad.robot.kernel.robot_tables import RobotTables
 from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
 from evenroad.robot.kernel.selftest import lanes_failure
@@ -41,43 +40,37 @@ twice that clear of contact, so that it refuses hardly a motion that touches not
 class ArmWorld:
     """The configurations in which a robot touches neither a scene's obstacles nor itself.
 
-    Configurations hold the values of the robot's group, in its order [rad or m].  Links are tested against
-    each other as the capsules that they are, in the robot's pairs; against obstacles a capsule is replaced
-    by spheres that cover it, of at most 1.10 times its radius, so that a verdict is never free where the
-    capsule touches (`excess` says how much larger they are).
+    Configurations hold the values of the robot's group, in its order [rad or m].  Links are tested against each other
+    as capsules, in the robot's pairs, and where these touch as the robot's convex hulls, if it has any; against
+    obstacles a capsule is replaced by spheres that cover it, of at most 1.10 times its radius (`excess`), so that a
+    verdict is never free where the capsule touches.
 
-    A motion is divided into ``n = ceil(distance / resolution)`` segments and free if all n + 1 ends of
-    segments are.  What lies between two states is not seen: `recheck` proves the motions of a path with no gap,
-    and in a :class:`evenroad.robot.certified.CertifiedWorld` every motion is proved.
+    A motion is divided into ``n = ceil(distance / resolution)`` segments and free if all n + 1 ends of segments are.
+    What lies between two states is not seen: `recheck` proves the motions of a path with no gap.
 
     Parameters
     ----------
-    robot : Robot
-        The robot.
-    scene : Scene
-        What stands around it.
+    robot, scene : Robot, Scene
+        The robot, and what stands around it.
     resolution : float
-        Largest distance between neighbouring states of a motion, > 0, in the Euclidean metric of
-        configurations [rad].
+        Largest Euclidean distance between neighbouring states of a motion, > 0 [rad].
     backend : {"auto", "lanes", "scalar"}
-        How verdicts are computed: sixteen at once in single precision, with radii enlarged by some micrometres to
-        stay on the safe side, or one after the other in double precision.  "auto" takes the lanes where a test,
-        made once a process, finds that they work; the attribute then says which it is.
+        Sixteen verdicts at once in single precision, with radii enlarged by some micrometres to stay on the safe
+        side, or one after the other in double precision; "auto" is the lanes where a test finds that they work.
 
     Attributes
     ----------
     bounds : float64 ndarray, shape (3, dim)
         Low, high and period of each joint; a period of inf where it does not wrap.
-    robot_tables : RobotTables
-        What compiled code knows of the robot alone; made once a robot, however many scenes it is put into.
-    tables : ArmTables
-        What it reads of the robot in this scene.
+    robot_tables, tables : RobotTables, ArmTables
+        What compiled code knows of the robot alone, made once a robot, and of the robot in this scene.
+    lanes : LaneWorld
+        The same for programs that check sixteen configurations at once.
 
     Raises
     ------
     InvalidValue
-        If `resolution` is not such a number, a joint of the group has no finite range, or robot and scene
-        are not sound.
+        If `resolution` is no such number, a joint of the group has no finite range, or robot or scene is not sound.
     UnknownName
         If the robot or the scene names something that is not there, or there is no such backend.
     NotAvailable
@@ -89,19 +82,22 @@ class ArmWorld:
     resolution: float = 0.05
     backend: str = "auto"
     _space: JointSpace = field(init=False, repr=False)
-    bounds: npt.NDArray[np.float64] = field(init=False, repr=False)
+    bounds: Floats = field(init=False, repr=False)
     robot_tables: RobotTables = field(init=False, repr=False)
     tables: ArmTables = field(init=False, repr=False)
+    lanes: LaneWorld = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "resolution", require_positive("resolution", self.resolution))
-        space, bounds, longest, of_robot = prepared(self.robot)
+        space, longest, of_robot, by_joint = prepared(self.robot)
         require_few_segments(self.resolution, longest / self.resolution)
         tested = tested_contacts(of_robot.capsules, self.robot.links, self.scene)
+        tables = arm_tables(of_robot, obstacle_rows(self.scene), tested)
         object.__setattr__(self, "_space", space)
-        object.__setattr__(self, "bounds", bounds)
+        object.__setattr__(self, "bounds", by_joint[: 3 * space.dim].reshape(3, space.dim))
         object.__setattr__(self, "robot_tables", of_robot)
-        object.__setattr__(self, "tables", arm_tables(of_robot, obstacle_arrays(self.scene), tested))
+        object.__setattr__(self, "tables", tables)
+        object.__setattr__(self, "lanes", LaneWorld(tables.lanes, by_joint, self.resolution))
         object.__setattr__(self, "backend", _chosen(self.backend))
 
     @property
@@ -125,13 +121,10 @@ class ArmWorld:
         """How many spheres stand for the capsules where obstacles are concerned."""
         return sum(len(capsule.cover.places) for capsule in self.robot_tables.capsules)
 
-    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def valid(self, q: Floats) -> Bools:
         """Return which configurations, (n, dim), are within the limits and touch nothing: (n,).
 
-        Raises
-        ------
-        InvalidValue
-            If `q` has another shape or an entry that is not finite.
+        Raises InvalidValue if `q` has another shape or an entry that is not finite.
         """
         configurations = as_batch("q", q, self._space.dim)
         if self.fixed_contact is not None:
@@ -139,28 +132,27 @@ class ArmWorld:
         tables = self.tables
         if self.backend == "scalar":
             return scalar.configurations_free(configurations, self.bounds, tables.ints, tables.floats)
-        batch, (address, _) = trees.lanes()
-        return batch.configurations_free(configurations, address, self.bounds, tables.lanes)
+        # Imported late: where the vector type cannot even be defined, all else still works.
+        from evenroad.robot.kernel.batch import configurations_free
 
-    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        return configurations_free(self.lanes, configurations)
+
+    def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
 
-        Raises
-        ------
-        InvalidValue
-            As `valid`, or if the two differ in length.
+        Raises InvalidValue as `valid`, or if the two differ in length.
         """
         return self._motions_free(a, b, 0.0)
 
-    def _motions_free(
-        self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64], tolerance: float
-    ) -> npt.NDArray[np.bool_]:
+    def _motions_free(self, a: Floats, b: Floats, tolerance: float) -> Bools:
         """Return which motions are free at their states and, by the lanes, proved where `tolerance` is > 0."""
         first, second = as_batch_pair(a, b, self._space.dim)
         if self.fixed_contact is not None:
             return np.zeros(len(first), dtype=np.bool_)
         if self.backend == "lanes":
-            return trees.lanes()[0].motions_free(first, second, tolerance, *trees.lane_arguments(self))
+            from evenroad.robot.kernel.batch import motions_free
+
+            return motions_free(self.lanes, first, second, tolerance)
         tables = self.tables
         return scalar.motions_free(first, second, self.resolution, self.bounds, tables.ints, tables.floats)
 
@@ -169,49 +161,30 @@ class ArmWorld:
         """``certified``: what `recheck` calls free is proved to be, everywhere between its ends."""
         return "certified"
 
-    def recheck(self, path: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def recheck(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, dim), are proved free: (p - 1,).
 
-        The method is that of :mod:`evenroad.robot.certified`.  Stricter than testing states, however many: no stretch
-        of a motion is left open.  A motion is refused, too, that comes within some micrometres of contact, or for which
-        2^15 intervals are not enough.
-
-        Raises
-        ------
-        InvalidValue
-            As `valid`.
+        The method is that of :mod:`evenroad.robot.certified`: no stretch of a motion is left open.  Refused is, too,
+        what comes within some micrometres of contact, or needs more than 2^15 intervals.  Raises as `valid`.
         """
         waypoints = as_batch("path", path, self._space.dim)
         return self.motion_certified(waypoints[:-1], waypoints[1:], RECHECK_TOLERANCE)
 
-    def motion_certified(
-        self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64], tolerance: float
-    ) -> npt.NDArray[np.bool_]:
+    def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> Bools:
         """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are proved free: (m,).
 
-        Motions are tested at their states first, which finds most of the blocked ones fast.
-
-        Parameters
-        ----------
-        a, b : ndarrays, shape (m, dim)
-            Ends [rad or m].
-        tolerance : float
-            Where a motion comes nearer than about this to contact it is not called free, > 0 [m].
-
-        Raises
-        ------
-        InvalidValue
-            As `motion_valid`, or if `tolerance` is not such a number.
+        What comes nearer than about `tolerance` to contact is not called free, > 0 [m].  Raises as `motion_valid`.
         """
         tolerance = require_positive("tolerance", tolerance)
         if self.backend == "lanes":
             return self._motions_free(a, b, tolerance)
         first, second = as_batch_pair(a, b, self._space.dim)
+        # Testing states finds most of the blocked ones fast.
         proved = self.motion_valid(first, second)
         rows, tables = np.flatnonzero(proved), self.tables
         proved[rows] = motions_certified(
-            _read_only(first[rows]),
-            _read_only(second[rows]),
+            as_batch("a", first[rows], self._space.dim),
+            as_batch("b", second[rows], self._space.dim),
             tolerance,
             self.bounds,
             tables.ints,
@@ -228,8 +201,8 @@ class ArmWorld:
 
     def connect(
         self,
-        start: npt.NDArray[np.float64],
-        goals: npt.NDArray[np.float64],
+        start: Floats,
+        goals: Floats,
         *,
         most_motions: int = MOST_MOTIONS,
         seconds: float = SECONDS,
@@ -242,8 +215,8 @@ class ArmWorld:
 
     def connect_anew(
         self,
-        start: npt.NDArray[np.float64],
-        goals: npt.NDArray[np.float64],
+        start: Floats,
+        goals: Floats,
         *,
         variant: int,
         most_motions: int = MOST_MOTIONS,
@@ -253,7 +226,7 @@ class ArmWorld:
         sequence = shifted_cube_points(self._space.dim, variant)
         return connect(self, start, goals, most_motions=most_motions, seconds=seconds, sequence=sequence)
 
-    def shorten(self, path: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], int]:
+    def shorten(self, path: Floats) -> tuple[Floats, int]:
         """Return a path that is not longer and whose new motions are proved free, and how many were looked at.
 
         See :func:`evenroad.robot.trees.shorten`.
@@ -262,12 +235,10 @@ class ArmWorld:
 
     def fingerprint(self) -> str:
         """Return a text that two worlds share whose robot, scene and resolution are the same."""
-        return fingerprint_of("arm", fingerprint(self.robot), fingerprint(self.scene), self.resolution)
+        return fingerprint_of("arm", self.robot, self.scene, self.resolution)
 
-    def explain(self, q: npt.NDArray[np.float64]) -> str:
-        """Return in words why one configuration, (dim,), is not free: the joint outside its limits and by
-        how much, or the two bodies that touch.
-        """
+    def explain(self, q: Floats) -> str:
+        """Return in words why one configuration, (dim,), is not free: a joint outside its limits, or what touches."""
         batch = as_batch("q", np.asarray(q, dtype=np.float64)[np.newaxis], self._space.dim)
         # To itself: brings wrapping joints into their ranges.
         row = self._space.interpolate(batch, batch, 0.0)[0]
@@ -286,7 +257,7 @@ class ArmWorld:
         capsule, obstacle = self.tables.fixed_contact
         return self.robot_tables.capsules[capsule].link, self.scene.obstacles[obstacle].name
 
-    def _touching(self, q: npt.NDArray[np.float64]) -> tuple[str, str] | None:
+    def _touching(self, q: Floats) -> tuple[str, str] | None:
         """Return two bodies that touch, or come as near as what single precision may call touching."""
         of_robot, tables, of_capsules = self.robot_tables, self.tables, self.robot_tables.capsules
         # A copy: code would be compiled anew for an array that cannot be written to.
@@ -313,10 +284,3 @@ def _chosen(backend: str) -> str:
     if failure is not None and backend == "lanes":
         raise NotAvailable(f"the lanes do not work on this machine ({failure}); backend='scalar' does")
     return "lanes" if failure is None else "scalar"
-
-
-def _read_only(array: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """Return a contiguous array that cannot be written to: compiled code is made anew for each mix of the two."""
-    array = np.ascontiguousarray(array)
-    array.setflags(write=False)
-    return array

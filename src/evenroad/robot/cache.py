@@ -4,33 +4,43 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from evenroad import __version__
 from evenroad._files import atomic_write, cache_folder
 from evenroad.errors import BrokenFile
-from evenroad.geometry.shapes import Capsule
+from evenroad.geometry.hulls import Hull
+from evenroad.geometry.shapes import Capsule, Mesh
 from evenroad.robot.joint import Joint, Mimic
 from evenroad.robot.robot import LinkBody, Robot, RobotModel
-from evenroad.robot.urdf_xml import find_mesh, mesh_names, read_urdf_xml
+from evenroad.robot.urdf import Urdf
 
-_FORMAT = 6
+_FORMAT = 10
 """Counted up when the same files would give another robot, or the files of this cache look different."""
 
 
-def key_of(urdf: Path, srdf: Path | None, bodies: Path | None, group: str | Sequence[str] | None) -> str:
-    """Return the hash of all that decides the robot: the content of its files, meshes included, and the group.
+def key_of(urdf: Urdf, others: Iterable[tuple[str, Path | None]], group: str | Sequence[str] | None) -> str:
+    """Return the hash of all that decides the robot: what its file says, the content of meshes and others, the group.
 
-    Raises BrokenFile, InvalidValue if a file is missing, or the URDF broken: a cached robot is never returned for
-    files that are gone.
+    The others have a name for errors: BrokenFile if one is missing, as a cached robot is never returned for files that
+    are gone.
     """
-    digest = hashlib.sha256(f"{_FORMAT}|{__version__}|{urdf.name}|{group!r}".encode())
-    for part in _parts(urdf, srdf, bodies):
-        digest.update(hashlib.sha256(part).digest())
+    digest = hashlib.sha256(f"{_FORMAT}|{__version__}|{urdf!r}|{group!r}".encode())
+    sources = [shape.source for shape in urdf.shapes if isinstance(shape, Mesh)]
+    meshes = [("mesh", source) for source in sources if isinstance(source, Path)]
+    for what, path in (*meshes, *others):
+        try:
+            # An empty file is refused where none at all is fine.
+            content = b"absent" if path is None else b"present" + path.read_bytes()
+        except OSError as error:
+            raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
+        digest.update(hashlib.sha256(content).digest())
     return digest.hexdigest()
 
 
@@ -47,19 +57,7 @@ def keep(key: str, model: RobotModel) -> None:
     with suppress(OSError):
         file.parent.mkdir(parents=True, exist_ok=True)
         with atomic_write(file) as stream:
-            stream.write(json.dumps(asdict(model)).encode())
-
-
-def _parts(urdf: Path, srdf: Path | None, bodies: Path | None) -> Iterator[bytes]:
-    root = read_urdf_xml(urdf)
-    files = [("robot", urdf), ("SRDF", srdf), ("file of bodies", bodies)]
-    files += [("mesh", find_mesh(name, urdf, link)) for link, name in mesh_names(root)]
-    for what, path in files:
-        try:
-            # An empty file is refused where none at all is fine.
-            yield b"absent" if path is None else b"present" + path.read_bytes()
-        except OSError as error:
-            raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
+            stream.write(json.dumps(asdict(model), default=np.ndarray.tolist).encode())
 
 
 def _file(key: str) -> Path:
@@ -67,37 +65,26 @@ def _file(key: str) -> Path:
 
 
 def _model(record: dict[str, Any]) -> RobotModel:
-    return RobotModel(
-        robot=robot_of(record["robot"]),
-        bodies=tuple(LinkBody(**body | {"shapes": tuple(body["shapes"])}) for body in record["bodies"]),
-        pairs_from=record["pairs_from"],
-        dropped=tuple((first, second, reason) for first, second, reason in record["dropped"]),
-        drawn_only=tuple(record["drawn_only"]),
-        always_touching=tuple((first, second) for first, second in record["always_touching"]),
-    )
+    robot = record.pop("robot")
+    bodies = tuple(LinkBody(**_with_tuples(body)) for body in record.pop("bodies"))
+    return RobotModel(robot_of(robot), bodies, **_with_tuples(record))
 
 
 def robot_of(record: dict[str, Any]) -> Robot:
     """Return the robot that ``asdict`` made this record of, read back from JSON."""
+    joints = [joint | {"mimic": joint["mimic"] and Mimic(**joint["mimic"])} for joint in record.pop("joints")]
+    hulls = [Hull(each["points"], each["radius"], each["link"]) for each in record.pop("hulls")]
+    capsules = [(each["a"], each["b"], each["radius"], each["link"]) for each in record.pop("capsules")]
     return Robot(
-        name=record["name"],
-        links=tuple(record["links"]),
-        joints=tuple(_joint(joint) for joint in record["joints"]),
-        capsules=tuple(
-            Capsule(capsule["a"], capsule["b"], capsule["radius"], link=capsule["link"])
-            for capsule in record["capsules"]
-        ),
-        pairs=tuple((first, second) for first, second in record["pairs"]),
-        group=tuple(record["group"]),
-        held=record["held"],
-        states=record["states"],
+        joints=tuple(Joint(**_with_tuples(joint)) for joint in joints),
+        capsules=tuple(Capsule(a, b, radius, link=link) for a, b, radius, link in capsules),
+        hulls=tuple(hulls),
+        **_with_tuples(record),
     )
 
 
-def _joint(record: dict[str, Any]) -> Joint:
-    mimic = record["mimic"]
-    return Joint(**_with_tuples(record) | {"mimic": None if mimic is None else Mimic(**mimic)})
-
-
-def _with_tuples(record: dict[str, Any]) -> dict[str, Any]:
-    return {key: tuple(value) if isinstance(value, list) else value for key, value in record.items()}
+def _with_tuples(value: Any) -> Any:
+    """Return a record with tuples where JSON has lists."""
+    if isinstance(value, dict):
+        return {key: _with_tuples(entry) for key, entry in value.items()}
+    return tuple(map(_with_tuples, value)) if isinstance(value, list) else value

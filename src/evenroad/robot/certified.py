@@ -14,8 +14,9 @@ If at share t every capsule is farther than ``h D_c`` from every obstacle, and e
 ``h D_ce``, then nothing touches between the shares t - h and t + h.  So the motion's middle is tested with those
 margins, h one half; where that fails the motion is halved, and so on, into 2^15 pieces at most.  (The idea is
 that of F. Schwarzer, M. Saha and J.-C. Latombe, Adaptive Dynamic Collision Checking, 2005.)  Distances are those
-of the model: exact between capsules, and to obstacles from spheres that cover them.  The lanes prove sixteen pieces
-at once in single precision, with bodies larger by what that may lose; the backend "scalar" works in double precision.
+of the model: exact between capsules, and hulls, and to obstacles from spheres that cover them.  The lanes prove
+sixteen pieces at once in single precision, with bodies larger by what that may lose; the backend "scalar" works in
+double precision.
 
 "No" means blocked, or that somewhere the clearance is too small to tell.
 """
@@ -24,9 +25,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-import numpy.typing as npt
-
+from evenroad._arrays import Bools, Floats
 from evenroad._checks import require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.robot.arm_world import ArmWorld
@@ -37,22 +36,10 @@ from evenroad.space.batch import as_batch
 
 @dataclass(frozen=True, eq=False)
 class CertifiedWorld:
-    """An arm's world whose motions are free only where that is proved, with no gap between states.
+    """An arm's world whose motions are free only where that is proved: for roadmaps whose every edge is.
 
-    For a roadmap whose every edge is proved, plan in this world instead of the other.
-
-    Parameters
-    ----------
-    world : ArmWorld
-        The robot and its scene.
-    tolerance : float
-        Where a motion comes nearer than about this to contact it is not called free, > 0 [m].  Smaller ones
-        cost more time for motions that pass close by.
-
-    Raises
-    ------
-    InvalidValue
-        If `tolerance` is not such a number.
+    What comes nearer to contact than about `tolerance` is not called free, > 0 [m]; smaller ones cost more time for
+    motions that pass close by.
     """
 
     world: ArmWorld
@@ -66,18 +53,12 @@ class CertifiedWorld:
         """The space of the world inside."""
         return self.world.space
 
-    def valid(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def valid(self, q: Floats) -> Bools:
         """Return what the world inside says of configurations, (n, dim): (n,)."""
         return self.world.valid(q)
 
-    def motion_valid(self, a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-        """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are proved free: (m,).
-
-        Raises
-        ------
-        InvalidValue
-            As for :class:`ArmWorld`.
-        """
+    def motion_valid(self, a: Floats, b: Floats) -> Bools:
+        """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are proved free: (m,)."""
         return self.world.motion_certified(a, b, self.tolerance)
 
     @property
@@ -85,23 +66,23 @@ class CertifiedWorld:
         """``certified``, as every motion is here."""
         return "certified"
 
-    def recheck(self, path: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def recheck(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, dim), are proved free: (p - 1,)."""
         waypoints = as_batch("path", path, self.space.dim)
         return self.motion_valid(waypoints[:-1], waypoints[1:])
 
-    def shorten(self, path: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], int]:
+    def shorten(self, path: Floats) -> tuple[Floats, int]:
         """Return a path that is not longer and proved free here, and how many motions were looked at.
 
         By :func:`evenroad.robot.trees.shorten`, which keeps 1 mm away; with a larger `tolerance` the path may stay.
         """
-        shorter, motions = shorten(self.world, path, proved=True)
+        shorter, motions = shorten(self.world, path)
         return (shorter if self.recheck(shorter).all() else path), motions
 
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of the world inside and the tolerance: equal for worlds of the same verdicts."""
         return fingerprint_of("certified", self.world.fingerprint(), self.tolerance)
 
-    def explain(self, q: npt.NDArray[np.float64]) -> str:
+    def explain(self, q: Floats) -> str:
         """Return in words why one configuration, (dim,), is not free."""
         return self.world.explain(q)

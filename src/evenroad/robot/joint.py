@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Literal
 
 from evenroad.errors import BrokenFile, InvalidValue
@@ -32,16 +31,12 @@ class Joint:
 
     Attributes
     ----------
-    name : str
-        Name of the joint.
     kind : {"revolute", "continuous", "prismatic", "fixed"}
         Rotates about, or slides along, its axis; or neither.
     parent, child : str
         Names of the links it joins.
-    xyz : tuple of 3 floats
-        Origin of the joint's frame in the parent link's [m].
-    rotation : tuple of 9 floats
-        Rotation from the joint's frame to the parent link's, row by row.  The child's frame is the joint's at value 0.
+    xyz, rotation : tuples of 3 and 9 floats
+        The joint's frame in the parent link's: origin [m], rotation row by row.  The child's frame is the joint's at 0.
     axis : tuple of 3 floats
         Unit vector in the joint's frame; of no meaning where fixed.
     lower, upper : float
@@ -89,7 +84,7 @@ def require_within(joint: Joint, value: float, what: str) -> None:
     )
 
 
-def with_direct_mimics(joints: Sequence[Joint], path: Path) -> list[Joint]:
+def with_direct_mimics(joints: Sequence[Joint], where: str) -> list[Joint]:
     """Return the joints with every mimic following a joint that is no mimic itself.
 
     Raises BrokenFile if a mimic follows a fixed joint, or mimics follow each other in a circle.
@@ -101,10 +96,10 @@ def with_direct_mimics(joints: Sequence[Joint], path: Path) -> list[Joint]:
         while followed.mimic is not None:
             name = followed.mimic.joint
             if by_name[name].kind == "fixed":
-                raise BrokenFile(f"joint {followed.name!r} in {path} mimics {name!r}, which is fixed")
+                raise BrokenFile(f"joint {followed.name!r} in {where} mimics {name!r}, which is fixed")
             if name in seen:
                 raise BrokenFile(
-                    f"joints of {path} mimic each other in a circle: {' -> '.join([*seen, name])}"
+                    f"joints of {where} mimic each other in a circle: {' -> '.join([*seen, name])}"
                 )
             offset += multiplier * followed.mimic.offset
             multiplier *= followed.mimic.multiplier
@@ -118,14 +113,9 @@ def with_direct_mimics(joints: Sequence[Joint], path: Path) -> list[Joint]:
 def within_limits_of_mimics(joints: Sequence[Joint]) -> list[Joint]:
     """Return the joints with the leaders' limits narrowed to where all of their mimics stay within their own.
 
-    A continuous joint whose mimic has limits becomes a revolute one: it cannot rotate for ever.  Limits of a mimic
-    that would leave its leader no range are taken for a mistake and ignored: a gripper's mirrored finger often has
-    those of the other finger, without the sign.
-
-    Parameters
-    ----------
-    joints : sequence of Joint
-        Mimics follow joints that are no mimics (see :func:`with_direct_mimics`).
+    A continuous joint whose mimic has limits becomes a revolute one.  Limits of a mimic that would leave its leader no
+    range are taken for a mistake and ignored: a gripper's mirrored finger often has those of the other finger, without
+    the sign.  Mimics follow joints that are no mimics (see :func:`with_direct_mimics`).
     """
     narrowed = {joint.name: joint for joint in joints}
     for follower in joints:

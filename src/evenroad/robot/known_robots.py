@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import fields
 from functools import lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad._arrays import Floats
+from evenroad._checks import require_known
+from evenroad.errors import InvalidValue
 from evenroad.robot.kernel.robot_tables import RobotTables, robot_tables
 from evenroad.robot.robot import Robot
 from evenroad.space import JointSpace
@@ -18,20 +20,15 @@ from evenroad.space import JointSpace
 def joint_space(robot: Robot) -> JointSpace:
     """Return the space of a robot's group: ranges in radians and metres, continuous joints on [-pi, pi) wrap.
 
-    Raises
-    ------
-    InvalidValue
-        If the group is empty, names a joint twice, or holds a joint that is fixed, a mimic, or without range.
-    UnknownName
-        If it names a joint that is not there.
+    Raises UnknownName if the group names a joint that is not there; InvalidValue if it is empty, names a joint twice,
+    or holds a joint that is fixed, a mimic, or without range.
     """
     if not robot.group or len(set(robot.group)) < len(robot.group):
         raise InvalidValue(f"the group must name one joint or more, each once, got {robot.group!r}")
     joints = {joint.name: joint for joint in robot.joints}
     low, high, wrapping = [], [], []
     for name in robot.group:
-        if name not in joints:
-            raise UnknownName.among("joint", name, joints)
+        require_known("joint", name, joints)
         joint = joints[name]
         if joint.kind == "fixed" or joint.mimic is not None:
             raise InvalidValue(f"joint {name!r} is fixed or follows another: it cannot be planned for")
@@ -47,35 +44,46 @@ def joint_space(robot: Robot) -> JointSpace:
     return JointSpace(low, high, wrapping)
 
 
-@dataclass(frozen=True, eq=False)
-class _Known:
-    """A robot as a key: by the values that its space and its tables are made of."""
+class Prepared(NamedTuple):
+    """What is a robot's in every scene: `longest` bounds the length of a motion, `by_joint` is as in ``LaneWorld``."""
 
-    robot: Robot
-    key: tuple[object, ...]
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Known) and self.key == other.key
-
-    def __hash__(self) -> int:
-        return hash(self.key)
+    space: JointSpace
+    longest: float
+    tables: RobotTables
+    by_joint: Floats
 
 
-def prepared(robot: Robot) -> tuple[JointSpace, npt.NDArray[np.float64], float, RobotTables]:
-    """Return what is a robot's in every scene: its space, bounds, the longest motion and its tables; kept."""
-    values = (robot.name, robot.links, robot.joints, robot.capsules, robot.pairs, robot.group)
-    known = _Known(robot, (*values, tuple(sorted(robot.held.items()))))
+_recent: dict[int, tuple[Robot, dict[str, float], Prepared]] = {}
+"""By identity, which costs less to look up than a key of a robot's values; a dictionary is the only part of a robot
+that can change."""
+
+_FIELDS = tuple(each.name for each in fields(Robot) if each.name not in ("states", "held"))
+
+
+def prepared(robot: Robot) -> Prepared:
+    """Return what is a robot's in every scene; kept."""
+    recent = _recent.get(id(robot))
+    if recent is not None and recent[0] is robot and recent[1] == robot.held:
+        return recent[2]
+    values = tuple(getattr(robot, name) for name in _FIELDS)
+    held = tuple(sorted(robot.held.items()))
     try:
-        return _kept(known)
+        found = _kept(values, held)
     except TypeError:
         # Of lists in place of tuples: no key.
-        return _kept.__wrapped__(known)
+        return _kept.__wrapped__(values, held)
+    if len(_recent) >= 32:
+        _recent.clear()
+    _recent[id(robot)] = robot, dict(robot.held), found
+    return found
 
 
 @lru_cache(maxsize=32)
-def _kept(known: _Known) -> tuple[JointSpace, npt.NDArray[np.float64], float, RobotTables]:
-    space = joint_space(known.robot)
-    low, high = np.array(space.low), np.array(space.high)
-    bounds = np.stack([low, high, space.flat.period])
-    bounds.setflags(write=False)
-    return space, bounds, float(np.linalg.norm(high - low)), robot_tables(known.robot)
+def _kept(values: tuple[Any, ...], held: tuple[tuple[str, float], ...]) -> Prepared:
+    robot = Robot(**dict(zip(_FIELDS, values, strict=True)), held=dict(held))
+    space = joint_space(robot)
+    low, high, tables = np.array(space.low), np.array(space.high), robot_tables(robot)
+    arms, pair_arms = (np.ravel(speeds.T) for speeds in (tables.speeds, tables.pair_speeds))
+    by_joint = np.concatenate([low, high, space.flat.period, arms, pair_arms])
+    by_joint.setflags(write=False)
+    return Prepared(space, float(np.linalg.norm(high - low)), tables, by_joint)

@@ -1,24 +1,28 @@
-"""Loading a robot: a shipped one by its name, or any URDF."""
+"""Loading a robot: a shipped one by its name, or any URDF, xacro or MJCF."""
 
 from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TypedDict, Unpack
 
 from evenroad._checks import require_known, require_positive
 from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.geometry.fit import fit_capsules
 from evenroad.geometry.fit_points import union_volume
-from evenroad.geometry.shapes import Capsule
+from evenroad.geometry.hulls import Piece, piece_of
+from evenroad.geometry.shapes import Capsule, Mesh
 from evenroad.robot.cache import cached, keep, key_of
-from evenroad.robot.pairs import always_touching, computed_pairs, pairs_without
+from evenroad.robot.mjcf import read_mjcf
+from evenroad.robot.pairs import self_pairs
 from evenroad.robot.robot import LinkBody, Robot, RobotModel
-from evenroad.robot.srdf import Srdf, choose_group, read_srdf
+from evenroad.robot.srdf import choose_group, chosen_states, read_srdf
 from evenroad.robot.urdf import Urdf, read_urdf
+from evenroad.robot.urdf_xml import RobotFile
 
 DATA = Path(__file__).parent / "data"
 ROBOTS = ("arm7", "ur5")
@@ -27,18 +31,25 @@ ROBOTS = ("arm7", "ur5")
 PathLike = str | os.PathLike[str]
 
 
-def load_robot(
-    source: PathLike,
-    *,
-    srdf: PathLike | None = None,
-    group: str | Sequence[str] | None = None,
-    bodies: PathLike | None = None,
-) -> Robot:
+class RobotOptions(TypedDict, total=False):
+    """How a robot is made of its file; see :func:`load_model`."""
+
+    srdf: PathLike | None
+    group: str | Sequence[str] | None
+    bodies: PathLike | None
+    use_visuals: bool
+    packages: Mapping[str, PathLike]
+    arguments: Mapping[str, str]
+    progress: Callable[[int, int, str], None] | None
+
+
+def load_robot(source: PathLike, **options: Unpack[RobotOptions]) -> Robot:
     """Return a robot; see :func:`load_model`, which also tells how it was made.
 
-    Warns of pairs of links that touch in every sampled configuration though they are tested.
+    Warns of pairs of links that touch in every sampled configuration though they are tested, and of robots that are in
+    self-collision in all of them.
     """
-    model = load_model(source, srdf=srdf, group=group, bodies=bodies)
+    model = load_model(source, **options)
     if model.always_touching:
         pairs = ", ".join(f"{first} and {second}" for first, second in model.always_touching)
         warnings.warn(
@@ -46,6 +57,8 @@ def load_robot(
             " SRDF, or give smaller bodies",
             stacklevel=2,
         )
+    elif model.never_free:
+        warnings.warn(f"{model.robot.name!r}: {model.never_free}", stacklevel=2)
     return model.robot
 
 
@@ -55,26 +68,36 @@ def load_model(
     srdf: PathLike | None = None,
     group: str | Sequence[str] | None = None,
     bodies: PathLike | None = None,
+    use_visuals: bool = False,
+    packages: Mapping[str, PathLike] | None = None,
+    arguments: Mapping[str, str] | None = None,
+    progress: Callable[[int, int, str], None] | None = None,
 ) -> RobotModel:
     """Return a robot and how it was made from its files.
 
-    What was made is kept in the user's cache, by the content of all files (meshes, too).
-
-    A link without collision geometry has no body, and nothing is found to touch it.  Where the URDF draws such a link
-    that is no error, since sensors and frames are often drawn and nothing more, but the model names it, as do
-    ``evenroad plan`` and ``evenroad robot``.
+    What was made is kept in the user's cache, by the content of all files (meshes, too).  Nothing is found to touch a
+    link without collision geometry; the model names such links, and what was read otherwise than it stands.
 
     Parameters
     ----------
     source : str or path-like
-        A URDF file; or, where there is no such file, the name of a shipped robot: ``ur5``, ``arm7``.
+        A URDF, xacro (extra ``[xacro]``) or MJCF (extra ``[mjcf]``); or, where there is no such file, the name of a
+        shipped robot: ``ur5``, ``arm7``.
     srdf : str or path-like, optional
         Its SRDF: groups, named states, pairs that need no test.  ``ur5`` has one of its own.
     group : str or sequence of str, optional
-        A group of the SRDF, or names of joints (one text: with commas).  Default: the SRDF's only group, else every
-        joint that moves and is no mimic.  The configuration is in the order of the URDF.
+        Groups of the SRDF and joints (one text: with commas), which are planned for in this order.  Default: the
+        SRDF's only group, else every joint that moves and is no mimic, in the order of the file.
     bodies : str or path-like, optional
         YAML file of capsules and spheres, in place of those fitted (see :func:`read_bodies`).
+    use_visuals : bool
+        Links without collision geometry get what is drawn of them.
+    packages : mapping of str to path-like, optional
+        Folders of ROS packages, beside those that are found.
+    arguments : mapping of str to str, optional
+        Of a xacro.
+    progress : callable, optional
+        Called with step, steps and a text before each body is fitted; not at all for a robot from the cache.
 
     Raises
     ------
@@ -86,24 +109,36 @@ def load_model(
     InvalidValue
         If a number is not one, or out of its range.
     NotAvailable
-        If a mesh needs a library that is not installed.
+        If an extra is needed that is not installed.
     """
     path, own_srdf = find_robot(source)
+    file = RobotFile(
+        path,
+        use_visuals,
+        tuple((name, os.fspath(folder)) for name, folder in sorted((packages or {}).items())),
+        tuple(sorted((arguments or {}).items())),
+    )
+    urdf = read_robot(file)
     srdf_path = own_srdf if srdf is None else Path(srdf)
     bodies_path = None if bodies is None else Path(bodies)
-    key = key_of(path, srdf_path, bodies_path, group)
-    kept = cached(key)
-    if kept is not None:
-        return kept
-    model = _build(path, srdf_path, bodies_path, group)
-    # Files may have been saved while they were read: then nobody knows of which of their contents this is made.
-    if key_of(path, srdf_path, bodies_path, group) == key:
-        keep(key, model)
-    return model
+    others = (("SRDF", srdf_path), ("file of bodies", bodies_path))
+    key = key_of(urdf, others, group)
+    model = cached(key)
+    if model is None:
+        model = _build(file, urdf, srdf_path, bodies_path, group, progress)
+        # Files may have been saved while they were read: then nobody knows of which of their contents this is made.
+        if key_of(urdf, others, group) == key:
+            keep(key, model)
+    return replace(model, file=file)
+
+
+def read_robot(file: RobotFile) -> Urdf:
+    """Return what the file of a robot says, an MJCF by its suffix ``.xml`` or ``.mjcf``."""
+    return read_mjcf(file) if file.path.suffix in (".xml", ".mjcf") else read_urdf(file)
 
 
 def find_robot(source: PathLike) -> tuple[Path, Path | None]:
-    """Return the URDF, and for a shipped robot its SRDF if it has one.
+    """Return the file, and for a shipped robot its SRDF if it has one.
 
     Raises UnknownName if there is neither such a file nor such a robot.
     """
@@ -119,15 +154,20 @@ def find_robot(source: PathLike) -> tuple[Path, Path | None]:
 
 
 def _build(
-    path: Path, srdf_path: Path | None, bodies_path: Path | None, group: str | Sequence[str] | None
+    file: RobotFile,
+    urdf: Urdf,
+    srdf_path: Path | None,
+    bodies_path: Path | None,
+    group: str | Sequence[str] | None,
+    progress: Callable[[int, int, str], None] | None,
 ) -> RobotModel:
-    urdf = read_urdf(path)
     srdf = None if srdf_path is None else read_srdf(srdf_path, urdf)
     chosen = choose_group(urdf, srdf, group)
     given = {} if bodies_path is None else read_bodies(bodies_path, urdf.links)
-    capsules = _capsules(urdf, given)
+    capsules = _capsules(urdf, given, progress)
     if not capsules:
-        raise BrokenFile(f"{path} has no collision geometry at all: the robot would never collide")
+        hint = "; --use-visuals takes what is drawn" if urdf.drawn_only else ""
+        raise BrokenFile(f"{file.path} has no collision geometry at all: the robot would never collide{hint}")
     robot = Robot(
         urdf.name,
         urdf.links,
@@ -135,27 +175,48 @@ def _build(
         tuple(capsule for link in urdf.links for capsule in capsules.get(link, ())),
         pairs=(),
         group=chosen,
-        states={} if srdf is None else _states(srdf, chosen, group),
+        states={} if srdf is None else chosen_states(srdf, chosen, group),
     )
-    if srdf is not None and srdf.disabled:
-        pairs, pairs_from = pairs_without(robot, srdf.disabled), "SRDF"
-        touching = tuple(always_touching(robot, pairs.tested))
-    else:
-        pairs, pairs_from, touching = computed_pairs(robot), "computed", ()
+    disabled = None if srdf is None or not srdf.disabled else srdf.disabled
+    pairs = self_pairs(robot, _pieces(urdf, given), disabled)
     links = tuple(_link_body(urdf, link, capsules[link], link in given) for link in capsules)
     drawn_only = tuple(link for link in urdf.drawn_only if link not in capsules)
     return RobotModel(
-        replace(robot, pairs=pairs.tested), links, pairs_from, pairs.dropped, drawn_only, touching
+        replace(
+            robot, pairs=pairs.tested, hulls=pairs.hulls, pairs_given=disabled is not None, resting=pairs.held
+        ),
+        links,
+        "computed" if disabled is None else "SRDF",
+        pairs.dropped,
+        drawn_only,
+        pairs.always,
+        pairs.never_free,
+        urdf.notes,
     )
 
 
-def _capsules(urdf: Urdf, given: dict[str, tuple[Capsule, ...]]) -> dict[str, tuple[Capsule, ...]]:
+def _capsules(
+    urdf: Urdf,
+    given: dict[str, tuple[Capsule, ...]],
+    progress: Callable[[int, int, str], None] | None,
+) -> dict[str, tuple[Capsule, ...]]:
     found: dict[str, tuple[Capsule, ...]] = {}
-    for shape in urdf.shapes:
-        if shape.link not in given:
-            found[shape.link] = found.get(shape.link, ()) + fit_capsules(shape)
+    fitted = [shape for shape in urdf.shapes if shape.link not in given]
+    for i, shape in enumerate(fitted):
+        if progress is not None and isinstance(shape, Mesh):
+            progress(i, len(fitted), f"{shape} of {shape.link}")
+        found[shape.link] = found.get(shape.link, ()) + fit_capsules(shape)
     found |= given
     return {link: found[link] for link in urdf.links if link in found}
+
+
+def _pieces(urdf: Urdf, given: dict[str, tuple[Capsule, ...]]) -> dict[str, list[Piece]]:
+    """Return what every link with a body consists of: the capsules given, or the shapes of the URDF."""
+    shapes = [shape for shape in urdf.shapes if shape.link not in given]
+    pieces: dict[str, list[Piece]] = {}
+    for shape in (*shapes, *(capsule for capsules in given.values() for capsule in capsules)):
+        pieces.setdefault(shape.link, []).append(piece_of(shape))
+    return pieces
 
 
 def _link_body(urdf: Urdf, link: str, capsules: tuple[Capsule, ...], given: bool) -> LinkBody:
@@ -170,37 +231,13 @@ def _link_body(urdf: Urdf, link: str, capsules: tuple[Capsule, ...], given: bool
     )
 
 
-def _states(
-    srdf: Srdf, chosen: tuple[str, ...], wanted: str | Sequence[str] | None
-) -> dict[str, dict[str, float]]:
-    """Return the named states that give a value to every joint chosen: of two of a name, that of the group wanted."""
-
-    def strangeness(group_and_name: tuple[str, str]) -> tuple[bool, bool]:
-        group, _ = group_and_name
-        return group != wanted, srdf.groups[group] != chosen
-
-    found: dict[str, dict[str, float]] = {}
-    for group, name in sorted(srdf.states, key=strangeness):
-        values = srdf.states[group, name]
-        if set(chosen) <= set(values):
-            found.setdefault(name, dict(values))
-    return found
-
-
 def read_bodies(path: Path, links: Sequence[str]) -> dict[str, tuple[Capsule, ...]]:
     """Return link -> its capsules, for the links that the file names.
 
     The file has a list for each link, ``forearm: [{a: [0, 0, 0], b: [0, 0, 0.3], radius: 0.05}, {centre: [0, 0, 0.4],
-    radius: 0.06}]``: capsules by their end points, spheres by their centres, in the link's frame [m].
-
-    Raises
-    ------
-    BrokenFile
-        If the file is missing, not YAML, not of that form, or has a link or a key twice.
-    UnknownName
-        If it names a link that there is not, or another key.
-    InvalidValue
-        If a number is not one, a radius is not > 0, or a link has no body.
+    radius: 0.06}]``: capsules by their ends, spheres by their centres, in the link's frame [m].  Raises BrokenFile
+    if it is missing or not of that form; UnknownName for a link that there is not, or another key; InvalidValue if a
+    number is not one, a radius is not > 0, or a link has no body.
     """
     bodies = {}
     for link, entries in read_mapping(path, "file of bodies").items():

@@ -14,7 +14,7 @@ from evenroad._checks import require_known
 from evenroad._yaml import numbers
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue
 from evenroad.geometry.pose import IDENTITY, Pose
-from evenroad.geometry.shapes import Shape, shape_of
+from evenroad.geometry.shapes import shape_of
 from evenroad.robot.scene import Obstacle, Scene
 
 _SIZES = {"box": 3, "sphere": 1, "cylinder": 2}
@@ -43,28 +43,53 @@ def read_scene_text(path: Path) -> Scene:
         raise BrokenFile(
             f"cannot read the scene {path}: {getattr(error, 'strerror', None) or error}"
         ) from error
+    return Scene(lines[0].strip() or path.stem if lines else path.stem, tuple(_from_text(lines, path)))
+
+
+def _from_text(lines: list[str], path: Path) -> Iterator[Obstacle]:
+    """Yield the obstacles of a text, word by word."""
     first = next((i for i, line in enumerate(lines) if line.lstrip().startswith("*")), len(lines))
     # Newer files have the object's position, three numbers, where older ones have the number of its shapes.
     posed = first + 1 < len(lines) and len(lines[first + 1].split()) > 1
-    words = _Words(path, lines[1:])
-    obstacles: list[Obstacle] = []
-    while (marker := words.next("'*' or '.'")) != ".":
+    rest = [line.split() for line in lines[1:]][::-1]
+
+    def word(what: str) -> str:
+        while rest and not rest[-1]:
+            rest.pop()
+        if not rest:
+            raise BrokenFile(f"{path} ends where {what} must be")
+        return rest[-1].pop(0)
+
+    def row(count: int) -> tuple[float, ...]:
+        words = [word("a number") for _ in range(count)]
+        try:
+            return tuple(map(float, words))
+        except ValueError:
+            raise BrokenFile(f"{path} must have {count} number(s), got {' '.join(words)!r}") from None
+
+    def how_many(what: str) -> range:
+        count = word(f"the number of {what}")
+        if not count.isdecimal() or len(count) > 6:
+            raise BrokenFile(f"{path} must have a number of {what}, got {count!r}")
+        return range(int(count))
+
+    def pose() -> Pose:
+        return _from_xyzw(row(3), row(4), str(path))
+
+    while (marker := word("'*' or '.'")) != ".":
         if marker != "*":
             raise BrokenFile(f"{path} must have '*' before every object and '.' at its end, got {marker!r}")
-        name = words.rest_of_line()
-        frame = words.pose() if posed else IDENTITY
+        name = " ".join(rest.pop())
+        frame = pose() if posed else IDENTITY
         shapes = []
-        for _ in range(words.count("shapes")):
-            kind = words.next("a shape")
-            size = words.numbers(_SIZES[_known(kind, name, path)])
-            shapes.append((kind, size, frame @ words.pose()))
-            words.numbers(4)
-        if posed:
-            for _ in range(words.count("subframes")):
-                words.next("a subframe")
-                words.pose()
-        obstacles += _obstacles(name, shapes, path)
-    return Scene(lines[0].strip() or path.stem, tuple(obstacles))
+        for _ in how_many("shapes"):
+            kind = word("a shape")
+            shapes.append((kind, row(_count(kind, name, path)), frame @ pose()))
+            row(4)
+        for _ in how_many("subframes") if posed else ():
+            word("a subframe")
+            pose()
+        yield from _obstacles(name, shapes, path)
 
 
 def read_planning_scene(document: Mapping[str, Any], path: Path) -> Scene:
@@ -77,9 +102,11 @@ def read_planning_scene(document: Mapping[str, Any], path: Path) -> Scene:
     UnknownName, InvalidValue
         As :func:`read_scene_text`; and if an object has a mesh, which scenes do not take yet.
     """
-    objects = _entry(document, "world", path).get("collision_objects") or []
+    world = document.get("world")
+    if not isinstance(world, dict):
+        raise BrokenFile(f"'world' in {path} must consist of 'key: value' entries, got {world!r}")
     obstacles: list[Obstacle] = []
-    for each in objects:
+    for each in world.get("collision_objects") or []:
         if not isinstance(each, dict) or "id" not in each:
             raise BrokenFile(f"every entry of collision_objects in {path} must have an 'id', got {each!r}")
         name = str(each["id"])
@@ -96,8 +123,9 @@ def read_planning_scene(document: Mapping[str, Any], path: Path) -> Scene:
         shapes = []
         for primitive, pose in zip(primitives, poses, strict=True):
             given = primitive.get("type") if isinstance(primitive, dict) else None
-            kind = _known(str(_TYPES.get(given, given)).lower(), name, path)  # type: ignore[arg-type]
-            size = numbers(primitive.get("dimensions"), _SIZES[kind], f"dimensions of {name!r} in {path}")
+            kind = str(_TYPES.get(given, given)).lower()  # type: ignore[arg-type]
+            count = _count(kind, name, path)
+            size = numbers(primitive.get("dimensions"), count, f"dimensions of {name!r} in {path}")
             # Height and radius in messages, radius and length everywhere else.
             shapes.append((kind, size[::-1] if kind == "cylinder" else size, frame @ _pose(pose, name, path)))
         obstacles += _obstacles(name, shapes, path)
@@ -109,22 +137,16 @@ def _obstacles(
 ) -> Iterator[Obstacle]:
     for i, (kind, size, pose) in enumerate(shapes):
         try:
-            body: Shape = shape_of(kind, size, pose)
+            body = shape_of(kind, size, pose)
         except InvalidValue as error:
             raise InvalidValue(f"object {name!r} in {path}: {error}") from None
         yield Obstacle(name if len(shapes) == 1 else f"{name}/{i}", body)
 
 
-def _known(kind: str, name: str, path: Path) -> str:
+def _count(kind: str, name: str, path: Path) -> int:
+    """Return how many dimensions a shape has."""
     require_known(f"shape of object {name!r} in {path}:", kind, _SIZES)
-    return kind
-
-
-def _entry(document: Mapping[str, Any], key: str, path: Path) -> dict[str, Any]:
-    entry = document.get(key)
-    if not isinstance(entry, dict):
-        raise BrokenFile(f"{key!r} in {path} must consist of 'key: value' entries, got {entry!r}")
-    return entry
+    return _SIZES[kind]
 
 
 def _pose(entry: object, name: str, path: Path) -> Pose:
@@ -144,38 +166,3 @@ def _from_xyzw(xyz: tuple[float, ...], quaternion: tuple[float, ...], where: str
         return Pose.from_quaternion(xyz, (w, x, y, z))
     except EvenroadError as error:
         raise InvalidValue(f"{where}: {error}") from None
-
-
-class _Words:
-    """The words of a text, one after the other, with errors that name the file."""
-
-    def __init__(self, path: Path, lines: list[str]) -> None:
-        self._path = path
-        self._lines = [line.split() for line in lines][::-1]
-
-    def next(self, what: str) -> str:
-        while self._lines and not self._lines[-1]:
-            self._lines.pop()
-        if not self._lines:
-            raise BrokenFile(f"{self._path} ends where {what} must be")
-        return self._lines[-1].pop(0)
-
-    def rest_of_line(self) -> str:
-        return " ".join(self._lines.pop())
-
-    def numbers(self, count: int) -> tuple[float, ...]:
-        words = [self.next("a number") for _ in range(count)]
-        try:
-            return tuple(map(float, words))
-        except ValueError:
-            raise BrokenFile(f"{self._path} must have {count} number(s), got {' '.join(words)!r}") from None
-
-    def count(self, what: str) -> int:
-        word = self.next(f"the number of {what}")
-        if not word.isdecimal() or len(word) > 6:
-            raise BrokenFile(f"{self._path} must have a number of {what}, got {word!r}")
-        return int(word)
-
-    def pose(self) -> Pose:
-        xyz = self.numbers(3)
-        return _from_xyzw(xyz, self.numbers(4), str(self._path))

@@ -1,117 +1,219 @@
-"""Which links are tested against each other."""
+"""Which links are tested against each other, and the hulls that decide it where capsules are too fat."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
 
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad._rng import generator
-from evenroad.geometry.distance import segment_distance
-from evenroad.robot.joint import Joint
-from evenroad.robot.kinematics import KinematicTree, ends_at, poses_at, with_mimics
+from evenroad.geometry.hulls import Hull, Piece, halves
+from evenroad.robot.kernel.hull_trees import HullTrees, contacts, hull_trees
+from evenroad.robot.kinematics import KinematicTree, held_values, poses_at, with_mimics
 
 SAMPLES = 1000
 """Random configurations that tell pairs that are always in contact."""
 
 TOUCHING = "touch in every sample"
-"""Why a pair is not tested whose capsules are in contact in all of them; the shapes inside may well come apart."""
+"""Why a pair is not tested whose shapes are in contact in all of them."""
+
+HELD_TOUCHING = "touch in every sample with the other joints where they are held"
+"""Why another is not, until these are held elsewhere."""
+
+_MOST_HULLS = 128
+"""A link of so many is not split."""
+_ROUNDS = 12
+_LOOKED_AT = 400
+"""Samples, of all of these, by which hulls are judged."""
+_FEW = 0.003
+"""Share of them in which hulls of a pair may touch though what is inside does not."""
+
+Pieces = Mapping[str, Sequence[Piece]]
+"""The shapes of every link that has any, as hulls and what these are around."""
 
 
 @dataclass(frozen=True)
 class SelfPairs:
-    """Pairs of links that are tested, in the order of the links; and the others with bodies, each with the reason."""
+    """Pairs of links that are tested, in the order of the links; and the others with bodies, each with the reason.
+
+    Pairs in `always` are tested and touch in every sample; those in `held` are dropped only for where joints outside of
+    the group are held.  `never_free` says which pair blocks most where some pair
+    touches in every sample; else it is empty.
+    """
 
     tested: tuple[tuple[str, str], ...]
     dropped: tuple[tuple[str, str, str], ...]
+    always: tuple[tuple[str, str], ...]
+    held: tuple[tuple[str, str], ...]
+    hulls: tuple[Hull, ...]
+    never_free: str
 
 
-def pairs_without(robot: KinematicTree, disabled: Collection[frozenset[str]]) -> SelfPairs:
-    """Return all pairs of links that have bodies and can move on each other, but those disabled by an SRDF."""
-    return _sorted_out(
-        robot, {pair: "disabled in the SRDF" for pair in _bodied(robot) if frozenset(pair) in disabled}
-    )
+def self_pairs(
+    robot: KinematicTree, pieces: Pieces, disabled: Collection[frozenset[str]] | None = None
+) -> SelfPairs:
+    """Return the pairs of links with bodies that are tested, and hulls that hardly touch where the shapes do not.
 
-
-def computed_pairs(robot: KinematicTree) -> SelfPairs:
-    """Return the pairs of links with bodies without those that touch by construction.
-
-    Dropped are neighbours in the tree (links without bodies between them do not count where only one joint
-    between them moves), pairs that no joint moves on each other, and pairs that touch in every one of 1000
-    configurations drawn uniformly within the limits of all joints.  Pairs that never touch are kept: a sample
-    cannot prove that.
+    Dropped are pairs that no joint moves on each other; of an SRDF those that it disables; without one (None)
+    neighbours in the tree (links without bodies between them do not count where only one joint between them moves) and
+    pairs whose shapes touch in every one of 1000 configurations drawn uniformly within the limits of all joints, and
+    of as many where the joints outside of the group are held.  Pairs that never touch are kept: a sample cannot prove
+    that.
     """
-    reasons = {pair: "neighbours" for pair in _bodied(robot) if _are_neighbours(robot, *pair)}
-    reasons |= {pair: TOUCHING for pair in always_touching(robot, _bodied(robot)) if pair not in reasons}
-    return _sorted_out(robot, reasons)
-
-
-def _sorted_out(robot: KinematicTree, reasons: dict[tuple[str, str], str]) -> SelfPairs:
-    rigid = {pair: "fixed to each other" for pair in _bodied(robot) if not _can_move(robot, *pair)}
-    reasons = reasons | rigid
+    order = [link for link in robot.links if link in pieces]
+    rigid, above = _rigid(robot), _bodied_above(robot, pieces)
+    reasons: dict[tuple[str, str], str] = {}
+    for first, second in combinations(order, 2):
+        if rigid[first] == rigid[second]:
+            reasons[first, second] = "fixed to each other"
+        elif disabled is not None and frozenset((first, second)) in disabled:
+            reasons[first, second] = "disabled in the SRDF"
+        elif disabled is None and above[second] == (first, 1):
+            reasons[first, second] = "neighbours"
+    samples = _Samples(robot, {link: list(pieces[link]) for link in order})
+    candidates = [pair for pair in combinations(order, 2) if pair not in reasons]
+    always = samples.judge(candidates)
+    if disabled is None:
+        reasons |= always
+    every = list(combinations(order, 2))
+    tested = tuple(pair for pair in every if pair not in reasons)
     return SelfPairs(
-        tested=tuple(pair for pair in _bodied(robot) if pair not in reasons),
-        dropped=tuple((*pair, reasons[pair]) for pair in _bodied(robot) if pair in reasons),
+        tested,
+        tuple((*pair, reasons[pair]) for pair in every if pair in reasons),
+        tuple(pair for pair in always if pair not in reasons),
+        tuple(pair for pair, why in reasons.items() if why == HELD_TOUCHING),
+        _unless_round(piece.hull for link in order for piece in samples.pieces[link]),
+        samples.never_free(tested),
     )
 
 
-def _bodied(robot: KinematicTree) -> list[tuple[str, str]]:
-    bodied = {capsule.link for capsule in robot.capsules}
-    return list(combinations((link for link in robot.links if link in bodied), 2))
+def _unless_round(hulls: Iterable[Hull]) -> tuple[Hull, ...]:
+    """Return the hulls; none where all are balls and capsules, which need no other shapes."""
+    every = tuple(hulls)
+    return () if all(hull.is_round for hull in every) else every
 
 
-def _path_to_root(robot: KinematicTree, link: str) -> list[Joint]:
-    by_child = {joint.child: joint for joint in robot.joints}
-    path = []
-    while link in by_child:
-        path.append(by_child[link])
-        link = by_child[link].parent
-    return path
+def _rigid(robot: KinematicTree) -> dict[str, str]:
+    """Return for every link the first of those that no joint moves on it."""
+    first = {robot.links[0]: robot.links[0]}
+    for joint in robot.joints:
+        first[joint.child] = first[joint.parent] if joint.kind == "fixed" else joint.child
+    return first
 
 
-def _between(robot: KinematicTree, first: str, second: str) -> list[Joint]:
-    """Return the joints between two links."""
-    up, down = _path_to_root(robot, first), _path_to_root(robot, second)
-    return [joint for joint in up if joint not in down] + [joint for joint in down if joint not in up]
-
-
-def _can_move(robot: KinematicTree, first: str, second: str) -> bool:
-    return any(joint.kind != "fixed" for joint in _between(robot, first, second))
-
-
-def _are_neighbours(robot: KinematicTree, first: str, second: str) -> bool:
-    if first not in {joint.parent for joint in _path_to_root(robot, second)}:
-        return False
-    joints = _between(robot, first, second)
+def _bodied_above(robot: KinematicTree, bodied: Collection[str]) -> dict[str, tuple[str, int]]:
+    """Return for every link the next one above it that has a body, if any, and how many joints between them move."""
     # Two joints with a length between them fold, and bring together what does not touch by construction.
-    if sum(joint.kind != "fixed" for joint in joints) > 1:
-        return False
-    passed = {link for joint in joints for link in (joint.parent, joint.child)} - {first, second}
-    return not passed & {capsule.link for capsule in robot.capsules}
+    above = {robot.links[0]: ("", 0)}
+    for joint in robot.joints:
+        link, moving = (joint.parent, 0) if joint.parent in bodied else above[joint.parent]
+        above[joint.child] = link, moving + (joint.kind != "fixed")
+    return above
 
 
-def always_touching(robot: KinematicTree, pairs: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
-    """Return those pairs of links that touch in every one of 1000 random configurations within the limits."""
+class _Samples:
+    """A robot in random configurations: which pairs touch there, by their hulls and by what these are around."""
+
+    def __init__(self, robot: KinematicTree, pieces: dict[str, list[Piece]]) -> None:
+        self.pieces = pieces
+        self.touching: dict[tuple[str, str], Ints] = {}
+        self.looked_at = np.arange(0)
+        poses = _sampled_poses(robot)
+        self._poses = {link: poses[:, robot.links.index(link)] for link in pieces}
+        self._parts = hull_trees({link: [(p.parts, p.radius) for p in of] for link, of in pieces.items()})
+
+    def judge(self, pairs: Sequence[tuple[str, str]]) -> dict[tuple[str, str], str]:
+        """Return the pairs whose shapes touch in all samples, or all of the group, each with which of the two it is.
+
+        The hulls of others that touch too often are split.
+        """
+        every = np.arange(len(next(iter(self._poses.values()))))
+        some, of_group = every[:: 1 + len(every) // _LOOKED_AT], every[-SAMPLES:]
+        self.looked_at = np.intersect1d(some, of_group)
+        trees = self._hulls()
+        balls = {link: trees.ball(link) for link in self.pieces}
+        centres = {
+            link: self._poses[link][some, :3, :3] @ ball[:3] + self._poses[link][some, :3, 3]
+            for link, ball in balls.items()
+        }
+        always: dict[tuple[str, str], str] = {}
+        wrong = {}
+        for first, second in pairs:
+            reach = balls[first][3] + balls[second][3]
+            rows = some[np.linalg.norm(centres[first] - centres[second], axis=1) <= reach]
+            rows = rows[self._touching(trees, first, second, rows)]
+            inside = self._touching(self._parts, first, second, rows)
+            self.touching[first, second] = rows[inside]
+            wrong[first, second] = rows[~inside]
+            if np.isin(self.looked_at, rows[inside]).all():
+                touching = self._touching(self._parts, first, second, every)
+                if touching[of_group].all():
+                    always[first, second] = TOUCHING if touching.all() else HELD_TOUCHING
+        for _ in range(_ROUNDS):
+            wrong = self._split({pair: rows for pair, rows in wrong.items() if len(rows) > _FEW * len(some)})
+        return always
+
+    def never_free(self, tested: Sequence[tuple[str, str]]) -> str:
+        """Return which pair of those tested blocks most where one of them touches in all samples of the group."""
+        rows = self.looked_at
+        times = {pair: np.isin(rows, self.touching[pair]) for pair in tested}
+        if not times or not np.any(list(times.values()), axis=0).all():
+            return ""
+        (first, second), worst = max(times.items(), key=lambda item: item[1].sum())
+        return (
+            f"none of {len(rows)} random configurations is free of self-collision; {first!r} and {second!r} touch in"
+            f" {100.0 * worst.mean():.0f} % of them: disable pairs that may touch in an SRDF, or narrow the limits of"
+            " joints"
+        )
+
+    def _split(self, wrong: Mapping[tuple[str, str], Ints]) -> dict[tuple[str, str], Ints]:
+        """Split all hulls that touch in these samples; return those in which others touch still."""
+        trees, left = self._hulls(), {}
+        hit: dict[str, set[int]] = {}
+        for (first, second), rows in wrong.items():
+            meeting = self._contacts(trees, first, second, rows)
+            left[first, second] = rows[meeting[:, 0] >= 0]
+            for link, leaves in zip((first, second), meeting.T, strict=True):
+                hit.setdefault(link, set()).update(leaves[leaves >= 0].tolist())
+        for link, leaves in hit.items():
+            if len(self.pieces[link]) < _MOST_HULLS:
+                self.pieces[link] = [
+                    half
+                    for i, piece in enumerate(self.pieces[link])
+                    for half in (halves(piece) if i in leaves else (piece,))
+                ]
+        return left
+
+    def _touching(self, trees: HullTrees, first: str, second: str, rows: Ints) -> Bools:
+        return self._contacts(trees, first, second, rows)[:, 0] >= 0
+
+    def _contacts(self, trees: HullTrees, first: str, second: str, rows: Ints) -> Ints:
+        return contacts(trees, first, second, self._poses[first][rows], self._poses[second][rows])
+
+    def _hulls(self) -> HullTrees:
+        return hull_trees(
+            {
+                link: [(p.hull.points[np.newaxis], p.hull.radius) for p in of]
+                for link, of in self.pieces.items()
+            }
+        )
+
+
+def _sampled_poses(robot: KinematicTree) -> Floats:
+    """Return the poses of all links, (n, links, 4, 4), in random configurations, of all joints and of the group."""
     movable = [joint for joint in robot.joints if joint.kind != "fixed" and joint.mimic is None]
     # A full circle for continuous joints, which have no limits.
     circle = [np.pi if joint.kind == "continuous" else np.inf for joint in movable]
     low = np.maximum([joint.lower for joint in movable], np.negative(circle))
     high = np.minimum([joint.upper for joint in movable], circle)
     q = low + generator(0).random((SAMPLES, len(movable))) * (high - low)
+    held = held_values(robot)
+    if held:
+        places = [i for i, joint in enumerate(movable) if joint.name in held]
+        q = np.concatenate([q, q])
+        q[SAMPLES:, places] = [held[movable[i].name] for i in places]
     values = with_mimics(robot, {joint.name: q[:, i] for i, joint in enumerate(movable)})
-    ends = ends_at(robot, poses_at(robot, values, SAMPLES))
-    number: dict[str, list[int]] = {}
-    for i, capsule in enumerate(robot.capsules):
-        number.setdefault(capsule.link, []).append(i)
-    always = []
-    for first, second in pairs:
-        touching = np.zeros(SAMPLES, dtype=np.bool_)
-        for i in number[first]:
-            for j in number[second]:
-                reach = robot.capsules[i].radius + robot.capsules[j].radius
-                touching |= segment_distance(ends[:, i], ends[:, j]) <= reach
-        if touching.all():
-            always.append((first, second))
-    return always
+    return poses_at(robot, values, len(q))

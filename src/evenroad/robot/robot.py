@@ -3,42 +3,52 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
+
+import numpy as np
 
 from evenroad._checks import require_known
+from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
 from evenroad.geometry.fit import fit_capsules
+from evenroad.geometry.hulls import Hull, Piece, piece_of
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import Capsule, Shape, without_pose
 from evenroad.robot.joint import Joint, require_within, within_limits_of_mimics
 from evenroad.robot.kinematics import held_values
-from evenroad.robot.pairs import computed_pairs
+from evenroad.robot.pairs import self_pairs
 from evenroad.robot.scene import Scene
+from evenroad.robot.urdf_xml import RobotFile
 
 
 @dataclass(frozen=True)
 class Robot:
-    """A kinematic tree with bodies.  A value: readers of files and fitting of capsules are elsewhere.
+    """A kinematic tree with bodies.
 
     Attributes
     ----------
-    name : str
-        Name of the robot.
     links : tuple of str
-        All links; the root first, every parent before its children.
+        The root first, every parent before its children.
     joints : tuple of Joint
         ``joints[i]`` is the joint whose child is ``links[i + 1]``.
     capsules : tuple of Capsule
         The bodies.
     pairs : tuple of pairs of str
-        Pairs of links that are tested against each other.
+        Links that are tested against each other.
     group : tuple of str
-        Joints that are planned for, in the order of the configuration; revolute, continuous or prismatic, none a mimic.
+        Joints that are planned for, in the order of the configuration; none is fixed or a mimic.
     held : mapping of str to float
-        Values of the movable joints that are not in the group [rad or m]; where not given: 0, or the nearest
-        to it within limits.
+        Joint -> value of other movable joints [rad or m]; where not given: 0, or the nearest to it within limits.
     states : mapping of str to mapping of str to float
         Named configurations: joint -> value, of joints outside of the group, too, where they are known.
+    hulls : tuple of Hull
+        Convex pieces that contain the links' shapes more tightly than capsules: where capsules of a pair touch, these
+        decide.  Links without any are their capsules.
+    pairs_given : bool
+        Whether `pairs` were given by somebody, as by an SRDF; else a pair that the group does not move and that touches
+        where it is held is left out.
+    resting : tuple of pairs of str
+        Pairs that are not tested, for they touch whatever the group does as long as the others are held where they are.
     """
 
     name: str
@@ -49,25 +59,33 @@ class Robot:
     group: tuple[str, ...]
     held: Mapping[str, float] = field(default_factory=dict)
     states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    hulls: tuple[Hull, ...] = ()
+    pairs_given: bool = True
+    resting: tuple[tuple[str, str], ...] = ()
 
     def __post_init__(self) -> None:
         # The kernel takes the ends as they are: a capsule with a pose of its own gets them in its link's frame.
         object.__setattr__(self, "capsules", tuple(map(without_pose, self.capsules)))
+
+    def fingerprint(self) -> str:
+        """Return the SHA-256 (hex) of what decides verdicts; the names of the robot and its states do not."""
+        names_alone = ("name", "states")
+        return fingerprint_of(
+            *(getattr(self, each.name) for each in fields(self) if each.name not in names_alone)
+        )
 
     def with_tool(
         self, tool: Robot | Sequence[Shape], at: str, *, pose: Pose = IDENTITY, prefix: str = ""
     ) -> Robot:
         """Return the robot with a tool fixed to one of its links.
 
-        The group stays the robot's; the tool's joints are held where the tool has them, its group at 0 or the nearest
-        to it within limits.  Pairs within the robot and within the tool stay; those between the two are computed as
-        for a robot without an SRDF.
+        The group stays the robot's; the tool's joints are held.  Pairs within the robot and within the tool stay; those
+        between the two are computed as for a robot without an SRDF.
 
         Parameters
         ----------
         tool : Robot, or sequence of Shape
-            A gripper or another tool as a robot of its own; or its shapes in the frame of a new link ``tool``, to which
-            capsules are fitted.
+            A robot of its own; or shapes in the frame of a new link ``tool``, to which capsules are fitted.
         at : str
             The link that carries it.
         pose : Pose
@@ -84,12 +102,14 @@ class Robot:
         """
         require_known(f"link of {self.name!r}", at, self.links)
         if not isinstance(tool, Robot):
-            capsules = [capsule for shape in tool for capsule in fit_capsules(shape)]
-            tool = Robot("tool", ("tool",), (), tuple(replace(c, link="tool") for c in capsules), (), ())
+            shapes = [replace(shape, link="tool") for shape in tool]
+            capsules = tuple(capsule for shape in shapes for capsule in fit_capsules(shape))
+            hulls = tuple(piece_of(shape).hull for shape in shapes)
+            tool = Robot("tool", ("tool",), (), capsules, (), (), hulls=hulls)
         if not tool.capsules:
             raise InvalidValue(f"tool {tool.name!r} must have a body: without one it would never collide")
-        held = {name: joint.neutral for name in tool.group for joint in tool.joints if joint.name == name}
-        tool = _renamed(replace(tool, group=(), held=held_values(tool) | held, states={}), prefix)
+        tool = replace(tool, group=(), states={})
+        tool = _renamed(replace(tool, held=held_values(tool)), prefix)
         mount = Joint(f"{at}-{tool.links[0]}", "fixed", at, tool.links[0], pose.xyz, pose.rotation)
         joints = [joint.name for joint in self.joints], [mount.name, *(joint.name for joint in tool.joints)]
         for what, ours, theirs in (("link", self.links, tool.links), ("joint", *joints)):
@@ -106,34 +126,45 @@ class Robot:
             joints=(*self.joints, mount, *tool.joints),
             capsules=(*self.capsules, *tool.capsules),
             held={**self.held, **tool.held},
+            hulls=(*self.hulls, *tool.hulls),
+            resting=(*self.resting, *tool.resting),
         )
         between = tuple(
             pair
-            for pair in computed_pairs(joined).tested
+            for pair in self_pairs(joined, pieces_of(joined)).tested
             if (pair[0] in tool.links) != (pair[1] in tool.links)
         )
         return replace(joined, pairs=(*self.pairs, *tool.pairs, *between))
 
 
+def pieces_of(robot: Robot) -> dict[str, list[Piece]]:
+    """Return the hulls of every link that has a body; of links without any its capsules."""
+    pieces: dict[str, list[Piece]] = {}
+    for hull in robot.hulls:
+        pieces.setdefault(hull.link, []).append(Piece(hull, hull.points[np.newaxis], hull.radius))
+    own = set(pieces)
+    for capsule in robot.capsules:
+        if capsule.link not in own:
+            pieces.setdefault(capsule.link, []).append(piece_of(capsule))
+    return pieces
+
+
 def _renamed(robot: Robot, prefix: str) -> Robot:
     """Return a robot with `prefix` before the names of all links and joints."""
-    joints = tuple(
-        replace(
-            joint,
-            name=prefix + joint.name,
-            parent=prefix + joint.parent,
-            child=prefix + joint.child,
-            mimic=replace(joint.mimic, joint=prefix + joint.mimic.joint) if joint.mimic else None,
-        )
-        for joint in robot.joints
-    )
+    joints = []
+    for joint in robot.joints:
+        mimic = joint.mimic and replace(joint.mimic, joint=prefix + joint.mimic.joint)
+        name, parent, child = (prefix + each for each in (joint.name, joint.parent, joint.child))
+        joints.append(replace(joint, name=name, parent=parent, child=child, mimic=mimic))
     return replace(
         robot,
         links=tuple(prefix + link for link in robot.links),
-        joints=joints,
+        joints=tuple(joints),
         capsules=tuple(replace(capsule, link=prefix + capsule.link) for capsule in robot.capsules),
         pairs=tuple((prefix + first, prefix + second) for first, second in robot.pairs),
         held={prefix + name: value for name, value in robot.held.items()},
+        hulls=tuple(replace(hull, link=prefix + hull.link) for hull in robot.hulls),
+        resting=tuple((prefix + first, prefix + second) for first, second in robot.resting),
     )
 
 
@@ -141,9 +172,8 @@ def _renamed(robot: Robot, prefix: str) -> Robot:
 class LinkBody:
     """What became of the collision geometry of a link.
 
-    `shapes` are those of the URDF, e.g.  ``box``, ``mesh forearm.stl``, and `shape_volume` the sum of their volumes
-    [m^3]; so many `capsules` stand for them, whose union has `capsule_volume` [m^3].  `given` says whether the user
-    gave them.
+    `shapes` are the file's, e.g. ``box`` or ``mesh forearm.stl``, with the sum of their volumes [m^3]; so many
+    `capsules` stand for them, with the volume of their union [m^3]; `given` by the user or not.
     """
 
     link: str
@@ -168,14 +198,19 @@ class RobotModel:
     bodies : tuple of LinkBody
         One for each link that has a body.
     pairs_from : str
-        ``SRDF`` or ``computed``: where the self pairs come from.
+        ``SRDF`` or ``computed``.
     dropped : tuple of (str, str, str)
         Pairs of links with bodies that are not tested, each with the reason.
     drawn_only : tuple of str
-        Links that the URDF draws (``<visual>``) and that have no body: nothing is ever found to touch them.
+        Links that are drawn and have no body: nothing is ever found to touch them.
     always_touching : tuple of pairs of str
-        Pairs that are tested, since the SRDF does not disable them, and touch in every sampled configuration: with one
-        of these no configuration is free.
+        Pairs that the SRDF does not disable and that touch in every sampled configuration: none is free.
+    never_free : str
+        Where no sampled configuration is free of self-collision: that, the pair that blocks most, and what to do.
+    notes : tuple of str
+        What was read otherwise than it stands in the file.
+    file : RobotFile or None
+        Where the robot was read, and how.
     """
 
     robot: Robot
@@ -184,6 +219,9 @@ class RobotModel:
     dropped: tuple[tuple[str, str, str], ...]
     drawn_only: tuple[str, ...] = ()
     always_touching: tuple[tuple[str, str], ...] = ()
+    never_free: str = ""
+    notes: tuple[str, ...] = ()
+    file: RobotFile | None = field(default=None, compare=False)
 
     @property
     def bodiless(self) -> tuple[str, ...]:
@@ -193,16 +231,10 @@ class RobotModel:
 
 
 def with_group(robot: Robot, group: Sequence[str], held: Mapping[str, float] | None = None) -> Robot:
-    """Return the robot with another group; the other movable joints are held at `held`, else at 0.
+    """Return the robot with another group; the other movable joints are held at `held`, else at 0 or nearest to it.
 
-    Where 0 is outside of a joint's limits, it is held at the limit that is nearest.
-
-    Raises
-    ------
-    UnknownName
-        If a joint is not one that moves freely.
-    InvalidValue
-        If a joint is held that is in the group, or at a value that is outside its limits.
+    Raises UnknownName if a joint is not one that moves freely; InvalidValue if one is held that is in the group, or
+    outside of its limits.
     """
     free = {joint.name: joint for joint in robot.joints if joint.kind != "fixed" and joint.mimic is None}
     held = dict(held or {})
@@ -212,21 +244,16 @@ def with_group(robot: Robot, group: Sequence[str], held: Mapping[str, float] | N
         if name in group:
             raise InvalidValue(f"joint {name!r} is in the group: it is planned for and cannot be held")
         require_within(free[name], value, f"holding {robot.name!r}")
-    return replace(robot, group=tuple(group), held=held)
+    changed = replace(robot, group=tuple(group), held=held)
+    if robot.resting and (changed.group, held_values(changed)) != (robot.group, held_values(robot)):
+        return replace(changed, pairs=(*robot.pairs, *robot.resting), resting=())
+    return changed
 
 
 def in_scene(robot: Robot, scene: Scene) -> Robot:
     """Return the robot with the scene's ranges to plan in, where they are narrower than its own limits.
 
-    Half of what a joint of four pi can do is the other half once more: a narrower range makes every point of a
-    set count for more.
-
-    Raises
-    ------
-    UnknownName
-        If the scene names a joint that the robot does not have.
-    InvalidValue
-        If no value is within both ranges.
+    Raises UnknownName if the scene names a joint that the robot does not have; InvalidValue if no value is within both.
     """
     joints = {joint.name: joint for joint in robot.joints}
     limits = {}
@@ -239,14 +266,8 @@ def in_scene(robot: Robot, scene: Scene) -> Robot:
 def with_limits(robot: Robot, limits: Mapping[str, tuple[float, float]]) -> Robot:
     """Return the robot with other limits, joint -> (lower, upper) [rad or m].
 
-    A continuous joint that gets limits becomes a revolute one; limits of a mimic narrow those of its leader.
-
-    Raises
-    ------
-    UnknownName
-        If a joint is not there.
-    InvalidValue
-        If lower is not below upper.
+    A continuous joint that gets limits becomes a revolute one; limits of a mimic narrow those of its leader.  Raises
+    UnknownName if a joint is not there; InvalidValue if lower is not below upper.
     """
     names = [joint.name for joint in robot.joints]
     for name, (lower, upper) in limits.items():
@@ -255,16 +276,12 @@ def with_limits(robot: Robot, limits: Mapping[str, tuple[float, float]]) -> Robo
             raise InvalidValue(
                 f"limits of joint {name!r} must satisfy lower < upper, got {lower!r}, {upper!r}"
             )
-    joints = tuple(
-        replace(
-            joint,
-            kind="revolute" if joint.kind == "continuous" else joint.kind,
-            lower=float(limits[joint.name][0]),
-            upper=float(limits[joint.name][1]),
-        )
-        if joint.name in limits
-        else joint
-        for joint in robot.joints
-    )
+    joints = []
+    for joint in robot.joints:
+        if joint.name in limits:
+            lower, upper = map(float, limits[joint.name])
+            kind = "revolute" if joint.kind == "continuous" else joint.kind
+            joint = replace(joint, kind=kind, lower=lower, upper=upper)
+        joints.append(joint)
     # A leader goes no further than its mimics may.
     return replace(robot, joints=tuple(within_limits_of_mimics(joints)))

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from evenroad._checks import require_known
+from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import NO_ROTATION, Pose, Vector
 from evenroad.geometry.shapes import PRIMITIVES, Capsule, Shape, along_z, shape_of
@@ -20,14 +21,10 @@ class Obstacle:
     name : str
         Unique in its scene.
     body : Shape
-        A box, sphere, cylinder or capsule, with its pose in the frame of the robot's root link.
+        A box, sphere, cylinder or capsule, with its pose in the frame of the robot's root link; others, and what is
+        fixed to a link, are refused (InvalidValue).
     cell : bool
-        Part of the fixed cell (a mount plane, a fence), the same for every task of this installation.
-
-    Raises
-    ------
-    InvalidValue
-        If the body is a mesh or a point cloud, which scenes do not take yet, or fixed to a link.
+        Part of the fixed cell, the same for every task of this installation.
     """
 
     name: str
@@ -56,12 +53,8 @@ class Obstacle:
     ) -> Obstacle:
         """Return an obstacle by its dimensions (:func:`evenroad.geometry.shape_of`), origin [m] and rotation (9,).
 
-        Raises
-        ------
-        UnknownName
-            If there is no such shape.
-        InvalidValue
-            If a dimension is not a finite number > 0, or the rotation is none; the text names the obstacle.
+        Raises UnknownName if there is no such shape; InvalidValue, which names the obstacle, if a dimension is not a
+        finite number > 0, or the rotation is none.
         """
         try:
             return cls(name, shape_of(kind, size, Pose(xyz, rotation)), cell)  # type: ignore[arg-type]
@@ -99,22 +92,15 @@ class Scene:
 
     Attributes
     ----------
-    name : str
-        Name of the scene.
     obstacles : tuple of Obstacle
-        The obstacles.
+        The obstacles; no two of one name (InvalidValue).
     allowed : frozenset of (link, obstacle) pairs of str
         Contacts that are not tested, e.g. of the base with its table.
     states : mapping of str to mapping of str to float
         Named configurations: joint -> value; joints that are not planned for are held there.
     limits : mapping of str to (float, float)
-        Ranges to plan in, joint -> (lower, upper), within the robot's own [rad or m]; a planner takes them
-        over with :func:`evenroad.robot.in_scene`.
-
-    Raises
-    ------
-    InvalidValue
-        If two obstacles share a name: what is allowed to touch the one would be allowed to touch the other.
+        Ranges to plan in, joint -> (lower, upper) [rad or m]; the robot takes them over by
+        :func:`evenroad.robot.in_scene`.
     """
 
     name: str
@@ -126,16 +112,23 @@ class Scene:
     def __post_init__(self) -> None:
         names = [obstacle.name for obstacle in self.obstacles]
         if len(set(names)) < len(names):
+            # What is allowed to touch the one would be allowed to touch the other.
             twice = sorted({name for name in names if names.count(name) > 1})
             raise InvalidValue(
                 f"obstacles of scene {self.name!r} must have names of their own, twice: {twice}"
             )
 
-    def with_(self, *obstacles: Obstacle, allowed: Sequence[tuple[str, str]] = ()) -> Scene:
-        """Return the scene with more obstacles, and more (link, obstacle) contacts that are not tested.
+    def fingerprint(self) -> str:
+        """Return the SHA-256 (hex) of what decides verdicts: obstacles and allowed contacts, in whatever order."""
+        rows = set()
+        for each in self.obstacles:
+            numbers = (*each.size, *each.xyz, *each.rotation)
+            # Zeros of both signs are one number.
+            rows.add((each.name, each.shape, *(number + 0.0 for number in numbers)))
+        return fingerprint_of(rows, self.allowed)
 
-        Raises InvalidValue if the scene has an obstacle of such a name already.
-        """
+    def with_(self, *obstacles: Obstacle, allowed: Sequence[tuple[str, str]] = ()) -> Scene:
+        """Return the scene with more obstacles, of new names, and more (link, obstacle) contacts left untested."""
         return replace(
             self, obstacles=(*self.obstacles, *obstacles), allowed=self.allowed | frozenset(allowed)
         )

@@ -56,11 +56,8 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
         limits:                                   # ranges to plan in, within the robot's own
           joint_1: [-3.14, 3.14]
 
-    The length of a capsule is without its caps.  In place of ``rpy`` an obstacle may
-    have a ``quaternion: [w, x, y, z]``.  ``cell: true`` marks what belongs to the fixed cell.
-
-    MoveIt's scenes are read, too: text files ``.scene``, and planning scenes in YAML with the key ``world`` (see
-    :mod:`evenroad.robot.moveit_scene`).
+    The length of a capsule is without its caps; ``quaternion: [w, x, y, z]`` may stand for ``rpy``; ``cell: true``
+    marks what belongs to the fixed cell.  MoveIt's scenes are read, too (:mod:`evenroad.robot.moveit_scene`).
 
     Raises
     ------
@@ -95,13 +92,11 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
                 f"allowed contacts of {obstacle!r} in {path} must be a list of links, got {links!r}"
             )
         allowed.update((link, obstacle) for link in links)
-    states = {
-        name: {
-            joint: numbers(value, 1, f"joint {joint!r} of state {name!r} in {path}")[0]
-            for joint, value in _mapping(values, f"state {name!r} in {path}").items()
-        }
-        for name, values in _mapping(document.get("states"), f"states in {path}").items()
-    }
+    states: dict[str, dict[str, float]] = {}
+    for name, values in _mapping(document.get("states"), f"states in {path}").items():
+        states[name] = {}
+        for joint, value in _mapping(values, f"state {name!r} in {path}").items():
+            (states[name][joint],) = numbers(value, 1, f"joint {joint!r} of state {name!r} in {path}")
     limits = {
         joint: _range(value, f"limits of joint {joint!r} in {path}")
         for joint, value in _mapping(document.get("limits"), f"limits in {path}").items()

@@ -6,7 +6,7 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
 
 from evenroad._checks import require_known
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
@@ -68,7 +68,7 @@ def read_srdf(path: Path, urdf: Urdf) -> Srdf:
 
 @dataclass(frozen=True)
 class _Groups:
-    elements: Mapping[str, ElementTree.Element]
+    elements: Mapping[str, Element]
     virtual: frozenset[str]
     urdf: Urdf
     path: Path
@@ -102,11 +102,11 @@ class _Groups:
             link = by_child[link].parent
         return names
 
-    def _part(self, part: ElementTree.Element, what: str, attribute: str, known: Collection[str]) -> str:
+    def _part(self, part: Element, what: str, attribute: str, known: Collection[str]) -> str:
         return _known(what, _attribute(part, attribute, self.path), known, self.path)
 
 
-def _values(state: ElementTree.Element, virtual: frozenset[str], urdf: Urdf, path: Path) -> dict[str, float]:
+def _values(state: Element, virtual: frozenset[str], urdf: Urdf, path: Path) -> dict[str, float]:
     values = {}
     for joint in state.findall("joint"):
         name = _attribute(joint, "name", path)
@@ -128,7 +128,7 @@ def _in_order(names: set[str], urdf: Urdf) -> tuple[str, ...]:
     return tuple(name for name in urdf.order if name in free)
 
 
-def _attribute(element: ElementTree.Element, name: str, path: Path) -> str:
+def _attribute(element: Element, name: str, path: Path) -> str:
     value = element.get(name)
     if not value:
         raise BrokenFile(f"<{element.tag}> in {path} lacks {name!r}")
@@ -141,16 +141,16 @@ def _known(what: str, name: str, known: Collection[str], path: Path) -> str:
 
 
 def choose_group(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | None) -> tuple[str, ...]:
-    """Return the joints of a planning group in the order of the URDF.
+    """Return the joints that are planned for.
 
     Parameters
     ----------
     urdf, srdf : Urdf, Srdf or None
         The robot.
     wanted : str, sequence of str, or None
-        A group of the SRDF, or names of joints (as a text: with commas between them).  None: the SRDF's group where
-        it has one, else every joint that moves, is no mimic and, by the SRDF, not passive.  None of
-        a rigid body: another robot may carry it as a tool.
+        Groups of the SRDF and names of joints (as a text: with commas between them), in the order that is wanted; of
+        two groups that share a joint the first has it.  None: the SRDF's group where it has one, else every joint that
+        moves, is no mimic and, by the SRDF, not passive.  None of a rigid body: another robot may carry it as a tool.
 
     Raises
     ------
@@ -161,14 +161,19 @@ def choose_group(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | No
         twice, or no joint is left.
     """
     groups = {} if srdf is None else srdf.groups
-    if isinstance(wanted, str):
-        if wanted in groups:
-            return _not_empty(groups[wanted], f"group {wanted!r}")
-        wanted = [name.strip() for name in wanted.split(",") if name.strip()]
-        if groups and not set(wanted) & set(urdf.order):
-            raise UnknownName.among("group", ",".join(wanted), groups)
     if wanted is not None:
-        return _listed(urdf, wanted)
+        words = _words(wanted)
+        if groups and words and not set(words) & {*urdf.order, *groups}:
+            raise UnknownName.among("group", ",".join(words), groups)
+        chosen: list[str] = []
+        for word in words:
+            if word in groups:
+                own = _not_empty(groups[word], f"group {word!r}")
+                chosen += [name for name in own if name not in chosen]
+            else:
+                _require_movable(urdf, word, chosen)
+                chosen.append(word)
+        return _not_empty(tuple(chosen), "the group")
     if len(groups) > 1:
         raise InvalidValue(f"the SRDF has several groups, say which one is planned for: {', '.join(groups)}")
     if groups:
@@ -177,26 +182,53 @@ def choose_group(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | No
     if all(joint.kind == "fixed" for joint in urdf.joints):
         return ()
     free = urdf.free - (frozenset() if srdf is None else srdf.passive)
-    return _not_empty(tuple(name for name in urdf.order if name in free), f"robot {urdf.name!r}")
+    said = "".join(f"; {note}" for note in urdf.notes if note.startswith("joint"))
+    return _not_empty(tuple(name for name in urdf.order if name in free), f"robot {urdf.name!r}", said)
 
 
-def _listed(urdf: Urdf, wanted: Sequence[str]) -> tuple[str, ...]:
+def chosen_states(
+    srdf: Srdf, chosen: tuple[str, ...], wanted: str | Sequence[str] | None
+) -> dict[str, dict[str, float]]:
+    """Return the named states that give a value to every joint chosen: of two of a name, that of the groups wanted."""
+    mine = _words(wanted or ())
+
+    def strangeness(group_and_name: tuple[str, str]) -> tuple[bool, bool]:
+        group, _ = group_and_name
+        return group not in mine, srdf.groups[group] != chosen
+
+    found: dict[str, dict[str, float]] = {}
+    together: dict[str, dict[str, float]] = {}
+    for group, name in sorted(srdf.states, key=strangeness):
+        values = dict(srdf.states[group, name])
+        if group in mine:
+            # Two arms at home are so, each by the state of its own group.
+            values = together[name] = values | together.get(name, {})
+        if set(chosen) <= set(values):
+            found.setdefault(name, values)
+    return found
+
+
+def _words(wanted: str | Sequence[str]) -> list[str]:
+    words = wanted.split(",") if isinstance(wanted, str) else wanted
+    return [word.strip() for word in words if word.strip()]
+
+
+def _require_movable(urdf: Urdf, name: str, others: Sequence[str]) -> None:
+    """Raise unless a joint that was named can be planned for beside others."""
     joints = {joint.name: joint for joint in urdf.joints}
-    movable = [name for name in urdf.order if joints[name].kind != "fixed" and joints[name].mimic is None]
-    for name in wanted:
-        if name not in joints:
-            raise UnknownName.among("joint of the group", name, movable)
-        mimic = joints[name].mimic
-        if mimic is not None:
-            raise InvalidValue(f"joint {name!r} cannot be planned for: it follows {mimic.joint!r}")
-        if joints[name].kind == "fixed":
-            raise InvalidValue(f"joint {name!r} cannot be planned for: it is fixed")
-        if list(wanted).count(name) > 1:
-            raise InvalidValue(f"joint {name!r} is named twice in the group")
-    return _not_empty(tuple(name for name in urdf.order if name in wanted), "the group")
+    if name not in joints:
+        movable = [each.name for each in urdf.joints if each.kind != "fixed" and each.mimic is None]
+        raise UnknownName.among("joint of the group", name, movable)
+    joint = joints[name]
+    if joint.mimic is not None:
+        raise InvalidValue(f"joint {name!r} cannot be planned for: it follows {joint.mimic.joint!r}")
+    if joint.kind == "fixed":
+        raise InvalidValue(f"joint {name!r} cannot be planned for: it is fixed")
+    if name in others:
+        raise InvalidValue(f"joint {name!r} is named twice in the group")
 
 
-def _not_empty(joints: tuple[str, ...], what: str) -> tuple[str, ...]:
+def _not_empty(joints: tuple[str, ...], what: str, said: str = "") -> tuple[str, ...]:
     if not joints:
-        raise InvalidValue(f"{what} has no joint that could be planned for")
+        raise InvalidValue(f"{what} has no joint that could be planned for{said}")
     return joints

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from functools import cache
-from types import ModuleType
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._checks import require_count, require_positive
 from evenroad.errors import InvalidValue
-from evenroad.robot import plain_trees
-from evenroad.robot.plain_trees import PlansWithTrees
+from evenroad.robot.kernel.addresses import address
+from evenroad.robot.kernel.lane_world import LaneWorld
 from evenroad.robot.tree_sequences import ball_points, cube_points, share_pairs
+from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch
 from evenroad.world.protocol import Connection
 
@@ -27,6 +29,31 @@ _CAPACITY = 1024
 
 _SLICE = 1000
 """Batches of sixteen checks between two looks at the clock: about 10 ms."""
+
+
+_TOLERANCE = 1e-4
+"""Of proofs where the lanes do not work [m]."""
+
+_WORTH_WHILE = 3e-3
+"""Motions that shorten a path by less than this share are not looked at there."""
+
+
+class PlansWithTrees(Protocol):
+    """What trees need of an arm's world; see ``ArmWorld``, which has these attributes."""
+
+    @property
+    def space(self) -> JointSpace: ...  # noqa: D102
+
+    @property
+    def lanes(self) -> LaneWorld: ...  # noqa: D102
+
+    @property
+    def backend(self) -> str: ...  # noqa: D102
+
+    @property
+    def fixed_contact(self) -> tuple[str, str] | None: ...  # noqa: D102
+
+    def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> npt.NDArray[np.bool_]: ...  # noqa: D102
 
 
 def connect(
@@ -62,7 +89,8 @@ def connect(
     Returns
     -------
     Connection
-        With an empty path where there is none within the budget, or start or goals are not free.
+        With an empty path where there is none within the budget, start or goals are not free, or the world's backend
+        is not the lanes, in which trees grow.
 
     Raises
     ------
@@ -73,15 +101,13 @@ def connect(
     limit = require_positive("seconds", seconds)
     most = require_count("most_motions", most_motions)
     ends = as_batch("start and goals", _stacked(start, goals, dim), dim)
-    samples = cube_points(dim) if sequence is None else _as_sequence(sequence, dim)
-    if world.fixed_contact is not None:
+    samples = None if sequence is None else _as_sequence(sequence, dim)
+    if world.fixed_contact is not None or world.backend == "scalar":
         return Connection(np.empty((0, dim)), -1, 0, 0, 0)
-    if world.backend == "scalar":
-        return plain_trees.grown(world, ends, samples, most, limit)
     return _grown(world, ends, samples, most, limit)
 
 
-def shorten(world: PlansWithTrees, path: npt.ArrayLike, *, proved: bool = False) -> tuple[Floats, int]:
+def shorten(world: PlansWithTrees, path: npt.ArrayLike) -> tuple[Floats, int]:
     """Return a path that is not longer, and how many motions were looked at.
 
     A motion is put in only where it is proved free throughout.  Motions of the path as it was given stay where
@@ -93,8 +119,6 @@ def shorten(world: PlansWithTrees, path: npt.ArrayLike, *, proved: bool = False)
         The robot in its scene.
     path : array_like, shape (p, dim), p >= 2
         Waypoints; every motion is free in the world.
-    proved : bool
-        Whether its motions are known to be proved free, as those of :func:`connect` are.
 
     Raises
     ------
@@ -105,17 +129,53 @@ def shorten(world: PlansWithTrees, path: npt.ArrayLike, *, proved: bool = False)
     if len(waypoints) < 2:
         raise InvalidValue(f"a path must have 2 waypoints or more, got {len(waypoints)}")
     if world.backend == "scalar":
-        return plain_trees.shortened(world, waypoints)
-    from evenroad.robot.kernel import shorten as kernel
+        return _shortened(world, waypoints)
+    from evenroad.robot.kernel.shorten import shorten_path
 
-    counts = np.zeros(3, dtype=np.int64)
-    shorter, _ = kernel.shorten_path(waypoints, proved, share_pairs(), counts, *lane_arguments(world))
-    return shorter, int(counts[0])
+    return shorten_path(world.lanes, waypoints, share_pairs())
 
 
-def _grown(world: PlansWithTrees, ends: Floats, samples: Floats, most: int, seconds: float) -> Connection:
+def _shortened(world: PlansWithTrees, path: Floats) -> tuple[Floats, int]:
+    """Return a path that is not longer, and how many motions were looked at, without lanes: each motion by itself."""
+    space = world.space
+    path = space.interpolate(path, path, 0.0)
+    motions = 0
+
+    def is_shortcut(a: Floats, b: Floats) -> bool:
+        nonlocal motions
+        motions += 1
+        return bool(world.motion_certified(a[np.newaxis], b[np.newaxis], _TOLERANCE)[0])
+
+    i = 0
+    while i < len(path) - 2:
+        for j in range(len(path) - 1, i + 1, -1):
+            if is_shortcut(path[i], path[j]):
+                path = np.concatenate([path[: i + 1], path[j:]])
+                break
+        i += 1
+    for low, high in np.sort(share_pairs(), axis=1):
+        places = np.concatenate([[0.0], np.cumsum(space.distance(path[:-1], path[1:]))])
+        shares = np.array([low, high]) * places[-1]
+        first, last = np.clip(np.searchsorted(places, shares, side="right") - 1, 0, len(path) - 2)
+        if first >= last:
+            continue
+        lengths = np.maximum(np.diff(places)[[first, last]], 1e-300)
+        ends = space.interpolate(
+            path[[first, last]],
+            path[[first + 1, last + 1]],
+            np.minimum((shares - places[[first, last]]) / lengths, 1),
+        )
+        gain = shares[1] - shares[0] - space.distance(ends[:1], ends[1:])[0]
+        if gain >= _WORTH_WHILE * places[-1] and is_shortcut(*ends):
+            path = np.concatenate([path[: first + 1], ends, path[last + 1 :]])
+    return path, motions
+
+
+def _grown(
+    world: PlansWithTrees, ends: Floats, samples: Floats | None, most: int, seconds: float
+) -> Connection:
     # Imported late: where the vector type cannot even be defined, all else still works.
-    from evenroad.robot.kernel import tree_nodes, tree_steps
+    from evenroad.robot.kernel import tree_steps
     from evenroad.robot.kernel import trees as kernel
 
     order = None
@@ -124,36 +184,37 @@ def _grown(world: PlansWithTrees, ends: Floats, samples: Floats, most: int, seco
         distances = world.space.distance(np.broadcast_to(ends[0], ends[1:].shape), ends[1:])
         order = np.argsort(distances, kind="stable")
         ends = ends[np.concatenate([[0], 1 + order])]
-        ends.setflags(write=False)
-    dim, ball, arguments = ends.shape[1], ball_points(ends.shape[1]), lane_arguments(world)
-    capacity = -(-max(_CAPACITY, 2 * len(ends) + kernel.ROOM) // 16) * 16
-    nodes, columns, links = _room(capacity, dim)
-    sizes, state = np.zeros(2, dtype=np.int64), np.zeros(tree_steps.STATE, dtype=np.int64)
+    count, dim = ends.shape
+    capacity = -(-max(_CAPACITY, 2 * count + kernel.ROOM) // 16) * 16
+    block = np.empty(kernel.room_for(count, capacity, dim))
+    state, begin = block[: kernel.STATE + 2].view(np.int64), kernel.STATE + 2 + count * dim
+    state[:], block[kernel.STATE + 2 : begin] = 0, ends.ravel()
+    sequence = _place(cube_points, dim) if samples is None else (address(samples), len(samples))
+    driven_by = *sequence, *_place(ball_points, dim)
+    _, arguments = world.lanes.arguments(tree_steps.memory_for(dim))
     if not kernel.grow.overloads:
         # Compiled, or loaded, before the clock runs; no motion is looked at.
-        kernel.grow(ends, nodes, columns, links, sizes, state, samples, ball, 0, _SLICE, *arguments)
-    deadline = time.perf_counter() + seconds
+        kernel.grow(address(block), count, capacity, *driven_by, 0, _SLICE, *arguments)
+    place, deadline = address(block), time.perf_counter() + seconds
     while True:
-        ended = kernel.grow(
-            ends, nodes, columns, links, sizes, state, samples, ball, most, _SLICE, *arguments
-        )
+        ended = kernel.grow(place, count, capacity, *driven_by, most, _SLICE, *arguments)
         if ended == kernel.FULL:
-            more = _room(2 * nodes.shape[1], dim)
-            more[0][:, : nodes.shape[1]], more[2][:, :, : nodes.shape[1]] = nodes, links
-            nodes, columns, links = more
-            _fill_columns(columns, nodes, sizes)
+            block = _with_more_room(block, begin, capacity, dim)
+            place, capacity = address(block), 2 * capacity
         elif ended != kernel.PAUSED or time.perf_counter() >= deadline:
             break
+    state = block[: kernel.STATE + 2].view(np.int64)
     path, goal = np.empty((0, dim)), -1
     if ended == kernel.SOLVED:
+        nodes, links, _ = _trees(block, begin, capacity, dim)
         here, there = (
-            _to_root(links[tree_nodes.PARENT, tree], state[tree_steps.START_NODE + tree]) for tree in (0, 1)
+            _to_root(links[kernel.PARENT, tree], state[kernel.START_NODE + tree]) for tree in (0, 1)
         )
         path = np.concatenate([nodes[0, here[::-1]], nodes[1, there]])
-        goal = int(links[tree_nodes.PROVED, 1, there[-1]]) - 1
+        goal = int(links[kernel.PROVED, 1, there[-1]]) - 1
         goal = goal if order is None else int(order[goal])
-    motions, configurations, _ = state[:3].tolist()
-    return Connection(path, goal, int(sizes[0] + sizes[1]), configurations, motions)
+    motions, configurations, _, *_, first, second = state.tolist()
+    return Connection(path, goal, first + second, configurations, motions)
 
 
 def _to_root(parents: npt.NDArray[np.int64], node: int) -> list[int]:
@@ -165,38 +226,32 @@ def _to_root(parents: npt.NDArray[np.int64], node: int) -> list[int]:
     return way
 
 
-def _room(capacity: int, dim: int) -> tuple[Floats, npt.NDArray[np.float32], npt.NDArray[np.int64]]:
+def _trees(
+    block: Floats, begin: int, capacity: int, dim: int
+) -> tuple[Floats, npt.NDArray[np.int64], npt.NDArray[np.float32]]:
+    """Return nodes, links and columns, the last things in the memory of the trees."""
+    links = begin + 2 * capacity * dim
+    columns = links + 8 * capacity
     return (
-        np.empty((2, capacity, dim)),
-        np.empty(2 * dim * capacity, dtype=np.float32),
-        np.empty((4, 2, capacity), dtype=np.int64),
+        block[begin:links].reshape(2, capacity, dim),
+        block[links:columns].view(np.int64).reshape(4, 2, capacity),
+        block[columns:].view(np.float32).reshape(2, dim, capacity),
     )
 
 
-def _fill_columns(columns: npt.NDArray[np.float32], nodes: Floats, sizes: npt.NDArray[np.int64]) -> None:
-    """Write the nodes by coordinate; the places up to the next multiple of 16 are far from everything."""
-    by_tree = columns.reshape(2, nodes.shape[2], nodes.shape[1])
-    for tree, size in enumerate(sizes):
-        by_tree[tree, :, size : size + 16] = 1e15
-        by_tree[tree, :, :size] = nodes[tree, :size].T
+def _with_more_room(block: Floats, begin: int, capacity: int, dim: int) -> Floats:
+    """Return the memory of the trees with room for twice as many nodes."""
+    larger = np.empty(begin + 2 * (len(block) - begin))
+    larger[:begin] = block[:begin]
+    nodes, links, columns = _trees(larger, begin, 2 * capacity, dim)
+    nodes[:, :capacity], links[..., :capacity], columns[..., :capacity] = _trees(block, begin, capacity, dim)
+    return larger
 
 
 @cache
-def lanes() -> tuple[ModuleType, tuple[int, int]]:
-    """Return the module of batches in lanes, and the addresses of the checks that it takes."""
-    # Imported late: where the vector type cannot even be defined, all else still works.
-    from evenroad.robot.kernel import batch
-    from evenroad.robot.kernel.motion_checks import addresses
-
-    return batch, addresses()
-
-
-def lane_arguments(
-    world: PlansWithTrees,
-) -> tuple[tuple[int, int], float, Floats, npt.NDArray[np.int64], Floats, Floats]:
-    """Return what compiled functions take of a world."""
-    arms = world.robot_tables.speeds_by_joint
-    return lanes()[1], world.resolution, world.bounds, world.tables.lanes, *arms
+def _place(points: Callable[[int], Floats], dim: int) -> tuple[int, int]:
+    """Return the address of points that are kept for good, and how many they are."""
+    return address(points(dim)), len(points(dim))
 
 
 def _stacked(start: npt.ArrayLike, goals: npt.ArrayLike, dim: int) -> Floats:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import cast
 from xml.etree.ElementTree import Element
@@ -16,29 +17,33 @@ from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import PRIMITIVES, Mesh, Shape, shape_of
 from evenroad.robot.joint import Joint, Kind, Mimic, with_direct_mimics, within_limits_of_mimics
-from evenroad.robot.urdf_xml import drawn_only, find_mesh, read_urdf_xml
+from evenroad.robot.urdf_xml import RobotFile, drawn_only, find_mesh, read_urdf_xml
 
 _KINDS = ("revolute", "continuous", "prismatic", "fixed")
 _LIMITS = ("lower", "upper", "velocity")
+_ANY = 1000.0
+"""A range of more than this is that of a joint without limits [rad or m]."""
 
 
 @dataclass(frozen=True)
 class Urdf:
-    """What a URDF says about motion and collision.
+    """What the file of a robot says about motion and collision.
 
     Attributes
     ----------
     links : tuple of str
         All links; the root first, every parent before its children.
     joints : tuple of Joint
-        ``joints[i]`` is the joint whose child is ``links[i + 1]``; a mimic follows a joint that is no mimic,
-        with limits that keep the mimic within its own.
+        ``joints[i]`` is the joint whose child is ``links[i + 1]``; a mimic follows a joint that is no mimic, with
+        limits that keep the mimic within its own.
     order : tuple of str
         Names of the joints as the file lists them: the order of configurations.
     shapes : tuple of Shape
         The collision geometry, each shape in its link's frame.
     drawn_only : tuple of str
-        Links that have a ``<visual>`` but no ``<collision>``.
+        Links that are drawn and have no collision geometry.
+    notes : tuple of str
+        What was read otherwise than it stands in the file.
     """
 
     name: str
@@ -47,19 +52,21 @@ class Urdf:
     order: tuple[str, ...]
     shapes: tuple[Shape, ...]
     drawn_only: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
     @property
     def free(self) -> frozenset[str]:
-        """Joints that move by themselves: neither fixed nor mimics, nor locked by equal limits."""
+        """Joints that move by themselves: neither fixed nor mimics, nor locked by equal limits, nor slides without."""
         return frozenset(
             joint.name
             for joint in self.joints
             if joint.kind != "fixed" and joint.mimic is None and joint.lower < joint.upper
+            if joint.kind != "prismatic" or joint.upper - joint.lower <= _ANY
         )
 
 
-def read_urdf(path: Path) -> Urdf:
-    """Read a URDF file.
+def read_urdf(source: Path | RobotFile) -> Urdf:
+    """Read a URDF, or a xacro, which is expanded first.
 
     Meshes are looked for but not opened.  An element ``<capsule radius="r" length="l"/>``, a cylinder of length l
     along z with half balls on both ends, is understood beside those of the standard.
@@ -67,38 +74,67 @@ def read_urdf(path: Path) -> Urdf:
     Raises
     ------
     BrokenFile
-        If the file is missing, broken or not a URDF, a piece is missing, a joint has no limits, a mesh is not found,
-        or the links do not form a tree.
+        If the file is missing, broken or not a URDF, a piece is missing, a mesh is not found, or the links do not form
+        a tree.
     InvalidValue
         If a number is not one, or out of its range.
     UnknownName
         If a joint is of a type that is not supported (floating, planar).
     """
-    root = read_urdf_xml(path)
-    links = [link.attrib["name"] for link in root.findall("link")]
-    joints = [_joint(joint, path) for joint in root.findall("joint")]
-    ordered = in_tree_order(links, joints, str(path))
-    first = ordered[0].parent if ordered else links[0]
-    return Urdf(
-        name=root.get("name", path.stem),
-        links=(first, *(joint.child for joint in ordered)),
-        joints=tuple(within_limits_of_mimics(with_direct_mimics(ordered, path))),
-        order=tuple(joint.name for joint in joints),
-        shapes=tuple(
-            _shape(link.attrib["name"], collision, path)
-            for link in root.findall("link")
-            for collision in link.findall("collision")
-        ),
-        drawn_only=drawn_only(root),
+    file = source if isinstance(source, RobotFile) else RobotFile(source)
+    root, notes = read_urdf_xml(file)
+    links = root.findall("link")
+    return as_tree(
+        root.get("name", file.path.stem),
+        [link.attrib["name"] for link in links],
+        [_joint(joint, file.path, notes) for joint in root.findall("joint")],
+        [_shape(link.attrib["name"], each, file) for link in links for each in link.findall("collision")],
+        str(file.path),
+        drawn_only(root),
+        notes,
     )
 
 
-def _joint(element: Element, path: Path) -> Joint:
+def as_tree(
+    name: str,
+    links: Sequence[str],
+    joints: Sequence[Joint],
+    shapes: Sequence[Shape],
+    where: str,
+    drawn_only: tuple[str, ...],
+    notes: list[str],
+) -> Urdf:
+    """Return a robot as the tree that its links and joints, in the file's order, form; `where` names the file."""
+    ordered = in_tree_order(links, [_without_end(joint, notes) for joint in joints], where)
+    return Urdf(
+        name,
+        links=(ordered[0].parent if ordered else links[0], *(joint.child for joint in ordered)),
+        joints=tuple(within_limits_of_mimics(with_direct_mimics(ordered, where))),
+        order=tuple(joint.name for joint in joints),
+        shapes=tuple(shapes),
+        drawn_only=drawn_only,
+        notes=tuple(notes),
+    )
+
+
+def _without_end(joint: Joint, notes: list[str]) -> Joint:
+    """Return a joint that turns on for ever where its limits are as good as none; what is done with it is noted."""
+    if not joint.upper - joint.lower > _ANY or joint.kind == "continuous":
+        return joint
+    said = f"joint {joint.name!r} with the limits {joint.lower:g}, {joint.upper:g}"
+    if joint.kind == "revolute":
+        notes.append(f"{said} turns without end")
+        return replace(joint, kind="continuous", lower=-math.inf, upper=math.inf)
+    notes.append(f"{said} slides without end: it is held, unless a scene limits it and --group names it")
+    return joint
+
+
+def _joint(element: Element, path: Path, notes: list[str]) -> Joint:
     name, kind = element.attrib["name"], element.attrib["type"]
     where = f"joint {name!r} in {path}"
     require_known(f"type of {where}:", kind, _KINDS)
     origin, follows = _pose(element), element.find("mimic")
-    lower, upper, velocity = _limits(element.find("limit"), kind, where)
+    lower, upper, velocity = _limits(element.find("limit"), kind, where, notes)
     mimic = None
     if follows is not None and kind != "fixed":
         mimic = Mimic(
@@ -134,7 +170,7 @@ def _axis(joint: Element, where: str) -> tuple[float, float, float]:
     return (x, y, z)
 
 
-def _limits(limit: Element | None, kind: str, where: str) -> tuple[float, float, float]:
+def _limits(limit: Element | None, kind: str, where: str, notes: list[str]) -> tuple[float, float, float]:
     """Return lower, upper and velocity; a velocity of 0 in a URDF means that nobody knew it."""
     given = {} if limit is None else {end: float(limit.attrib[end]) for end in _LIMITS if end in limit.attrib}
     velocity = given.get("velocity") or math.inf
@@ -144,24 +180,30 @@ def _limits(limit: Element | None, kind: str, where: str) -> tuple[float, float,
         return 0.0, 0.0, velocity
     if kind == "continuous":
         return -math.inf, math.inf, velocity
-    missing = [end for end in ("lower", "upper") if end not in given]
-    if missing:
+    missing = " and ".join(end for end in ("lower", "upper") if end not in given)
+    if limit is None:
         raise BrokenFile(
-            f"{where} has no limits: a {kind} joint needs <limit lower=... upper=...>"
-            f" (missing: {', '.join(missing)}); one that rotates without limits is of type continuous"
+            f"{where} has no limits: a {kind} joint needs <limit lower=... upper=...>; one that rotates without limits"
+            " is of type continuous"
         )
-    if given["lower"] > given["upper"]:
+    lower, upper = given.get("lower", 0.0), given.get("upper", 0.0)
+    if missing:
+        locked = ", so that it cannot move; one that turns without limits is of type continuous"
+        locked = locked if lower == upper else ""
+        notes.append(f"{where.partition(' in ')[0]} has no {missing} limit: 0 by the specification{locked}")
+    if lower > upper:
+        absent = f" ({missing} is not given: 0 by the specification)" if missing else ""
         raise InvalidValue(
-            f"the limits of {where} must satisfy lower <= upper, got {given['lower']:g}, {given['upper']:g}"
+            f"the limits of {where} must satisfy lower <= upper, got {lower:g}, {upper:g}{absent}"
         )
-    return given["lower"], given["upper"], velocity
+    return lower, upper, velocity
 
 
-def _shape(link: str, collision: Element, path: Path) -> Shape:
+def _shape(link: str, collision: Element, file: RobotFile) -> Shape:
     pose, (shape,) = _pose(collision), collision.iterfind("geometry/*")
     if shape.tag == "mesh":
         x, y, z = np.broadcast_to(_numbers(shape, "scale", (1.0,)), 3).tolist()
-        return Mesh(find_mesh(shape.attrib["filename"], path, link), (x, y, z), pose=pose, link=link)
+        return Mesh(find_mesh(shape.attrib["filename"], file, link), (x, y, z), pose=pose, link=link)
     size = [
         number for name, _ in PRIMITIVES[shape.tag].dimensions for number in _numbers(shape, name, (0.0,))
     ]
@@ -196,8 +238,8 @@ def in_tree_order(links: Sequence[str], joints: Sequence[Joint], where: str) -> 
     share a name, a joint joins links that there are not, a link has two parents, there is more than one root, or the
     joints form a cycle; the text names them.
     """
-    _require_distinct("link", list(links), where)
-    _require_distinct("joint", [joint.name for joint in joints], where)
+    _require_distinct("link", links, where)
+    _require_distinct("joint", (joint.name for joint in joints), where)
     parent_joint: dict[str, Joint] = {}
     for joint in joints:
         for role, link in (("parent", joint.parent), ("child", joint.child)):
@@ -241,7 +283,7 @@ def _cycle(joint: Joint, parent_joint: dict[str, Joint]) -> list[str]:
     return [closing.name, *reversed(names)]
 
 
-def _require_distinct(what: str, names: list[str], where: str) -> None:
-    for name in names:
-        if names.count(name) > 1:
-            raise BrokenFile(f"{where} has more than one {what} named {name!r}")
+def _require_distinct(what: str, names: Iterable[str], where: str) -> None:
+    name, count = max(Counter(names).items(), key=lambda item: item[1], default=("", 1))
+    if count > 1:
+        raise BrokenFile(f"{where} has more than one {what} named {name!r}")

@@ -1,83 +1,106 @@
 """The XML of a URDF, checked element by element before anything is made of it.
 
 Readers of URDF take a missing number for a default and repair broken XML in silence; a planner that then finds a
-robot free of collisions has not been given its bodies.
+robot free of collisions has not been given its bodies.  What is read otherwise than it stands is said in notes.
 """
 
 from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import unquote
-from xml.etree import ElementTree
+from xml.etree.ElementTree import Element, TreeBuilder
+from xml.parsers import expat
 
+from evenroad._checks import require_extra
 from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.geometry.shapes import PRIMITIVES
 
+_SIZES = {tag: dict(shape.dimensions) for tag, shape in PRIMITIVES.items()}
+_SHAPES = (*_SIZES, "mesh")
 _NUMBERS = {
-    ("origin", "xyz"): 3,
-    ("origin", "rpy"): 3,
-    ("axis", "xyz"): 3,
-    ("limit", "lower"): 1,
-    ("limit", "upper"): 1,
-    ("limit", "velocity"): 1,
-    ("mimic", "multiplier"): 1,
-    ("mimic", "offset"): 1,
-    ("box", "size"): 3,
-    ("sphere", "radius"): 1,
-    ("cylinder", "radius"): 1,
-    ("cylinder", "length"): 1,
-    ("capsule", "radius"): 1,
-    ("capsule", "length"): 1,
-    ("mesh", "scale"): 3,
+    "origin": {"xyz": 3, "rpy": 3},
+    "axis": {"xyz": 3},
+    "limit": {"lower": 1, "upper": 1, "velocity": 1},
+    "mimic": {"multiplier": 1, "offset": 1},
+    "mesh": {"scale": 3},
+    **_SIZES,
 }
-"""Element and attribute -> how many finite numbers it must hold, if it is there."""
-
-_REQUIRED = {
+"""Element -> attribute -> how many finite numbers it must hold, if it is there."""
+_REQUIRED: dict[str, Iterable[str]] = {
     "link": ("name",),
     "joint": ("name", "type"),
     "parent": ("link",),
     "child": ("link",),
     "mimic": ("joint",),
-    "box": ("size",),
-    "sphere": ("radius",),
-    "cylinder": ("radius", "length"),
-    "capsule": ("radius", "length"),
     "mesh": ("filename",),
+    **_SIZES,
 }
-_SHAPES = ("box", "sphere", "cylinder", "capsule", "mesh")
 _LENGTHS = ("size", "radius", "length")
+_THIN = 1e-6
+"""What a body has in place of a dimension of 0 [m]."""
 _SINGLE = ("origin", "axis", "limit", "mimic", "parent", "child", "geometry")
-"""Of these, the first would be taken and others passed over."""
-_IGNORED = ("inertial", "material", "transmission", "gazebo", "sensor", "ros2_control")
+"""Of these, the first would be taken and others passed over, unless they are equal."""
+_IGNORED = ("inertial", "material", "transmission", "gazebo", "sensor", "ros2_control", "collision_checking")
 """What collision checking does not need; much of it in dialects of its own."""
 
 
-def read_urdf_xml(path: Path) -> ElementTree.Element:
-    """Return the ``<robot>`` element of a URDF file, without what collision checking does not need.
+@dataclass(frozen=True)
+class RobotFile:
+    """The file of a robot, and how it is to be read.
+
+    With `use_visuals`, links without collision geometry get what is drawn of them.  `packages` are folders of packages,
+    (name, folder), beside those that are found; `arguments` are those of a xacro, (name, value).
+    """
+
+    path: Path
+    use_visuals: bool = False
+    packages: tuple[tuple[str, str], ...] = ()
+    arguments: tuple[tuple[str, str], ...] = ()
+
+
+def read_urdf_xml(file: RobotFile) -> tuple[Element, list[str]]:
+    """Return the ``<robot>`` element of a URDF or xacro without what collision checking does not need, and notes.
 
     Numbers are rewritten with blanks between them; of a ``<visual>`` is kept that it is there.
 
     Raises
     ------
     BrokenFile
-        If the file is missing, not XML, not a URDF (a xacro, for instance), or an element lacks a piece.
+        If the file is missing, not XML or not a URDF, or an element lacks a piece.
     InvalidValue
         If an attribute does not hold the numbers that it must.
+    NotAvailable
+        If it is a xacro and the extra for these is not installed.
     """
+    path, notes = file.path, list[str]()
     root = read_xml(path, "robot", "a URDF")
-    if any("xacro" in str(element.tag) for element in root.iter()):
-        raise BrokenFile(f"{path} is a xacro file; make a URDF of it first: xacro {path.name} > robot.urdf")
+    if path.suffix == ".xacro" or any(element.tag.startswith("xacro:") for element in root.iter()):
+        root = _expanded(file)
     for name in _IGNORED:
         for parent in list(root.iter()):
             for element in parent.findall(name):
                 parent.remove(element)
-    for visual in list(root.iter("visual")):
-        visual.clear()
+    drawn = []
+    for link in root.findall("link"):
+        visuals = link.findall("visual")
+        if file.use_visuals and visuals and link.find("collision") is None:
+            drawn.append(str(link.get("name")))
+            for visual in visuals:
+                visual.tag = "collision"
+        else:
+            for visual in visuals:
+                visual.clear()
+    if drawn:
+        notes.append(f"what is drawn of a link is its body: {', '.join(drawn)}")
     for owner in root:
         if owner.tag in ("link", "joint"):
             _check(owner, path)
+        if owner.tag == "link":
+            notes += _without_points(owner)
     if root.find("link") is None:
         raise BrokenFile(f"{path} has no links")
     names = {joint.attrib["name"] for joint in root.findall("joint")}
@@ -87,30 +110,47 @@ def read_urdf_xml(path: Path) -> ElementTree.Element:
             raise BrokenFile(
                 f"joint {joint.attrib['name']!r} in {path} mimics {mimic.attrib['joint']!r}, which is no joint"
             )
-    return root
+    return root, notes
 
 
-def read_xml(path: Path, what: str, kind: str) -> ElementTree.Element:
-    """Return the ``<robot>`` element of a file; `what` and `kind` name it in errors, each a BrokenFile."""
+def read_xml(path: Path, what: str, kind: str, tag: str = "robot") -> Element:
+    """Return the outermost element of a file; `what` and `kind` name it in errors, each a BrokenFile."""
     try:
-        root = ElementTree.fromstring(path.read_bytes())
+        content = path.read_bytes()
     except OSError as error:
         raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
-    except (ElementTree.ParseError, ValueError, LookupError) as error:
-        raise BrokenFile(f"{path} is not XML: {error}") from error
-    if root.tag != "robot":
-        raise BrokenFile(f"{path} is not {kind}: its outermost element is <{root.tag}>, not <robot>")
+    root = _parsed(content, path)
+    if root.tag != tag:
+        raise BrokenFile(f"{path} is not {kind}: its outermost element is <{root.tag}>, not <{tag}>")
     return root
 
 
-def mesh_names(root: ElementTree.Element) -> Iterator[tuple[str, str]]:
-    """Yield link and file name, as written, of every mesh of a checked ``<robot>``."""
-    for link in root.findall("link"):
-        for mesh in link.iterfind("collision/geometry/mesh"):
-            yield link.attrib["name"], mesh.attrib["filename"]
+def _parsed(content: bytes, path: Path) -> Element:
+    """Return the root of XML as other readers of URDFs take it: whatever prefixes, and blanks at both ends."""
+    builder, parser = TreeBuilder(), expat.ParserCreate()
+    parser.StartElementHandler = builder.start
+    parser.EndElementHandler = builder.end
+    try:
+        parser.Parse(content.strip(b" \t\r\n\0"), True)
+        return builder.close()
+    except (expat.ExpatError, ValueError, LookupError) as error:
+        raise BrokenFile(f"{path} is not XML: {error}") from error
 
 
-def drawn_only(root: ElementTree.Element) -> tuple[str, ...]:
+def _expanded(file: RobotFile) -> Element:
+    """Return the URDF that a xacro stands for."""
+    xacro = require_extra("xacrodoc", "xacro", f"{file.path} is a xacro file, which")
+    # It keeps packages for the whole process, those of the last robot, too.
+    xacro.packages.reset()
+    xacro.packages.update_package_cache(dict(file.packages))
+    try:
+        text = xacro.XacroDoc.from_file(str(file.path), subargs=dict(file.arguments)).to_urdf_string()
+    except Exception as error:  # Whatever its macros raise.
+        raise BrokenFile(f"the xacro {file.path} cannot be expanded: {error}") from error
+    return _parsed(text.encode(), file.path)
+
+
+def drawn_only(root: Element) -> tuple[str, ...]:
     """Return the links of a checked ``<robot>`` that have a ``<visual>`` and no ``<collision>``."""
     return tuple(
         link.attrib["name"]
@@ -119,17 +159,40 @@ def drawn_only(root: ElementTree.Element) -> tuple[str, ...]:
     )
 
 
-def _check(owner: ElementTree.Element, path: Path) -> None:
+def _without_points(link: Element) -> Iterator[str]:
+    """Remove the bodies of a checked link that are points, make flat ones a little thicker, and yield notes."""
+    for collision in link.findall("collision"):
+        shape = collision.find("geometry/*")
+        assert shape is not None
+        lengths = [(name, shape.attrib[name].split()) for name in _LENGTHS if name in shape.attrib]
+        values = [float(word) for _, words in lengths for word in words]
+        if not values or min(values) > 0.0:
+            continue
+        said = f"the <{shape.tag}> of link {link.attrib['name']!r} with " + ", ".join(
+            f"{name} {' '.join(f'{float(word):g}' for word in words)}" for name, words in lengths
+        )
+        if max(values) == 0.0 or (shape.tag == "capsule" and float(shape.attrib["radius"]) == 0.0):
+            link.remove(collision)
+            yield f"{said} is left out: a placeholder; --bodies gives the link a body"
+            continue
+        for name, words in lengths:
+            shape.set(name, " ".join(word if float(word) > 0.0 else repr(_THIN) for word in words))
+        yield f"{said} is taken as {_THIN:g} m thick"
+
+
+def _check(owner: Element, path: Path) -> None:
     where = f"{owner.tag} {owner.get('name', '(without a name)')!r} in {path}"
     for element in owner.iter():
-        for attribute in _REQUIRED.get(str(element.tag), ()):
+        for attribute in _REQUIRED.get(element.tag, ()):
             if not element.get(attribute):
                 raise BrokenFile(f"{where}: <{element.tag}> lacks {attribute!r}")
         for tag in _SINGLE:
-            if len(element.findall(tag)) > 1:
+            found = element.findall(tag)
+            # Twice the same is taken once.
+            if len(found) > 1 and (len(found[0]) or any(each.attrib != found[0].attrib for each in found)):
                 raise BrokenFile(f"{where}: <{element.tag}> has more than one <{tag}>")
         for attribute, text in list(element.attrib.items()):
-            count = _NUMBERS.get((str(element.tag), attribute))
+            count = _NUMBERS.get(element.tag, {}).get(attribute)
             if count is not None:
                 what = f"{where}: {attribute} of <{element.tag}>"
                 # The readers that come after this one do not agree on what separates numbers.
@@ -142,8 +205,8 @@ def _check(owner: ElementTree.Element, path: Path) -> None:
         _check_geometry(collision.find("geometry"), where)
 
 
-def _check_geometry(geometry: ElementTree.Element | None, where: str) -> None:
-    tags = [str(shape.tag) for shape in geometry] if geometry is not None else []
+def _check_geometry(geometry: Element | None, where: str) -> None:
+    tags = [shape.tag for shape in geometry] if geometry is not None else []
     if len(tags) != 1 or tags[0] not in _SHAPES:
         found = f"has {', '.join(f'<{tag}>' for tag in tags)}" if tags else "is empty"
         raise BrokenFile(
@@ -166,8 +229,8 @@ def _numbers(what: str, attribute: str, text: str, count: int) -> list[float]:
     uniform_scale = attribute == "scale" and len(numbers) == 1
     if (len(numbers) != count and not uniform_scale) or not all(map(math.isfinite, numbers)):
         raise InvalidValue(f"{what} must be {allowed}, got {text!r}")
-    if attribute in _LENGTHS and min(numbers) <= 0.0:
-        raise InvalidValue(f"{what} must be > 0, got {text!r}: a body without volume would never collide")
+    if attribute in _LENGTHS and min(numbers) < 0.0:
+        raise InvalidValue(f"{what} must be >= 0, got {text!r}")
     if attribute == "scale" and 0.0 in numbers:
         raise InvalidValue(
             f"{what} must not be 0, got {text!r}: a mesh without volume would hardly ever collide"
@@ -175,23 +238,28 @@ def _numbers(what: str, attribute: str, text: str, count: int) -> list[float]:
     return numbers
 
 
-def find_mesh(name: str, urdf: Path, link: str) -> Path:
+def find_mesh(name: str, file: RobotFile, link: str) -> Path:
     """Return the file that a URDF means by `name`.
 
-    ``package://PACKAGE/FILE`` is looked for in the folder of the URDF and those above it, either inside of a folder
-    PACKAGE or in one, and where ROS keeps packages (``ROS_PACKAGE_PATH``, ``AMENT_PREFIX_PATH``); ``file://`` is
-    absolute; all else is relative to the URDF.  Raises BrokenFile if there is none; the text says where it was looked
-    for.
+    ``package://PACKAGE/FILE`` is looked for in the given packages, in the folder of the URDF and those above it, either
+    inside of a folder PACKAGE or in one, and where ROS keeps packages (``ROS_PACKAGE_PATH``, ``AMENT_PREFIX_PATH``);
+    ``file://`` is absolute; all else is relative to the URDF.  Raises BrokenFile if there is none; the text says where
+    it was looked for.
     """
-    places = list(_candidates(name, urdf.absolute().parent))
+    places = list(_candidates(name, file))
     for place in places:
         if place.is_file():
             return place
     looked = ", ".join(str(place) for place in places[:4]) + (", ..." if len(places) > 4 else "")
-    raise BrokenFile(f"the mesh {name!r} of link {link!r} in {urdf} is missing; looked for {looked}")
+    package = name.removeprefix("package://").partition("/")[0] if name.startswith("package://") else ""
+    hint = f"; --package {package}=FOLDER says where that package is" if package else ""
+    raise BrokenFile(
+        f"the mesh {name!r} of link {link!r} in {file.path} is missing; looked for {looked}{hint}"
+    )
 
 
-def _candidates(name: str, folder: Path) -> Iterator[Path]:
+def _candidates(name: str, file: RobotFile) -> Iterator[Path]:
+    folder = file.path.absolute().parent
     scheme, separator, rest = name.partition("://")
     if not separator:
         yield folder / name
@@ -201,6 +269,9 @@ def _candidates(name: str, folder: Path) -> Iterator[Path]:
         yield Path(rest)
         return
     package, _, inside = rest.partition("/")
+    given = dict(file.packages)
+    if package in given:
+        yield Path(given[package]) / inside
     for above in (folder, *folder.parents):
         if above.name == package:
             yield above / inside

@@ -105,7 +105,7 @@ def _differences(made: Robot, given: Robot) -> Iterator[str]:
         yield "this one has more joints"
     for link in made.links:
         if _bodies(made, link) != _bodies(given, link):
-            yield f"the bodies of {link!r} differ: {len(_bodies(made, link))} capsules, now {len(_bodies(given, link))}"
+            yield f"the bodies of {link!r} differ: {len(_bodies(made, link))}, now {len(_bodies(given, link))}"
     pairs = (sorted(map(str, map(sorted, robot.pairs))) for robot in (made, given))
     ours, theirs = map(tuple, pairs)
     if ours != theirs:
@@ -117,7 +117,10 @@ def _differences(made: Robot, given: Robot) -> Iterator[str]:
 
 
 def _bodies(robot: Robot, link: str) -> list[str]:
-    return sorted(repr(capsule) for capsule in robot.capsules if capsule.link == link)
+    """Return the capsules and hulls of a link as texts in which no two different ones look the same."""
+    capsules = [repr(capsule) for capsule in robot.capsules if capsule.link == link]
+    hulls = [repr((hull.points.tolist(), hull.radius)) for hull in robot.hulls if hull.link == link]
+    return sorted(capsules + hulls)
 
 
 def _lists(what: str, ours: object, theirs: object) -> str:

@@ -32,7 +32,7 @@ def save_robot_roadmap(path: Path, roadmap: RobotRoadmap) -> None:
     arrays: Arrays = dict(
         format=np.array(FORMAT),
         version=np.array(__version__),
-        robot=np.array(json.dumps(asdict(roadmap.robot))),
+        robot=np.array(json.dumps(asdict(roadmap.robot), default=np.ndarray.tolist)),
         cell=np.array(json.dumps(_cell_record(roadmap.cell))),
         settings=np.array(json.dumps(settings)),
         **{name: getattr(roadmap, name) for name in _ARRAYS},

@@ -1,22 +1,25 @@
-"""The search of a robot's roadmap in one compiled loop: the shortest way first, then the world is asked about it."""
+"""The search of a robot's roadmap: the shortest way first, by compiled code, then the world is asked about it."""
 
 from __future__ import annotations
 
 import heapq
+import itertools
+import time
 from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints
-from evenroad.robot.arm_world import RECHECK_TOLERANCE
-from evenroad.robot.kernel.batch import configurations_free, motions_free
+from evenroad.robot.arm_world import RECHECK_TOLERANCE, ArmWorld
 from evenroad.robot_roadmap.turns import TURN
 
+Verdicts = npt.NDArray[np.int8]
 UNKNOWN, FREE, BLOCKED = 0, 1, 2
 
-NONE, OUT_OF_MOTIONS, PAUSED = -1, -2, -3
-"""In place of a goal: there is no path, so many motions were checked, or so many searches made."""
+NONE, GAVE_UP = -1, -2
+"""In place of a goal: there is no path, or motions or time were over before."""
 
 _EASY, _ANEW = 4, 16
 """A query that so many searches have not answered is worth a closer bound, made anew after so many more."""
@@ -59,17 +62,6 @@ class Ends(NamedTuple):
     straight: Floats
 
 
-class Checks(NamedTuple):
-    """What the compiled checks of a world take, see :func:`evenroad.robot.trees.lane_arguments`."""
-
-    addresses: tuple[int, int]
-    resolution: float
-    bounds: Floats
-    tables: Ints
-    arms: Floats
-    pair_arms: Floats
-
-
 @njit(cache=True, nogil=True)
 def ends_of(ways, start, goals, links):  # type: ignore[no-untyped-def]
     """Return start and goals linked to the nearest milestones, `links` of each or all of them."""
@@ -101,8 +93,16 @@ def ends_of(ways, start, goals, links):  # type: ignore[no-untyped-def]
     return Ends(start, goals, turns, length, straight)
 
 
-@njit(cache=True, nogil=True)
-def lazy_path(ways, ends, milestones, edges, motions_left, searches_left, day, full):  # type: ignore[no-untyped-def]
+def lazy_path(
+    ways: Ways,
+    ends: Ends,
+    milestones: Verdicts,
+    edges: Verdicts,
+    motions_left: int,
+    deadline: float,
+    day: ArmWorld,
+    full: ArmWorld,
+) -> tuple[Floats, int, int, int]:
     """Return the shortest path that the world calls free: waypoints, its goal or -1, and what was checked.
 
     A lazy shortest-path search (Dellin and Srinivasa 2016): the best path over all that is not known to be blocked is
@@ -117,67 +117,49 @@ def lazy_path(ways, ends, milestones, edges, motions_left, searches_left, day, f
         the straight motions to the goals.
     motions_left : int
         Give up when so many motions were checked.
-    searches_left : int
-        Come back after so many searches: what was found out is in the arrays, and the next call goes on.
-    day, full : Checks
+    deadline : float
+        Or then, on the clock of ``time.perf_counter``.
+    day, full : ArmWorld
         Of the day's obstacles alone, enough for what was proved free of the rest beforehand; and of everything.
 
     Returns
     -------
     path : float64 array, shape (p, dim)
     goal : int
-        NONE, OUT_OF_MOTIONS or PAUSED without a path.
+        NONE without a path, GAVE_UP where motions or time were over before.
     configurations, motions : int
         How many were checked.
     """
-    dim = ways.milestones.shape[1]
     configurations = motions = 0
-    nothing, left = np.empty((0, dim)), np.zeros(len(ways.milestones))
-    for search in range(searches_left):
+    nothing, left = np.empty((0, ways.milestones.shape[1])), np.zeros(len(ways.milestones))
+    for search in itertools.count():
         if search % _ANEW == _EASY:
             _write_way_left(ways, ends, milestones, edges, left)
-        nodes, turned, along, goal = _shortest(ways, ends, milestones, edges, left)
-        if goal < 0:
-            return nothing, NONE, configurations, motions
-        path = np.empty((len(nodes) + 2, dim))
-        path[0], path[-1] = ends.start, ends.goals[goal]
-        unknown = np.empty(len(nodes), dtype=np.int64)
-        count = 0
-        for i in range(len(nodes)):
-            _write_state(ways, nodes[i], turned[i], path[i + 1])
-            if milestones[nodes[i]] == UNKNOWN:
-                unknown[count] = i
-                count += 1
-        if count:
-            free = configurations_free(path[unknown[:count] + 1], day.addresses[0], day.bounds, day.tables)
-            configurations += count
-            for i in range(count):
-                milestones[nodes[unknown[i]]] = FREE if free[i] else BLOCKED
+        nodes, between, along, goal = _shortest(ways, ends, milestones, edges, left)
+        if goal < 0 or time.perf_counter() >= deadline:
+            return nothing, NONE if goal < 0 else GAVE_UP, configurations, motions
+        path = np.concatenate([ends.start[np.newaxis], between, ends.goals[goal : goal + 1]])
+        unknown = milestones[nodes] == UNKNOWN
+        if unknown.any():
+            free = day.valid(between[unknown])
+            configurations += len(free)
+            milestones[nodes[unknown]] = np.where(free, FREE, BLOCKED)
             if not free.all():
                 continue
-        all_free = True
-        for step in range(len(along)):
-            # The links of start and goal are the likeliest to be blocked, so that they come first.
-            i = step // 2 if step % 2 == 0 else len(along) - 1 - step // 2
+        # The links of start and goal are the likeliest to be blocked, so that they come first.
+        for i in sorted(range(len(along)), key=lambda i: min(i, len(along) - 1 - i)):
             if edges[along[i]] == UNKNOWN:
                 if motions >= motions_left:
-                    return nothing, OUT_OF_MOTIONS, configurations, motions
+                    return nothing, GAVE_UP, configurations, motions
                 motions += 1
-                checks = day if along[i] < ways.edges else full
-                edges[along[i]] = FREE if _proved(path[i : i + 1], path[i + 1 : i + 2], checks) else BLOCKED
+                world = day if along[i] < ways.edges else full
+                free = world.motion_certified(path[i : i + 1], path[i + 1 : i + 2], RECHECK_TOLERANCE)
+                edges[along[i]] = FREE if free[0] else BLOCKED
             if edges[along[i]] == BLOCKED:
-                all_free = False
                 break
-        if all_free:
+        else:
             return path, goal, configurations, motions
-    return nothing, PAUSED, configurations, motions
-
-
-@njit(cache=True, nogil=True)
-def _proved(a, b, checks):  # type: ignore[no-untyped-def]
-    """Return whether the motion from the one row of `a` to that of `b` is proved free."""
-    addresses, resolution, bounds, tables, arms, pair_arms = checks
-    return motions_free(a, b, RECHECK_TOLERANCE, addresses, resolution, bounds, tables, arms, pair_arms)[0]
+    raise AssertionError("the count of searches never ends")
 
 
 @njit(cache=True, nogil=True)
@@ -206,7 +188,7 @@ def _write_way_left(ways, ends, milestones, edges, left):  # type: ignore[no-unt
 
 @njit(cache=True, nogil=True)
 def _shortest(ways, ends, milestones, edges, left):  # type: ignore[no-untyped-def]
-    """Return the milestones, turns and edges of the shortest path that is not known to be blocked, and its goal or -1.
+    """Return milestones, configurations and edges of the shortest path not known to be blocked, and its goal or -1.
 
     A* (Hart, Nilsson and Raphael 1968) over milestones with turns, with the distance to the nearest goal as its bound,
     or the way that is `left`, (n,), at least, where that is longer.
@@ -290,13 +272,14 @@ def _shortest(ways, ends, milestones, edges, left):  # type: ignore[no-untyped-d
     count, state = 0, last
     while state >= 0:
         count, state = count + 1, parent[state]
-    nodes, turns = np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64)
+    nodes, between = np.empty(count, dtype=np.int64), np.empty((count, dim))
     along = np.empty(count + 1, dtype=np.int64)
     along[count], state = last_edge, last
     for i in range(count - 1, -1, -1):
-        nodes[i], turns[i], along[i] = node[state], turned[state], via[state]
+        nodes[i], along[i] = node[state], via[state]
+        _write_state(ways, nodes[i], turned[state], between[i])
         state = parent[state]
-    return nodes, turns, along, goal
+    return nodes, between, along, goal
 
 
 @njit(cache=True, nogil=True)

@@ -6,7 +6,6 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -19,16 +18,13 @@ from evenroad.roadmap.find_path import NO_POINTS, SECONDS
 from evenroad.roadmap.hemmed import with_reasons
 from evenroad.roadmap.query import FEW, LINKS, Query, read_places
 from evenroad.robot import ArmWorld, Robot, Scene, configuration, in_scene
-from evenroad.robot.trees import lane_arguments
 from evenroad.robot_roadmap.cell import day_and_all, require_same_robot
+from evenroad.robot_roadmap.lazy_search import Ways, ends_of, lazy_path
 from evenroad.robot_roadmap.turns import TURN, OneTurn, one_turn, whole_turns
 from evenroad.world.protocol import Connection
 
 Place = str | npt.ArrayLike
 """A configuration: numbers in the order of the group, or a text as :func:`evenroad.robot.configuration` takes it."""
-
-SLICE = 64
-"""Searches between two looks at the clock: some milliseconds."""
 
 SHARE = 0.5
 """Of the time, for the roadmap; the rest is the trees', where it does not lead to the goal."""
@@ -81,10 +77,8 @@ class RobotRoadmap:
         return one_turn(self.world.space, whole_turns(self.robot))
 
     @cached_property
-    def ways(self) -> Any:
+    def ways(self) -> Ways:
         """The roadmap by node, for the compiled search."""
-        from evenroad.robot_roadmap.lazy_search import Ways
-
         one, m = self.one_turn, len(self.edges)
         own = np.concatenate([self.edges[:, 0], self.edges[:, 1]]).astype(np.int64)
         order = np.argsort(own, kind="stable")
@@ -156,9 +150,12 @@ class SceneRoadmap:
         self._day = ArmWorld(replace(robot, pairs=()), day, resolution=resolution)
         self._milestones = np.zeros(len(roadmap.milestones), dtype=np.int8)
         self._edges = np.zeros(len(roadmap.edges), dtype=np.int8)
+        if not ends_of.overloads:
+            # Compiled, or loaded, before a clock runs; nothing is checked.
+            self.connect(roadmap.milestones[0], roadmap.milestones[:1], seconds=0.0)
 
     @cached_property
-    def _ways(self) -> Any:
+    def _ways(self) -> Ways:
         """The roadmap by node, within the limits of today."""
         ways, space = self.roadmap.ways, self.world.space
         limits = np.stack([np.maximum(ways.limits[0], space.low), np.minimum(ways.limits[1], space.high)])
@@ -178,29 +175,17 @@ class SceneRoadmap:
         Start and goals have to be free; each is linked to its nearest `links` milestones, of few to all.
         """
         n, m, g = len(self._milestones), len(self._edges), len(goals)
-        path, goal, configurations, motions = np.empty((0, len(start))), -1, 0, 0
-        if self.world.backend == "scalar":
-            # The compiled search asks the lanes.
-            return Connection(path, goal, n, configurations, motions)
-        from evenroad.robot_roadmap.lazy_search import PAUSED, Checks, ends_of, lazy_path
-
         # Compiled code is made anew for arrays that can be written to.
         start, goals = np.array(start), np.array(goals)
         start.setflags(write=False)
         goals.setflags(write=False)
-        ways, checks = self._ways, [Checks(*lane_arguments(world)) for world in (self._day, self.world)]
-        ends = ends_of(ways, start, goals, n if n <= FEW else links)
+        ends = ends_of(self._ways, start, goals, n if n <= FEW else links)
         edges = np.zeros(m + n * (1 + g) + g, dtype=np.int8)
         edges[:m] = self._edges
-        if not lazy_path.overloads:
-            # Compiled, or loaded, before the clock runs; nothing is searched.
-            lazy_path(ways, ends, self._milestones, edges, 0, 0, *checks)
-        deadline, goal = time.perf_counter() + seconds, PAUSED
-        while goal == PAUSED and time.perf_counter() < deadline:
-            path, goal, asked, moved = lazy_path(
-                ways, ends, self._milestones, edges, most_motions - motions, SLICE, *checks
-            )
-            configurations, motions = configurations + asked, motions + moved
+        deadline = time.perf_counter() + seconds
+        path, goal, configurations, motions = lazy_path(
+            self._ways, ends, self._milestones, edges, most_motions, deadline, self._day, self.world
+        )
         self._edges[:] = edges[:m]
         return Connection(path, goal, n, configurations, motions)
 

@@ -179,7 +179,7 @@ class JointSpace(FlatSpace):
 def _as_bools(wrapping: bool | Sequence[bool], length: int) -> tuple[bool, ...]:
     if isinstance(wrapping, bool | np.bool_):
         return (bool(wrapping),) * length
-    row = tuple(wrapping) if isinstance(wrapping, Sequence | np.ndarray) else ()
+    row = tuple(wrapping) if np.iterable(wrapping) else ()
     if len(row) != length or not all(isinstance(entry, bool | np.bool_) for entry in row):
         raise InvalidValue(f"wrapping must be a bool or {length} of them, got {wrapping!r}")
     return tuple(map(bool, row))

@@ -78,7 +78,7 @@ def anneal(
     n, d : int
         Number of points and dimension, >= 1 (n >= 2 for an energy).
     objective : Minimised
-        One of ``MEASURES``, or what :func:`~evenroad.research.training.objective.parse_objective` gives.
+        One of ``MEASURES``, or an objective of the studies: anything with the attributes of :class:`Minimised`.
     steps : int
         5000 is the standard, 20000 gains another percent or so.
     rng : int, SeedSequence or Generator

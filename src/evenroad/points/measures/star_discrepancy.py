@@ -50,8 +50,8 @@ def _largest_deviation(columns, inside, strictly, level, volume, best):  # type:
     on them; `volume` is that of the sides.
     """
     d, n = columns.shape
-    if level == d - 1:
-        return _sweep_last(columns[level], inside, strictly, volume, best)
+    if d == 1:
+        return _sweep_last(columns[0], inside, strictly, volume, best)
     places = columns[level][inside]
     inner, below = np.empty_like(inside), np.empty_like(strictly)
     for side in np.unique(np.append(places, 1.0))[::-1]:
@@ -64,7 +64,10 @@ def _largest_deviation(columns, inside, strictly, level, volume, best):  # type:
         if max(volume * side, count / n) <= best:
             # Sides come in falling order and both bounds fall with the side: the rest is no better.
             break
-        best = _largest_deviation(columns, inner[:count], below[:count], level + 1, volume * side, best)
+        if level == d - 2:
+            best = _sweep_last(columns[d - 1], inner[:count], below[:count], volume * side, best)
+        else:
+            best = _largest_deviation(columns, inner[:count], below[:count], level + 1, volume * side, best)
     return best
 
 

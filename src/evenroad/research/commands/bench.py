@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
 
 import numpy as np
+import tyro
 
 from evenroad._terminal import print_table, progress_shown
 from evenroad.errors import InvalidValue, UnknownName
@@ -40,7 +40,7 @@ class Bench:
     Exit code 1 if a run of the suite, now or before, gave no answer: see --retry.
     """
 
-    suite: Annotated[str, "positional"] = "paper"
+    suite: tyro.conf.Positional[str] = "paper"
     """paper: the published experiments. fair: a new random world in every run."""
     list: bool = False
     """Show suites, problems and samplers, and run nothing."""

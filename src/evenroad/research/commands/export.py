@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
+import tyro
+
 from evenroad.research.bench.arena import write_arena
 
 
@@ -13,11 +15,11 @@ from evenroad.research.bench.arena import write_arena
 class Export:
     """Write benchmark results for OMPL's Planner Arena (CSV and tables: evenroad report)."""
 
-    store: Annotated[Path, "positional"]
+    store: tyro.conf.Positional[Path]
     """The store that ``evenroad bench`` wrote."""
     arena: bool = False
     """As a Planner Arena database; the one format there is, so it need not be said."""
-    out: Annotated[Path, "-o"]
+    out: Annotated[Path, tyro.conf.arg(aliases=["-o"])]
     """The file to write."""
 
     def run(self) -> int:

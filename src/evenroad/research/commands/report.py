@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
+import tyro
+
 from evenroad._terminal import WIDTH, print_table, table_width
 from evenroad.research import report
 from evenroad.research.bench.store import rescue_file
@@ -22,9 +24,9 @@ from evenroad.research.report.tables import difference
 class Report:
     """Write report.html, PNG figures, CSV, Markdown and LaTeX tables of a store of benchmark results."""
 
-    store: Annotated[Path, "positional"]
+    store: tyro.conf.Positional[Path]
     """The store that ``evenroad bench`` wrote; it may still be writing."""
-    out: Annotated[Path, "-o"]
+    out: Annotated[Path, tyro.conf.arg(aliases=["-o"])]
     """The folder to write into; made where there is none."""
     only: str = ""
     """Names of problems, with commas between them; default: all in the store."""

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
+import tyro
 
 from evenroad._checks import require_count
 from evenroad._files import require_writable_folder
@@ -27,9 +28,9 @@ if TYPE_CHECKING:
 class Train:
     """Train point sets and write them as OUT/set-0000.npz, ...; the same command goes on where it stopped."""
 
-    n: Annotated[int, "-n"]
+    n: Annotated[int, tyro.conf.arg(aliases=["-n"])]
     """How many points."""
-    d: Annotated[int, "-d"]
+    d: Annotated[int, tyro.conf.arg(aliases=["-d"])]
     """How many dimensions."""
     method: Literal["anneal", "mpmc"] = "anneal"
     """anneal: noisy Adam on the coordinates. mpmc: the message-passing network (needs the extra [train])."""
@@ -47,7 +48,7 @@ class Train:
     """Set i depends on this seed and i alone, whatever the number of processes."""
     jobs: int | None = None
     """Processes for anneal (default: one a processor)."""
-    out: Annotated[Path, "-o"]
+    out: Annotated[Path, tyro.conf.arg(aliases=["-o"])]
     """The folder for the sets; made if its parent exists."""
 
     def run(self) -> int:

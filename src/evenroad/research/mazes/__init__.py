@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from evenroad._arrays import set_fields
 from evenroad._checks import require_count, require_known
 from evenroad._rng import RngLike, generator
 from evenroad.errors import InvalidValue
@@ -69,7 +70,7 @@ class MazeDesign:
     def __post_init__(self) -> None:
         least = {"cols": 1, "rows": 1, "wall": 2, "door": 1, "width": 1, "height": 1}
         for name, at_least in least.items():
-            object.__setattr__(self, name, require_count(name, getattr(self, name), at_least))
+            set_fields(self, **{name: require_count(name, getattr(self, name), at_least)})
         if not 0.0 <= self.loops <= 1.0:
             raise InvalidValue(f"loops must be in [0, 1], got {self.loops!r}")
         room = min(self.width // self.cols, self.height // self.rows)

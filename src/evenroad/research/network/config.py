@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import torch
 
+from evenroad._arrays import set_fields
 from evenroad._checks import require_count, require_positive
 from evenroad.errors import InvalidValue, NotAvailable, shown
 from evenroad.points.bank.anneal import require_points_for
@@ -68,18 +69,17 @@ class NetworkConfig:
         # Plain ints and floats, since they go into JSON.  The instance norm of a set of one point would be zero.
         counts = {"n": 2, "d": 1, "sets": 1, "width": 1, "layers": 1, "k": 1, "steps": 1, "seed": 0}
         for name, least in counts.items():
-            object.__setattr__(self, name, require_count(name, getattr(self, name), at_least=least))
+            set_fields(self, **{name: require_count(name, getattr(self, name), at_least=least)})
         for name in ("micro_batch", "patience"):
             if getattr(self, name) is not None:
-                object.__setattr__(self, name, require_count(name, getattr(self, name)))
+                set_fields(self, **{name: require_count(name, getattr(self, name))})
         if self.radius is not None:
-            object.__setattr__(self, "radius", require_positive("radius", self.radius))
-        object.__setattr__(self, "rate", require_positive("rate", self.rate))
+            set_fields(self, radius=require_positive("radius", self.radius))
+        rate = require_positive("rate", self.rate)
         decay = require_positive("weight_decay", self.weight_decay, or_zero=True)
-        object.__setattr__(self, "weight_decay", decay)
         objective = parse_objective(self.objective)
         require_points_for(objective, self.n)
-        object.__setattr__(self, "objective", str(objective))
+        set_fields(self, rate=rate, weight_decay=decay, objective=str(objective))
 
     @property
     def sets_at_once(self) -> int:

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numba import njit
 
-from evenroad._arrays import Bools, Floats, Ints
+from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import require_count
 from evenroad.errors import InvalidValue
 from evenroad.research.worlds.compiled import CompiledWorld, comes_first
@@ -39,7 +39,7 @@ class ChainWorld(CompiledWorld):
     links: int = 10
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "links", require_count("links", self.links, at_least=2))
+        set_fields(self, links=require_count("links", self.links, at_least=2))
         if self.links > 1000:
             raise InvalidValue(f"links must be at most 1000, got {self.links!r}")
 

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 from numba import njit
 
-from evenroad._arrays import Bools, Floats, Ints
+from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import require_count, require_known, require_positive
 from evenroad.errors import InvalidValue
 from evenroad.research.worlds.compiled import CompiledWorld, is_in_cube
@@ -39,8 +39,7 @@ class Corridor(CompiledWorld):
     side: Literal["comment", "demo"] = "comment"
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "d", require_count("d", self.d))
-        object.__setattr__(self, "lam", require_positive("lam", self.lam))
+        set_fields(self, d=require_count("d", self.d), lam=require_positive("lam", self.lam))
         if self.lam >= 1.0:
             raise InvalidValue(f"lam must be in (0, 1), got {self.lam!r}")
         if self.checked is not None and require_count("checked", self.checked) > self.d:

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from evenroad._arrays import Bools, Floats, Ints
+from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import require_count, require_positive
 from evenroad.errors import InvalidValue
 from evenroad.research.worlds.compiled import ROUNDING, CompiledWorld, comes_first, is_in_cube
@@ -36,8 +36,7 @@ class PeriodicBalls(CompiledWorld):
         if len(shape) != 2 or shape[1] == 0:
             raise InvalidValue(f"centres must have shape (n, d) with d >= 1, got {shape}")
         centres = as_cube_batch(np.array(self.centres, dtype=np.float64, order="C"), shape[1])
-        object.__setattr__(self, "centres", centres)
-        object.__setattr__(self, "radius", require_positive("radius", self.radius))
+        set_fields(self, centres=centres, radius=require_positive("radius", self.radius))
 
     @property
     def d(self) -> int:
@@ -176,14 +175,14 @@ class PeriodicBoxes(CompiledWorld):
     half_extents: Floats
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "d", require_count("d", self.d))
-        object.__setattr__(self, "axes", _as_axes(self.axes, self.d))
+        d = require_count("d", self.d)
+        set_fields(self, d=d, axes=_as_axes(self.axes, d))
         shape = self.axes.shape
         for name in ("centres", "half_extents"):
             array = np.array(getattr(self, name), dtype=np.float64, order="C")
             if array.shape != shape:
                 raise InvalidValue(f"{name} must have the shape of axes, {shape}, got {array.shape}")
-            object.__setattr__(self, name, as_cube_batch(array, shape[1]))
+            set_fields(self, **{name: as_cube_batch(array, shape[1])})
         outside = self.half_extents[(self.half_extents <= 0.0) | (self.half_extents > 0.5)]
         if len(outside):
             raise InvalidValue(f"half_extents must be in (0, 0.5], got {float(outside[0])!r}")
@@ -201,7 +200,7 @@ class PeriodicBoxes(CompiledWorld):
 
 
 def _as_axes(values: npt.ArrayLike, d: int) -> Ints:
-    """Return the axes as a read-only (n, m) array, or raise InvalidValue."""
+    """Return the axes as an (n, m) array, or raise InvalidValue."""
     axes = np.asarray(values)
     if axes.ndim != 2 or axes.shape[1] == 0 or not np.issubdtype(axes.dtype, np.integer):
         raise InvalidValue(
@@ -214,9 +213,7 @@ def _as_axes(values: npt.ArrayLike, d: int) -> Ints:
     twice = (in_order[:, 1:] == in_order[:, :-1]).any(axis=1)
     if twice.any():
         raise InvalidValue(f"the axes of a box must be different, got {axes[twice][0].tolist()}")
-    axes = np.array(axes, dtype=np.int64, order="C")
-    axes.setflags(write=False)
-    return axes
+    return np.array(axes, dtype=np.int64, order="C")
 
 
 @njit(cache=True, nogil=True)

@@ -1,15 +1,22 @@
-"""Addresses in compiled code: of functions, to call them, and of arrays."""
+"""Addresses: of functions, to call them from compiled code, and of arrays."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 from numba.np.arrayobj import populate_array
+
+
+def address(array: npt.NDArray[Any]) -> int:
+    """Return where an array, C-contiguous and of the kind that the caller takes it for, begins in memory."""
+    return int(array.__array_interface__["data"][0])
 
 
 @intrinsic
@@ -39,7 +46,8 @@ def _array(number: types.Type, dimensions: int) -> Callable[..., Any]:
         def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
             made = context.make_array(kind)(context, builder)
             lengths = cgutils.unpack_tuple(builder, args[1], dimensions)
-            strides = [context.get_constant(types.intp, number.bitwidth // 8)]
+            size = context.get_constant(types.intp, np.dtype(number.name).itemsize)
+            strides = [size]
             for length in lengths[:0:-1]:
                 strides.insert(0, builder.mul(strides[0], length))
             # As numba's own carray: of no counted memory.
@@ -48,7 +56,7 @@ def _array(number: types.Type, dimensions: int) -> Callable[..., Any]:
                 data=builder.inttoptr(args[0], context.get_data_type(number).as_pointer()),
                 shape=lengths,
                 strides=strides,
-                itemsize=context.get_constant(types.intp, number.bitwidth // 8),
+                itemsize=size,
                 meminfo=None,
             )
             return made._getvalue()
@@ -58,16 +66,9 @@ def _array(number: types.Type, dimensions: int) -> Callable[..., Any]:
     return array
 
 
-doubles_at, matrix_at = _array(types.float64, 1), _array(types.float64, 2)
-singles_at, integers_at = _array(types.float32, 1), _array(types.int64, 1)
+ANY_LENGTH = 1 << 40
+"""For arrays whose lengths are not passed on: nothing reads beyond what the tables say."""
 
-
-@intrinsic
-def address_of(typing_context: Any, array: Any) -> Any:
-    """Return where an array begins in memory."""
-
-    def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        data = context.make_array(sig.args[0])(context, builder, args[0]).data
-        return builder.ptrtoint(data, ir.IntType(64))
-
-    return types.int64(array), lower
+doubles_at, matrix_at, matrices_at = (_array(types.float64, dimensions) for dimensions in (1, 2, 3))
+singles_at, integers_at, bytes_at = (_array(kind, 1) for kind in (types.float32, types.int64, types.uint8))
+number_tables_at = _array(types.int64, 3)

@@ -4,96 +4,111 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
-from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.addresses import call_at
-from evenroad.robot.kernel.forward_kinematics import scratch_memory, unpacked
-from evenroad.robot.kernel.layout import quick
+from evenroad.robot.kernel.addresses import address, bytes_at, matrix_at
+from evenroad.robot.kernel.lane_world import LaneWorld
+from evenroad.robot.kernel.layout import LANES, program
 from evenroad.robot.kernel.motion import enter, wrapped
-from evenroad.robot.kernel.motion_checks import NO_END, Checks, checks_of, motion_free, motion_proved
+from evenroad.robot.kernel.motion_checks import (
+    NO_END,
+    blocked,
+    checks_of,
+    motion_free,
+    motion_proved,
+)
 from evenroad.robot.kernel.motion_states import COUNTS
 
-LANES = at.LANES
 Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 Flags = npt.NDArray[np.bool_]
 
 _MOST_BATCHES = 1 << 11
 """A motion that needs more batches of sixteen stretches is not proved: some ten milliseconds; usual ones need a few."""
 
 
-@njit(cache=True, nogil=True)
-def configurations_free(q: Floats, address: int, bounds: Floats, tables: Ints) -> Flags:
-    """Return which rows of `q`, (n, dim), are within `bounds`, (3, dim), and free: (n,).
-
-    `address` is that of the check of sixteen configurations, `tables` are ``ArmTables.lanes``.
-    """
+def configurations_free(world: LaneWorld, q: Floats) -> Flags:
+    """Return which rows of `q`, (n, dim), are within bounds and free: (n,)."""
     n, dim = q.shape
-    ints, table = unpacked(tables)
-    states, _, scratch = scratch_memory(dim, ints, table)
-    inside, free = np.empty(LANES, dtype=np.bool_), np.empty(n, dtype=np.bool_)
+    free = np.empty(n, dtype=np.bool_)
+    _, arguments = world.arguments(COUNTS)
+    check_configurations(address(q), n, dim, address(free), *arguments)
+    return free
+
+
+def motions_free(world: LaneWorld, a: Floats, b: Floats, tolerance: float) -> Flags:
+    """Return which motions, from rows of `a` to those of `b`, are free at both ends and at states between.
+
+    Where the tolerance is > 0, motions must be proved free, too: a stretch that moves nothing by more than this is then
+    not halved again [m].
+    """
+    m, dim = a.shape
+    free = np.empty(m, dtype=np.bool_)
+    _, arguments = world.arguments(COUNTS + 2 * dim)
+    check_motions(address(a), address(b), m, dim, tolerance, address(free), *arguments)
+    return free
+
+
+@program
+def check_configurations(
+    q: int,
+    n: int,
+    dim: int,
+    free: int,
+    motion_check: int,
+    check: int,
+    resolution: float,
+    tables: int,
+    by_joint: int,
+    memory: int,
+    room: int,
+) -> None:
+    """Do the work of `configurations_free`, arrays by their addresses."""
+    checks = checks_of(motion_check, check, resolution, tables, by_joint, memory, room)
+    rows, verdicts = matrix_at(q, (n, dim)), bytes_at(free, (n,))
     for first in range(0, n, LANES):
         count = min(LANES, n - first)
-        inside[:] = True
+        outside = 0
         for k in range(dim):
-            low, high, period = bounds[0, k], bounds[1, k], bounds[2, k]
+            low, high, period = checks.bounds[0, k], checks.bounds[1, k], checks.bounds[2, k]
+            states = checks.states[k * LANES : (k + 1) * LANES]
             for lane in range(LANES):
                 # Lanes to spare repeat the last row.
-                value = q[first + min(lane, count - 1), k]
+                value = rows[first + min(lane, count - 1), k]
                 if period != np.inf:
                     value = wrapped(value, low, high, period)
                 within = low <= value <= high
-                inside[lane] &= within
+                outside |= (1 - within) << lane
                 # What is out of bounds may be too large for single precision.
-                states[k * LANES + lane] = value if within else low
-        blocked = call_at(address, (scratch, states, ints, table, LANES))
+                states[lane] = value if within else low
+        outside |= blocked(checks)
         for lane in range(count):
-            free[first + lane] = inside[lane] and (blocked >> lane) & 1 == 0
-    return free
+            verdicts[first + lane] = 1 - ((outside >> lane) & 1)
 
 
-@njit(cache=True, nogil=True)
-def motions_free(
-    a: Floats,
-    b: Floats,
+@program
+def check_motions(
+    a: int,
+    b: int,
+    m: int,
+    dim: int,
     tolerance: float,
-    addresses: tuple[int, int],
+    free: int,
+    motion_check: int,
+    check: int,
     resolution: float,
-    bounds: Floats,
-    tables: Ints,
-    arms: Floats,
-    pair_arms: Floats,
-) -> Flags:
-    """Return which motions, from rows of `a` to those of `b`, are free at both ends and at states between.
-
-    Parameters
-    ----------
-    a, b : float64 arrays, shape (m, dim)
-        Ends of the motions.
-    tolerance : float
-        Where it is > 0, motions must be proved free, too: a stretch that moves nothing by more than this is then not
-        halved again [m].
-    addresses, resolution, bounds, tables, arms, pair_arms
-        As ``motion_checks.checks_of`` takes them.
-    """
-    m, dim = a.shape
-    checks = checks_of(
-        addresses, resolution, bounds, tables, arms, pair_arms, np.zeros(COUNTS, dtype=np.int64)
-    )
-    free = np.empty(m, dtype=np.bool_)
-    _write_verdicts(a, b, tolerance, np.empty(dim), np.empty(dim), checks, free)
-    return free
-
-
-@quick
-def _write_verdicts(
-    a: Floats, b: Floats, tolerance: float, start: Floats, end: Floats, checks: Checks, free: Flags
+    tables: int,
+    by_joint: int,
+    memory: int,
+    room: int,
 ) -> None:
-    for row in range(len(free)):
-        free[row] = (
-            enter(a[row], checks.bounds, start)
-            and enter(b[row], checks.bounds, end)
+    """Do the work of `motions_free`, arrays by their addresses."""
+    checks = checks_of(motion_check, check, resolution, tables, by_joint, memory, room)
+    starts, ends, verdicts = matrix_at(a, (m, dim)), matrix_at(b, (m, dim)), bytes_at(free, (m,))
+    inner_ends = matrix_at(room + 8 * COUNTS, (2, dim))
+    start, end = inner_ends[0], inner_ends[1]
+    for row in range(m):
+        verdicts[row] = (
+            enter(starts[row], checks.bounds, start)
+            and enter(ends[row], checks.bounds, end)
             and motion_free(start, end, NO_END, checks)
             and (tolerance <= 0.0 or motion_proved(start, end, tolerance, _MOST_BATCHES, checks))
         )

@@ -35,19 +35,11 @@ def motions_certified(
     arms: Floats,
     pair_arms: Floats,
 ) -> npt.NDArray[np.bool_]:
-    """Return which motions, from rows of `a` to those of `b`, are proved free.
+    """Return which motions, from rows of `a`, (m, dim), to those of `b`, are proved free.
 
-    Parameters
-    ----------
-    a, b : float64 arrays, shape (m, dim)
-        Ends of the motions.
-    tolerance : float
-        An interval in which nothing moves by more than this is not halved again [m].  Nor is any, once a motion
-        took 2^15 of them: it then counts as not proved.
-    bounds, ints, floats : arrays
-        As for ``scalar_batch.motions_free``.
-    arms, pair_arms : float64 arrays, shapes (capsules, dim) and (capsule pairs, dim)
-        How fast each coordinate moves a capsule, and the two of a pair against each other, at most [m/rad].
+    An interval in which nothing moves by more than the tolerance is not halved again [m].  Nor is any, once a motion
+    took 2^15 of them: it then counts as not proved.  `arms` and `pair_arms`, (capsules, dim) and (capsule pairs, dim),
+    are how fast each coordinate moves a capsule, and the two of a pair against each other, at most [m/rad].
     """
     dim = a.shape[1]
     start, end, direction, state = np.empty(dim), np.empty(dim), np.empty(dim), np.empty(dim)

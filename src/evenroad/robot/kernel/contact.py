@@ -13,31 +13,31 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.capsule_contact import meeting_one, touching
-from evenroad.robot.kernel.forward_kinematics import (
-    BODY,
-    CAPSULE,
-    FEW,
-    place_frames,
-    place_moving_bodies,
-    place_moving_capsules,
-    scratch_places,
-)
+from evenroad.robot.kernel.forward_kinematics import scratch_places
+from evenroad.robot.kernel.hull_contact import bodies_meet
 from evenroad.robot.kernel.lanes import (
+    ONE,
     ZERO,
     absolute,
     below_zero,
+    box_of_lanes,
+    column,
+    dot,
     larger,
-    largest_lane,
-    load,
+    load_vector,
     lowest_bit,
-    smallest_lane,
+    minus,
+    plus,
+    row,
+    smaller,
+    square_root,
+    store_vector,
+    times,
 )
-from evenroad.robot.kernel.layout import inlined, inner
+from evenroad.robot.kernel.layout import BOX, HALF, LANES, PLACED, inlined, inner
 
-LANES = at.LANES
 ALL = (1 << LANES) - 1
-_HALF = np.float32(0.5)
+_LEAST = np.float32(at.LEAST_SQUARE)
 
 Ints = npt.NDArray[np.int64]
 Singles = npt.NDArray[np.float32]
@@ -45,97 +45,57 @@ Singles = npt.NDArray[np.float32]
 
 @inner
 def blocked_lanes(scratch: Singles, ints: Ints, table: Singles, enough: int) -> int:
-    """Return the mask of the configurations, whose values are in `scratch`, that touch something.
+    """Return the mask of the configurations placed in `scratch` that touch something.
 
-    Parameters
-    ----------
-    scratch : float32 array
-        As ``forward_kinematics.scratch_memory`` makes it, with the values of the frames in sixteen configurations.
-    ints, table : arrays
-        The tables.
-    enough : int
-        1 to stop at the first lane that is blocked, 16 to find all.
+    `enough` is 1 to stop at the first lane that is blocked, 16 to find all.
     """
-    frames, capsules, bodies, _ = scratch_places(ints)
-    place_frames(scratch, frames, ints, table)
-    place_moving_capsules(scratch, frames, capsules, ints, table)
-    place_moving_bodies(scratch, frames, bodies, ints, table)
-    blocked = _meeting_obstacles(scratch, capsules, bodies, ints, table, enough)
+    blocked = _meeting_obstacles(scratch, ints, table, enough)
     if blocked == ALL or (blocked != 0 and enough == 1):
         return blocked
-    return _meeting_themselves(scratch, capsules, bodies, ints, table, blocked, enough)
+    return _meeting_themselves(scratch, ints, table, blocked, enough)
 
 
 @inner
-def _meeting_obstacles(
-    scratch: Singles, capsules: int, bodies: int, ints: Ints, table: Singles, enough: int
-) -> int:
+def _meeting_obstacles(scratch: Singles, ints: Ints, table: Singles, enough: int) -> int:
     """Return the mask of lanes in which a capsule meets an obstacle.
 
     Sixteen obstacles at once are tested against the box around all lanes of a body, if it has many capsules, and then
     of a capsule; those that are near one by one.
     """
-    blocks = ints[at.BLOCKS]
-    blocked = 0
+    bodies, capsules = scratch_places(ints)
+    blocks, blocked = ints[at.BLOCKS], 0
     # From the outermost bodies inwards: those meet obstacles most often.
     for body in range(ints[at.BODIES] - 1, ints[at.FIXED_BODIES] - 1, -1):
-        row = ints[at.BODY_INTS] + at.BODY_INT_ROW * body
-        first, last = ints[row + 1], ints[row + 2] - 1
-        # Of many capsules, those of all are tested against sixteen obstacles that are near the body; of few, each
-        # against all obstacles.
-        many = last - first >= FEW
-        around = ZERO, ZERO, ZERO, ZERO, ZERO, ZERO
-        for group in range(blocks if many else last - first + 1):
+        _, first, end = row(ints, ints[at.BODY_INTS] + at.BODY_INT_ROW * body, 3)
+        many = end - first > at.FEW
+        for block in range(blocks):
             near_body = ALL
             if many:
-                here = bodies + BODY * body
-                if group == 0:
-                    around = _box_around(scratch, here, 3 * LANES)
-                near = _near_obstacles(around, group, ints, table)
+                here = bodies + PLACED * body
+                near = _near_obstacles(scratch, here, ZERO, block, block == 0, ints, table)
                 near_body = 0
                 while near != 0:
                     lane = lowest_bit(near)
                     near &= near - 1
-                    if _near_one(scratch, here, 3 * LANES, group, lane, ints, table) & ~blocked != 0:
+                    if _near_one(scratch, here, ZERO, block, lane, ints, table) & ~blocked:
                         near_body |= 1 << lane
                 if near_body == 0:
                     continue
-            else:
-                around = _box_around(scratch, capsules + CAPSULE * (last - group), 6 * LANES)
-            for item in range(last - first + 1 if many else blocks):
-                i, block = (last - item, group) if many else (last - group, item)
-                here = capsules + CAPSULE * i
-                near = ints[ints[at.TESTED] + i * blocks + block]
-                if not many:
-                    near &= _near_obstacles(around, block, ints, table)
-                else:
-                    near &= near_body
-                    if _more_than_two(near):
-                        near &= _near_obstacles(_box_around(scratch, here, 6 * LANES), block, ints, table)
+            for i in range(end - 1, first - 1, -1):
+                here = capsules + PLACED * i
+                (near,) = row(ints, ints[at.TESTED] + i * blocks + block, 1)
+                (radius,) = row(table, ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i + 6, 1)
+                near &= near_body
+                if not many or _more_than_two(near):
+                    near &= _near_obstacles(scratch, here, radius, block, many or block == 0, ints, table)
                 while near != 0:
                     lane = lowest_bit(near)
                     near &= near - 1
-                    if _near_one(scratch, here, 6 * LANES, block, lane, ints, table) & ~blocked != 0:
-                        blocked |= meeting_one(scratch, here, i, block * LANES + lane, ints, table)
+                    if _near_one(scratch, here, radius, block, lane, ints, table) & ~blocked:
+                        blocked |= _meeting_one(scratch, here, i, radius, block * LANES + lane, ints, table)
                         if blocked == ALL or (blocked != 0 and enough == 1):
                             return blocked
     return blocked
-
-
-@inlined
-def _near_one(
-    scratch: Singles, here: int, extents: int, block: int, obstacle: int, ints: Ints, table: Singles
-) -> int:
-    """Return the mask of lanes in which the box around a body or a capsule meets that of an obstacle of a block."""
-    box = ints[at.BLOCK_FLOATS] + at.BLOCK_FLOAT_ROW * block + obstacle
-    gap_x = (
-        absolute(load(scratch, here) - table[box]) - load(scratch, here + extents) - table[box + 3 * LANES]
-    )
-    gap_y = absolute(load(scratch, here + LANES) - table[box + LANES])
-    gap_y = gap_y - load(scratch, here + extents + LANES) - table[box + 4 * LANES]
-    gap_z = absolute(load(scratch, here + 2 * LANES) - table[box + 2 * LANES])
-    gap_z = gap_z - load(scratch, here + extents + 2 * LANES) - table[box + 5 * LANES]
-    return below_zero(larger(larger(gap_x, gap_y), gap_z))
 
 
 @inlined
@@ -146,89 +106,150 @@ def _more_than_two(bits: int) -> bool:
 
 
 @inlined
-def _box_around(scratch: Singles, here: int, extents: int) -> Any:
-    """Return centre and half extents, six numbers, of the box around a body or a capsule in all lanes."""
-    cx, cy, cz = load(scratch, here), load(scratch, here + LANES), load(scratch, here + 2 * LANES)
-    ux = load(scratch, here + extents)
-    uy = load(scratch, here + extents + LANES)
-    uz = load(scratch, here + extents + 2 * LANES)
-    low_x, high_x = smallest_lane(cx - ux), largest_lane(cx + ux)
-    low_y, high_y = smallest_lane(cy - uy), largest_lane(cy + uy)
-    low_z, high_z = smallest_lane(cz - uz), largest_lane(cz + uz)
-    hx, hy, hz = _HALF * (high_x - low_x), _HALF * (high_y - low_y), _HALF * (high_z - low_z)
-    return _HALF * (high_x + low_x), _HALF * (high_y + low_y), _HALF * (high_z + low_z), hx, hy, hz
+def _near_obstacles(
+    scratch: Singles, here: int, radius: Any, block: int, first: bool, ints: Ints, table: Singles
+) -> int:
+    """Return which of the sixteen obstacles of a block are near the box around a body or a capsule in all lanes.
+
+    The first time the box is made, and kept where there are more blocks.
+    """
+    if first:
+        extents = plus(absolute(load_vector(scratch, here + HALF)), radius)
+        centre, half = box_of_lanes(load_vector(scratch, here), extents)
+        if ints[at.BLOCKS] > 1:
+            store_vector(scratch, here + BOX, centre)
+            store_vector(scratch, here + BOX + HALF, half)
+    else:
+        centre, half = load_vector(scratch, here + BOX), load_vector(scratch, here + BOX + HALF)
+    box = ints[at.BLOCK_FLOATS] + at.BLOCK_FLOAT_ROW * block
+    apart = absolute(minus(load_vector(table, box), centre))
+    x, y, z = minus(minus(apart, load_vector(table, box + HALF)), half)
+    return below_zero(larger(larger(x, y), z))
 
 
 @inlined
-def _near_obstacles(around: Any, block: int, ints: Ints, table: Singles) -> int:
-    """Return which of the sixteen obstacles of a block are near a box of `_box_around`."""
-    mx, my, mz, hx, hy, hz = around
-    box = ints[at.BLOCK_FLOATS] + at.BLOCK_FLOAT_ROW * block
-    gap_x = absolute(load(table, box) - mx) - load(table, box + 3 * LANES) - hx
-    gap_y = absolute(load(table, box + LANES) - my) - load(table, box + 4 * LANES) - hy
-    gap_z = absolute(load(table, box + 2 * LANES) - mz) - load(table, box + 5 * LANES) - hz
-    return below_zero(larger(larger(gap_x, gap_y), gap_z))
+def _near_one(
+    scratch: Singles, here: int, radius: Any, block: int, obstacle: int, ints: Ints, table: Singles
+) -> int:
+    """Return the mask of lanes in which the box around a body or a capsule meets that of an obstacle of a block."""
+    box = ints[at.BLOCK_FLOATS] + at.BLOCK_FLOAT_ROW * block + obstacle
+    x, y, z, a, b, c = column(table, box, 6)
+    apart = absolute(minus(load_vector(scratch, here), (x, y, z)))
+    extents = absolute(load_vector(scratch, here + HALF))
+    x, y, z = minus(minus(apart, extents), (radius + a, radius + b, radius + c))
+    return below_zero(larger(larger(x, y), z))
+
+
+@inlined
+def _meeting_one(
+    scratch: Singles, here: int, capsule: int, radius: Any, obstacle: int, ints: Ints, table: Singles
+) -> int:
+    """Return the mask of lanes in which a sphere along a capsule reaches into an obstacle."""
+    data = ints[at.OBSTACLE_FLOATS] + at.OBSTACLE_FLOAT_ROW * obstacle
+    (kind,) = row(ints, ints[at.OBSTACLE_INTS] + obstacle, 1)
+    x, y, z, width_x, width_y, width_z, a, b, c, d, e, f, g, h, i, rounding = row(table, data, 16)
+    # Centre and half segment as the obstacle sees them.
+    centre, half = minus(load_vector(scratch, here), (x, y, z)), load_vector(scratch, here + HALF)
+    if kind != at.ALIGNED:
+        centre = dot(centre, (a, d, g)), dot(centre, (b, e, h)), dot(centre, (c, f, i))
+        half = dot(half, (a, d, g)), dot(half, (b, e, h)), dot(half, (c, f, i))
+    reach = radius + rounding
+    _, first, end = row(ints, ints[at.CAPSULE_INTS] + at.CAPSULE_INT_ROW * capsule, 3)
+    meeting = 0
+    for sample in range(first, end):
+        (along,) = row(table, ints[at.SAMPLES] + sample, 1)
+        x, y, z = plus(centre, times(half, along))
+        z = larger(absolute(z) - width_z, ZERO)
+        if kind == at.CYLINDER:
+            aside = larger(square_root(x * x + y * y) - width_x, ZERO)
+            squared = aside * aside + z * z
+        else:
+            x, y = larger(absolute(x) - width_x, ZERO), larger(absolute(y) - width_y, ZERO)
+            squared = x * x + y * y + z * z
+        meeting |= below_zero(squared - reach * reach)
+    return meeting
 
 
 @inner
-def _meeting_themselves(
-    scratch: Singles, capsules: int, bodies: int, ints: Ints, table: Singles, blocked: int, enough: int
-) -> int:
+def _meeting_themselves(scratch: Singles, ints: Ints, table: Singles, blocked: int, enough: int) -> int:
     """Return `blocked` and the mask of lanes in which two bodies of a pair touch."""
+    bodies, capsules = scratch_places(ints)
+    by_hulls = ints[at.BODY_PAIRS] - ints[at.HULL_PAIRS]
+    margins = ints[at.HULL_MARGINS] - by_hulls
     for p in range(ints[at.BODY_PAIRS]):
-        row = ints[at.BODY_PAIR_INTS] + at.BODY_PAIR_INT_ROW * p
-        a, b = bodies + BODY * ints[row], bodies + BODY * ints[row + 1]
-        near = table[ints[at.BODY_PAIR_FLOATS] + p]
-        x = load(scratch, a) - load(scratch, b)
-        y = load(scratch, a + LANES) - load(scratch, b + LANES)
-        z = load(scratch, a + 2 * LANES) - load(scratch, b + 2 * LANES)
-        if below_zero(x * x + y * y + z * z - near * near) & ~blocked == 0:
+        a, b, begin, end = row(ints, ints[at.BODY_PAIR_INTS] + at.BODY_PAIR_INT_ROW * p, 4)
+        (near,) = row(table, ints[at.BODY_PAIR_FLOATS] + p, 1)
+        if _within(scratch, bodies + PLACED * a, bodies + PLACED * b, near) & ~blocked == 0:
             continue
-        others = ints[at.BODY_INTS] + at.BODY_INT_ROW * ints[row + 1]
-        count = ints[others + 2] - ints[others + 1]
+        _, low, high = row(ints, ints[at.BODY_INTS] + at.BODY_INT_ROW * b, 3)
+        undecided = 0
         # Pairs of one capsule of the first body with all of the other body follow each other.
-        for first in range(ints[row + 2], ints[row + 3], count):
-            if count > FEW:
-                i = ints[ints[at.PAIR_INTS] + at.PAIR_INT_ROW * first]
-                if not _ball_near(scratch, capsules, i, bodies, ints[row + 1], ints, table, blocked):
-                    continue
-            for pair in range(first, first + count):
-                # Here, and not in a function: of most pairs this is all.
-                place = ints[at.PAIR_INTS] + at.PAIR_INT_ROW * pair
-                data = ints[at.PAIR_FLOATS] + at.PAIR_FLOAT_ROW * pair
-                a, b = capsules + CAPSULE * ints[place], capsules + CAPSULE * ints[place + 1]
-                near = table[data]
-                x = load(scratch, a) - load(scratch, b)
-                y = load(scratch, a + LANES) - load(scratch, b + LANES)
-                z = load(scratch, a + 2 * LANES) - load(scratch, b + 2 * LANES)
-                in_touch = below_zero(x * x + y * y + z * z - near * near)
+        for first in range(begin, end, high - low):
+            if high - low > at.FEW:
+                # A ball that is far from the ball around the whole body is far from its capsules.
+                (i,) = row(ints, ints[at.PAIR_INTS] + at.PAIR_INT_ROW * first, 1)
+                x, y, z, radius = row(table, ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i + 3, 4)
+                (other,) = row(table, ints[at.BODY_FLOATS] + at.BODY_FLOAT_ROW * b + 3, 1)
+                if x == ZERO and y == ZERO and z == ZERO:
+                    ball, body = capsules + PLACED * i, bodies + PLACED * b
+                    if _within(scratch, ball, body, radius + other) & ~blocked == 0:
+                        continue
+            for pair in range(first, first + high - low):
+                i, k = row(ints, ints[at.PAIR_INTS] + at.PAIR_INT_ROW * pair, 2)
+                near, reach, one_by_ee, one_by_ff = row(
+                    table, ints[at.PAIR_FLOATS] + at.PAIR_FLOAT_ROW * pair, 4
+                )
+                i, k = capsules + PLACED * i, capsules + PLACED * k
+                in_touch = _within(scratch, i, k, near)
                 if in_touch & ~blocked == 0:
                     continue
-                if table[data + 2] + table[data + 3] > ZERO:
+                if one_by_ee + one_by_ff > ZERO:
                     # Not both are balls.
-                    in_touch = touching(scratch, a, b, data, table)
+                    in_touch = _touching(scratch, i, k, reach, one_by_ee, one_by_ff)
+                if p >= by_hulls:
+                    undecided |= in_touch
+                    continue
                 blocked |= in_touch
                 if blocked == ALL or (blocked != 0 and enough == 1):
+                    return blocked
+        undecided &= ~blocked
+        while undecided != 0:
+            lane = lowest_bit(undecided)
+            undecided &= undecided - 1
+            if bodies_meet(scratch, lane, LANES, table[margins + p], p, ints, table):
+                blocked |= 1 << lane
+                if enough == 1:
                     return blocked
     return blocked
 
 
 @inlined
-def _ball_near(
-    scratch: Singles, capsules: int, i: int, bodies: int, other: int, ints: Ints, table: Singles, blocked: int
-) -> bool:
-    """Return whether a capsule, if it is a ball, is near the ball around a body in a lane that is not blocked."""
-    data = ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i
-    if (
-        table[data + 3] * table[data + 3]
-        + table[data + 4] * table[data + 4]
-        + table[data + 5] * table[data + 5]
-        > ZERO
-    ):
-        return True
-    a, b = capsules + CAPSULE * i, bodies + BODY * other
-    near = table[data + 6] + table[ints[at.BODY_FLOATS] + at.BODY_FLOAT_ROW * other + 3]
-    x = load(scratch, a) - load(scratch, b)
-    y = load(scratch, a + LANES) - load(scratch, b + LANES)
-    z = load(scratch, a + 2 * LANES) - load(scratch, b + 2 * LANES)
-    return below_zero(x * x + y * y + z * z - near * near) & ~blocked != 0
+def _within(scratch: Singles, a: int, b: int, near: Any) -> int:
+    """Return the mask of lanes in which two centres are nearer to each other than `near`."""
+    apart = minus(load_vector(scratch, a), load_vector(scratch, b))
+    return below_zero(dot(apart, apart) - near * near)
+
+
+@inlined
+def _touching(scratch: Singles, a: int, b: int, reach: Any, one_by_ee: Any, one_by_ff: Any) -> int:
+    """Return the mask of lanes in which two capsules touch whose segments are nearer to each other than `reach`.
+
+    The steps are those of the double-precision ``scalar._squared_distance_of_pair``.
+    """
+    r = minus(load_vector(scratch, a), load_vector(scratch, b))
+    e, f = load_vector(scratch, a + HALF), load_vector(scratch, b + HALF)
+    ef, er, fr = dot(e, f), dot(e, r), dot(f, r)
+    along_f, along_r = ef * one_by_ee, er * one_by_ee
+    # What of f and r is across e.
+    g, q = minus(f, times(e, along_f)), minus(r, times(e, along_r))
+    t = _cut(dot(g, q) / larger(dot(g, g), _LEAST))
+    s = _cut(along_f * t - along_r)
+    t = _cut((ef * s + fr) * one_by_ff)
+    apart = minus(plus(r, times(e, s)), times(f, t))
+    return below_zero(dot(apart, apart) - reach * reach)
+
+
+@inlined
+def _cut(place: Any) -> Any:
+    """Return `place` cut to [-1, 1]."""
+    return larger(smaller(place, ONE), -ONE)

@@ -1,4 +1,4 @@
-"""Where sixteen configurations put a robot's frames, capsules and bodies."""
+"""Where sixteen configurations put a robot's frames, bodies and capsules."""
 
 from __future__ import annotations
 
@@ -8,184 +8,134 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.addresses import address_of
-from evenroad.robot.kernel.lanes import ONE, ZERO, absolute, load, sine_and_cosine, spread, store
-from evenroad.robot.kernel.layout import inlined, inner
+from evenroad.robot.kernel.lanes import (
+    ONE,
+    ZERO,
+    absolute,
+    dot,
+    load,
+    load_angles,
+    load_vector,
+    plus,
+    row,
+    smaller,
+    spread,
+    store,
+    store_vector,
+    with_sign_of,
+)
+from evenroad.robot.kernel.layout import FRAME, HALF, LANES, PLACED, inlined, inner
 
-LANES = at.LANES
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 Singles = npt.NDArray[np.float32]
 
-FRAME = 12 * LANES
-"""Numbers of a frame in the scratch memory: rotation row by row, origin."""
-
-CAPSULE = 9 * LANES
-"""Numbers of a capsule: centre, half segment, half extents of the box around its spheres."""
-
-BODY = 6 * LANES
-"""Numbers of a body: its centre, half extents of the box around it where it has more than `FEW` capsules."""
-
-FEW = 3
-"""Of bodies with at most so many capsules no box is tested before those of the capsules: it would cost more."""
-
 _FULL_TURN = 2.0 * np.pi
-_TURNS = 0.5 / np.pi
+_PI = np.float32(np.pi)
+_HALF_PI = np.float32(0.5 * np.pi)
+
+# x + S3 x^3 + S5 x^5 + S7 x^7 + S9 x^9 nearest to sin x on [-pi/2, pi/2] in the largest error (by Lawson's
+# reweighted least squares, 1961): 4.6e-9, or 1.7e-8 with coefficients of single precision.  Taylor's series, or
+# one made for pi/4, errs by 1e-4 there.
+_S3 = np.float32(-0.16666657096)
+_S5 = np.float32(0.0083330172914)
+_S7 = np.float32(-0.00019806615190)
+_S9 = np.float32(2.6000547418e-06)
+
+
+@inlined
+def scratch_places(ints: Ints) -> tuple[int, int]:
+    """Return where bodies and capsules begin in the scratch memory, after the frames."""
+    bodies = FRAME * (ints[at.FRAMES] + 1)
+    return bodies, bodies + PLACED * ints[at.BODIES]
 
 
 @inner
-def scratch_places(ints: Ints) -> tuple[int, int, int, int]:
-    """Return where frames, capsules and bodies begin in the scratch memory, and its length.
-
-    The values of the frames come first, sixteen numbers each.
-    """
-    frames = LANES * ints[at.FRAMES]
-    capsules = frames + FRAME * (ints[at.FRAMES] + 1)
-    bodies = capsules + CAPSULE * ints[at.CAPSULES]
-    return frames, capsules, bodies, bodies + BODY * ints[at.BODIES]
-
-
-@inner
-def unpacked(tables: Ints) -> tuple[Ints, Singles]:
-    """Return the integers and the floats of ``ArmTables.lanes``."""
-    integers = tables[at.INTEGERS]
-    return tables[:integers], tables[integers:].view(np.float32)
-
-
-@inner
-def scratch_memory(dim: int, ints: Ints, table: Singles) -> tuple[Floats, Floats, Singles]:
-    """Return room for sixteen states of `dim` coordinates, for one, and scratch memory, cut out of one array.
-
-    The scratch memory begins on a cache line, and what does not move is in its place.
-    """
-    frames, capsules, bodies, length = scratch_places(ints)
-    doubles = dim * LANES
-    raw = np.empty(doubles + length // 2 + LANES + dim)
-    skip = (64 - address_of(raw) % 64) % 64 // 8
-    states, scratch = (
-        raw[skip : skip + doubles],
-        raw[skip + doubles : skip + doubles + length // 2].view(np.float32),
-    )
-    state = raw[len(raw) - dim :]
+def place_fixed(scratch: Singles, ints: Ints, table: Singles) -> None:
+    """Write what no joint moves, and the half segments, zeros, of the balls among the capsules."""
+    _, capsules = scratch_places(ints)
     for entry in range(12):
-        store(scratch, frames + entry * LANES, spread(ONE if entry in (0, 4, 8) else ZERO))
-    # Not a plain 0: numba compiles a function once more for a literal.
-    first = np.int64(0)
-    _place_capsules(scratch, frames, capsules, first, ints[at.FIXED_CAPSULES], ints, table)
-    _place_bodies(scratch, frames, bodies, first, ints[at.FIXED_BODIES], ints, table)
-    return states, state, scratch
-
-
-@inner
-def write_values(scratch: Singles, states: Floats, ints: Ints, table: Singles) -> None:
-    """Write the values of the frames for sixteen configurations, `states`: sixteen numbers a coordinate.
-
-    Angles lose their whole turns here, in double precision: single precision has no digits for a large angle.
-    """
-    for i in range(ints[at.FRAMES]):
-        row = ints[at.FRAME_INTS] + at.FRAME_INT_ROW * i
-        data = ints[at.FRAME_FLOATS] + at.FRAME_FLOAT_ROW * i
-        multiplier = np.float64(table[data + 12]) + np.float64(table[data + 14])
-        offset = np.float64(table[data + 13]) + np.float64(table[data + 15])
-        turn = 0.0 if ints[row + 2] != 0 else _FULL_TURN
-        coordinate = ints[row + 1] * LANES
-        numbers, values = states[coordinate : coordinate + LANES], scratch[i * LANES : (i + 1) * LANES]
-        # A length that the compiler does not know: it then makes vectors of the loop instead of unrolling it.
-        for lane in range(len(numbers)):
-            value = multiplier * numbers[lane] + offset
-            values[lane] = value - turn * np.rint(value * _TURNS)
-
-
-@inner
-def place_frames(scratch: Singles, frames: int, ints: Ints, table: Singles) -> None:
-    """Write the frames for the values at the beginning of `scratch`."""
-    for i in range(ints[at.FRAMES]):
-        row = ints[at.FRAME_INTS] + at.FRAME_INT_ROW * i
-        data = ints[at.FRAME_FLOATS] + at.FRAME_FLOAT_ROW * i
-        parent = ints[row]
-        here, below = frames + FRAME * (i + 1), frames + FRAME * parent
-        value = load(scratch, i * LANES)
-        slides = ints[row + 2] != 0
-        sine, cosine = spread(ZERO), spread(ONE)
-        if not slides:
-            sine, cosine = sine_and_cosine(value)
+        store(scratch, entry * LANES, spread(ONE if entry in (0, 4, 8) else ZERO))
+    for place in range(capsules + HALF, ints[at.SCRATCH], PLACED):
         for axis in range(3):
-            if parent == 0:
-                x = spread(table[data + 3 * axis])
-                y = spread(table[data + 3 * axis + 1])
-                z = spread(table[data + 3 * axis + 2])
-                origin = spread(table[data + 9 + axis])
-            else:
-                p0 = load(scratch, below + 3 * axis * LANES)
-                p1 = load(scratch, below + (3 * axis + 1) * LANES)
-                p2 = load(scratch, below + (3 * axis + 2) * LANES)
-                x = p0 * table[data] + p1 * table[data + 3] + p2 * table[data + 6]
-                y = p0 * table[data + 1] + p1 * table[data + 4] + p2 * table[data + 7]
-                z = p0 * table[data + 2] + p1 * table[data + 5] + p2 * table[data + 8]
-                origin = _moved(scratch, below, axis, p0, p1, p2, data + 9, table)
+            store(scratch, place + axis * LANES, spread(ZERO))
+    # Not a plain 0: numba compiles a function once more for a literal.
+    _place_bodies(scratch, np.int64(0), ints[at.FIXED_BODIES], ints, table)
+
+
+@inner
+def place_moving(scratch: Singles, states: Floats, ints: Ints, table: Singles) -> None:
+    """Write what moves for sixteen configurations, `states`: sixteen numbers a coordinate."""
+    _place_frames(scratch, states, ints, table)
+    _place_bodies(scratch, ints[at.FIXED_BODIES], ints[at.BODIES], ints, table)
+
+
+@inner
+def _place_frames(scratch: Singles, states: Floats, ints: Ints, table: Singles) -> None:
+    for i in range(ints[at.FRAMES]):
+        parent, coordinate, slides = row(ints, ints[at.FRAME_INTS] + at.FRAME_INT_ROW * i, 3)
+        a, b, c, d, e, f, g, h, i_, x, y, z, multiplier, offset, more, further = row(
+            table, ints[at.FRAME_FLOATS] + at.FRAME_FLOAT_ROW * i, 16
+        )
+        value = load_angles(
+            states,
+            coordinate * LANES,
+            np.float64(multiplier) + np.float64(more),
+            np.float64(offset) + np.float64(further),
+            0.0 if slides else _FULL_TURN,
+        )
+        sine, cosine = sine_and_cosine(value)
+        if slides:
+            sine, cosine = spread(ZERO), spread(ONE)
+        here, below = FRAME * (i + 1), FRAME * parent
+        for axis in range(3):
+            turned = load_vector(scratch, below + 3 * axis * LANES)
+            along_x, along_y = dot(turned, (a, d, g)), dot(turned, (b, e, h))
+            along_z, origin = dot(turned, (c, f, i_)), dot(turned, (x, y, z))
+            origin = load(scratch, below + (9 + axis) * LANES) + origin
             if slides:
-                origin = origin + z * value
-            store(scratch, here + 3 * axis * LANES, x * cosine + y * sine)
-            store(scratch, here + (3 * axis + 1) * LANES, y * cosine - x * sine)
-            store(scratch, here + (3 * axis + 2) * LANES, z)
+                origin = origin + along_z * value
+            store_vector(
+                scratch,
+                here + 3 * axis * LANES,
+                (along_x * cosine + along_y * sine, along_y * cosine - along_x * sine, along_z),
+            )
             store(scratch, here + (9 + axis) * LANES, origin)
 
 
 @inner
-def place_moving_capsules(scratch: Singles, frames: int, capsules: int, ints: Ints, table: Singles) -> None:
-    """Write the capsules that move."""
-    _place_capsules(scratch, frames, capsules, ints[at.FIXED_CAPSULES], ints[at.CAPSULES], ints, table)
-
-
-@inner
-def place_moving_bodies(scratch: Singles, frames: int, bodies: int, ints: Ints, table: Singles) -> None:
-    """Write the bodies that move."""
-    _place_bodies(scratch, frames, bodies, ints[at.FIXED_BODIES], ints[at.BODIES], ints, table)
-
-
-@inner
-def _place_capsules(
-    scratch: Singles, frames: int, capsules: int, first: int, end: int, ints: Ints, table: Singles
-) -> None:
-    for i in range(first, end):
-        frame = frames + FRAME * ints[ints[at.CAPSULE_INTS] + at.CAPSULE_INT_ROW * i]
-        data = ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i
-        here = capsules + CAPSULE * i
-        for axis in range(3):
-            p0 = load(scratch, frame + 3 * axis * LANES)
-            p1 = load(scratch, frame + (3 * axis + 1) * LANES)
-            p2 = load(scratch, frame + (3 * axis + 2) * LANES)
-            half = p0 * table[data + 3] + p1 * table[data + 4] + p2 * table[data + 5]
-            store(scratch, here + axis * LANES, _moved(scratch, frame, axis, p0, p1, p2, data, table))
-            store(scratch, here + (3 + axis) * LANES, half)
-            store(scratch, here + (6 + axis) * LANES, absolute(half) + table[data + 6])
-
-
-@inner
-def _place_bodies(
-    scratch: Singles, frames: int, bodies: int, first: int, end: int, ints: Ints, table: Singles
-) -> None:
-    for i in range(first, end):
-        row = ints[at.BODY_INTS] + at.BODY_INT_ROW * i
-        frame = frames + FRAME * ints[row]
-        data = ints[at.BODY_FLOATS] + at.BODY_FLOAT_ROW * i
-        here = bodies + BODY * i
-        boxed = ints[row + 2] - ints[row + 1] > FEW
-        for axis in range(3):
-            p0 = load(scratch, frame + 3 * axis * LANES)
-            p1 = load(scratch, frame + (3 * axis + 1) * LANES)
-            p2 = load(scratch, frame + (3 * axis + 2) * LANES)
-            store(scratch, here + axis * LANES, _moved(scratch, frame, axis, p0, p1, p2, data, table))
-            if boxed:
-                x, y, z = absolute(p0), absolute(p1), absolute(p2)
-                half = x * table[data + 4] + y * table[data + 5] + z * table[data + 6]
-                store(scratch, here + (3 + axis) * LANES, half)
+def _place_bodies(scratch: Singles, first: int, end: int, ints: Ints, table: Singles) -> None:
+    """Write bodies, the boxes around those of many capsules, and their capsules."""
+    bodies, capsules = scratch_places(ints)
+    for body in range(first, end):
+        frame, first_capsule, end_capsule = row(ints, ints[at.BODY_INTS] + at.BODY_INT_ROW * body, 3)
+        place = FRAME * frame
+        rx, ry = load_vector(scratch, place), load_vector(scratch, place + 3 * LANES)
+        rz, origin = load_vector(scratch, place + 6 * LANES), load_vector(scratch, place + 9 * LANES)
+        x, y, z, _, a, b, c = row(table, ints[at.BODY_FLOATS] + at.BODY_FLOAT_ROW * body, 7)
+        here, centre, half = bodies + PLACED * body, (x, y, z), (a, b, c)
+        store_vector(scratch, here, plus(origin, (dot(rx, centre), dot(ry, centre), dot(rz, centre))))
+        if end_capsule - first_capsule > at.FEW:
+            extents = dot(absolute(rx), half), dot(absolute(ry), half), dot(absolute(rz), half)
+            store_vector(scratch, here + HALF, extents)
+        for i in range(first_capsule, end_capsule):
+            x, y, z, a, b, c = row(table, ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i, 6)
+            here, centre, half = capsules + PLACED * i, (x, y, z), (a, b, c)
+            store_vector(scratch, here, plus(origin, (dot(rx, centre), dot(ry, centre), dot(rz, centre))))
+            if a != ZERO or b != ZERO or c != ZERO:
+                store_vector(scratch, here + HALF, (dot(rx, half), dot(ry, half), dot(rz, half)))
 
 
 @inlined
-def _moved(
-    scratch: Singles, frame: int, axis: int, p0: Any, p1: Any, p2: Any, data: int, table: Singles
-) -> Any:
-    """Return a coordinate, in the root's frame, of a point that the table has at `data` in a frame's own."""
-    turned = p0 * table[data] + p1 * table[data + 1] + p2 * table[data + 2]
-    return load(scratch, frame + (9 + axis) * LANES) + turned
+def sine_and_cosine(angle: Any) -> Any:
+    """Return the sines and cosines of sixteen angles from -pi to pi [rad], to 2e-7."""
+    size = absolute(angle)
+    # sin x = sin(pi - x); cos x = sin(pi/2 - |x|).
+    sine = with_sign_of(_sine_within_a_quarter(smaller(_PI - size, size)), angle)
+    return sine, _sine_within_a_quarter(_HALF_PI - size)
+
+
+@inlined
+def _sine_within_a_quarter(angle: Any) -> Any:
+    square = angle * angle
+    return angle + angle * square * (_S3 + square * (_S5 + square * (_S7 + square * _S9)))

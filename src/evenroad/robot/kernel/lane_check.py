@@ -6,29 +6,32 @@ function of it that checks something, would cost seconds.  Called by its address
 
 from __future__ import annotations
 
+from functools import cache
+
 from numba import cfunc, types
 
-from evenroad.robot.kernel.addresses import doubles_at, integers_at, singles_at
+from evenroad.robot.kernel.addresses import ANY_LENGTH, doubles_at, integers_at, singles_at
 from evenroad.robot.kernel.contact import blocked_lanes
-from evenroad.robot.kernel.forward_kinematics import write_values
-
-ANY_LENGTH = 1 << 40
-"""The arrays' lengths are not passed on: nothing reads beyond what the tables say."""
+from evenroad.robot.kernel.forward_kinematics import place_fixed, place_moving
 
 
-@cfunc(types.int64(*[types.int64] * 5), cache=True, error_model="numpy", _nrt=False)
+@cache
+def check_address() -> int:
+    """Return the address, good for this process, of the check of sixteen configurations; compiled when first asked.
+
+    It takes the addresses of scratch memory, where a first call with `enough` 0 has put what does not move, of states,
+    sixteen numbers a coordinate, of integers and floats of the tables; and `enough`: 1 to stop at the first state that
+    is blocked, 16 to find all.  It returns the mask of those that touch something, as ``contact.blocked_lanes`` does.
+    """
+    compiled = cfunc(types.int64(*[types.int64] * 5), cache=True, error_model="numpy", _nrt=False)(_blocked)
+    return int(compiled.address)
+
+
 def _blocked(scratch: int, states: int, ints: int, table: int, enough: int) -> int:
     memory, integers = singles_at(scratch, (ANY_LENGTH,)), integers_at(ints, (ANY_LENGTH,))
     floats = singles_at(table, (ANY_LENGTH,))
-    write_values(memory, doubles_at(states, (ANY_LENGTH,)), integers, floats)
+    if enough == 0:
+        place_fixed(memory, integers, floats)
+        return 0
+    place_moving(memory, doubles_at(states, (ANY_LENGTH,)), integers, floats)
     return blocked_lanes(memory, integers, floats, enough)
-
-
-def check_address() -> int:
-    """Return the address, good for this process, of the check of sixteen configurations.
-
-    `call_at` takes with it: scratch memory as ``forward_kinematics.scratch_memory`` makes it; states, sixteen numbers
-    a coordinate; integers and floats of the tables; 1 to stop at the first state that is blocked, 16 to find all.  It
-    returns the mask of those that touch something, as ``contact.blocked_lanes`` does.
-    """
-    return int(_blocked.address)

@@ -19,10 +19,11 @@ from numba.core import cgutils
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, models, register_model
 
-from evenroad.robot.kernel.layout import LANES, inlined
+from evenroad.robot.kernel.layout import LANES
 
 _FLOAT = ir.FloatType()
 _VECTOR = ir.VectorType(_FLOAT, LANES)
+_WIDE = ir.VectorType(ir.DoubleType(), LANES)
 _BITS = ir.VectorType(ir.IntType(32), LANES)
 _FLAGS = ("nnan", "ninf", "nsz", "contract")
 
@@ -35,6 +36,7 @@ class LanesType(types.Type):
 
 
 LANES_TYPE = LanesType()
+VECTOR_TYPE = types.UniTuple(LANES_TYPE, 3)
 
 
 @register_model(LanesType)
@@ -43,9 +45,9 @@ class _LanesModel(models.PrimitiveModel):
         super().__init__(manager, kind, _VECTOR)
 
 
-def _spread(builder: ir.IRBuilder, number: ir.Value) -> ir.Value:
+def _spread(builder: ir.IRBuilder, number: ir.Value, kind: ir.Type = _VECTOR) -> ir.Value:
     """Return `number` in all lanes."""
-    undefined = ir.Constant(_VECTOR, ir.Undefined)
+    undefined = ir.Constant(kind, ir.Undefined)
     one = builder.insert_element(undefined, number, ir.Constant(ir.IntType(32), 0))
     return builder.shuffle_vector(one, undefined, ir.Constant(_BITS, [0] * LANES))
 
@@ -95,15 +97,25 @@ def _call(builder: ir.IRBuilder, name: str, result: ir.Type, *args: ir.Value) ->
     return builder.call(cgutils.get_or_insert_function(builder.module, kind, name), args, fastmath=_FLAGS)
 
 
+def _chosen(builder: ir.IRBuilder, comparison: str, first: ir.Value, second: ir.Value) -> ir.Value:
+    return builder.select(builder.fcmp_ordered(comparison, first, second, flags=_FLAGS), first, second)
+
+
+def _shuffled(builder: ir.IRBuilder, first: ir.Value, second: ir.Value, lanes: list[int]) -> ir.Value:
+    return builder.shuffle_vector(first, second, ir.Constant(_BITS, lanes))
+
+
 def _elementwise(name: str) -> Callable[..., Any]:
-    """Return an intrinsic that applies one of LLVM's to each lane."""
+    """Return an intrinsic that applies one of LLVM's to each lane of one value, or of each axis."""
 
     @intrinsic
     def apply(typing_context: Any, a: Any) -> Any:
         def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-            return _call(builder, f"llvm.{name}.v{LANES}f32", _VECTOR, args[0])
+            values = [args[0]] if _is_lanes(a) else cgutils.unpack_tuple(builder, args[0])
+            results = [_call(builder, f"llvm.{name}.v{LANES}f32", _VECTOR, value) for value in values]
+            return results[0] if _is_lanes(a) else context.make_tuple(builder, a, results)
 
-        return (LANES_TYPE(a), lower) if _is_lanes(a) else None
+        return a(a), lower
 
     return apply
 
@@ -114,35 +126,101 @@ def _choice(comparison: str) -> Callable[..., Any]:
     @intrinsic
     def choose(typing_context: Any, a: Any, b: Any) -> Any:
         def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-            first, second = _as_vectors(builder, sig, args)
-            return builder.select(
-                builder.fcmp_ordered(comparison, first, second, flags=_FLAGS), first, second
-            )
+            return _chosen(builder, comparison, *_as_vectors(builder, sig, args))
 
         return LANES_TYPE(a, b if _is_lanes(b) else types.float32), lower
 
     return choose
 
 
-def _over_lanes(name: str) -> Callable[..., Any]:
-    """Return an intrinsic that makes one number of all lanes."""
+def _by_axis(instruction: str) -> Callable[..., Any]:
+    """Return an intrinsic of two vectors, each a tuple of three, or of one and what holds for every axis."""
 
     @intrinsic
-    def reduce(typing_context: Any, a: Any) -> Any:
+    def apply(typing_context: Any, a: Any, b: Any) -> Any:
         def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-            return _call(builder, f"llvm.vector.reduce.{name}.v{LANES}f32", _FLOAT, args[0])
+            results = [
+                getattr(builder, instruction)(x, y, flags=_FLAGS)
+                for x, y in zip(
+                    *(_axes(builder, *each) for each in zip(args, sig.args, strict=True)), strict=True
+                )
+            ]
+            return context.make_tuple(builder, VECTOR_TYPE, results)
 
-        return (types.float32(a), lower) if _is_lanes(a) else None
+        return VECTOR_TYPE(a, b), lower
 
-    return reduce
+    return apply
+
+
+def _axes(builder: ir.IRBuilder, value: ir.Value, kind: Any) -> list[ir.Value]:
+    """Return the three lanes values of a vector, of three numbers, or three times one of either."""
+    values = cgutils.unpack_tuple(builder, value) if isinstance(kind, types.UniTuple) else [value] * 3
+    return [each if each.type == _VECTOR else _spread(builder, each) for each in values]
 
 
 absolute = _elementwise("fabs")
 square_root = _elementwise("sqrt")
 smaller = _choice("<")
 larger = _choice(">")
-smallest_lane = _over_lanes("fmin")
-largest_lane = _over_lanes("fmax")
+plus, minus, times = _by_axis("fadd"), _by_axis("fsub"), _by_axis("fmul")
+
+
+@intrinsic
+def smallest_lane(typing_context: Any, a: Any) -> Any:
+    """Return the least of sixteen numbers."""
+
+    def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
+        return _call(builder, f"llvm.vector.reduce.fmin.v{LANES}f32", _FLOAT, args[0])
+
+    return types.float32(a), lower
+
+
+@intrinsic
+def dot(typing_context: Any, a: Any, b: Any) -> Any:
+    """Return the inner product of two vectors, of which one may be three float32 numbers."""
+
+    def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
+        a_axes, b_axes = (_axes(builder, *each) for each in zip(args, sig.args, strict=True))
+        x, y, z = (builder.fmul(*pair, flags=_FLAGS) for pair in zip(a_axes, b_axes, strict=True))
+        return builder.fadd(builder.fadd(x, y, flags=_FLAGS), z, flags=_FLAGS)
+
+    return LANES_TYPE(a, b), lower
+
+
+@intrinsic
+def box_of_lanes(typing_context: Any, centre: Any, extents: Any) -> Any:
+    """Return centre and half extents, each number in all lanes, of the box around sixteen boxes."""
+
+    def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
+        half = _spread(builder, ir.Constant(_FLOAT, 0.5))
+        lows, highs = [], []
+        for c, u in zip(*(cgutils.unpack_tuple(builder, arg) for arg in args), strict=True):
+            lows.append(builder.fsub(c, u, flags=_FLAGS))
+            highs.append(builder.fneg(builder.fadd(c, u, flags=_FLAGS), flags=_FLAGS))
+        # Pairs of values share a vector, then four, then all six: a quarter of the steps of six sums over lanes.
+        values = [*lows, *highs, *lows[:2]]
+        for width in (8, 4, 2, 1):
+            evens = [lane for lane in range(2 * LANES) if lane // width % 2 == 0]
+            odds = [lane + width for lane in evens]
+            values = [
+                _chosen(builder, "<", _shuffled(builder, a, b, evens), _shuffled(builder, a, b, odds))
+                for a, b in zip(values[0::2], values[1::2] or values, strict=True)
+            ]
+        low = values[0]
+        minus_high = _shuffled(builder, low, low, [3, 4, 5, *range(3, LANES)])
+        middle = builder.fmul(half, builder.fsub(low, minus_high, flags=_FLAGS), flags=_FLAGS)
+        wide = builder.fmul(
+            half, builder.fneg(builder.fadd(low, minus_high, flags=_FLAGS), flags=_FLAGS), flags=_FLAGS
+        )
+        results = [
+            context.make_tuple(
+                builder, VECTOR_TYPE, [_shuffled(builder, each, each, [axis] * LANES) for axis in range(3)]
+            )
+            for each in (middle, wide)
+        ]
+        return context.make_tuple(builder, sig.return_type, results)
+
+    return types.UniTuple(VECTOR_TYPE, 2)(centre, extents), lower
 
 
 @intrinsic
@@ -186,10 +264,21 @@ def lowest_bit(typing_context: Any, bits: Any) -> Any:
     return types.int64(types.int64), lower
 
 
-def _pointer(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-    array = context.make_array(sig.args[0])(context, builder, args[0])
-    place = builder.gep(array.data, [args[1]], inbounds=True)
-    return builder.bitcast(place, _VECTOR.as_pointer())
+def _pointer(context: Any, builder: Any, kind: Any, array: Any, place: Any, *, number: ir.Type) -> ir.Value:
+    data = context.make_array(kind)(context, builder, array).data
+    return builder.bitcast(builder.gep(data, [place], inbounds=True), number.as_pointer())
+
+
+def _loaded(builder: ir.IRBuilder, pointer: ir.Value, axis: int = 0) -> ir.Value:
+    value = builder.load(builder.gep(pointer, [ir.Constant(ir.IntType(64), axis)]) if axis else pointer)
+    # Any place will do: where it is a multiple of 64 bytes, as in scratch memory, that costs nothing.
+    value.align = 4
+    return value
+
+
+def _stored(builder: ir.IRBuilder, pointer: ir.Value, value: ir.Value, axis: int = 0) -> None:
+    place = builder.gep(pointer, [ir.Constant(ir.IntType(64), axis)]) if axis else pointer
+    builder.store(value, place).align = 4
 
 
 @intrinsic
@@ -197,10 +286,7 @@ def load(typing_context: Any, array: Any, place: Any) -> Any:
     """Return the sixteen numbers of a float32 array from `place` on."""
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        loaded = builder.load(_pointer(context, builder, sig, args))
-        # Any place will do: where it is a multiple of 64 bytes, as in scratch memory, that costs nothing.
-        loaded.align = 4
-        return loaded
+        return _loaded(builder, _pointer(context, builder, array, *args, number=_VECTOR))
 
     return LANES_TYPE(array, types.intp), lower
 
@@ -210,38 +296,99 @@ def store(typing_context: Any, array: Any, place: Any, lanes: Any) -> Any:
     """Write sixteen numbers to a float32 array from `place` on."""
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        stored = builder.store(args[2], _pointer(context, builder, sig, args))
-        stored.align = 4
+        _stored(builder, _pointer(context, builder, array, *args[:2], number=_VECTOR), args[2])
         return context.get_dummy_value()
 
     return types.void(array, types.intp, lanes), lower
 
 
+@intrinsic
+def load_vector(typing_context: Any, array: Any, place: Any) -> Any:
+    """Return three times sixteen numbers of a float32 array from `place` on: x, y, z."""
+
+    def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
+        pointer = _pointer(context, builder, array, *args, number=_VECTOR)
+        return context.make_tuple(
+            builder, VECTOR_TYPE, [_loaded(builder, pointer, axis) for axis in range(3)]
+        )
+
+    return VECTOR_TYPE(array, types.intp), lower
+
+
+@intrinsic
+def store_vector(typing_context: Any, array: Any, place: Any, vector: Any) -> Any:
+    """Write a vector to a float32 array from `place` on, as `load_vector` reads it."""
+
+    def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
+        pointer = _pointer(context, builder, array, *args[:2], number=_VECTOR)
+        for axis, value in enumerate(cgutils.unpack_tuple(builder, args[2])):
+            _stored(builder, pointer, value, axis)
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp, vector), lower
+
+
+def _numbers(stride: int) -> Callable[..., Any]:
+    """Return an intrinsic that gives so many numbers of an array, a literal, from a place on, `stride` apart.
+
+    Indexing would first look whether the place is below 0, and would be compiled by numba number by number.
+    """
+
+    @intrinsic(prefer_literal=True)
+    def numbers(typing_context: Any, array: Any, place: Any, count: Any) -> Any:
+        kind = types.UniTuple(array.dtype, count.literal_value)
+
+        def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
+            pointer = _pointer(context, builder, array, *args[:2], number=context.get_data_type(array.dtype))
+            places = (
+                builder.gep(pointer, [ir.Constant(ir.IntType(64), i * stride)]) for i in range(kind.count)
+            )
+            return context.make_tuple(builder, kind, [builder.load(each) for each in places])
+
+        return kind(array, types.intp, count), lower
+
+    return numbers
+
+
+row, column = _numbers(1), _numbers(LANES)
+
+
+@intrinsic
+def store_along(typing_context: Any, array: Any, place: Any, begin: Any, shares: Any, way: Any) -> Any:
+    """Write ``begin + share * way`` to a float64 array from `place` on, for the sixteen shares of another."""
+
+    def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
+        first = ir.Constant(ir.IntType(64), 0)
+        share = _loaded(builder, _pointer(context, builder, shares, args[3], first, number=_WIDE))
+        done = builder.fmul(share, _spread(builder, args[4], _WIDE))
+        value = builder.fadd(_spread(builder, args[2], _WIDE), done)
+        _stored(builder, _pointer(context, builder, array, *args[:2], number=_WIDE), value)
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp, types.float64, shares, types.float64), lower
+
+
+@intrinsic
+def load_angles(typing_context: Any, array: Any, place: Any, multiplier: Any, offset: Any, turn: Any) -> Any:
+    """Return multiples and more of sixteen numbers of a float64 array, less whole turns, unless a turn is 0.
+
+    Computed in double precision: single precision has no digits for a large angle.
+    """
+
+    def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
+        values = _loaded(builder, _pointer(context, builder, array, *args[:2], number=_WIDE))
+        factor, summand, period = (_spread(builder, arg, _WIDE) for arg in args[2:])
+        values = builder.fadd(builder.fmul(values, factor), summand)
+        turns = builder.fmul(values, ir.Constant(_WIDE, [0.5 / np.pi] * LANES))
+        rint = cgutils.get_or_insert_function(
+            builder.module, ir.FunctionType(_WIDE, [_WIDE]), f"llvm.rint.v{LANES}f64"
+        )
+        return builder.fptrunc(
+            builder.fsub(values, builder.fmul(period, builder.call(rint, [turns]))), _VECTOR
+        )
+
+    return LANES_TYPE(array, types.intp, types.float64, types.float64, types.float64), lower
+
+
 ZERO = np.float32(0.0)
 ONE = np.float32(1.0)
-
-_PI = np.float32(np.pi)
-_HALF_PI = np.float32(0.5 * np.pi)
-
-# x + S3 x^3 + S5 x^5 + S7 x^7 + S9 x^9 nearest to sin x on [-pi/2, pi/2] in the largest error (by Lawson's
-# reweighted least squares, 1961): 4.6e-9, or 1.7e-8 with coefficients of single precision.  Taylor's series, or
-# one made for pi/4, errs by 1e-4 there.
-_S3 = np.float32(-0.16666657096)
-_S5 = np.float32(0.0083330172914)
-_S7 = np.float32(-0.00019806615190)
-_S9 = np.float32(2.6000547418e-06)
-
-
-@inlined
-def sine_and_cosine(angle: Any) -> Any:
-    """Return the sines and cosines of sixteen angles from -pi to pi [rad], to 2e-7."""
-    size = absolute(angle)
-    # sin x = sin(pi - x); cos x = sin(pi/2 - |x|).
-    sine = with_sign_of(_sine_within_a_quarter(smaller(_PI - size, size)), angle)
-    return sine, _sine_within_a_quarter(_HALF_PI - size)
-
-
-@inlined
-def _sine_within_a_quarter(angle: Any) -> Any:
-    square = angle * angle
-    return angle + angle * square * (_S3 + square * (_S5 + square * (_S7 + square * _S9)))

@@ -28,10 +28,18 @@ FRAME_FLOATS, CAPSULE_FLOATS, SAMPLES, BODY_FLOATS, BODY_PAIR_FLOATS, PAIR_FLOAT
 OBSTACLE_FLOATS, BLOCK_FLOATS = range(21, 23)
 """Header: where rows of floats begin."""
 
-INTEGERS = 23
-"""Header: how many integers there are, header included; where lanes read, single-precision floats follow them."""
+INTEGERS, COORDINATES, PAIRS, SCRATCH = range(23, 27)
+"""Header: how many integers there are, header included; where lanes read, single-precision floats follow them.  How
+many coordinates a configuration has, how many pairs there are, of capsules and of bodies by hulls, how many floats
+lanes need for places."""
 
-HEADER = 24
+HULL_PAIRS = 27
+"""Header: how many pairs of bodies, the last ones, are decided by their hulls where capsules touch."""
+
+NODE_INTS, NODE_FLOATS, HULL_MARGINS = range(28, 31)
+"""Header: where nodes of trees of hulls begin, and the margins of pairs that are decided by hulls."""
+
+HEADER = 31
 """Length of the header."""
 
 FRAME_INT_ROW = 3
@@ -40,14 +48,21 @@ FRAME_INT_ROW = 3
 CAPSULE_INT_ROW = 3
 """Frame, first sample, end of samples."""
 
-BODY_INT_ROW = 3
-"""Frame, first capsule, end of capsules."""
+BODY_INT_ROW = 4
+"""Frame, first capsule, end of capsules, root of its tree of hulls."""
 
 BODY_PAIR_INT_ROW = 4
 """Two bodies, first capsule pair, end of capsule pairs."""
 
 PAIR_INT_ROW = 2
 """Two capsules."""
+
+NODE_INT_ROW = 4
+"""Two children, or -1 twice; of a leaf, where its points begin and end in the floats, in steps of three."""
+
+NODE_FLOAT_ROW = 8
+"""Centre (3) and half extents (3) of a box around all below, in the body's frame; radius of a ball about the same
+centre around all below; by how much a leaf's hull is widened."""
 
 OBSTACLE_INT_ROW = 1
 """Kind, one of the following."""
@@ -70,6 +85,26 @@ PAIR_FLOAT_ROW = 4
 """Distance of centres from which on they cannot touch; sum of radii; one over the squared half lengths (0 for
 points)."""
 
+FEW = 3
+"""Of bodies with at most so many capsules no box is tested before those of the capsules: it would cost more."""
+
+FRAME = 12 * LANES
+"""Places in lanes, of a frame: rotation row by row, origin."""
+
+PLACED = 12 * LANES
+"""Of a body or a capsule: its centre; half extents of the box around a body, half the segment of a capsule; centre and
+half extents of the box around it in all lanes, where that is asked for more than once."""
+
+HALF, BOX = 3 * LANES, 6 * LANES
+"""Where the second three are, and the last six."""
+
+MOST_WAITING = 640
+"""Stretches of a motion that may wait for a proof: 16 more at most for each halving, of which single precision bears
+some thirty."""
+
+DESK = 16
+"""Length of the desk at the beginning of the memory, see ``motion_checks.checks_of``."""
+
 LEAST_SQUARE = 1e-30
 """What a squared length is taken for at least where one divides by it [m^2]; the kernels' own, in no row."""
 
@@ -81,19 +116,16 @@ A cylinder has its radius in the first two half extents."""
 BLOCK_FLOAT_ROW = 6 * LANES
 """Bounding boxes of 16 obstacles: centres x, y, z, half extents x, y, z, 16 numbers each."""
 
-inner = njit(cache=True, nogil=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-"""Decorator of a function that only compiled code calls: compiled sooner, without what Python would call."""
+inner = njit(nogil=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+"""Decorator of a function that only compiled code calls: kept with its callers, and without what Python would call."""
 
-inlined = njit(cache=True, nogil=True, no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=True)
+inlined = njit(nogil=True, no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=True)
 """Decorator of such a function that is put where it is called."""
 
-quick = njit(
-    cache=True,
-    nogil=True,
-    no_cpython_wrapper=True,
-    no_cfunc_wrapper=True,
-    error_model="numpy",
-    _nrt=False,
-)
-"""Decorator of a function that is called often: it makes no arrays, does not count references to those it is given,
-which costs more than the rest, and does not look whether it divides by zero."""
+quick = njit(nogil=True, no_cpython_wrapper=True, no_cfunc_wrapper=True, error_model="numpy", _nrt=False)
+"""Decorator of such a function that makes no arrays, does not count references to those it is given, which costs more
+than the rest, and does not look whether it divides by zero."""
+
+program = njit(cache=True, nogil=True, no_cfunc_wrapper=True, error_model="numpy", _nrt=False)
+"""Decorator of what Python calls: it takes numbers alone, and arrays by their addresses, which is soon compiled, soon
+called, and never compiled anew for other kinds of arrays."""

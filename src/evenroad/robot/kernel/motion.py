@@ -7,23 +7,16 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.robot.kernel.layout import inlined, inner, quick
+from evenroad.robot.kernel.layout import inlined, quick
 
 Floats = npt.NDArray[np.float64]
 
 
-@inner
+@quick
 def enter(q: Floats, bounds: Floats, into: Floats) -> bool:
     """Write `q` with its wrapping coordinates in their ranges and return whether the others are within theirs.
 
-    Parameters
-    ----------
-    q : float64 array, shape (dim,)
-        A configuration, finite.
-    bounds : float64 array, shape (3, dim)
-        Low, high and period of each coordinate; a period of inf where it does not wrap.
-    into : float64 array, shape (dim,)
-        Written to.
+    `bounds`, (3, dim), are low, high and period of each coordinate; a period of inf where it does not wrap.
     """
     inside = True
     for k in range(len(q)):
@@ -46,22 +39,12 @@ def wrapped(value: float, low: float, high: float, period: float) -> float:
     return value
 
 
-@inner
+@quick
 def span(start: Floats, end: Floats, bounds: Floats, resolution: float, direction: Floats) -> int:
     """Put the ends in dictionary order, write the short way between them and return its number of segments.
 
-    States are rounded: without a fixed order a motion and its reverse could be judged differently.
-
-    Parameters
-    ----------
-    start, end : float64 arrays, shape (dim,)
-        As `enter` writes them; exchanged where `end` comes first.
-    bounds : float64 array, shape (3, dim)
-        As above.
-    resolution : float
-        The longest segment, in the Euclidean metric.
-    direction : float64 array, shape (dim,)
-        Written to: end - start, the short way round where it wraps.
+    States are rounded: without a fixed order a motion and its reverse could be judged differently.  The ends are as
+    `enter` writes them, no segment is longer than the resolution in the Euclidean metric.
     """
     exchange = False
     for k in range(len(start)):

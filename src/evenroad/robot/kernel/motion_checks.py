@@ -5,6 +5,7 @@ What `lane_check` says of the check of sixteen configurations holds for a motion
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -13,47 +14,36 @@ from numba import cfunc, types
 
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import (
-    address_of,
+    ANY_LENGTH,
     call_at,
     doubles_at,
     integers_at,
     matrix_at,
     singles_at,
 )
-from evenroad.robot.kernel.forward_kinematics import scratch_memory, unpacked
-from evenroad.robot.kernel.lane_check import ANY_LENGTH, check_address
-from evenroad.robot.kernel.layout import inner, quick
+from evenroad.robot.kernel.layout import DESK, LANES, MOST_WAITING, quick
 from evenroad.robot.kernel.motion import span
-from evenroad.robot.kernel.motion_proof import MOST_WAITING, is_proved
+from evenroad.robot.kernel.motion_proof import is_proved
 from evenroad.robot.kernel.motion_states import COUNTS, MOTIONS, Motion, World, are_free, blocked_states
 
-LANES = at.LANES
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
-Singles = npt.NDArray[np.float32]
 
 NO_END, START, BOTH_ENDS, COARSE, PROOF, STATES = range(6)
 """What a motion is checked for: that its states are free where neither end, its start or both are known to be; that no
 more than sixteen states between free ends are, which before a proof is enough; that it is free throughout.  The last is
 for no motion but sixteen states."""
 
-_DESK = 15
-"""Length of the desk: eleven entries of `World`, the memory of a motion, dim, capsules and pairs of capsules."""
-
 
 class Checks(NamedTuple):
-    """A world's checks as their callers hold them, made by `checks_of` for one call: few arrays are soon compiled.
+    """A world's checks as their callers hold them, made by `checks_of` for one call.
 
     Attributes
     ----------
-    address : int
-        Of the check of a motion.
+    address, desk : int
+        Of the check of a motion, and of what it reads: addresses and sizes of tables and of memory, see `World`.
     resolution : float
         Largest distance between neighbouring states of a motion.
-    desk : int64 array
-        What that check reads: addresses and sizes of a world's tables and of memory, see `World`.
-    memory : float64 array
-        Keeps that memory.
     states : float64 array
         Sixteen configurations for `blocked`, sixteen numbers a coordinate.
     bounds : float64 array, shape (3, dim)
@@ -63,69 +53,51 @@ class Checks(NamedTuple):
     """
 
     address: int
+    desk: int
     resolution: float
-    desk: Ints
-    memory: Floats
     states: Floats
     bounds: Floats
     counts: Ints
 
 
-def addresses() -> tuple[int, int]:
-    """Return the addresses, good for this process, that `checks_of` takes."""
-    return check_address(), int(_motion_check.address)
-
-
-@inner
+@quick
 def checks_of(
-    addresses: tuple[int, int],
-    resolution: float,
-    bounds: Floats,
-    tables: Ints,
-    arms: Floats,
-    pair_arms: Floats,
-    counts: Ints,
+    motion_check: int, check: int, resolution: float, tables: int, by_joint: int, memory: int, counts: int
 ) -> Checks:
-    """Return the checks of a world.
-
-    Parameters
-    ----------
-    addresses : two ints
-        As `addresses` gives them.
-    resolution, bounds, counts
-        As in `Checks`.
-    tables : int64 array
-        ``ArmTables.lanes``; it, and the two that follow, must outlive what is returned.
-    arms, pair_arms : float64 arrays
-        ``RobotTables.speeds_by_joint``.
-    """
-    dim, capsules, pairs = bounds.shape[1], arms.shape[1], pair_arms.shape[1]
-    ints, table = unpacked(tables)
-    states, _, scratch = scratch_memory(dim, ints, table)
-    own = 3 * dim + LANES + capsules + pairs + MOST_WAITING
-    memory = np.empty(own + MOST_WAITING + (len(table) + 1) // 2)
-    enlarged = memory[own + MOST_WAITING :].view(np.float32)
-    # A loop, and addresses out of an intrinsic: what numpy has for both takes seconds to compile.
-    for place in range(len(table)):
-        enlarged[place] = table[place]
-    desk = np.empty(_DESK, dtype=np.int64)
-    desk[0], desk[1], desk[2], desk[3] = (
-        addresses[0],
-        address_of(bounds),
-        address_of(states),
-        address_of(counts),
+    """Return the checks of a world; its memory is cut up, and what does not move put into its place."""
+    ints = integers_at(tables, (ANY_LENGTH,))
+    dim, capsules, pairs = ints[at.COORDINATES], ints[at.CAPSULES], ints[at.PAIRS]
+    table = tables + 8 * ints[at.INTEGERS]
+    bounds = matrix_at(by_joint, (3, dim))
+    arms = by_joint + 8 * 3 * dim
+    desk = integers_at(memory, (DESK,))
+    # Lanes begin on a cache line.
+    states = (memory + 8 * DESK + 63) // 64 * 64
+    scratch = states + 8 * LANES * dim
+    enlarged = scratch + 4 * ints[at.SCRATCH]
+    floats = ints[at.BLOCK_FLOATS] + at.BLOCK_FLOAT_ROW * ints[at.BLOCKS]
+    given, copied = singles_at(table, (floats,)), singles_at(enlarged, (floats,))
+    for place in range(floats):
+        copied[place] = given[place]
+    motion = enlarged + (4 * floats + 7) // 8 * 8
+    desk[0], desk[1], desk[2], desk[3], desk[4], desk[5] = check, by_joint, states, counts, tables, table
+    desk[6], desk[7], desk[8], desk[9] = arms, arms + 8 * dim * capsules, scratch, enlarged
+    desk[10], desk[11], desk[12], desk[13] = motion, dim, capsules, pairs
+    call_at(check, (scratch, states, tables, table, 0))
+    return Checks(
+        motion_check,
+        memory,
+        resolution,
+        doubles_at(states, (dim * LANES,)),
+        bounds,
+        integers_at(counts, (COUNTS,)),
     )
-    desk[4], desk[5] = address_of(ints), address_of(table)
-    desk[6], desk[7] = address_of(arms), address_of(pair_arms)
-    desk[8], desk[9], desk[10] = address_of(scratch), address_of(enlarged), address_of(memory[own:])
-    desk[11], desk[12], desk[13], desk[14] = address_of(memory), dim, capsules, pairs
-    return Checks(addresses[1], resolution, desk, memory, states, bounds, counts)
 
 
 @quick
 def blocked(c: Checks) -> int:
     """Return the mask of the sixteen configurations in ``c.states`` that touch something."""
-    return call_at(c.address, (c.states, c.states, STATES, 0.0, 0, 1.0, c.desk))
+    return call_at(c.address, (0, 0, STATES, 0.0, 0, 1.0, c.desk))
 
 
 @quick
@@ -134,56 +106,38 @@ def motion_free(a: Floats, b: Floats, known: int, c: Checks) -> bool:
 
     These are ``k / n`` of the way, n the number of segments of at most the resolution.  The first sixteen are spread
     over the motion; the others follow in stretches of sixteen neighbours, halves before quarters before eighths.
-
-    Parameters
-    ----------
-    a, b : float64 arrays, shape (dim,)
-        Its ends.
-    known : int
-        NO_END, START, BOTH_ENDS or COARSE: which ends are known to be free and not tested again.
-    c : Checks
-        The world.
+    `known` says which ends are known to be free and not tested again: NO_END, START, BOTH_ENDS or COARSE.
     """
-    return _checked(a, b, known, 0.0, 0, c)
+    return call_at(c.address, (a, b, known, 0.0, 0, c.resolution, c.desk)) != 0
 
 
 @quick
 def motion_proved(a: Floats, b: Floats, tolerance: float, most_batches: int, c: Checks) -> bool:
     """Return whether the motion from `a` to `b`, within bounds, is proved free: throughout, not at states alone.
 
-    Parameters
-    ----------
-    a, b : float64 arrays, shape (dim,)
-        Its ends.
-    tolerance : float
-        A stretch of which half moves nothing by more than this is not halved again [m].
-    most_batches : int
-        After so many batches of sixteen stretches the answer is no.
-    c : Checks
-        The world.
+    A stretch of which half moves nothing by more than the tolerance is not halved again [m], and after so many batches
+    of sixteen stretches the answer is no.
     """
-    return _checked(a, b, PROOF, tolerance, most_batches, c)
+    return call_at(c.address, (a, b, PROOF, tolerance, most_batches, c.resolution, c.desk)) != 0
 
 
-@quick
-def _checked(a: Floats, b: Floats, kind: int, tolerance: float, most_batches: int, c: Checks) -> bool:
-    return call_at(c.address, (a, b, kind, tolerance, most_batches, c.resolution, c.desk)) != 0
+@cache
+def motion_check_address() -> int:
+    """Return the address, good for this process, of the check of a motion; compiled when first asked."""
+    kind = types.int64(*[types.int64] * 3, types.float64, types.int64, types.float64, types.int64)
+    return int(cfunc(kind, cache=True, error_model="numpy", _nrt=False)(_motion_check).address)
 
 
-@cfunc(
-    types.int64(
-        types.int64, types.int64, types.int64, types.float64, types.int64, types.float64, types.int64
-    ),
-    cache=True,
-    error_model="numpy",
-    _nrt=False,
-)
 def _motion_check(
     a: int, b: int, kind: int, tolerance: float, most_batches: int, resolution: float, desk: int
 ) -> int:
     """Return 1 where a motion is what `kind` says, else 0; for STATES the mask of those that touch something."""
-    d = integers_at(desk, (_DESK,))
-    dim, capsules, pairs = d[12], d[13], d[14]
+    d = integers_at(desk, (DESK,))
+    room, dim, capsules, pairs = d[10], d[11], d[12], d[13]
+    # Bytes; eight for each double.
+    row = 8 * dim
+    speeds = room + 3 * row + 8 * LANES
+    waiting = speeds + 8 * (capsules + pairs)
     w = World(
         d[0],
         matrix_at(d[1], (3, dim)),
@@ -195,13 +149,10 @@ def _motion_check(
         matrix_at(d[7], (dim, pairs)),
         singles_at(d[8], (ANY_LENGTH,)),
         singles_at(d[9], (ANY_LENGTH,)),
-        integers_at(d[10], (MOST_WAITING,)),
+        integers_at(waiting + 8 * MOST_WAITING, (MOST_WAITING,)),
     )
     if kind == STATES:
         return blocked_states(w, w.table, LANES)
-    # Bytes; eight for each double.
-    room, row = d[11], 8 * dim
-    speeds = room + 3 * row + 8 * LANES
     m = Motion(
         doubles_at(room, (dim,)),
         doubles_at(room + row, (dim,)),
@@ -209,7 +160,7 @@ def _motion_check(
         doubles_at(room + 3 * row, (LANES,)),
         doubles_at(speeds, (capsules,)),
         doubles_at(speeds + 8 * capsules, (pairs,)),
-        doubles_at(speeds + 8 * (capsules + pairs), (MOST_WAITING,)),
+        doubles_at(waiting, (MOST_WAITING,)),
     )
     begin, end = doubles_at(a, (dim,)), doubles_at(b, (dim,))
     for k in range(dim):

@@ -10,16 +10,14 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.layout import LANES, quick
+from evenroad.robot.kernel.lanes import row
+from evenroad.robot.kernel.layout import LANES, MOST_WAITING, quick
 from evenroad.robot.kernel.motion_states import CONFIGURATIONS, Motion, World, blocked_states, write_states
 
 Floats = npt.NDArray[np.float64]
 
 _UP = np.float32(1.0 + 3e-7)
 """What sums of single precision are multiplied by to be no less than the true ones."""
-
-MOST_WAITING = 640
-"""Stretches that may wait: 16 more at most for each halving, of which single precision bears some thirty."""
 
 
 @quick
@@ -70,10 +68,7 @@ def _write_speeds(arms: Floats, way: Floats, speeds: Floats) -> float:
         row = arms[k]
         for i in range(len(row)):
             speeds[i] += row[i] * size
-    largest = 0.0
-    for i in range(len(speeds)):
-        largest = max(largest, speeds[i])
-    return largest
+    return _largest(speeds)
 
 
 @quick
@@ -85,29 +80,43 @@ def _wider(length: np.float32, margin: float) -> np.float32:
 @quick
 def _enlarge(half: float, m: Motion, w: World) -> None:
     """Write lengths that are larger by what `half` of a motion can move the bodies: all that a test is decided by."""
-    ints, table, wide = w.ints, w.table, w.enlarged
-    place = ints[at.CAPSULE_FLOATS] + 6
+    ints, given, wide = w.ints, w.table, w.enlarged
+    # Through parts of the arrays whose places are known not to be below 0, which is looked at else.
+    first, size = ints[at.CAPSULE_FLOATS], at.CAPSULE_FLOAT_ROW * len(m.speeds)
+    table, rows = given[first : first + size], wide[first : first + size]
     for i in range(len(m.speeds)):
-        wide[place] = _wider(table[place], half * m.speeds[i])
-        place += at.CAPSULE_FLOAT_ROW
+        place = at.CAPSULE_FLOAT_ROW * i + 6
+        rows[place] = _wider(table[place], half * m.speeds[i])
     # What is around a body moves no farther than the fastest of its capsules.
     for body in range(ints[at.BODIES]):
-        row = ints[at.BODY_INTS] + at.BODY_INT_ROW * body
-        place = ints[at.BODY_FLOATS] + at.BODY_FLOAT_ROW * body
-        fastest = 0.0
-        for i in range(ints[row + 1], ints[row + 2]):
-            fastest = max(fastest, m.speeds[i])
-        for entry in range(place + 3, place + 7):
-            wide[entry] = _wider(table[entry], half * fastest)
-    row, first = ints[at.BODY_PAIR_INTS], ints[at.PAIR_FLOATS]
-    for p in range(ints[at.BODY_PAIRS]):
-        most = 0.0
-        for pair in range(ints[row + 2], ints[row + 3]):
-            margin = half * m.pair_speeds[pair]
-            most = max(most, margin)
-            place = first + at.PAIR_FLOAT_ROW * pair
-            wide[place] = _wider(table[place], margin)
-            wide[place + 1] = _wider(table[place + 1], margin)
-        row += at.BODY_PAIR_INT_ROW
-        place = ints[at.BODY_PAIR_FLOATS] + p
-        wide[place] = _wider(table[place], most)
+        _, first, end = row(ints, ints[at.BODY_INTS] + at.BODY_INT_ROW * body, 3)
+        fastest = _largest(m.speeds[first:end])
+        place = ints[at.BODY_FLOATS] + at.BODY_FLOAT_ROW * body + 3
+        table, rows = given[place : place + 4], wide[place : place + 4]
+        for entry in range(4):
+            rows[entry] = _wider(table[entry], half * fastest)
+    by_hulls = ints[at.HULL_PAIRS]
+    capsule_pairs = len(m.pair_speeds) - by_hulls
+    first, size = ints[at.PAIR_FLOATS], at.PAIR_FLOAT_ROW * capsule_pairs
+    table, rows = given[first : first + size], wide[first : first + size]
+    for pair in range(capsule_pairs):
+        margin, place = half * m.pair_speeds[pair], at.PAIR_FLOAT_ROW * pair
+        rows[place] = _wider(table[place], margin)
+        rows[place + 1] = _wider(table[place + 1], margin)
+    first, size = ints[at.BODY_PAIR_FLOATS], ints[at.BODY_PAIRS]
+    table, rows = given[first : first + size], wide[first : first + size]
+    for p in range(len(rows)):
+        _, _, begin, end = row(ints, ints[at.BODY_PAIR_INTS] + at.BODY_PAIR_INT_ROW * p, 4)
+        rows[p] = _wider(table[p], half * _largest(m.pair_speeds[begin:end]))
+    first = ints[at.HULL_MARGINS]
+    table, rows = given[first : first + by_hulls], wide[first : first + by_hulls]
+    for p in range(by_hulls):
+        rows[p] = _wider(table[p], half * m.pair_speeds[capsule_pairs + p])
+
+
+@quick
+def _largest(speeds: Floats) -> float:
+    largest = 0.0
+    for i in range(len(speeds)):
+        largest = max(largest, speeds[i])
+    return largest

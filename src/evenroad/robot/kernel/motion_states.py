@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import call_at
+from evenroad.robot.kernel.lanes import store_along
 from evenroad.robot.kernel.layout import LANES, quick
 
 Floats = npt.NDArray[np.float64]
@@ -32,7 +33,7 @@ class World(NamedTuple):
     arms, pair_arms : float64 arrays, shapes (dim, capsules) and (dim, capsule pairs)
         How fast each coordinate moves a capsule, and the two of a pair against each other, at most [m/rad].
     scratch : float32 array
-        As ``forward_kinematics.scratch_memory`` makes it.
+        Where `check` keeps places.
     enlarged : float32 array
         A copy of `table` with radii for proofs.
     levels : int64 array, shape (640,)
@@ -87,9 +88,7 @@ def blocked_states(w: World, table: Singles, enough: int) -> int:
 def write_states(m: Motion, w: World) -> None:
     """Write the configurations at the sixteen shares of a motion."""
     for k in range(len(m.start)):
-        start, way = m.start[k], m.way[k]
-        for lane in range(LANES):
-            w.states[k * LANES + lane] = start + m.share[lane] * way
+        store_along(w.states, k * LANES, m.start[k], m.share, m.way[k])
 
 
 @quick

@@ -78,12 +78,8 @@ class MovingTree:
 def moving_tree(robot: Robot) -> MovingTree:
     """Return the frames of `robot` that the joints of its group move, and its links' places on them.
 
-    Raises
-    ------
-    InvalidValue
-        If a mimic follows itself, or a continuous joint at no whole multiple, or a number is not finite.
-    UnknownName
-        If a mimic, the group or the held values name a joint that is not there.
+    Raises InvalidValue if a mimic follows itself, or a continuous joint at no whole multiple, or a number is not
+    finite; and UnknownName if a mimic, the group or the held values name a joint that is not there.
     """
     joints = {joint.name: joint for joint in robot.joints}
     for name in (*robot.group, *robot.held):

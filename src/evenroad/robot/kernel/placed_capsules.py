@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.errors import InvalidValue, UnknownName
+from evenroad.geometry.hulls import Hull
 from evenroad.geometry.shapes import Capsule
 from evenroad.robot.kernel.moving_tree import MovingFrame, MovingTree
 from evenroad.robot.robot import Robot
@@ -64,16 +65,40 @@ class PlacedCapsule:
     radius: float
     cover: Cover
 
+    @property
+    def ends(self) -> Floats:
+        """Ends of the segment, (2, 3)."""
+        return np.stack([self.centre - self.half, self.centre + self.half])
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedHulls:
+    """The hulls of a link in the moving frame that it is fixed to: their corners and by how much they are widened."""
+
+    frame: int
+    leaves: tuple[tuple[Floats, float], ...]
+
+    @property
+    def ends(self) -> Floats:
+        """All corners, (n, 3)."""
+        return np.concatenate([corners[0] for corners, _ in self.leaves])
+
+
+Placed = PlacedCapsule | PlacedHulls
+
+
+def place_hulls(hulls: Sequence[Hull], tree: MovingTree) -> PlacedHulls:
+    """Return the hulls of one link in its frame."""
+    place = tree.links[hulls[0].link]
+    leaves = [((h.points @ place.rotation.T + place.translation)[np.newaxis], h.radius) for h in hulls]
+    return PlacedHulls(place.frame, tuple(leaves))
+
 
 def place_capsule(capsule: Capsule, tree: MovingTree) -> PlacedCapsule:
     """Return a capsule in its frame.
 
-    Raises
-    ------
-    InvalidValue
-        If it has a size that is not a finite number > 0, or one larger than 1e6 m.
-    UnknownName
-        If it is of a link that is not there.
+    Raises InvalidValue if it has a size that is not a finite number > 0, or one larger than 1e6 m, and UnknownName if
+    it is of a link that is not there.
     """
     if capsule.link not in tree.links:
         raise UnknownName.among("link", capsule.link, tree.links)
@@ -125,7 +150,7 @@ def cover_capsule(half_length: float, radius: float) -> Cover:
     return Cover(tuple(places), most)
 
 
-def joint_arms(tree: MovingTree, capsules: Sequence[PlacedCapsule], robot: Robot) -> npt.NDArray[np.float64]:
+def joint_arms(tree: MovingTree, capsules: Sequence[Placed], robot: Robot) -> npt.NDArray[np.float64]:
     """Return how fast each frame moves the segment of each capsule at most, shape (capsules, frames) [m/rad or m/m].
 
     A frame that turns by dq moves a point by at most |dq| times the point's distance from the z axis; for
@@ -136,7 +161,7 @@ def joint_arms(tree: MovingTree, capsules: Sequence[PlacedCapsule], robot: Robot
     """
     arms = np.zeros((len(capsules), len(tree.frames)))
     for row, capsule in zip(arms, capsules, strict=True):
-        ends = np.stack([capsule.centre - capsule.half, capsule.centre + capsule.half])
+        ends = capsule.ends
         aside = float(np.hypot(ends[:, 0], ends[:, 1]).max())
         straight = float(np.linalg.norm(ends, axis=1).max())
         number = capsule.frame
@@ -151,20 +176,11 @@ def joint_arms(tree: MovingTree, capsules: Sequence[PlacedCapsule], robot: Robot
 
 
 def speed_bounds(
-    tree: MovingTree, capsules: Sequence[PlacedCapsule], pairs: Sequence[tuple[int, int]], robot: Robot
+    tree: MovingTree, capsules: Sequence[Placed], pairs: Sequence[tuple[int, int]], robot: Robot
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     """Return how fast each coordinate moves capsules, and those of a pair against each other, at most [m/rad].
 
-    Parameters
-    ----------
-    tree, capsules, robot : MovingTree, sequence of PlacedCapsule, Robot
-        As for `joint_arms`.
-    pairs : sequence of (int, int)
-        Numbers of two capsules.  Frames that carry both move them as one body.
-
-    Returns
-    -------
-    speeds, pair_speeds : float64 arrays, shapes (capsules, dim) and (pairs, dim)
+    The arrays have shapes (capsules, dim) and (pairs, dim).  Frames that carry both of a pair move them as one body.
     """
     by_frame = joint_arms(tree, capsules, robot)
     first, second = (by_frame[[pair[end] for pair in pairs]].reshape(-1, by_frame.shape[1]) for end in (0, 1))
@@ -191,7 +207,7 @@ def farthest(tree: MovingTree, capsules: Sequence[PlacedCapsule], robot: Robot) 
     """Return a distance from the root's origin beyond which no capsule ever reaches [m]."""
     most = 0.0
     for capsule in capsules:
-        ends = np.stack([capsule.centre - capsule.half, capsule.centre + capsule.half])
+        ends = capsule.ends
         straight = float(np.linalg.norm(ends, axis=1).max()) + 1.2 * capsule.radius
         number = capsule.frame
         while number > 0:

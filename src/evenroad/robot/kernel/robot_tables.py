@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,17 +10,21 @@ import numpy.typing as npt
 
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.geometry.distance import segment_distance
+from evenroad.geometry.hulls import Hull
 from evenroad.robot.kernel import layout
+from evenroad.robot.kernel.hull_trees import contacts, hull_trees
 from evenroad.robot.kernel.moving_tree import MovingTree, moving_tree
 from evenroad.robot.kernel.placed_capsules import (
     FARTHEST,
     PlacedCapsule,
+    PlacedHulls,
     farthest,
     largest_value,
     place_capsule,
+    place_hulls,
     speed_bounds,
 )
-from evenroad.robot.robot import Robot
+from evenroad.robot.robot import Robot, pieces_of
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -52,9 +56,9 @@ class RobotTables:
         The robot with larger radii, so that rounding never makes a verdict optimistic.
     capsule_pairs : tuple of pairs of int
         Capsules that are tested against each other.
-    pair_margins : float64 ndarray, shape (capsule pairs,)
-        Capsules of a pair nearer to each other than this may touch by `singles` [m].
-    speeds, pair_speeds : float64 ndarrays, shapes (capsules, dim) and (capsule pairs, dim)
+    pair_margins : float64 ndarray, shape (capsule pairs + pairs of bodies of which hulls decide,)
+        Capsules, or hulls, of a pair nearer to each other than this may touch by `singles` [m].
+    speeds, pair_speeds : float64 ndarrays, shapes (capsules, dim) and (as many as margins, dim)
         How fast each coordinate moves a capsule, and the two of a pair against each other, at most [m/rad].
     fixed_contact : tuple of 2 str, or None
         Two links that no joint moves on each other and that touch, though they are to be tested.
@@ -70,20 +74,15 @@ class RobotTables:
     pair_margins: Floats
     speeds: Floats
     pair_speeds: Floats
-    speeds_by_joint: tuple[Floats, Floats]
     fixed_contact: tuple[str, str] | None
 
 
 def robot_tables(robot: Robot) -> RobotTables:
     """Return the tables of a robot.
 
-    Raises
-    ------
-    InvalidValue
-        If a capsule has a size that is not a finite number > 0, the robot has no capsules, a length is larger than
-        1e6 m, or an angle, or what a mimic multiplies by or adds, larger than 1e9.
-    UnknownName
-        If capsules or pairs name a link that is not there.
+    Raises InvalidValue if a capsule has a size that is not a finite number > 0, the robot has no capsules, a length is
+    larger than 1e6 m, or an angle, or what a mimic multiplies by or adds, larger than 1e9; and UnknownName if capsules
+    or pairs name a link that is not there.
     """
     tree = moving_tree(robot)
     _require_few_turns(robot, tree)
@@ -100,15 +99,21 @@ def robot_tables(robot: Robot) -> RobotTables:
         )
     moving, fixed = _split_pairs(robot, tree)
     bodied = {capsule.link for capsule in capsules}
-    pairs = [pair for pair in moving if bodied.issuperset(pair)]
-    capsule_pairs = tuple(
-        (i, k) for a, b in pairs for i in _of_link(capsules, a) for k in _of_link(capsules, b)
-    )
+    hulls, sharp = _hulls_of(robot, tree)
+    # Pairs of which hulls decide come last, and of these the dearest.
+    work = {link: len(hulls[link].leaves) if link in sharp else 0 for link in bodied}
+    pairs = sorted(filter(bodied.issuperset, moving), key=lambda pair: work[pair[0]] + work[pair[1]])
+    of_hulls = [pair for pair in pairs if not sharp.isdisjoint(pair)]
+    of = _by_link(capsules)
+    capsule_pairs = tuple((i, k) for a, b in pairs for i in of[a] for k in of[b])
     padding = PADDING * max(1.0, reach)
-    ints, floats = _pack(tree, capsules, pairs, 0.0)
-    padded = _pack(tree, capsules, pairs, padding)[1]
+    packed = len(robot.group), tree, capsules, pairs, hulls, len(of_hulls)
+    (ints, floats), padded = _pack(*packed, 0.0), _pack(*packed, padding)[1]
     radii = layout.PAIR_FLOAT_ROW * np.arange(len(capsule_pairs)) + ints[layout.PAIR_FLOATS] + 1
-    speeds, pair_speeds = speed_bounds(tree, capsules, capsule_pairs, robot)
+    number = {link: len(capsules) + i for i, link in enumerate(hulls)}
+    every_pair = [*capsule_pairs, *((number[a], number[b]) for a, b in of_hulls)]
+    speeds, pair_speeds = speed_bounds(tree, [*capsules, *hulls.values()], every_pair, robot)
+    speeds = speeds[: len(capsules)]
     # Margins: once for what is added, once more for what rounding may add to that.
     tables = RobotTables(
         tree,
@@ -118,14 +123,13 @@ def robot_tables(robot: Robot) -> RobotTables:
         floats,
         padded.astype(np.float32),
         capsule_pairs,
-        2.0 * (padded[radii] - floats[radii]),
+        np.concatenate([2.0 * (padded[radii] - floats[radii]), np.full(len(of_hulls), 4.0 * padding)]),
         np.ascontiguousarray(speeds),
         np.ascontiguousarray(pair_speeds),
-        (np.ascontiguousarray(speeds.T), np.ascontiguousarray(pair_speeds.T)),
-        _fixed_contact(capsules, fixed),
+        _fixed_contact(capsules, hulls, fixed) if robot.pairs_given else None,
     )
     arrays = ints, floats, tables.singles, tables.pair_margins, tables.speeds, tables.pair_speeds
-    for array in (*arrays, *tables.speeds_by_joint):
+    for array in arrays:
         array.setflags(write=False)
     return tables
 
@@ -160,20 +164,27 @@ def _split_pairs(robot: Robot, tree: MovingTree) -> tuple[list[tuple[str, str]],
     return moving, fixed
 
 
-def _of_link(capsules: Sequence[PlacedCapsule], link: str) -> list[int]:
-    return [i for i, capsule in enumerate(capsules) if capsule.link == link]
+def _by_link(capsules: Sequence[PlacedCapsule]) -> dict[str, list[int]]:
+    """Return the numbers of every link's capsules."""
+    numbers: dict[str, list[int]] = {}
+    for i, capsule in enumerate(capsules):
+        numbers.setdefault(capsule.link, []).append(i)
+    return numbers
 
 
 def _fixed_contact(
-    capsules: Sequence[PlacedCapsule], fixed: Sequence[tuple[str, str]]
+    capsules: Sequence[PlacedCapsule], hulls: Mapping[str, PlacedHulls], fixed: Sequence[tuple[str, str]]
 ) -> tuple[str, str] | None:
-    """Return the first pair of links, fixed to each other, whose capsules touch, or None."""
+    """Return the first pair of links, fixed to each other, whose bodies touch, or None."""
+    here, of = np.eye(4)[np.newaxis], _by_link(capsules)
     for a, b in fixed:
-        for i in _of_link(capsules, a):
-            for k in _of_link(capsules, b):
-                ends = [np.stack([c.centre - c.half, c.centre + c.half]) for c in (capsules[i], capsules[k])]
-                distance = segment_distance(ends[0][np.newaxis], ends[1][np.newaxis])[0]
-                if distance < capsules[i].radius + capsules[k].radius:
+        for i in of.get(a, ()):
+            for k in of.get(b, ()):
+                ends = capsules[i].ends[np.newaxis], capsules[k].ends[np.newaxis]
+                if segment_distance(*ends)[0] >= capsules[i].radius + capsules[k].radius:
+                    continue
+                trees = hull_trees({link: hulls[link].leaves for link in (a, b) if link in hulls})
+                if len(trees.roots) < 2 or contacts(trees, a, b, here, here)[0, 0] >= 0:
                     return a, b
     return None
 
@@ -194,11 +205,22 @@ class _Rows:
 
 
 def _pack(
-    tree: MovingTree, capsules: Sequence[PlacedCapsule], pairs: Sequence[tuple[str, str]], padding: float
+    coordinates: int,
+    tree: MovingTree,
+    capsules: Sequence[PlacedCapsule],
+    pairs: Sequence[tuple[str, str]],
+    hulls: Mapping[str, PlacedHulls],
+    by_hulls: int,
+    padding: float,
 ) -> tuple[Ints, Floats]:
     """Return integers and floats, radii larger by `padding` [m]."""
     rows = _Rows()
     rows.header[layout.FRAMES] = len(tree.frames)
+    rows.header[layout.COORDINATES] = coordinates
+    bodies = len({capsule.link for capsule in capsules})
+    rows.header[layout.SCRATCH] = layout.FRAME * (len(tree.frames) + 1) + layout.PLACED * (
+        len(capsules) + bodies
+    )
     rows.header[layout.CAPSULES] = len(capsules)
     rows.header[layout.FIXED_CAPSULES] = sum(capsule.frame == 0 for capsule in capsules)
     rows.begin(layout.FRAME_INTS, layout.FRAME_FLOATS)
@@ -216,7 +238,11 @@ def _pack(
     rows.begin(None, layout.SAMPLES)
     for capsule in capsules:
         rows.floats += capsule.cover.places
-    _pack_pairs(rows, tree, capsules, pairs, padding)
+    _pack_pairs(rows, tree, capsules, pairs, hulls, padding)
+    rows.header[layout.HULL_PAIRS] = by_hulls
+    rows.header[layout.PAIRS] += by_hulls
+    rows.begin(None, layout.HULL_MARGINS)
+    rows.floats += [2.0 * padding] * by_hulls
     return np.array([*rows.header, *rows.ints], dtype=np.int64), np.array(rows.floats, dtype=np.float64)
 
 
@@ -225,18 +251,21 @@ def _pack_pairs(
     tree: MovingTree,
     capsules: Sequence[PlacedCapsule],
     pairs: Sequence[tuple[str, str]],
+    hulls: Mapping[str, PlacedHulls],
     padding: float,
 ) -> None:
     """Append bodies, which are links with capsules, pairs of bodies and pairs of capsules."""
-    bodies = list(dict.fromkeys(capsule.link for capsule in capsules))
-    groups = [_of_link(capsules, link) for link in bodies]
+    of = _by_link(capsules)
+    bodies, groups = list(of), list(of.values())
+    number = {link: i for i, link in enumerate(bodies)}
     balls = [_ball([capsules[i] for i in group]) for group in groups]
     frames = [tree.links[link].frame for link in bodies]
     rows.header[layout.BODIES] = len(bodies)
     rows.header[layout.FIXED_BODIES] = frames.count(0)
+    roots = _pack_hulls(rows, hulls)
     rows.begin(layout.BODY_INTS, layout.BODY_FLOATS)
-    for frame, group, (centre, radius) in zip(frames, groups, balls, strict=True):
-        rows.ints += [frame, group[0], group[-1] + 1]
+    for link, frame, group, (centre, radius) in zip(bodies, frames, groups, balls, strict=True):
+        rows.ints += [frame, group[0], group[-1] + 1, roots.get(link, -1)]
         # Boxes are wider by twice the padding: they must not miss what the spheres, wider by one, would find.
         box = _half_extents([capsules[i] for i in group], centre) + 2.0 * padding
         rows.floats += [*centre, radius + padding, *box]
@@ -245,9 +274,10 @@ def _pack_pairs(
     capsule_pairs: list[tuple[int, int]] = []
     for a, b in pairs:
         first = len(capsule_pairs)
-        capsule_pairs += [(i, k) for i in _of_link(capsules, a) for k in _of_link(capsules, b)]
-        rows.ints += [bodies.index(a), bodies.index(b), first, len(capsule_pairs)]
-        rows.floats.append(balls[bodies.index(a)][1] + balls[bodies.index(b)][1] + 2.0 * padding)
+        capsule_pairs += [(i, k) for i in of[a] for k in of[b]]
+        rows.ints += [number[a], number[b], first, len(capsule_pairs)]
+        rows.floats.append(balls[number[a]][1] + balls[number[b]][1] + 2.0 * padding)
+    rows.header[layout.PAIRS] = len(capsule_pairs)
     rows.begin(layout.PAIR_INTS, layout.PAIR_FLOATS)
     for i, k in capsule_pairs:
         rows.ints += [i, k]
@@ -255,6 +285,27 @@ def _pack_pairs(
         radii = capsules[i].radius + capsules[k].radius + 2.0 * padding
         squares = (a_half**2, b_half**2)
         rows.floats += [radii + a_half + b_half, radii, *(1.0 / s if s > 0.0 else 0.0 for s in squares)]
+
+
+def _hulls_of(robot: Robot, tree: MovingTree) -> tuple[dict[str, PlacedHulls], set[str]]:
+    """Return the hulls of all bodies, of none if all are round; and the links of which some are not."""
+    of_link: dict[str, list[Hull]] = {}
+    for piece in (piece for pieces in pieces_of(robot).values() for piece in pieces):
+        of_link.setdefault(piece.hull.link, []).append(piece.hull)
+    sharp = {link for link, hulls in of_link.items() if not all(hull.is_round for hull in hulls)}
+    return {link: place_hulls(hulls, tree) for link, hulls in of_link.items() if sharp}, sharp
+
+
+def _pack_hulls(rows: _Rows, hulls: Mapping[str, PlacedHulls]) -> dict[str, int]:
+    """Append the trees over the hulls of all bodies, and return their roots."""
+    # Points are counted in threes.
+    rows.floats += [0.0] * (-len(rows.floats) % 3)
+    trees = hull_trees({link: placed.leaves for link, placed in hulls.items()}, len(rows.floats) // 3)
+    rows.begin(layout.NODE_INTS, None)
+    rows.header[layout.NODE_FLOATS] = len(rows.floats) + int(trees.ints[layout.NODE_FLOATS])
+    rows.ints += trees.ints[layout.HEADER :].tolist()
+    rows.floats += trees.floats.tolist()
+    return dict(trees.roots)
 
 
 def _ball(capsules: Sequence[PlacedCapsule]) -> tuple[Floats, float]:

@@ -13,7 +13,8 @@ import numpy.typing as npt
 from numba import njit
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.layout import inner
+from evenroad.robot.kernel.hull_contact import bodies_meet
+from evenroad.robot.kernel.layout import inner, quick
 from evenroad.robot.kernel.motion import enter, span
 from evenroad.world.bisection import next_between
 
@@ -36,23 +37,9 @@ def first_contact(
 ) -> tuple[int, int, int]:
     """Return what comes nearer than its margin first: which of the kinds above, a capsule, its counterpart.
 
-    Parameters
-    ----------
-    q : float64 array, shape (coordinates,)
-        The configuration [rad or m].
-    ints, floats : arrays
-        The tables.
-    margins : float64 array, shape (capsules,)
-        For each capsule against obstacles [m].
-    pair_margins : float64 array, shape (capsule pairs,)
-        For each pair of capsules [m].
-    frames, capsules : float64 arrays, shapes (frames + 1, 12) and (capsules, 6)
-        Room for places: rotation and origin of each frame, centre and half segment of each capsule.
-
-    Returns
-    -------
-    kind, capsule, other : int
-        `other` is an obstacle, or for MEETS_ITSELF the pair's number (and then `capsule` is -1).
+    The counterpart is an obstacle, or for MEETS_ITSELF the pair's number (and then the capsule is -1).  There is a
+    margin for each capsule against obstacles, and one for each pair of capsules [m].  The last two, (frames + 1, 12)
+    and (capsules, 6), are room for places: rotation and origin of a frame, centre and half segment of a capsule.
     """
     _place_frames(q, ints, floats, frames)
     _place_capsules(ints, floats, frames, capsules)
@@ -134,7 +121,7 @@ def _meets_obstacle(ints: Ints, floats: Floats, margins: Floats, capsules: Float
     return -1, -1
 
 
-@inner
+@quick
 def squared_distance_to_obstacle(x: float, y: float, z: float, form: int, floats: Floats, data: int) -> float:
     """Return the squared distance of a point from an obstacle, without the rounding of its edges [m^2].
 
@@ -168,7 +155,13 @@ def _meets_itself(ints: Ints, floats: Floats, pair_margins: Floats, frames: Floa
             data = ints[at.PAIR_FLOATS] + at.PAIR_FLOAT_ROW * pair
             reach = floats[data + 1] + pair_margins[pair]
             if _squared_distance_of_pair(pair, ints, floats, capsules) < reach * reach:
-                return pair
+                by_hulls = p - (ints[at.BODY_PAIRS] - ints[at.HULL_PAIRS])
+                if by_hulls < 0:
+                    return pair
+                margin = pair_margins[len(pair_margins) - ints[at.HULL_PAIRS] + by_hulls]
+                if bodies_meet(frames.reshape(-1), 0, 1, margin, p, ints, floats):
+                    return pair
+                break
     return -1
 
 

@@ -10,8 +10,8 @@ import numpy.typing as npt
 from numba import njit
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.layout import inner
-from evenroad.robot.kernel.obstacles import BOX, CYLINDER, SPHERE, ObstacleArrays, is_straight
+from evenroad.robot.kernel.layout import quick
+from evenroad.robot.kernel.obstacles import BOX, CYLINDER, ROTATION, SIZE, SPHERE, TRANSLATION
 from evenroad.robot.kernel.robot_tables import PADDING, RobotTables
 from evenroad.robot.kernel.scalar import squared_distance_to_obstacle
 
@@ -56,28 +56,13 @@ class ArmTables:
     fixed_contact: tuple[int, int] | None
 
 
-def arm_tables(robot: RobotTables, obstacles: ObstacleArrays, tested: Bools) -> ArmTables:
-    """Return a robot's tables with those of obstacles behind them.
+def arm_tables(robot: RobotTables, obstacles: Floats, tested: Bools) -> ArmTables:
+    """Return a robot's tables with those of obstacles, as `obstacle_rows` gives them, behind them.
 
-    Parameters
-    ----------
-    robot : RobotTables
-        Of the robot.
-    obstacles : ObstacleArrays
-        Sound ones, as `obstacle_arrays` makes them.
-    tested : bool ndarray, shape (capsules, n)
-        Which capsules are tested against which obstacles.
+    `tested` says which capsules are tested against which obstacles, (capsules, n).
     """
     ints, floats, lanes, added, kept, capsule, obstacle = _pack(
-        robot.ints,
-        robot.floats,
-        robot.singles,
-        robot.reach,
-        obstacles.kinds,
-        obstacles.sizes,
-        obstacles.rotations,
-        obstacles.translations,
-        tested,
+        robot.ints, robot.floats, robot.singles, robot.reach, obstacles, tested
     )
     kept = kept[: ints[at.OBSTACLES]]
     for array in (ints, floats, lanes, kept):
@@ -87,27 +72,25 @@ def arm_tables(robot: RobotTables, obstacles: ObstacleArrays, tested: Bools) -> 
     return ArmTables(ints, floats, lanes, margin, kept, None if capsule < 0 else (capsule, obstacle))
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, no_cfunc_wrapper=True, error_model="numpy")
 def _pack(
     robot_ints: Ints,
     robot_floats: Floats,
     robot_singles: npt.NDArray[np.float32],
     reach: float,
-    kinds: Ints,
-    sizes: Floats,
-    rotations: Floats,
-    translations: Floats,
+    obstacles: Floats,
     tested: Bools,
 ) -> tuple[Ints, Floats, Ints, float, Ints, int, int]:
     """Return what `ArmTables` holds, and by how much the lanes' obstacles are larger at most [m]."""
     # Rows of all obstacles, of which those that the robot can reach are kept.
-    kept, forms = np.empty(len(kinds), dtype=np.int64), np.empty(len(kinds), dtype=np.int64)
-    rows = np.empty((len(kinds), at.OBSTACLE_FLOAT_ROW))
-    count = 0
-    for k in range(len(kinds)):
-        form = _write_obstacle(rows[count], kinds[k], sizes[k], rotations[k], translations[k], reach)
+    kept, forms = np.empty((2, len(obstacles)), dtype=np.int64)
+    rows = np.empty((len(obstacles), at.OBSTACLE_FLOAT_ROW))
+    # Not a plain 0: numba compiles a function once more for a literal.
+    count, first = 0, np.int64(0)
+    for k in range(len(obstacles)):
+        form = _write_obstacle(rows[count], obstacles[k], reach)
         far = reach + rows[count, 15]
-        if squared_distance_to_obstacle(0.0, 0.0, 0.0, form, rows[count], 0) <= far * far:
+        if squared_distance_to_obstacle(0.0, 0.0, 0.0, form, rows[count], first) <= far * far:
             kept[count], forms[count] = k, form
             count += 1
     blocks = (count + at.LANES - 1) // at.LANES
@@ -153,15 +136,15 @@ def _pack(
     return ints, floats, lanes, added, kept, capsule, obstacle
 
 
-@inner
-def _write_obstacle(
-    row: Floats, kind: int, size: Floats, rotation: Floats, translation: Floats, reach: float
-) -> int:
+@quick
+def _write_obstacle(row: Floats, obstacle: Floats, reach: float) -> int:
     """Write all points within a rounding of a box, or a cylinder, and return the kind that the kernels know.
 
     A box along the axes loses what lies far beyond `reach`, where the robot never comes: a floor of a hundred metres
     would else cost digits, of which single precision has seven.
     """
+    kind, size = int(obstacle[0]), obstacle[SIZE:ROTATION]
+    rotation, translation = obstacle[ROTATION:TRANSLATION], obstacle[TRANSLATION:]
     a, b, c, row[15] = 0.0, 0.0, 0.5 * size[1], 0.0
     if kind == BOX:
         a, b, c = 0.5 * size[0], 0.5 * size[1], 0.5 * size[2]
@@ -169,7 +152,7 @@ def _write_obstacle(
         a = b = size[0]
     else:
         row[15] = size[0]
-    aligned = kind == SPHERE or (kind != CYLINDER and is_straight(rotation))
+    aligned = kind == SPHERE or (kind != CYLINDER and _is_straight(rotation))
     for axis in range(3):
         row[axis] = translation[axis]
         for entry in range(3):
@@ -191,7 +174,17 @@ def _write_obstacle(
     return at.ALIGNED
 
 
-@inner
+@quick
+def _is_straight(rotation: Floats) -> bool:
+    """Return whether a rotation (9,) takes axes to axes, up to the rounding of sines of right angles."""
+    # Loops here and elsewhere in place of array expressions: those take seconds to compile.
+    farthest = 0.0
+    for entry in range(9):
+        farthest = max(farthest, abs(rotation[entry] - np.rint(rotation[entry])))
+    return farthest < 1e-14
+
+
+@quick
 def _write_bounds(floats: Floats, data: int, box: int, kind: int) -> float:
     """Write the box around an obstacle whose row is at `data`, and return its padding in single precision [m]."""
     squared = 0.0
@@ -210,7 +203,7 @@ def _write_bounds(floats: Floats, data: int, box: int, kind: int) -> float:
     return OBSTACLE_PADDING * math.sqrt(squared)
 
 
-@inner
+@quick
 def _fixed_contact(ints: Ints, floats: Floats, kept: Ints, tested: Bools) -> tuple[int, int]:
     """Return a capsule that does not move and an obstacle that a sphere of it touches, or -1, -1."""
     for i in range(ints[at.FIXED_CAPSULES]):

@@ -9,7 +9,8 @@ import numpy.typing as npt
 
 from evenroad.geometry.shapes import Capsule
 from evenroad.robot.joint import Joint
-from evenroad.robot.kernel.obstacles import obstacle_arrays, tested_contacts
+from evenroad.robot.kernel.lane_world import LaneWorld
+from evenroad.robot.kernel.obstacles import obstacle_rows, tested_contacts
 from evenroad.robot.kernel.robot_tables import robot_tables
 from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
 from evenroad.robot.robot import Robot
@@ -27,9 +28,10 @@ def lanes_failure() -> str | None:
     """Return why the lanes are of no use here; None where they compile and give the verdicts that they should."""
     try:
         from evenroad.robot.kernel.batch import configurations_free
-        from evenroad.robot.kernel.lane_check import check_address
 
-        free = configurations_free(small_batch(), check_address(), small_bounds(), small_tables().lanes)
+        # No motion is looked at: how fast joints move capsules is not asked.
+        world = LaneWorld(small_tables().lanes, small_bounds().ravel(), 1.0)
+        free = configurations_free(world, small_batch())
     except Exception as error:
         # Whatever goes wrong in compiling for a machine we have not seen, there is the other way.
         first_line = next(iter(str(error).strip().splitlines()), "")
@@ -78,7 +80,7 @@ def small_tables() -> ArmTables:
         Obstacle.of("pipe", "capsule", (0.05, 0.4), (0.4, -0.4, 0.2), _STRAIGHT),
     )
     tables, scene = robot_tables(robot), Scene("small", obstacles)
-    return arm_tables(tables, obstacle_arrays(scene), tested_contacts(tables.capsules, links, scene))
+    return arm_tables(tables, obstacle_rows(scene), tested_contacts(tables.capsules, links, scene))
 
 
 def _read_only(array: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:

@@ -4,23 +4,25 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
-from evenroad.robot.kernel.layout import quick
+from evenroad.robot.kernel.addresses import doubles_at, matrix_at
+from evenroad.robot.kernel.lane_world import LaneWorld
+from evenroad.robot.kernel.layout import program, quick
 from evenroad.robot.kernel.motion import canonical, distance_and_way, enter
-from evenroad.robot.kernel.motion_checks import COARSE, Checks, checks_of, motion_free, motion_proved
+from evenroad.robot.kernel.motion_checks import (
+    COARSE,
+    Checks,
+    checks_of,
+    motion_free,
+    motion_proved,
+)
+from evenroad.robot.kernel.motion_states import COUNTS, MOTIONS
 
 Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-Flags = npt.NDArray[np.bool_]
 
 TOLERANCE = 1e-3
 BATCHES = 64
 """Limits of the proof of a motion that would make the path shorter [m]."""
-
-LAST_TOLERANCE = 1e-6
-LAST_BATCHES = 1024
-"""Limits for motions of the path as it was given [m]."""
 
 WORTH_WHILE = 3e-3
 CUT_WORTH_WHILE = 1e-3
@@ -30,49 +32,57 @@ MOST_CUTS = 64
 """So many cuts of corners are tried at most."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def shorten_path(
-    path: Floats,
-    given_proved: bool,
-    pairs: Floats,
-    counts: Ints,
-    addresses: tuple[int, int],
-    resolution: float,
-    bounds: Floats,
-    tables: Ints,
-    arms: Floats,
-    pair_arms: Floats,
-) -> tuple[Floats, Flags]:
-    """Return a path that is no longer, and which of its motions are proved free.
+def shorten_path(world: LaneWorld, path: Floats, pairs: Floats) -> tuple[Floats, int]:
+    """Return a path that is no longer, and how many motions were looked at.
 
     Parameters
     ----------
+    world : LaneWorld
+        The robot in its scene.
     path : float64 array, shape (p, dim), p >= 2
         Waypoints, every motion free.
-    given_proved : bool
-        Whether these are proved already.
     pairs : float64 array, shape (n, 2)
         Shares of the path's length, from 0 to 1: between which places a straight motion is tried.
-    counts : int64 array, shape (3,)
-        Added to: motions asked for, configurations and batches tested.
-    addresses, resolution, bounds, tables, arms, pair_arms
-        As ``motion_checks.checks_of`` takes them.
     """
-    checks = checks_of(addresses, resolution, bounds, tables, arms, pair_arms, counts)
-    dim = path.shape[1]
-    room = len(path) + len(pairs) + MOST_CUTS + 4
-    points, proved, places = np.empty((room, dim)), np.empty(room, dtype=np.bool_), np.empty(room)
-    ends, way = np.empty((2, dim)), np.empty(dim)
-    size = len(path)
+    size, dim = path.shape
+    rows = size + len(pairs) + MOST_CUTS + 4
+    room, arguments = world.arguments(COUNTS + 2 * len(pairs) + rows * (dim + 1) + 3 * dim)
+    counts, points = room[:COUNTS].view(np.int64), room[-rows * dim :].reshape(rows, dim)
+    counts[:], points[:size] = 0, path
+    room[COUNTS : COUNTS + pairs.size] = pairs.ravel()
+    left = shorten_points(rows, size, dim, len(pairs), *arguments)
+    return points[:left].copy(), int(counts[MOTIONS])
+
+
+@program
+def shorten_points(
+    rows: int,
+    size: int,
+    dim: int,
+    count: int,
+    motion_check: int,
+    check: int,
+    resolution: float,
+    tables: int,
+    by_joint: int,
+    memory: int,
+    room: int,
+) -> int:
+    """Do the work of `shorten_path` on the last `rows` of the memory, and return how many are left."""
+    checks = checks_of(motion_check, check, resolution, tables, by_joint, memory, room)
+    pairs = matrix_at(room + 8 * COUNTS, (count, 2))
+    own = room + 8 * (COUNTS + 2 * count)
+    ends, way = matrix_at(own, (2, dim)), doubles_at(own + 8 * 2 * dim, (dim,))
+    places = doubles_at(own + 8 * 3 * dim, (rows,))
+    points = matrix_at(own + 8 * (3 * dim + rows), (rows, dim))
     for i in range(size):
-        enter(path[i], bounds, points[i])
-        proved[i] = given_proved
-    size = _pass_by(points, proved, size, checks)
+        enter(points[i], checks.bounds, points[i])
+    size = _pass_by(points, size, checks)
     _measure(points, places, size, way, checks)
-    for row in range(len(pairs)):
+    for row in range(count):
         low = min(pairs[row, 0], pairs[row, 1]) * places[size - 1]
         high = max(pairs[row, 0], pairs[row, 1]) * places[size - 1]
-        size = _joined(points, proved, places, size, low, high, WORTH_WHILE, ends, way, checks)
+        size = _joined(points, places, size, low, high, WORTH_WHILE, ends, way, checks)
     cuts, i, gained = 0, 1, places[size - 1]
     # Corners, one after the other and again while that gains anything: the shorter side, half of it, a quarter.
     while cuts < MOST_CUTS and i < size - 1:
@@ -82,7 +92,6 @@ def shorten_path(
             cuts += 1
             size = _joined(
                 points,
-                proved,
                 places,
                 size,
                 places[i] - reach,
@@ -98,17 +107,13 @@ def shorten_path(
         i += 1
         if i >= size - 1 and places[size - 1] < gained * (1.0 - WORTH_WHILE):
             i, gained = 1, places[size - 1]
-    size = _pass_by(points, proved, size, checks)
-    for i in range(size - 1):
-        if not proved[i]:
-            proved[i] = motion_proved(points[i], points[i + 1], LAST_TOLERANCE, LAST_BATCHES, checks)
-    return points[:size].copy(), proved[: size - 1].copy()
+    size = _pass_by(points, size, checks)
+    return size
 
 
 @quick
 def _joined(
     points: Floats,
-    proved: Flags,
     places: Floats,
     size: int,
     low: float,
@@ -140,7 +145,7 @@ def _joined(
     if gain < worth_while * length or not _is_shortcut(ends[0], ends[1], checks):
         return size
     # What lies between goes, the two ends come in.
-    _splice(points, proved, size, begin, end, ends)
+    _splice(points, size, begin, end, ends)
     size += 2 - (end - begin)
     _measure(points, places, size, way, checks)
     return size
@@ -153,7 +158,7 @@ def _is_shortcut(a: Floats, b: Floats, checks: Checks) -> bool:
 
 
 @quick
-def _pass_by(points: Floats, proved: Flags, size: int, checks: Checks) -> int:
+def _pass_by(points: Floats, size: int, checks: Checks) -> int:
     """Go from each waypoint straight to the farthest one that can be reached; return how many are left."""
     i = 0
     while i < size - 2:
@@ -161,8 +166,7 @@ def _pass_by(points: Floats, proved: Flags, size: int, checks: Checks) -> int:
         while j > i + 1:
             if _is_shortcut(points[i], points[j], checks):
                 for row in range(j, size):
-                    _move(points, proved, row, i + 1 + row - j)
-                proved[i] = True
+                    _move(points, row, i + 1 + row - j)
                 size -= j - i - 1
                 break
             # One after the other where few are left, in larger strides along a path of hundreds.
@@ -196,25 +200,21 @@ def _place_at(
 
 
 @quick
-def _splice(points: Floats, proved: Flags, size: int, begin: int, end: int, ends: Floats) -> None:
+def _splice(points: Floats, size: int, begin: int, end: int, ends: Floats) -> None:
     """Put the motion between `ends` in place of the waypoints from `begin` on, to before `end`."""
     grown = 2 - (end - begin)
-    # From the second end on it is the rest of the motion that this lies on.
-    rest = proved[end - 1]
     if grown > 0:
         for row in range(size - 1, end - 1, -1):
-            _move(points, proved, row, row + grown)
+            _move(points, row, row + grown)
     elif grown < 0:
         for row in range(end, size):
-            _move(points, proved, row, row + grown)
+            _move(points, row, row + grown)
     for k in range(points.shape[1]):
         points[begin, k], points[begin + 1, k] = ends[0, k], ends[1, k]
-    proved[begin], proved[begin + 1] = True, rest
 
 
 @quick
-def _move(points: Floats, proved: Flags, row: int, to: int) -> None:
-    """Copy a waypoint, and whether the motion that begins there is proved."""
+def _move(points: Floats, row: int, to: int) -> None:
+    """Copy a waypoint."""
     for k in range(points.shape[1]):
         points[to, k] = points[row, k]
-    proved[to] = proved[row]

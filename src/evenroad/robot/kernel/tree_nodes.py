@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from evenroad.robot.kernel.addresses import integers_at, matrices_at, number_tables_at, singles_at
 from evenroad.robot.kernel.lanes import ZERO, absolute, load, smaller, smallest_lane, spread, store
 from evenroad.robot.kernel.layout import LANES, quick
 
@@ -43,6 +44,23 @@ class Trees(NamedTuple):
     periods: Singles
 
 
+@quick
+def trees_at(nodes: int, capacity: int, sizes: int, periods: int, bounds: Floats) -> Trees:
+    """Return trees whose nodes, links and columns follow each other in memory; the periods are written."""
+    dim = bounds.shape[1]
+    links = nodes + 8 * 2 * capacity * dim
+    trees = Trees(
+        matrices_at(nodes, (2, capacity, dim)),
+        singles_at(links + 8 * 8 * capacity, (2 * dim * capacity,)),
+        number_tables_at(links, (4, 2, capacity)),
+        integers_at(sizes, (2,)),
+        singles_at(periods, (dim,)),
+    )
+    for k in range(dim):
+        trees.periods[k] = min(bounds[2, k], 1e30)
+    return trees
+
+
 PARENT, TRIED, PROVED, MOVED = range(4)
 """Rows of ``Trees.links``."""
 
@@ -57,20 +75,15 @@ def add_node(trees: Trees, tree: int, q: Floats, parent: int) -> int:
     trees.links[PARENT, tree, number] = parent
     trees.links[TRIED, tree, number] = 0
     trees.links[PROVED, tree, number] = 0
-    _write_column(trees, tree, number)
-    trees.sizes[tree] = number + 1
-    return number
-
-
-@quick
-def _write_column(trees: Trees, tree: int, number: int) -> None:
-    _, capacity, dim = trees.nodes.shape
+    capacity = trees.nodes.shape[1]
     for k in range(dim):
         place = (tree * dim + k) * capacity + number
         if number % LANES == 0:
             for lane in range(1, LANES):
                 trees.columns[place + lane] = _FAR
-        trees.columns[place] = trees.nodes[tree, number, k]
+        trees.columns[place] = q[k]
+    trees.sizes[tree] = number + 1
+    return number
 
 
 @quick
@@ -118,19 +131,14 @@ def remove_branch(trees: Trees, tree: int, number: int) -> None:
     """Remove a node and all that descend from it; the others move up and keep their order."""
     size = trees.sizes[tree]
     moved = trees.links[MOVED, tree]
-    kept = 0
+    trees.sizes[tree] = 0
     for i in range(size):
-        parent = trees.links[PARENT, tree, i]
+        parent, tried = trees.links[PARENT, tree, i], trees.links[TRIED, tree, i]
+        proved = trees.links[PROVED, tree, i]
         # Parents come before their children.
         if i == number or (parent >= 0 and moved[parent] < 0):
             moved[i] = -1
             continue
+        kept = add_node(trees, tree, trees.nodes[tree, i], moved[parent] if parent >= 0 else -1)
+        trees.links[TRIED, tree, kept], trees.links[PROVED, tree, kept] = tried, proved
         moved[i] = kept
-        for k in range(trees.nodes.shape[2]):
-            trees.nodes[tree, kept, k] = trees.nodes[tree, i, k]
-        trees.links[PARENT, tree, kept] = moved[parent] if parent >= 0 else -1
-        trees.links[TRIED, tree, kept] = trees.links[TRIED, tree, i]
-        trees.links[PROVED, tree, kept] = trees.links[PROVED, tree, i]
-        _write_column(trees, tree, kept)
-        kept += 1
-    trees.sizes[tree] = kept

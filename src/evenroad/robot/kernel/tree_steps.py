@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.robot.kernel.layout import LANES, inner, quick
+from evenroad.robot.kernel.addresses import integers_at, matrix_at, singles_at
+from evenroad.robot.kernel.layout import LANES, quick
 from evenroad.robot.kernel.motion import canonical, distance_and_way
 from evenroad.robot.kernel.motion_checks import Checks, blocked
 from evenroad.robot.kernel.motion_states import CONFIGURATIONS, COUNTS, MOTIONS
@@ -45,18 +46,18 @@ class Memory(NamedTuple):
         No step of a tree is longer.
     radii : float64 array, shape (dim,)
         Of the ball of steps, along each coordinate.
-    origins : int64 array, shape (8,)
-        The nodes that candidates begin at.
     targets : float64 array, shape (8, dim)
-        Where they lead.
+        Where candidates lead.
+    origins : int64 array, shape (8,)
+        The nodes that they begin at.
     here, there, way, target : float64 arrays, shape (dim,)
     lanes : float32 array, shape (16 + dim,)
     """
 
     step: float
     radii: Floats
-    origins: Ints
     targets: Floats
+    origins: Ints
     here: Floats
     there: Floats
     way: Floats
@@ -64,28 +65,34 @@ class Memory(NamedTuple):
     lanes: Singles
 
 
-@inner
-def memory_of(bounds: Floats) -> Memory:
+def memory_for(dim: int) -> int:
+    """Return how many doubles `memory_of` takes, periods of the trees included."""
+    return (STEPS_AT_ONCE + 7) * dim + STEPS_AT_ONCE + LANES
+
+
+@quick
+def memory_of(room: int, bounds: Floats) -> Memory:
     """Return room, and steps as long as the ranges of the joints, (3, dim), ask for."""
     dim = bounds.shape[1]
     squares = 0.0
     for k in range(dim):
         squares += (bounds[1, k] - bounds[0, k]) ** 2 / dim
     step = min(LONGEST_STEP, STEP_SHARE * np.sqrt(squares))
-    radii = np.empty(dim)
+    rows = matrix_at(room, (STEPS_AT_ONCE + 5, dim))
+    end = room + 8 * (STEPS_AT_ONCE + 5) * dim
+    radii = rows[4]
     for k in range(dim):
         radii[k] = min(LARGEST_BALL, BALL_SHARE * step, 0.5 * (bounds[1, k] - bounds[0, k]))
-    room = np.empty((STEPS_AT_ONCE + 4, dim))
     return Memory(
         step,
         radii,
-        np.empty(STEPS_AT_ONCE, dtype=np.int64),
-        room[4:],
-        room[0],
-        room[1],
-        room[2],
-        room[3],
-        np.empty(LANES + dim, dtype=np.float32),
+        matrix_at(room + 8 * 5 * dim, (STEPS_AT_ONCE, dim)),
+        integers_at(end, (STEPS_AT_ONCE,)),
+        rows[0],
+        rows[1],
+        rows[2],
+        rows[3],
+        singles_at(end + 8 * STEPS_AT_ONCE, (LANES + dim,)),
     )
 
 

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
-from evenroad.robot.kernel.layout import LANES, quick
+from evenroad.robot.kernel.addresses import integers_at, matrix_at
+from evenroad.robot.kernel.layout import LANES, program, quick
 from evenroad.robot.kernel.motion import canonical, distance_and_way, enter
 from evenroad.robot.kernel.motion_checks import (
     BOTH_ENDS,
@@ -23,7 +23,7 @@ from evenroad.robot.kernel.motion_checks import (
     motion_free,
     motion_proved,
 )
-from evenroad.robot.kernel.motion_states import BATCHES, CONFIGURATIONS, COUNTS, MOTIONS
+from evenroad.robot.kernel.motion_states import BATCHES, CONFIGURATIONS, MOTIONS
 from evenroad.robot.kernel.tree_nodes import (
     PARENT,
     PROVED,
@@ -31,12 +31,14 @@ from evenroad.robot.kernel.tree_nodes import (
     add_node,
     nearest,
     remove_branch,
+    trees_at,
 )
 from evenroad.robot.kernel.tree_steps import (
     BEGUN,
     GOAL_NODE,
     GROWING,
     START_NODE,
+    STATE,
     STEPS_AT_ONCE,
     STRAIGHT,
     Memory,
@@ -66,68 +68,78 @@ PROOF_BATCHES = 1024
 """Limits of the proof of a motion of the trees [m]."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+def room_for(count: int, capacity: int, dim: int) -> int:
+    """Return how many doubles the trees take, see `grow`."""
+    return STATE + 2 + count * dim + (3 * dim + 8) * capacity
+
+
+@program
 def grow(
-    ends: Floats,
-    nodes: Floats,
-    columns: Singles,
-    links: Ints,
-    sizes: Ints,
-    state: Ints,
-    sequence: Floats,
-    ball: Floats,
+    kept: int,
+    count: int,
+    capacity: int,
+    samples: int,
+    samples_count: int,
+    steps: int,
+    steps_count: int,
     most_motions: int,
     slice_batches: int,
-    addresses: tuple[int, int],
+    motion_check: int,
+    check: int,
     resolution: float,
-    bounds: Floats,
-    tables: Ints,
-    arms: Floats,
-    pair_arms: Floats,
+    tables: int,
+    by_joint: int,
+    memory: int,
+    room: int,
 ) -> int:
     """Grow two trees until they meet and return how the call ended; called again with the same, it goes on.
 
+    Arrays are given by their addresses.
+
     Parameters
     ----------
-    ends : float64 array, shape (1 + g, dim)
-        The start, and the goals, which become the roots of the second tree; the first are tried straight on.
-    nodes, columns, links, sizes : arrays
-        The fields of ``Trees``; sizes are 0 at first.  Room for 2 g + ROOM nodes at least.
-    state : int64 array, shape (STATE,)
-        Zeros at first; counts, and what is kept from call to call.
-    sequence : float64 array, shape (n, dim)
-        Points of the unit cube.  After the last one it goes on from the first, each time shifted a little further.
-    ball : float64 array, shape (m, dim)
-        Points of the unit ball, used in turn.
-    most_motions : int
+    kept, count, capacity
+        `room_for` doubles, one after the other: counts and what else is kept from call to call, sizes of the trees,
+        integers that are zeros at first; start and goals, (count, dim), of which the goals become the roots of the
+        second tree, and the first are tried straight on; nodes, links and columns of ``Trees``, with room for
+        2 count + ROOM nodes at least.
+    samples, samples_count
+        Float64 array, (n, dim): points of the unit cube.  After the last one it goes on from the first, each time
+        shifted a little further.
+    steps, steps_count
+        Float64 array, (m, dim): points of the unit ball, used in turn.
+    most_motions
         After so many motions the budget is spent.
-    slice_batches : int
+    slice_batches
         After about so many batches of sixteen checks the call returns, for the caller to look at the clock.
-    addresses, resolution, bounds, tables, arms, pair_arms
-        As ``motion_checks.checks_of`` takes them.
+    motion_check, check, resolution, tables, by_joint, memory, room
+        As ``LaneWorld.arguments`` gives them, with room for ``memory_of``.
     """
-    trees = Trees(nodes, columns, links, sizes, np.empty(bounds.shape[1], dtype=np.float32))
-    for k in range(bounds.shape[1]):
-        trees.periods[k] = min(bounds[2, k], 1e30)
-    checks = checks_of(addresses, resolution, bounds, tables, arms, pair_arms, state[:COUNTS])
-    memory = memory_of(bounds)
+    checks = checks_of(motion_check, check, resolution, tables, by_joint, memory, kept)
+    bounds = checks.bounds
+    dim = bounds.shape[1]
+    state, ends = integers_at(kept, (STATE,)), matrix_at(kept + 8 * (STATE + 2), (count, dim))
+    sequence, ball = matrix_at(samples, (samples_count, dim)), matrix_at(steps, (steps_count, dim))
+    trees = trees_at(kept + 8 * (STATE + 2 + count * dim), capacity, kept + 8 * STATE, room, bounds)
+    sizes = trees.sizes
+    own = memory_of(room + 8 * dim, bounds)
     if state[BEGUN] == 0:
-        _begin(ends, trees, memory, checks)
+        _begin(ends, trees, own, checks)
         state[BEGUN] = 1
     if sizes[0] == 0 or sizes[1] == 0:
         return NOT_FREE
     pause = state[BATCHES] + slice_batches
     goals = 0
-    while goals < sizes[1] and links[PARENT, 1, goals] < 0:
+    while goals < sizes[1] and trees.links[PARENT, 1, goals] < 0:
         goals += 1
     while True:
         if state[MOTIONS] >= most_motions:
             return SPENT
         if state[BATCHES] >= pause:
             return PAUSED
-        if max(sizes[0], sizes[1]) + ROOM > nodes.shape[1]:
+        if max(sizes[0], sizes[1]) + ROOM > capacity:
             return FULL
-        count = 0
+        many = 0
         if state[STRAIGHT] < min(goals, MOST_STRAIGHT):
             tree, found, other = 0, 0, state[STRAIGHT]
             state[STRAIGHT] += 1
@@ -136,16 +148,16 @@ def grow(
             if sizes[tree] > sizes[1 - tree]:
                 tree = 1 - tree
             state[GROWING] = tree
-            count = candidates(trees, tree, state, sequence, ball, memory, checks)
+            many = candidates(trees, tree, state, sequence, ball, own, checks)
             found, other = -1, -1
         # A goal straight on is a round of its own, without a candidate.
-        for candidate in range(-1 if found >= 0 else 0, count):
+        for candidate in range(-1 if found >= 0 else 0, many):
             if candidate >= 0:
-                found = _extended(trees, tree, memory.origins[candidate], memory.targets[candidate], checks)
+                found = _extended(trees, tree, own.origins[candidate], own.targets[candidate], checks)
                 if found < 0:
                     continue
-                other = nearest(trees, 1 - tree, trees.nodes[tree, found], memory.lanes)
-            met = _reach(trees, tree, found, other, memory, checks)
+                other = nearest(trees, 1 - tree, trees.nodes[tree, found], own.lanes)
+            met = _reach(trees, tree, found, other, own, checks)
             if met >= 0:
                 state[START_NODE + tree], state[GOAL_NODE - tree] = met, other
                 if _is_proved(trees, state, checks):
@@ -175,7 +187,7 @@ def _begin(ends: Floats, trees: Trees, memory: Memory, checks: Checks) -> None:
                 row = first + lane
                 for k in range(dim):
                     memory.here[k] = checks.states[k * LANES + lane]
-                root = add_node(trees, min(row, 1), memory.here, -1)
+                root = add_node(trees, min(row, 1), memory.here, np.int64(-1))
                 # Nothing leads to a root that could be proved: here is which of the ends it is.
                 trees.links[PROVED, min(row, 1), root] = row
         if trees.sizes[0] == 0:

@@ -11,10 +11,10 @@ from evenroad._arrays import Bools, Floats
 from evenroad.errors import InvalidValue
 from evenroad.geometry.shapes import Shape, along_z
 from evenroad.robot.known_robots import joint_space
-from evenroad.robot.load import find_robot
+from evenroad.robot.load import find_robot, read_robot
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
-from evenroad.robot.urdf import read_urdf
+from evenroad.robot.urdf_xml import RobotFile
 from evenroad.space import JointSpace
 from evenroad.world.function import FunctionWorld, TestedAtStates
 
@@ -23,25 +23,9 @@ from evenroad.world.function import FunctionWorld, TestedAtStates
 class EngineWorld(TestedAtStates, ABC):
     """A robot's shapes among a scene's, checked state by state; subclasses say by whom.
 
-    Parameters
-    ----------
-    robot : Robot
-        Tree of joints, group and pairs of links; its capsules count only where `shapes` is not given.
-    scene : Scene
-        Obstacles and allowed contacts.
-    shapes : sequence of Shape, optional
-        Shapes of the links, each in its link's frame, as of :func:`original_shapes`.  By default the robot's capsules.
-    resolution : float
-        As for :class:`evenroad.robot.arm_world.ArmWorld`.
-
-    Raises
-    ------
-    NotAvailable
-        If the engine, or what reads a mesh, is not installed.
-    BrokenFile
-        If a mesh is missing, broken or empty.
-    InvalidValue
-        If a link would have no shape, or a shape is of a link that is not there.
+    `shapes` are those of the links, each in its link's frame, as of :func:`original_shapes`; by default the robot's
+    capsules.  Raises NotAvailable if the engine is not installed, BrokenFile if a mesh is missing or broken,
+    InvalidValue if a link would have no shape, or a shape is of a link that is not there.
     """
 
     robot: Robot
@@ -68,13 +52,14 @@ class EngineWorld(TestedAtStates, ABC):
         """Return which configurations within the limits, (n, dim), touch nothing: (n,)."""
 
 
-def original_shapes(source: str | os.PathLike[str], robot: Robot) -> tuple[Shape, ...]:
-    """Return the collision shapes that the URDF `source`, or a shipped robot, gives, before capsules were fitted.
+def original_shapes(source: str | os.PathLike[str] | RobotFile, robot: Robot) -> tuple[Shape, ...]:
+    """Return the collision shapes that a robot's file, or a shipped robot, gives, before capsules were fitted.
 
     Links of `robot` that have no shape there, because their capsules were given, keep those.  Raises as
     :func:`evenroad.robot.load_model`.
     """
-    shapes = read_urdf(find_robot(source)[0]).shapes
+    file = source if isinstance(source, RobotFile) else RobotFile(find_robot(source)[0])
+    shapes = read_robot(file).shapes
     there = {shape.link for shape in shapes}
     return shapes + tuple(shape for shape in capsule_shapes(robot) if shape.link not in there)
 

@@ -12,11 +12,12 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._rng import generator
 from evenroad.errors import NotAvailable
-from evenroad.robot.pairs import TOUCHING
+from evenroad.robot.pairs import HELD_TOUCHING, TOUCHING
 from evenroad.robot.reference.coal_world import CoalWorld
 from evenroad.robot.reference.engine_world import original_shapes
 from evenroad.robot.robot import Robot, RobotModel
 from evenroad.robot.scene import Scene
+from evenroad.robot.urdf_xml import RobotFile
 from evenroad.space.path import resample
 
 Verdict = Literal["free", "in collision", "not checked"]
@@ -60,11 +61,11 @@ def has_meshes(model: RobotModel) -> bool:
 
 def unseen_pairs(model: RobotModel) -> tuple[tuple[str, str], ...]:
     """Return the pairs of links that are no neighbours and that no planner tests: their capsules touch all the time."""
-    return tuple((first, second) for first, second, why in model.dropped if why == TOUCHING)
+    return tuple((first, second) for first, second, why in model.dropped if why in (TOUCHING, HELD_TOUCHING))
 
 
 def recheck(
-    source: str | os.PathLike[str],
+    source: str | os.PathLike[str] | RobotFile,
     robot: Robot,
     scene: Scene,
     path: Floats,
@@ -79,8 +80,8 @@ def recheck(
 
     Parameters
     ----------
-    source : str or path-like
-        The URDF that `robot` was loaded from.
+    source : str, path-like or RobotFile
+        The file that `robot` was loaded from.
     robot, scene : Robot, Scene
         What was planned with.
     path : ndarray, shape (p, dim)
@@ -103,7 +104,8 @@ def recheck(
     except NotAvailable:
         of_these = f": {_named(unseen)} are never tested without it" if unseen else ""
         return MeshCheck("not checked", message=f"needs evenroad[mesh]{of_these}")
-    always = _always_touching(world, unseen)
+    # Of pairs that nobody gave, those may touch all the time that the group does not move.
+    always = _always_touching(world, unseen if robot.pairs_given else every.pairs)
     if always:
         kept = tuple(pair for pair in every.pairs if pair not in always)
         world = CoalWorld(replace(robot, pairs=kept), scene, shapes, resolution)

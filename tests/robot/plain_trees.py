@@ -1,7 +1,4 @@
-"""The trees of ``evenroad.robot.trees`` without lanes: the same steps in Python, for machines where those do not work.
-
-Slow, and short enough to be read beside the compiled ones.
-"""
+"""An oracle: the trees of ``evenroad.robot.trees``, the same steps one after the other in Python."""
 
 from __future__ import annotations
 
@@ -9,15 +6,12 @@ import math
 import time
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.robot.kernel.robot_tables import RobotTables
-from evenroad.robot.kernel.scene_tables import ArmTables
-from evenroad.robot.tree_sequences import ball_points, share_pairs
-from evenroad.space import JointSpace
+from evenroad.robot.arm_world import ArmWorld
+from evenroad.robot.tree_sequences import ball_points
 from evenroad.world.protocol import Connection
 
 Floats = npt.NDArray[np.float64]
@@ -25,63 +19,10 @@ Floats = npt.NDArray[np.float64]
 EXTENSIONS, STEPS_AT_ONCE = 3, 8
 LONGEST_STEP, STEP_SHARE = 1.5, 1.0 / 5.8
 LARGEST_BALL, BALL_SHARE = 2.0, 1.5
-"""As in ``evenroad.robot.kernel.trees``, which is not imported: its vector type may not be there."""
+"""As in ``evenroad.robot.kernel.tree_steps``."""
 
 TOLERANCE = 1e-6
 """Of proofs [m]."""
-
-_SHORTCUT_TOLERANCE = 1e-4
-"""Of proofs of shortcuts, which may well be left out [m]."""
-
-WORTH_WHILE = 3e-3
-"""Motions that shorten a path by less than this share are not looked at."""
-
-
-class PlansWithTrees(Protocol):
-    """What trees need of an arm's world; see ``ArmWorld``, which has these attributes."""
-
-    @property
-    def space(self) -> JointSpace:
-        """Where configurations live."""
-        ...
-
-    @property
-    def robot_tables(self) -> RobotTables:
-        """What compiled code reads of the robot."""
-        ...
-
-    @property
-    def tables(self) -> ArmTables:
-        """What compiled code reads of robot and scene."""
-        ...
-
-    @property
-    def bounds(self) -> Floats:
-        """Low, high and period of each joint, (3, dim)."""
-        ...
-
-    @property
-    def resolution(self) -> float:
-        """Largest distance between tested states of a motion."""
-        ...
-
-    @property
-    def backend(self) -> str:
-        """``lanes`` or ``scalar``."""
-        ...
-
-    @property
-    def fixed_contact(self) -> tuple[str, str] | None:
-        """Two bodies that touch whatever the joints do, or None."""
-        ...
-
-    def valid(self, q: Floats) -> npt.NDArray[np.bool_]:
-        """Return which configurations, (n, dim), are free: (n,)."""
-        ...
-
-    def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> npt.NDArray[np.bool_]:
-        """Return which motions, two (m, dim) arrays, are proved free: (m,)."""
-        ...
 
 
 @dataclass(eq=False)
@@ -113,7 +54,7 @@ class _Spent(Exception):
 class _Growth:
     """Two trees and what their motions cost."""
 
-    def __init__(self, world: PlansWithTrees, trees: tuple[_Tree, _Tree], most: int, seconds: float) -> None:
+    def __init__(self, world: ArmWorld, trees: tuple[_Tree, _Tree], most: int, seconds: float) -> None:
         self.world, self.trees, self.most = world, trees, most
         # Compiled, or loaded, before the clock runs.
         nothing = np.empty((0, world.space.dim))
@@ -180,7 +121,7 @@ class _Growth:
         return np.where(space.flat.wrapping, self.between(q, q, 0.0), np.clip(q, space.low, space.high))
 
 
-def grown(world: PlansWithTrees, ends: Floats, samples: Floats, most: int, seconds: float) -> Connection:
+def grown(world: ArmWorld, ends: Floats, samples: Floats, most: int, seconds: float) -> Connection:
     """Join a start, the first of `ends`, to one of the goals, the others; see :func:`evenroad.robot.trees.connect`."""
     space, dim = world.space, world.space.dim
     roots, free = space.interpolate(ends, ends, 0.0), world.valid(ends)
@@ -234,39 +175,3 @@ def _path(growth: _Growth, first: int, second: int) -> tuple[Floats, int]:
     before, behind = growth.trees[0].to_root(first)[::-1], growth.trees[1].to_root(second)
     nodes = [growth.trees[0].nodes[i] for i in before] + [growth.trees[1].nodes[i] for i in behind]
     return np.array(nodes), behind[-1]
-
-
-def shortened(world: PlansWithTrees, path: Floats) -> tuple[Floats, int]:
-    """Return a path that is not longer, and how many motions were looked at; see ``trees.shorten``."""
-    space = world.space
-    path = space.interpolate(path, path, 0.0)
-    motions = 0
-
-    def is_shortcut(a: Floats, b: Floats) -> bool:
-        nonlocal motions
-        motions += 1
-        return bool(world.motion_certified(a[np.newaxis], b[np.newaxis], _SHORTCUT_TOLERANCE)[0])
-
-    i = 0
-    while i < len(path) - 2:
-        for j in range(len(path) - 1, i + 1, -1):
-            if is_shortcut(path[i], path[j]):
-                path = np.concatenate([path[: i + 1], path[j:]])
-                break
-        i += 1
-    for low, high in np.sort(share_pairs(), axis=1):
-        places = np.concatenate([[0.0], np.cumsum(space.distance(path[:-1], path[1:]))])
-        shares = np.array([low, high]) * places[-1]
-        first, last = np.clip(np.searchsorted(places, shares, side="right") - 1, 0, len(path) - 2)
-        if first >= last:
-            continue
-        lengths = np.maximum(np.diff(places)[[first, last]], 1e-300)
-        ends = space.interpolate(
-            path[[first, last]],
-            path[[first + 1, last + 1]],
-            np.minimum((shares - places[[first, last]]) / lengths, 1),
-        )
-        gain = shares[1] - shares[0] - space.distance(ends[:1], ends[1:])[0]
-        if gain >= WORTH_WHILE * places[-1] and is_shortcut(*ends):
-            path = np.concatenate([path[: first + 1], ends, path[last + 1 :]])
-    return path, motions

@@ -1,0 +1,168 @@
+"""Convex hulls that contain a shape, and how to split them where they contain too much."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from evenroad._arrays import Floats
+from evenroad.errors import InvalidValue
+from evenroad.geometry.fit import best_cut, divided
+from evenroad.geometry.fit_points import extreme
+from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
+
+SIDES = 32
+"""Of the prism that stands for a cylinder: it reaches half a per cent of the radius beyond."""
+_FEW = 64
+"""A hull of more corners is thinned."""
+_THINNED, _SHARE = 3e-4, 5e-3
+"""Thinned away is what sticks out of a hull by no more [m], or by no more in parts of its extent."""
+_SIDES_TRIED = 8
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Hull:
+    """All points within `radius` of the convex hull of `points`, (n, 3), in the frame of a link [m]; equal by value."""
+
+    points: Floats
+    radius: float
+    link: str
+
+    def __post_init__(self) -> None:
+        points = np.array(self.points, dtype=np.float64).reshape(-1, 3)
+        points.setflags(write=False)
+        object.__setattr__(self, "points", points)
+
+    @cached_property
+    def _hash(self) -> int:
+        return hash((self.points.tobytes(), self.radius, self.link))
+
+    def __hash__(self) -> int:
+        return self._hash
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Hull):
+            return NotImplemented
+        same = self.link == other.link and self.radius == other.radius
+        return self is other or (same and np.array_equal(self.points, other.points))
+
+    @property
+    def is_round(self) -> bool:
+        """Whether it is a ball or a capsule."""
+        return len(self.points) <= 2
+
+
+def hull_around(points: Floats, radius: float, link: str) -> Hull:
+    """Return the hull of points, (n, 3), widened by `radius`, and by what rounding may lose."""
+    return Hull(points, radius + _ROUNDING * (1.0 + float(np.abs(points).max())), link)
+
+
+def _thinned(corners: Floats) -> tuple[Floats, float]:
+    """Return some of a hull's corners, (n, 3), and a length that no other is farther away from their hull [m]."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    little = max(_THINNED, _SHARE * float(np.ptp(corners, axis=0).max()))
+    kept = np.unique((corners @ _directions(_FEW // 2).T).argmax(axis=0))
+    while True:
+        few = corners[kept]
+        try:
+            hull = ConvexHull(few)
+        except QhullError:
+            return corners, 0.0
+        beyond = corners @ hull.equations[:, :3].T + hull.equations[:, 3]
+        most = beyond.max(axis=0)
+        if most.max() <= little:
+            break
+        kept = np.union1d(kept, beyond[:, most > max(0.7 * most.max(), little)].argmax(axis=0))
+    out = beyond.max(axis=1) > _ROUNDING
+    # The nearest side is one of those that a point is farthest beyond; any of them bounds its distance.
+    sides = few[hull.simplices[np.argsort(-beyond[out], axis=1)[:, :_SIDES_TRIED]]]
+    nearest = [_distances(corners[out], sides[:, k]) for k in range(sides.shape[1])]
+    return few, float(np.min(nearest, axis=0).max(initial=_ROUNDING))
+
+
+def _directions(count: int) -> Floats:
+    """Return unit vectors spread over the sphere, (count, 3): a spiral by the golden angle."""
+    z = 1.0 - (2.0 * np.arange(count) + 1.0) / count
+    turn = np.pi * (3.0 - np.sqrt(5.0)) * np.arange(count)
+    around = np.sqrt(1.0 - z**2)
+    return np.stack([around * np.cos(turn), around * np.sin(turn), z], axis=1)
+
+
+def _distances(points: Floats, sides: Floats) -> Floats:
+    """Return the distances of points, (n, 3), from triangles, (n, 3, 3)."""
+    normal = np.cross(sides[:, 1] - sides[:, 0], sides[:, 2] - sides[:, 0])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+    least, inside = np.full(len(points), np.inf), np.ones(len(points), dtype=np.bool_)
+    for i in range(3):
+        along, from_corner = sides[:, (i + 1) % 3] - sides[:, i], points - sides[:, i]
+        share = np.einsum("ni,ni->n", from_corner, along) / np.einsum("ni,ni->n", along, along)
+        apart = from_corner - np.clip(share, 0.0, 1.0)[:, np.newaxis] * along
+        least = np.minimum(least, np.linalg.norm(apart, axis=1))
+        inside &= np.einsum("ni,ni->n", np.cross(along, from_corner), normal) > 0.0
+    return np.where(inside, np.abs(np.einsum("ni,ni->n", points - sides[:, 0], normal)), least)
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """A hull, and what it is around: convex `parts`, (k, corners, 3) [m], widened by `radius`.
+
+    Parts are the triangles of a mesh, or the one part that another shape is.  A cylinder's is a prism inside of it, its
+    hull one around it.
+    """
+
+    hull: Hull
+    parts: Floats
+    radius: float = 0.0
+
+
+def piece_of(shape: Shape) -> Piece:
+    """Return a shape's hull and what it is around; raises as :func:`evenroad.geometry.fit_capsules`."""
+    radius, outward = 0.0, 1.0
+    if isinstance(shape, Sphere):
+        points, radius = np.zeros((1, 3)), shape.radius
+    elif isinstance(shape, Capsule):
+        points, radius = np.unique([shape.a, shape.b], axis=0), shape.radius
+    elif isinstance(shape, Box):
+        points = 0.5 * np.array(shape.size) * np.array(list(itertools.product((-1, 1), repeat=3)))
+    elif isinstance(shape, Cylinder):
+        turn, outward = np.arange(SIDES) * 2.0 * np.pi / SIDES, 1.0 / np.cos(np.pi / SIDES)
+        ring = shape.radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+        points = np.concatenate(
+            [np.c_[ring, np.full(SIDES, end)] for end in (-0.5, 0.5) * np.array(shape.length)]
+        )
+    elif isinstance(shape, Mesh):
+        mesh = shape.triangles
+        return _piece_around(shape.pose.apply(mesh.vertices)[mesh.triangles], shape.link)
+    else:
+        raise InvalidValue(f"no hull is made around a {shape}")
+    hull = hull_around(shape.pose.apply(points * (outward, outward, 1.0)), radius, shape.link)
+    return Piece(hull, shape.pose.apply(points)[np.newaxis], radius)
+
+
+def halves(piece: Piece) -> tuple[Piece, ...]:
+    """Return two pieces of a mesh in place of one; the piece itself where it cannot be split."""
+    corners = divided(piece.parts) if piece.parts.shape[1] == 3 else piece.parts[:0]
+    below = best_cut(corners, _box_volume) if len(corners) > 1 else None
+    if below is None:
+        return (piece,)
+    return tuple(_piece_around(corners[side], piece.hull.link) for side in (below, ~below))
+
+
+def _piece_around(corners: Floats, link: str) -> Piece:
+    points, beyond = extreme(corners.reshape(-1, 3)), 0.0
+    if len(points) > _FEW:
+        points, beyond = _thinned(points)
+    return Piece(hull_around(points, beyond, link), corners)
+
+
+def _box_volume(corners: Floats) -> float:
+    """Return the volume of a box around triangles, along the coordinate axes or the triangles' own [m^3]."""
+    points = corners.reshape(-1, 3)
+    _, _, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
+    # Flat ones count, too: by what is around them.
+    return min(float(np.prod(np.ptp(points @ turned.T, axis=0) + 1e-4)) for turned in (np.eye(3), axes))

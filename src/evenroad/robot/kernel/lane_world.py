@@ -1,0 +1,78 @@
+"""LaneWorld: a robot in a scene as compiled programs take it, by addresses."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel.addresses import address
+from evenroad.robot.kernel.layout import DESK, LANES, MOST_WAITING
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class LaneWorld:
+    """A robot in a scene as compiled programs take it.
+
+    Attributes
+    ----------
+    tables : int64 array
+        ``ArmTables.lanes``.
+    by_joint : float64 array
+        In one piece: low, high and period of each joint, (3, dim); how fast each moves each capsule, (dim, capsules),
+        and the two of a pair against each other, (dim, capsule pairs), at most [m/rad].
+    resolution : float
+        Largest distance between neighbouring states of a motion.
+    """
+
+    tables: npt.NDArray[np.int64]
+    by_joint: Floats
+    resolution: float
+
+    def arguments(self, more: int) -> tuple[Floats, tuple[int, int, float, int, int, int, int]]:
+        """Return `more` doubles of memory, and what a program ends with: what ``checks_of`` takes, and their address.
+
+        The memory is this thread's, for the next call of a program only.
+        """
+        tables, by_joint, doubles = self._places
+        array, begin = _memory.array, _memory.address
+        if len(array) < doubles + more:
+            array = _memory.array = np.empty(doubles + more)
+            begin = _memory.address = address(array)
+        given = *check_addresses(), self.resolution, tables, by_joint, begin, begin + 8 * doubles
+        return array[doubles : doubles + more], given
+
+    @cached_property
+    def _places(self) -> tuple[int, int, int]:
+        """Addresses of the two arrays, and how much memory a program's checks need."""
+        header = self.tables[: at.HEADER].tolist()
+        dim, things = header[at.COORDINATES], header[at.CAPSULES] + header[at.PAIRS]
+        places = (LANES + 3) * dim + LANES + things + 2 * MOST_WAITING
+        doubles = DESK + LANES + places + header[at.SCRATCH] // 2 + len(self.tables)
+        return address(self.tables), address(self.by_joint), doubles
+
+
+class _Memory(threading.local):
+    """What a thread's programs work in: taken anew, it would cost as much as a short motion."""
+
+    array: Floats = np.empty(0)
+    address: int = 0
+
+
+_memory = _Memory()
+
+
+@cache
+def check_addresses() -> tuple[int, int]:
+    """Return the addresses of the checks of a motion and of sixteen configurations; compiled when first asked."""
+    # Imported late: where the vector type cannot even be defined, all else still works.
+    from evenroad.robot.kernel.lane_check import check_address
+    from evenroad.robot.kernel.motion_checks import motion_check_address
+
+    return motion_check_address(), check_address()

@@ -1,0 +1,82 @@
+from dataclasses import asdict
+
+import numpy as np
+import pytest
+import trimesh
+from scipy.spatial import ConvexHull
+
+from evenroad.errors import InvalidValue
+from evenroad.geometry import Box, Capsule, Cylinder, Mesh, PointCloud, Pose, Sphere, TriangleMesh
+from evenroad.geometry.hulls import Hull, halves, piece_of
+from tests.robot.mesh_arms import fork
+
+TURNED = Pose((0.1, -0.2, 0.3), (0.0, -1.0, 0.0, 0.6, 0.0, -0.8, 0.8, 0.0, 0.6))
+
+
+def mesh(of, pose=TURNED):
+    return Mesh(TriangleMesh(of.vertices, of.faces), pose=pose, link="a")
+
+
+def beyond(points, hull):
+    """How far points are outside of a hull at most, by the planes of its sides."""
+    equations = ConvexHull(hull.points).equations
+    return (points @ equations[:, :3].T + equations[:, 3]).max() - hull.radius
+
+
+@pytest.mark.parametrize(
+    ("shape", "corners"),
+    [(Box((0.3, 0.2, 0.1), pose=TURNED, link="a"), 8), (Cylinder(0.2, 0.5, pose=TURNED, link="a"), 64)],
+)
+def test_a_hull_contains_its_shape_and_little_else(shape, corners):
+    hull = piece_of(shape).hull
+    size = 0.5 * np.array(shape.size if isinstance(shape, Box) else (0.4, 0.4, 0.5))
+    u = np.random.default_rng(0).uniform(-1, 1, (2000, 3))
+    if isinstance(shape, Cylinder):
+        u = u[np.hypot(u[:, 0], u[:, 1]) <= 1]
+        u[:, :2] /= np.hypot(u[:, :1], u[:, 1:2])
+    assert beyond(TURNED.apply(size * u), hull) <= 0.0
+    assert len(hull.points) == corners
+    assert ConvexHull(hull.points).volume <= 1.01 * shape.volume
+    assert len(halves(piece_of(shape))) == 1
+
+
+def test_round_shapes_are_kept():
+    ball, stick = piece_of(Sphere(0.2, link="a")).hull, piece_of(Capsule.along_z(0.1, 0.4, link="a")).hull
+    assert ball.is_round
+    assert stick.is_round
+    assert ball.radius == pytest.approx(0.2, abs=1e-8)
+    np.testing.assert_array_equal(stick.points, [[0, 0, -0.2], [0, 0, 0.2]])
+    with pytest.raises(InvalidValue, match="no hull"):
+        piece_of(PointCloud(np.zeros((1, 3))))
+
+
+def test_many_corners_become_few_that_contain_the_others_by_little():
+    ball = trimesh.creation.icosphere(subdivisions=5, radius=0.1)
+    hull = piece_of(mesh(ball)).hull
+    assert len(hull.points) < len(ball.vertices) / 15
+    assert 0.0 < hull.radius < 1.5e-3
+    assert beyond(TURNED.apply(ball.vertices), hull) <= 0.0
+
+
+def test_halves_contain_all_triangles_of_a_fork_and_less_than_its_hull():
+    pieces = [piece_of(mesh(fork()))]
+    whole = ConvexHull(pieces[0].hull.points).volume
+    for _ in range(3):
+        pieces = [half for piece in pieces for half in halves(piece)]
+    assert len(pieces) == 8
+    for piece in pieces:
+        assert beyond(piece.parts.reshape(-1, 3), piece.hull) <= 0.0
+    area = sum(0.5 * np.linalg.norm(np.cross(t[1] - t[0], t[2] - t[0])) for p in pieces for t in p.parts)
+    assert area == pytest.approx(fork().area)
+    assert sum(ConvexHull(piece.hull.points).volume for piece in pieces) < 0.5 * whole
+
+
+def test_hulls_are_equal_by_value():
+    first, second = (Hull(np.eye(3), 0.1, "a") for _ in range(2))
+    assert first == second
+    assert hash(first) == hash(second)
+    assert list(asdict(first)) == ["points", "radius", "link"], "of which fingerprints are made"
+    assert first != Hull(np.eye(3), 0.1, "b")
+    assert first != Hull(2 * np.eye(3), 0.1, "a")
+    with pytest.raises(ValueError, match="read-only"):
+        first.points[0] = 1.0

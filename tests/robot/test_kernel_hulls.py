@@ -1,0 +1,171 @@
+"""Bodies of convex hulls: contact, configurations and motions, by linear programs that know nothing of our search."""
+
+import numpy as np
+import pytest
+from scipy.optimize import linprog
+from scipy.spatial import ConvexHull
+from scipy.spatial.transform import Rotation
+
+from evenroad.geometry.distance import segment_distance
+from evenroad.robot import ArmWorld, Scene, load_model, load_robot
+from evenroad.robot.kernel.hull_trees import contacts, hull_trees
+from evenroad.robot.kinematics import link_poses
+from tests.robot.mesh_arms import FORK, fork
+from tests.robot.urdf_texts import joint, link, urdf
+
+EMPTY = Scene("empty", ())
+
+
+def gap(first, second):
+    """How far two convex sets, (n, 3) corners, can be pushed together along the line of their middles, or -1."""
+    towards = first.mean(axis=0) - second.mean(axis=0)
+    n, m = len(first), len(second)
+    # Least s >= 0 with a point of the first in the second moved by s: 0 where they touch.
+    equal = np.vstack(
+        [
+            np.c_[first.T, -second.T, -towards],
+            np.r_[np.ones(n), np.zeros(m), 0],
+            np.r_[np.zeros(n), np.ones(m), 0],
+        ]
+    )
+    found = linprog(np.r_[np.zeros(n + m), 1.0], A_eq=equal, b_eq=[0, 0, 0, 1, 1], bounds=(0, None))
+    return found.fun * np.linalg.norm(towards) if found.status == 0 else np.inf
+
+
+def corners_of_box(size, centre=(0, 0, 0)):
+    signs = np.array(np.meshgrid(*[(-0.5, 0.5)] * 3)).reshape(3, -1).T
+    return signs * np.array(size) + np.array(centre)
+
+
+def placed(rng, count, spread):
+    poses = np.tile(np.eye(4), (count, 1, 1))
+    poses[:, :3, :3] = Rotation.random(count, rng=rng).as_matrix()
+    poses[:, :3, 3] = rng.normal(size=(count, 3)) * spread
+    return poses
+
+
+def test_hulls_touch_where_a_linear_program_says_so_also_at_the_edge_of_contact():
+    rng = np.random.default_rng(0)
+    for _ in range(12):
+        bodies = []
+        for count in (30, 12):
+            points = rng.normal(size=(count, 3)) * rng.uniform(0.02, 0.3, 3)
+            bodies.append(points[ConvexHull(points).vertices])
+        trees = hull_trees({"a": [(bodies[0][np.newaxis], 0.0)], "b": [(bodies[1][np.newaxis], 0.0)]})
+        poses, far = placed(rng, 20, 0.1), placed(rng, 20, 0.1)
+        near = far.copy()
+        far[:, :3, 3] += 2.0
+        near[:, :3, 3] = poses[:, :3, 3]
+        assert (contacts(trees, "a", "b", poses, near)[:, 0] >= 0).all()
+        assert (contacts(trees, "a", "b", poses, far)[:, 0] < 0).all()
+        for _ in range(26):
+            middle = near.copy()
+            middle[:, :3, 3] = 0.5 * (near[:, :3, 3] + far[:, :3, 3])
+            touch = (contacts(trees, "a", "b", poses, middle)[:, 0] >= 0)[:, np.newaxis, np.newaxis]
+            near, far = np.where(touch, middle, near), np.where(touch, far, middle)
+        for pose, apart in zip(poses, far, strict=True):
+            here = bodies[0] @ pose[:3, :3].T + pose[:3, 3]
+            # Within some 1e-7 m of contact, and on the side of safety.
+            assert 0.0 <= gap(here, bodies[1] @ apart[:3, :3].T + apart[:3, 3]) < 1e-6
+
+
+def test_widened_segments_are_capsules():
+    rng = np.random.default_rng(1)
+    ends = rng.normal(size=(2, 2, 3)) * 0.2
+    trees = hull_trees({"a": [(ends[:1], 0.05)], "b": [(ends[1:], 0.1)]})
+    poses, others = placed(rng, 500, 0.2), placed(rng, 500, 0.2)
+    segments = [
+        np.einsum("nij,ej->nei", p[:, :3, :3], e) + p[:, np.newaxis, :3, 3]
+        for p, e in zip((poses, others), ends, strict=True)
+    ]
+    distance = segment_distance(*segments)
+    sure = np.abs(distance - 0.15) > 1e-6
+    touch = contacts(trees, "a", "b", poses, others)[:, 0] >= 0
+    np.testing.assert_array_equal(touch[sure], distance[sure] < 0.15)
+
+
+def test_of_many_hulls_the_tree_finds_those_that_touch():
+    rng = np.random.default_rng(2)
+    triangles = [rng.normal(size=(200, 3, 3)) * 0.02 + rng.normal(size=(200, 1, 3)) * 0.2 for _ in range(2)]
+    trees = hull_trees({name: [(t, 0.01)] for name, t in zip("ab", triangles, strict=True)})
+    one_by_one = [
+        hull_trees({"a": [(triangles[0][i : i + 1], 0.01)], "b": [(triangles[1], 0.01)]}) for i in range(200)
+    ]
+    poses, others = placed(rng, 30, 0.05), placed(rng, 30, 0.5)
+    found = contacts(trees, "a", "b", poses, others)
+    expected = np.array([contacts(tree, "a", "b", poses, others)[:, 0] >= 0 for tree in one_by_one])
+    np.testing.assert_array_equal(found[:, 0] >= 0, expected.any(axis=0))
+    assert 0 < expected.any(axis=0).sum() < 30
+    for row, (leaf, _) in enumerate(found):
+        assert leaf < 0 or expected[leaf, row]
+
+
+@pytest.fixture(scope="module")
+def fork_file(tmp_path_factory):
+    """A fork that turns about z, and a rod on a second joint that swings through the gap between its prongs."""
+    folder = tmp_path_factory.mktemp("fork")
+    fork().export(folder / "fork.stl")
+    wide = "<limit lower='-3' upper='3' velocity='2' effort='1'/>"
+    text = urdf(
+        link("fork", "<collision><geometry><mesh filename='fork.stl'/></geometry></collision>"),
+        link("arm", ""),
+        link("rod", "<collision><origin xyz='0 0 -0.03'/><geometry><box size='0.03 0.04 0.3'/></geometry></collision>"),
+        joint("turn", "fork", "arm", "revolute", wide, "0 0 0.2", "0 0 1"),
+        joint("lift", "arm", "rod", "revolute", wide, "0 0.02 0", "1 0.3 0"),
+        name="fork and rod",
+    )  # fmt: skip
+    (folder / "fork.urdf").write_text(text)
+    return folder / "fork.urdf"
+
+
+def rod_gap(robot, q):
+    """The gap of the fork's boxes and the rod, 0 where they touch, by linear programs."""
+    poses = link_poses(robot, q[np.newaxis])[0, robot.links.index("rod")]
+    rod = corners_of_box((0.03, 0.04, 0.3), (0, 0, -0.03)) @ poses[:3, :3].T + poses[:3, 3]
+    return min(gap(corners_of_box(*box), rod) for box in FORK)
+
+
+def test_a_rod_in_the_gap_of_a_fork_is_free_and_nowhere_free_where_it_touches(fork_file):
+    robot = load_robot(fork_file)
+    assert robot.pairs == (("fork", "rod"),)
+    world, plain = ArmWorld(robot, EMPTY), ArmWorld(robot, EMPTY, backend="scalar")
+    q = world.space.from_cube(np.random.default_rng(0).random((600, 2)))
+    free = world.valid(q)
+    touches = np.array([rod_gap(robot, row) == 0.0 for row in q])
+    assert not (free & touches).any()
+    assert (~free & ~touches).mean() < 0.01
+    assert 0.1 < free.mean() < 0.9
+    # Single precision is never freer than double, and hardly less free.
+    exact = plain.valid(q)
+    assert not (free & ~exact).any()
+    assert (exact & ~free).mean() < 0.01
+    assert world.valid(np.zeros((1, 2)))[0], "between the prongs"
+    a, b = q[free][:100], q[~free][np.arange(100) % (~free).sum()]
+    for _ in range(40):
+        middle = 0.5 * (a + b)
+        ok = world.valid(middle)[:, np.newaxis]
+        a, b = np.where(ok, middle, a), np.where(ok, b, middle)
+    assert all(rod_gap(robot, row) > 0.0 for row in a)
+    assert "'fork' touches 'rod'" in world.explain(b[0])
+
+
+@pytest.mark.parametrize("backend", ["auto", "scalar"])
+def test_motions_that_are_proved_free_are_free_between_their_states(fork_file, backend):
+    robot = load_robot(fork_file)
+    world = ArmWorld(robot, EMPTY, backend=backend)
+    rng = np.random.default_rng(3)
+    q = world.space.from_cube(rng.random((400, 2)))
+    a = q[world.valid(q)][:60]
+    b = a + rng.normal(size=a.shape) * 0.3
+    proved = world.motion_certified(a, b, 1e-5)
+    assert 0.3 < proved.mean() < 1.0
+    assert not (proved & ~world.motion_valid(a, b)).any()
+    for first, second in zip(a[proved][:25], b[proved][:25], strict=True):
+        for share in np.linspace(0, 1, 15):
+            assert rod_gap(robot, first + share * (second - first)) > 0.0
+
+
+def test_a_robot_with_hulls_comes_out_of_the_cache_as_it_was_made(fork_file):
+    first, second = load_model(fork_file), load_model(fork_file)
+    assert first == second
+    assert len(first.robot.hulls) > 2

@@ -1,0 +1,73 @@
+"""A xacro is the URDF that it stands for."""
+
+import pytest
+
+from evenroad.errors import BrokenFile
+from evenroad.robot import load_model, load_robot
+
+pytest.importorskip("xacrodoc")
+
+XACRO = """<?xml version="1.0"?>
+<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="reach" default="0.3"/>
+  <xacro:property name="reach" value="$(arg reach)"/>
+  <xacro:macro name="part" params="name parent">
+    <link name="${name}"><collision><geometry><sphere radius="0.05"/></geometry></collision></link>
+    <joint name="to_${name}" type="revolute">
+      <parent link="${parent}"/><child link="${name}"/><origin xyz="0 0 ${2 * reach}"/>
+      <limit lower="${-pi / 2}" upper="1" velocity="1" effort="1"/>
+    </joint>
+  </xacro:macro>
+  <link name="base"/>
+  <xacro:part name="upper" parent="base"/><xacro:part name="lower" parent="upper"/>
+</robot>
+"""
+
+
+@pytest.fixture(autouse=True)
+def _a_cache_of_its_own(tmp_path_factory, monkeypatch):
+    monkeypatch.setenv("EVENROAD_CACHE", str(tmp_path_factory.mktemp("cache")))
+
+
+@pytest.mark.parametrize("name", ["arm.urdf.xacro", "arm.urdf"])
+def test_a_xacro_is_read_whatever_it_is_called(tmp_path, name):
+    (tmp_path / name).write_text(XACRO)
+    robot = load_robot(tmp_path / name)
+    assert robot.group == ("to_upper", "to_lower")
+    assert robot.joints[0].xyz == (0.0, 0.0, 0.6)
+    assert robot.joints[0].lower == pytest.approx(-1.5707963267948966)
+
+
+def test_arguments_decide_and_are_not_mixed_up_in_the_cache(tmp_path):
+    path = tmp_path / "arm.xacro"
+    path.write_text(XACRO)
+    assert load_robot(path).joints[0].xyz[2] == 0.6
+    assert load_robot(path, arguments={"reach": "1.5"}).joints[0].xyz[2] == 3.0
+
+
+def test_packages_that_are_given_are_found_in_a_xacro_and_for_its_meshes(tmp_path):
+    import trimesh
+
+    parts = tmp_path / "elsewhere"
+    parts.mkdir()
+    trimesh.creation.box((0.1, 0.1, 0.1)).export(parts / "box.stl")
+    (parts / "macro.xacro").write_text(
+        XACRO.replace('<sphere radius="0.05"/>', '<mesh filename="package://parts/box.stl"/>')
+    )
+    path = tmp_path / "arm.xacro"
+    path.write_text(
+        '<robot name="a" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+        '<xacro:include filename="$(find parts)/macro.xacro"/></robot>'
+    )
+    model = load_model(path, packages={"parts": parts})
+    assert [body.shapes for body in model.bodies] == [("mesh box.stl",)] * 2
+    # What one robot was given is not there for the next.
+    with pytest.raises(BrokenFile, match="cannot be expanded: .*parts"):
+        load_model(path)
+
+
+def test_a_xacro_with_a_mistake_is_refused_with_the_mistake(tmp_path):
+    path = tmp_path / "arm.xacro"
+    path.write_text(XACRO.replace("${2 * reach}", "${2 * far}"))
+    with pytest.raises(BrokenFile, match=r"the xacro .*arm\.xacro cannot be expanded: .*far"):
+        load_model(path)
