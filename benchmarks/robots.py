@@ -37,6 +37,7 @@ RIGHTLY = (
     "is missing",
     "which is no joint",
     "no joint that could be planned for",
+    "the group must name one joint or more",
     "no collision geometry at all",
     "MuJoCo cannot read",
     "must satisfy lower <= upper",

@@ -205,7 +205,7 @@ def arm_query(
     source, model = None, None
     if isinstance(robot, Robot):
         if options:
-            raise InvalidValue(f"{', '.join(options)}: for the file of a robot, not for a Robot")
+            raise InvalidValue(f"{', '.join(options)} must go with the file of a robot, not with a Robot")
     else:
         model = load_model(robot, **options)
         source, robot = model.file, model.robot
