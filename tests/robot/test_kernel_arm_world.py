@@ -1,5 +1,6 @@
 """ArmWorld: the contract of worlds, motions, words, and values that it refuses."""
 
+import copy
 import math
 import pickle
 from dataclasses import replace
@@ -14,6 +15,7 @@ from evenroad.robot import arm_world
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.joint import Joint, Mimic
 from evenroad.robot.kernel import batch, scalar, selftest
+from evenroad.robot.kernel.addresses import address
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle, Scene
 from evenroad.testing import WorldContract
@@ -236,7 +238,12 @@ def test_wrong_verdicts_of_the_lanes_are_found_out(monkeypatch):
 def test_a_world_can_be_sent_to_another_process():
     world = five_joints()
     q = world.space.from_cube(np.random.default_rng(3).random((200, 5)))
-    np.testing.assert_array_equal(pickle.loads(pickle.dumps(world)).valid(q), world.valid(q))
+    expected = world.valid(q)
+    for sent in (pickle.loads(pickle.dumps(world)), copy.deepcopy(world)):
+        # Compiled code is given addresses: those of the world that was sent are not good for what arrives.
+        assert address(sent.lanes.tables) != address(world.lanes.tables)
+        assert sent.lanes._places[:2] == (address(sent.lanes.tables), address(sent.lanes.by_joint))
+        np.testing.assert_array_equal(sent.valid(q), expected)
 
 
 # ---- values that are refused

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from dataclasses import dataclass
 from functools import cache, cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -34,6 +35,10 @@ class LaneWorld:
     tables: npt.NDArray[np.int64]
     by_joint: Floats
     resolution: float
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return how a copy is made, here or in another process: it finds out for itself where its arrays are."""
+        return LaneWorld, (self.tables, self.by_joint, self.resolution)
 
     def arguments(self, more: int) -> tuple[Floats, tuple[int, int, float, int, int, int, int]]:
         """Return `more` doubles of memory, and what a program ends with: what ``checks_of`` takes, and their address.
