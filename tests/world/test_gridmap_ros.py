@@ -185,6 +185,13 @@ def test_an_unknown_key_is_named_with_the_known_ones(tmp_path):
     assert "free_thresh, image, mode, negate, occupied_thresh, origin, resolution" in text
 
 
+def test_keys_of_newer_map_servers_are_passed_over_and_named(tmp_path):
+    path = written(tmp_path, row(0), unknown_thresh=0.3, color_space="gray")
+    with pytest.warns(UserWarning, match="map.yaml: passed over: .*unknown_thresh"):
+        newer = load_map(path)
+    np.testing.assert_array_equal(newer.occupied, load_map(written(tmp_path, row(0))).occupied)
+
+
 def test_a_key_that_is_there_twice_is_refused(tmp_path):
     path = written(tmp_path, row(0))
     path.write_text(path.read_text() + "occupied_thresh: 0.9\n")

@@ -7,6 +7,7 @@ import gc
 import signal
 import sys
 import threading
+import warnings
 from collections.abc import Sequence
 
 INTERRUPTED = 130
@@ -25,6 +26,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return _interrupted()
     # A process of our own: imports make very many objects and no garbage, and looking for some takes time.
     gc.set_threshold(100_000, 50, 50)
+    warnings.formatwarning = lambda message, *where: f"evenroad: warning: {message}\n"
     hook = _Unraisable()
     sys.unraisablehook = hook
     try:

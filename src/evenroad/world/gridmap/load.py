@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import warnings
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -98,7 +100,8 @@ def load_ros_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False)
     BrokenFile
         If the YAML file or the image is missing or broken, or a key is missing or there twice.
     UnknownName
-        If there is a key or a mode that map_server does not know; the known ones are listed.
+        If a key is nearly one that map_server knows, or a mode is none of them; the known ones are listed.  Other keys
+        are passed over with a warning.
     InvalidValue
         If a value has the wrong type or range.
     """
@@ -115,7 +118,14 @@ def read_ros_meta(path: str | os.PathLike[str]) -> RosMapMeta:
     """Read and check a map_server YAML file; the image is not opened.  Errors as `load_ros_map`."""
     file = Path(path)
     document = read_mapping(file, "map")
-    require_keys(document, _REQUIRED, ("mode",), str(file))
+    known = (*_REQUIRED, "mode")
+    # Newer map servers write more; what looks like a slip of the pen is no newer key.
+    strange = [key for key in document if key not in known and not get_close_matches(str(key), known)]
+    if strange:
+        warnings.warn(f"{file}: passed over: {', '.join(map(str, strange))}", stacklevel=1)
+    require_keys(
+        {key: document[key] for key in document if key not in strange}, _REQUIRED, ("mode",), str(file)
+    )
     image, mode, negate = document["image"], document.get("mode", "trinary"), document["negate"]
     if not isinstance(image, str) or not image:
         raise InvalidValue(f"image in {file} must be the name of a file, got {image!r}")
