@@ -40,6 +40,8 @@ class RosMapMeta(NamedTuple):
     free_thresh: float
     """``0 <= free_thresh < occupied_thresh <= 1``"""
     mode: str
+    passed_over: tuple[str, ...]
+    """Keys that nothing is known of."""
 
 
 def load_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False) -> GridMap:
@@ -106,6 +108,8 @@ def load_ros_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False)
         If a value has the wrong type or range.
     """
     meta = read_ros_meta(path)
+    if meta.passed_over:
+        warnings.warn(f"{path}: passed over: {', '.join(meta.passed_over)}", stacklevel=2)
     occupied, unknown = classify_pixels(open_image(meta.image), meta)
     obstacles = occupied if unknown_is_free else occupied | unknown
     rows, cols = obstacles.shape
@@ -121,8 +125,6 @@ def read_ros_meta(path: str | os.PathLike[str]) -> RosMapMeta:
     known = (*_REQUIRED, "mode")
     # Newer map servers write more; what looks like a slip of the pen is no newer key.
     strange = [key for key in document if key not in known and not get_close_matches(str(key), known)]
-    if strange:
-        warnings.warn(f"{file}: passed over: {', '.join(map(str, strange))}", stacklevel=1)
     require_keys(
         {key: document[key] for key in document if key not in strange}, _REQUIRED, ("mode",), str(file)
     )
@@ -149,6 +151,7 @@ def read_ros_meta(path: str | os.PathLike[str]) -> RosMapMeta:
         occupied_thresh=occupied,
         free_thresh=free,
         mode=mode,
+        passed_over=tuple(map(str, strange)),
     )
 
 
