@@ -235,7 +235,7 @@ BAD = {
     "a missing image": ({"map_path": "nowhere.png"}, "nowhere.png"),
     "a broken image": ({"map_path": "broken.png"}, "broken.png"),
     "another kind of file": ({"map_path": "map.txt"}, "map.txt"),
-    "an unknown YAML key": ({"map_path": "bad-key.yaml"}, "colour"),
+    "a misspelt YAML key": ({"map_path": "bad-key.yaml"}, "fre_thresh"),
     "an unknown YAML mode": ({"map_path": "bad-mode.yaml"}, "quaternary"),
     "a start outside the map": ({"start": (700, 5)}, "start 700 5 lies outside the map"),
     "a goal outside the map": ({"goal": (5, -1)}, "goal 5 -1 lies outside the map"),
@@ -269,7 +269,7 @@ def test_bad_input_gets_one_line_and_exit_code_2_and_nothing_is_written(case, ru
     (tmp_path / "broken.png").write_bytes(room.read_bytes()[:60])
     (tmp_path / "map.txt").write_text("hello")
     good = "image: room.png\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.6\nfree_thresh: 0.2\n"
-    (tmp_path / "bad-key.yaml").write_text(good + "colour: red\n")
+    (tmp_path / "bad-key.yaml").write_text(good + "fre_thresh: 0.1\n")
     (tmp_path / "bad-mode.yaml").write_text(good + "mode: quaternary\n")
     before = sorted(tmp_path.rglob("*"))
     changes, says = BAD[case]
