@@ -14,9 +14,9 @@ from evenroad.geometry import rotation_from_heading, rotation_from_quaternion
 from evenroad.research.bench.task import Problem, ProblemSource
 from evenroad.research.mazes import MazeDesign, draw_maze
 from evenroad.research.worlds import PeriodicBalls, PeriodicBoxes
+from evenroad.research.worlds.rigid import OrientedBox, SolidWorld
 from evenroad.space import SE2, SE3
 from evenroad.world import World
-from evenroad.world.solids import OrientedBox, SolidWorld
 
 FarApart = Callable[[Floats, Floats], Bools]
 """Which pairs of rows of two (m, d) arrays of the cube may be a start and a goal, (m,)."""

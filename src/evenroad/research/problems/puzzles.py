@@ -10,8 +10,8 @@ import numpy as np
 
 from evenroad.geometry import rotation_from_heading
 from evenroad.research.bench.task import Problem
+from evenroad.research.worlds.rigid import OrientedBox, SolidWorld
 from evenroad.space import SE3
-from evenroad.world.solids import OrientedBox, SolidWorld
 
 Triple = tuple[float, float, float]
 

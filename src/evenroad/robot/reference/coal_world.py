@@ -10,12 +10,14 @@ from typing import Any
 import numpy as np
 
 from evenroad._arrays import Bools, Floats
+from evenroad._checks import require_extra
+from evenroad.errors import BrokenFile
+from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.shapes import Mesh, Shape
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot.reference.engine_world import EngineWorld
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
-from evenroad.world.mesh import require_coal, tree_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,3 +120,25 @@ def asking_for_contacts(request: Any) -> Any:
     """
     request.enable_contact = True
     return request
+
+
+def require_coal() -> Any:
+    """Return the module coal; NotAvailable if it is not installed."""
+    return require_extra("coal", "mesh", "checking meshes")
+
+
+def tree_of(coal: Any, mesh: TriangleMesh) -> Any:
+    """Return coal's tree of oriented boxes over the triangles of a mesh; its surface as it is, nothing made convex.
+
+    Raises BrokenFile if coal leaves triangles out.
+    """
+    tree = coal.BVHModelOBBRSS()
+    tree.beginModel(len(mesh.triangles), len(mesh.vertices))
+    tree.addVertices(mesh.vertices)
+    tree.addTriangles(mesh.triangles)
+    tree.endModel()
+    if not tree.num_tris == len(mesh.triangles) > 0:
+        raise BrokenFile(
+            f"coal took {tree.num_tris} of {len(mesh.triangles)} triangles: the others would never collide"
+        )
+    return tree
