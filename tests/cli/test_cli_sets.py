@@ -111,7 +111,8 @@ def test_json_has_the_same_measures(run):
     points = draw("halton", 50, 2)
     save_points("set.npz", points)
     record = json.loads(run("measure", "set.npz", "--json")[1])
-    from evenroad.points.measures import MEASURES, separation
+    from evenroad.points.measures import MEASURES
+    from evenroad.research.measures import separation
 
     assert record["hash"] == points.hash
     assert record["hickernell_rooted"] == MEASURES["hickernell"].rooted(points)

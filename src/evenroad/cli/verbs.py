@@ -28,7 +28,7 @@ VERBS = {
         "evenroad.cli.points:Points",
         "write a point set: shipped, constructed, or annealed on demand",
     ),
-    "measure": ("evenroad.cli.points:Measure", "print every measure of a point set"),
+    "measure": ("evenroad.research.commands.measure:Measure", "print every measure of a point set"),
     "train": ("evenroad.research.commands.train:Train", "train point sets for any objective"),
     "bench": ("evenroad.research.commands.bench:Bench", "run benchmarks into a store"),
     "report": ("evenroad.research.commands.report:Report", "page, figures and tables of a store"),
