@@ -123,17 +123,8 @@ def _three(xyz: Sequence[float]) -> Vector:
 class Pose:
     """A rotation, then a translation: ``p -> R p + xyz``.
 
-    Parameters
-    ----------
-    xyz : sequence of 3 floats
-        Origin of the pose's own frame [m].
-    rotation : sequence of 9 floats
-        From the pose's own frame, row by row; a 3x3 array will do.
-
-    Raises
-    ------
-    InvalidValue
-        If these are not finite numbers, or the rotation is none.
+    `xyz` is the origin of the pose's own frame [m], `rotation` from that frame, row by row; a 3x3 array will do.
+    InvalidValue if these are not finite numbers, or the rotation is none.
     """
 
     xyz: Vector = (0.0, 0.0, 0.0)

@@ -63,18 +63,9 @@ def plan(
     budget : Budget, optional
         Default: a minute.
 
-    Returns
-    -------
-    PlanResult
-        Also when there is no path: the status and the message then say why.
-
-    Raises
-    ------
-    InvalidValue
-        If start, goal or points do not have the dimension of the space, or are not finite, or an edge costs
-        less than its length.
-    UnknownName
-        If there is no such search.
+    Where there is no path, the result's status and message say why.  Raises InvalidValue if start, goal or points do
+    not have the dimension of the space, or are not finite, or an edge costs less than its length; UnknownName if there
+    is no such search.
     """
     query = Query(
         *read_places(start, goal, world.space),

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats
-from evenroad._checks import require_count
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad._checks import require_count, require_known
+from evenroad.errors import InvalidValue
 from evenroad.points.pointset import PointSet
 from evenroad.points.samplers import make_sampler
 from evenroad.roadmap.budget import Budget
@@ -47,8 +47,7 @@ class Query:
     budget: Budget = field(default_factory=Budget)
 
     def __post_init__(self) -> None:
-        if self.search not in FINDERS:
-            raise UnknownName.among("search", self.search, FINDERS)
+        require_known("search", self.search, FINDERS)
         if self.links is not None:
             require_count("links", self.links)
         for array in (self.start, self.goals):

@@ -65,16 +65,9 @@ class RobotFile:
 def read_urdf_xml(file: RobotFile) -> tuple[Element, list[str]]:
     """Return the ``<robot>`` element of a URDF or xacro without what collision checking does not need, and notes.
 
-    Numbers are rewritten with blanks between them; of a ``<visual>`` is kept that it is there.
-
-    Raises
-    ------
-    BrokenFile
-        If the file is missing, not XML or not a URDF, or an element lacks a piece.
-    InvalidValue
-        If an attribute does not hold the numbers that it must.
-    NotAvailable
-        If it is a xacro and the extra for these is not installed.
+    Numbers are rewritten with blanks between them; of a ``<visual>`` is kept that it is there.  Raises BrokenFile if
+    the file is missing, not XML or not a URDF, or an element lacks a piece; InvalidValue if an attribute does not hold
+    the numbers that it must; NotAvailable if it is a xacro and the extra for these is not installed.
     """
     path, notes = file.path, list[str]()
     root = read_xml(path, "robot", "a URDF")

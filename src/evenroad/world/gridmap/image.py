@@ -26,24 +26,12 @@ _FORMATS = ("PNG", "PPM")
 
 
 def load_image(path: str | os.PathLike[str], *, dark: float = DARK) -> GridMap:
-    """Read a bare PNG or PGM image as a map: dark pixels are obstacles.
+    """Read a bare PNG or PGM image as a map: pixels whose luminance, of 255, is below `dark` are obstacles.
 
-    The frame is the image's own: x right, y down, origin in the top-left corner, unit = pixel.
-
-    Parameters
-    ----------
-    path : str or path-like
-        Any depth and colour mode.  Colours count by their luminance (ITU-R BT.601: .299 R + .587 G + .114 B,
-        rounded), transparent pixels as if on white paper.
-    dark : float
-        A pixel whose luminance, on the scale 0..255, is below this is an obstacle.
-
-    Raises
-    ------
-    BrokenFile
-        If the file is missing, is not a whole PNG or PGM image, or has more than 100 million pixels.
-    InvalidValue
-        If `dark` is not in (0, 255].
+    Colours count by ITU-R BT.601 (.299 R + .587 G + .114 B, rounded), transparent pixels as if on white paper.  The
+    frame is the image's own: x right, y down, origin in the top-left corner, unit = pixel.  Raises BrokenFile if the
+    file is missing, is not a whole PNG or PGM image, or has more than 100 million pixels; InvalidValue if `dark` is not
+    in (0, 255].
     """
     if require_positive("dark", dark) > 255.0:
         raise InvalidValue(f"dark must be in (0, 255], got {dark!r}")

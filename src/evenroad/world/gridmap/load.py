@@ -35,10 +35,8 @@ class RosMapMeta(NamedTuple):
     origin: tuple[float, ...]
     """x and y of the lower-left corner of the lower-left pixel, and yaw."""
     negate: bool
-    """White, not black, is occupied."""
     occupied_thresh: float
     free_thresh: float
-    """``0 <= free_thresh < occupied_thresh <= 1``"""
     mode: str
     passed_over: tuple[str, ...]
     """Keys that nothing is known of."""
@@ -47,19 +45,8 @@ class RosMapMeta(NamedTuple):
 def load_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False) -> GridMap:
     """Read a map: a bare image (.png, .pgm) or a ROS map_server file (.yaml, .yml).
 
-    Parameters
-    ----------
-    path : str or path-like
-        See `load_image` and `load_ros_map` for what the pixels mean and where the map then lies.
-    unknown_is_free : bool
-        Take the unknown cells of a ROS map as free; a bare image has none.
-
-    Raises
-    ------
-    UnknownName
-        If the suffix is another one, or as `load_ros_map`.
-    BrokenFile, InvalidValue
-        As `load_image` and `load_ros_map`.
+    `load_image` and `load_ros_map` say what the pixels mean, where the map then lies, and what they raise; with
+    `unknown_is_free` the unknown cells of a ROS map are free.  UnknownName if the suffix is another one.
     """
     suffix = Path(path).suffix.lower()
     if suffix in _IMAGES:
@@ -90,22 +77,9 @@ def load_ros_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False)
       values above 100 are unknown.  map_server leaves the verdict to whoever uses the percentage; here it is
       the same two thresholds.
 
-    Parameters
-    ----------
-    path : str or path-like
-        The YAML file.
-    unknown_is_free : bool
-        By default, unknown cells are obstacles, like the occupied ones.
-
-    Raises
-    ------
-    BrokenFile
-        If the YAML file or the image is missing or broken, or a key is missing or there twice.
-    UnknownName
-        If a key is nearly one that map_server knows, or a mode is none of them; the known ones are listed.  Other keys
-        are passed over with a warning.
-    InvalidValue
-        If a value has the wrong type or range.
+    Unknown cells are obstacles, unless `unknown_is_free`.  Raises BrokenFile if the YAML file or the image is missing
+    or broken, or a key is missing or there twice; UnknownName if a key is nearly one that map_server knows, or a mode
+    is none of them (other keys are passed over with a warning); InvalidValue if a value has the wrong type or range.
     """
     meta = read_ros_meta(path)
     if meta.passed_over:
@@ -125,9 +99,7 @@ def read_ros_meta(path: str | os.PathLike[str]) -> RosMapMeta:
     known = (*_REQUIRED, "mode")
     # Newer map servers write more; what looks like a slip of the pen is no newer key.
     strange = [key for key in document if key not in known and not get_close_matches(str(key), known)]
-    require_keys(
-        {key: document[key] for key in document if key not in strange}, _REQUIRED, ("mode",), str(file)
-    )
+    require_keys([key for key in document if key not in strange], _REQUIRED, ("mode",), str(file))
     image, mode, negate = document["image"], document.get("mode", "trinary"), document["negate"]
     if not isinstance(image, str) or not image:
         raise InvalidValue(f"image in {file} must be the name of a file, got {image!r}")
