@@ -80,13 +80,7 @@ def _motion_is_free(a, b, step, rotation_step, body, obstacles, near, planar, st
 
 @njit(cache=True, nogil=True)
 def motions_are_proved(
-    a: Floats,
-    b: Floats,
-    tolerance: float,
-    body: BoxTable,
-    reaches: Floats,
-    obstacles: BoxTable,
-    planar: bool,
+    a: Floats, b: Floats, tolerance: float, body: BoxTable, reaches: Floats, obstacles: BoxTable, planar: bool
 ) -> Bools:
     """Return which motions between poses, (m, 7), are proved free, with no gap between states.
 
