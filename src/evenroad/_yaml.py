@@ -88,14 +88,12 @@ def _require_distinct_keys(loader: Any, root: yaml.Node, path: Path) -> None:
                 lines |= {str(made): line, made: line}
 
 
-def require_keys(
-    entry: Iterable[str], required: Collection[str], optional: Iterable[str], where: str
-) -> None:
+def require_keys(keys: Iterable[str], required: Collection[str], optional: Iterable[str], where: str) -> None:
     """Raise UnknownName for a key that is neither required nor optional, BrokenFile for one that is missing."""
     known = (*required, *optional)
-    for key in entry:
+    for key in keys:
         require_known(f"key of {where}:", key, known)
-    missing = [key for key in required if key not in entry]
+    missing = [key for key in required if key not in keys]
     if missing:
         raise BrokenFile(f"{where} lacks {', '.join(missing)}; it needs {', '.join(required)}")
 

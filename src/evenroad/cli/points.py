@@ -8,9 +8,10 @@ from typing import Annotated
 
 import tyro
 
+from evenroad._checks import require_known
 from evenroad._files import require_writable_folder
 from evenroad._terminal import progress_shown
-from evenroad.errors import InvalidValue, UnknownName, shown
+from evenroad.errors import InvalidValue, shown
 from evenroad.points import PointSet, make_sampler
 from evenroad.points.bank import TRAINED_FAMILIES, Trained
 from evenroad.points.npz import save_array, save_points
@@ -35,16 +36,13 @@ class Points:
 
     def run(self) -> int:
         """Find or make the set, and write it."""
-        if self.out.suffix not in (".npy", ".npz"):
-            raise UnknownName.among(
-                f"kind of file {shown(str(self.out))}: suffix", self.out.suffix, (".npy", ".npz")
-            )
+        kind = f"kind of file {shown(str(self.out))}: suffix"
+        require_known(kind, self.out.suffix, (".npy", ".npz"))
         require_writable_folder(self.out)
         points, source = self._find()
         (save_points if self.out.suffix == ".npz" else save_array)(self.out, points)
-        print(
-            f"{self.out}: {points.n} points in d={points.d}, {points.origin} ({source}), hash {points.hash[:12]}"
-        )
+        about = f"{points.n} points in d={points.d}, {points.origin} ({source})"
+        print(f"{self.out}: {about}, hash {points.hash[:12]}")
         return 0
 
     def _find(self) -> tuple[PointSet, str]:

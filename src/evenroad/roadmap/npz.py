@@ -124,9 +124,8 @@ def _roadmap(path: Path, arrays: Arrays, space: Space) -> Roadmap:
     require_array(path, "configurations", configurations, np.float64, (n, None))
     require_array(path, "edges", edges, np.int32, (None, 2))
     if edges.size and (edges.min() < 0 or edges.max() >= n):
-        raise BrokenFile(
-            f"{path}: edges must join milestones 0 .. {n - 1}, got {edges.min()} .. {edges.max()}"
-        )
+        low, high = edges.min(), edges.max()
+        raise BrokenFile(f"{path}: edges must join milestones 0 .. {n - 1}, got {low} .. {high}")
     points = points_of(path, arrays)
     try:
         rule = rule_named(str(arrays["rule"]))

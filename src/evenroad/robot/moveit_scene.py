@@ -33,9 +33,7 @@ def read_scene_text(path: Path) -> Scene:
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
     except (OSError, ValueError) as error:
-        raise BrokenFile(
-            f"cannot read the scene {path}: {getattr(error, 'strerror', None) or error}"
-        ) from error
+        raise BrokenFile(f"cannot read scene {path}: {getattr(error, 'strerror', None) or error}") from error
     return Scene(lines[0].strip() or path.stem if lines else path.stem, tuple(_from_text(lines, path)))
 
 
@@ -100,7 +98,7 @@ def read_planning_scene(document: Mapping[str, Any], path: Path) -> Scene:
         name = str(each["id"])
         if each.get("meshes") or each.get("planes"):
             raise InvalidValue(
-                f"object {name!r} in {path} must consist of {', '.join(_SIZES)}: it has a mesh or plane"
+                f"object {name!r} in {path} must be of {', '.join(_SIZES)}: it has a mesh or plane"
             )
         frame = _pose(each["pose"], name, path) if "pose" in each else IDENTITY
         primitives, poses = each.get("primitives") or [], each.get("primitive_poses") or []

@@ -121,9 +121,8 @@ def _joint(element: Element, path: Path, notes: list[str]) -> Joint:
     lower, upper, velocity = _limits(element.find("limit"), kind, where, notes)
     mimic = None
     if follows is not None and kind != "fixed":
-        mimic = Mimic(
-            follows.attrib["joint"], float(follows.get("multiplier", 1.0)), float(follows.get("offset", 0.0))
-        )
+        multiplier, offset = float(follows.get("multiplier", 1.0)), float(follows.get("offset", 0.0))
+        mimic = Mimic(follows.attrib["joint"], multiplier, offset)
     return Joint(
         name=name,
         kind=cast(Kind, kind),
@@ -177,9 +176,7 @@ def _limits(limit: Element | None, kind: str, where: str, notes: list[str]) -> t
         notes.append(note + (locked if lower == upper else ""))
     if lower > upper:
         absent = f" ({missing} is not given: 0 by the specification)" if missing else ""
-        raise InvalidValue(
-            f"the limits of {where} must satisfy lower <= upper, got {lower:g}, {upper:g}{absent}"
-        )
+        raise InvalidValue(f"limits of {where} must have lower <= upper, got {lower:g}, {upper:g}{absent}")
     return lower, upper, velocity
 
 

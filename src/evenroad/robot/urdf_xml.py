@@ -225,9 +225,7 @@ def _numbers(what: str, attribute: str, text: str, count: int) -> list[float]:
     if attribute in _LENGTHS and min(numbers) < 0.0:
         raise InvalidValue(f"{what} must be >= 0, got {text!r}")
     if attribute == "scale" and 0.0 in numbers:
-        raise InvalidValue(
-            f"{what} must not be 0, got {text!r}: a mesh without volume would hardly ever collide"
-        )
+        raise InvalidValue(f"{what} must not be 0, got {text!r}: a flat mesh would hardly ever collide")
     return numbers
 
 
@@ -246,9 +244,7 @@ def find_mesh(name: str, file: RobotFile, link: str) -> Path:
     looked = ", ".join(str(place) for place in places[:4]) + (", ..." if len(places) > 4 else "")
     package = name.removeprefix("package://").partition("/")[0] if name.startswith("package://") else ""
     hint = f"; --package {package}=FOLDER says where that package is" if package else ""
-    raise BrokenFile(
-        f"the mesh {name!r} of link {link!r} in {file.path} is missing; looked for {looked}{hint}"
-    )
+    raise BrokenFile(f"mesh {name!r} of link {link!r} in {file.path} is missing; looked for {looked}{hint}")
 
 
 def _candidates(name: str, file: RobotFile) -> Iterator[Path]:

@@ -85,17 +85,10 @@ def _write(path: Path, rows: Rows, session: Session) -> None:
             here = experiment == number
             ran = (float(np.nansum(rows.seconds[here])), int(here.sum()))
             of_session = (f"evenroad {session.evenroad}", session.platform, session.started)
+            last = (int(rows.seed[row]), versions, int(rows.n[row]))
             connection.execute(
                 "INSERT INTO experiments VALUES (?, ?, ?, 0, 0, ?, ?, ?, '', ?, ?, ?, ?)",
-                (
-                    number,
-                    rows.problem[row],
-                    *ran,
-                    *of_session,
-                    int(rows.seed[row]),
-                    versions,
-                    int(rows.n[row]),
-                ),
+                (number, rows.problem[row], *ran, *of_session, *last),
             )
         for number, row in enumerate(first_of_planner, 1):
             sampler, rule, search = rows.sampler[row], rows.rule[row], rows.search[row]
@@ -103,9 +96,8 @@ def _write(path: Path, rows: Rows, session: Session) -> None:
                 "INSERT INTO plannerConfigs VALUES (?, ?, ?)",
                 (number, f"{sampler}, {rule}, {search}", f"sampler={sampler}; rule={rule}; search={search}"),
             )
-        connection.executemany(
-            f"INSERT INTO runs VALUES ({', '.join('?' * 12)})", _runs(rows, experiment, planner)
-        )
+        places = ", ".join("?" * 12)
+        connection.executemany(f"INSERT INTO runs VALUES ({places})", _runs(rows, experiment, planner))
         connection.commit()
 
 

@@ -47,11 +47,9 @@ class Family(IntEnum):
     SE3 = 4
 
 
-def instance_rng(
-    stream: Stream, family: Family, d: int, difficulty: int, instance: int
-) -> np.random.Generator:
+def instance_rng(stream: Stream, family: Family, d: int, difficulty: int, number: int) -> np.random.Generator:
     """Return the generator of one instance: the same numbers in every process, others for every other instance."""
-    key = (int(stream), int(family), d, difficulty, instance)
+    key = (int(stream), int(family), d, difficulty, number)
     return np.random.default_rng(np.random.SeedSequence(ENTROPY, spawn_key=key))
 
 

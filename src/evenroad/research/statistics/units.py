@@ -70,9 +70,7 @@ def clustered_difference(sums: npt.ArrayLike, pairs: npt.ArrayLike, unit: str) -
     """
     differences, totals = np.asarray(sums), as_counts("pairs", pairs)
     if differences.ndim != 1 or differences.shape != totals.shape or len(totals) == 0:
-        raise InvalidValue(
-            f"sums and pairs must be lists of one length, got {differences.shape}, {totals.shape}"
-        )
+        raise InvalidValue(f"sums and pairs must be of one length, got {differences.shape}, {totals.shape}")
     if np.any(totals < 1) or np.any(np.abs(differences) > totals):
         raise InvalidValue("a unit has at least one pair, and as many pairs as its sum")
     ratios = differences / totals

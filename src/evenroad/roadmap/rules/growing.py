@@ -119,9 +119,7 @@ class TheoryRadius(Rule):
         """Return r in the units of the space, or raise; see the class."""
         metric = flat_metric(space)
         if metric is None:
-            raise NotAvailable(
-                f"the theory radius needs a space whose metric is flat, not {type(space).__name__}"
-            )
+            raise NotAvailable(f"the theory radius needs a space of flat metric, not {type(space).__name__}")
         d = space.cube_dim
         name, value = self._bound()
         bound = value if name == "dispersion" else 2 * value ** (1 / d)

@@ -84,10 +84,8 @@ class MeshWorld(TestedAtStates):
             if not isinstance(mesh, TriangleMesh):
                 raise InvalidValue(f"{name} must be TriangleMesh values, got {mesh!r}")
         states = FunctionWorld(self.space, self._is_free, self.resolution)
-        collider = Collider(self.body, merged(obstacles))
-        set_fields(
-            self, obstacles=obstacles, resolution=states.resolution, _collider=collider, _states=states
-        )
+        set_fields(self, obstacles=obstacles, resolution=states.resolution)
+        set_fields(self, _collider=Collider(self.body, merged(obstacles)), _states=states)
 
     def explain(self, q: Floats) -> str:
         """Return in words why the pose `q`, (dim,), is not free."""

@@ -156,9 +156,8 @@ class SolidWorld:
         free = self.space.contains(first) & self.space.contains(second)
         inside = np.flatnonzero(free)
         start, end = as_pose_pair(first[inside], second[inside], self.space)
-        free[inside] = motions_are_free(
-            start, end, *self._steps, self._body, self._reach, self._obstacles, self._planar
-        )
+        bodies = (self._body, self._reach, self._obstacles, self._planar)
+        free[inside] = motions_are_free(start, end, *self._steps, *bodies)
         return free
 
     def recheck(self, path: Floats) -> Bools:
@@ -172,9 +171,8 @@ class SolidWorld:
         proved = inside[:-1] & inside[1:]
         rows = np.flatnonzero(proved)
         start, end = as_pose_pair(waypoints[rows], waypoints[rows + 1], self.space)
-        proved[rows] = motions_are_proved(
-            start, end, _TOLERANCE * self._steps[0], self._body, self._reaches, self._obstacles, self._planar
-        )
+        bodies = (self._body, self._reaches, self._obstacles, self._planar)
+        proved[rows] = motions_are_proved(start, end, _TOLERANCE * self._steps[0], *bodies)
         return proved
 
     def explain(self, q: Floats) -> str:
@@ -213,9 +211,7 @@ def _as_steps(
     value: float | tuple[float, ...]
     if isinstance(space, Product):
         if not isinstance(resolution, Sequence | np.ndarray) or isinstance(resolution, str):
-            raise InvalidValue(
-                f"resolution must be a distance and a rotation for SE2 and SE3, got {resolution!r}"
-            )
+            raise InvalidValue(f"resolution must be a distance and a rotation here, got {resolution!r}")
         value = as_row("resolution", resolution, 2)
         distance, rotation = (require_positive("resolution", number) for number in value)
         # A heading changes twice as much as its quaternion.
