@@ -33,7 +33,7 @@ VERBS = {
     "bench": ("evenroad.research.commands.bench:Bench", "run benchmarks into a store"),
     "report": ("evenroad.research.commands.report:Report", "page, figures and tables of a store"),
     "robot": ("evenroad.cli.robot:Robot", "what an arm is made of, and how fast it is checked"),
-    "export": ("evenroad.research.commands.export:Export", "a store for OMPL's Planner Arena"),
+    "export": ("evenroad.research.commands.report:Export", "a store for OMPL's Planner Arena"),
     "demo": ("evenroad.cli.plan:Demo", "plan through a maze that ships with evenroad"),
 }
 """Name of a verb -> where it is, loaded when it is asked for, and what it does."""

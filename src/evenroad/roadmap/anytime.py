@@ -16,8 +16,7 @@ from evenroad.points.samplers import Sampler, make_sampler
 from evenroad.roadmap.answer import answer, refusal
 from evenroad.roadmap.attempt import Attempt, Searched
 from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.cost import EdgeCost
-from evenroad.roadmap.query import LINKS, Query, as_points, read_places
+from evenroad.roadmap.query import LINKS, EdgeCost, Query, as_points, read_places
 from evenroad.roadmap.result import PlanResult, Stage
 from evenroad.roadmap.rules import Rule, default_rule
 from evenroad.roadmap.search import FREE, UNKNOWN, find_lazily

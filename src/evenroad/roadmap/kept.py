@@ -17,9 +17,8 @@ from evenroad.points.pointset import PointSet
 from evenroad.roadmap.answer import answer, connected, proved_apart, refusal
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.cost import BOUND, EdgeCost, edge_costs
 from evenroad.roadmap.neighbours import Surroundings, nearest_of
-from evenroad.roadmap.query import LINKS, Query, as_points, read_places
+from evenroad.roadmap.query import BOUND, LINKS, EdgeCost, Query, as_points, edge_costs, read_places
 from evenroad.roadmap.result import PlanResult
 from evenroad.roadmap.rules import KNearest, Rule
 from evenroad.roadmap.search import (

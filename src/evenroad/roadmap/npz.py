@@ -11,8 +11,8 @@ from evenroad._fingerprint import Fingerprinted
 from evenroad._npz import Arrays, Path, digest, read_npz, require_array, write_npz
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, NotAvailable
 from evenroad.points.npz import points_of
-from evenroad.roadmap.cost import EdgeCost
 from evenroad.roadmap.kept import Roadmap, WorldRoadmap
+from evenroad.roadmap.query import EdgeCost
 from evenroad.roadmap.rules import rule_named
 from evenroad.roadmap.search import BLOCKED, FREE, UNKNOWN
 from evenroad.space import Space

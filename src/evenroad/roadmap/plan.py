@@ -8,8 +8,7 @@ from evenroad.points.pointset import PointSet
 from evenroad.roadmap.answer import answer, refusal
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.cost import EdgeCost
-from evenroad.roadmap.query import LINKS, Query, as_points, read_places
+from evenroad.roadmap.query import LINKS, EdgeCost, Query, as_points, read_places
 from evenroad.roadmap.result import PlanResult
 from evenroad.roadmap.rules import Rule, default_rule
 from evenroad.roadmap.search import FREE, Finder, march

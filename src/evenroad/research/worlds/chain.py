@@ -12,7 +12,7 @@ from numba import njit
 from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import require_count
 from evenroad.errors import InvalidValue
-from evenroad.research.worlds.compiled import CompiledWorld, comes_first
+from evenroad.research.worlds.corridor import CompiledWorld, comes_first
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.space.joints import FlatSpace
 from evenroad.world.bisection import next_between

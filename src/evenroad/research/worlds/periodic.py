@@ -13,7 +13,7 @@ from numba import njit
 from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import require_count, require_positive
 from evenroad.errors import InvalidValue
-from evenroad.research.worlds.compiled import ROUNDING, CompiledWorld, comes_first, is_in_cube
+from evenroad.research.worlds.corridor import ROUNDING, CompiledWorld, comes_first, is_in_cube
 from evenroad.space import Box
 from evenroad.space.batch import as_cube_batch
 
