@@ -22,7 +22,6 @@ class Fingerprinted(Protocol):
 
         Raises NotAvailable if the value cannot know, such as a world made from a function without a name.
         """
-        ...
 
 
 def fingerprint_of(*values: object) -> str:

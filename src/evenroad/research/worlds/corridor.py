@@ -44,6 +44,17 @@ class CompiledWorld(ABC):
     def _motion_valid(self, a: Floats, b: Floats) -> Bools: ...
 
 
+class CubeWorld(CompiledWorld):
+    """One in the unit cube of dimension `d`."""
+
+    d: int
+
+    @cached_property
+    def space(self) -> Box:
+        """The unit cube with the Euclidean metric."""
+        return Box([0.0] * self.d, [1.0] * self.d)
+
+
 @njit(cache=True, nogil=True, inline="always")
 def comes_first(a: Floats, b: Floats) -> bool:
     """Return whether `a` is not after `b` in the order of words.
@@ -69,7 +80,7 @@ _SIDES = ("comment", "demo")
 
 
 @dataclass(frozen=True)
-class Corridor(CompiledWorld):
+class Corridor(CubeWorld):
     """The corridor of width `lam` along d edges of the unit cube, from (0, .., 0) to (1, .., 1).
 
     A configuration is free iff it lies in [0, 1]^d and there is a k with ``x_i <= lam`` for all i < k and
@@ -102,11 +113,6 @@ class Corridor(CompiledWorld):
         axes = axes if self.side == "comment" else axes[::-1].copy()
         axes.setflags(write=False)
         return axes
-
-    @cached_property
-    def space(self) -> Box:
-        """The unit cube with the Euclidean metric."""
-        return Box([0.0] * self.d, [1.0] * self.d)
 
     @property
     def resolution(self) -> float:

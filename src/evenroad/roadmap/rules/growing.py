@@ -28,7 +28,6 @@ class _Growing(Rule, Protocol):
 
     def at(self, n: int, d: int) -> Rule:
         """Return the rule for n configurations in d dimensions."""
-        ...
 
     def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
         """Return the pairs of the rule for so many; see :class:`Rule`."""
