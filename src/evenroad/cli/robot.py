@@ -27,7 +27,6 @@ _CONFIGURATIONS = 4096
 _MOTIONS = 256
 _MOST_SEGMENTS = 1000
 """Motions that are timed are cut off there: between limits of a million radians each would take ten seconds."""
-
 _SECONDS = 0.2
 
 

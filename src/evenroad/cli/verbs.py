@@ -14,7 +14,6 @@ from evenroad.errors import EvenroadError
 
 DONE = 0
 BAD_INPUT = 2
-
 LONGEST = 600
 """Most characters of an error: input that was pasted by mistake is not shown in full."""
 

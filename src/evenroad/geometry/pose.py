@@ -20,9 +20,7 @@ from evenroad._checks import FARTHEST, as_row
 from evenroad.errors import InvalidValue
 
 Vector = tuple[float, float, float]
-
 NO_ROTATION = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-
 _ORTHONORMAL = 1e-6
 """How far products of rows may be from those of a rotation: room for matrices read from text."""
 

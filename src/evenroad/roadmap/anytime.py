@@ -23,7 +23,6 @@ from evenroad.roadmap.search import FREE, UNKNOWN, find_lazily
 from evenroad.world import World
 
 UNTIL = ("solved", "settled", "budget")
-
 SETTLED = 0.01
 """A path counts as settled when doubling the points has shortened it by no more than this share."""
 

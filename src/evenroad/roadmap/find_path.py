@@ -24,12 +24,9 @@ from evenroad.world import ConnectsAnew, ConnectsItself, World
 
 SECONDS = 5.0
 """Wall time of a budget that is not given."""
-
 NO_POINTS = Origin(family="none", method="no points")
-
 NO_BETTER = 1e-9
 """A path is not improved on that exceeds the shortest possible by no more than this share."""
-
 LEAST_MOTIONS, LONGER = 1000, 4
 """A round gives up after so many motions, or after so many times those of the first path, whichever is more."""
 

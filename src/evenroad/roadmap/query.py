@@ -31,7 +31,6 @@ FEW = 256
 
 EdgeCost: TypeAlias = Callable[[Floats, Floats], Floats]
 """Costs of the motions between the rows of two (m, dim) arrays, (m,); the same both ways, >= their lengths."""
-
 BOUND = 1.0 - 1e-9
 """Costs are at least this share of the length: room for the rounding of a cost that should be the length."""
 

@@ -19,7 +19,6 @@ from evenroad.space.path import motion_lengths, subdivide
 from evenroad.world import World
 
 Indices: TypeAlias = npt.NDArray[np.integer]
-
 SPREADS = (32, 96)
 """Waypoints offered to a round, first of the coarse rounds, then of the fine ones; all pairs of them are checked.
 

@@ -11,7 +11,6 @@ from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.pose import Pose
 
 Kind = Literal["revolute", "continuous", "prismatic", "fixed"]
-
 _ROUNDING = 1e-9
 """Limits that a follower would move by less than this stay as they are written [rad or m]."""
 

@@ -27,7 +27,6 @@ from evenroad.robot.urdf_xml import RobotFile
 DATA = Path(__file__).parent / "data"
 ROBOTS = ("arm7", "ur5")
 """Names of the shipped robots."""
-
 PathLike = str | os.PathLike[str]
 
 

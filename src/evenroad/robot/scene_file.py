@@ -17,7 +17,6 @@ from evenroad.robot.scene import Obstacle, Scene
 
 SCENES = ("box-reach", "box-reach-narrow")
 """Names of the shipped scenes."""
-
 _SECTIONS = ("name", "allowed", "states", "limits")
 _OPTIONAL = ("xyz", "rpy", "quaternion", "cell")
 

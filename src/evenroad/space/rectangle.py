@@ -16,7 +16,6 @@ from evenroad.space.protocol import Space
 
 _LARGEST_COSINE = 1e-9
 """Edges count as perpendicular up to this cosine: room for the rounding of a yaw, not for a slanted frame."""
-
 _ROUNDING = 1e-9
 """Share of an edge by which a point may be outside: room for the rounding of a rotated frame far from the origin."""
 

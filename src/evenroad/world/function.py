@@ -18,7 +18,6 @@ from evenroad.world.bisection import MOST_SEGMENTS, between_ends, require_few_se
 
 OUTSIDE = "it lies outside the bounds of the space"
 """Why a configuration is not free that the space does not contain."""
-
 FINER = 20
 """How many times as densely `FunctionWorld.recheck` looks at states."""
 

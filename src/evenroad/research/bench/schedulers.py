@@ -12,10 +12,8 @@ from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.research.workers import Workers
 
 CONNECT_SECONDS = 8.0
-
 WORKER_SECONDS = 60.0
 """How long a cluster may be without any worker: these may be just starting."""
-
 ADDRESS = re.compile(r"(tcp|tls|wss?)://([^\s/:\[\]]+|\[[0-9a-fA-F:.]+\]):\d{1,5}")
 
 

@@ -16,13 +16,10 @@ from evenroad.research.bench.task import key_of
 
 SCHEMA = 2
 """Version of the tables below."""
-
 APPLICATION = 0x45564E52
 """What the header of the file says whose it is: "EVNR"."""
-
 PATIENCE = 15.0
 """Seconds to wait for another process that holds the file."""
-
 TABLES = (Path(__file__).parent / "store.sql").read_text(encoding="utf-8")
 
 
@@ -34,7 +31,6 @@ COLUMNS = (
 
 NAMED = ("suite", "problem", "sampler", "rule", "search", "status", "set_id", "error", "worker")
 """Columns whose texts are kept as numbers of names."""
-
 _names_in = itemgetter(*map(COLUMNS.index, NAMED))
 _READ_ROLLBACK = ("SQLITE_READONLY_ROLLBACK", "SQLITE_READONLY_RECOVERY", "SQLITE_CANTOPEN")
 """Errors of SQLite where a commit that was cut off must be undone first, and the file or folder is read-only."""

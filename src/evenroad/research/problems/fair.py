@@ -22,7 +22,6 @@ from evenroad.world import World
 
 FarApart = Callable[[Floats, Floats], Bools]
 """Which pairs of rows of two (m, d) arrays of the cube may be a start and a goal, (m,)."""
-
 ENTROPY = 20_261_121
 """Root of every instance of the fair suite; the seed of a suite draws sets, never worlds."""
 
@@ -79,7 +78,6 @@ def make_instance(
 
 PAIRS = 512
 """Pairs of configurations that are tried in one world."""
-
 BATCH = 32
 """Pairs whose validity is asked about together: few, since most worlds need no more."""
 
@@ -176,10 +174,8 @@ BODY = {
 
 BODY_REACH = {2: 0.15, 3: 0.22}
 """How far the body reaches from its reference point, at most."""
-
 RESOLUTION = {2: (0.01, 0.05), 3: (0.02, 0.08)}
 """Distance, and rotation [rad] as the space measures it, between states that are tested on a motion."""
-
 ROTATION_WEIGHT = {2: 0.15, 3: 0.3}
 """What a radian of the space's metric counts: about the way that it moves the far end of the body."""
 
@@ -210,10 +206,8 @@ def _random_rotation(dim: int, rng: np.random.Generator) -> tuple[float, ...]:
 
 DIFFICULTIES = (25, 50, 75)
 """Success of uniform points [%]."""
-
 _TABLE = tomllib.loads((Path(__file__).parent / "fair.toml").read_text(encoding="utf-8"))
 _MEASURED = {(Family[name.upper()], int(d)): of for name, by_d in _TABLE.items() for d, of in by_d.items()}
-
 CALIBRATED_AT: Mapping[tuple[Family, int], int] = {key: of["n"] for key, of in _MEASURED.items()}
 """Family and dimension of the sets -> N of the calibration."""
 
@@ -278,5 +272,4 @@ _EVERY = (
 )
 FAIR_PROBLEMS = {each.name: each for each in _EVERY if each.stream is Stream.REPORTING or each.tuned_on}
 """Name -> problem: ``fair-..`` for what is reported, ``tune-..`` for what chooses."""
-
 FAIR = tuple(problem.source() for problem in FAIR_PROBLEMS.values())

@@ -16,10 +16,8 @@ from evenroad.research.worlds.rigid import OrientedBox, SolidWorld
 from evenroad.space import SE3
 
 Triple = tuple[float, float, float]
-
 _SHARE = 0.01
 """Resolution of motions, as a share of the extents of the translations and of the rotations: OMPL's default."""
-
 _NOT_ROTATED = (1.0, 0.0, 0.0, 0.0)
 
 
@@ -45,10 +43,8 @@ def problem_of(make: Callable[[], Puzzle], set_dim: int, instance: int) -> Probl
 
 _SECTION = 11.75
 """Width of the body's bars."""
-
 _CORNER = (-16.99, -17.906, -24.839)
 """The bars' common corner, from the body's reference point."""
-
 _TILT = math.atan2(2.63, 54.94)
 """By which the body's axes are rotated about -y."""
 
@@ -103,7 +99,6 @@ def _obstacles() -> tuple[OrientedBox, ...]:
 
 
 Range = Sequence[float]
-
 _ARM = ((-22.0, -46.0, -13.24), (-3.0, 31.5, 13.24))
 _FOOT = ((-3.0, 15.0, -13.24), (24.4, 31.4, 13.24))
 _ANGLES_OF_BODY = (1.2, 1.7)

@@ -33,10 +33,8 @@ SCENES = ("maze-1", "maze-2", "maze-3", "chain-10d", "cubicles", "twistycool", "
 """Problems that have a picture."""
 SAME_SCENE = {"cubicles-6d": "cubicles", "twistycool-6d": "twistycool"}
 """Problems that share the picture of another one."""
-
 TRIES = ((1024, 10), (2048, 10), (4096, 10), (2048, 40), (8192, 40))
 """Numbers of points and of neighbours that are tried in turn; a goal deep in a box needs more neighbours."""
-
 CHAIN_POSES = 25
 BODY_POSES = 13
 """Poses along the path that are drawn."""

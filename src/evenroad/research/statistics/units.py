@@ -34,7 +34,6 @@ FEW_UNITS = 10
 """With fewer units than this a bootstrap is too narrow."""
 MANY_UNITS = 1000
 """With more units than this a bootstrap of a difference says what Student's interval says."""
-
 SHORT = 4000
 """Below this, adding zeros up takes less time than leaving them out one by one."""
 

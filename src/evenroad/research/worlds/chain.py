@@ -112,10 +112,8 @@ def _all_distances(a, b):  # type: ignore[no-untyped-def]
 
 _END_PIECE = 0.001
 """Length by which the last link is longer than the others, as one more segment."""
-
 FREE, SELF, WALL = 0, 1, 2
 """Verdicts: nothing is crossed; two links cross; a link crosses a wall."""
-
 _REASONS = {SELF: "two links of the chain cross", WALL: "a link crosses the horn"}
 
 

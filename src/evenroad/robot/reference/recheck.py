@@ -20,10 +20,8 @@ from evenroad.robot.urdf_xml import RobotFile
 from evenroad.space.path import resample
 
 Verdict = Literal["free", "in collision", "not checked"]
-
 FINER = 10
 """States are this many times as dense as those that a motion was planned with."""
-
 SAMPLES = 100
 """Random configurations that tell pairs whose shapes are always in contact."""
 

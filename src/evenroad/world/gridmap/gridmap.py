@@ -29,7 +29,6 @@ from evenroad.world.protocol import Connection
 
 _SPREADS = (32, 96)
 """Points that a path is offered to be straightened with, in the coarse rounds and in the fine ones."""
-
 _SMALLEST_RADIUS = 1e-150
 """In pixels: its square is still above 0, so that a disk of any size touches what its centre lies on."""
 

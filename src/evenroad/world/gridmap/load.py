@@ -24,7 +24,6 @@ from evenroad.world.gridmap.gridmap import GridMap
 
 _IMAGES = (".png", ".pgm")
 _ROS_MAPS = (".yaml", ".yml")
-
 _REQUIRED = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
 _MODES = ("trinary", "scale", "raw")
 
@@ -163,10 +162,8 @@ def _summed_channels(image: Image.Image, *, with_alpha: bool) -> tuple[npt.NDArr
 
 LARGEST_IMAGE = 100_000_000
 """Most pixels that a map may have: 10 000 x 10 000.  Its world then takes about 0.6 GB."""
-
 DARK = 128.0
 """A bare image's cell is an obstacle if its luminance, of 255, is below this."""
-
 _FORMATS = ("PNG", "PPM")
 """The only decoders let loose on a file; PPM is Pillow's name for the family of PGM."""
 

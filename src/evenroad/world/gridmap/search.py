@@ -32,7 +32,6 @@ STEPS = np.array(
 
 COSTS = np.array([10] * 4 + [14] * 4 + [5] * 4 + [7] * 4 + [11] * 8)
 """Of the steps: about ten times their lengths in pixels."""
-
 _LINKS = 24
 """Lattice points that an end is linked to."""
 
