@@ -14,7 +14,6 @@ from evenroad.errors import InvalidValue, NotAvailable, UnknownName, shown
 
 LARGEST_COUNT = 2**31 - 1
 """Nodes of a roadmap are numbered by int32: nothing that is counted here can sensibly be larger."""
-
 FARTHEST = 1e9
 """Lengths and places of bodies [m]: their squares and cubes then are numbers, in single precision, too."""
 

@@ -117,9 +117,7 @@ def _colliding(result: PlanResult, world: ArmWorld, pair: tuple[int, int]) -> li
     end = result.start if result.status is Status.START_INVALID else result.goal
     reason = world.explain(end)
     bodies = _bodies(world.robot, capsule_ends(world.robot, end[np.newaxis])[0], pair)
-    named = [
-        body for body, each in zip(bodies, world.robot.capsules, strict=True) if repr(each.link) in reason
-    ]
+    named = [body for body, own in zip(bodies, world.robot.capsules, strict=True) if repr(own.link) in reason]
     obstacles = [each for each in world.scene.obstacles if repr(each.name) in reason]
     return named + [obstacle_outline(each, pair) for each in obstacles]
 
@@ -127,9 +125,8 @@ def _colliding(result: PlanResult, world: ArmWorld, pair: tuple[int, int]) -> li
 def _tint(share: float, strength: float) -> Colour:
     """Return the colour between start and goal, paler for less strength."""
     start, goal = (np.array(ImageColor.getrgb(colour)) for colour in (style.START, style.GOAL))
-    red, green, blue = (
-        np.rint(255 - strength * (255 - (1.0 - share) * start - share * goal)).astype(int).tolist()
-    )
+    colour = 255 - strength * (255 - (1.0 - share) * start - share * goal)
+    red, green, blue = np.rint(colour).astype(int).tolist()
     return red, green, blue
 
 

@@ -13,11 +13,9 @@ from evenroad._arrays import Floats
 
 FINER = 2
 """Bodies are drawn so many times as large, and shrunk: their edges are smooth then."""
-
 TEXT, GRID = "#000000", "#e3e9ee"
 _LEFT, _BETWEEN, _TOP, _BOTTOM = 95, 105, 105, 125
 """Margins in pixels; ticks and labels of a view are left of it and below."""
-
 Colour = tuple[int, int, int] | tuple[int, int, int, int] | str
 
 

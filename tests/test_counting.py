@@ -6,7 +6,8 @@ import numpy as np
 
 from evenroad.research.worlds import Corridor
 from evenroad.testing import WorldContract
-from evenroad.world import Counting, Explains, GridMap
+from evenroad.world import Explains, GridMap
+from tests.counting import Counting
 
 CORRIDOR = Corridor(2, 0.3)
 

@@ -8,9 +8,9 @@ import numpy as np
 from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints
+from evenroad.research.worlds.rigid.oriented_box import BoxTable
 from evenroad.space.so3 import SMALL_ANGLE
 from evenroad.world.bisection import next_between
-from evenroad.world.solids.oriented_box import BoxTable
 
 _ROUNDING = 4e-6
 """In a proof boxes are enlarged by this share of their points' ways more: quaternions are of norm 1 up to 1e-6."""
@@ -80,13 +80,7 @@ def _motion_is_free(a, b, step, rotation_step, body, obstacles, near, planar, st
 
 @njit(cache=True, nogil=True)
 def motions_are_proved(
-    a: Floats,
-    b: Floats,
-    tolerance: float,
-    body: BoxTable,
-    reaches: Floats,
-    obstacles: BoxTable,
-    planar: bool,
+    a: Floats, b: Floats, tolerance: float, body: BoxTable, reaches: Floats, obstacles: BoxTable, planar: bool
 ) -> Bools:
     """Return which motions between poses, (m, 7), are proved free, with no gap between states.
 

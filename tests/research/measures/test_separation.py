@@ -8,8 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue
-from evenroad.points.measures import riesz_rooted, separation
-from evenroad.points.measures.separation import log_riesz_of_columns
+from evenroad.research.measures import log_riesz_of_columns, riesz_rooted, separation
 
 
 def slow_separation(points, periodic):

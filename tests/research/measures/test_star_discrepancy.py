@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue, NotAvailable
-from evenroad.points.measures import MEASURES, star_discrepancy
+from evenroad.points.measures import MEASURES
+from evenroad.research.measures import star_discrepancy
 
 
 def slow_star_discrepancy(points):

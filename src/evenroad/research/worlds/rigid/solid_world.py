@@ -1,11 +1,11 @@
-"""SolidWorld: a rigid body of boxes among boxes and rectangles."""
+"""SolidWorld: a rigid body of boxes among boxes and rectangles; and the poses of the spaces that bodies move in."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import ClassVar, TypeAlias
 
 import numpy as np
 
@@ -13,16 +13,78 @@ from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import as_row, require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
-from evenroad.space import Box, Product
+from evenroad.geometry.mesh import TriangleMesh
+from evenroad.research.worlds.rigid.kernel import contacts, motions_are_free, motions_are_proved
+from evenroad.research.worlds.rigid.oriented_box import BoxTable, OrientedBox, box_table, reaches_of
+from evenroad.space import SO3, Box, Circle, Product, Space
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.bisection import require_few_segments
 from evenroad.world.function import OUTSIDE
-from evenroad.world.solids.kernel import contacts, motions_are_free, motions_are_proved
-from evenroad.world.solids.oriented_box import BoxTable, OrientedBox, box_table, reaches_of
-from evenroad.world.solids.poses import RigidSpace, as_pose_pair, as_poses, body_dimension, contact_with
 
 _TOLERANCE = 1e-3
 """How near to contact `SolidWorld.recheck` still proves a motion free, as a share of the step of translations."""
+
+
+RigidSpace: TypeAlias = Product | Box
+"""``SE2(..)``, ``SE3(..)``, or a `Box` of 2 or 3 axes for a body that does not rotate."""
+
+
+def body_dimension(space: Space) -> int:
+    """Return 2 or 3: the dimension of the bodies that move in `space`.
+
+    Raises InvalidValue if `space` is none of ``SE2(..)``, ``SE3(..)`` and a `Box` of 2 or 3 axes.
+    """
+    if isinstance(space, Box) and space.dim in (2, 3):
+        return space.dim
+    if isinstance(space, Product) and len(space.parts) == 2 and isinstance(space.parts[0], Box):
+        position, rotation = space.parts
+        for dim, kind in ((2, Circle), (3, SO3)):
+            if position.dim == dim and isinstance(rotation, kind):
+                return dim
+    raise InvalidValue(f"space must be SE2(..), SE3(..) or a Box of 2 or 3 axes, got {space!r}")
+
+
+def contact_with(obstacles: Sequence[OrientedBox | TriangleMesh], number: int) -> str:
+    """Say which obstacle a body meets."""
+    name = obstacles[number].name
+    return f"the body meets obstacle {number}{f' ({name})' if name else ''}"
+
+
+def as_poses(q: Floats, space: Space) -> Floats:
+    """Return configurations (n, dim) of such a space as (n, 7): x, y, z, then the quaternion's w, x, y, z.
+
+    The quaternions of a space that contains `q` are of norm 1; others are not, and are not looked at.
+    """
+    dim = body_dimension(space)
+    poses = np.zeros((len(q), 7))
+    poses[:, :dim] = q[:, :dim]
+    poses[:, 3] = 1.0
+    if isinstance(space, Product) and dim == 3:
+        poses[:, 3:] = q[:, 3:]
+    elif isinstance(space, Product):
+        half = _heading(q) / 2.0
+        poses[:, 3], poses[:, 6] = np.cos(half), np.sin(half)
+    return poses
+
+
+def as_pose_pair(a: Floats, b: Floats, space: Space) -> tuple[Floats, Floats]:
+    """Return start and end poses whose quaternions have signs such that the shorter arc is the space's path."""
+    first, second = as_poses(a, space), as_poses(b, space)
+    if not isinstance(space, Product):
+        return first, second
+    if body_dimension(space) == 3:
+        p, q = first[:, 3:].T, second[:, 3:].T
+        other_sign = p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3] < 0.0
+    else:
+        # Exactly opposite headings: their quaternions' product is zero up to rounding and decides nothing.
+        other_sign = np.abs(_heading(b) - _heading(a)) > np.pi
+    second[other_sign, 3:] *= -1.0
+    return first, second
+
+
+def _heading(q: Floats) -> Floats:
+    """Return the headings of planar poses in [-pi, pi)."""
+    return Circle().wrapped(q[:, 2:])[:, 0]
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,9 +156,8 @@ class SolidWorld:
         free = self.space.contains(first) & self.space.contains(second)
         inside = np.flatnonzero(free)
         start, end = as_pose_pair(first[inside], second[inside], self.space)
-        free[inside] = motions_are_free(
-            start, end, *self._steps, self._body, self._reach, self._obstacles, self._planar
-        )
+        bodies = (self._body, self._reach, self._obstacles, self._planar)
+        free[inside] = motions_are_free(start, end, *self._steps, *bodies)
         return free
 
     def recheck(self, path: Floats) -> Bools:
@@ -110,9 +171,8 @@ class SolidWorld:
         proved = inside[:-1] & inside[1:]
         rows = np.flatnonzero(proved)
         start, end = as_pose_pair(waypoints[rows], waypoints[rows + 1], self.space)
-        proved[rows] = motions_are_proved(
-            start, end, _TOLERANCE * self._steps[0], self._body, self._reaches, self._obstacles, self._planar
-        )
+        bodies = (self._body, self._reaches, self._obstacles, self._planar)
+        proved[rows] = motions_are_proved(start, end, _TOLERANCE * self._steps[0], *bodies)
         return proved
 
     def explain(self, q: Floats) -> str:
@@ -151,9 +211,7 @@ def _as_steps(
     value: float | tuple[float, ...]
     if isinstance(space, Product):
         if not isinstance(resolution, Sequence | np.ndarray) or isinstance(resolution, str):
-            raise InvalidValue(
-                f"resolution must be a distance and a rotation for SE2 and SE3, got {resolution!r}"
-            )
+            raise InvalidValue(f"resolution must be a distance and a rotation here, got {resolution!r}")
         value = as_row("resolution", resolution, 2)
         distance, rotation = (require_positive("resolution", number) for number in value)
         # A heading changes twice as much as its quaternion.

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
+from evenroad.research.worlds.rigid import OrientedBox, SolidWorld
 from evenroad.roadmap import plan
 from evenroad.space import SE2, SE3, Box
 from evenroad.space.path import subdivide
 from evenroad.world import FunctionWorld
 from evenroad.world.protocol import Rechecks
-from evenroad.world.solids import OrientedBox, SolidWorld
-from tests.world.solids_oracle import gap
-from tests.world.test_solid_world import WORLDS, deepest
+from tests.research.worlds.solids_oracle import gap
+from tests.research.worlds.test_solid_world import WORLDS, deepest
 
 FINER = 20
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
-from evenroad.space.chain import ChainSpace
+from evenroad.research.worlds.chain import ChainSpace
 from evenroad.testing import SpaceContract
 
 

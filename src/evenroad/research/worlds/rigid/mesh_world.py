@@ -4,40 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints, set_fields
-from evenroad._checks import require_extra
-from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.errors import InvalidValue
 from evenroad.geometry.mesh import TriangleMesh, merged
 from evenroad.geometry.pose import rotations_from_quaternions
+from evenroad.research.worlds.rigid.solid_world import RigidSpace, as_poses, body_dimension, contact_with
+from evenroad.robot.reference.coal_world import require_coal, tree_of
 from evenroad.space.batch import as_batch
 from evenroad.world.function import OUTSIDE, FunctionWorld, TestedAtStates
-from evenroad.world.solids.poses import RigidSpace, as_poses, body_dimension, contact_with
-
-
-def require_coal() -> Any:
-    """Return the module coal; NotAvailable if it is not installed."""
-    return require_extra("coal", "mesh", "checking meshes")
-
-
-def tree_of(coal: Any, mesh: TriangleMesh) -> Any:
-    """Return coal's tree of oriented boxes over the triangles of a mesh; its surface as it is, nothing made convex.
-
-    Raises BrokenFile if coal leaves triangles out.
-    """
-    tree = coal.BVHModelOBBRSS()
-    tree.beginModel(len(mesh.triangles), len(mesh.vertices))
-    tree.addVertices(mesh.vertices)
-    tree.addTriangles(mesh.triangles)
-    tree.endModel()
-    if not tree.num_tris == len(mesh.triangles) > 0:
-        raise BrokenFile(
-            f"coal took {tree.num_tris} of {len(mesh.triangles)} triangles: the others would never collide"
-        )
-    return tree
 
 
 class Collider:
@@ -107,10 +84,8 @@ class MeshWorld(TestedAtStates):
             if not isinstance(mesh, TriangleMesh):
                 raise InvalidValue(f"{name} must be TriangleMesh values, got {mesh!r}")
         states = FunctionWorld(self.space, self._is_free, self.resolution)
-        collider = Collider(self.body, merged(obstacles))
-        set_fields(
-            self, obstacles=obstacles, resolution=states.resolution, _collider=collider, _states=states
-        )
+        set_fields(self, obstacles=obstacles, resolution=states.resolution)
+        set_fields(self, _collider=Collider(self.body, merged(obstacles)), _states=states)
 
     def explain(self, q: Floats) -> str:
         """Return in words why the pose `q`, (dim,), is not free."""

@@ -10,10 +10,10 @@ from scipy.optimize import linprog
 
 from evenroad.errors import InvalidValue
 from evenroad.geometry import Pose, rotation_from_heading, rotation_from_quaternion, shapes
+from evenroad.research.worlds.rigid import OrientedBox, SolidWorld, shell
 from evenroad.space import SE2, SE3, SO3, Box, Circle, JointSpace, Product
 from evenroad.testing import WorldContract
 from evenroad.world import FunctionWorld
-from evenroad.world.solids import OrientedBox, SolidWorld, shell
 
 
 def a_turn(random):
