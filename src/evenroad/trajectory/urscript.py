@@ -19,6 +19,9 @@ _JOINTS = 6
 _AT_START = 0.01
 """With a joint farther from the start than this the program does not begin [rad]."""
 
+_FASTEST = 3.14
+"""The controller takes no ``movej`` that is faster [rad/s]."""
+
 _SHARES = (0.45, 0.2, 0.1, 0.05)
 """Of the shorter motion at a corner, tried in turn; two corners never share a place."""
 
@@ -52,7 +55,7 @@ def movej_script(trajectory: Trajectory, order: Sequence[str] | None = None) -> 
     places |= dict(zip(trajectory.names, path.T, strict=True))
     waypoints = np.column_stack([places[name] for name in names])
     radii = [*(trajectory.radii or np.zeros(len(path) - 2)), 0.0]
-    fastest = f"a={min(trajectory.limits.acceleration):.6g}, v={min(trajectory.limits.velocity):.6g}"
+    fastest = f"a={min(trajectory.limits.acceleration):.6g}, v={min(*trajectory.limits.velocity, _FASTEST):.6g}"
     rows = zip(waypoints[1:], radii, strict=True)
     moves = [f"movej({_row(q)}, {fastest}, r={radius:.6g})" for q, radius in rows]
     return _program("evenroad_movej", waypoints[0], moves)
