@@ -1,9 +1,9 @@
 """Timing of an arm's paths: how long it takes to find, how long the robot drives, how near to its limits it comes.
 
-    python -m benchmarks.trajectories [--problems 40] [--scene-c]
+    python -m benchmarks.trajectories [--problems 40]
 
-Plans, shortens and times paths of a UR5 on the reporting problems; toppra, on the same rounded path with a grid as fine,
-is beside it where it is installed.
+Plans, shortens and times paths of a UR5 on the reporting problems; toppra, on the same rounded path with a grid as
+fine, is beside it where it is installed.
 """
 
 from __future__ import annotations
@@ -48,7 +48,9 @@ def bound(path: Path, limits: Limits) -> float:
     for way, velocity, push in zip(path.T, limits.velocity, limits.acceleration, strict=True):
         steps = np.diff(way)
         turns = np.flatnonzero(np.diff(np.sign(steps[steps != 0.0])) != 0.0)
-        runs = np.add.reduceat(steps[steps != 0.0], np.concatenate([[0], turns + 1])) if np.any(steps) else [0.0]
+        runs = (
+            np.add.reduceat(steps[steps != 0.0], np.concatenate([[0], turns + 1])) if np.any(steps) else [0.0]
+        )
         times = [
             2.0 * np.sqrt(run / push) if run < velocity**2 / push else run / velocity + velocity / push
             for run in np.abs(runs)

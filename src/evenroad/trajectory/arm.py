@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy.typing as npt
 
 from evenroad._arrays import Floats
-from evenroad.robot import ArmWorld, Robot, held_values
+from evenroad.robot import ArmWorld, Robot, held_values, tip_links
 from evenroad.robot.kinematics import link_poses
 from evenroad.trajectory.limits import Limits, limits_of
 from evenroad.trajectory.trajectory import DEVIATION, STEP, Trajectory, make_trajectory
@@ -54,7 +52,7 @@ def arm_trajectory(
     )
     if not rounded_by_controller:
         return trajectory
-    tip = robot.links.index(tip_link(robot))
+    tip = robot.links.index(tip_links(robot)[-1])
 
     def tip_at(q: Floats) -> Floats:
         places: Floats = link_poses(robot, q)[:, tip, :3, 3]
@@ -75,24 +73,12 @@ def controller_joints(robot: Robot) -> tuple[str, ...]:
         while link in parent_joint:
             links.add(link)
             link = parent_joint[link].parent
-    link = tip_link(robot)
-    while link in parent_joint and link not in links:
-        links.add(link)
-        link = parent_joint[link].parent
+    for link in tip_links(robot):
+        while link in parent_joint and link not in links:
+            links.add(link)
+            link = parent_joint[link].parent
     return tuple(
         joint.name
         for joint in robot.joints
         if joint.child in links and joint.kind != "fixed" and joint.mimic is None
     )
-
-
-def tip_link(robot: Robot) -> str:
-    """Return the last link of the chain of the last joint that is planned for, before the chain branches."""
-    link = {joint.name: joint.child for joint in robot.joints}[robot.group[-1]]
-    while len(next_links := _children(robot, link)) == 1:
-        link = next_links[0]
-    return link
-
-
-def _children(robot: Robot, link: str) -> Sequence[str]:
-    return [joint.child for joint in robot.joints if joint.parent == link]

@@ -55,7 +55,9 @@ def movej_script(trajectory: Trajectory, order: Sequence[str] | None = None) -> 
     places |= dict(zip(trajectory.names, path.T, strict=True))
     waypoints = np.column_stack([places[name] for name in names])
     radii = [*(trajectory.radii or np.zeros(len(path) - 2)), 0.0]
-    fastest = f"a={min(trajectory.limits.acceleration):.6g}, v={min(*trajectory.limits.velocity, _FASTEST):.6g}"
+    fastest = (
+        f"a={min(trajectory.limits.acceleration):.6g}, v={min(*trajectory.limits.velocity, _FASTEST):.6g}"
+    )
     rows = zip(waypoints[1:], radii, strict=True)
     moves = [f"movej({_row(q)}, {fastest}, r={radius:.6g})" for q, radius in rows]
     return _program("evenroad_movej", waypoints[0], moves)
