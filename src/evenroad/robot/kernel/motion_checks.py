@@ -62,10 +62,10 @@ class Checks(NamedTuple):
 
 @quick
 def checks_of(
-    motion_check: int, check: int, resolution: float, tables: int, by_joint: int, memory: int, counts: int
+    addresses: int, resolution: float, tables: int, by_joint: int, memory: int, counts: int
 ) -> Checks:
     """Return the checks of a world; its memory is cut up, and what does not move put into its place."""
-    ints = integers_at(tables, (ANY_LENGTH,))
+    ints, check = integers_at(tables, (ANY_LENGTH,)), integers_at(addresses, (3,))
     dim, capsules, pairs = ints[at.COORDINATES], ints[at.CAPSULES], ints[at.PAIRS]
     table = tables + 8 * ints[at.INTEGERS]
     bounds = matrix_at(by_joint, (3, dim))
@@ -74,18 +74,19 @@ def checks_of(
     # Lanes begin on a cache line.
     states = (memory + 8 * DESK + 63) // 64 * 64
     scratch = states + 8 * LANES * dim
-    enlarged = scratch + 4 * ints[at.SCRATCH]
+    # Behind the places the check of sixteen keeps where hulls are decided.
+    enlarged = scratch + 4 * ints[at.SCRATCH] + 64
     floats = ints[at.BLOCK_FLOATS] + at.BLOCK_FLOAT_ROW * ints[at.BLOCKS]
     given, copied = singles_at(table, (floats,)), singles_at(enlarged, (floats,))
     for place in range(floats):
         copied[place] = given[place]
     motion = enlarged + (4 * floats + 7) // 8 * 8
-    desk[0], desk[1], desk[2], desk[3], desk[4], desk[5] = check, by_joint, states, counts, tables, table
+    desk[0], desk[1], desk[2], desk[3], desk[4], desk[5] = check[1], by_joint, states, counts, tables, table
     desk[6], desk[7], desk[8], desk[9] = arms, arms + 8 * dim * capsules, scratch, enlarged
     desk[10], desk[11], desk[12], desk[13] = motion, dim, capsules, pairs
-    call_at(check, (scratch, states, tables, table, 0))
+    call_at(check[1], (scratch, check[2], tables, table, 0))
     return Checks(
-        motion_check,
+        check[0],
         memory,
         resolution,
         doubles_at(states, (dim * LANES,)),

@@ -60,7 +60,6 @@ def shorten_points(
     size: int,
     dim: int,
     count: int,
-    motion_check: int,
     check: int,
     resolution: float,
     tables: int,
@@ -69,7 +68,7 @@ def shorten_points(
     room: int,
 ) -> int:
     """Do the work of `shorten_path` on the last `rows` of the memory, and return how many are left."""
-    checks = checks_of(motion_check, check, resolution, tables, by_joint, memory, room)
+    checks = checks_of(check, resolution, tables, by_joint, memory, room)
     pairs = matrix_at(room + 8 * COUNTS, (count, 2))
     own = room + 8 * (COUNTS + 2 * count)
     ends, way = matrix_at(own, (2, dim)), doubles_at(own + 8 * 2 * dim, (dim,))

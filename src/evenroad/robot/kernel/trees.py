@@ -84,7 +84,6 @@ def grow(
     steps_count: int,
     most_motions: int,
     slice_batches: int,
-    motion_check: int,
     check: int,
     resolution: float,
     tables: int,
@@ -112,10 +111,10 @@ def grow(
         After so many motions the budget is spent.
     slice_batches
         After about so many batches of sixteen checks the call returns, for the caller to look at the clock.
-    motion_check, check, resolution, tables, by_joint, memory, room
+    check, resolution, tables, by_joint, memory, room
         As ``LaneWorld.arguments`` gives them, with room for ``memory_of``.
     """
-    checks = checks_of(motion_check, check, resolution, tables, by_joint, memory, kept)
+    checks = checks_of(check, resolution, tables, by_joint, memory, kept)
     bounds = checks.bounds
     dim = bounds.shape[1]
     state, ends = integers_at(kept, (STATE,)), matrix_at(kept + 8 * (STATE + 2), (count, dim))
