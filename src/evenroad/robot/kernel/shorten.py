@@ -32,8 +32,8 @@ MOST_CUTS = 64
 """So many cuts of corners are tried at most."""
 
 
-def shorten_path(world: LaneWorld, path: Floats, pairs: Floats) -> tuple[Floats, int]:
-    """Return a path that is no longer, and how many motions were looked at.
+def shorten_path(world: LaneWorld, path: Floats, pairs: int, count: int) -> tuple[Floats, int]:
+    """Return a path that is no longer, without waypoints where it is not finite, and how many motions were looked at.
 
     Parameters
     ----------
@@ -41,17 +41,17 @@ def shorten_path(world: LaneWorld, path: Floats, pairs: Floats) -> tuple[Floats,
         The robot in its scene.
     path : float64 array, shape (p, dim), p >= 2
         Waypoints, every motion free.
-    pairs : float64 array, shape (n, 2)
-        Shares of the path's length, from 0 to 1: between which places a straight motion is tried.
+    pairs, count
+        Address of a float64 array, (count, 2): shares of the path's length, from 0 to 1, between which places a
+        straight motion is tried.
     """
     size, dim = path.shape
-    rows = size + len(pairs) + MOST_CUTS + 4
-    room, arguments = world.arguments(COUNTS + 2 * len(pairs) + rows * (dim + 1) + 3 * dim)
-    counts, points = room[:COUNTS].view(np.int64), room[-rows * dim :].reshape(rows, dim)
-    counts[:], points[:size] = 0, path
-    room[COUNTS : COUNTS + pairs.size] = pairs.ravel()
-    left = shorten_points(rows, size, dim, len(pairs), *arguments)
-    return points[:left].copy(), int(counts[MOTIONS])
+    rows = size + count + MOST_CUTS + 4
+    room, arguments = world.arguments(COUNTS + rows * (dim + 1) + 3 * dim)
+    points = room[-rows * dim :].reshape(rows, dim)
+    room[:COUNTS], points[:size] = 0.0, path
+    left = shorten_points(rows, size, dim, pairs, count, *arguments)
+    return points[:left].copy(), int(room[:COUNTS].view(np.int64)[MOTIONS])
 
 
 @program
@@ -59,6 +59,7 @@ def shorten_points(
     rows: int,
     size: int,
     dim: int,
+    shares: int,
     count: int,
     check: int,
     resolution: float,
@@ -67,14 +68,19 @@ def shorten_points(
     memory: int,
     room: int,
 ) -> int:
-    """Do the work of `shorten_path` on the last `rows` of the memory, and return how many are left."""
+    """Do the work of `shorten_path` on the last `rows` of the memory, and return how many are left.
+
+    0 where the path is not finite.
+    """
     checks = checks_of(check, resolution, tables, by_joint, memory, room)
-    pairs = matrix_at(room + 8 * COUNTS, (count, 2))
-    own = room + 8 * (COUNTS + 2 * count)
+    pairs, own = matrix_at(shares, (count, 2)), room + 8 * COUNTS
     ends, way = matrix_at(own, (2, dim)), doubles_at(own + 8 * 2 * dim, (dim,))
     places = doubles_at(own + 8 * 3 * dim, (rows,))
     points = matrix_at(own + 8 * (3 * dim + rows), (rows, dim))
     for i in range(size):
+        for k in range(dim):
+            if not np.isfinite(points[i, k]):
+                return 0
         enter(points[i], checks.bounds, points[i])
     size = _pass_by(points, size, checks)
     _measure(points, places, size, way, checks)
