@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from struct import Struct
 
 from evenroad._checks import require_known
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import NO_ROTATION, Pose, Vector
 from evenroad.geometry.shapes import PRIMITIVES, Capsule, Shape, along_z, shape_of
+
+_ROW = Struct("16d")
+_NUMBERS = {kind: number for number, kind in enumerate(PRIMITIVES)}
 
 
 @dataclass(frozen=True)
@@ -30,6 +34,8 @@ class Obstacle:
     name: str
     body: Shape
     cell: bool = False
+    row: bytes = field(init=False, repr=False, compare=False)
+    """Sixteen doubles, as compiled code reads obstacles, see ``kernel/obstacles.py``."""
 
     def __post_init__(self) -> None:
         body = along_z(self.body) if isinstance(self.body, Capsule) else self.body
@@ -40,6 +46,10 @@ class Obstacle:
                 f"obstacle {self.name!r} must be fixed to the world, not to a link, got {body.link!r}"
             )
         object.__setattr__(self, "body", body)
+        # Now rather than for every world: an obstacle is in many scenes.
+        size = (*body.size, 0.0, 0.0)[:3]
+        row = _ROW.pack(_NUMBERS[body.kind], *size, *body.pose.rotation, *body.pose.xyz)
+        object.__setattr__(self, "row", row)
 
     @classmethod
     def of(

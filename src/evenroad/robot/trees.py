@@ -129,7 +129,9 @@ def shorten(world: PlansWithTrees, path: npt.ArrayLike) -> tuple[Floats, int]:
     """
     dim = world.space.dim
     # An array as planners give it needs no look here; that it is finite compiled code sees.
-    if not (type(path) is np.ndarray and path.dtype == np.float64 and path.ndim == 2 and path.shape[1] == dim):
+    if not (
+        type(path) is np.ndarray and path.dtype == np.float64 and path.ndim == 2 and path.shape[1] == dim
+    ):
         path = as_batch("path", path, dim)
     if len(path) < 2:
         raise InvalidValue(f"a path must have 2 waypoints or more, got {len(path)}")

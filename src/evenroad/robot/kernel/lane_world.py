@@ -31,11 +31,14 @@ class LaneWorld:
         and the two of a pair against each other, (dim, capsule pairs), at most [m/rad].
     resolution : float
         Largest distance between neighbouring states of a motion.
+    at : tuple of two int, optional
+        Addresses of the two arrays, where they are known.
     """
 
     tables: npt.NDArray[np.int64]
     by_joint: Floats
     resolution: float
+    at: tuple[int, int] | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return how a copy is made, here or in another process: it finds out for itself where its arrays are."""
@@ -61,8 +64,9 @@ class LaneWorld:
         dim, things = header[at.COORDINATES], header[at.CAPSULES] + header[at.PAIRS]
         places = (LANES + 3) * dim + LANES + things + 2 * MOST_WAITING
         doubles = DESK + 2 * LANES + places + header[at.SCRATCH] // 2 + len(self.tables)
-        checks = check_addresses(header[at.HULL_PAIRS] > 0)
-        return address(checks), address(self.tables), address(self.by_joint), doubles
+        checks = _address_of_checks(header[at.HULL_PAIRS] > 0)
+        tables, by_joint = self.at or (address(self.tables), address(self.by_joint))
+        return checks, tables, by_joint, doubles
 
 
 class _Memory(threading.local):
@@ -91,3 +95,8 @@ def check_addresses(with_hulls: bool) -> Ints:
 
         hulls = meeting_address()
     return np.array([motion_check_address(), check_address(), hulls])
+
+
+@cache
+def _address_of_checks(with_hulls: bool) -> int:
+    return address(check_addresses(with_hulls))
