@@ -21,7 +21,7 @@ from evenroad.robot.kernel.addresses import (
     matrix_at,
     singles_at,
 )
-from evenroad.robot.kernel.layout import DESK, LANES, MOST_WAITING, quick
+from evenroad.robot.kernel.layout import DESK, LANES, MOST_WAITING, quick, quick_inlined
 from evenroad.robot.kernel.motion import span
 from evenroad.robot.kernel.motion_proof import is_proved
 from evenroad.robot.kernel.motion_states import COUNTS, MOTIONS, Motion, World, are_free, blocked_states
@@ -95,13 +95,13 @@ def checks_of(
     )
 
 
-@quick
+@quick_inlined
 def blocked(c: Checks) -> int:
     """Return the mask of the sixteen configurations in ``c.states`` that touch something."""
     return call_at(c.address, (0, 0, STATES, 0.0, 0, 1.0, c.desk))
 
 
-@quick
+@quick_inlined
 def motion_free(a: Floats, b: Floats, known: int, c: Checks) -> bool:
     """Return whether the motion from `a` to `b`, both within bounds, is free at its states.
 
@@ -112,7 +112,7 @@ def motion_free(a: Floats, b: Floats, known: int, c: Checks) -> bool:
     return call_at(c.address, (a, b, known, 0.0, 0, c.resolution, c.desk)) != 0
 
 
-@quick
+@quick_inlined
 def motion_proved(a: Floats, b: Floats, tolerance: float, most_batches: int, c: Checks) -> bool:
     """Return whether the motion from `a` to `b`, within bounds, is proved free: throughout, not at states alone.
 

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import doubles_at, matrix_at
 from evenroad.robot.kernel.lane_world import LaneWorld
-from evenroad.robot.kernel.layout import program, quick
+from evenroad.robot.kernel.layout import program, quick, quick_inlined
 from evenroad.robot.kernel.motion import canonical, distance_and_way, enter
 from evenroad.robot.kernel.motion_checks import (
     COARSE,
@@ -156,7 +156,7 @@ def _joined(
     return size
 
 
-@quick
+@quick_inlined
 def _is_shortcut(a: Floats, b: Floats, checks: Checks) -> bool:
     """Return whether the motion between two free configurations is free and proved."""
     return motion_free(a, b, COARSE, checks) and motion_proved(a, b, TOLERANCE, BATCHES, checks)
@@ -180,7 +180,7 @@ def _pass_by(points: Floats, size: int, checks: Checks) -> int:
     return size
 
 
-@quick
+@quick_inlined
 def _measure(points: Floats, places: Floats, size: int, way: Floats, checks: Checks) -> None:
     """Write how far along the path each waypoint is."""
     places[0] = 0.0
@@ -188,7 +188,7 @@ def _measure(points: Floats, places: Floats, size: int, way: Floats, checks: Che
         places[i] = places[i - 1] + distance_and_way(points[i - 1], points[i], checks.bounds, way)
 
 
-@quick
+@quick_inlined
 def _place_at(
     points: Floats, places: Floats, i: int, along: float, into: Floats, way: Floats, checks: Checks
 ) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import integers_at, matrix_at
-from evenroad.robot.kernel.layout import LANES, program, quick
+from evenroad.robot.kernel.layout import LANES, program, quick, quick_inlined
 from evenroad.robot.kernel.motion import canonical, distance_and_way, enter
 from evenroad.robot.kernel.motion_checks import (
     BOTH_ENDS,
@@ -202,7 +202,7 @@ def _begin(ends: Floats, trees: Trees, memory: Memory, checks: Checks) -> None:
             return
 
 
-@quick
+@quick_inlined
 def _extended(trees: Trees, tree: int, origin: int, target: Floats, checks: Checks) -> int:
     """Return the number of a new node at `target`, or -1 where the motion there from `origin` is blocked."""
     if not motion_free(trees.nodes[tree, origin], target, START, checks):
