@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import integers_at, matrix_at, singles_at
-from evenroad.robot.kernel.layout import LANES, quick
+from evenroad.robot.kernel.layout import LANES, quick, quick_inlined
 from evenroad.robot.kernel.motion import canonical, distance_and_way
 from evenroad.robot.kernel.motion_checks import Checks, blocked
 from evenroad.robot.kernel.motion_states import CONFIGURATIONS, COUNTS, MOTIONS
@@ -97,7 +97,7 @@ def memory_of(room: int, bounds: Floats) -> Memory:
     )
 
 
-@quick
+@quick_inlined
 def candidates(
     trees: Trees, tree: int, state: Ints, sequence: Floats, ball: Floats, memory: Memory, checks: Checks
 ) -> int:

@@ -210,7 +210,7 @@ def _extended(trees: Trees, tree: int, origin: int, target: Floats, checks: Chec
     return add_node(trees, tree, target, origin)
 
 
-@quick
+@quick_inlined
 def _reach(trees: Trees, tree: int, found: int, other: int, memory: Memory, checks: Checks) -> int:
     """Go from a node towards one of the other tree in equal steps, each a new node, until one is blocked.
 
