@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from evenroad._compiled import say_if_compiling
-from evenroad.arms import SEARCH, arm_query, finished, plan_on_points
+from evenroad.arms import SEARCH, Goal, arm_query, finished, plan_on_points, unreached
 from evenroad.cli.plan import PlanArm
 from evenroad.cli.plan_parts import (
     chosen_budget,
@@ -22,10 +22,12 @@ from evenroad.cli.plan_parts import (
 )
 from evenroad.cli.roadmap import kept_roadmap
 from evenroad.cli.robot import bodiless_rows
+from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
 from evenroad.roadmap import default_rule, find_path
 from evenroad.robot import find_robot, find_scene, held_values, load_scene
 from evenroad.robot.kernel.selftest import lanes_failure
+from evenroad.robot.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
 from evenroad.robot_roadmap.cell import day_and_all
 from evenroad.robot_roadmap.robot_roadmap import SceneRoadmap
 
@@ -44,7 +46,7 @@ def plan_arm(plan: PlanArm) -> int:
         robot,
         plan.world if kept is None else day_and_all(kept.cell, load_scene(plan.world))[1],
         " ".join(plan.start),
-        [" ".join(words) for words in plan.goal],
+        _goals(plan),
         resolution=plan.resolution,
         degrees=plan.deg,
         **({} if plan.robot is None else plan.options()),
@@ -58,7 +60,9 @@ def plan_arm(plan: PlanArm) -> int:
     rule = chosen_rule(plan, default_rule(world.space).k)
     points = draw_points(plan, world.space.cube_dim) if wants_points(plan) else None
     load_compiled_code(world, start, goals, points, rule, SEARCH)
-    if known is not None:
+    if (refused := unreached(query)) is not None:
+        result = refused
+    elif known is not None:
         known.connect(start, start[np.newaxis])
         result = known.plan(start, goals, budget=budget, shorten=not plan.raw)
     elif points is None:
@@ -76,6 +80,7 @@ def plan_arm(plan: PlanArm) -> int:
         "joints": list(robot.group),
         "goal_names": list(query.goal_names),
         "held": held_values(robot),
+        "goal_poses": query.given.records(world, None if result.path is None else result.path[-1]),
         "resolution": world.resolution,
     }
     record = plan_record(result, asked | common_query(plan)) | {
@@ -86,6 +91,13 @@ def plan_arm(plan: PlanArm) -> int:
     }
     held = ", ".join(f"{name} at {value:.6g}" for name, value in held_values(robot).items())
     rows = [("joints", ", ".join(robot.group)), *([("held", held)] if held else [])]
+    rows += [
+        (
+            "goal pose",
+            f"{goal}: {reached.branches} postures, {reached.blocked} in collision ({reached.solver})",
+        )
+        for goal, reached in query.given.poses
+    ]
     rows += [] if model is None else bodiless_rows(model)
     rows += [("checked by", world.checked_with), *([] if meshes is None else [("meshes", str(meshes))])]
 
@@ -95,6 +107,30 @@ def plan_arm(plan: PlanArm) -> int:
         save_arm_picture(file, result, world)
 
     return finish(files, result, record, robot.group, draw, rows)
+
+
+def _goals(plan: PlanArm) -> list[Goal]:
+    """Return the goals that were asked for, configurations first."""
+    if not (plan.goal or plan.goal_pose):
+        raise InvalidValue(
+            "missing from evenroad plan: --goal, or --goal-pose; all options: evenroad plan --help"
+        )
+    for option in ("tip", "frame", "free_axis", "tolerance"):
+        if getattr(plan, option) and not plan.goal_pose:
+            raise InvalidValue(f"--{option.replace('_', '-')} goes with --goal-pose")
+    near, tilt = 0.0, 0.0
+    if plan.tolerance is not None:
+        near, tilt, *_ = (*as_numbers("--tolerance", plan.tolerance, (1, 2)), 0.0)
+    axis = None if plan.free_axis is None else as_axis("--free-axis", plan.free_axis)
+    goals: list[Goal] = [" ".join(words) for words in plan.goal]
+    for words in plan.goal_pose:
+        pose, turned = pose_of(" ".join(words), degrees=plan.deg)
+        if axis is not None and not turned:
+            raise InvalidValue(
+                f"--free-axis needs a rotation, got the goal pose {' '.join(words)!r} without one"
+            )
+        goals.append(PoseGoal(pose, plan.tip, plan.frame, axis, not turned, near, tilt))
+    return goals
 
 
 def _say_if_compiling(plan: PlanArm) -> None:

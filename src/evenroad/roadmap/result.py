@@ -15,6 +15,7 @@ class Status(StrEnum):
     SOLVED = "solved"
     START_INVALID = "start_invalid"
     GOAL_INVALID = "goal_invalid"
+    GOAL_UNREACHABLE = "goal_unreachable"
     NOT_CONNECTED = "not_connected"
     BUDGET_SPENT = "budget_spent"
     MESH_COLLISION = "mesh_collision"
@@ -57,8 +58,9 @@ class PlanResult:
     Attributes
     ----------
     status : Status
-        ``goal_invalid``: all goals are.  ``mesh_collision``: the path is free in its world, but the robot's meshes
-        touch something.  ``not_certified``: a proof was asked for, and the path is free only at states tested.
+        ``goal_invalid``: all goals are.  ``goal_unreachable``: no configuration was found for a pose.
+        ``mesh_collision``: the path is free in its world, but the robot's meshes touch something.  ``not_certified``: a
+        proof was asked for, and the path is free only at states tested.
     message : str
         One sentence for people: what happened and, without a path, what to try.
     start, goals : ndarrays, shapes (dim,) and (g, dim)

@@ -11,6 +11,7 @@ from evenroad.robot.kinematics import link_poses as link_poses
 from evenroad.robot.load import find_robot as find_robot
 from evenroad.robot.load import load_model as load_model
 from evenroad.robot.load import load_robot as load_robot
+from evenroad.robot.pose_goal import PoseGoal as PoseGoal
 from evenroad.robot.robot import LinkBody as LinkBody
 from evenroad.robot.robot import Robot as Robot
 from evenroad.robot.robot import RobotModel as RobotModel

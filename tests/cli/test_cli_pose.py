@@ -1,0 +1,75 @@
+"""``evenroad plan --goal-pose``."""
+
+import json
+
+import pytest
+
+POSE = ("--goal-pose", "0.65 0 0.2 0 0.70710678 0 0.70710678")
+
+
+def plan(*more):
+    return ["plan", "box-reach.yaml", "--robot", "ur5", "--start", "home", "--no-picture", *more]
+
+
+def test_a_goal_pose_is_reached_and_the_record_says_how(run, tmp_path):
+    code, out, err = run(*plan(*POSE))
+    assert (code, err) == (0, "")
+    assert "tool0 at (0.65, 0, 0.2)" in out
+    assert max(map(len, out.splitlines())) <= 100
+    (pose,) = json.loads((tmp_path / "box-reach.json").read_text())["query"]["goal_poses"]
+    assert pose["tip"] == "tool0"
+    assert pose["postures"] >= 4
+    assert max(pose["off_m"], pose["off_rad"]) < 1e-6
+
+
+def test_a_pose_in_degrees_a_free_axis_a_tolerance_and_several_goals_go_together(run, tmp_path):
+    both = (
+        "--goal-pose",
+        "0.65",
+        "0",
+        "0.2",
+        "0",
+        "90",
+        "0",
+        "--goal-pose",
+        "0.6 0 0.2 0 90 0",
+        "--goal",
+        "inside",
+    )
+    code, _, err = run(
+        *plan(*both, "--deg", "--free-axis", "z", "--tolerance", "0.001 0.01", "--tip", "wrist_3_link")
+    )
+    assert (code, err) == (0, "")
+    first, second = json.loads((tmp_path / "box-reach.json").read_text())["query"]["goal_poses"]
+    assert first["free_axis"] == [0, 0, 1]
+    assert (second["position_tolerance"], second["angle_tolerance"]) == (0.001, 0.01)
+
+
+def test_out_of_reach_is_an_answer_with_a_picture(run, tmp_path):
+    code, out, err = run(*plan("--goal-pose", "2 0 0")[:-3], "--goal-pose", "2 0 0", "--out", "far")
+    assert (code, err) == (1, "")
+    assert "goal_unreachable" in out
+    assert json.loads((tmp_path / "far.json").read_text())["status"] == "goal_unreachable"
+    assert (tmp_path / "far.png").exists()
+    assert not (tmp_path / "far.csv").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--goal-pose", "0.6 0 0.2 0 0 0 2"), "norm 1, got 2"),
+        (("--goal-pose", "0.6 0 nan"), "finite numbers, got '0.6 0 nan'"),
+        ((*POSE, "--tip", "hand"), "unknown link of 'ur5' 'hand'"),
+        ((*POSE, "--frame", "wrist_1_link"), "must stand still"),
+        ((*POSE, "--tolerance", "-1"), "position_tolerance must be a finite number >= 0"),
+        (("--goal-pose", "0.6 0 0.2", "--free-axis", "z"), "--free-axis needs a rotation"),
+        (("--goal", "inside", "--tip", "tool0"), "--tip goes with --goal-pose"),
+        ((), "missing from evenroad plan: --goal, or --goal-pose"),
+    ],
+)
+def test_what_is_wrong_with_a_goal_pose_is_said_in_one_line(run, tmp_path, options, said):
+    code, out, err = run(*plan(*options))
+    assert (code, out) == (2, "")
+    assert err.count("\n") == 1
+    assert said in err
+    assert not list(tmp_path.glob("box-reach*"))
