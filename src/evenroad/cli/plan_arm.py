@@ -80,6 +80,7 @@ def plan_arm(plan: PlanArm) -> int:
         "joints": list(robot.group),
         "goal_names": list(query.goal_names),
         "held": held_values(robot),
+        "holds": list(robot.holds),
         "goal_poses": query.given.records(world, None if result.path is None else result.path[-1]),
         "resolution": world.resolution,
     }
@@ -91,6 +92,7 @@ def plan_arm(plan: PlanArm) -> int:
     }
     held = ", ".join(f"{name} at {value:.6g}" for name, value in held_values(robot).items())
     rows = [("joints", ", ".join(robot.group)), *([("held", held)] if held else [])]
+    rows += [("holds", ", ".join(robot.holds))] if robot.holds else []
     rows += [
         (
             "goal pose",

@@ -2,6 +2,7 @@
 
 from evenroad.geometry.shapes import Capsule as Capsule
 from evenroad.robot.arm_world import ArmWorld as ArmWorld
+from evenroad.robot.held import HeldObject as HeldObject
 from evenroad.robot.joint import Joint as Joint
 from evenroad.robot.joint import Mimic as Mimic
 from evenroad.robot.kinematics import capsule_ends as capsule_ends

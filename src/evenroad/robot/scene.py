@@ -10,6 +10,7 @@ from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import NO_ROTATION, Pose, Vector
 from evenroad.geometry.shapes import PRIMITIVES, Capsule, Shape, along_z, shape_of
+from evenroad.robot.held import HeldObject
 
 
 @dataclass(frozen=True)
@@ -101,6 +102,8 @@ class Scene:
     limits : mapping of str to (float, float)
         Ranges to plan in, joint -> (lower, upper) [rad or m]; the robot takes them over by
         :func:`evenroad.robot.in_scene`.
+    attached : tuple of HeldObject
+        What the robot holds; it takes that over in the same way.  No two of one name (InvalidValue).
     """
 
     name: str
@@ -108,9 +111,18 @@ class Scene:
     allowed: frozenset[tuple[str, str]] = frozenset()
     states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    attached: tuple[HeldObject, ...] = ()
 
     def __post_init__(self) -> None:
+        held = [each.name for each in self.attached]
+        if len(set(held)) < len(held):
+            twice = sorted({name for name in held if held.count(name) > 1})
+            raise InvalidValue(f"scene {self.name!r} has something attached twice: {', '.join(twice)}")
         names = [obstacle.name for obstacle in self.obstacles]
+        if both := sorted(set(held) & set(names)):
+            raise InvalidValue(
+                f"scene {self.name!r} has {both[0]!r} attached and as an obstacle: a robot that holds it would touch it"
+            )
         if len(set(names)) < len(names):
             # What is allowed to touch the one would be allowed to touch the other.
             twice = sorted({name for name in names if names.count(name) > 1})
