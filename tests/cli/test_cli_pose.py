@@ -79,9 +79,10 @@ def test_what_the_scene_attaches_is_held_and_said(run, tmp_path):
     (tmp_path / "pick.yaml").write_text(
         "obstacles:\n  table: {shape: box, size: [1, 1, 0.1], xyz: [0.3, 0, -0.05]}\n"
         "allowed: {table: [base_link, shoulder_link]}\n"
-        "attach:\n  crate: {shape: box, size: [0.1, 0.1, 0.1], link: tool0, xyz: [0, 0, 0.06], touches: [wrist_2_link]}\n"
+        "attach:\n  crate: {shape: box, size: [0.1, 0.1, 0.1], link: tool0, xyz: [0, 0, 0.06],"
+        " touches: [wrist_2_link]}\n"
     )
-    words = ["plan", "pick.yaml", "--robot", "ur5", "--start", "0 -1.57 0 -1.57 0 0"]
+    words = ["plan", "pick.yaml", "--robot", "ur5", "--start", "0 -90 0 -90 0 0"]
     code, out, err = run(*words, "--goal-pose", "0.5 0 0.3 180 0 0", "--deg")
     assert (code, err) == (0, "")
     assert "holds" in out

@@ -150,16 +150,16 @@ def _carrying(tree: MovingTree, number: int) -> tuple[MovingFrame, ...]:
 
 
 def default_tip(robot: Robot) -> str:
-    """Return the link at the end of what the group moves; InvalidValue, which names them, if there are several."""
+    """Return the link at the end of what the group moves, none that is held; InvalidValue if there are several."""
     tree = prepared(robot).tables.tree
     carried = {
         link: len({frame.coordinate for frame in _carrying(tree, place.frame)})
         for link, place in tree.links.items()
+        if link not in robot.holds
     }
-    most, parents = max(carried.values()), {joint.parent for joint in robot.joints}
-    leaves = [link for link in robot.links if carried[link] == most and link not in parents]
-    if not leaves:
-        leaves = [link for link in robot.links if carried[link] == most][-1:]
+    most, parents = max(carried.values()), {joint.parent for joint in robot.joints if joint.child in carried}
+    farthest = [link for link in carried if carried[link] == most]
+    leaves = [link for link in farthest if link not in parents] or farthest[-1:]
     if len(leaves) > 1:
         raise InvalidValue(
             f"say of which link the pose is (--tip): at the end of {robot.name!r} are {', '.join(leaves[:8])}"
