@@ -28,6 +28,8 @@ from evenroad.robot import ArmWorld as ArmWorld
 from evenroad.robot import PoseGoal as PoseGoal
 from evenroad.robot import Robot as Robot
 from evenroad.robot import Scene as Scene
+from evenroad.robot import Straight as Straight
+from evenroad.robot import Upright as Upright
 from evenroad.robot import configuration as configuration
 from evenroad.robot import load_robot as load_robot
 from evenroad.robot import load_scene as load_scene

@@ -12,11 +12,12 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats
 from evenroad._rng import RngLike
+from evenroad.arm_ways import Ends, plan_ways
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import Pose
 from evenroad.points import PointSet, draw
 from evenroad.roadmap import Budget, PlanResult, Rule, Status
-from evenroad.roadmap.find_path import NO_POINTS, SECONDS, find_path
+from evenroad.roadmap.find_path import SECONDS, find_path
 from evenroad.roadmap.hemmed import with_reasons
 from evenroad.roadmap.plan import plan
 from evenroad.roadmap.proof import require_certified
@@ -36,7 +37,10 @@ from evenroad.robot.load import RobotOptions
 from evenroad.robot.pose_goal import PoseGoal
 from evenroad.robot.reference.recheck import MeshCheck, has_meshes, recheck, unseen_pairs
 from evenroad.robot.states import clipped
+from evenroad.robot.straight import Straight
+from evenroad.robot.upright import Upright
 from evenroad.robot.urdf_xml import RobotFile
+from evenroad.world import World
 
 PathLike = str | os.PathLike[str]
 Place = str | npt.ArrayLike
@@ -73,6 +77,12 @@ class ArmQuery:
         """By which texts the caller called the goals, or nothing."""
         return self.given.names
 
+    @property
+    def ends(self) -> Ends:
+        """World, start and goals, and the tip that goal poses are of."""
+        tip = self.given.poses[0][0].tip if self.given.poses else ""
+        return Ends(self.world, self.start, self.goals, tip)
+
 
 def plan_arm(
     robot: PathLike | Robot,
@@ -92,6 +102,8 @@ def plan_arm(
     degrees: bool = False,
     tip: str = "",
     frame: str = "",
+    straight: Straight | None = None,
+    upright: Upright | None = None,
     **options: Unpack[RobotOptions],
 ) -> PlanResult:
     """Plan for an arm among obstacles, as ``evenroad plan --robot`` does: until there is a path or the time is over.
@@ -130,6 +142,11 @@ def plan_arm(
         Angles in texts are degrees.
     tip, frame : str
         Of which link goal poses are, and in the frame of which; default: the last link, the root.
+    straight : Straight, optional
+        How far the tip moves in straight lines from its start and to its goal.
+    upright : Upright, optional
+        Which axis of the tip is to be upright along the whole path; `budget` then counts samples and motions of a
+        roadmap.
     **options
         ``srdf``, ``group``, ``bodies``, ... of :func:`evenroad.robot.load_model`, for a robot that is read from a file.
 
@@ -160,23 +177,31 @@ def plan_arm(
     if (refused := unreached(query)) is not None:
         return refused
     budget = Budget(seconds=seconds) if budget is None else budget
-    if points is None:
-        places = query.world, query.start, query.goals
-        result = find_path(*places, budget=budget, shorten=shorten, improve=improve)
-    else:
-        if not isinstance(points, PointSet):
-            points = draw("even", points, query.world.space.cube_dim, rng=rng)
-        result = plan_on_points(query, points, rule=rule, shorten=shorten, budget=budget)
+    if points is not None and not isinstance(points, PointSet):
+        points = draw("even", points, query.world.space.cube_dim, rng=rng)
+
+    def plan_once(world: World, start: Floats, goals: Floats, shorten: bool) -> PlanResult:
+        if points is None:
+            return find_path(world, start, goals, budget=budget, shorten=shorten, improve=improve)
+        return plan_on_points(world, start, goals, points, rule=rule, shorten=shorten, budget=budget)
+
+    result = plan_ways(query.ends, straight, upright, plan_once, shorten=shorten)
     return finished(query, result, certified=certified)[0]
 
 
 def plan_on_points(
-    query: ArmQuery, points: PointSet, *, rule: Rule | None, shorten: bool, budget: Budget
+    world: World,
+    start: Floats,
+    goals: Floats,
+    points: PointSet,
+    *,
+    rule: Rule | None,
+    shorten: bool,
+    budget: Budget,
 ) -> PlanResult:
     """Plan on a roadmap of these points; where they do not suffice, the message says what hems in start and goals."""
-    places = query.world, query.start, query.goals
-    result = plan(*places, points, rule=rule, search=SEARCH, shorten=shorten, budget=budget)
-    return with_reasons(query.world, result)
+    result = plan(world, start, goals, points, rule=rule, search=SEARCH, shorten=shorten, budget=budget)
+    return with_reasons(world, result)
 
 
 def unreached(query: ArmQuery) -> PlanResult | None:
@@ -185,8 +210,7 @@ def unreached(query: ArmQuery) -> PlanResult | None:
     if not given.unreached:
         return None
     status = Status.GOAL_INVALID if given.in_collision else Status.GOAL_UNREACHABLE
-    places = dict(start=query.start, goals=query.goals, origin=NO_POINTS, rule="none", planner="none")
-    return PlanResult(status=status, message=given.unreached, seconds={"goals": given.seconds}, **places)  # type: ignore[arg-type]
+    return replace(query.ends.refused(status, given.unreached), seconds={"goals": given.seconds})
 
 
 def finished(

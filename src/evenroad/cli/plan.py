@@ -168,15 +168,24 @@ class PlanArm(PlanOptions, RobotOptions):
     """Where a link is to be: "x y z qx qy qz qw" or "x y z roll pitch yaw" (metres, radians), or "x y z", turned at
     will.  All configurations found that bring it there are goals; may be given more than once."""
     tip: str = ""
-    """The link that goal poses are of (default: the last one)."""
+    """The link that goal poses, --straight and --upright are of (default: the last one)."""
     frame: str = ""
     """The link in the frame of which they are, which stands still (default: the root)."""
     free_axis: str | None = None
     """The tip may be turned about this axis of its own frame at will: x, y, z or "x y z"."""
     tolerance: str | None = None
     """By how much goal poses may be missed: "0.002" (metres) or "0.002 0.01" (metres and radians)."""
+    straight: str | None = None
+    """The tip comes to its goal, and leaves its start, in straight lines: "0.1" (metres) or "0.1 0.05", goal first."""
+    away: str | None = None
+    """In which direction it leaves, and from where it comes: x, -x, ... or "x y z" of the tip's frame, or up
+    (default: -z)."""
+    upright: float | None = None
+    """An axis of the tip is tilted by no more than this along the whole path, in radians."""
+    upright_axis: str | None = None
+    """That axis, in the tip's frame (default: the one that is most upright at the start)."""
     deg: bool = False
-    """Angles of start and goal are in degrees, those of "roll pitch yaw" too."""
+    """Angles are in degrees: of start, goal, "roll pitch yaw" and --upright."""
     resolution: float = 0.05
     """Largest step of a motion check, > 0, in radians."""
 

@@ -94,6 +94,9 @@ class PlanResult:
         Who searched: ``prm full``, ``prm lazy``, ``prm any`` (some path, not the shortest), each with
         ``+ lazy milestones`` where those were checked late; ``prm anytime``, ``fmt*``; or the world itself, with
         ``trees`` or ``cells``.
+    deviation : dict of str to float
+        Of a path whose tip is told its way, the largest deviations on fine grids: ``line_m`` and ``line_rad`` from the
+        straight lines, ``tilt_rad`` from upright.
     stages : tuple of Stage
         How a plan that grows or improves came about, its cost over time; empty for all others.
     roadmap : SearchedGraph or None
@@ -116,6 +119,7 @@ class PlanResult:
     milestone_cost: float | None = None
     counts: dict[str, int] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)
+    deviation: dict[str, float] = field(default_factory=dict)
     stages: tuple[Stage, ...] = ()
     roadmap: SearchedGraph | None = None
 

@@ -26,3 +26,5 @@ from evenroad.robot.scene_file import load_scene as load_scene
 from evenroad.robot.states import at_states as at_states
 from evenroad.robot.states import configuration as configuration
 from evenroad.robot.states import named_states as named_states
+from evenroad.robot.straight import Straight as Straight
+from evenroad.robot.upright import Upright as Upright

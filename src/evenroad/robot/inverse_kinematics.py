@@ -192,8 +192,23 @@ def solved_from(
     none = np.full(q.shape[1], np.inf)
     low, high = (chain.low, chain.high) if limits else (-none, none)
     missing = np.full(len(q), np.inf)
-    kernel.solve(q, chain.ints, chain.rows, low, high, task, steps, enough, missing)
+    kernel.solve(q, chain.ints, chain.rows, low, high, task[np.newaxis], steps, enough, 0.0, missing)
     return missing
+
+
+def followed_from(chain: Chain, tasks: Floats, q: Floats, longest: float, wraps: Bools) -> tuple[Floats, int]:
+    """Return configurations, (n, dim), that do one task of `tasks`, (n, tasks), after the other, and how many do.
+
+    The first begins at `q`, (dim,), each at the one before, within limits unless a joint `wraps`; none steps farther
+    than `longest`.
+    """
+    from evenroad.robot.kernel import reach as kernel
+
+    low, high = np.where(wraps, [[-np.inf], [np.inf]], chain.bounds)
+    way, missing = np.repeat(q[np.newaxis], len(tasks), axis=0), np.empty(len(tasks))
+    return way, kernel.solve(
+        way, chain.ints, chain.rows, low, high, tasks, _STEPS, len(tasks) + 1, longest, missing
+    )
 
 
 def _numbers(task: Floats) -> int:

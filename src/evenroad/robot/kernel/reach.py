@@ -223,28 +223,40 @@ def _solve(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def solve(
-    starts: Floats,
+    q: Floats,
     ints: Ints,
     rows: Floats,
     low: Floats,
     high: Floats,
-    goal: Floats,
+    goals: Floats,
     most: int,
     enough: int,
+    longest: float,
     missing: Floats,
 ) -> int:
     """Move configurations, (n, dim), in place, each by at most so many steps, until `enough` are where they should be.
 
-    Writes what each lacks, squared; returns how many were moved.
+    Of fewer goals than configurations the last serves the rest.  Where `longest` is not 0, each begins where the one
+    before has ended, and the first that is not reached, or only by a joint's step over `longest`, is the end.  Writes
+    what each lacks, squared; returns how many were moved, or follow one another.
     """
-    room = np.empty(60 + 8 * starts.shape[1] + 6 * len(ints))
+    dim = q.shape[1]
+    room = np.empty(60 + 8 * dim + 6 * len(ints))
     found = 0
-    for i in range(len(starts)):
-        missing[i] = _solve(starts[i], ints, rows, low, high, goal, most, room)
+    for i in range(len(q)):
+        if longest > 0.0 and i > 0:
+            q[i] = q[i - 1]
+        missing[i] = _solve(q[i], ints, rows, low, high, goals[min(i, len(goals) - 1)], most, room)
+        if longest > 0.0:
+            far = 0.0
+            for k in range(dim):
+                far = max(far, abs(q[i, k] - q[max(i - 1, 0), k]))
+            if missing[i] > 0.0 or far > longest:
+                return i
         found += missing[i] == 0.0
         if found >= enough:
             return i + 1
-    return len(starts)
+    return len(q)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
