@@ -92,3 +92,37 @@ def test_what_the_scene_attaches_is_held_and_said(run, tmp_path):
     code, out, err = run(*words, "--goal-pose", "0.5 0 0.08 180 0 0", "--deg")
     assert code == 1
     assert "'crate' touches 'table'" in " ".join(out.split())
+
+
+DOWN = ("--goal-pose", "0.4 -0.3 0.5 180 0 0", "--deg", "--start", "20 -90 90 -90 -90 0")
+
+
+def test_straight_and_upright_are_asked_for_and_their_deviations_told(run, tmp_path):
+    words = ["plan", "box-reach.yaml", "--robot", "ur5", "--no-picture", *DOWN]
+    code, out, err = run(*words, "--straight", "0.05 0.05", "--away", "up", "--upright", "5", "--out", "a")
+    assert (code, err) == (0, "")
+    record = json.loads((tmp_path / "a.json").read_text())
+    assert set(record["deviation"]) == {"tilt_rad", "line_m", "line_rad"}
+    assert record["deviation"]["line_m"] < 1e-3
+    assert "largest deviations: tilt [rad]" in " ".join(out.split())
+    assert max(map(len, out.splitlines())) <= 100
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--straight", "0"), "must have a length"),
+        (("--straight", "far"), "--straight must be 1 or 2 finite numbers, got 'far'"),
+        (("--straight", "0.1", "--away", "0 0 0"), "away must be a direction"),
+        (("--away", "up"), "--away goes with --straight"),
+        (("--upright", "-1"), "tolerance of upright must be a finite number > 0"),
+        (("--upright", "nan"), "tolerance of upright must be a finite number > 0, got nan"),
+        (("--upright", "5", "--upright-axis", "up"), "axis of upright must be"),
+        (("--upright-axis", "z"), "--upright-axis goes with --upright"),
+    ],
+)
+def test_what_is_wrong_with_a_way_is_said_in_one_line(run, tmp_path, options, said):
+    code, out, err = run("plan", "box-reach.yaml", "--robot", "ur5", *DOWN, *options)
+    assert (code, out) == (2, "")
+    assert err.count("\n") == 1
+    assert said in err
