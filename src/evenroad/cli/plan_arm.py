@@ -170,6 +170,8 @@ def _ways(plan: PlanArm) -> tuple[Straight | None, Upright | None]:
 
 def _say_if_compiling(plan: PlanArm) -> None:
     kernel, points = "evenroad.robot.kernel", wants_points(plan)
+    if plan.goal_pose or plan.straight or plan.upright:
+        say_if_compiling(f"{kernel}.reach", "solve", 5)
     said = say_if_compiling(f"{kernel}.batch", "check_configurations", 30 if points else 20)
     # Where the lanes do not work, the trees are never compiled.
     if not (said or points) and lanes_failure() is None:

@@ -23,7 +23,7 @@ class HeldObject:
     Parameters
     ----------
     name : str
-        What it is called in verdicts; it becomes a link of the robot.
+        What it is called in verdicts; it becomes a link of the robot, with the body's own frame: goal poses may be its.
     body : Shape
         With its pose in the frame of the link that carries it.
     link : str
@@ -68,8 +68,8 @@ def held_parts(robot: KinematicTree, held: HeldObject, *, neighbours: bool) -> H
     name = f"{held.link}-{held.name}"
     if held.name in robot.links or name in [joint.name for joint in robot.joints]:
         raise InvalidValue(f"{held.name!r} is a link already: nothing can be attached twice under one name")
-    joint = Joint(name, "fixed", held.link, held.name, IDENTITY.xyz, IDENTITY.rotation)
-    capsules = fit_capsules(held.body)
+    pose, body = held.body.pose, replace(held.body, pose=IDENTITY)
+    joint = Joint(name, "fixed", held.link, held.name, pose.xyz, pose.rotation)
     rigid = rigid_links(robot)
     bodied = {capsule.link for capsule in robot.capsules}
     spared = {*held.touches, *(link for link in bodied if rigid[link] == rigid[held.link])}
@@ -78,10 +78,12 @@ def held_parts(robot: KinematicTree, held: HeldObject, *, neighbours: bool) -> H
         if joints == 1:
             spared.add(above)
     pairs = tuple((link, held.name) for link in robot.links if link in bodied - spared)
-    return HeldParts(joint, capsules, piece_of(held.body).hull, pairs)
+    return HeldParts(joint, fit_capsules(body), piece_of(body).hull, pairs)
 
 
 def same_bodies(robot: KinematicTree, held: HeldObject) -> bool:
     """Return whether what a robot holds under this name is this."""
-    carries = any(joint.child == held.name and joint.parent == held.link for joint in robot.joints)
-    return carries and fit_capsules(held.body) == tuple(c for c in robot.capsules if c.link == held.name)
+    pose, body = held.body.pose, replace(held.body, pose=IDENTITY)
+    joint = next(joint for joint in robot.joints if joint.child == held.name)
+    capsules = tuple(capsule for capsule in robot.capsules if capsule.link == held.name)
+    return (joint.parent, joint.origin, capsules) == (held.link, pose, fit_capsules(body))

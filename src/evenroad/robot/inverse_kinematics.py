@@ -9,8 +9,10 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
+import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats
+from evenroad._checks import as_row
 from evenroad.geometry.pose import Pose
 from evenroad.robot.chain import TURN, Chain, chain_of, default_tip, frame_pose
 from evenroad.robot.closed_form import branches, closed_form
@@ -79,12 +81,14 @@ class Reached:
         return self.branches > 0 and not len(self.configurations)
 
 
-def reach(world: Checks, goal: PoseGoal, start: Floats) -> Reached:
+def reach(world: Checks, goal: PoseGoal, start: npt.ArrayLike) -> Reached:
     """Return the free configurations that bring a link where the goal wants it, whole turns added.
 
-    Coordinates that do not move the link stay as in `start`, (dim,).  Raises UnknownName if tip or frame is no link;
-    InvalidValue if nothing moves the tip, something the frame, or no tip is named and there are several.
+    Coordinates that do not move the link stay as in `start`, (dim,) [rad or m].  Raises UnknownName if tip or frame is
+    no link; InvalidValue if nothing moves the tip, something the frame, or no tip is named and there are several, or
+    `start` is no configuration.
     """
+    start = np.array(as_row("start", start, len(world.robot.group)))  # type: ignore[arg-type]
     chain, task = task_of(world.robot, goal)
     solved, best = np.empty((0, len(start))), start
     spare = len(chain.moving) > _numbers(task)
