@@ -101,7 +101,8 @@ _recent: dict[tuple[int, str], tuple[RobotTables, Chain]] = {}
 
 def chain_of(robot: Robot, tip: str) -> Chain:
     """Return the chain from the root to a link, kept; UnknownName if it is none, InvalidValue if nothing moves it."""
-    space, _, tables, _ = prepared(robot)
+    made = prepared(robot)
+    space, tables = made.space, made.tables
     kept = _recent.get((id(tables), tip))
     if kept is not None:
         return kept[1]
