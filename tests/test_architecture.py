@@ -27,7 +27,8 @@ MAY_IMPORT = {
     "viz": BASE | {"points", "space", "world", "geometry", "robot", "roadmap"},
     "robot": BASE | {"space", "geometry", "world"},
     "robot_roadmap": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
-    "arms": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
+    "arms": BASE | {"points", "space", "geometry", "world", "robot", "roadmap", "arm_ways"},
+    "arm_ways": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
     "trajectory": BASE | {"space", "world", "robot"},
     "research": BASE | {"points", "space", "world", "geometry", "robot", "roadmap", "io", "viz"},
     "cli": BASE
