@@ -28,7 +28,8 @@ MAY_IMPORT = {
     "robot": BASE | {"space", "geometry", "world"},
     "robot_roadmap": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
     "arms": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
-    "research": BASE | {"points", "space", "world", "geometry", "robot", "roadmap", "io", "viz"},
+    "research": BASE
+    | {"points", "space", "world", "geometry", "robot", "roadmap", "robot_roadmap", "io", "viz"},
     "cli": BASE
     | {"points", "space", "world", "geometry", "robot", "roadmap", "robot_roadmap"}
     | {"arms", "research", "io", "viz"},
