@@ -30,7 +30,8 @@ MAY_IMPORT = {
     "arms": BASE | {"points", "space", "geometry", "world", "robot", "roadmap", "arm_ways"},
     "arm_ways": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
     "trajectory": BASE | {"space", "world", "robot"},
-    "research": BASE | {"points", "space", "world", "geometry", "robot", "roadmap", "io", "viz"},
+    "research": BASE
+    | {"points", "space", "world", "geometry", "robot", "roadmap", "robot_roadmap", "io", "viz"},
     "cli": BASE
     | {"points", "space", "world", "geometry", "robot", "roadmap", "robot_roadmap"}
     | {"arms", "research", "io", "viz", "trajectory"},
