@@ -119,9 +119,8 @@ def _by_growth(attempt: Attempt, first: PlanResult, stage: Stage) -> PlanResult:
     if left is None or not _goes_on(attempt, first, 1):
         return replace(first, counts=first.counts | {"rounds": 0}, stages=(stage,))
     before = attempt.elapsed()
-    grown = plan_anytime(
-        attempt.world, query.start, query.goals, until="budget", budget=left, shorten=query.shorten
-    )
+    ends = (query.start, query.goals)
+    grown = plan_anytime(attempt.world, *ends, until="budget", budget=left, shorten=query.shorten)
     stages = [stage, *(replace(each, seconds=before + each.seconds) for each in grown.stages)]
     best = grown if grown.cost is not None and grown.cost < _cost(first) else first
     return replace(best, counts=best.counts | {"rounds": len(grown.stages)}, stages=tuple(stages))

@@ -242,7 +242,8 @@ def with_limits(robot: Robot, limits: Mapping[str, tuple[float, float]]) -> Robo
     for name, (lower, upper) in limits.items():
         require_known("joint", name, names)
         if not lower < upper:
-            raise InvalidValue(f"limits of joint {name!r} must have lower < upper, got {lower!r}, {upper!r}")
+            got = f"got {lower!r}, {upper!r}"
+            raise InvalidValue(f"limits of joint {name!r} must satisfy lower < upper, {got}")
     joints = []
     for joint in robot.joints:
         if joint.name in limits:

@@ -31,9 +31,7 @@ class Obstacle:
         if getattr(body, "kind", None) not in PRIMITIVES:
             raise InvalidValue(f"obstacle {self.name!r} must be one of {', '.join(PRIMITIVES)}, got a {body}")
         if body.link:
-            raise InvalidValue(
-                f"obstacle {self.name!r} must be fixed to the world, not to a link, got {body.link!r}"
-            )
+            raise InvalidValue(f"obstacle {self.name!r} must not be fixed to a link, got {body.link!r}")
         set_fields(self, body=body)
 
     @classmethod
@@ -114,9 +112,7 @@ class Scene:
 
     def with_(self, *obstacles: Obstacle, allowed: Sequence[tuple[str, str]] = ()) -> Scene:
         """Return the scene with more obstacles, of new names, and more (link, obstacle) contacts left untested."""
-        return replace(
-            self, obstacles=(*self.obstacles, *obstacles), allowed=self.allowed | frozenset(allowed)
-        )
+        return replace(self, obstacles=(*self.obstacles, *obstacles), allowed=self.allowed.union(allowed))
 
     def without(self, *names: str) -> Scene:
         """Return the scene without the obstacles of these names, and without what was allowed to touch them.

@@ -93,17 +93,13 @@ class Measure:
         if weights is None:
             return columns, np.ones(d)
         if not self.weighted:
-            raise InvalidValue(
-                f"{self.name} takes no weights: its factors have no constant part to leave alone"
-            )
+            raise InvalidValue(f"{self.name} takes no coordinate weights: its factors have no constant part")
         try:
             gamma = np.asarray(weights, dtype=np.float64)
         except (TypeError, ValueError):
             gamma = np.array(np.nan)
         if gamma.shape != (d,) or not np.isfinite(gamma).all() or (gamma < 0).any():
-            raise InvalidValue(
-                f"weights must be {d} finite numbers >= 0, a coordinate each, got {shown(weights)}"
-            )
+            raise InvalidValue(f"weights must be {d} finite numbers >= 0, got {shown(weights)}")
         return columns, gamma
 
     def __str__(self) -> str:

@@ -53,9 +53,8 @@ def success_table(analysis: Analysis, setting: Setting, name: str) -> Table:
             rows.append(row(sampler, 0, *entries, NOTHING))
     notes = [_interval_note(cells.values()), *pool_notes(cells.values())]
     if any(each[-1].text.endswith(UNKNOWN_INTERVAL) for each in rows):
-        notes.append(
-            f"{UNKNOWN_INTERVAL}: fewer than {FEW_UNITS} runs or sets at some N; too few for an interval."
-        )
+        few = f"fewer than {FEW_UNITS} runs or sets at some N; too few for an interval."
+        notes.append(f"{UNKNOWN_INTERVAL}: {few}")
     notes += [f"No set: {reason}." for reason in reasons.values()]
     if failed := sum(cell.failures for cell in cells.values()):
         notes.append(f"{failed} failed runs count as not solved.")
@@ -63,17 +62,15 @@ def success_table(analysis: Analysis, setting: Setting, name: str) -> Table:
     return Table(name, f"{setting}: success [%]", header, rows, notes=notes)
 
 
-def _success_entry(
-    cell: Cell | None, setting: Setting, sampler: str, n: int, reasons: dict[str, str]
-) -> Entry:
-    """Return what stands in the table; why a sampler has no set is kept in `reasons`."""
+def _success_entry(cell: Cell | None, setting: Setting, sampler: str, n: int, why: dict[str, str]) -> Entry:
+    """Return what stands in the table; why a sampler has no set is kept in `why`."""
     if cell is not None:
         failed = f" ({cell.failures} failed)" if cell.failures else ""
         return Entry(with_interval(cell.rate, cell.interval) + failed)
     if setting.problem in PROBLEMS and sampler in SAMPLERS:
         reason = why_not(sampler, n, PROBLEMS[setting.problem].set_dim)
         if reason:
-            reasons.setdefault(sampler, reason)
+            why.setdefault(sampler, reason)
             return Entry("no set", "faint")
     return Entry("not run", "faint")
 
@@ -82,10 +79,8 @@ def _interval_note(cells: Iterable[Cell]) -> str:
     samplers: dict[str, dict[str, None]] = {}
     for cell in cells:
         samplers.setdefault(cell.interval.kind, {})[cell.sampler] = None
-    kinds = "; ".join(
-        f"{kind} ({', '.join(names)})" if len(samplers) > 1 else kind for kind, names in samplers.items()
-    )
-    return f"95 % intervals: {kinds}."
+    several = [f"{kind} ({', '.join(names)})" for kind, names in samplers.items()]
+    return f"95 % intervals: {'; '.join(several if len(several) > 1 else samplers)}."
 
 
 def paired_tables(analysis: Analysis, setting: Setting, name: str) -> tuple[Table, ...]:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from numba import njit
 
 from evenroad._arrays import Floats, Ints32
-from evenroad.roadmap.search.edge_states import BLOCKED, FREE, UNKNOWN, EdgeStates
+from evenroad.roadmap.search.edge_states import BLOCKED, FREE, UNKNOWN, EdgeStates, States
 from evenroad.roadmap.search.graph import Graph
 from evenroad.roadmap.search.shortest import NOT_FOUND, Ends, FixedPoint, Found, SearchProblem, best_path
 
@@ -62,9 +62,7 @@ FINDERS: dict[str, Finder] = {"full": find_after_all, "lazy": find_lazily}
 """The searches by name; both find the same path."""
 
 
-def _all_free(
-    numbers: Ints32, states: npt.NDArray[np.int8], ask: Callable[[npt.NDArray[np.integer]], None]
-) -> bool:
+def _all_free(numbers: Ints32, states: States, ask: Callable[[Ints32], None]) -> bool:
     """Ask about those nodes or edges of a path that are not known, until one is blocked; return whether none is."""
     for number in numbers[states[numbers] == UNKNOWN]:
         ask(number[np.newaxis])
