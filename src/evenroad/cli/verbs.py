@@ -23,6 +23,7 @@ VERBS = {
         "evenroad.cli.roadmap:MakeRoadmap",
         "a roadmap for one arm in its cell, good for every scene",
     ),
+    "view": ("evenroad.cli.view:View", "an arm, its scene and its path in the browser, or as a GIF"),
     "points": (
         "evenroad.cli.points:Points",
         "write a point set: shipped, constructed, or annealed on demand",

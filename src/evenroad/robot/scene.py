@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from struct import Struct
 
 from evenroad._arrays import set_fields
 from evenroad._checks import require_known
@@ -11,6 +12,9 @@ from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import NO_ROTATION, Pose, Vector
 from evenroad.geometry.shapes import PRIMITIVES, Capsule, Shape, along_z, shape_of
+
+_ROW = Struct("16d")
+_NUMBERS = {kind: number for number, kind in enumerate(PRIMITIVES)}
 
 
 @dataclass(frozen=True)
@@ -25,6 +29,8 @@ class Obstacle:
     name: str
     body: Shape
     cell: bool = False
+    row: bytes = field(init=False, repr=False, compare=False)
+    """Sixteen doubles, as compiled code reads obstacles, see ``kernel/obstacles.py``."""
 
     def __post_init__(self) -> None:
         body = along_z(self.body) if isinstance(self.body, Capsule) else self.body
@@ -32,7 +38,10 @@ class Obstacle:
             raise InvalidValue(f"obstacle {self.name!r} must be one of {', '.join(PRIMITIVES)}, got a {body}")
         if body.link:
             raise InvalidValue(f"obstacle {self.name!r} must not be fixed to a link, got {body.link!r}")
-        set_fields(self, body=body)
+        # Now rather than for every world: an obstacle is in many scenes.
+        size = (*body.size, 0.0, 0.0)[:3]
+        row = _ROW.pack(_NUMBERS[body.kind], *size, *body.pose.rotation, *body.pose.xyz)
+        set_fields(self, body=body, row=row)
 
     @classmethod
     def of(

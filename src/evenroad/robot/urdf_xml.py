@@ -52,14 +52,16 @@ _IGNORED = ("inertial", "material", "transmission", "gazebo", "sensor", "ros2_co
 class RobotFile:
     """The file of a robot, and how it is to be read.
 
-    With `use_visuals`, links without collision geometry get what is drawn of them.  `packages` are folders of packages,
-    (name, folder), beside those that are found; `arguments` are those of a xacro, (name, value).
+    With `use_visuals`, links without collision geometry get what is drawn of them; with `as_drawn` all links do, where
+    anything is.  `packages` are folders of packages, (name, folder), beside those that are found; `arguments` are those
+    of a xacro, (name, value).
     """
 
     path: Path
     use_visuals: bool = False
     packages: tuple[tuple[str, str], ...] = ()
     arguments: tuple[tuple[str, str], ...] = ()
+    as_drawn: bool = False
 
 
 def read_urdf_xml(file: RobotFile) -> tuple[Element, list[str]]:
@@ -80,7 +82,9 @@ def read_urdf_xml(file: RobotFile) -> tuple[Element, list[str]]:
     drawn = []
     for link in root.findall("link"):
         visuals = link.findall("visual")
-        if file.use_visuals and visuals and link.find("collision") is None:
+        for collision in link.findall("collision") if file.as_drawn and visuals else ():
+            link.remove(collision)
+        if (file.use_visuals or file.as_drawn) and visuals and link.find("collision") is None:
             drawn.append(str(link.get("name")))
             for visual in visuals:
                 visual.tag = "collision"

@@ -22,12 +22,12 @@ Colour = tuple[int, int, int] | tuple[int, int, int, int] | str
 class View:
     """What is seen along one axis, between the corners `low` and `high`, (2,) each, in metres.
 
-    Its ``image`` is `FINER` times as large as it is shown.
+    It has `scale` pixels a metre.  Its ``image`` is `FINER` times as large as it is shown.
     """
 
-    def __init__(self, low: Floats, high: Floats, room: tuple[int, int]) -> None:
+    def __init__(self, low: Floats, high: Floats, scale: float) -> None:
         self.low, self.high = low, high
-        self.scale = FINER * float(np.min(np.array(room) / (high - low)))
+        self.scale = FINER * scale
         width, height = (FINER * max(1, round(side / FINER)) for side in self.scale * (high - low))
         self.image = Image.new("RGB", (width, height), "white")
         self._draw = ImageDraw.Draw(self.image, "RGBA")
