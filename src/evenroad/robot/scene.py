@@ -37,7 +37,9 @@ class Obstacle:
         if getattr(body, "kind", None) not in PRIMITIVES:
             raise InvalidValue(f"obstacle {self.name!r} must be one of {', '.join(PRIMITIVES)}, got a {body}")
         if body.link:
-            raise InvalidValue(f"obstacle {self.name!r} must not be fixed to a link, got {body.link!r}")
+            raise InvalidValue(
+                f"obstacle {self.name!r} must be fixed to the world, not to a link, got {body.link!r}"
+            )
         # Now rather than for every world: an obstacle is in many scenes.
         size = (*body.size, 0.0, 0.0)[:3]
         row = _ROW.pack(_NUMBERS[body.kind], *size, *body.pose.rotation, *body.pose.xyz)
