@@ -92,16 +92,18 @@ class Obstacle:
 
 @dataclass(frozen=True)
 class Scene:
-    """Obstacles, no two of one name (InvalidValue); allowed contacts and named configurations."""
+    """Obstacles, no two of one name (InvalidValue); allowed contacts and named configurations.
+
+    `allowed` are contacts that are not tested, (link, obstacle), e.g. of the base with its table; `states` are named
+    configurations, joint -> value, in which joints that are not planned for are held; `limits` are ranges to plan in,
+    joint -> (lower, upper) [rad or m], which :func:`evenroad.robot.in_scene` takes over.
+    """
 
     name: str
     obstacles: tuple[Obstacle, ...] = ()
     allowed: frozenset[tuple[str, str]] = frozenset()
-    """Contacts that are not tested, (link, obstacle), e.g. of the base with its table."""
     states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    """Named configurations: joint -> value; joints that are not planned for are held there."""
     limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    """Ranges to plan in, joint -> (lower, upper) [rad or m], which :func:`evenroad.robot.in_scene` takes over."""
 
     def __post_init__(self) -> None:
         names = [obstacle.name for obstacle in self.obstacles]

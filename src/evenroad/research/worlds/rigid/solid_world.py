@@ -99,22 +99,11 @@ class SolidWorld:
     all n + 1 ends of segments are; they are tested in bisection order, the ends first.  What lies between two states is
     not seen; `recheck` proves the motions of a path that is handed out, with no gap.
 
-    Parameters
-    ----------
-    space : ``SE2(..)``, ``SE3(..)``, or a Box of 2 or 3 axes
-        Poses of the body's frame; in a Box the body does not rotate.
-    body : sequence of OrientedBox
-        In the body's frame; at least one.
-    obstacles : sequence of OrientedBox
-        In the frame of the space.  All boxes are of the plane for SE2 and a Box of 2 axes, else of space.
-    resolution : float, or a pair of floats for SE2 and SE3
-        `step` and `rotation_step`: the largest distance and rotation between neighbouring states, > 0.  Rotations are
-        measured as the space does: headings in radians, quaternions by ``arccos |q . q'|``.
-
-    Raises
-    ------
-    InvalidValue
-        If the space is of another kind, boxes are missing or of another dimension, or `resolution` does not fit.
+    `space` are the poses of the body's frame, ``SE2(..)``, ``SE3(..)``, or a Box of 2 or 3 axes, in which the body does
+    not rotate; all boxes are of its plane or space, those of the `body`, at least one, in the body's frame.
+    `resolution` is `step`, and for SE2 and SE3 `rotation_step`: the largest distance and rotation between neighbouring
+    states, > 0, measured as the space does: headings in radians, quaternions by ``arccos |q . q'|``.  InvalidValue for
+    anything else.
     """
 
     proof: ClassVar[str] = "certified"
