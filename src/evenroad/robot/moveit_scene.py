@@ -99,7 +99,7 @@ def read_planning_scene(document: Mapping[str, Any], path: Path) -> Scene:
         name = str(each["id"])
         if each.get("meshes") or each.get("planes"):
             raise InvalidValue(
-                f"object {name!r} in {path} has a mesh or plane: it must be of {', '.join(_SIZES)}"
+                f"object {name!r} in {path} must consist of {', '.join(_SIZES)}: it has a mesh or plane"
             )
         frame = _pose(each["pose"], name, path) if "pose" in each else IDENTITY
         primitives, poses = each.get("primitives") or [], each.get("primitive_poses") or []

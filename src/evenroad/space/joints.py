@@ -130,8 +130,8 @@ class JointSpace(FlatSpace):
 
     A revolute joint that can turn on and on wraps; one with stops does not, even where its range exceeds a
     full turn: the two ends of such a range are far apart.  A wrapping joint repeats after ``high - low``, so in radians
-    these are 2 pi apart; `wrapping` says which joints wrap, one bool stands for all.  `low`, `high` and `weights` are as
-    for :class:`Box`; InvalidValue for any other value.
+    these are 2 pi apart; `wrapping` says which joints wrap, one bool stands for all.  `low`, `high` and `weights` are
+    as for :class:`Box`; InvalidValue for any other value.
     """
 
     low: Sequence[float]

@@ -132,8 +132,8 @@ def SE2(
 ) -> Product:
     """Return the poses (x, y, heading) of a body in the plane, its position bounded by `low` and `high`.
 
-    `weights`, > 0, are what a unit of length and a radian count, `combine` how the two distances make one; with "l2" the
-    metric is flat, so that neighbours are found in a tree.  Errors are those of `Box` and `Product`.
+    `weights`, > 0, are what a unit of length and a radian count, `combine` how the two distances make one; with "l2"
+    the metric is flat, so that neighbours are found in a tree.  Errors are those of `Box` and `Product`.
     """
     return Product((_position(low, high, 2), Circle()), weights, combine)
 
