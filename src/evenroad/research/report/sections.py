@@ -8,7 +8,7 @@ from itertools import chain
 
 from evenroad.research.bench.samplers import SAMPLERS, why_not
 from evenroad.research.problems import PROBLEMS
-from evenroad.research.report.analysis import Analysis, Failure
+from evenroad.research.report.analysis import VERDICT_LEVEL, Analysis, ExpectedTable, Failure, Verdict
 from evenroad.research.report.cells import Cell
 from evenroad.research.report.comparisons import REFERENCES, SIGNIFICANT, Comparison
 from evenroad.research.report.fair import BY_RULE, REFERENCE, LazyChecks, Pooled
@@ -25,7 +25,6 @@ from evenroad.research.report.tables import (
     row,
     with_interval,
 )
-from evenroad.research.report.verdicts import LEVEL, ExpectedTable, Verdict
 from evenroad.research.statistics.resampling import UNKNOWN_INTERVAL
 from evenroad.research.statistics.units import FEW_UNITS, spread_over_sets
 
@@ -166,8 +165,8 @@ def expected_table(table: ExpectedTable, verdicts: Sequence[Verdict]) -> Table:
         labels=3,
         notes=(
             f"{table.source}. {table.about}",
-            f"{verdict_counts(verdicts)}. Fisher's exact test compares the counts of each cell, at {LEVEL:g} after"
-            " Holm's correction over all cells of this table with counts; ≠ marks the cells that differ."
+            f"{verdict_counts(verdicts)}. Fisher's exact test compares the counts of each cell, at {VERDICT_LEVEL:g}"
+            " after Holm's correction over all cells of this table with counts; ≠ marks the cells that differ."
             " SR: success rate in percent. V: mean number of milestones, ours counted as the source counts.",
             *_source_notes(verdicts),
             *_few_sets(verdicts),
