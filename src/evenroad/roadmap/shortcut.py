@@ -38,10 +38,9 @@ def shortcut(
 
     Each round puts waypoints evenly along the path, few at first, joins every pair that `world` says can be joined,
     and takes the shortest way through them; its own waypoints are always among those offered, so a round never makes
-    the path longer.  At the end, waypoints that can be passed by are dropped.  It draws no random numbers.
-
-    Where the world has a strict check (`Rechecks`), the motions of a round's way have to pass it, too; those that
-    fail are taken away, in time with those beside them, and the next shortest way is tried.
+    the path longer.  At the end, waypoints that can be passed by are dropped.  It draws no random numbers.  Where the
+    world has a strict check (`Rechecks`), the motions of a round's way have to pass it, too; those that fail are taken
+    away, in time with those beside them, and the next shortest way is tried.
 
     `path`, (p, dim), p >= 2, has free motions; costs are lengths by default.  At the deadline, on the clock of
     ``time.perf_counter``, what was reached so far is the answer.  The second number are the motions checked, rechecks

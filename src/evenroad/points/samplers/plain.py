@@ -91,14 +91,10 @@ class _Sequence:
 
 @dataclass(frozen=True)
 class Halton(_Sequence):
-    """Halton's sequence in the first d prime bases (Halton 1960).
+    """Halton's sequence in the first d prime bases (Halton 1960), from the index `start` >= 0 on.
 
-    Parameters
-    ----------
-    scramble : bool
-        Random digit permutations (Owen 2017) drawn from `rng`; else the plain sequence, which ignores `rng`.
-    start : int
-        Index of the first point, >= 0.  Index 0 of the plain sequence is the origin of the cube.
+    With `scramble`, random digit permutations (Owen 2017) drawn from `rng`; else the plain sequence, which ignores
+    `rng`, and whose index 0 is the origin of the cube.
     """
 
     name = "halton"
