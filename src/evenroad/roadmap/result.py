@@ -16,6 +16,7 @@ class Status(StrEnum):
     SOLVED = "solved"
     START_INVALID = "start_invalid"
     GOAL_INVALID = "goal_invalid"
+    GOAL_UNREACHABLE = "goal_unreachable"
     NOT_CONNECTED = "not_connected"
     BUDGET_SPENT = "budget_spent"
     MESH_COLLISION = "mesh_collision"
@@ -58,8 +59,9 @@ class PlanResult:
     Attributes
     ----------
     status : Status
-        ``goal_invalid``: all goals are.  ``mesh_collision``: the path is free in its world, but the robot's meshes
-        touch something.  ``not_certified``: a proof was asked for, and the path is free only at states tested.
+        ``goal_invalid``: all goals are.  ``goal_unreachable``: no configuration was found for a pose.
+        ``mesh_collision``: the path is free in its world, but the robot's meshes touch something.  ``not_certified``: a
+        proof was asked for, and the path is free only at states tested.
     message : str
         One sentence for people: what happened and, without a path, what to try.
     start, goals : ndarrays, shapes (dim,) and (g, dim)
@@ -93,6 +95,9 @@ class PlanResult:
         Who searched: ``prm full``, ``prm lazy``, ``prm any`` (some path, not the shortest), each with
         ``+ lazy milestones`` where those were checked late; ``prm anytime``, ``fmt*``; or the world itself, with
         ``trees`` or ``cells``.
+    deviation : dict of str to float
+        Of a path whose tip is told its way, the largest deviations on fine grids: ``line_m`` and ``line_rad`` from the
+        straight lines, ``tilt_rad`` from upright.
     stages : tuple of Stage
         How a plan that grows or improves came about, its cost over time; empty for all others.
     roadmap : SearchedGraph or None
@@ -115,6 +120,7 @@ class PlanResult:
     milestone_cost: float | None = None
     counts: dict[str, int] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)
+    deviation: dict[str, float] = field(default_factory=dict)
     stages: tuple[Stage, ...] = ()
     roadmap: SearchedGraph | None = None
 

@@ -15,6 +15,7 @@ from evenroad.geometry.fit import fit_capsules
 from evenroad.geometry.hulls import Hull, Piece, piece_of
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import Capsule, Shape, without_pose
+from evenroad.robot.held import HeldObject, held_parts, same_bodies
 from evenroad.robot.joint import Joint, require_within, within_limits_of_mimics
 from evenroad.robot.kinematics import held_values
 from evenroad.robot.pairs import self_pairs
@@ -35,7 +36,8 @@ class Robot:
     Links in `pairs` are tested against each other.  `hulls` are convex pieces that contain the links' shapes more
     tightly than capsules: where capsules of a pair touch, these decide; links without any are their capsules.
     `pairs_given` says whether the pairs were given by somebody, as by an SRDF; else those in `resting` are left out,
-    which touch whatever the group does as long as the others are held where they are.
+    which touch whatever the group does as long as the others are held where they are.  `holds` are links that are
+    bodies which the robot carries for a while, see :meth:`holding`.
     """
 
     name: str
@@ -49,6 +51,7 @@ class Robot:
     hulls: tuple[Hull, ...] = ()
     pairs_given: bool = True
     resting: tuple[tuple[str, str], ...] = ()
+    holds: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         # The kernel takes the ends as they are: a capsule with a pose of its own gets them in its link's frame.
@@ -56,7 +59,7 @@ class Robot:
 
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of what decides verdicts; the names of the robot and its states do not."""
-        names = (each.name for each in fields(self) if each.name not in ("name", "states"))
+        names = (each.name for each in fields(self) if each.name not in ("name", "states", "holds"))
         return fingerprint_of(*(getattr(self, name) for name in names))
 
     def with_tool(
@@ -107,6 +110,60 @@ class Robot:
             if (pair[0] in tool.links) != (pair[1] in tool.links)
         )
         return replace(joined, pairs=(*self.pairs, *tool.pairs, *between))
+
+    def holding(
+        self, shape: Shape | HeldObject, link: str = "", *, touches: Sequence[str] = (), name: str = "held"
+    ) -> Robot:
+        """Return the robot with a body in its hand.
+
+        Capsules and a hull are fitted to it, as to the links of a URDF; nothing is sampled, and the robot's own pairs
+        stay.  It is tested against all obstacles and against every link that joints move on `link`.
+
+        Parameters
+        ----------
+        shape : Shape, or HeldObject
+            With its pose in the frame of the link that carries it; a HeldObject says all that follows itself.
+        link : str
+            That link.
+        touches : sequence of str
+            Links that it may touch.
+        name : str
+            What it is called: a scene can allow it to touch an obstacle, and verdicts name it.
+
+        Raises
+        ------
+        UnknownName
+            If a link is not there.
+        InvalidValue
+            If it is no shape that has capsules, or the name is that of a link: attached twice.
+        """
+        held = shape if isinstance(shape, HeldObject) else HeldObject(name, shape, link, tuple(touches))
+        parts = held_parts(self, held, neighbours=not self.pairs_given)
+        hulls = () if parts.hull.is_round and not self.hulls else (parts.hull,)
+        return replace(
+            self,
+            links=(*self.links, held.name),
+            joints=(*self.joints, parts.joint),
+            capsules=(*self.capsules, *parts.capsules),
+            pairs=(*self.pairs, *parts.pairs),
+            hulls=(*self.hulls, *hulls),
+            holds=(*self.holds, held.name),
+        )
+
+    def empty_handed(self) -> Robot:
+        """Return the robot without what it holds."""
+        held = set(self.holds)
+        if not held:
+            return self
+        return replace(
+            self,
+            links=tuple(link for link in self.links if link not in held),
+            joints=tuple(joint for joint in self.joints if joint.child not in held),
+            capsules=tuple(capsule for capsule in self.capsules if capsule.link not in held),
+            pairs=tuple(pair for pair in self.pairs if held.isdisjoint(pair)),
+            hulls=tuple(hull for hull in self.hulls if hull.link not in held),
+            holds=(),
+        )
 
 
 def pieces_of(robot: Robot) -> dict[str, list[Piece]]:
@@ -211,10 +268,20 @@ def with_group(robot: Robot, group: Sequence[str], held: Mapping[str, float] | N
 
 
 def in_scene(robot: Robot, scene: Scene) -> Robot:
-    """Return the robot with the scene's ranges to plan in, where they are narrower than its own limits.
+    """Return the robot as it is in a scene: with the ranges to plan in, where narrower, and what it holds there.
 
-    Raises UnknownName if the scene names a joint that the robot does not have; InvalidValue if no value is within both.
+    Raises UnknownName if the scene names a joint or a link that the robot does not have; InvalidValue if no value is
+    within both ranges, or the robot holds something else of the same name.
     """
+    for held in scene.attached:
+        if held.name in robot.holds:
+            if not same_bodies(robot, held):
+                raise InvalidValue(
+                    f"{held.name!r} is attached twice: scene {scene.name!r} and robot {robot.name!r} have two bodies"
+                    " of that name"
+                )
+            continue
+        robot = robot.holding(held)
     joints = {joint.name: joint for joint in robot.joints}
     limits = {}
     for name, (lower, upper) in scene.limits.items():

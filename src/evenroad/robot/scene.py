@@ -12,6 +12,7 @@ from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import NO_ROTATION, Pose, Vector
 from evenroad.geometry.shapes import PRIMITIVES, Capsule, Shape, along_z, shape_of
+from evenroad.robot.held import HeldObject
 
 _ROW = Struct("16d")
 _NUMBERS = {kind: number for number, kind in enumerate(PRIMITIVES)}
@@ -96,7 +97,8 @@ class Scene:
 
     `allowed` are contacts that are not tested, (link, obstacle), e.g. of the base with its table; `states` are named
     configurations, joint -> value, in which joints that are not planned for are held; `limits` are ranges to plan in,
-    joint -> (lower, upper) [rad or m], which :func:`evenroad.robot.in_scene` takes over.
+    joint -> (lower, upper) [rad or m]; `attached` is what the robot holds, no two of one name (InvalidValue).
+    :func:`evenroad.robot.in_scene` takes over both.
     """
 
     name: str
@@ -104,9 +106,18 @@ class Scene:
     allowed: frozenset[tuple[str, str]] = frozenset()
     states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    attached: tuple[HeldObject, ...] = ()
 
     def __post_init__(self) -> None:
+        held = [each.name for each in self.attached]
+        if len(set(held)) < len(held):
+            twice = sorted({name for name in held if held.count(name) > 1})
+            raise InvalidValue(f"scene {self.name!r} has something attached twice: {', '.join(twice)}")
         names = [obstacle.name for obstacle in self.obstacles]
+        if both := sorted(set(held) & set(names)):
+            raise InvalidValue(
+                f"scene {self.name!r} has {both[0]!r} attached and as an obstacle: a robot that holds it would touch it"
+            )
         if len(set(names)) < len(names):
             # What is allowed to touch the one would be allowed to touch the other.
             twice = sorted({name for name in names if names.count(name) > 1})
