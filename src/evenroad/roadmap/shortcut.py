@@ -11,9 +11,8 @@ import numpy.typing as npt
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad._clock import now
 from evenroad.roadmap.budget import BudgetSpent, in_time
-from evenroad.roadmap.proof import confirmed
 from evenroad.roadmap.query import EdgeCost
-from evenroad.roadmap.search import shortest_path
+from evenroad.roadmap.search import confirmed, shortest_path
 from evenroad.space import Space
 from evenroad.space.path import motion_lengths, subdivide
 from evenroad.world import World
