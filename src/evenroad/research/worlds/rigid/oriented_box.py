@@ -117,6 +117,18 @@ class BoxTable(NamedTuple):
     high: Floats
 
 
+class SolidTables(NamedTuple):
+    """A body among obstacles; `reaches`, (n,), bound how far points of each of its boxes are from its frame's origin.
+
+    `planar` says that all boxes stand along z, where the axes across pairs of edges give nothing new.
+    """
+
+    body: BoxTable
+    obstacles: BoxTable
+    reaches: Floats
+    planar: bool
+
+
 def box_table(boxes: Sequence[OrientedBox]) -> BoxTable:
     """Return the table of `boxes`, of one dimension; those of the plane become slabs of z from -1 to 1."""
     m = len(boxes)

@@ -15,7 +15,7 @@ from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
 from evenroad.geometry.mesh import TriangleMesh
 from evenroad.research.worlds.rigid.kernel import contacts, motions_are_free, motions_are_proved
-from evenroad.research.worlds.rigid.oriented_box import BoxTable, OrientedBox, box_table, reaches_of
+from evenroad.research.worlds.rigid.oriented_box import OrientedBox, SolidTables, box_table, reaches_of
 from evenroad.space import SO3, Box, Circle, Product, Space
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.bisection import require_few_segments
@@ -113,9 +113,7 @@ class SolidWorld:
     body: Sequence[OrientedBox]
     obstacles: Sequence[OrientedBox]
     resolution: float | Sequence[float]
-    _body: BoxTable = field(init=False, repr=False)
-    _obstacles: BoxTable = field(init=False, repr=False)
-    _reaches: Floats = field(init=False, repr=False)
+    _solids: SolidTables = field(init=False, repr=False)
     _steps: tuple[float, float] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -125,7 +123,8 @@ class SolidWorld:
             raise InvalidValue("body must be one box or more, got none")
         resolution, steps = _as_steps(self.resolution, self.space)
         set_fields(self, body=body, obstacles=obstacles, resolution=resolution, _steps=steps)
-        set_fields(self, _body=box_table(body), _obstacles=box_table(obstacles), _reaches=reaches_of(body))
+        tables = SolidTables(box_table(body), box_table(obstacles), reaches_of(body), dim == 2)
+        set_fields(self, _solids=tables)
 
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of space, body, obstacles and resolution: equal for worlds of the same verdicts."""
@@ -145,8 +144,7 @@ class SolidWorld:
         free = self.space.contains(first) & self.space.contains(second)
         inside = np.flatnonzero(free)
         start, end = as_pose_pair(first[inside], second[inside], self.space)
-        bodies = (self._body, self._reach, self._obstacles, self._planar)
-        free[inside] = motions_are_free(start, end, *self._steps, *bodies)
+        free[inside] = motions_are_free(start, end, *self._steps, self._solids)
         return free
 
     def recheck(self, path: Floats) -> Bools:
@@ -160,8 +158,7 @@ class SolidWorld:
         proved = inside[:-1] & inside[1:]
         rows = np.flatnonzero(proved)
         start, end = as_pose_pair(waypoints[rows], waypoints[rows + 1], self.space)
-        bodies = (self._body, self._reaches, self._obstacles, self._planar)
-        proved[rows] = motions_are_proved(start, end, _TOLERANCE * self._steps[0], *bodies)
+        proved[rows] = motions_are_proved(start, end, _TOLERANCE * self._steps[0], self._solids)
         return proved
 
     def explain(self, q: Floats) -> str:
@@ -171,16 +168,8 @@ class SolidWorld:
             return OUTSIDE
         return contact_with(self.obstacles, int(self._contacts(pose)[0]))
 
-    @property
-    def _reach(self) -> float:
-        return float(self._reaches.max())
-
-    @property
-    def _planar(self) -> bool:
-        return body_dimension(self.space) == 2
-
     def _contacts(self, q: Floats) -> Ints:
-        return contacts(as_poses(q, self.space), self._body, self._reach, self._obstacles, self._planar)
+        return contacts(as_poses(q, self.space), self._solids)
 
 
 def _as_boxes(name: str, boxes: Sequence[OrientedBox], dim: int) -> tuple[OrientedBox, ...]:
