@@ -19,6 +19,8 @@ import klampt
 import numpy as np
 import numpy.typing as npt
 from PIL import Image
+from tests_peers.engines.klampt_world import KlamptWorld, _geometry, _merged_obstacles
+from tests_peers.engines.surface import link_surfaces
 
 from evenroad._files import atomic_write
 from evenroad.arms import arm_query
@@ -28,8 +30,6 @@ from evenroad.robot import Scene
 from evenroad.robot.kinematics import joint_values
 from evenroad.trajectory import Trajectory, limits_of, make_trajectory
 from evenroad.viz.arm import draw_arm_plan
-from tests_peers.engines.klampt_world import KlamptWorld, _geometry, _merged_obstacles
-from tests_peers.engines.surface import link_surfaces
 
 MASSES = {
     "shoulder_link": 3.7,
