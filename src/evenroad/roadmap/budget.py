@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -97,19 +96,22 @@ class Stopwatch:
     def __init__(self) -> None:
         self.seconds: dict[str, float] = {}
         self._running: list[str] = []
+        self._next = ""
         self._since = 0.0
 
-    @contextmanager
-    def __call__(self, phase: str) -> Iterator[None]:
-        """Time the block under this name."""
+    def __call__(self, phase: str) -> Stopwatch:
+        """Return what times a block under this name."""
+        self._next = phase
+        return self
+
+    def __enter__(self) -> None:
         self._turn()
-        self._running.append(phase)
-        self.seconds.setdefault(phase, 0.0)
-        try:
-            yield
-        finally:
-            self._turn()
-            self._running.pop()
+        self._running.append(self._next)
+        self.seconds.setdefault(self._next, 0.0)
+
+    def __exit__(self, *error: object) -> None:
+        self._turn()
+        self._running.pop()
 
     def _turn(self) -> None:
         """Give the time since the last turn to the phase that was running."""

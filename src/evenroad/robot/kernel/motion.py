@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.robot.kernel.layout import inlined, quick, quick_inlined
+from evenroad.robot.kernel.layout import inlined, quick_inlined
 
 Floats = npt.NDArray[np.float64]
 

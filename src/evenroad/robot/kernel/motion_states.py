@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import call_at
 from evenroad.robot.kernel.lanes import store_along
-from evenroad.robot.kernel.layout import LANES, quick, quick_inlined
+from evenroad.robot.kernel.layout import LANES, quick_inlined
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
