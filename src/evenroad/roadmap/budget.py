@@ -71,20 +71,33 @@ class BudgetSpent(Exception):
     """Nothing more may be checked; caught where the budget was given."""
 
 
-def in_time(rows: npt.NDArray[np.integer], deadline: float) -> Iterator[npt.NDArray[np.integer]]:
+class Pace:
+    """How many rows a world is asked about at once where time is limited: as many as take it some milliseconds."""
+
+    size: int = _FIRST_BATCH
+
+
+def in_time(
+    rows: npt.NDArray[np.integer], deadline: float, pace: Pace | None = None
+) -> Iterator[npt.NDArray[np.integer]]:
     """Yield `rows` in batches, all at once if there is no deadline.
 
-    Raises BudgetSpent when the deadline (on the clock of ``time.perf_counter``) has passed and there are rows left.
+    A pace is kept from call to call.  Raises BudgetSpent when the deadline (on the clock of ``time.perf_counter``) has
+    passed and there are rows left.
     """
-    size = _FIRST_BATCH if math.isfinite(deadline) else max(len(rows), 1)
-    first = 0
+    pace = Pace() if pace is None else pace
+    first, is_limited = 0, math.isfinite(deadline)
     while first < len(rows):
         began = time.perf_counter()
         if began >= deadline:
             raise BudgetSpent
+        size = pace.size if is_limited else len(rows)
         yield rows[first : first + size]
         first += size
-        size = 2 * size if time.perf_counter() - began < _FAST else max(size // 2, 1)
+        if time.perf_counter() - began >= _FAST:
+            pace.size = max(pace.size // 2, 1)
+        elif size <= len(rows):
+            pace.size = 2 * pace.size
 
 
 class Stopwatch:
