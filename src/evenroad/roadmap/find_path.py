@@ -5,13 +5,13 @@ More time buys better paths: `improve` plans again in other ways, and keeps the 
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 from itertools import count
 
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._clock import now
 from evenroad.points.pointset import Origin
 from evenroad.roadmap.answer import connected, gave_up, proved_apart, refusal
 from evenroad.roadmap.anytime import plan_anytime
@@ -132,7 +132,7 @@ def _goes_on(attempt: Attempt, best: PlanResult, variant: int) -> bool:
     budget, start, goals = attempt.query.budget, attempt.query.start, attempt.query.goals[attempt.goals]
     least = float(attempt.world.space.distance(np.broadcast_to(start, goals.shape), goals).min())
     return (
-        time.perf_counter() < attempt.deadline
+        now() < attempt.deadline
         and (budget.rounds is None or variant <= budget.rounds)
         and (budget.motions is None or attempt.motions_checked < budget.motions)
         and _cost(best) > (1.0 + NO_BETTER) * least
