@@ -12,12 +12,13 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats
 from evenroad._rng import RngLike
+from evenroad.arm_goals import find_cheapest
 from evenroad.arm_ways import Ends, plan_ways
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import Pose
 from evenroad.points import PointSet, draw
 from evenroad.roadmap import Budget, PlanResult, Rule, Status
-from evenroad.roadmap.find_path import SECONDS, find_path
+from evenroad.roadmap.find_path import SECONDS
 from evenroad.roadmap.hemmed import with_reasons
 from evenroad.roadmap.plan import plan
 from evenroad.roadmap.proof import require_certified
@@ -182,7 +183,7 @@ def plan_arm(
 
     def plan_once(world: World, start: Floats, goals: Floats, shorten: bool) -> PlanResult:
         if points is None:
-            return find_path(world, start, goals, budget=budget, shorten=shorten, improve=improve)
+            return find_cheapest(world, start, goals, budget=budget, shorten=shorten, improve=improve)
         return plan_on_points(world, start, goals, points, rule=rule, shorten=shorten, budget=budget)
 
     result = plan_ways(query.ends, straight, upright, plan_once, shorten=shorten)
