@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from evenroad._arrays import Floats
+from evenroad._arrays import Floats, Ints
 from evenroad.roadmap import Budget, PlanResult
 from evenroad.roadmap.answer import connected, refusal
 from evenroad.roadmap.attempt import Attempt
@@ -75,7 +75,7 @@ class _Search:
         self.best: Connection | None = None
         self.cost, self.last, self.motions = np.inf, -1, 0
 
-    def reach(self, rows: np.ndarray) -> bool:
+    def reach(self, rows: Ints) -> bool:
         """Try some goals for a short while; return whether one was reached, and keep its path if it is the best."""
         attempt, world = self.attempt, self.world
         seconds = attempt.deadline - time.perf_counter()

@@ -120,7 +120,7 @@ def plan_arm(
         A value that is outside of its joint's limits by no more than 1e-6 is brought to the limit.
     goal : str, array_like, Pose, PoseGoal, or a sequence of such
         As `start`, or where a link is to be: all configurations that are known to bring it there are goals.  Of several
-        the path ends at the first that is reached, with points or `improve` at the cheapest.
+        the path ends at a cheap one, with points or `improve` at the cheapest.
     points : int or PointSet, optional
         Plan on a roadmap (ps-PRM) of this set, or of exactly so many points of the sampler ``even``.  Default: no
         roadmap, but trees that grow from both ends until they meet.
