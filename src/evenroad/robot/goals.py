@@ -18,24 +18,16 @@ from evenroad.robot.pose_goal import PoseGoal, as_pose_goal
 
 @dataclass(frozen=True, eq=False)
 class Goals:
-    """What a plan is to reach.
-
-    Attributes
-    ----------
-    configurations : ndarray, shape (g, dim)
-        Goals; where no pose is reached and nothing else is a goal, what comes nearest.
-    names : tuple of str
-        What the caller called each, or nothing.
-    poses : tuple of (PoseGoal, Reached)
-        The poses, and what reaches them.
-    seconds : float
-        That took.
-    """
+    """What a plan is to reach."""
 
     configurations: Floats
+    """Goals, (g, dim); where no pose is reached and nothing else is a goal, what comes nearest."""
     names: tuple[str, ...]
+    """What the caller called each, or nothing."""
     poses: tuple[tuple[PoseGoal, Reached], ...] = ()
+    """The poses, and what reaches them."""
     seconds: float = 0.0
+    """That took."""
 
     @property
     def unreached(self) -> str:
