@@ -18,10 +18,9 @@ from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import Pose
 from evenroad.points import PointSet, draw
 from evenroad.roadmap import Budget, PlanResult, Rule, Status
-from evenroad.roadmap.find_path import SECONDS
-from evenroad.roadmap.hemmed import with_reasons
+from evenroad.roadmap.answer import require_certified
+from evenroad.roadmap.find_path import SECONDS, with_reasons
 from evenroad.roadmap.plan import plan
-from evenroad.roadmap.proof import require_certified
 from evenroad.robot import (
     ArmWorld,
     Robot,

@@ -237,8 +237,8 @@ def plan_type(words: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
     if not HELP.isdisjoint(words):
         return chosen
     if for_arm == ("--robot-radius" in given):
-        many = "both" if for_arm else "neither"
-        raise InvalidValue(f"give --robot-radius (a disk) or --robot (an arm), one of them, not {many}")
+        text = "give --robot-radius (a disk) or --robot (an arm), exactly one of them, not"
+        raise InvalidValue(f"{text} {'both' if for_arm else 'neither'}")
     other, needs = (PlanDisk, "--robot-radius") if chosen is PlanArm else (PlanArm, "--robot")
     for option in sorted(given & (option_names(other) - option_names(chosen))):
         raise InvalidValue(f"{option} goes with {needs} only")

@@ -93,18 +93,20 @@ class Obstacle:
 
 @dataclass(frozen=True)
 class Scene:
-    """Obstacles, no two of one name (InvalidValue); allowed contacts and named configurations."""
+    """Obstacles, no two of one name (InvalidValue); allowed contacts and named configurations.
+
+    `allowed` are contacts that are not tested, (link, obstacle), e.g. of the base with its table; `states` are named
+    configurations, joint -> value, in which joints that are not planned for are held; `limits` are ranges to plan in,
+    joint -> (lower, upper) [rad or m]; `attached` is what the robot holds, no two of one name (InvalidValue).
+    :func:`evenroad.robot.in_scene` takes over both.
+    """
 
     name: str
     obstacles: tuple[Obstacle, ...] = ()
     allowed: frozenset[tuple[str, str]] = frozenset()
-    """Contacts that are not tested, (link, obstacle), e.g. of the base with its table."""
     states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    """Named configurations: joint -> value; joints that are not planned for are held there."""
     limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    """Ranges to plan in, joint -> (lower, upper) [rad or m], which :func:`evenroad.robot.in_scene` takes over."""
     attached: tuple[HeldObject, ...] = ()
-    """What the robot holds, no two of one name (InvalidValue); `in_scene` takes that over, too."""
 
     def __post_init__(self) -> None:
         held = [each.name for each in self.attached]
@@ -134,9 +136,7 @@ class Scene:
 
     def with_(self, *obstacles: Obstacle, allowed: Sequence[tuple[str, str]] = ()) -> Scene:
         """Return the scene with more obstacles, of new names, and more (link, obstacle) contacts left untested."""
-        return replace(
-            self, obstacles=(*self.obstacles, *obstacles), allowed=self.allowed | frozenset(allowed)
-        )
+        return replace(self, obstacles=(*self.obstacles, *obstacles), allowed=self.allowed.union(allowed))
 
     def without(self, *names: str) -> Scene:
         """Return the scene without the obstacles of these names, and without what was allowed to touch them.

@@ -14,8 +14,7 @@ from evenroad._arrays import Floats, Ints, Ints32
 from evenroad.roadmap import Budget, PlanResult, Status
 from evenroad.roadmap.answer import connected, gave_up, refusal
 from evenroad.roadmap.attempt import Attempt
-from evenroad.roadmap.find_path import NO_POINTS, SECONDS
-from evenroad.roadmap.hemmed import with_reasons
+from evenroad.roadmap.find_path import NO_POINTS, SECONDS, with_reasons
 from evenroad.roadmap.query import FEW, LINKS, Query, read_places
 from evenroad.robot import ArmWorld, Robot, Scene, configuration, in_scene
 from evenroad.robot_roadmap.cell import day_and_all, left_to_check, require_same_robot

@@ -35,9 +35,8 @@ class FlatMetric:
         if not np.isfinite(self.scale).all():
             raise InvalidValue(f"scale must be finite, got {self.scale!r}")
         if len(self.scale) != len(self.period):
-            raise InvalidValue(
-                f"scale and period must have one length, got {len(self.scale)} and {len(self.period)}"
-            )
+            lengths = f"{len(self.scale)} and {len(self.period)}"
+            raise InvalidValue(f"scale and period must have one length, got {lengths}")
 
     @property
     def dim(self) -> int:
