@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -123,8 +124,10 @@ def _with_path(
             length = float(np.sum(measure(path[:-1], path[1:])))
     named = "length" if cost is None else "cost"
     to = f" to goal {goal}" if len(query.goals) > 1 else ""
-    return replace(
-        _result(attempt, Status.SOLVED, f"path of {named} {length:.6g} with {len(path)} waypoints{to}"),
+    return _result(
+        attempt,
+        Status.SOLVED,
+        f"path of {named} {length:.6g} with {len(path)} waypoints{to}",
         goal_index=goal,
         path=path,
         milestone_path=raw,
@@ -157,7 +160,7 @@ def _reach(attempt: Attempt, searched: Searched, counts: dict[str, int]) -> tupl
     return so_far, "and the two components do not meet"
 
 
-def _result(attempt: Attempt, status: Status, message: str) -> PlanResult:
+def _result(attempt: Attempt, status: Status, message: str, **more: Any) -> PlanResult:
     return PlanResult(
         status=status,
         message=message,
@@ -168,6 +171,7 @@ def _result(attempt: Attempt, status: Status, message: str) -> PlanResult:
         links=attempt.query.links,
         planner=attempt.planner,
         seconds=attempt.watch.seconds,
+        **more,
     )
 
 
