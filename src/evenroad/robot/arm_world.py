@@ -10,7 +10,7 @@ import numpy as np
 from evenroad._arrays import Bools, Floats
 from evenroad._checks import require_positive
 from evenroad._fingerprint import fingerprint_of
-from evenroad.errors import NotAvailable, UnknownName
+from evenroad.errors import InvalidValue, NotAvailable, UnknownName
 from evenroad.robot.kernel import scalar
 from evenroad.robot.kernel.certify import motions_certified
 from evenroad.robot.kernel.lane_world import LaneWorld
@@ -89,6 +89,12 @@ class ArmWorld:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "resolution", require_positive("resolution", self.resolution))
+        for held in self.scene.attached:
+            if held.name not in self.robot.holds:
+                raise InvalidValue(
+                    f"scene {self.scene.name!r} attaches {held.name!r}, which the robot does not hold: give the world"
+                    " in_scene(robot, scene)"
+                )
         space, longest, of_robot, by_joint, bounds, by_joint_at = prepared(self.robot)
         require_few_segments(self.resolution, longest / self.resolution)
         tested = tested_contacts(of_robot.capsules, self.robot.links, self.scene)
