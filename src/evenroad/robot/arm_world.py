@@ -7,15 +7,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from evenroad._arrays import Bools, Floats
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad._checks import require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import NotAvailable, UnknownName
+from evenroad.geometry.shapes import PRIMITIVES
 from evenroad.robot.kernel import scalar
 from evenroad.robot.kernel.certify import motions_certified
+from evenroad.robot.kernel.cloud_scalar import scalar_check_address
 from evenroad.robot.kernel.lane_world import LaneWorld
 from evenroad.robot.kernel.obstacles import obstacle_rows, tested_contacts
 from evenroad.robot.kernel.robot_tables import RobotTables
+from evenroad.robot.kernel.scene_clouds import scene_clouds
 from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
 from evenroad.robot.kernel.selftest import lanes_failure
 from evenroad.robot.known_robots import prepared
@@ -92,12 +95,17 @@ class ArmWorld:
         space, longest, of_robot, by_joint = prepared(self.robot)
         require_few_segments(self.resolution, longest / self.resolution)
         tested = tested_contacts(of_robot.capsules, self.robot.links, self.scene)
+        solid = [obstacle.shape in PRIMITIVES for obstacle in self.scene.obstacles]
+        clouds = None
+        if not all(solid):
+            clouds = scene_clouds(self.scene, of_robot.capsules, of_robot.reach, tested)
+            tested = tested[:, solid]
         tables = arm_tables(of_robot, obstacle_rows(self.scene), tested)
         object.__setattr__(self, "_space", space)
         object.__setattr__(self, "bounds", by_joint[: 3 * space.dim].reshape(3, space.dim))
         object.__setattr__(self, "robot_tables", of_robot)
         object.__setattr__(self, "tables", tables)
-        object.__setattr__(self, "lanes", LaneWorld(tables.lanes, by_joint, self.resolution))
+        object.__setattr__(self, "lanes", LaneWorld(tables.lanes, by_joint, self.resolution, clouds))
         object.__setattr__(self, "backend", _chosen(self.backend))
 
     @property
@@ -131,7 +139,7 @@ class ArmWorld:
             return np.zeros(len(configurations), dtype=np.bool_)
         tables = self.tables
         if self.backend == "scalar":
-            return scalar.configurations_free(configurations, self.bounds, tables.ints, tables.floats)
+            return scalar.configurations_free(configurations, self.bounds, self._ints, tables.floats)
         # Imported late: where the vector type cannot even be defined, all else still works.
         from evenroad.robot.kernel.batch import configurations_free
 
@@ -154,7 +162,7 @@ class ArmWorld:
 
             return motions_free(self.lanes, first, second, tolerance)
         tables = self.tables
-        return scalar.motions_free(first, second, self.resolution, self.bounds, tables.ints, tables.floats)
+        return scalar.motions_free(first, second, self.resolution, self.bounds, self._ints, tables.floats)
 
     @property
     def proof(self) -> str:
@@ -187,7 +195,7 @@ class ArmWorld:
             as_batch("b", second[rows], self._space.dim),
             tolerance,
             self.bounds,
-            tables.ints,
+            self._ints,
             tables.floats,
             self.robot_tables.speeds,
             self.robot_tables.pair_speeds,
@@ -252,10 +260,28 @@ class ArmWorld:
     @property
     def fixed_contact(self) -> tuple[str, str] | None:
         """Two bodies that touch whatever the joints do, or None."""
-        if self.tables.fixed_contact is None:
-            return self.robot_tables.fixed_contact
-        capsule, obstacle = self.tables.fixed_contact
-        return self.robot_tables.capsules[capsule].link, self.scene.obstacles[obstacle].name
+        clouds, of_capsules = self.lanes.clouds, self.robot_tables.capsules
+        if self.tables.fixed_contact is not None:
+            capsule, obstacle = self.tables.fixed_contact
+            return of_capsules[capsule].link, self._solid(obstacle)
+        if clouds is not None and clouds.fixed_contact is not None:
+            capsule, obstacle = clouds.fixed_contact
+            return of_capsules[capsule].link, self.scene.obstacles[obstacle].name
+        return self.robot_tables.fixed_contact
+
+    def _solid(self, number: int) -> str:
+        """Return the name of an obstacle by its number among those that are no clouds."""
+        return [obstacle.name for obstacle in self.scene.obstacles if obstacle.shape in PRIMITIVES][number]
+
+    @property
+    def _ints(self) -> Ints:
+        """The integers of the tables, with the addresses of clouds where there are any."""
+        clouds = self.lanes.clouds
+        return (
+            self.tables.ints
+            if clouds is None
+            else clouds.added_to(self.tables.ints, scalar_check_address())
+        )
 
     def _touching(self, q: Floats) -> tuple[str, str] | None:
         """Return two bodies that touch, or come as near as what single precision may call touching."""
@@ -264,10 +290,12 @@ class ArmWorld:
         margins, pair_margins = np.full(len(of_capsules), tables.margin), of_robot.pair_margins.copy()
         frames, capsules = np.empty((len(of_robot.tree.frames) + 1, 12)), np.empty((len(of_capsules), 6))
         kind, capsule, other = scalar.first_contact(
-            q, tables.ints, tables.floats, margins, pair_margins, frames, capsules
+            q, self._ints, tables.floats, margins, pair_margins, frames, capsules
         )
         if kind == scalar.MEETS_OBSTACLE:
-            return of_capsules[capsule].link, self.scene.obstacles[tables.kept[other]].name
+            return of_capsules[capsule].link, self._solid(tables.kept[other])
+        if kind == scalar.MEETS_CLOUD:
+            return of_capsules[capsule].link, self.scene.obstacles[other].name
         if kind == scalar.MEETS_ITSELF:
             first, second = of_robot.capsule_pairs[other]
             return of_capsules[first].link, of_capsules[second].link

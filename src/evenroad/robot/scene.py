@@ -9,7 +9,7 @@ from evenroad._checks import require_known
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import NO_ROTATION, Pose, Vector
-from evenroad.geometry.shapes import PRIMITIVES, Capsule, Shape, along_z, shape_of
+from evenroad.geometry.shapes import PRIMITIVES, Capsule, PointCloud, Shape, along_z, shape_of
 
 
 @dataclass(frozen=True)
@@ -21,8 +21,8 @@ class Obstacle:
     name : str
         Unique in its scene.
     body : Shape
-        A box, sphere, cylinder or capsule, with its pose in the frame of the robot's root link; others, and what is
-        fixed to a link, are refused (InvalidValue).
+        A box, sphere, cylinder, capsule or cloud of radius > 0, with its pose in the frame of the robot's root link;
+        others, and what is fixed to a link, are refused (InvalidValue).
     cell : bool
         Part of the fixed cell, the same for every task of this installation.
     """
@@ -33,8 +33,11 @@ class Obstacle:
 
     def __post_init__(self) -> None:
         body = along_z(self.body) if isinstance(self.body, Capsule) else self.body
-        if getattr(body, "kind", None) not in PRIMITIVES:
-            raise InvalidValue(f"obstacle {self.name!r} must be one of {', '.join(PRIMITIVES)}, got a {body}")
+        kinds = (*PRIMITIVES, PointCloud.kind)
+        if getattr(body, "kind", None) not in kinds:
+            raise InvalidValue(f"obstacle {self.name!r} must be one of {', '.join(kinds)}, got a {body}")
+        if isinstance(body, PointCloud) and body.radius == 0.0:
+            raise InvalidValue(f"the cloud {self.name!r} must have a radius > 0: between points it would be open")
         if body.link:
             raise InvalidValue(
                 f"obstacle {self.name!r} must be fixed to the world, not to a link, got {body.link!r}"
@@ -67,7 +70,7 @@ class Obstacle:
 
     @property
     def shape(self) -> str:
-        """Kind of its body: ``box``, ``sphere``, ``cylinder`` or ``capsule``."""
+        """Kind of its body: ``box``, ``sphere``, ``cylinder``, ``capsule`` or ``cloud``."""
         return self.body.kind
 
     @property
@@ -124,7 +127,8 @@ class Scene:
         for each in self.obstacles:
             numbers = (*each.size, *each.xyz, *each.rotation)
             # Zeros of both signs are one number.
-            rows.add((each.name, each.shape, *(number + 0.0 for number in numbers)))
+            content = (fingerprint_of(each.body),) if isinstance(each.body, PointCloud) else ()
+            rows.add((each.name, each.shape, *(number + 0.0 for number in numbers), *content))
         return fingerprint_of(rows, self.allowed)
 
     def with_(self, *obstacles: Obstacle, allowed: Sequence[tuple[str, str]] = ()) -> Scene:

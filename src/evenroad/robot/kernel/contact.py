@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel.addresses import call_at
 from evenroad.robot.kernel.forward_kinematics import scratch_places
 from evenroad.robot.kernel.hull_contact import bodies_meet
 from evenroad.robot.kernel.lanes import (
@@ -50,6 +51,8 @@ def blocked_lanes(scratch: Singles, ints: Ints, table: Singles, enough: int) -> 
     `enough` is 1 to stop at the first lane that is blocked, 16 to find all.
     """
     blocked = _meeting_obstacles(scratch, ints, table, enough)
+    if ints[at.CLOUDS] != 0 and not (blocked == ALL or (blocked != 0 and enough == 1)):
+        blocked |= call_at(ints[at.CLOUD_CHECK], (scratch, ints, table, blocked, enough))
     if blocked == ALL or (blocked != 0 and enough == 1):
         return blocked
     return _meeting_themselves(scratch, ints, table, blocked, enough)

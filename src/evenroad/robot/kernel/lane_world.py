@@ -13,6 +13,7 @@ import numpy.typing as npt
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.layout import DESK, LANES, MOST_WAITING
+from evenroad.robot.kernel.scene_clouds import SceneClouds
 
 Floats = npt.NDArray[np.float64]
 
@@ -30,15 +31,18 @@ class LaneWorld:
         and the two of a pair against each other, (dim, capsule pairs), at most [m/rad].
     resolution : float
         Largest distance between neighbouring states of a motion.
+    clouds : SceneClouds, optional
+        The clouds of the scene.
     """
 
     tables: npt.NDArray[np.int64]
     by_joint: Floats
     resolution: float
+    clouds: SceneClouds | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return how a copy is made, here or in another process: it finds out for itself where its arrays are."""
-        return LaneWorld, (self.tables, self.by_joint, self.resolution)
+        return LaneWorld, (self.tables, self.by_joint, self.resolution, self.clouds)
 
     def arguments(self, more: int) -> tuple[Floats, tuple[int, int, float, int, int, int, int]]:
         """Return `more` doubles of memory, and what a program ends with: what ``checks_of`` takes, and their address.
@@ -60,7 +64,16 @@ class LaneWorld:
         dim, things = header[at.COORDINATES], header[at.CAPSULES] + header[at.PAIRS]
         places = (LANES + 3) * dim + LANES + things + 2 * MOST_WAITING
         doubles = DESK + LANES + places + header[at.SCRATCH] // 2 + len(self.tables)
-        return address(self.tables), address(self.by_joint), doubles
+        return address(self._tables), address(self.by_joint), doubles
+
+    @cached_property
+    def _tables(self) -> npt.NDArray[np.int64]:
+        """The tables, with the addresses of clouds where there are any."""
+        if self.clouds is None:
+            return self.tables
+        from evenroad.robot.kernel.cloud_contact import cloud_check_address
+
+        return self.clouds.added_to(self.tables, cloud_check_address())
 
 
 class _Memory(threading.local):

@@ -25,7 +25,7 @@ _PADDING = {"box": (), "sphere": (0.0, 0.0), "cylinder": (0.0,), "capsule": (0.0
 
 
 def obstacle_rows(scene: Scene) -> Floats:
-    """Return the obstacles of a scene, (n, 16): kind; full extents of a box, or radius and length without caps, and
+    """Return the obstacles of a scene but its clouds, (n, 16): kind; full extents of a box, or radius and length without caps, and
     zeros [m]; rotation to the root link's frame, row by row; centre in that frame [m].
 
     Raises
@@ -35,7 +35,8 @@ def obstacle_rows(scene: Scene) -> Floats:
         never comes).
     """
     numbers: list[float] = []
-    for obstacle in scene.obstacles:
+    obstacles = [obstacle for obstacle in scene.obstacles if obstacle.shape in _KINDS]
+    for obstacle in obstacles:
         body = obstacle.body
         numbers += (*_KINDS[body.kind], *body.size, *_PADDING[body.kind], *body.pose.rotation, *body.pose.xyz)
     rows = np.array(numbers, dtype=np.float64).reshape(-1, ROW)
@@ -46,7 +47,7 @@ def obstacle_rows(scene: Scene) -> Floats:
             >= 1e-14
         )
         for k in np.flatnonzero(far & ((rows[:, 0] != BOX) | turned)):
-            obstacle = scene.obstacles[k]
+            obstacle = obstacles[k]
             raise InvalidValue(
                 f"obstacle {obstacle.name!r} must be within {FARTHEST:g} m, got size {obstacle.size!r} at"
                 f" {obstacle.xyz!r}"

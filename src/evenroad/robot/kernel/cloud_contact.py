@@ -1,0 +1,245 @@
+"""Which of sixteen placed configurations touch a cloud of points; a capsule is here what it is, not spheres over it.
+
+A byte of a grid tells for most capsules, sixteen configurations at once, that no point is near.  What is left is tested
+one configuration after the other, against sixteen nodes or points of the cloud's tree at once.  Compiled when a scene
+has a cloud, and called by its address.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from llvmlite import ir
+from numba import cfunc, types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+from evenroad.robot.kernel import cloud_tree as tree
+from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel.addresses import ANY_LENGTH, integers_at, singles_at
+from evenroad.robot.kernel.forward_kinematics import scratch_places
+from evenroad.robot.kernel.hull_contact import _room
+from evenroad.robot.kernel.lanes import (
+    LANES_TYPE,
+    ONE,
+    ZERO,
+    absolute,
+    below_zero,
+    column,
+    dot,
+    larger,
+    load_vector,
+    lowest_bit,
+    minus,
+    plus,
+    row,
+    smaller,
+    times,
+)
+from evenroad.robot.kernel.layout import HALF, LANES, PLACED, inlined, inner
+from evenroad.robot.kernel.scene_clouds import CAPSULE_ROW, CLOUD_ROW, DESK
+
+ALL = (1 << LANES) - 1
+MOST_PIECES = 8
+"""Into so many pieces a long capsule is cut at most when the grid is asked."""
+
+Ints = npt.NDArray[np.int64]
+Singles = npt.NDArray[np.float32]
+
+
+@cache
+def cloud_check_address() -> int:
+    """Return the address, good for this process, of the check against clouds; compiled when first asked.
+
+    It takes the addresses of scratch memory with sixteen placed configurations, of integers and floats of the tables,
+    the mask of lanes that are known to be blocked, and `enough` as ``lane_check`` does; it returns the mask of those
+    that touch a cloud.
+    """
+    kind = types.int64(*[types.int64] * 5)
+    return int(cfunc(kind, cache=True, error_model="numpy", _nrt=False)(_meeting_clouds).address)
+
+
+def _meeting_clouds(scratch: int, ints: int, table: int, blocked: int, enough: int) -> int:
+    return meeting_clouds(
+        singles_at(scratch, (ANY_LENGTH,)),
+        integers_at(ints, (ANY_LENGTH,)),
+        singles_at(table, (ANY_LENGTH,)),
+        blocked,
+        enough,
+    )
+
+
+@inner
+def meeting_clouds(scratch: Singles, ints: Ints, table: Singles, blocked: int, enough: int) -> int:
+    """Return the mask of lanes, of those that are not blocked, in which a capsule touches a cloud."""
+    _, capsules = scratch_places(ints)
+    desk, meeting = integers_at(ints[at.CLOUDS], (ANY_LENGTH,)), 0
+    clouds, of_capsules = desk[0], singles_at(desk[1], (ANY_LENGTH,))
+    for number in range(clouds):
+        place = desk[DESK + CLOUD_ROW * number]
+        tested = integers_at(desk[DESK + CLOUD_ROW * number + 1], (ANY_LENGTH,))
+        cloud = singles_at(place + tree.BYTES_OF_HEADER, (ANY_LENGTH,))
+        # From the outermost capsules inwards: those touch most often.
+        for i in range(ints[at.CAPSULES] - 1, ints[at.FIXED_CAPSULES] - 1, -1):
+            if tested[i] == 0:
+                continue
+            here = capsules + PLACED * i
+            slack, half, one_by_squared = row(of_capsules, CAPSULE_ROW * i, 3)
+            (covering,) = row(table, ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i + 6, 1)
+            reach = covering - slack + cloud[tree.RADIUS]
+            near = _not_clear(scratch, here, half, reach, place, cloud) & ~(blocked | meeting)
+            while near != 0:
+                lane = lowest_bit(near)
+                near &= near - 1
+                if _touches(scratch, here + lane, one_by_squared, reach, place, cloud):
+                    meeting |= 1 << lane
+                    if enough == 1:
+                        return meeting
+            if blocked | meeting == ALL:
+                return meeting
+    return meeting
+
+
+@inlined
+def _not_clear(scratch: Singles, here: int, half: Any, reach: Any, place: int, cloud: Singles) -> int:
+    """Return the mask of lanes in which the grid does not tell that all points are beyond `reach` of a segment.
+
+    First of the segment as a whole, then, where that may be of use, of pieces about as long as the reach.
+    """
+    centre, along = load_vector(scratch, here), load_vector(scratch, here + HALF)
+    near = _below(centre, half + reach, place, cloud)
+    if near == 0 or half <= reach:
+        return near
+    pieces = min(int(half / reach) + 1, MOST_PIECES)
+    share = np.float32(1.0) / np.float32(pieces)
+    unclear = 0
+    for piece in range(pieces):
+        middle = plus(centre, times(along, np.float32(2 * piece + 1 - pieces) * share))
+        unclear |= _below(middle, half * share + reach, place, cloud) & near
+        if unclear == near:
+            break
+    return unclear
+
+
+@inner
+def _below(centre: Any, reach: Any, place: int, cloud: Singles) -> int:
+    """Return the mask of lanes in which the grid does not tell that all points are beyond `reach` of a place.
+
+    Outside of the grid it is asked for the nearest place inside: what lies beyond that is farther by at least the third
+    side of a triangle with an obtuse angle.
+    """
+    header = integers_at(place, (tree.HEADER,))
+    x, y, z, one_by_cell, width, depth, height, step = row(cloud, tree.LOW, 8)
+    u, v, w = minus(centre, (x, y, z))
+    a, b, c = _cut(u, width), _cut(v, depth), _cut(w, height)
+    u, v, w = u - a, v - b, w - c
+    away = (
+        bytes_of_cells(
+            place + header[tree.GRID],
+            a * one_by_cell,
+            b * one_by_cell,
+            c * one_by_cell,
+            header[tree.CELLS_Y],
+            header[tree.CELLS_Z],
+        )
+        * step
+    )
+    return below_zero(u * u + v * v + w * w + away * away - reach * reach)
+
+
+@inlined
+def _cut(place: Any, most: Any) -> Any:
+    return larger(smaller(place, most), ZERO)
+
+
+@inner
+def _touches(
+    scratch: Singles, here: int, one_by_squared: Any, reach: Any, place: int, cloud: Singles
+) -> bool:
+    """Return whether a point is within `reach` of the segment of the capsule at a place, in one lane."""
+    header = integers_at(place, (tree.HEADER,))
+    x, y, z, i, j, k = column(scratch, here, 6)
+    centre, along, extents = (x, y, z), (i, j, k), (abs(i) + reach, abs(j) + reach, abs(k) + reach)
+    waiting = integers_at(_room(32), (32,))
+    top = header[tree.LEVELS] - 1
+    level, node = top, 0
+    inside = _near_nodes(header, cloud, level, node, centre, along, extents, one_by_squared, reach)
+    while True:
+        if inside == 0:
+            if level == top:
+                return False
+            level += 1
+            inside, node = waiting[2 * level], waiting[2 * level + 1]
+            continue
+        child = LANES * node + lowest_bit(inside)
+        inside &= inside - 1
+        if level == 0:
+            apart = minus(load_vector(cloud, tree.LEAVES + tree.LEAF_ROW * child), centre)
+            apart = minus(apart, times(along, _nearest(apart, along, one_by_squared)))
+            if below_zero(dot(apart, apart) - reach * reach) != 0:
+                return True
+            continue
+        waiting[2 * level], waiting[2 * level + 1] = inside, node
+        level -= 1
+        node = child
+        inside = _near_nodes(header, cloud, level, node, centre, along, extents, one_by_squared, reach)
+
+
+@inlined
+def _near_nodes(
+    header: Ints,
+    cloud: Singles,
+    level: int,
+    node: int,
+    centre: Any,
+    along: Any,
+    extents: Any,
+    one_by_squared: Any,
+    reach: Any,
+) -> int:
+    """Return which of a node's sixteen boxes meet that around a capsule, and with their balls the capsule itself."""
+    first = header[tree.FIRST_NODES + level] + tree.NODE_ROW * node
+    apart = minus(load_vector(cloud, first), centre)
+    x, y, z = minus(minus(absolute(apart), load_vector(cloud, first + HALF)), extents)
+    ball, _, _ = load_vector(cloud, first + 2 * HALF)
+    near = ball + reach
+    apart = minus(apart, times(along, _nearest(apart, along, one_by_squared)))
+    return below_zero(larger(larger(x, y), z)) & below_zero(dot(apart, apart) - near * near)
+
+
+@inlined
+def _nearest(apart: Any, along: Any, one_by_squared: Any) -> Any:
+    """Return where on a segment, from -1 to 1, the places `apart` from its middle are nearest."""
+    return larger(smaller(dot(apart, along) * one_by_squared, ONE), -ONE)
+
+
+@intrinsic
+def bytes_of_cells(
+    typing_context: Any, address: Any, x: Any, y: Any, z: Any, cells_y: Any, cells_z: Any
+) -> Any:
+    """Return the bytes of sixteen cells, whose numbers along three axes are given, all >= 0, and rounded down here."""
+
+    def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
+        word, byte = ir.IntType(32), ir.IntType(8)
+        words = ir.VectorType(word, LANES)
+        cell_x, cell_y, cell_z = (builder.fptosi(arg, words) for arg in args[1:4])
+        rows, cells = (
+            builder.shuffle_vector(
+                builder.insert_element(ir.Constant(words, ir.Undefined), builder.trunc(arg, word), word(0)),
+                ir.Constant(words, ir.Undefined),
+                ir.Constant(words, [0] * LANES),
+            )
+            for arg in args[4:]
+        )
+        number = builder.add(builder.mul(builder.add(builder.mul(cell_x, rows), cell_y), cells), cell_z)
+        grid = builder.inttoptr(args[0], byte.as_pointer())
+        found = ir.Constant(ir.VectorType(byte, LANES), ir.Undefined)
+        for lane in range(LANES):
+            place = builder.zext(builder.extract_element(number, word(lane)), ir.IntType(64))
+            found = builder.insert_element(found, builder.load(builder.gep(grid, [place])), word(lane))
+        return builder.uitofp(found, ir.VectorType(ir.FloatType(), LANES))
+
+    return LANES_TYPE(types.int64, LANES_TYPE, LANES_TYPE, LANES_TYPE, types.int64, types.int64), lower
