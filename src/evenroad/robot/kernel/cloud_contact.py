@@ -28,6 +28,7 @@ from evenroad.robot.kernel.lanes import (
     ZERO,
     absolute,
     below_zero,
+    box_of_lanes,
     column,
     dot,
     larger,
@@ -43,8 +44,10 @@ from evenroad.robot.kernel.layout import HALF, LANES, PLACED, inlined, inner
 from evenroad.robot.kernel.scene_clouds import CAPSULE_ROW, CLOUD_ROW, DESK
 
 ALL = (1 << LANES) - 1
-MOST_PIECES = 8
-"""Into so many pieces a long capsule is cut at most when the grid is asked."""
+FEW = 2
+"""Of capsules that at most so many spheres cover the grid is not asked as a whole: it would cost as much."""
+_TOLD_APART = np.float32(254.5)
+_LEAST = np.float32(at.LEAST_SQUARE)
 
 Ints = npt.NDArray[np.int64]
 Singles = npt.NDArray[np.float32]
@@ -90,7 +93,13 @@ def meeting_clouds(scratch: Singles, ints: Ints, table: Singles, blocked: int, e
             slack, half, one_by_squared = row(of_capsules, CAPSULE_ROW * i, 3)
             (covering,) = row(table, ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i + 6, 1)
             reach = covering - slack + cloud[tree.RADIUS]
-            near = _not_clear(scratch, here, half, reach, place, cloud) & ~(blocked | meeting)
+            near, sure = _near_and_touching(scratch, here, i, half, covering, slack, place, cloud, ints, table)
+            near &= ~(blocked | meeting | sure)
+            meeting |= sure & ~blocked
+            if meeting != 0 and enough == 1:
+                return meeting
+            if near & (near - 1) != 0 and not _reaches(scratch, here, reach, place, cloud):
+                continue
             while near != 0:
                 lane = lowest_bit(near)
                 near &= near - 1
@@ -104,29 +113,42 @@ def meeting_clouds(scratch: Singles, ints: Ints, table: Singles, blocked: int, e
 
 
 @inlined
-def _not_clear(scratch: Singles, here: int, half: Any, reach: Any, place: int, cloud: Singles) -> int:
-    """Return the mask of lanes in which the grid does not tell that all points are beyond `reach` of a segment.
+def _near_and_touching(
+    scratch: Singles,
+    here: int,
+    capsule: int,
+    half: Any,
+    covering: Any,
+    slack: Any,
+    place: int,
+    cloud: Singles,
+    ints: Ints,
+    table: Singles,
+) -> tuple[int, int]:
+    """Return the masks of lanes in which the grid leaves open whether a capsule touches, and in which it does for sure.
 
-    First of the segment as a whole, then, where that may be of use, of pieces about as long as the reach.
+    It is asked about a long capsule as a whole first, then about the spheres that cover it.
     """
+    _, first, end = row(ints, ints[at.CAPSULE_INTS] + at.CAPSULE_INT_ROW * capsule, 3)
     centre, along = load_vector(scratch, here), load_vector(scratch, here + HALF)
-    near = _below(centre, half + reach, place, cloud)
-    if near == 0 or half <= reach:
-        return near
-    pieces = min(int(half / reach) + 1, MOST_PIECES)
-    share = np.float32(1.0) / np.float32(pieces)
-    unclear = 0
-    for piece in range(pieces):
-        middle = plus(centre, times(along, np.float32(2 * piece + 1 - pieces) * share))
-        unclear |= _below(middle, half * share + reach, place, cloud) & near
-        if unclear == near:
-            break
-    return unclear
+    covering += cloud[tree.RADIUS]
+    reach = covering - slack
+    if end - first > FEW:
+        near, _ = _asked(centre, half + reach, reach, place, cloud)
+        if near == 0:
+            return 0, 0
+    near, sure = 0, 0
+    for sample in range(first, end):
+        (share,) = row(table, ints[at.SAMPLES] + sample, 1)
+        near_here, sure_here = _asked(plus(centre, times(along, share)), covering, reach, place, cloud)
+        near |= near_here
+        sure |= sure_here
+    return near, sure
 
 
 @inner
-def _below(centre: Any, reach: Any, place: int, cloud: Singles) -> int:
-    """Return the mask of lanes in which the grid does not tell that all points are beyond `reach` of a place.
+def _asked(centre: Any, near: Any, touching: Any, place: int, cloud: Singles) -> tuple[int, int]:
+    """Return the masks of lanes in which a point may be within `near` of a place, and is within `touching` for sure.
 
     Outside of the grid it is asked for the nearest place inside: what lies beyond that is farther by at least the third
     side of a triangle with an obtuse angle.
@@ -147,12 +169,45 @@ def _below(centre: Any, reach: Any, place: int, cloud: Singles) -> int:
         )
         * step
     )
-    return below_zero(u * u + v * v + w * w + away * away - reach * reach)
+    outside = u * u + v * v + w * w
+    # Of the largest byte only a lower bound is known.
+    sure = below_zero(larger(away + cloud[tree.TOLD] - touching, away - step * _TOLD_APART))
+    sure &= below_zero(outside - _LEAST)
+    return below_zero(outside + away * away - near * near), sure
 
 
 @inlined
 def _cut(place: Any, most: Any) -> Any:
     return larger(smaller(place, most), ZERO)
+
+
+@inner
+def _reaches(scratch: Singles, here: int, reach: Any, place: int, cloud: Singles) -> bool:
+    """Return whether the box around a capsule in all lanes meets that around a leaf."""
+    header = integers_at(place, (tree.HEADER,))
+    extents = plus(absolute(load_vector(scratch, here + HALF)), reach)
+    centre, half = box_of_lanes(load_vector(scratch, here), extents)
+    waiting = integers_at(_room(32), (32,))
+    top = header[tree.LEVELS] - 1
+    level, node, fresh, inside = top, 0, True, 0
+    while True:
+        if fresh:
+            first = header[tree.FIRST_NODES + level] + tree.NODE_ROW * node
+            apart = absolute(minus(load_vector(cloud, first), centre))
+            x, y, z = minus(minus(apart, load_vector(cloud, first + HALF)), half)
+            inside = below_zero(larger(larger(x, y), z))
+        if inside == 0:
+            if level == top:
+                return False
+            level += 1
+            inside, node, fresh = waiting[2 * level], waiting[2 * level + 1], False
+            continue
+        if level == 0:
+            return True
+        waiting[2 * level], waiting[2 * level + 1] = inside & (inside - 1), node
+        node = LANES * node + lowest_bit(inside)
+        level -= 1
+        fresh = True
 
 
 @inner

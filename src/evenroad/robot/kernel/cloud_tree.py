@@ -25,9 +25,10 @@ nodes begin in the floats, from that above the leaves to that of the one root.""
 
 HEADER, BYTES_OF_HEADER = 16, 128
 
-LOW, ONE_BY_CELL, SIZE, STEP, RADIUS, LEAVES = 0, 3, 4, 7, 8, 16
+LOW, ONE_BY_CELL, SIZE, STEP, RADIUS, TOLD, LEAVES = 0, 3, 4, 7, 8, 9, 16
 """Floats: lower corner of the grid (3), one over the side of a cell, extents of the grid (3), what a byte counts in,
-radius of the points; rows of leaves, x, y and z of 16 points each."""
+radius of the points, by how much a distance is larger at most than a byte says; rows of leaves, x, y and z of 16
+points each."""
 
 LEAF_ROW, NODE_ROW = 3 * LANES, 7 * LANES
 """Of a node: centres (x, y, z) and half extents of boxes around 16 leaves or nodes, radii of balls about the centres."""
@@ -70,7 +71,7 @@ def cloud_array(points: Floats, radius: float) -> Ints:
     table[LOW : LOW + 3], table[ONE_BY_CELL], table[STEP] = low, 1.0 / cell, cell / STEPS * (1.0 - 1e-6)
     # A place on the upper side is in the last cell, not beyond it.
     table[SIZE : SIZE + 3] = counts * cell * (1.0 - 1e-5)
-    table[RADIUS] = radius
+    table[RADIUS], table[TOLD] = radius, cell * (1.0 / STEPS + 2.0 * math.sqrt(3.0)) * (1.0 + 1e-5)
     _write_distances(singles, low, 1.0 / cell, counts, array.view(np.uint8)[grid:])
     ordered = singles.copy()
     _order(ordered)
