@@ -29,6 +29,7 @@ from evenroad.robot import (
     in_scene,
     load_model,
     load_scene,
+    scene_seen_by,
 )
 from evenroad.robot.load import RobotOptions
 from evenroad.robot.reference.recheck import MeshCheck, has_meshes, recheck, unseen_pairs
@@ -212,6 +213,7 @@ def arm_query(
     goals = _places(goal)
     texts = [place for place in (start, *goals) if isinstance(place, str)]
     robot = at_states(in_scene(robot, scene), texts, scene)
+    scene = scene_seen_by(robot, scene)
     dim = len(robot.group)
     first = _configuration(robot, scene, "start", start, degrees)
     others = [_configuration(robot, scene, "goal", place, degrees) for place in goals]

@@ -5,11 +5,30 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from evenroad._checks import require_known
+from evenroad._checks import require_known, require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import NO_ROTATION, Pose, Vector
 from evenroad.geometry.shapes import PRIMITIVES, Capsule, PointCloud, Shape, along_z, shape_of
+
+
+MARGIN = 0.02
+"""How near to the robot points of a scan are taken for its own, where nothing else is said [m]."""
+
+
+@dataclass(frozen=True)
+class Seen:
+    """Where a robot stood when a cloud was seen: as :func:`evenroad.robot.configuration` takes it; and a margin [m].
+
+    Balls of the cloud that come within the margin of its bodies there are its own; see
+    :func:`evenroad.robot.without_robot`, which takes them out.
+    """
+
+    at: str
+    margin: float = MARGIN
+
+    def __post_init__(self) -> None:
+        require_positive("the margin of a scan", self.margin, or_zero=True)
 
 
 @dataclass(frozen=True)
@@ -25,11 +44,14 @@ class Obstacle:
         others, and what is fixed to a link, are refused (InvalidValue).
     cell : bool
         Part of the fixed cell, the same for every task of this installation.
+    seen : Seen, optional
+        Of a cloud that the robot itself is in.
     """
 
     name: str
     body: Shape
     cell: bool = False
+    seen: Seen | None = None
 
     def __post_init__(self) -> None:
         body = along_z(self.body) if isinstance(self.body, Capsule) else self.body

@@ -10,6 +10,7 @@ from PIL import Image, ImageColor
 
 from evenroad._arrays import Floats
 from evenroad._files import atomic_write
+from evenroad.geometry.shapes import PointCloud
 from evenroad.roadmap import PlanResult, Status
 from evenroad.robot.kinematics import capsule_ends, link_poses
 from evenroad.space.path import resample
@@ -68,6 +69,10 @@ def draw_arm_view(view: View, result: PlanResult, world: ArmWorld, pair: tuple[i
             view.polygon(outline, fill, edge, 1.5 if at_end else 1.0)
     for obstacle in world.scene.obstacles:
         colour = style.OUTSIDE if obstacle.cell else style.OBSTACLE
+        if isinstance(obstacle.body, PointCloud):
+            points = obstacle.body.pose.apply(obstacle.body.points)[:, list(pair)]
+            view.balls(points, obstacle.body.radius, _faint(colour, 0.16), _faint(style.OBSTACLE, 0.4))
+            continue
         view.polygon(obstacle_outline(obstacle, pair), _faint(colour, 0.16), style.OBSTACLE, 1.5)
     if result.path is not None:
         view.line(_tips(result.path, world, _STEP)[:, pair], style.PATH, 3)
@@ -120,7 +125,12 @@ def _colliding(result: PlanResult, world: ArmWorld, pair: tuple[int, int]) -> li
     named = [
         body for body, each in zip(bodies, world.robot.capsules, strict=True) if repr(each.link) in reason
     ]
-    obstacles = [each for each in world.scene.obstacles if repr(each.name) in reason]
+    # A cloud is all around: the robot's own body says where.
+    obstacles = [
+        each
+        for each in world.scene.obstacles
+        if repr(each.name) in reason and not isinstance(each.body, PointCloud)
+    ]
     return named + [obstacle_outline(each, pair) for each in obstacles]
 
 

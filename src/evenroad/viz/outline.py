@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad.geometry.shapes import PointCloud
 from evenroad.robot.scene import Obstacle
 
 _ROUND = 32
@@ -37,6 +38,9 @@ def obstacle_outline(obstacle: Obstacle, axes: tuple[int, int]) -> Floats:
 
 def obstacle_bounds(obstacle: Obstacle) -> tuple[Floats, Floats]:
     """Return the lower and the upper corner, (3,) each, of an obstacle's bounding box."""
+    if isinstance(obstacle.body, PointCloud):
+        points, radius = obstacle.body.pose.apply(obstacle.body.points), obstacle.body.radius
+        return points.min(axis=0) - radius, points.max(axis=0) + radius
     top, side = obstacle_outline(obstacle, (0, 1)), obstacle_outline(obstacle, (0, 2))
     return (np.append(top.min(axis=0), side[:, 1].min()), np.append(top.max(axis=0), side[:, 1].max()))
 

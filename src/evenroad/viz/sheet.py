@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from textwrap import wrap
 
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image, ImageColor, ImageDraw, ImageFont
 
 from evenroad._arrays import Floats
 
@@ -52,6 +52,22 @@ class View:
     def line(self, points: Floats, colour: Colour, width: float) -> None:
         """Draw a line through points, (n, 2)."""
         self._draw.line(self.pixels(points), fill=colour, width=round(FINER * width), joint="curve")
+
+    def balls(self, points: Floats, radius: float, fill: Colour, edge: Colour) -> None:
+        """Fill all that is within `radius` of points, (n, 2), and mark the points themselves."""
+        from scipy.ndimage import distance_transform_edt
+
+        width, height = self.image.size
+        columns, rows = np.rint(np.array(self.pixels(points)).T).astype(np.int64)
+        shown = (columns >= 0) & (columns < width) & (rows >= 0) & (rows < height)
+        if not shown.any():
+            return
+        away = np.ones((height, width), dtype=np.bool_)
+        away[rows[shown], columns[shown]] = False
+        within = distance_transform_edt(away) <= max(self.scale * radius, 1.0)
+        for mask, colour in ((within, fill), (~away, edge)):
+            red, green, blue, alpha = ImageColor.getcolor(colour, "RGBA") if isinstance(colour, str) else colour
+            self.image.paste((red, green, blue), mask=Image.fromarray(np.uint8(mask * alpha)))
 
     def dot(self, place: Floats, colour: Colour, radius: float) -> None:
         """Draw a dot with a white rim."""

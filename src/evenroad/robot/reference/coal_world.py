@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from evenroad._arrays import Bools, Floats
-from evenroad.geometry.shapes import Mesh, Shape
+from evenroad.errors import InvalidValue
+from evenroad.geometry.shapes import Mesh, PointCloud, Shape
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot.reference.engine_world import EngineWorld
 from evenroad.robot.robot import Robot
@@ -104,6 +105,8 @@ def coal_shape(coal: Any, shape: Shape) -> Any:
     A mesh stays what it is: where it is not convex, what coal builds with ``buildConvexRepresentation`` lets
     collisions pass.
     """
+    if isinstance(shape, PointCloud):
+        raise InvalidValue(f"coal has no clouds of points, got a {shape}")
     if isinstance(shape, Mesh):
         return tree_of(coal, shape.triangles)
     kinds = {"box": coal.Box, "sphere": coal.Sphere, "cylinder": coal.Cylinder, "capsule": coal.Capsule}
