@@ -62,7 +62,8 @@ def _read_npy(file: Path) -> npt.NDArray[np.generic]:
 
 def _read_xyz(file: Path) -> Floats:
     lines = (line.split("#")[0].replace(",", " ").split() for line in file.read_text().splitlines())
-    return np.array([[float(word) for word in words[:3]] for words in lines if words]).reshape(-1, 3)
+    rows = [[float(word) for word in words[:3]] for words in lines if words]
+    return np.array(rows) if rows else np.empty((0, 3))
 
 
 def _read_ply(file: Path) -> Floats:
@@ -130,9 +131,12 @@ def _rows(data: bytes, count: int, fields: list[tuple[str, str]], ascii_rows: bo
         if len(words) < count * len(fields):
             raise ValueError(f"it is cut off: {count} points were announced")
         table = np.array(words[: count * len(fields)], dtype=np.float64).reshape(count, len(fields))
-        return table[:, [kind.names.index(name) for name in "xyz"]]  # type: ignore[union-attr]
+        names = [name for name, _ in fields]
+        return np.stack([table[:, names.index(name)] for name in "xyz"], axis=1)
     if count < 0 or len(data) < count * kind.itemsize:
-        raise ValueError(f"it is cut off: {count} points were announced, {len(data) // kind.itemsize} are there")
+        raise ValueError(
+            f"it is cut off: {count} points were announced, {len(data) // kind.itemsize} are there"
+        )
     return _columns(np.frombuffer(data, dtype=kind, count=count))
 
 

@@ -211,7 +211,9 @@ class PointCloud(Shape):
         if len(points) == 0:
             raise InvalidValue("a cloud must have one point or more: one without would never collide")
         if np.abs(points).max() > FARTHEST:
-            raise InvalidValue(f"points of a cloud must lie within {FARTHEST:g} m, got {np.abs(points).max():g}")
+            raise InvalidValue(
+                f"points of a cloud must lie within {FARTHEST:g} m, got {np.abs(points).max():g}"
+            )
         radius = require_positive("the radius of a cloud", self.radius, or_zero=True, at_most=FARTHEST)
         set_fields(self, points=points, radius=radius)
 
@@ -222,7 +224,7 @@ class PointCloud(Shape):
 
     @cached_property
     def _values(self) -> tuple[object, ...]:
-        return self.radius, self.pose, self.link, sha256(self.points).digest()
+        return self.radius, self.pose, self.link, sha256(self.points.tobytes()).digest()
 
     def __hash__(self) -> int:
         return hash(self._values)

@@ -278,9 +278,7 @@ class ArmWorld:
         """The integers of the tables, with the addresses of clouds where there are any."""
         clouds = self.lanes.clouds
         return (
-            self.tables.ints
-            if clouds is None
-            else clouds.added_to(self.tables.ints, scalar_check_address())
+            self.tables.ints if clouds is None else clouds.added_to(self.tables.ints, scalar_check_address())
         )
 
     def _touching(self, q: Floats) -> tuple[str, str] | None:

@@ -16,7 +16,9 @@ from evenroad.robot.scene import MARGIN, Obstacle, Scene
 from evenroad.robot.states import at_states, configuration
 
 
-def without_robot(cloud: PointCloud, robot: Robot, q: npt.ArrayLike, margin: float = MARGIN) -> PointCloud | None:
+def without_robot(
+    cloud: PointCloud, robot: Robot, q: npt.ArrayLike, margin: float = MARGIN
+) -> PointCloud | None:
     """Return a cloud without the robot's own points, None where there are no others.
 
     Parameters
@@ -40,7 +42,7 @@ def without_robot(cloud: PointCloud, robot: Robot, q: npt.ArrayLike, margin: flo
 
 
 def scene_seen_by(robot: Robot, scene: Scene) -> Scene:
-    """Return a scene whose clouds are without the robot where they say where it stood; a cloud of nothing else is left out.
+    """Return a scene with clouds that say where the robot stood without its points; without a cloud of nothing else.
 
     Raises InvalidValue or UnknownName as :func:`evenroad.robot.configuration` where that is no configuration.
     """
@@ -61,8 +63,9 @@ def scene_seen_by(robot: Robot, scene: Scene) -> Scene:
 
 def _within(points: Floats, a: Floats, b: Floats, reach: float) -> Bools:
     """Return which points, (n, 3), are within `reach` of the segment from `a` to `b`: (n,)."""
-    near = (np.abs(points - 0.5 * (a + b)) <= 0.5 * np.abs(b - a) + reach).all(axis=1)
+    near = np.flatnonzero((np.abs(points - 0.5 * (a + b)) <= 0.5 * np.abs(b - a) + reach).all(axis=1))
     apart, along = points[near] - a, b - a
     share = np.clip(apart @ along / max(float(along @ along), 1e-300), 0.0, 1.0)
-    near[near] = ((apart - share[:, np.newaxis] * along) ** 2).sum(axis=1) <= reach**2
-    return near
+    within = np.zeros(len(points), dtype=np.bool_)
+    within[near] = ((apart - share[:, np.newaxis] * along) ** 2).sum(axis=1) <= reach**2
+    return within

@@ -11,7 +11,6 @@ from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import NO_ROTATION, Pose, Vector
 from evenroad.geometry.shapes import PRIMITIVES, Capsule, PointCloud, Shape, along_z, shape_of
 
-
 MARGIN = 0.02
 """How near to the robot points of a scan are taken for its own, where nothing else is said [m]."""
 
@@ -59,7 +58,9 @@ class Obstacle:
         if getattr(body, "kind", None) not in kinds:
             raise InvalidValue(f"obstacle {self.name!r} must be one of {', '.join(kinds)}, got a {body}")
         if isinstance(body, PointCloud) and body.radius == 0.0:
-            raise InvalidValue(f"the cloud {self.name!r} must have a radius > 0: between points it would be open")
+            raise InvalidValue(
+                f"the cloud {self.name!r} must have a radius > 0: between points it would be open"
+            )
         if body.link:
             raise InvalidValue(
                 f"obstacle {self.name!r} must be fixed to the world, not to a link, got {body.link!r}"

@@ -138,7 +138,9 @@ def _cloud(name: str, entry: dict[str, Any], path: Path, cell: bool) -> Obstacle
     (margin,) = numbers(entry.get("margin", MARGIN), 1, f"margin of {where}")
     seen_at = entry.get("seen_at")
     if seen_at is not None and not isinstance(seen_at, str):
-        raise InvalidValue(f"seen_at of {where} must be the name of a state or a text as for --start, got {seen_at!r}")
+        raise InvalidValue(
+            f"seen_at of {where} must be the name of a state or a text as for --start, got {seen_at!r}"
+        )
     if seen_at is None and "margin" in entry:
         raise InvalidValue(f"margin of {where} goes with seen_at: where the robot stood")
     seen = None if seen_at is None else Seen(seen_at, margin)

@@ -88,8 +88,8 @@ def make_roadmap(
     for obstacle in cell.obstacles:
         if obstacle.shape not in PRIMITIVES:
             raise InvalidValue(
-                f"a cell must consist of {', '.join(PRIMITIVES)}, which a roadmap's file holds, got {obstacle.name!r}, a"
-                f" {obstacle.body}: leave it to the scene of the day"
+                f"a cell must consist of {', '.join(PRIMITIVES)}, which a roadmap's file holds, got"
+                f" {obstacle.name!r}, a {obstacle.body}: leave it to the scene of the day"
             )
     robot = in_scene(robot, cell)
     world = ArmWorld(robot, cell, resolution=resolution)

@@ -16,7 +16,7 @@ from evenroad.robot.kinematics import capsule_ends, link_poses
 from evenroad.space.path import resample
 from evenroad.viz import style
 from evenroad.viz.outline import obstacle_bounds, obstacle_outline, stadium
-from evenroad.viz.sheet import Colour, Sheet, View
+from evenroad.viz.sheet import Colour, Faint, Sheet, View
 
 if TYPE_CHECKING:
     from evenroad.robot import ArmWorld, Robot
@@ -143,7 +143,7 @@ def _tint(share: float, strength: float) -> Colour:
     return red, green, blue
 
 
-def _faint(colour: str, opacity: float) -> Colour:
+def _faint(colour: str, opacity: float) -> Faint:
     red, green, blue = ImageColor.getrgb(colour)[:3]
     return red, green, blue, round(255 * opacity)
 

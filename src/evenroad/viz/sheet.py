@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from textwrap import wrap
 
 import numpy as np
-from PIL import Image, ImageColor, ImageDraw, ImageFont
+from PIL import Image, ImageDraw, ImageFont
 
 from evenroad._arrays import Floats
 
@@ -18,7 +18,8 @@ TEXT, GRID = "#000000", "#e3e9ee"
 _LEFT, _BETWEEN, _TOP, _BOTTOM = 95, 105, 105, 125
 """Margins in pixels; ticks and labels of a view are left of it and below."""
 
-Colour = tuple[int, int, int] | tuple[int, int, int, int] | str
+Faint = tuple[int, int, int, int]
+Colour = tuple[int, int, int] | Faint | str
 
 
 class View:
@@ -53,7 +54,7 @@ class View:
         """Draw a line through points, (n, 2)."""
         self._draw.line(self.pixels(points), fill=colour, width=round(FINER * width), joint="curve")
 
-    def balls(self, points: Floats, radius: float, fill: Colour, edge: Colour) -> None:
+    def balls(self, points: Floats, radius: float, fill: Faint, edge: Faint) -> None:
         """Fill all that is within `radius` of points, (n, 2), and mark the points themselves."""
         from scipy.ndimage import distance_transform_edt
 
@@ -66,8 +67,7 @@ class View:
         away[rows[shown], columns[shown]] = False
         within = distance_transform_edt(away) <= max(self.scale * radius, 1.0)
         for mask, colour in ((within, fill), (~away, edge)):
-            red, green, blue, alpha = ImageColor.getcolor(colour, "RGBA") if isinstance(colour, str) else colour
-            self.image.paste((red, green, blue), mask=Image.fromarray(np.uint8(mask * alpha)))
+            self.image.paste(colour[:3], mask=Image.fromarray((mask * colour[3]).astype(np.uint8)))
 
     def dot(self, place: Floats, colour: Colour, radius: float) -> None:
         """Draw a dot with a white rim."""

@@ -14,7 +14,6 @@ import numpy as np
 import numpy.typing as npt
 from llvmlite import ir
 from numba import cfunc, types
-from numba.core import cgutils
 from numba.extending import intrinsic
 
 from evenroad.robot.kernel import cloud_tree as tree
@@ -93,7 +92,9 @@ def meeting_clouds(scratch: Singles, ints: Ints, table: Singles, blocked: int, e
             slack, half, one_by_squared = row(of_capsules, CAPSULE_ROW * i, 3)
             (covering,) = row(table, ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i + 6, 1)
             reach = covering - slack + cloud[tree.RADIUS]
-            near, sure = _near_and_touching(scratch, here, i, half, covering, slack, place, cloud, ints, table)
+            near, sure = _near_and_touching(
+                scratch, here, i, half, covering, slack, place, cloud, ints, table
+            )
             near &= ~(blocked | meeting | sure)
             meeting |= sure & ~blocked
             if meeting != 0 and enough == 1:

@@ -31,7 +31,8 @@ radius of the points, by how much a distance is larger at most than a byte says;
 points each."""
 
 LEAF_ROW, NODE_ROW = 3 * LANES, 7 * LANES
-"""Of a node: centres (x, y, z) and half extents of boxes around 16 leaves or nodes, radii of balls about the centres."""
+"""Of a node: centres and half extents (x, y, z each) of boxes around 16 leaves or nodes, radii of balls about the
+centres."""
 
 NOWHERE = np.float32(1e9)
 """Where the places to spare of a leaf or node are."""
@@ -55,7 +56,7 @@ def cloud_array(points: Floats, radius: float) -> Ints:
     # Half a cell beyond the points on each side: rounding takes none of them out.
     counts = np.ceil((high - low) / cell + 1.0).astype(np.int64)
     low -= 0.5 * (counts * cell - (high - low))
-    levels = []
+    levels: list[int] = []
     count = -(-len(points) // LANES)
     while not levels or count > 1:
         count = -(-count // LANES)
@@ -147,8 +148,9 @@ def _write_tree(points: Singles, levels: Ints, table: Singles, wider: np.float32
                 table[row + i - first] = points[i, axis]
             for lane in range(max(end - first, 0), LANES):
                 table[row + lane] = NOWHERE
-            boxes[leaf, axis], boxes[leaf, 3 + axis] = np.float32(0.5) * (low + high), np.float32(0.5) * (
-                high - low
+            boxes[leaf, axis], boxes[leaf, 3 + axis] = (
+                np.float32(0.5) * (low + high),
+                np.float32(0.5) * (high - low),
             )
         squared = np.float32(0.0)
         for i in range(first, end):
@@ -173,9 +175,10 @@ def _write_tree(points: Singles, levels: Ints, table: Singles, wider: np.float32
                 for i in range(first, end):
                     low = min(low, boxes[i, axis] - boxes[i, 3 + axis])
                     high = max(high, boxes[i, axis] + boxes[i, 3 + axis])
-                parents[node, axis], parents[node, 3 + axis] = np.float32(0.5) * (low + high), np.float32(
-                    0.5
-                ) * (high - low) + wider
+                parents[node, axis], parents[node, 3 + axis] = (
+                    np.float32(0.5) * (low + high),
+                    np.float32(0.5) * (high - low) + wider,
+                )
             farthest = np.float32(0.0)
             for i in range(first, end):
                 apart = np.float32(0.0)
@@ -209,13 +212,13 @@ def _write_distances(points: Singles, low: Floats, one_by_cell: float, counts: I
         squared[max(x - 1, 0) : x + 2, max(y - 1, 0) : y + 2, max(z - 1, 0) : z + 2] = 0
     for x in range(nx):
         for y in range(ny):
-            away = np.int32(FARTHEST_STEPS)
+            away = FARTHEST_STEPS
             for z in range(nz):
-                away = np.int32(0) if squared[x, y, z] == 0 else min(away + 1, FARTHEST_STEPS)
+                away = 0 if squared[x, y, z] == 0 else min(away + 1, FARTHEST_STEPS)
                 squared[x, y, z] = away * away
-            away = np.int32(FARTHEST_STEPS)
+            away = FARTHEST_STEPS
             for z in range(nz - 1, -1, -1):
-                away = np.int32(0) if squared[x, y, z] == 0 else min(away + 1, FARTHEST_STEPS)
+                away = 0 if squared[x, y, z] == 0 else min(away + 1, FARTHEST_STEPS)
                 squared[x, y, z] = min(squared[x, y, z], away * away)
     least = np.empty_like(squared)
     _spread(squared.reshape(nx, ny, nz), least, nx, ny, nz)
