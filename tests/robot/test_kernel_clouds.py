@@ -13,8 +13,9 @@ from evenroad.geometry.pose import Pose, rotation_from_rpy
 from evenroad.geometry.shapes import PointCloud, Sphere
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
-from evenroad.robot.kernel import cloud_tree
 from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel import surface_tree
+from evenroad.robot.kernel.surface_grid import grid_of_points
 from evenroad.robot.scene import Obstacle, Scene
 from tests.robot.kernel_arms import as_balls, box_scene, edge, random_tree, seven_joint_arm, ur5
 from tests.robot.oracle import clearance, link_poses
@@ -204,9 +205,9 @@ def test_points_beyond_reach_change_nothing():
     cloud = near.obstacles[0].body
     far = replace(cloud, points=np.concatenate([cloud.points, [[50.0, 0.0, 0.0], [0.0, 1e6, 0.0]]]))
     worlds = [ArmWorld(ur5(np.pi), Scene("s", (Obstacle("cloud", body),))) for body in (cloud, far)]
-    np.testing.assert_array_equal(worlds[0].lanes.clouds.arrays[0], worlds[1].lanes.clouds.arrays[0])
+    np.testing.assert_array_equal(worlds[0].lanes.surfaces.arrays[0], worlds[1].lanes.surfaces.arrays[0])
     only_far = Scene("s", (Obstacle("cloud", PointCloud([[50.0, 0.0, 0.0]], 0.1)),))
-    assert ArmWorld(ur5(np.pi), only_far).lanes.clouds is None
+    assert ArmWorld(ur5(np.pi), only_far).lanes.surfaces is None
 
 
 def test_it_is_told_which_link_touches_which_cloud():
@@ -238,20 +239,20 @@ def test_copies_of_a_world_find_its_clouds_again():
     expected = world.valid(q)
     for sent in (pickle.loads(pickle.dumps(world)), copy.deepcopy(world)):
         np.testing.assert_array_equal(sent.valid(q), expected)
-        assert sent.lanes.clouds.arrays[0] is not world.lanes.clouds.arrays[0]
-        assert sent.tables.lanes[at.CLOUDS] == sent.tables.ints[at.CLOUDS] == 0
+        assert sent.lanes.surfaces.arrays[0] is not world.lanes.surfaces.arrays[0]
+        assert sent.tables.lanes[at.SURFACES] == sent.tables.ints[at.SURFACES] == 0
 
 
 def test_a_scene_of_the_same_cloud_is_made_of_the_same_array():
     first = ArmWorld(ur5(), cloud_scene(16, 300))
     second = ArmWorld(ur5(), cloud_scene(16, 300).with_(*box_scene().obstacles))
-    assert first.lanes.clouds.arrays[0] is second.lanes.clouds.arrays[0]
+    assert first.lanes.surfaces.arrays[0] is second.lanes.surfaces.arrays[0]
 
 
 def test_scenes_without_clouds_compile_nothing_for_them():
     code = (
         "import sys; from tests.robot.kernel_arms import *; from evenroad.robot.arm_world import ArmWorld\n"
-        "ArmWorld(ur5(), box_scene()).valid([[0.0] * 6]); print('evenroad.robot.kernel.cloud_contact' in sys.modules)"
+        "ArmWorld(ur5(), box_scene()).valid([[0.0] * 6]); print('evenroad.robot.kernel.surface_contact' in sys.modules)"
     )
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert said.stdout.strip() == "False"
@@ -262,11 +263,11 @@ def test_the_tree_has_every_point_once_and_its_nodes_hold_what_is_below(n):
     rng = np.random.default_rng(n)
     # Some of them twice, and many in one plane.
     points = rng.integers(-20, 20, (n, 3)) / 32.0 * (1.0, 1.0, 0.1)
-    array = cloud_tree.cloud_array(points, 0.01)
-    table = array.view(np.float32)[2 * cloud_tree.HEADER :]
-    levels, starts = int(array[cloud_tree.LEVELS]), array[cloud_tree.FIRST_NODES :]
-    leaves = (int(starts[0]) - cloud_tree.LEAVES) // cloud_tree.LEAF_ROW
-    rows = table[cloud_tree.LEAVES : int(starts[0])].reshape(leaves, 3, 16).transpose(0, 2, 1)
+    array = surface_tree.surface_array(points[:, None], 0.01, grid_of_points(points))
+    table = array.view(np.float32)[2 * surface_tree.HEADER :]
+    levels, starts = int(array[surface_tree.LEVELS]), array[surface_tree.FIRST_NODES :]
+    leaves = (int(starts[0]) - surface_tree.LEAVES) // surface_tree.POINT_ROW
+    rows = table[surface_tree.LEAVES : int(starts[0])].reshape(leaves, 3, 16).transpose(0, 2, 1)
     held = rows.reshape(-1, 3)
     held = held[held[:, 0] < 1e8]
     order = np.lexsort(held.T), np.lexsort(points.T)
@@ -275,7 +276,7 @@ def test_the_tree_has_every_point_once_and_its_nodes_hold_what_is_below(n):
     for level in range(levels):
         count = -(-len(below) // 16)
         first = int(starts[level])
-        nodes = table[first : first + cloud_tree.NODE_ROW * count].reshape(count, 7, 16)
+        nodes = table[first : first + surface_tree.NODE_ROW * count].reshape(count, 7, 16)
         for i, inside in enumerate(below):
             if len(inside):
                 box = nodes[i // 16, :, i % 16]
@@ -289,15 +290,17 @@ def test_the_tree_has_every_point_once_and_its_nodes_hold_what_is_below(n):
 def test_the_grid_says_no_more_than_is_true_and_no_less_than_it_should():
     rng = np.random.default_rng(3)
     points = np.concatenate([rng.uniform(-0.5, 0.5, (3000, 3)) * (1, 1, 0), rng.normal(0.2, 0.05, (2000, 3))])
-    array = cloud_tree.cloud_array(points, 0.0)
-    table = array.view(np.float32)[2 * cloud_tree.HEADER :].astype(np.float64)
-    low, size = table[:3], table[cloud_tree.SIZE : cloud_tree.SIZE + 3]
+    array = surface_tree.surface_array(points[:, None], 0.0, grid_of_points(points))
+    table = array.view(np.float32)[2 * surface_tree.HEADER :].astype(np.float64)
+    low, size = table[:3], table[surface_tree.SIZE : surface_tree.SIZE + 3]
     x = rng.uniform(low, low + size, (3000, 3))
-    cells = ((x - low) * table[cloud_tree.ONE_BY_CELL]).astype(int)
-    number = (cells[:, 0] * array[cloud_tree.CELLS_Y] + cells[:, 1]) * array[cloud_tree.CELLS_Z] + cells[:, 2]
-    told = array.view(np.uint8)[array[cloud_tree.GRID] + number] * table[cloud_tree.STEP]
+    cells = ((x - low) * table[surface_tree.ONE_BY_CELL]).astype(int)
+    number = (cells[:, 0] * array[surface_tree.CELLS_Y] + cells[:, 1]) * array[surface_tree.CELLS_Z] + cells[
+        :, 2
+    ]
+    told = array.view(np.uint8)[array[surface_tree.GRID] + number] * table[surface_tree.STEP]
     apart = np.array([np.sqrt(((points - row) ** 2).sum(axis=1).min()) for row in x])
     assert (told <= apart).all()
-    assert (apart <= told + table[cloud_tree.TOLD]).all()
+    assert (apart <= told + table[surface_tree.TOLD]).all()
     assert (points > low).all()
     assert (points < low + size).all()

@@ -70,7 +70,7 @@ BROKEN = {
     "an unknown shape": (
         "obstacles: {a: {shape: cone}}",
         UnknownName,
-        "shape of obstacle 'a' in .*'cone'; known: box, capsule, cloud, cylinder, sphere",
+        "shape of obstacle 'a' in .*'cone'; known: box, capsule, cloud, cylinder, mesh, sphere",
     ),
     "a shape that is no name": (
         "obstacles: {a: {shape: [box]}}",
@@ -301,8 +301,8 @@ def test_a_capsule_as_an_obstacle_is_along_z_whatever_its_ends():
             InvalidValue,
             "cloud 'x' must have a radius > 0",
         ),
-        (lambda: Obstacle("x", Mesh("part.stl")), InvalidValue, "cloud, got a mesh part.stl"),
-        (lambda: Obstacle("x", "box"), InvalidValue, "sphere, cylinder, capsule, cloud, got a box"),
+        (lambda: Obstacle("x", Mesh("part.stl")), BrokenFile, "mesh part.stl is missing"),
+        (lambda: Obstacle("x", "box"), InvalidValue, "cylinder, capsule, cloud, mesh, got a box"),
         (lambda: Obstacle("x", Sphere(1.0, link="hand")), InvalidValue, "not to a link, got 'hand'"),
     ],
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -14,13 +15,13 @@ from evenroad.errors import NotAvailable, UnknownName
 from evenroad.geometry.shapes import PRIMITIVES
 from evenroad.robot.kernel import scalar
 from evenroad.robot.kernel.certify import motions_certified
-from evenroad.robot.kernel.cloud_scalar import scalar_check_address
 from evenroad.robot.kernel.lane_world import LaneWorld
 from evenroad.robot.kernel.obstacles import obstacle_rows, tested_contacts
 from evenroad.robot.kernel.robot_tables import RobotTables
-from evenroad.robot.kernel.scene_clouds import scene_clouds
+from evenroad.robot.kernel.scene_surfaces import fixed_contact, scene_surfaces
 from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
 from evenroad.robot.kernel.selftest import lanes_failure
+from evenroad.robot.kernel.surface_scalar import scalar_check_address
 from evenroad.robot.known_robots import prepared
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
@@ -96,16 +97,16 @@ class ArmWorld:
         require_few_segments(self.resolution, longest / self.resolution)
         tested = tested_contacts(of_robot.capsules, self.robot.links, self.scene)
         solid = [obstacle.shape in PRIMITIVES for obstacle in self.scene.obstacles]
-        clouds = None
+        surfaces = None
         if not all(solid):
-            clouds = scene_clouds(self.scene, of_robot.capsules, of_robot.reach, tested)
+            surfaces = scene_surfaces(self.scene, of_robot, tested)
             tested = tested[:, solid]
         tables = arm_tables(of_robot, obstacle_rows(self.scene), tested)
         object.__setattr__(self, "_space", space)
         object.__setattr__(self, "bounds", by_joint[: 3 * space.dim].reshape(3, space.dim))
         object.__setattr__(self, "robot_tables", of_robot)
         object.__setattr__(self, "tables", tables)
-        object.__setattr__(self, "lanes", LaneWorld(tables.lanes, by_joint, self.resolution, clouds))
+        object.__setattr__(self, "lanes", LaneWorld(tables.lanes, by_joint, self.resolution, surfaces))
         object.__setattr__(self, "backend", _chosen(self.backend))
 
     @property
@@ -257,29 +258,26 @@ class ArmWorld:
         bodies = self.fixed_contact or self._touching(row)
         return "it is free" if bodies is None else f"{bodies[0]!r} touches {bodies[1]!r}"
 
-    @property
+    @cached_property
     def fixed_contact(self) -> tuple[str, str] | None:
         """Two bodies that touch whatever the joints do, or None."""
-        clouds, of_capsules = self.lanes.clouds, self.robot_tables.capsules
+        surfaces, of_capsules = self.lanes.surfaces, self.robot_tables.capsules
         if self.tables.fixed_contact is not None:
             capsule, obstacle = self.tables.fixed_contact
             return of_capsules[capsule].link, self._solid(obstacle)
-        if clouds is not None and clouds.fixed_contact is not None:
-            capsule, obstacle = clouds.fixed_contact
-            return of_capsules[capsule].link, self.scene.obstacles[obstacle].name
+        if surfaces is not None and (found := fixed_contact(surfaces, self.robot_tables)) is not None:
+            return of_capsules[found[0]].link, self.scene.obstacles[found[1]].name
         return self.robot_tables.fixed_contact
 
     def _solid(self, number: int) -> str:
-        """Return the name of an obstacle by its number among those that are no clouds."""
+        """Return the name of an obstacle by its number among those that are neither clouds nor meshes."""
         return [obstacle.name for obstacle in self.scene.obstacles if obstacle.shape in PRIMITIVES][number]
 
     @property
     def _ints(self) -> Ints:
-        """The integers of the tables, with the addresses of clouds where there are any."""
-        clouds = self.lanes.clouds
-        return (
-            self.tables.ints if clouds is None else clouds.added_to(self.tables.ints, scalar_check_address())
-        )
+        """The integers of the tables, with the addresses of clouds and meshes where there are any."""
+        surfaces, ints = self.lanes.surfaces, self.tables.ints
+        return ints if surfaces is None else surfaces.added_to(ints, scalar_check_address())
 
     def _touching(self, q: Floats) -> tuple[str, str] | None:
         """Return two bodies that touch, or come as near as what single precision may call touching."""
@@ -292,7 +290,7 @@ class ArmWorld:
         )
         if kind == scalar.MEETS_OBSTACLE:
             return of_capsules[capsule].link, self._solid(tables.kept[other])
-        if kind == scalar.MEETS_CLOUD:
+        if kind == scalar.MEETS_SURFACE:
             return of_capsules[capsule].link, self.scene.obstacles[other].name
         if kind == scalar.MEETS_ITSELF:
             first, second = of_robot.capsule_pairs[other]

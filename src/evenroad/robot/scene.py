@@ -9,7 +9,7 @@ from evenroad._checks import require_known, require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import NO_ROTATION, Pose, Vector
-from evenroad.geometry.shapes import PRIMITIVES, Capsule, PointCloud, Shape, along_z, shape_of
+from evenroad.geometry.shapes import PRIMITIVES, Capsule, Mesh, PointCloud, Shape, along_z, shape_of
 
 MARGIN = 0.02
 """How near to the robot points of a scan are taken for its own, where nothing else is said [m]."""
@@ -39,8 +39,8 @@ class Obstacle:
     name : str
         Unique in its scene.
     body : Shape
-        A box, sphere, cylinder, capsule or cloud of radius > 0, with its pose in the frame of the robot's root link;
-        others, and what is fixed to a link, are refused (InvalidValue).
+        A box, sphere, cylinder, capsule, mesh, or cloud of radius > 0, with its pose in the frame of the robot's root
+        link; others, and what is fixed to a link, are refused (InvalidValue).
     cell : bool
         Part of the fixed cell, the same for every task of this installation.
     seen : Seen, optional
@@ -54,13 +54,16 @@ class Obstacle:
 
     def __post_init__(self) -> None:
         body = along_z(self.body) if isinstance(self.body, Capsule) else self.body
-        kinds = (*PRIMITIVES, PointCloud.kind)
+        kinds = (*PRIMITIVES, PointCloud.kind, Mesh.kind)
         if getattr(body, "kind", None) not in kinds:
             raise InvalidValue(f"obstacle {self.name!r} must be one of {', '.join(kinds)}, got a {body}")
         if isinstance(body, PointCloud) and body.radius == 0.0:
             raise InvalidValue(
                 f"the cloud {self.name!r} must have a radius > 0: between points it would be open"
             )
+        if isinstance(body, Mesh):
+            # Read now: a file may change, or be gone, before its triangles are asked for.
+            body = replace(body, source=body.triangles, scale=(1.0, 1.0, 1.0))
         if body.link:
             raise InvalidValue(
                 f"obstacle {self.name!r} must be fixed to the world, not to a link, got {body.link!r}"
@@ -93,7 +96,7 @@ class Obstacle:
 
     @property
     def shape(self) -> str:
-        """Kind of its body: ``box``, ``sphere``, ``cylinder``, ``capsule`` or ``cloud``."""
+        """Kind of its body: ``box``, ``sphere``, ``cylinder``, ``capsule``, ``cloud`` or ``mesh``."""
         return self.body.kind
 
     @property
@@ -150,7 +153,7 @@ class Scene:
         for each in self.obstacles:
             numbers = (*each.size, *each.xyz, *each.rotation)
             # Zeros of both signs are one number.
-            content = (fingerprint_of(each.body),) if isinstance(each.body, PointCloud) else ()
+            content = (fingerprint_of(each.body),) if each.shape not in PRIMITIVES else ()
             rows.add((each.name, each.shape, *(number + 0.0 for number in numbers), *content))
         return fingerprint_of(rows, self.allowed)
 

@@ -11,7 +11,7 @@ from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.geometry.cloud_file import load_cloud
 from evenroad.geometry.pose import Pose
-from evenroad.geometry.shapes import PRIMITIVES, PointCloud, shape_of
+from evenroad.geometry.shapes import PRIMITIVES, Mesh, PointCloud, shape_of
 from evenroad.robot.load import DATA
 from evenroad.robot.moveit_scene import read_planning_scene, read_scene_text
 from evenroad.robot.scene import MARGIN, Obstacle, Scene, Seen
@@ -52,6 +52,7 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
           ball: {shape: sphere, radius: 0.1, xyz: [0.5, 0, 0.5]}
           post: {shape: cylinder, radius: 0.05, length: 1.0, xyz: [0, 0.6, 0.5]}   # along z; so is a capsule
           scan: {shape: cloud, file: scan.ply, radius: 0.01, seen_at: home, margin: 0.02}
+          shelf: {shape: mesh, file: shelf.stl, scale: 0.001, xyz: [0.8, 0, 0]}    # also .obj, .ply, .dae
         allowed:                                  # contacts that are not tested
           table: [base_link]
         states:                                   # named configurations, joint by joint
@@ -60,9 +61,10 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
           joint_1: [-3.14, 3.14]
 
     The length of a capsule is without its caps; ``quaternion: [w, x, y, z]`` may stand for ``rpy``; ``cell: true``
-    marks what belongs to the fixed cell.  Files of clouds (:func:`evenroad.geometry.load_cloud`) are looked for beside
-    the scene; points within `margin` of the robot, where it stood when it was `seen_at`, are left out when one plans.
-    MoveIt's scenes are read, too (:mod:`evenroad.robot.moveit_scene`).
+    marks what belongs to the fixed cell.  Files of clouds (:func:`evenroad.geometry.load_cloud`) and meshes
+    (:func:`evenroad.geometry.load_mesh`) are looked for beside the scene; points within `margin` of the robot, where it
+    stood when it was `seen_at`, are left out when one plans.  MoveIt's scenes are read, too
+    (:mod:`evenroad.robot.moveit_scene`).
 
     Raises
     ------
@@ -112,7 +114,7 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
 def _obstacle(name: str, entry: dict[str, Any], path: Path) -> Obstacle:
     where = f"obstacle {name!r} in {path}"
     shape = entry.get("shape")
-    kinds = (*PRIMITIVES, PointCloud.kind)
+    kinds = (*PRIMITIVES, PointCloud.kind, Mesh.kind)
     if not isinstance(shape, str) or shape not in kinds:
         raise UnknownName.among(f"shape of {where}:", shape, kinds)
     cell = entry.get("cell", False)
@@ -120,6 +122,11 @@ def _obstacle(name: str, entry: dict[str, Any], path: Path) -> Obstacle:
         raise InvalidValue(f"cell of {where} must be true or false, got {cell!r}")
     if shape == PointCloud.kind:
         return _cloud(name, entry, path, cell)
+    if shape == Mesh.kind:
+        require_keys(entry, ("shape", "file"), (*_OPTIONAL, "scale"), where)
+        scale = entry.get("scale", 1)
+        x, y, z = numbers(scale if isinstance(scale, list) else [scale] * 3, 3, f"scale of {where}")
+        return Obstacle(name, Mesh(_file(entry, path, where), (x, y, z), pose=_pose(entry, where)), cell)
     dimensions = PRIMITIVES[shape].dimensions
     require_keys(entry, ("shape", *(key for key, _ in dimensions)), _OPTIONAL, where)
     size: tuple[float, ...] = ()
@@ -144,11 +151,15 @@ def _cloud(name: str, entry: dict[str, Any], path: Path, cell: bool) -> Obstacle
     if seen_at is None and "margin" in entry:
         raise InvalidValue(f"margin of {where} goes with seen_at: where the robot stood")
     seen = None if seen_at is None else Seen(seen_at, margin)
-    file = entry["file"]
-    if not isinstance(file, str):
-        raise InvalidValue(f"file of {where} must be the name of a file, got {file!r}")
-    body = PointCloud(load_cloud(path.parent / file), radius, pose=_pose(entry, where))
+    body = PointCloud(load_cloud(_file(entry, path, where)), radius, pose=_pose(entry, where))
     return Obstacle(name, body, cell, seen)
+
+
+def _file(entry: dict[str, Any], path: Path, where: str) -> Path:
+    """Return the file that an entry names, beside the scene."""
+    if not isinstance(entry["file"], str):
+        raise InvalidValue(f"file of {where} must be the name of a file, got {entry['file']!r}")
+    return path.parent / entry["file"]
 
 
 def _pose(entry: dict[str, Any], where: str) -> Pose:

@@ -10,7 +10,7 @@ from PIL import Image, ImageColor
 
 from evenroad._arrays import Floats
 from evenroad._files import atomic_write
-from evenroad.geometry.shapes import PointCloud
+from evenroad.geometry.shapes import PRIMITIVES, Mesh, PointCloud
 from evenroad.roadmap import PlanResult, Status
 from evenroad.robot.kinematics import capsule_ends, link_poses
 from evenroad.space.path import resample
@@ -73,6 +73,11 @@ def draw_arm_view(view: View, result: PlanResult, world: ArmWorld, pair: tuple[i
             points = obstacle.body.pose.apply(obstacle.body.points)[:, list(pair)]
             view.balls(points, obstacle.body.radius, _faint(colour, 0.16), _faint(style.OBSTACLE, 0.4))
             continue
+        if isinstance(obstacle.body, Mesh):
+            mesh = obstacle.body.triangles
+            corners = obstacle.body.pose.apply(mesh.vertices)[mesh.triangles][:, :, list(pair)]
+            view.polygons(corners, _faint(colour, 0.16), _faint(style.OBSTACLE, 0.25))
+            continue
         view.polygon(obstacle_outline(obstacle, pair), _faint(colour, 0.16), style.OBSTACLE, 1.5)
     if result.path is not None:
         view.line(_tips(result.path, world, _STEP)[:, pair], style.PATH, 3)
@@ -125,11 +130,9 @@ def _colliding(result: PlanResult, world: ArmWorld, pair: tuple[int, int]) -> li
     named = [
         body for body, each in zip(bodies, world.robot.capsules, strict=True) if repr(each.link) in reason
     ]
-    # A cloud is all around: the robot's own body says where.
+    # A cloud or a mesh is all around: the robot's own body says where.
     obstacles = [
-        each
-        for each in world.scene.obstacles
-        if repr(each.name) in reason and not isinstance(each.body, PointCloud)
+        each for each in world.scene.obstacles if repr(each.name) in reason and each.shape in PRIMITIVES
     ]
     return named + [obstacle_outline(each, pair) for each in obstacles]
 

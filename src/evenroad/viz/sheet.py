@@ -69,6 +69,18 @@ class View:
         for mask, colour in ((within, fill), (~away, edge)):
             self.image.paste(colour[:3], mask=Image.fromarray((mask * colour[3]).astype(np.uint8)))
 
+    def polygons(self, outlines: Floats, fill: Faint, edge: Faint) -> None:
+        """Fill the union of areas, (n, corners, 2), and mark their edges."""
+        size = self.image.size
+        masks = Image.new("L", size), Image.new("L", size)
+        draws = [ImageDraw.Draw(mask) for mask in masks]
+        for outline in outlines:
+            corners = self.pixels(outline)
+            draws[0].polygon(corners, fill=fill[3])
+            draws[1].line([*corners, corners[0]], fill=edge[3])
+        for mask, colour in zip(masks, (fill, edge), strict=True):
+            self.image.paste(colour[:3], mask=mask)
+
     def dot(self, place: Floats, colour: Colour, radius: float) -> None:
         """Draw a dot with a white rim."""
         for size, fill in ((radius + 1, "white"), (radius, colour)):

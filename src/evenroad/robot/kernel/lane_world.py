@@ -13,7 +13,7 @@ import numpy.typing as npt
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.layout import DESK, LANES, MOST_WAITING
-from evenroad.robot.kernel.scene_clouds import SceneClouds
+from evenroad.robot.kernel.scene_surfaces import SceneSurfaces
 
 Floats = npt.NDArray[np.float64]
 
@@ -31,18 +31,18 @@ class LaneWorld:
         and the two of a pair against each other, (dim, capsule pairs), at most [m/rad].
     resolution : float
         Largest distance between neighbouring states of a motion.
-    clouds : SceneClouds, optional
-        The clouds of the scene.
+    surfaces : SceneSurfaces, optional
+        The clouds and meshes of the scene.
     """
 
     tables: npt.NDArray[np.int64]
     by_joint: Floats
     resolution: float
-    clouds: SceneClouds | None = None
+    surfaces: SceneSurfaces | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return how a copy is made, here or in another process: it finds out for itself where its arrays are."""
-        return LaneWorld, (self.tables, self.by_joint, self.resolution, self.clouds)
+        return LaneWorld, (self.tables, self.by_joint, self.resolution, self.surfaces)
 
     def arguments(self, more: int) -> tuple[Floats, tuple[int, int, float, int, int, int, int]]:
         """Return `more` doubles of memory, and what a program ends with: what ``checks_of`` takes, and their address.
@@ -68,12 +68,12 @@ class LaneWorld:
 
     @cached_property
     def _tables(self) -> npt.NDArray[np.int64]:
-        """The tables, with the addresses of clouds where there are any."""
-        if self.clouds is None:
+        """The tables, with the addresses of clouds and meshes where there are any."""
+        if self.surfaces is None:
             return self.tables
-        from evenroad.robot.kernel.cloud_contact import cloud_check_address
+        from evenroad.robot.kernel.surface_contact import surface_check_address
 
-        return self.clouds.added_to(self.tables, cloud_check_address())
+        return self.surfaces.added_to(self.tables, surface_check_address())
 
 
 class _Memory(threading.local):

@@ -25,7 +25,7 @@ _PADDING = {"box": (), "sphere": (0.0, 0.0), "cylinder": (0.0,), "capsule": (0.0
 
 
 def obstacle_rows(scene: Scene) -> Floats:
-    """Return the obstacles of a scene but its clouds, (n, 16): kind; full extents of a box, or radius and length
+    """Return the obstacles of a scene but clouds and meshes, (n, 16): kind; full extents of a box, or radius and length
     without caps, and zeros [m]; rotation to the root link's frame, row by row; centre in that frame [m].
 
     Raises

@@ -1,8 +1,8 @@
-"""Which of sixteen placed configurations touch a cloud of points; a capsule is here what it is, not spheres over it.
+"""Which of sixteen placed configurations touch points or meshes; a capsule is here what it is, not spheres over it.
 
-A byte of a grid tells for most capsules, sixteen configurations at once, that no point is near.  What is left is tested
-one configuration after the other, against sixteen nodes or points of the cloud's tree at once.  Compiled when a scene
-has a cloud, and called by its address.
+A byte of a grid tells for most capsules, sixteen configurations at once, that nothing is near.  What is left is tested
+one configuration after the other, against sixteen nodes, points or triangles of the tree at once.  Compiled when a
+scene has a cloud or a mesh, and called by its address.
 """
 
 from __future__ import annotations
@@ -16,14 +16,13 @@ from llvmlite import ir
 from numba import cfunc, types
 from numba.extending import intrinsic
 
-from evenroad.robot.kernel import cloud_tree as tree
 from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel import surface_tree as tree
 from evenroad.robot.kernel.addresses import ANY_LENGTH, integers_at, singles_at
 from evenroad.robot.kernel.forward_kinematics import scratch_places
-from evenroad.robot.kernel.hull_contact import _room
+from evenroad.robot.kernel.hull_contact import _room as room_for
 from evenroad.robot.kernel.lanes import (
     LANES_TYPE,
-    ONE,
     ZERO,
     absolute,
     below_zero,
@@ -40,7 +39,8 @@ from evenroad.robot.kernel.lanes import (
     times,
 )
 from evenroad.robot.kernel.layout import HALF, LANES, PLACED, inlined, inner
-from evenroad.robot.kernel.scene_clouds import CAPSULE_ROW, CLOUD_ROW, DESK
+from evenroad.robot.kernel.mesh_contact import is_inside, near_nodes, near_triangles, nearest_place
+from evenroad.robot.kernel.scene_surfaces import CAPSULE_ROW, DESK, SURFACE_ROW
 
 ALL = (1 << LANES) - 1
 FEW = 2
@@ -53,19 +53,19 @@ Singles = npt.NDArray[np.float32]
 
 
 @cache
-def cloud_check_address() -> int:
-    """Return the address, good for this process, of the check against clouds; compiled when first asked.
+def surface_check_address() -> int:
+    """Return the address, good for this process, of the check against surfaces; compiled when first asked.
 
     It takes the addresses of scratch memory with sixteen placed configurations, of integers and floats of the tables,
     the mask of lanes that are known to be blocked, and `enough` as ``lane_check`` does; it returns the mask of those
-    that touch a cloud.
+    that touch a surface, or are inside of a closed one.
     """
     kind = types.int64(*[types.int64] * 5)
-    return int(cfunc(kind, cache=True, error_model="numpy", _nrt=False)(_meeting_clouds).address)
+    return int(cfunc(kind, cache=True, error_model="numpy", _nrt=False)(_meeting_surfaces).address)
 
 
-def _meeting_clouds(scratch: int, ints: int, table: int, blocked: int, enough: int) -> int:
-    return meeting_clouds(
+def _meeting_surfaces(scratch: int, ints: int, table: int, blocked: int, enough: int) -> int:
+    return meeting_surfaces(
         singles_at(scratch, (ANY_LENGTH,)),
         integers_at(ints, (ANY_LENGTH,)),
         singles_at(table, (ANY_LENGTH,)),
@@ -75,15 +75,16 @@ def _meeting_clouds(scratch: int, ints: int, table: int, blocked: int, enough: i
 
 
 @inner
-def meeting_clouds(scratch: Singles, ints: Ints, table: Singles, blocked: int, enough: int) -> int:
-    """Return the mask of lanes, of those that are not blocked, in which a capsule touches a cloud."""
+def meeting_surfaces(scratch: Singles, ints: Ints, table: Singles, blocked: int, enough: int) -> int:
+    """Return the mask of lanes, of those that are not blocked, in which a capsule touches a surface or is inside."""
     _, capsules = scratch_places(ints)
-    desk, meeting = integers_at(ints[at.CLOUDS], (ANY_LENGTH,)), 0
-    clouds, of_capsules = desk[0], singles_at(desk[1], (ANY_LENGTH,))
-    for number in range(clouds):
-        place = desk[DESK + CLOUD_ROW * number]
-        tested = integers_at(desk[DESK + CLOUD_ROW * number + 1], (ANY_LENGTH,))
+    desk, meeting = integers_at(ints[at.SURFACES], (ANY_LENGTH,)), 0
+    surfaces, of_capsules = desk[0], singles_at(desk[1], (ANY_LENGTH,))
+    for number in range(surfaces):
+        place = desk[DESK + SURFACE_ROW * number]
+        tested = integers_at(desk[DESK + SURFACE_ROW * number + 1], (ANY_LENGTH,))
         cloud = singles_at(place + tree.BYTES_OF_HEADER, (ANY_LENGTH,))
+        windings = integers_at(place, (tree.HEADER,))[tree.WINDINGS]
         # From the outermost capsules inwards: those touch most often.
         for i in range(ints[at.CAPSULES] - 1, ints[at.FIXED_CAPSULES] - 1, -1):
             if tested[i] == 0:
@@ -99,12 +100,16 @@ def meeting_clouds(scratch: Singles, ints: Ints, table: Singles, blocked: int, e
             meeting |= sure & ~blocked
             if meeting != 0 and enough == 1:
                 return meeting
-            if near & (near - 1) != 0 and not _reaches(scratch, here, reach, place, cloud):
+            alone = near & (near - 1) == 0
+            close = near != 0 and (alone or _reaches(scratch, here, reach, place, cloud))
+            if not close and windings == 0:
                 continue
             while near != 0:
                 lane = lowest_bit(near)
                 near &= near - 1
-                if _touches(scratch, here + lane, one_by_squared, reach, place, cloud):
+                if (close and _touches(scratch, here + lane, one_by_squared, reach, place, cloud)) or (
+                    windings != 0 and is_inside(scratch, here + lane, place, cloud)
+                ):
                     meeting |= 1 << lane
                     if enough == 1:
                         return meeting
@@ -188,7 +193,7 @@ def _reaches(scratch: Singles, here: int, reach: Any, place: int, cloud: Singles
     header = integers_at(place, (tree.HEADER,))
     extents = plus(absolute(load_vector(scratch, here + HALF)), reach)
     centre, half = box_of_lanes(load_vector(scratch, here), extents)
-    waiting = integers_at(_room(32), (32,))
+    waiting = integers_at(room_for(32), (32,))
     top = header[tree.LEVELS] - 1
     level, node, fresh, inside = top, 0, True, 0
     while True:
@@ -215,14 +220,14 @@ def _reaches(scratch: Singles, here: int, reach: Any, place: int, cloud: Singles
 def _touches(
     scratch: Singles, here: int, one_by_squared: Any, reach: Any, place: int, cloud: Singles
 ) -> bool:
-    """Return whether a point is within `reach` of the segment of the capsule at a place, in one lane."""
+    """Return whether a point or triangle is within `reach` of the segment of the capsule at a place, in one lane."""
     header = integers_at(place, (tree.HEADER,))
     x, y, z, i, j, k = column(scratch, here, 6)
     centre, along, extents = (x, y, z), (i, j, k), (abs(i) + reach, abs(j) + reach, abs(k) + reach)
-    waiting = integers_at(_room(32), (32,))
+    waiting = integers_at(room_for(32), (32,))
     top = header[tree.LEVELS] - 1
     level, node = top, 0
-    inside = _near_nodes(header, cloud, level, node, centre, along, extents, one_by_squared, reach)
+    inside = near_nodes(header, cloud, level, node, centre, along, extents, one_by_squared, reach)
     while True:
         if inside == 0:
             if level == top:
@@ -232,44 +237,20 @@ def _touches(
             continue
         child = LANES * node + lowest_bit(inside)
         inside &= inside - 1
+        if level == 0 and header[tree.IS_MESH] != 0:
+            if near_triangles(cloud, child, centre, along, one_by_squared, reach) != 0:
+                return True
+            continue
         if level == 0:
-            apart = minus(load_vector(cloud, tree.LEAVES + tree.LEAF_ROW * child), centre)
-            apart = minus(apart, times(along, _nearest(apart, along, one_by_squared)))
+            apart = minus(load_vector(cloud, tree.LEAVES + tree.POINT_ROW * child), centre)
+            apart = minus(apart, times(along, nearest_place(apart, along, one_by_squared)))
             if below_zero(dot(apart, apart) - reach * reach) != 0:
                 return True
             continue
         waiting[2 * level], waiting[2 * level + 1] = inside, node
         level -= 1
         node = child
-        inside = _near_nodes(header, cloud, level, node, centre, along, extents, one_by_squared, reach)
-
-
-@inlined
-def _near_nodes(
-    header: Ints,
-    cloud: Singles,
-    level: int,
-    node: int,
-    centre: Any,
-    along: Any,
-    extents: Any,
-    one_by_squared: Any,
-    reach: Any,
-) -> int:
-    """Return which of a node's sixteen boxes meet that around a capsule, and with their balls the capsule itself."""
-    first = header[tree.FIRST_NODES + level] + tree.NODE_ROW * node
-    apart = minus(load_vector(cloud, first), centre)
-    x, y, z = minus(minus(absolute(apart), load_vector(cloud, first + HALF)), extents)
-    ball, _, _ = load_vector(cloud, first + 2 * HALF)
-    near = ball + reach
-    apart = minus(apart, times(along, _nearest(apart, along, one_by_squared)))
-    return below_zero(larger(larger(x, y), z)) & below_zero(dot(apart, apart) - near * near)
-
-
-@inlined
-def _nearest(apart: Any, along: Any, one_by_squared: Any) -> Any:
-    """Return where on a segment, from -1 to 1, the places `apart` from its middle are nearest."""
-    return larger(smaller(dot(apart, along) * one_by_squared, ONE), -ONE)
+        inside = near_nodes(header, cloud, level, node, centre, along, extents, one_by_squared, reach)
 
 
 @intrinsic
