@@ -8,12 +8,11 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad.roadmap.attempt import Attempt, Searched
-from evenroad.roadmap.proof import proof_of
 from evenroad.roadmap.result import PlanResult, SearchedGraph, Status
 from evenroad.roadmap.search import BLOCKED, FREE, EdgeStates, components
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.space.path import path_length
-from evenroad.world import Connection, Explains, Rechecks, Separates, Shortens
+from evenroad.world import Connection, Explains, Rechecks, Separates, Shortens, World
 
 PROVED = "proved: there is no path; start and goal lie in two components of the free space"
 
@@ -178,3 +177,30 @@ def _searched_graph(states: EdgeStates, ends: int) -> SearchedGraph:
     number = np.cumsum(kept, dtype=np.int32) - 1
     edges = states.edges[states.edge_states == FREE]
     return SearchedGraph(states.configurations[kept], number[edges].astype(np.int32), int(kept.sum()) - ends)
+
+
+def proof_of(world: World) -> str:
+    """Return what is shown of every path in a world: ``exact``, ``certified``, or ``resolution`` if it does not say."""
+    # Not by `isinstance`, which takes as long as some checks.
+    return str(getattr(world, "proof", "resolution"))
+
+
+def require_certified(world: World, result: PlanResult) -> PlanResult:
+    """Return the plan if all motions of its path are proved free, by a check of its own, else ``not_certified``.
+
+    The message then names the first motion that is not; the path stays in the result.
+    """
+    if result.path is None or result.proof == "exact":
+        return result
+    if not (isinstance(world, Rechecks) and world.proof == "certified"):
+        message = "the path is free at the states tested; motions of this world cannot be proved free"
+        return replace(result, status=Status.NOT_CERTIFIED, message=message)
+    failed = np.flatnonzero(~world.recheck(result.path))
+    if not len(failed):
+        return replace(result, proof="certified")
+    first, last = ("(" + ", ".join(f"{x:.6g}" for x in result.path[failed[0] + i]) + ")" for i in (0, 1))
+    message = (
+        f"motion {failed[0] + 1} of {len(result.path) - 1} is not proved free, from {first} to {last}:"
+        " it may touch, or pass too near to contact to tell"
+    )
+    return replace(result, status=Status.NOT_CERTIFIED, message=message, proof="resolution")

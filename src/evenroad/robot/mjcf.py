@@ -28,14 +28,8 @@ def read_mjcf(file: RobotFile) -> Urdf:
 
     Bodies are links and keep their names; of a body with several joints, or with one whose anchor is not its origin,
     links without a body lie between.  A free joint, or a ball, stays as it is drawn; a linear equality of two joints
-    makes a mimic.  Geoms that collide with nothing are no bodies.
-
-    Raises
-    ------
-    BrokenFile
-        If the file is missing or MuJoCo does not take it, or a mesh is not in a file of its own.
-    NotAvailable
-        If MuJoCo is not installed.
+    makes a mimic.  Geoms that collide with nothing are no bodies.  Raises BrokenFile if the file is missing or MuJoCo
+    does not take it, or a mesh is not in a file of its own; NotAvailable if MuJoCo is not installed.
     """
     read_xml(file.path, "robot", "an MJCF", "mujoco")
     mujoco = require_extra("mujoco", "mjcf", f"{file.path} is an MJCF, which")
@@ -79,21 +73,14 @@ class _Reader:
         """Yield the joints that lead to a body from its parent, one after the other."""
         model, link = self.model, self.links[body]
         pose = _pose(model.body_pos[body], model.body_quat[body])
-        parent, first, count = (
-            self.links[model.body_parentid[body]],
-            model.body_jntadr[body],
-            model.body_jntnum[body],
-        )
-        anchor = IDENTITY
+        parent, anchor = self.links[model.body_parentid[body]], IDENTITY
+        first, count = model.body_jntadr[body], model.body_jntnum[body]
         for number in range(first, first + count):
-            name, kind = (
-                _name(model.joint(number), "joint"),
-                self.mujoco.mjtJoint(model.jnt_type[number]).name,
-            )
+            name = _name(model.joint(number), "joint")
+            kind = self.mujoco.mjtJoint(model.jnt_type[number]).name
             if kind not in _KINDS:
-                self.notes.append(
-                    f"joint {name!r} of {link!r}, {'free' if 'FREE' in kind else 'a ball'}, is fixed"
-                )
+                said = "free" if "FREE" in kind else "a ball"
+                self.notes.append(f"joint {name!r} of {link!r}, {said}, is fixed")
                 continue
             own = Pose(tuple(model.jnt_pos[number].tolist()))
             last = number == first + count - 1 and not model.jnt_pos[number].any()
@@ -130,9 +117,7 @@ class _Reader:
             follower = _name(model.joint(first), "joint")
             c0, c1, *others = model.eq_data[number][:5].tolist()
             if second < 0 or any(others):
-                self.notes.append(
-                    f"the equality of joint {follower!r} is left out: it is not linear in another joint"
-                )
+                self.notes.append(f"an equality of joint {follower!r} is left out: it is not a linear one")
                 continue
             at = model.qpos0[model.jnt_qposadr[[first, second]]].tolist()
             mimics[follower] = Mimic(_name(model.joint(second), "joint"), c1, c0 + at[0] - c1 * at[1])
@@ -147,9 +132,7 @@ class _Reader:
         pose = _pose(model.geom_pos[geom], model.geom_quat[geom])
         a, b, c = model.geom_size[geom].tolist()
         if kind in ("plane", "hfield"):
-            self.notes.append(
-                f"the {kind} of {link!r} is left out: the scene says what stands around the robot"
-            )
+            self.notes.append(f"the {kind} of {link!r} is left out: a scene says what is around the robot")
             return None
         if kind == "ellipsoid":
             self.notes.append(f"the ellipsoid of {link!r} is taken as the box around it")

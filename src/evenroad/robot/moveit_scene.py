@@ -17,6 +17,7 @@ from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import shape_of
 from evenroad.robot.scene import Obstacle, Scene
 
+Numbers = tuple[float, ...]
 _SIZES = {"box": 3, "sphere": 1, "cylinder": 2}
 _TYPES = {1: "box", 2: "sphere", 3: "cylinder", 4: "cone"}
 """Numbers of shape_msgs/SolidPrimitive."""
@@ -26,23 +27,14 @@ def read_scene_text(path: Path) -> Scene:
     """Read a ``.scene`` file: a name, then objects that begin with ``*``, and a full stop.
 
     An object has a name, in newer files a pose, the number of its shapes, and each shape with its dimensions, pose and
-    colour; in newer files subframes follow, which are skipped.
-
-    Raises
-    ------
-    BrokenFile
-        If the file is missing or ends too early, or a number is none.
-    UnknownName
-        If a shape is none of box, sphere and cylinder.
-    InvalidValue
-        If a dimension is not > 0, a quaternion has no direction, or two objects share a name.
+    colour; in newer files subframes follow, which are skipped.  Raises BrokenFile if the file is missing or ends too
+    early, or a number is none; UnknownName if a shape is none of box, sphere and cylinder; InvalidValue if a dimension
+    is not > 0, a quaternion has no direction, or two objects share a name.
     """
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
     except (OSError, ValueError) as error:
-        raise BrokenFile(
-            f"cannot read the scene {path}: {getattr(error, 'strerror', None) or error}"
-        ) from error
+        raise BrokenFile(f"cannot read scene {path}: {getattr(error, 'strerror', None) or error}") from error
     return Scene(lines[0].strip() or path.stem if lines else path.stem, tuple(_from_text(lines, path)))
 
 
@@ -60,7 +52,7 @@ def _from_text(lines: list[str], path: Path) -> Iterator[Obstacle]:
             raise BrokenFile(f"{path} ends where {what} must be")
         return rest[-1].pop(0)
 
-    def row(count: int) -> tuple[float, ...]:
+    def row(count: int) -> Numbers:
         words = [word("a number") for _ in range(count)]
         try:
             return tuple(map(float, words))
@@ -95,12 +87,7 @@ def _from_text(lines: list[str], path: Path) -> Iterator[Obstacle]:
 def read_planning_scene(document: Mapping[str, Any], path: Path) -> Scene:
     """Return the scene of a planning scene that was read from YAML: objects in ``world: collision_objects``.
 
-    Raises
-    ------
-    BrokenFile
-        If a piece is missing.
-    UnknownName, InvalidValue
-        As :func:`read_scene_text`; and if an object has a mesh, which scenes do not take yet.
+    Raises as :func:`read_scene_text`; InvalidValue also if an object has a mesh, which scenes do not take yet.
     """
     world = document.get("world")
     if not isinstance(world, dict):
@@ -132,9 +119,7 @@ def read_planning_scene(document: Mapping[str, Any], path: Path) -> Scene:
     return Scene(str(document.get("name") or path.stem), tuple(obstacles))
 
 
-def _obstacles(
-    name: str, shapes: list[tuple[str, tuple[float, ...], Pose]], path: Path
-) -> Iterator[Obstacle]:
+def _obstacles(name: str, shapes: list[tuple[str, Numbers, Pose]], path: Path) -> Iterator[Obstacle]:
     for i, (kind, size, pose) in enumerate(shapes):
         try:
             body = shape_of(kind, size, pose)
@@ -160,7 +145,7 @@ def _pose(entry: object, name: str, path: Path) -> Pose:
     return _from_xyzw(rows[0], rows[1], f"object {name!r} in {path}")
 
 
-def _from_xyzw(xyz: tuple[float, ...], quaternion: tuple[float, ...], where: str) -> Pose:
+def _from_xyzw(xyz: Numbers, quaternion: Numbers, where: str) -> Pose:
     x, y, z, w = quaternion
     try:
         return Pose.from_quaternion(xyz, (w, x, y, z))

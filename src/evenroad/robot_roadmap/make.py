@@ -92,6 +92,10 @@ def make_roadmap(
                 f" {obstacle.name!r}, a {obstacle.body}: leave it to the scene of the day"
             )
     robot = in_scene(robot, cell)
+    if robot.holds:
+        raise InvalidValue(
+            f"a roadmap is made of a robot with empty hands, not one that holds {robot.holds[0]!r}"
+        )
     world = ArmWorld(robot, cell, resolution=resolution)
     if world.fixed_contact is not None:
         first, second = world.fixed_contact

@@ -15,7 +15,6 @@ from evenroad.space.protocol import Space
 
 _UNIT_TOLERANCE = 1e-6
 """How far a norm may be from 1: room for quaternions read from a text file with seven digits."""
-
 SMALL_ANGLE = 1e-8
 """Below it a chord and its arc agree to the last bit, and sin(angle) is too small to divide by safely."""
 
@@ -92,9 +91,8 @@ def _require_units(**batches: Floats) -> None:
         norm = _norm(batch)
         wrong = np.flatnonzero(np.abs(norm - 1.0) > _UNIT_TOLERANCE)
         if len(wrong):
-            raise InvalidValue(
-                f"{name} must hold unit quaternions: row {wrong[0]} has norm {float(norm[wrong[0]])!r}"
-            )
+            row, bad = int(wrong[0]), float(norm[wrong[0]])
+            raise InvalidValue(f"{name} must hold unit quaternions: row {row} has norm {bad!r}")
 
 
 def _norm(q: Floats) -> Floats:

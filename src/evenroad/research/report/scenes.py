@@ -20,6 +20,7 @@ from evenroad.research.bench.task import Problem
 from evenroad.research.problems import PROBLEMS
 from evenroad.research.report.charts import DPI, new_figure
 from evenroad.research.worlds.chain import ChainWorld
+from evenroad.research.worlds.rigid import OrientedBox, SolidWorld
 from evenroad.roadmap import KNearest, PlanResult, plan
 from evenroad.robot import ArmWorld
 from evenroad.space.path import place_at
@@ -27,16 +28,13 @@ from evenroad.viz import style
 from evenroad.viz.arm import draw_arm_plan
 from evenroad.viz.plan import draw_plan
 from evenroad.world.gridmap import DiskWorld
-from evenroad.world.solids import OrientedBox, SolidWorld
 
 SCENES = ("maze-1", "maze-2", "maze-3", "chain-10d", "cubicles", "twistycool", "ur5-c", "ur5-a")
 """Problems that have a picture."""
 SAME_SCENE = {"cubicles-6d": "cubicles", "twistycool-6d": "twistycool"}
 """Problems that share the picture of another one."""
-
 TRIES = ((1024, 10), (2048, 10), (4096, 10), (2048, 40), (8192, 40))
 """Numbers of points and of neighbours that are tried in turn; a goal deep in a box needs more neighbours."""
-
 CHAIN_POSES = 25
 BODY_POSES = 13
 """Poses along the path that are drawn."""
@@ -76,9 +74,8 @@ def find_path(problem: Problem) -> PlanResult:
     """Return the first plan with a path, on scrambled Halton points; the last one if none has."""
     for n, k in TRIES:
         points = draw("halton", n, problem.world.space.cube_dim)
-        result = plan(
-            problem.world, problem.start, problem.goal, points, rule=KNearest(k), search="lazy", links=None
-        )
+        query = (problem.world, problem.start, problem.goal)
+        result = plan(*query, points, rule=KNearest(k), search="lazy", links=None)
         if result.solved:
             break
     return result
@@ -90,9 +87,8 @@ def draw_chain(problem: Problem, world: ChainWorld, title: str) -> Figure:
     axes = figure.add_subplot()
     x, y, dx, dy = world.walls
     walls = np.stack([np.stack([x, y], axis=1), np.stack([x + dx, y + dy], axis=1)], axis=1)
-    axes.add_collection(
-        LineCollection(list(walls), colors=style.OBSTACLE, linewidths=2.6, label="horn", zorder=4)
-    )
+    look: dict[str, Any] = dict(colors=style.OBSTACLE, linewidths=2.6, label="horn", zorder=4)
+    axes.add_collection(LineCollection(list(walls), **look))
     result = find_path(problem)
     if result.path is not None:
         shades = colormaps["Blues"](np.linspace(0.25, 0.75, CHAIN_POSES))
@@ -152,9 +148,8 @@ def _draw_body(axes: Axes3D, body: Iterable[OrientedBox], poses: Floats) -> None
 
 def _add_faces(axes: Axes3D, faces: Floats, colours: tuple[Any, Any], **look: float) -> None:
     """Draw faces in the colours of their areas and of their edges."""
-    axes.add_collection3d(
-        Poly3DCollection(faces, facecolors=colours[0], edgecolors=colours[1], clip_on=False, **look)
-    )
+    areas, edges = colours
+    axes.add_collection3d(Poly3DCollection(faces, facecolors=areas, edgecolors=edges, clip_on=False, **look))
 
 
 def _faces(corners: Floats) -> Floats:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +12,8 @@ import numpy.typing as npt
 from evenroad._arrays import Bools, Floats, Ints32
 from evenroad.roadmap.budget import BudgetSpent, Stopwatch, in_time
 from evenroad.world import World
+
+States: TypeAlias = npt.NDArray[np.int8]
 
 UNKNOWN, FREE, BLOCKED = np.int8(0), np.int8(1), np.int8(2)
 """What is known of an edge or a node."""
@@ -23,8 +26,8 @@ class Known:
     `confirmed`, (m,), says which free edges have passed the strict check of a world that has one.
     """
 
-    nodes: npt.NDArray[np.int8]
-    edges: npt.NDArray[np.int8]
+    nodes: States
+    edges: States
     confirmed: Bools
 
     @classmethod

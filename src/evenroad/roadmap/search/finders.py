@@ -1,4 +1,7 @@
-"""Finding a path while asking the world: everything first, only what matters, any path, or by a marching tree."""
+"""Finding a path while asking the world: everything first, only what matters, any path, or by a marching tree.
+
+And the last check of a path: no motion is handed out that its world does not confirm.
+"""
 
 from __future__ import annotations
 
@@ -10,10 +13,11 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from evenroad._arrays import Floats, Ints32
-from evenroad.roadmap.search.edge_states import BLOCKED, FREE, UNKNOWN, EdgeStates
+from evenroad._arrays import Bools, Floats, Ints32
+from evenroad.roadmap.search.edge_states import BLOCKED, FREE, UNKNOWN, EdgeStates, States
 from evenroad.roadmap.search.graph import Graph
 from evenroad.roadmap.search.shortest import NOT_FOUND, Ends, FixedPoint, Found, SearchProblem, best_path
+from evenroad.world import Rechecks, World
 
 Finder: TypeAlias = Callable[[Any, EdgeStates], Found]
 """A search: what it takes are `Ends`, or all of a `SearchProblem`."""
@@ -62,9 +66,7 @@ FINDERS: dict[str, Finder] = {"full": find_after_all, "lazy": find_lazily}
 """The searches by name; both find the same path."""
 
 
-def _all_free(
-    numbers: Ints32, states: npt.NDArray[np.int8], ask: Callable[[npt.NDArray[np.integer]], None]
-) -> bool:
+def _all_free(numbers: Ints32, states: States, ask: Callable[[Ints32], None]) -> bool:
     """Ask about those nodes or edges of a path that are not known, until one is blocked; return whether none is."""
     for number in numbers[states[numbers] == UNKNOWN]:
         ask(number[np.newaxis])
@@ -209,3 +211,27 @@ def _path_back(parent_edge: Ints32, edges: Ints32, node: int) -> Found:
         along.append(edge)
         nodes.append(b if a == nodes[-1] else a)
     return Found(np.array(nodes[::-1], dtype=np.int32), np.array(along[::-1], dtype=np.int32))
+
+
+def confirmed(world: World, path: Floats, doubtful: Bools) -> Bools:
+    """Return which motions of a path, (p, dim), pass the world's strict check, (p - 1,); all where it has none.
+
+    Only the doubtful ones, (p - 1,), have to be checked: the others passed before.
+    """
+    passed = ~doubtful
+    if not isinstance(world, Rechecks):
+        return np.ones_like(passed)
+    # Runs of motions that follow one another are one call.
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], doubtful, [False]])))
+    for first, last in edges.reshape(-1, 2):
+        passed[first:last] = world.recheck(path[first : last + 1])
+    return passed
+
+
+def confirm(states: EdgeStates, found: Found) -> bool:
+    """Return whether the world confirms all motions of a path; those that fail are blocked from now on."""
+    nodes, along, _ = found
+    passed = confirmed(states.world, states.configurations[nodes], ~states.confirmed[along])
+    states.confirmed[along] = passed
+    states.edge_states[along[~passed]] = BLOCKED
+    return bool(passed.all())

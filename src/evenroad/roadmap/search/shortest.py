@@ -11,11 +11,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
 from evenroad._arrays import Floats, Ints, Ints32
-from evenroad.roadmap.search.edge_states import BLOCKED, FREE
+from evenroad.roadmap.search.edge_states import BLOCKED, FREE, States
 from evenroad.roadmap.search.graph import Graph
 
 
@@ -31,10 +30,8 @@ class Found(NamedTuple):
 
 
 NOT_FOUND = Found(np.empty(0, dtype=np.int32), np.empty(0, dtype=np.int32))
-
 MOST = 1 << 61
 """What bounds are cut to: the sum of one and any path is still a 64-bit integer."""
-
 _NEXT_TO_ZERO = 1e-280
 """A quantum of a shorter length would lose its digits, or be 0."""
 
@@ -92,9 +89,7 @@ class SearchProblem(Ends):
     bounds: Ints
 
 
-def best_path(
-    problem: SearchProblem, edge_states: npt.NDArray[np.int8], node_states: npt.NDArray[np.int8]
-) -> Found:
+def best_path(problem: SearchProblem, edge_states: States, node_states: States) -> Found:
     """Return the one shortest path from start to the nearest goal over nodes and edges that are not `BLOCKED`.
 
     The goals are one virtual node: each has an edge of length 0 to it, and the path to it is the answer.  Among

@@ -39,9 +39,9 @@ def first_contact(
     """Return what comes nearer than its margin first: which of the kinds above, a capsule, its counterpart.
 
     The counterpart is an obstacle (for MEETS_SURFACE, one of all the scene's), or for MEETS_ITSELF the pair's number
-    (and then the capsule is -1).  There is a margin for each capsule against obstacles, and one for each pair of capsules
-    [m].  The last two, (frames + 1, 12) and (capsules, 6), are room for places: rotation and origin of a frame, centre
-    and half segment of a capsule.
+    (and then the capsule is -1).  There is a margin for each capsule against obstacles, and one for each pair of
+    capsules [m].  The last two, (frames + 1, 12) and (capsules, 6), are room for places: rotation and origin of a
+    frame, centre and half segment of a capsule.
     """
     _place_frames(q, ints, floats, frames)
     _place_capsules(ints, floats, frames, capsules)

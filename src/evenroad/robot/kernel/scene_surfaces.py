@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from ctypes import CFUNCTYPE, c_int64
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
@@ -36,8 +35,6 @@ CAPSULE_ROW = 3
 PIECE = 0.1
 """Triangles are cut until no side is longer than this share of the robot's reach: a box around a large one says
 little."""
-
-_CHECK = CFUNCTYPE(c_int64, *[c_int64] * 5)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,20 +94,6 @@ def scene_surfaces(scene: Scene, robot: RobotTables, tested: Bools) -> SceneSurf
         return None
     flags = np.ascontiguousarray(tested[:, list(found)].T, dtype=np.int64)
     return SceneSurfaces(tuple(found.values()), tuple(found), flags, _capsule_rows(robot.capsules))
-
-
-def fixed_contact(surfaces: SceneSurfaces, robot: RobotTables) -> tuple[int, int] | None:
-    """Return a capsule that does not move and an obstacle, a cloud or mesh, that it touches."""
-    from evenroad.robot.kernel.surface_scalar import scalar_check_address
-
-    if not any(surfaces.tested[:, i].any() for i, each in enumerate(robot.capsules) if each.frame == 0):
-        return None
-    places = np.array([[*capsule.centre, *capsule.half] for capsule in robot.capsules])
-    check = scalar_check_address()
-    ints = surfaces.added_to(robot.ints, check)
-    no_margins = np.zeros(len(places))
-    found = _CHECK(check)(*map(address, (places, no_margins, ints, robot.floats)), 1)
-    return None if found < 0 else (found >> 32, found & 0xFFFFFFFF)
 
 
 def _capsule_rows(capsules: Sequence[PlacedCapsule]) -> npt.NDArray[np.float32]:

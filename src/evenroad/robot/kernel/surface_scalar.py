@@ -5,6 +5,7 @@ Rarely asked, so what is simple will do: leaves one after the other, and a line 
 
 from __future__ import annotations
 
+from ctypes import CFUNCTYPE, c_int64
 from functools import cache
 
 import numpy as np
@@ -22,11 +23,26 @@ from evenroad.robot.kernel.addresses import (
     singles_at,
 )
 from evenroad.robot.kernel.layout import LANES, quick
-from evenroad.robot.kernel.scene_surfaces import CAPSULE_ROW, DESK, SURFACE_ROW
+from evenroad.robot.kernel.robot_tables import RobotTables
+from evenroad.robot.kernel.scene_surfaces import CAPSULE_ROW, DESK, SURFACE_ROW, SceneSurfaces
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 Singles = npt.NDArray[np.float32]
+
+_CHECK = CFUNCTYPE(c_int64, *[c_int64] * 5)
+
+
+def fixed_contact(surfaces: SceneSurfaces, robot: RobotTables) -> tuple[int, int] | None:
+    """Return a capsule that does not move and an obstacle, a cloud or mesh, that it touches."""
+    if not any(surfaces.tested[:, i].any() for i, each in enumerate(robot.capsules) if each.frame == 0):
+        return None
+    places = np.array([[*capsule.centre, *capsule.half] for capsule in robot.capsules])
+    check = scalar_check_address()
+    ints = surfaces.added_to(robot.ints, check)
+    no_margins = np.zeros(len(places))
+    found = _CHECK(check)(*map(address, (places, no_margins, ints, robot.floats)), 1)
+    return None if found < 0 else (found >> 32, found & 0xFFFFFFFF)
 
 
 @cache
