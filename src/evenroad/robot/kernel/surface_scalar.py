@@ -16,6 +16,7 @@ from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel import surface_tree as tree
 from evenroad.robot.kernel.addresses import (
     ANY_LENGTH,
+    address,
     bytes_at,
     doubles_at,
     integers_at,
