@@ -18,46 +18,11 @@ from evenroad.robot.kernel import surface_tree
 from evenroad.robot.kernel.surface_grid import grid_of_points
 from evenroad.robot.scene import Obstacle, Scene
 from tests.robot.kernel_arms import as_balls, box_scene, edge, random_tree, seven_joint_arm, ur5
-from tests.robot.oracle import clearance, link_poses
+from tests.robot.surface_oracle import all_clearance
 
 BAND = 1e-5
 """Nearer to contact than this [m] either verdict is right; but single precision must then say blocked."""
 TURNED = Pose((0.1, -0.2, 0.05), rotation_from_rpy(0.3, -0.5, 1.1))
-
-
-def point_clearance(robot, scene, q):
-    """By how much the nearest ball of a cloud stays apart from the capsules, (n,)."""
-    poses, least = link_poses(robot, q), np.full(len(q), np.inf)
-    for obstacle in scene.obstacles:
-        if not isinstance(obstacle.body, PointCloud):
-            continue
-        points = obstacle.body.points @ np.reshape(obstacle.rotation, (3, 3)).T + obstacle.xyz
-        for capsule in robot.capsules:
-            if (capsule.link, obstacle.name) in scene.allowed:
-                continue
-            rotation, origin = poses[capsule.link]
-            a, b = (origin + rotation @ np.array(end) for end in (capsule.a, capsule.b))
-            half, reach = 0.5 * np.linalg.norm(b[0] - a[0]), capsule.radius + obstacle.body.radius
-            for i in range(len(q)):
-                away = np.linalg.norm(points - 0.5 * (a[i] + b[i]), axis=1)
-                if away.min() - half - reach >= least[i]:
-                    continue
-                # Nearest to the segment is none of those that are farther from its middle than another by its length.
-                apart, along = points[away <= away.min() + 2.0 * half + 1e-9] - a[i], b[i] - a[i]
-                share = np.clip(apart @ along / max(along @ along, 1e-300), 0.0, 1.0)
-                squared = ((apart - share[:, None] * along) ** 2).sum(axis=1).min()
-                least[i] = min(least[i], np.sqrt(squared) - reach)
-    return least
-
-
-def all_clearance(robot, scene, q):
-    """By how much the nearest bodies of any kind stay apart, (n,)."""
-    clouds = [obstacle.name for obstacle in scene.obstacles if isinstance(obstacle.body, PointCloud)]
-    solid = replace(
-        scene, obstacles=tuple(o for o in scene.obstacles if o.name not in clouds), allowed=frozenset()
-    )
-    solid = replace(solid, allowed=frozenset(pair for pair in scene.allowed if pair[1] not in clouds))
-    return np.minimum(point_clearance(robot, scene, q), clearance(robot, solid, q))
 
 
 def states_between(world, start, end, count):
