@@ -67,7 +67,7 @@ def certify_roadmap(roadmap: Roadmap, *, links: int | None = LINKS) -> Certifica
     reach = roadmap.rule.reach(roadmap.points.n, roadmap.space)
     n = roadmap.points.n
     most = n if reach == Reach() else max(_links_among(n, links), reach.k or 0)
-    ends = max(reach.radius or 0.0, _linked(roadmap.configurations, most, roadmap.space, bounds.upper))
+    ends = max(reach.radius or 0.0, linked_within(roadmap.configurations, most, roadmap.space, bounds.upper))
     between = _nearest_untried(roadmap.configurations, roadmap.edges, roadmap.space)
     return Certificate(bounds.upper, bounds.lower, min(between, turn), min(ends, turn), True)
 
@@ -156,7 +156,7 @@ def _by_neighbours(
     if rank >= n:
         return Certificate(bounds.upper, bounds.lower, turn, turn, False)
     reach = _ranked(q, rank, space)
-    ends = max(SAFE * float(reach.min()), _linked(q, _links_among(n, links), space, bounds.upper))
+    ends = max(SAFE * float(reach.min()), linked_within(q, _links_among(n, links), space, bounds.upper))
     between = math.inf
     for rows, away in _rows(q, space):
         untried = away >= np.maximum(reach[rows, np.newaxis], reach)
@@ -168,7 +168,7 @@ def _links_among(n: int, links: int | None) -> int:
     return Query(np.zeros(1), np.zeros((1, 1)), links=links).links_among(n)
 
 
-def _linked(q: Floats, most: int, space: Space, dispersion: float) -> float:
+def linked_within(q: Floats, most: int, space: Space, dispersion: float) -> float:
     """Return a length up to which every end is linked to milestones, if to its `most` nearest."""
     if not 0 < most < len(q):
         return 0.0 if most == 0 else math.inf
