@@ -1,6 +1,9 @@
 """Certified claims against brute force: is one of them false, and how much do they leave?
 
-    python -m benchmarks.certificates --csv docs/data/certificates.csv --picture docs/guarantees.png
+    python -m benchmarks.certificates --csv docs/data/certificates.csv
+    python -m benchmarks.certificates --worlds 0 --read docs/data/certificates.csv --picture docs/guarantees.png
+
+The second line draws what the first wrote, and prints the largest holes and the least k by dimension.
 
 Random discs in planes of the cube, d = 2, 3, 4, in which the shortest path of any clearance is known (tests/
 clear_paths.py).  A roadmap is asked once; its certificate then makes claims, each of them a row:
@@ -21,6 +24,7 @@ import csv
 import math
 import time
 from collections.abc import Iterator
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +32,7 @@ import numpy as np
 from tests.clear_paths import DiscWorld, Plane
 
 from evenroad._arrays import Floats
-from evenroad.points import draw
+from evenroad.points import PointSet, draw
 from evenroad.roadmap import KNearest, Radius, Rule, certify, plan
 from evenroad.space import Box
 
@@ -42,20 +46,28 @@ RULES: tuple[tuple[str, float], ...] = (("radius", 3.0), ("radius", 4.0), ("neig
 SHARES = (1.02, 1.15, 1.4, 1.8, 2.4)
 """Clearances in dispersions."""
 
+POOL = 4
+"""Sets of each family: worlds are new every time."""
+
 FIELDS = ["d", "world", "kind", "sampler", "n", "rule", "beta", "at_least", "between", "ends", "claim"]
 FIELDS += ["delta", "optimum", "exact", "cost", "bound", "tightness", "verdict"]
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--worlds", type=int, default=40, help="of each kind and dimension")
+    parser.add_argument("--worlds", type=int, default=24, help="of each kind and dimension; half in d = 4")
     parser.add_argument("--csv", type=Path)
+    parser.add_argument("--read", type=Path, help="claims of an earlier run")
     parser.add_argument("--picture", type=Path)
     options = parser.parse_args()
-    rows, began = [], time.process_time()
+    rows: list[dict[str, Any]] = []
+    began = time.process_time()
+    if options.read:
+        with open(options.read, newline="") as file:
+            rows = [{name: _read(text) for name, text in row.items()} for row in csv.DictReader(file)]
     for d in SETS:
         rules = {sampler: rules_for(d, sampler) for sampler in SAMPLERS}
-        for world in range(options.worlds):
+        for world in range(options.worlds if d < 4 else options.worlds // 2):
             for kind in ("field", "wall"):
                 rows += claims(d, world, kind, rules)
         summarise(d, [row for row in rows if row["d"] == d])
@@ -67,7 +79,40 @@ def main() -> None:
             writer.writeheader()
             writer.writerows({name: _short(row[name]) for name in FIELDS} for row in rows)
     if options.picture:
-        draw_picture(options.picture, rows)
+        draw_picture(options.picture, rows, print_holes())
+
+
+def print_holes() -> dict[tuple[str, int, int], float]:
+    """Print and return the certified dispersion by sampler, N and dimension, and the least k that is complete."""
+    holes: dict[tuple[str, int, int], float] = {}
+    print(
+        "largest hole of the unit cube, certified; in brackets the least k, symmetrised, that is complete with it"
+    )
+    for sampler in ("cover", "even", "uniform"):
+        for n in (256, 1024):
+            texts = []
+            for d in (2, 3, 4, 5, 6, 7):
+                points, space = draw(sampler, n, d), Box([0.0] * d, [1.0] * d)
+                beta = holes[sampler, n, d] = certify(points, Radius(1.0), space).dispersion
+                k = "" if beta > 0.5 else f" ({_least_k(points, space)})"
+                texts.append(f"d={d} {beta:.3f}{k}")
+            print(f"{sampler:8} N={n:4}: " + "  ".join(texts), flush=True)
+    return holes
+
+
+def _least_k(points: PointSet, space: Box) -> int:
+    """Return the smallest k, to within a tenth, whose certificate is complete."""
+    k = 3
+    while not certify(points, KNearest(k), space).complete:
+        k += max(1, k // 10)
+    return k
+
+
+def _read(text: str) -> Any:
+    try:
+        return float(text) if text else None
+    except ValueError:
+        return text
 
 
 def rules_for(d: int, sampler: str) -> list[Rule]:
@@ -89,7 +134,7 @@ def claims(d: int, number: int, kind: str, rules: dict[str, list[Rule]]) -> Iter
     """Yield the claims of every sampler and rule in one random world."""
     rng = np.random.default_rng([d, number, kind == "wall"])
     for sampler in SAMPLERS:
-        points = draw(sampler, SETS[d], d, rng=number)
+        points = _set(sampler, d, number % POOL)
         beta = certify(points, Radius(1.0), Box([0.0] * d, [1.0] * d)).dispersion
         world, start, goal = make_world(d, kind, beta, np.random.default_rng(rng.integers(2**32)))
         inside = all((np.minimum(p.centres, 1 - p.centres).min(1) > p.radii).all() for p in world.planes)
@@ -118,6 +163,11 @@ def claims(d: int, number: int, kind: str, rules: dict[str, list[Rule]]) -> Iter
                         delta=delta, optimum=optimum, exact=exact, bound=bound, tightness=cost / bound
                     )
                     yield row | facts | dict(claim="cost", verdict=_verdict(cost <= bound))
+
+
+@lru_cache(maxsize=64)
+def _set(sampler: str, d: int, seed: int) -> PointSet:
+    return draw(sampler, SETS[d], d, rng=seed)
 
 
 def make_world(d: int, kind: str, beta: float, rng: np.random.Generator) -> tuple[DiscWorld, Floats, Floats]:
@@ -189,14 +239,12 @@ def summarise(d: int, rows: list[dict[str, Any]]) -> None:
                     )
 
 
-def draw_picture(path: Path, rows: list[dict[str, Any]]) -> None:
+def draw_picture(path: Path, rows: list[dict[str, Any]], holes: dict[tuple[str, int, int], float]) -> None:
     """Draw what was claimed beside what was paid, and the least clearance that can be certified by dimension."""
     import matplotlib
 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
-
-    from evenroad.points.measures import dispersion_bounds
 
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.2), constrained_layout=True)
     cost = [row for row in rows if row["claim"] == "cost"]
@@ -213,23 +261,11 @@ def draw_picture(path: Path, rows: list[dict[str, Any]]) -> None:
         xlabel="certified: at most so many times the optimum", ylabel="the roadmap's path, times the optimum"
     )
     left.legend(loc="upper left", markerscale=3)
-    dimensions = range(2, 9)
-    for sampler, colour in (("cover", "C3"), ("even", "C0"), ("sobol", "C7")):
-        for n, style in ((1024, "-"), (4096, "--")):
-            betas = [
-                dispersion_bounds(draw(sampler, n, d), work=5e8).upper
-                for d in dimensions
-                if d < 7 or n < 4096
-            ]
-            right.plot(
-                dimensions[: len(betas)],
-                betas,
-                style,
-                marker="o",
-                ms=3,
-                color=colour,
-                label=f"{sampler}, N = {n}",
-            )
+    dimensions = sorted({d for _, _, d in holes})
+    for sampler, colour in (("cover", "C3"), ("even", "C0"), ("uniform", "C7")):
+        for n, style in ((256, ":"), (1024, "-")):
+            beta = [holes[sampler, n, d] for d in dimensions]
+            right.plot(dimensions, beta, style, marker="o", ms=3, color=colour, label=f"{sampler}, N = {n}")
     right.axhline(0.5, color="k", lw=0.8)
     right.annotate("half the side of the cube: no path has such a clearance", (2.1, 0.52), fontsize=8)
     right.set(xlabel="dimension", ylabel="beta: the least clearance that is certified", ylim=(0, 1.0))

@@ -14,7 +14,7 @@ from evenroad._checks import as_row, require_positive
 from evenroad._terminal import print_table
 from evenroad.errors import InvalidValue, shown
 from evenroad.points.npz import read_points
-from evenroad.roadmap import Certificate, KNearest, Radius, Rule, certify
+from evenroad.roadmap import Certificate, KNearest, Radius, Rule, certify, default_rule
 from evenroad.space import Box
 
 FACTORS = (3.0, 2.0, 1.5, 1.2)
@@ -88,7 +88,7 @@ class Certify:
 
     def _rule(self, d: int) -> Rule:
         if self.connect_radius is None:
-            return KNearest((20 if d >= 6 else 10) if self.k is None else self.k)
+            return default_rule(Box([0.0] * d, [1.0] * d)) if self.k is None else KNearest(self.k)
         if self.k is not None:
             raise InvalidValue("give -k or --connect-radius, not both")
         return Radius(self.connect_radius)
