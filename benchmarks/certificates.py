@@ -33,7 +33,7 @@ from tests.clear_paths import DiscWorld, Plane
 
 from evenroad._arrays import Floats
 from evenroad.points import PointSet, draw
-from evenroad.roadmap import KNearest, Radius, Rule, certify, plan
+from evenroad.roadmap import Budget, KNearest, Radius, Rule, certify, plan
 from evenroad.space import Box
 
 SETS = {2: 256, 3: 512, 4: 512}
@@ -141,7 +141,10 @@ def claims(d: int, number: int, kind: str, rules: dict[str, list[Rule]]) -> Iter
         exists = world.leads(start, goal, beta)
         optima = [(s * beta, world.optimum(start, goal, s * beta)) for s in SHARES]
         for rule in rules[sampler]:
-            result = plan(world, start, goal, points, rule=rule, search="lazy", shorten=False, certify=True)
+            options: dict[str, Any] = dict(
+                rule=rule, shorten=False, certify=True, budget=Budget(seconds=None)
+            )
+            result = plan(world, start, goal, points, search="lazy", **options)
             certificate = result.certificate
             assert certificate is not None
             assert certificate.dispersion == beta
