@@ -12,8 +12,7 @@ from evenroad.roadmap.answer import answer, refusal
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.certify import certify_graph
-from evenroad.roadmap.cost import EdgeCost
-from evenroad.roadmap.query import LINKS, Query, as_points, read_places
+from evenroad.roadmap.query import LINKS, EdgeCost, Query, as_points, read_places
 from evenroad.roadmap.result import PlanResult, Status
 from evenroad.roadmap.rules import Rule, default_rule
 from evenroad.roadmap.search import FREE, Finder, march
@@ -72,20 +71,10 @@ def plan(
         be, and what clearance a path would have had to have that was not found.  Not with `edge_cost` or
         `success_only`.
 
-    Returns
-    -------
-    PlanResult
-        Also when there is no path: the status and the message then say why.
-
-    Raises
-    ------
-    InvalidValue
-        If start, goal or points do not have the dimension of the space, or are not finite, or an edge costs
-        less than its length, or a certificate is asked for of what has none.
-    NotAvailable
-        If a certificate is asked for in a space whose metric is not flat.
-    UnknownName
-        If there is no such search.
+    Where there is no path, the result's status and message say why.  Raises InvalidValue if start, goal or points do
+    not have the dimension of the space, or are not finite, or an edge costs less than its length, or a certificate is
+    asked for of what has none; NotAvailable if it is asked for where the metric is not flat; UnknownName if there is no
+    such search.
     """
     query = Query(
         *read_places(start, goal, world.space),
