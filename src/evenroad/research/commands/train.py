@@ -16,7 +16,7 @@ from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.points import PointSet, load_points, save_points
 from evenroad.points.bank.anneal import SCHEDULE, Callback, require_points_for
 from evenroad.research.commands.interrupt import interrupt_between_steps
-from evenroad.research.training import anneal_many
+from evenroad.research.training import anneal_many, train_many
 from evenroad.research.training.folder import claim_folder
 from evenroad.research.training.objective import parse_objective
 
@@ -33,7 +33,7 @@ class Train:
     d: Annotated[int, tyro.conf.arg(aliases=["-d"])]
     """How many dimensions."""
     method: Literal["anneal", "mpmc"] = "anneal"
-    """anneal: noisy Adam on the coordinates. mpmc: the message-passing network (needs the extra [train])."""
+    """anneal: noisy Adam on the coordinates. mpmc: the message-passing network."""
     objective: str = "hickernell"
     """What is made small: a sum of measures, energies or their logs, e.g. "hickernell+10*riesz"."""
     sets: int = 8
@@ -42,12 +42,10 @@ class Train:
     """Steps of the optimiser."""
     refine: int = 0
     """mpmc: anneal the network's sets for so many more steps, and write them as OUT/refined-0000.npz, ..."""
-    device: str | None = None
-    """mpmc: auto, cpu or cuda (default: auto)."""
     seed: int = 0
     """Set i depends on this seed and i alone, whatever the number of processes."""
     jobs: int | None = None
-    """Processes for anneal (default: one a processor)."""
+    """Processes (default: one a processor)."""
     out: Annotated[Path, tyro.conf.arg(aliases=["-o"])]
     """The folder for the sets; made if its parent exists."""
 
@@ -74,17 +72,12 @@ class Train:
         for name, at_least in least.items():
             require_count(name, getattr(self, name), at_least)
         require_points_for(parse_objective(self.objective), self.n)
-        foreign = ("refine", "device") if self.method == "anneal" else ("jobs",)
-        for name in foreign:
-            if getattr(self, name):
-                raise InvalidValue(f"--{name} does not go with the method {self.method!r}")
+        if self.refine and self.method == "anneal":
+            raise InvalidValue("--refine does not go with the method 'anneal'")
         if self.jobs is not None:
             require_count("jobs", self.jobs)
         if self.method == "mpmc":
-            from evenroad.research.network.config import choose_device
-
             self._config()
-            choose_device(self.device or "auto")
 
     def _make_folder(self) -> None:
         if self.out.exists() and not self.out.is_dir():
@@ -110,14 +103,12 @@ class Train:
     def _config(self) -> NetworkConfig:
         from evenroad.research.network import NetworkConfig
 
-        return NetworkConfig(
-            n=self.n, d=self.d, objective=self.objective, sets=self.sets, steps=self.steps, seed=self.seed
-        )
+        return NetworkConfig(self.n, self.d, self.objective, steps=self.steps)
 
     def _network(self, callback: Callback) -> tuple[PointSet, ...]:
-        from evenroad.research.network import train
-
-        sets = train(self._config(), folder=self.out, callback=callback, device=self.device or "auto")
+        sets = train_many(
+            self._config(), self.sets, rng=self.seed, workers=self.jobs, folder=self.out, callback=callback
+        )
         if not self.refine:
             return sets
         claim_folder(self.out, {"steps": self.refine, "schedule": SCHEDULE}, "refined.json")
