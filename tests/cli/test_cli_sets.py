@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from evenroad.points import SAMPLERS, PointSet, draw, load_points, save_points
+from evenroad.points.measures.star_discrepancy import star_discrepancy
 from evenroad.research.commands.interrupt import interrupt_between_steps
 
 
@@ -194,6 +195,15 @@ def test_the_network_trains_from_the_command_line(run, tmp_path):
     assert load_points(tmp_path / "sets" / "refined-0001.npz").origin.method.endswith("+annealed")
 
 
+def test_orders_are_searched_from_the_command_line(run, tmp_path):
+    line = ("train", "-n", 12, "-d", 2, "--method", "order", "--objective", "star", "--sets", 2, "--jobs", 1)
+    code, out, _ = run(*line, "--steps", 200, "-o", "sets")
+    assert code == 0
+    best = min(star_discrepancy(load_points(tmp_path / "sets" / f"set-000{i}.npz")) for i in range(2))
+    assert "2 sets, star discrepancy: mean" in out
+    assert out.strip().endswith(f"best {best:.6g}")
+
+
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
@@ -226,6 +236,9 @@ MPMC = ("train", "-n", 12, "-d", 2, "--method", "mpmc", "--sets", 2, "--jobs", 1
         (("--seed", -1), "seed must be"),
         (("--jobs", 0), "jobs must be"),
         (("--refine", 5), "--refine does not go with the method 'anneal'"),
+        (("--method", "order"), "in d = 2 for --objective star, not in d = 2 for 'hickernell'"),
+        (("--method", "order", "--objective", "star", "-d", 3), "not in d = 3"),
+        (("--method", "order", "--objective", "star", "--refine", 3), "--refine does not go"),
         (("--method", "mpmc", "--refine", -1), "refine must be"),
         (("--method", "mpmc", "--jobs", 0), "jobs must be"),
         (("--method", "mpmc", "-n", 1), "n must be"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from evenroad._arrays import set_fields
@@ -25,13 +26,15 @@ class NetworkConfig:
         An expression (:mod:`evenroad.research.training.objective`) that is made small.
     start : str
         The sampler that the network starts from, one of ``STARTS``: it learns by how much to move each point.
-    width, layers, k : int
-        How many numbers describe a point inside; message-passing layers; the k nearest starts send messages.
+    width : int or None
+        How many numbers describe a point inside; None: 32, from d = 8 on 64.
+    layers, k : int
+        Message-passing layers; the k nearest starts send a point messages.
     steps, rate : int, float
         Steps of Adam, over which the rate falls to zero along a half cosine.
     noise : float or None
         The starts drift, by Gaussian noise that cools with the rate, as this share of an annealing's noise.
-        None: by the dimension, 0 in the plane and .5 from d = 5 on.
+        None: 0 in the plane and .5 in d = 10.
 
     Raises
     ------
@@ -43,7 +46,7 @@ class NetworkConfig:
     d: int
     objective: str = "hickernell"
     start: str = "sobol"
-    width: int = 32
+    width: int | None = None
     layers: int = 3
     k: int = 8
     steps: int = 10_000
@@ -52,8 +55,10 @@ class NetworkConfig:
 
     def __post_init__(self) -> None:
         # Plain ints and floats, since they go into JSON.  The instance norm of a set of one point would be zero.
-        for name, least in {"n": 2, "d": 1, "width": 1, "layers": 1, "k": 1, "steps": 1}.items():
+        for name, least in {"n": 2, "d": 1, "layers": 1, "k": 1, "steps": 1}.items():
             set_fields(self, **{name: require_count(name, getattr(self, name), at_least=least)})
+        if self.width is not None:
+            set_fields(self, width=require_count("width", self.width))
         require_known("start", self.start, STARTS)
         objective = parse_objective(self.objective)
         require_points_for(objective, self.n)
@@ -62,6 +67,16 @@ class NetworkConfig:
         set_fields(self, rate=require_positive("rate", self.rate), objective=str(objective))
 
     @property
+    def channels(self) -> int:
+        """The width, or its default: 64 gains 4 % over 32 in d = 10, n = 512, and nothing in d <= 5."""
+        return (64 if self.d >= 8 else 32) if self.width is None else self.width
+
+    @property
     def drift(self) -> float:
         """The noise, or its default: in few dimensions Sobol points are in a good basin, which noise leaves."""
-        return {1: 0.0, 2: 0.0, 3: 0.1, 4: 0.3}.get(self.d, 0.5) if self.noise is None else self.noise
+        if self.noise is not None:
+            return self.noise
+        if self.d >= 8:
+            return 0.5
+        share = {1: 0.0, 2: 0.0, 3: 0.1, 4: 0.3}.get(self.d, 0.5)
+        return share if self.d <= 3 else share * min(1.0, math.sqrt(128 / self.n))

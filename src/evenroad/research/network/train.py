@@ -32,7 +32,7 @@ class Network:
     """The weights of a network and what it remembers of its last pass: all float32, the weights in one flat array."""
 
     def __init__(self, config: NetworkConfig, neighbours: Ints, draws: np.random.Generator) -> None:
-        n, d, width, layers = config.n, config.d, config.width, config.layers
+        n, d, width, layers = config.n, config.d, config.channels, config.layers
         shapes = ((d + 1, width), (layers, 5, width, width), (layers, 3, width), (width + 1, d))
         self.weights = np.zeros(sum(map(math.prod, shapes)), np.float32)
         self.slopes = np.zeros_like(self.weights)

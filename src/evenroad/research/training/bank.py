@@ -28,7 +28,7 @@ COUNTS = (16, 32, 64, 128, 256, 512, 1024, 2048)
 """Numbers of points."""
 HICKERNELL_DIMENSIONS = tuple(range(1, 15))
 MPMC_CELLS = tuple((2, n) for n in COUNTS[1:-1]) + tuple(
-    (d, n) for d in (3, 5, 6, 10) for n in (128, 256, 512, 1024)
+    (d, n) for n in (128, 256, 512, 1024) for d in (3, 5, 6, 10)
 )
 
 LOCK = ".lock"
@@ -74,7 +74,7 @@ def recipes() -> list[Recipe]:
 
 def _network_steps(n: int, d: int) -> int:
     """Return the steps of a network: fewer where one takes long, more in d = 10, where it still gains."""
-    if d == 10 and n <= 512:
+    if d == 10 and n <= 256:
         return 20_000
     return 10_000 if n <= 512 else 6_000
 

@@ -20,6 +20,7 @@ from evenroad.points.bank.anneal import SCHEDULE, Callback, anneal
 from evenroad.points.npz import load_points, save_points
 from evenroad.points.pointset import Origin, PointSet
 from evenroad.research.training.objective import parse_objective
+from evenroad.research.training.order import search_orders
 
 if TYPE_CHECKING:
     from evenroad.research.network import NetworkConfig
@@ -78,7 +79,8 @@ def read_set(path: Path, origin: Origin, shape: tuple[int, int]) -> PointSet | N
 class SetTask:
     """All that a process needs to make one set: what its origin will say, its own seeds, and its file if any.
 
-    With a `network` it is trained as that says, else annealed.
+    With a `network` it is trained as that says; by the origin's method ``order`` it is a search over orders, else it is
+    annealed.
     """
 
     n: int
@@ -102,6 +104,8 @@ def make_set(task: SetTask, callback: Callback) -> PointSet:
         from evenroad.research.network.train import train
 
         made = train(task.network, rng=task.seeds, callback=callback)
+    elif task.origin.method == "order":
+        made = search_orders(task.n, steps=task.steps, rng=task.seeds, callback=callback)
     else:
         objective = parse_objective(task.origin.objective)
         made = anneal(task.n, task.d, objective, steps=task.steps, rng=task.seeds, callback=callback)

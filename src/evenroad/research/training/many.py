@@ -106,6 +106,25 @@ def train_many(
     return _make_all(first, sets, workers, folder, callback)
 
 
+def order_many(
+    n: int,
+    sets: int = 1,
+    *,
+    steps: int = 5000,
+    rng: RngLike = 0,
+    workers: int | None = None,
+    folder: str | os.PathLike[str] | None = None,
+    callback: Callback | None = None,
+) -> tuple[PointSet, ...]:
+    """Search orders of n points in the plane for `sets` sets of small star discrepancy: else as :func:`anneal_many`.
+
+    `n` and `steps` are those of :func:`~evenroad.research.training.order.search_orders`.
+    """
+    n, steps = require_count("n", n), require_count("steps", steps)
+    origin = Origin(family="order", method="order", objective="star", seed=seed_of(rng))
+    return _make_all(SetTask(n, 2, steps, _root_sequence(rng), origin, None), sets, workers, folder, callback)
+
+
 def _make_all(
     first: SetTask,
     sets: int,
