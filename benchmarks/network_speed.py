@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -37,7 +38,7 @@ def main() -> None:
                 MEASURES["hickernell"].of_columns(columns)
 
         config = NetworkConfig(n, d, steps=STEPS)
-        step = milliseconds(lambda config=config: train(config))
+        step = milliseconds(partial(train, config))
         print(f"{d:2d}  {n:4d}  {step:9.2f}  {milliseconds(losses):17.2f}", flush=True)
 
 

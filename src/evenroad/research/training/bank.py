@@ -73,10 +73,12 @@ def recipes() -> list[Recipe]:
 
 
 def _network_steps(n: int, d: int) -> int:
-    """Return the steps of a network: fewer where one takes long, more in d = 10, where it still gains."""
-    if d == 10 and n <= 256:
-        return 20_000
-    return 10_000 if n <= 512 else 6_000
+    """Return the steps of a network: fewer where one takes long."""
+    if d <= 3:
+        return 10_000 if n <= 512 else 6_000
+    if n <= 256:
+        return 10_000
+    return (6_000 if d == 10 else 8_000) if n == 512 else 4_000
 
 
 def _sets(d: int, n: int) -> int:
