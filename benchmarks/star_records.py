@@ -11,7 +11,7 @@ import time
 
 import numpy as np
 
-from evenroad.points.measures.star_discrepancy import star_discrepancy
+from evenroad.research.measures import star_discrepancy
 from evenroad.research.network import NetworkConfig
 from evenroad.research.training import anneal_many, order_many, train_many
 

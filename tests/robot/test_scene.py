@@ -60,7 +60,7 @@ BROKEN = {
     "an unknown key": (
         GOOD + "colour: red\n",
         UnknownName,
-        "key of the scene .*'colour'; known: allowed, limits, name, obstacles, states",
+        "key of the scene .*'colour'; known: allowed, attach, limits, name, obstacles, states",
     ),
     "an unknown key of an obstacle": (
         "obstacles: {a: {shape: sphere, radius: 1, size: 2}}",

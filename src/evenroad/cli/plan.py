@@ -161,10 +161,46 @@ class PlanArm(PlanOptions, RobotOptions):
     roadmap: Path | None = None
     """Plan along this roadmap, which ``evenroad roadmap`` made and which knows its arm and its cell; --robot may be
     given, too, and then has to be that arm."""
+    goal: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]] = ()
+    """As start.  Given more than once, also with --goal-pose, the path ends at the first one that is reached.
+    With points or --improve at the cheapest."""
+    goal_pose: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]] = ()
+    """Where a link is to be: "x y z qx qy qz qw" or "x y z roll pitch yaw" (metres, radians), or "x y z", turned at
+    will.  All configurations found that bring it there are goals; may be given more than once."""
+    tip: str = ""
+    """The link that goal poses, --straight and --upright are of (default: the last one)."""
+    frame: str = ""
+    """The link in the frame of which they are, which stands still (default: the root)."""
+    free_axis: str | None = None
+    """The tip may be turned about this axis of its own frame at will: x, y, z or "x y z"."""
+    tolerance: str | None = None
+    """By how much goal poses may be missed: "0.002" (metres) or "0.002 0.01" (metres and radians)."""
+    straight: str | None = None
+    """The tip comes to its goal, and leaves its start, in straight lines: "0.1" (metres) or "0.1 0.05", goal first."""
+    away: str | None = None
+    """In which direction it leaves, and from where it comes: x, -x, ... or "x y z" of the tip's frame, or up
+    (default: -z)."""
+    upright: float | None = None
+    """An axis of the tip is tilted by no more than this along the whole path, in radians."""
+    upright_axis: str | None = None
+    """That axis, in the tip's frame (default: the one that is most upright at the start)."""
     deg: bool = False
-    """Angles of start and goal are in degrees."""
+    """Angles are in degrees: of start, goal, "roll pitch yaw" and --upright."""
     resolution: float = 0.05
     """Largest step of a motion check, > 0, in radians."""
+    trajectory: tyro.conf.UseAppendAction[tuple[Path, ...]] = ()
+    """Give the path times, and write it here, too: .json, .csv, .yaml (ROS 2 JointTrajectory), .mcap (the same as a
+    bag), .script (URScript, by the clock) or .movej.script (waypoint by waypoint).  May be given more than once."""
+    speed: float = 1.0
+    """With --trajectory: share of full speed, > 0 and at most 1."""
+    limits: Path | None = None
+    """With --trajectory: a MoveIt joint_limits.yaml.  Default: velocities of the URDF, full speed after .5 s."""
+    deviation: float = 0.05
+    """With --trajectory: how far from the path it may round off a corner, >= 0, in radians."""
+    step: float = 0.008
+    """With --trajectory: seconds between two states, > 0; 0.002 for a UR of the e-Series."""
+    controller_joints: str | None = None
+    """With --trajectory: all joints of the controller, in its order, with commas between them."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -202,9 +238,7 @@ def plan_type(words: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
         return chosen
     if for_arm == ("--robot-radius" in given):
         many = "both" if for_arm else "neither"
-        raise InvalidValue(
-            f"give --robot-radius (a disk) or --robot (an arm), exactly one of them, not {many}"
-        )
+        raise InvalidValue(f"give --robot-radius (a disk) or --robot (an arm), one of them, not {many}")
     other, needs = (PlanDisk, "--robot-radius") if chosen is PlanArm else (PlanArm, "--robot")
     for option in sorted(given & (option_names(other) - option_names(chosen))):
         raise InvalidValue(f"{option} goes with {needs} only")

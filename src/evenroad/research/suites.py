@@ -2,15 +2,17 @@
 
 ``paper``: the experiments of Chahine et al. 2025, section 4, with more samplers and more runs.  ``fair``: every world
 is new, obstacles favour no place, and the difficulty was set by uniform points alone.  Run i plans in world i // 3 with
-set i, the same worlds for every sampler, N and rule: samplers are compared world by world.
+set i, the same worlds for every sampler, N and rule: samplers are compared world by world.  ``arms``: robots among
+obstacles, points of the joint box beside roadmaps made for the robot; see :mod:`evenroad.research.arms.suite`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from evenroad._checks import require_count, require_known
+from evenroad.research.arms.suite import arm_tasks
 from evenroad.research.bench.samplers import SAMPLERS, why_not
 from evenroad.research.bench.task import Task
 from evenroad.research.problems import PROBLEMS
@@ -18,7 +20,6 @@ from evenroad.research.problems.fair import FAIR_PROBLEMS, FairProblem, Stream
 
 SEED = 1
 """Of the published results: it draws sets.  Widths and mazes were designed with other seeds, random worlds have one."""
-
 COUNTS = (128, 256, 512, 1024)
 
 
@@ -42,12 +43,9 @@ def chosen_names(only: Iterable[str], known: Iterable[str]) -> tuple[str, ...]:
 PAPER_QUICK_RUNS = 40
 PAPER_QUICK_COUNT = 256
 """Most runs and points of a quick suite, which is a part of the whole one: its rows serve both."""
-
 STOCK = "k=10 earlier"
 """The connection that the paper's table was made with: OMPL's PRM, start and goal first."""
-
 SYMMETRISED = "k=10 symmetrised"
-
 MAZE_COUNTS = (32, 64, 128, 256, 512, 1024)
 
 
@@ -124,18 +122,13 @@ def _cells(problem: str, counts: Iterable[int]) -> list[tuple[str, int]]:
 
 DRAWS = 3
 """Sets a world."""
-
 FAIR_RULES = tuple(f"k={k} symmetrised" for k in (4, 6, 10, 20))
-
 LAZY_RULE = "k=20 symmetrised"
 """With this one the lazy search is run, too, on the first set of each world, for the checks that it takes."""
-
 MAIN_DIFFICULTY = 50
 """Where N varies and the lazy search runs; the other difficulties have the N of the calibration."""
-
 DIMENSIONS = (2, 3, 5, 7, 10)
 """Of balls and boxes; others are there for tuning."""
-
 FAIR_QUICK_RUNS = 30
 
 
@@ -177,5 +170,13 @@ def _in_one_world(
             yield Task(problem, instance, sampler, n, LAZY_RULE, "lazy", run, seed)
 
 
-SUITES: dict[str, Callable[..., Suite]] = {"paper": paper_suite, "fair": fair_suite}
+def arms_suite(
+    runs: int | None = None, seed: int = SEED, only: Iterable[str] = (), quick: bool = False, **options: Any
+) -> Suite:
+    """Return the tasks of the arms; parameters as :func:`evenroad.research.arms.suite.arm_tasks`."""
+    seed = require_count("seed", seed, at_least=0)
+    return Suite("arms", arm_tasks(runs, seed, only, quick, **options))
+
+
+SUITES: dict[str, Callable[..., Suite]] = {"paper": paper_suite, "fair": fair_suite, "arms": arms_suite}
 """Name -> how to make it from ``runs``, ``seed``, ``only`` and ``quick``."""

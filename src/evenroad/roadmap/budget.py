@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -12,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._checks import require_count, require_positive
+from evenroad._clock import now
 
 _FIRST_BATCH = 32
 """Rows asked about at first where time is limited."""
@@ -34,12 +34,7 @@ class Budget:
         Points drawn by a planner that grows, valid or not, >= 1.
     rounds : int or None
         How often a planner that improves plans again, >= 1; with it and without `seconds` the path is the same on
-        every machine.  None: no limit.
-
-    Raises
-    ------
-    InvalidValue
-        If a limit is not such a number.
+        every machine.  None: no limit.  InvalidValue for any other limit.
     """
 
     seconds: float | None = 60.0
@@ -64,8 +59,8 @@ class Budget:
         return ", ".join(limits)
 
     def deadline(self) -> float:
-        """Return when the time is over, on the clock of ``time.perf_counter``, if it begins now."""
-        return time.perf_counter() + (math.inf if self.seconds is None else self.seconds)
+        """Return when the time is over, on the clock of ``evenroad._clock``, if it begins now."""
+        return now() + (math.inf if self.seconds is None else self.seconds)
 
 
 class BudgetSpent(Exception):
@@ -75,17 +70,17 @@ class BudgetSpent(Exception):
 def in_time(rows: npt.NDArray[np.integer], deadline: float) -> Iterator[npt.NDArray[np.integer]]:
     """Yield `rows` in batches, all at once if there is no deadline.
 
-    Raises BudgetSpent when the deadline (on the clock of ``time.perf_counter``) has passed and there are rows left.
+    Raises BudgetSpent when the deadline (on the clock of ``evenroad._clock``) has passed and there are rows left.
     """
     size = _FIRST_BATCH if math.isfinite(deadline) else max(len(rows), 1)
     first = 0
     while first < len(rows):
-        began = time.perf_counter()
+        began = now()
         if began >= deadline:
             raise BudgetSpent
         yield rows[first : first + size]
         first += size
-        size = 2 * size if time.perf_counter() - began < _FAST else max(size // 2, 1)
+        size = 2 * size if now() - began < _FAST else max(size // 2, 1)
 
 
 class Stopwatch:
@@ -113,7 +108,7 @@ class Stopwatch:
 
     def _turn(self) -> None:
         """Give the time since the last turn to the phase that was running."""
-        now = time.perf_counter()
+        turned = now()
         if self._running:
-            self.seconds[self._running[-1]] += now - self._since
-        self._since = now
+            self.seconds[self._running[-1]] += turned - self._since
+        self._since = turned

@@ -5,13 +5,13 @@ More time buys better paths: `improve` plans again in other ways, and keeps the 
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 from itertools import count
 
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._clock import now
 from evenroad.points.pointset import Origin
 from evenroad.roadmap.answer import connected, gave_up, proved_apart, refusal
 from evenroad.roadmap.anytime import plan_anytime
@@ -24,12 +24,9 @@ from evenroad.world import ConnectsAnew, ConnectsItself, World
 
 SECONDS = 5.0
 """Wall time of a budget that is not given."""
-
 NO_POINTS = Origin(family="none", method="no points")
-
 NO_BETTER = 1e-9
 """A path is not improved on that exceeds the shortest possible by no more than this share."""
-
 LEAST_MOTIONS, LONGER = 1000, 4
 """A round gives up after so many motions, or after so many times those of the first path, whichever is more."""
 
@@ -58,16 +55,9 @@ def find_path(
         Go on after the first path, until the budget is spent, and return the best of all.  The count ``rounds`` then
         says how often it was planned anew, and `stages` when better paths were found.
 
-    Returns
-    -------
-    PlanResult
-        ``not_connected`` is proved; without path and proof the status is ``budget_spent``, and the message says
-        where start or goal can hardly leave their places.
-
-    Raises
-    ------
-    InvalidValue
-        If start or goal does not have the dimension of the space, or is not finite.
+    The status ``not_connected`` is proved; without path and proof it is ``budget_spent``, and the message says where
+    start or goal can hardly leave their places.  InvalidValue if one of them does not have the dimension of the space,
+    or is not finite.
     """
     budget = budget or Budget(seconds=SECONDS)
     query = Query(*read_places(start, goal, world.space), shorten=shorten, budget=budget)
@@ -142,7 +132,7 @@ def _goes_on(attempt: Attempt, best: PlanResult, variant: int) -> bool:
     budget, start, goals = attempt.query.budget, attempt.query.start, attempt.query.goals[attempt.goals]
     least = float(attempt.world.space.distance(np.broadcast_to(start, goals.shape), goals).min())
     return (
-        time.perf_counter() < attempt.deadline
+        now() < attempt.deadline
         and (budget.rounds is None or variant <= budget.rounds)
         and (budget.motions is None or attempt.motions_checked < budget.motions)
         and _cost(best) > (1.0 + NO_BETTER) * least

@@ -7,6 +7,7 @@ from enum import StrEnum
 
 from evenroad._arrays import Floats, Ints32
 from evenroad.points.pointset import Origin
+from evenroad.roadmap.notebook import as_html
 
 
 class Status(StrEnum):
@@ -15,6 +16,7 @@ class Status(StrEnum):
     SOLVED = "solved"
     START_INVALID = "start_invalid"
     GOAL_INVALID = "goal_invalid"
+    GOAL_UNREACHABLE = "goal_unreachable"
     NOT_CONNECTED = "not_connected"
     BUDGET_SPENT = "budget_spent"
     MESH_COLLISION = "mesh_collision"
@@ -57,8 +59,9 @@ class PlanResult:
     Attributes
     ----------
     status : Status
-        ``goal_invalid``: all goals are.  ``mesh_collision``: the path is free in its world, but the robot's meshes
-        touch something.  ``not_certified``: a proof was asked for, and the path is free only at states tested.
+        ``goal_invalid``: all goals are.  ``goal_unreachable``: no configuration was found for a pose.
+        ``mesh_collision``: the path is free in its world, but the robot's meshes touch something.  ``not_certified``: a
+        proof was asked for, and the path is free only at states tested.
     message : str
         One sentence for people: what happened and, without a path, what to try.
     start, goals : ndarrays, shapes (dim,) and (g, dim)
@@ -92,6 +95,9 @@ class PlanResult:
         Who searched: ``prm full``, ``prm lazy``, ``prm any`` (some path, not the shortest), each with
         ``+ lazy milestones`` where those were checked late; ``prm anytime``, ``fmt*``; or the world itself, with
         ``trees`` or ``cells``.
+    deviation : dict of str to float
+        Of a path whose tip is told its way, the largest deviations on fine grids: ``line_m`` and ``line_rad`` from the
+        straight lines, ``tilt_rad`` from upright.
     stages : tuple of Stage
         How a plan that grows or improves came about, its cost over time; empty for all others.
     roadmap : SearchedGraph or None
@@ -114,6 +120,7 @@ class PlanResult:
     milestone_cost: float | None = None
     counts: dict[str, int] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)
+    deviation: dict[str, float] = field(default_factory=dict)
     stages: tuple[Stage, ...] = ()
     roadmap: SearchedGraph | None = None
 
@@ -126,3 +133,11 @@ class PlanResult:
     def goal(self) -> Floats:
         """The goal that the path ends at, (dim,); without a path the first one."""
         return self.goals[0 if self.goal_index is None else self.goal_index]
+
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        rows = {"status": f"{self.status}: {self.message}", "planner": self.planner}
+        if self.cost is not None:
+            rows |= {"cost": f"{self.cost:.6g}", "proved": str(self.proof)}
+        rows["time"] = f"{1e3 * sum(self.seconds.values()):.1f} ms"
+        return as_html(rows, self.path)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -11,14 +12,14 @@ from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import PRIMITIVES, shape_of
+from evenroad.robot.held import HeldObject
 from evenroad.robot.load import DATA
 from evenroad.robot.moveit_scene import read_planning_scene, read_scene_text
 from evenroad.robot.scene import Obstacle, Scene
 
 SCENES = ("box-reach", "box-reach-narrow")
 """Names of the shipped scenes."""
-
-_SECTIONS = ("name", "allowed", "states", "limits")
+_SECTIONS = ("name", "allowed", "states", "limits", "attach")
 _OPTIONAL = ("xyz", "rpy", "quaternion", "cell")
 
 
@@ -55,18 +56,14 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
           home: {joint_1: 0.0, joint_2: -1.57}
         limits:                                   # ranges to plan in, within the robot's own
           joint_1: [-3.14, 3.14]
+        attach:                                   # what the robot holds: a shape in the frame of a link
+          crate: {shape: box, size: [0.1, 0.1, 0.2], link: tool0, xyz: [0, 0, 0.1], touches: [wrist_3_link, table]}
 
     The length of a capsule is without its caps; ``quaternion: [w, x, y, z]`` may stand for ``rpy``; ``cell: true``
     marks what belongs to the fixed cell.  MoveIt's scenes are read, too (:mod:`evenroad.robot.moveit_scene`).
 
-    Raises
-    ------
-    BrokenFile
-        If the file is missing, not YAML, lacks something, or has a key twice.
-    UnknownName
-        If there is a key that a scene does not have, a shape or an obstacle that there is not.
-    InvalidValue
-        If a value has the wrong type or range.
+    Raises BrokenFile if the file is missing, not YAML, lacks something, or has a key twice; UnknownName for a key, a
+    shape or an obstacle that there is not; InvalidValue for a value of the wrong type or range.
     """
     path = find_scene(source)
     if not path.is_file():
@@ -101,11 +98,34 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
         joint: _range(value, f"limits of joint {joint!r} in {path}")
         for joint, value in _mapping(document.get("limits"), f"limits in {path}").items()
     }
-    return Scene(str(document.get("name", path.stem)), obstacles, frozenset(allowed), states, limits)
+    attached = []
+    for name, entry in _mapping(document.get("attach"), f"attach in {path}").items():
+        held, obstacles_touched = _attached(
+            name, _mapping(entry, f"attached {name!r} in {path}"), path, entries
+        )
+        attached.append(held)
+        allowed.update((name, obstacle) for obstacle in obstacles_touched)
+    name = str(document.get("name", path.stem))
+    return Scene(name, obstacles, frozenset(allowed), states, limits, tuple(attached))
 
 
-def _obstacle(name: str, entry: dict[str, Any], path: Path) -> Obstacle:
-    where = f"obstacle {name!r} in {path}"
+def _attached(
+    name: str, entry: dict[str, Any], path: Path, obstacles: Collection[str]
+) -> tuple[HeldObject, list[str]]:
+    """Return what is held, and the obstacles that it may touch."""
+    where = f"attached {name!r} in {path}"
+    link, touches = entry.pop("link", None), entry.pop("touches", [])
+    if not isinstance(link, str):
+        raise InvalidValue(f"{where} must have the link that carries it, got link: {link!r}")
+    if not isinstance(touches, list) or not all(isinstance(each, str) for each in touches):
+        raise InvalidValue(f"touches of {where} must be a list of links and obstacles, got {touches!r}")
+    body = _obstacle(name, entry, path, where).body
+    links = tuple(each for each in touches if each not in obstacles)
+    return HeldObject(name, body, link, links), [each for each in touches if each in obstacles]
+
+
+def _obstacle(name: str, entry: dict[str, Any], path: Path, where: str = "") -> Obstacle:
+    where = where or f"obstacle {name!r} in {path}"
     shape = entry.get("shape")
     if not isinstance(shape, str) or shape not in PRIMITIVES:
         raise UnknownName.among(f"shape of {where}:", shape, PRIMITIVES)

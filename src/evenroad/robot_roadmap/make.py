@@ -85,6 +85,10 @@ def make_roadmap(
         raise InvalidValue(f"n must be at most {MOST}, got {n}")
     cell = Scene("nothing") if cell is None else cell
     robot = in_scene(robot, cell)
+    if robot.holds:
+        raise InvalidValue(
+            f"a roadmap is made of a robot with empty hands, not one that holds {robot.holds[0]!r}"
+        )
     world = ArmWorld(robot, cell, resolution=resolution)
     if world.fixed_contact is not None:
         first, second = world.fixed_contact

@@ -18,7 +18,7 @@ from evenroad.roadmap.find_path import NO_POINTS, SECONDS
 from evenroad.roadmap.hemmed import with_reasons
 from evenroad.roadmap.query import FEW, LINKS, Query, read_places
 from evenroad.robot import ArmWorld, Robot, Scene, configuration, in_scene
-from evenroad.robot_roadmap.cell import day_and_all, require_same_robot
+from evenroad.robot_roadmap.cell import day_and_all, left_to_check, require_same_robot
 from evenroad.robot_roadmap.lazy_search import Ways, ends_of, lazy_path
 from evenroad.robot_roadmap.turns import TURN, OneTurn, one_turn, whole_turns
 from evenroad.world.protocol import Connection
@@ -142,12 +142,12 @@ class SceneRoadmap:
     def __init__(self, roadmap: RobotRoadmap, scene: Scene, robot: Robot | None = None) -> None:
         day, everything = day_and_all(roadmap.cell, scene)
         robot = in_scene(roadmap.robot if robot is None else robot, everything)
-        require_same_robot(roadmap.robot, roadmap.cell, robot)
+        require_same_robot(roadmap.robot, roadmap.cell, robot.empty_handed())
         resolution = roadmap.resolution
         self.roadmap = roadmap
         self.world = ArmWorld(robot, everything, resolution=resolution)
-        # What the roadmap knows to be free of the robot and its cell is asked about the other obstacles alone.
-        self._day = ArmWorld(replace(robot, pairs=()), day, resolution=resolution)
+        # What the roadmap knows to be free of the robot and its cell is asked about the others alone.
+        self._day = ArmWorld(*left_to_check(robot, roadmap.cell, day, everything), resolution=resolution)
         self._milestones = np.zeros(len(roadmap.milestones), dtype=np.int8)
         self._edges = np.zeros(len(roadmap.edges), dtype=np.int8)
         if not ends_of.overloads:

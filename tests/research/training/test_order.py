@@ -6,7 +6,7 @@ from scipy.optimize import differential_evolution
 
 from evenroad.errors import InvalidValue
 from evenroad.points import draw
-from evenroad.points.measures.star_discrepancy import star_discrepancy
+from evenroad.research.measures import star_discrepancy
 from evenroad.research.training import order_many
 from evenroad.research.training.order import place_order, search_orders
 
