@@ -31,8 +31,8 @@ INSET = 1e-4
 class Network:
     """The weights of a network and what it remembers of its last pass: all float32, the weights in one flat array."""
 
-    def __init__(self, config: NetworkConfig, neighbours: Ints, draws: np.random.Generator) -> None:
-        n, d, width, layers = config.n, config.d, config.channels, config.layers
+    def __init__(self, config: NetworkConfig, draws: np.random.Generator) -> None:
+        d, width, layers = config.d, config.channels, config.layers
         shapes = ((d + 1, width), (layers, 5, width, width), (layers, 3, width), (width + 1, d))
         self.weights = np.zeros(sum(map(math.prod, shapes)), np.float32)
         self.slopes = np.zeros_like(self.weights)
@@ -43,24 +43,26 @@ class Network:
         for part, bound in ((encoder, 1.7 / math.sqrt(d + 1)), (maps, 1.0), (biases, 1.0), (decoder, 0.1)):
             scale = bound if part is encoder else bound / math.sqrt(width)
             part[:] = draws.uniform(-scale, scale, part.shape)
-        self._neighbours = neighbours
-        self._saved = np.zeros((layers + 1, 6, n, width), np.float32)
-        self._scales, self._moves = np.zeros((layers, width), np.float32), np.zeros((n, d), np.float32)
-        self._inputs = np.ones((n, d + 1), np.float32)
+        self._rooms: dict[int, tuple[Weights, ...]] = {}
         self._step = 0
 
-    def moves(self, starts: Floats) -> Floats:
+    def moves(self, starts: Floats, neighbours: Ints) -> Floats:
         """Return by how much to move each start, (n, d), in the logit of its coordinates."""
-        self._inputs[:, :-1] = 2.0 * starts - 1.0
-        forward(self._inputs, self._neighbours, *self._parts, self._saved, self._scales, self._moves)
-        return self._moves.astype(np.float64)
+        (n, d), (layers, _, width, _) = starts.shape, self._parts[1].shape
+        if n not in self._rooms:
+            shapes = ((n, d + 1), (layers + 1, 6, n, width), (layers, width), (n, d))
+            self._rooms[n] = tuple(np.ones(shape, np.float32) for shape in shapes)
+        inputs, saved, scales, moves = self._rooms[n]
+        inputs[:, :-1] = 2.0 * starts - 1.0
+        forward(inputs, neighbours, *self._parts, saved, scales, moves)
+        self._last = inputs, neighbours, saved, scales
+        return moves.astype(np.float64)
 
     def learn(self, slope: Floats, rate: float) -> None:
         """Do a step of Adam, given the slope of the objective in the last moves."""
+        inputs, neighbours, saved, scales = self._last
         slope = np.ascontiguousarray(slope, np.float32)
-        backward(
-            self._inputs, self._neighbours, *self._parts, self._saved, self._scales, slope, self._slope_parts
-        )
+        backward(inputs, neighbours, *self._parts, saved, scales, slope, self._slope_parts)
         self._step += 1
         adam_step(self.weights, self.slopes, self._first, self._second, self._step, rate)
 
@@ -106,12 +108,12 @@ def train(config: NetworkConfig, *, rng: RngLike = 0, callback: Callback | None 
     draws = generator(rng)
     objective = parse_objective(config.objective)
     starts = np.clip(draw(config.start, config.n, config.d, rng=draws).points, INSET, 1.0 - INSET)
-    network = Network(config, nearest(starts, config.k), draws)
+    network, neighbours = Network(config, draws), nearest(starts, config.k)
     spread = config.drift * noise_over_rate(objective, config.n, config.d) * first_rate(config.n, config.d)
     best_value, best_points = math.inf, starts
     for step in range(1, config.steps + 1):
         cooling = 0.5 * (1.0 + math.cos(math.pi * (step - 1) / config.steps))
-        points = _moved(starts, network.moves(starts))
+        points = moved(starts, network.moves(starts, neighbours))
         value, columns = objective.of_columns(np.ascontiguousarray(points.T))
         if not (math.isfinite(value) and np.isfinite(columns).all()):
             raise InvalidValue(
@@ -129,7 +131,7 @@ def train(config: NetworkConfig, *, rng: RngLike = 0, callback: Callback | None 
     return Annealed(best_points, best_value)
 
 
-def _moved(starts: Floats, moves: Floats) -> Floats:
+def moved(starts: Floats, moves: Floats) -> Floats:
     """Return the starts moved in the logit of their coordinates: they stay in the open cube, below 1 as float32 too."""
     odds = starts / (1.0 - starts) * np.exp(np.clip(moves, -40.0, 40.0))
     return np.clip(odds / (1.0 + odds), LOWEST, BELOW_ONE)
