@@ -1,7 +1,8 @@
 """Exact star discrepancies in the plane beside the published best: ``python -m benchmarks.star_records``.
 
-Methods: a search over orders; the network (from Korobov lattices) and annealing on the L2 star discrepancy, of whose sets the best counts.  The
-published figures are those of MPMC (Rusch et al. 2024) and the best of Clement, Doerr, Klamroth and Paquete (2024).
+Methods: a search over orders; the network (from Korobov lattices) and annealing on the L2 star discrepancy.  Of their
+sets the best counts.  The published figures are those of MPMC (Rusch et al. 2024) and the best that Clement, Doerr,
+Klamroth and Paquete (2024) give.
 """
 
 from __future__ import annotations
