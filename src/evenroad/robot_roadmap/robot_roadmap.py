@@ -19,8 +19,9 @@ from evenroad.roadmap.hemmed import with_reasons
 from evenroad.roadmap.query import FEW, LINKS, Query, read_places
 from evenroad.robot import ArmWorld, Robot, Scene, configuration, in_scene
 from evenroad.robot_roadmap.cell import day_and_all, require_same_robot
-from evenroad.robot_roadmap.lazy_search import Ways, ends_of, lazy_path
-from evenroad.robot_roadmap.turns import TURN, OneTurn, one_turn, whole_turns
+from evenroad.robot_roadmap.ask import ENDS_TAKEN, Asked, ask
+from evenroad.robot_roadmap.known_graph import KnownGraph
+from evenroad.robot_roadmap.turns import OneTurn, one_turn, whole_turns
 from evenroad.world.protocol import Connection
 
 Place = str | npt.ArrayLike
@@ -28,6 +29,9 @@ Place = str | npt.ArrayLike
 
 SHARE = 0.5
 """Of the time, for the roadmap; the rest is the trees', where it does not lead to the goal."""
+
+GREED = 3.0
+"""What the bound of the search is multiplied by: its paths are longer, but not so after they were shortened."""
 
 _LONG = 1e8
 """Seconds that stand for no limit."""
@@ -77,32 +81,9 @@ class RobotRoadmap:
         return one_turn(self.world.space, whole_turns(self.robot))
 
     @cached_property
-    def ways(self) -> Ways:
+    def graph(self) -> KnownGraph:
         """The roadmap by node, for the compiled search."""
-        one, m = self.one_turn, len(self.edges)
-        own = np.concatenate([self.edges[:, 0], self.edges[:, 1]]).astype(np.int64)
-        order = np.argsort(own, kind="stable")
-        first = np.searchsorted(own[order], np.arange(len(self.milestones) + 1))
-        turned = np.where(one.lifts, self.turns, 0) @ (16 ** np.arange(self.turns.shape[1]))
-        return Ways(
-            self.milestones,
-            first,
-            np.concatenate([self.edges[:, 1], self.edges[:, 0]])[order].astype(np.int64),
-            np.tile(np.arange(m), 2)[order],
-            np.concatenate([turned, -turned])[order],
-            np.tile(self.lengths, 2)[order],
-            self.weights,
-            one.limits,
-            one.lifts,
-            one.wraps & ~one.lifts,
-            m,
-        )
-
-    @property
-    def lengths(self) -> Floats:
-        """Lengths of the edges in the roadmap's metric, (m,)."""
-        a, b = self.milestones[self.edges[:, 0]], self.milestones[self.edges[:, 1]]
-        return np.linalg.norm(self.weights * (b + TURN * self.turns - a), axis=1)
+        return KnownGraph(self.milestones, self.edges, self.turns, self.one_turn, GREED)
 
     def in_scene(self, scene: Scene) -> SceneRoadmap:
         """Return the roadmap in the day's scene, for many queries in it: what one finds out serves the next."""
@@ -148,18 +129,7 @@ class SceneRoadmap:
         self.world = ArmWorld(robot, everything, resolution=resolution)
         # What the roadmap knows to be free of the robot and its cell is asked about the other obstacles alone.
         self._day = ArmWorld(replace(robot, pairs=()), day, resolution=resolution)
-        self._milestones = np.zeros(len(roadmap.milestones), dtype=np.int8)
-        self._edges = np.zeros(len(roadmap.edges), dtype=np.int8)
-        if not ends_of.overloads:
-            # Compiled, or loaded, before a clock runs; nothing is checked.
-            self.connect(roadmap.milestones[0], roadmap.milestones[:1], seconds=0.0)
-
-    @cached_property
-    def _ways(self) -> Ways:
-        """The roadmap by node, within the limits of today."""
-        ways, space = self.roadmap.ways, self.world.space
-        limits = np.stack([np.maximum(ways.limits[0], space.low), np.minimum(ways.limits[1], space.high)])
-        return ways._replace(limits=limits)
+        self._graph = roadmap.graph.within(np.array(self.world.space.low), np.array(self.world.space.high))
 
     def connect(
         self,
@@ -170,24 +140,29 @@ class SceneRoadmap:
         seconds: float = SECONDS,
         links: int = LINKS,
     ) -> Connection:
-        """Join a start, (dim,), to the goal, (g, dim), that the roadmap leads to on the shortest way.
+        """Join a start, (dim,), to the goal, (g, dim), that the roadmap leads to.
 
-        Start and goals have to be free; each is linked to its nearest `links` milestones, of few to all.
+        Start and goals have to be free; each is tried to be linked to `links` milestones, of few to all.
         """
-        n, m, g = len(self._milestones), len(self._edges), len(goals)
-        # Compiled code is made anew for arrays that can be written to.
-        start, goals = np.array(start), np.array(goals)
-        start.setflags(write=False)
-        goals.setflags(write=False)
-        ends = ends_of(self._ways, start, goals, n if n <= FEW else links)
-        edges = np.zeros(m + n * (1 + g) + g, dtype=np.int8)
-        edges[:m] = self._edges
-        deadline = time.perf_counter() + seconds
-        path, goal, configurations, motions = lazy_path(
-            self._ways, ends, self._milestones, edges, most_motions, deadline, self._day, self.world
+        asked = self._ask(start, goals, most_motions, time.perf_counter() + seconds, links)
+        return Connection(asked.path, asked.goal, self._size, asked.milestones, asked.motions)
+
+    def _ask(self, start: Floats, goals: Floats, most: int, deadline: float, links: int) -> Asked:
+        links = self._size if self._size <= FEW else links
+        return ask(
+            self.world,
+            self._day,
+            self._graph,
+            start,
+            goals,
+            links=links,
+            most_motions=most,
+            deadline=deadline,
         )
-        self._edges[:] = edges[:m]
-        return Connection(path, goal, n, configurations, motions)
+
+    @property
+    def _size(self) -> int:
+        return len(self.roadmap.milestones)
 
     def plan(
         self,
@@ -225,30 +200,45 @@ class SceneRoadmap:
         places = read_places(self._place(start), self._places(goal), self.world.space)
         query = Query(*places, shorten=shorten, budget=budget)
         attempt = Attempt(self.world, query, NO_POINTS, "none", "robot roadmap")
-        if (refused := refusal(attempt)) is not None:
-            return refused
-        seconds = max(SHARE * min(attempt.deadline - time.perf_counter(), _LONG), 1e-3)
         most = 2**31 - 1 if budget.motions is None else budget.motions
-        with attempt.watch("search"):
-            connection = self.connect(
-                query.start, query.goals[attempt.goals], most_motions=most, seconds=seconds
-            )
-        attempt.motions_checked += connection.motions
-        if connection.goal < 0 and trees and attempt.left() is not None:
+        if trees:
+            most = min(most, self.cap)
+        asked = self._asked(attempt, query.goals, most, trees)
+        if asked.ended == ENDS_TAKEN:
+            if (refused := refusal(attempt)) is not None:
+                return refused
+            asked = self._asked(attempt, query.goals[attempt.goals], most, trees)
+        else:
+            attempt.checked += 1 + len(query.goals)
+        connection = Connection(asked.path, asked.goal, self._size, asked.milestones, asked.motions)
+        attempt.motions_checked += asked.motions
+        if asked.goal < 0 and trees and attempt.left() is not None:
             attempt.planner = "robot roadmap, then trees"
             grown = attempt.connect(self.world)
             connection = replace(
                 grown,
-                configurations=connection.configurations + grown.configurations,
-                motions=connection.motions + grown.motions,
+                configurations=asked.milestones + grown.configurations,
+                motions=asked.motions + grown.motions,
             )
+            if grown.goal >= 0 and self.learns:
+                self._graph.learn(grown.path)
         if connection.goal >= 0:
             return connected(attempt, connection)
         failed = gave_up(attempt, connection)
         if not trees:
-            text = f"the roadmap of {len(self._milestones)} milestones does not lead from start to goal today"
+            text = f"the roadmap of {self._size} milestones does not lead from start to goal today"
             failed = replace(failed, status=Status.NOT_CONNECTED, message=text)
         return with_reasons(self.world, failed)
+
+    cap = 100
+    learns = True
+    links = 30
+
+    def _asked(self, attempt: Attempt, goals: Floats, most: int, trees: bool) -> Asked:
+        with attempt.watch("search"):
+            seconds = SHARE * min(attempt.deadline - time.perf_counter(), _LONG)
+            deadline = time.perf_counter() + max(seconds, 1e-3)
+            return self._ask(attempt.query.start, goals, most, deadline, self.links if trees else LINKS)
 
     def _place(self, place: Place) -> npt.ArrayLike:
         """Return a configuration of a text; of numbers themselves."""
