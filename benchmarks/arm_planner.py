@@ -32,7 +32,7 @@ from numba import njit
 from benchmarks.arm_problems import KINDS, REPORTING, TUNING, Pool, Problem, arm, problems
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.kernel import lane_check, lane_world, layout
+from evenroad.robot.kernel import lane_world, layout
 from evenroad.robot.kernel.addresses import address, call_at
 from evenroad.robot.trees import connect, shorten
 from evenroad.space.path import path_length
@@ -70,7 +70,8 @@ class Log:
         self.tables: list[bytes] = []
         self.table: list[int] = []
         self.enough: list[int] = []
-        self._check = _CHECK(lane_check.check_address())
+        self.addresses = lane_world.check_addresses(int(self.lanes[layout.HULL_PAIRS]) > 0)
+        self._check = _CHECK(int(self.addresses[1]))
         self._callback = _CHECK(self._noted)
 
     def _noted(self, scratch: int, states: int, ints: int, table: int, enough: int) -> int:
@@ -86,25 +87,24 @@ class Log:
 
     def filled_by(self, task: Callable[[], Any]) -> None:
         """Run a task whose batches are noted."""
-        own = lane_world.check_addresses
-        noting = int(ctypes.cast(self._callback, ctypes.c_void_p).value or 0)
-        lane_world.check_addresses = lambda: (own()[0], noting)  # type: ignore[assignment]
+        own = int(self.addresses[1])
+        self.addresses[1] = ctypes.cast(self._callback, ctypes.c_void_p).value or 0
         try:
             task()
         finally:
-            lane_world.check_addresses = own
+            self.addresses[1] = own
 
     def time_again(self) -> float:
         """Return how long the batches take by themselves, bodies as large as they were [ms]."""
         states = np.frombuffer(b"".join(self.states)).reshape(len(self.states), -1)
         tables = np.frombuffer(b"".join(self.tables), dtype=np.float32).reshape(len(self.tables), -1)
-        memory = np.empty(layout.LANES * self.dim + int(self.lanes[layout.SCRATCH]) // 2 + 8)
+        memory = np.empty(layout.LANES * self.dim + int(self.lanes[layout.SCRATCH]) // 2 + 16)
         # As programs have it: lanes begin on a cache line.
         skip = -address(memory) % 64 // 8
         room, scratch = np.split(memory[skip:], [layout.LANES * self.dim])
         ints, floats = self.lanes[: self.header], self.lanes[self.header :].view(np.float32)
         arguments = (states, tables, np.array(self.table), np.array(self.enough), ints, floats)
-        return best_time(partial(_again, *arguments, room, scratch, lane_check.check_address()))[1]
+        return best_time(partial(_again, *arguments, room, scratch, self.addresses))[1]
 
 
 @njit(nogil=True)
@@ -117,10 +117,11 @@ def _again(
     floats: Any,
     room: Any,
     scratch: Any,
-    address: int,
+    addresses: Any,
 ) -> int:
     radii, current, blocked = floats.copy(), -1, 0
-    call_at(address, (scratch, room, ints, radii, 0))
+    address = addresses[1]
+    call_at(address, (scratch, addresses[2], ints, radii, 0))
     for i in range(len(states)):
         if table[i] != current:
             current = table[i]

@@ -28,8 +28,7 @@ from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.robot.kernel import batch
 from evenroad.robot.load import load_robot
-from evenroad.robot.reference.coal_world import CoalWorld
-from evenroad.robot.reference.engine_world import EngineWorld
+from evenroad.robot.reference.coal_world import CoalWorld, EngineWorld
 from evenroad.robot.robot import Robot, in_scene, with_group
 from evenroad.robot.scene import Obstacle, Scene
 from evenroad.robot.scene_file import load_scene

@@ -18,9 +18,9 @@ import numpy as np
 from evenroad.errors import NotAvailable
 from evenroad.geometry.mesh import merged
 from evenroad.research.problems import source_named
+from evenroad.research.worlds.rigid import MeshWorld, SolidWorld, surface_of
 from evenroad.roadmap import KNearest
-from evenroad.world import MeshWorld, SolidWorld, World
-from evenroad.world.solids import surface_of
+from evenroad.world import World
 
 REPEATS = 7
 

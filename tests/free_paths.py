@@ -8,6 +8,7 @@ import numpy as np
 import evenroad as er
 from evenroad.points import draw
 from evenroad.points.samplers import make_sampler
+from evenroad.research.worlds.rigid import OrientedBox, SolidWorld
 from evenroad.roadmap import Budget, Roadmap, fmt, plan, plan_anytime
 from evenroad.roadmap.find_path import find_path
 from evenroad.robot import ArmWorld
@@ -16,11 +17,10 @@ from evenroad.space import SE2, SE3, Box
 from evenroad.space.path import subdivide
 from evenroad.world import FunctionWorld, GridMap
 from evenroad.world.gridmap import DiskWorld
-from evenroad.world.solids import OrientedBox, SolidWorld
+from tests.research.worlds.solids_oracle import gap
 from tests.robot.kernel_arms import random_rotation
 from tests.robot.oracle import clearance
 from tests.world.gridmap_oracle import distance_to_obstacles
-from tests.world.solids_oracle import gap
 
 FINER = 20
 """States are looked at this many times as densely as the planner's."""

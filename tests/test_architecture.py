@@ -28,10 +28,11 @@ MAY_IMPORT = {
     "robot": BASE | {"space", "geometry", "world"},
     "robot_roadmap": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
     "arms": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
+    "trajectory": BASE | {"space", "world", "robot"},
     "research": BASE | {"points", "space", "world", "geometry", "robot", "roadmap", "io", "viz"},
     "cli": BASE
     | {"points", "space", "world", "geometry", "robot", "roadmap", "robot_roadmap"}
-    | {"arms", "research", "io", "viz"},
+    | {"arms", "research", "io", "viz", "trajectory"},
     **dict.fromkeys(BASE, BASE),
 }
 """Part -> the parts it may import: the arrows of docs/design.md."""

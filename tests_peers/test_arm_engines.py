@@ -13,8 +13,7 @@ from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry import Mesh
 from evenroad.robot import link_poses, load_robot
 from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.reference.coal_world import CoalWorld
-from evenroad.robot.reference.engine_world import original_shapes
+from evenroad.robot.reference.coal_world import CoalWorld, original_shapes
 from evenroad.robot.scene import Obstacle, Scene
 from evenroad.testing import WorldContract
 from tests_peers.engines.klampt_world import KlamptWorld

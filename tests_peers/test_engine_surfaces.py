@@ -6,7 +6,7 @@ from tests.robot.kernel_arms import random_rotation, ur5
 from tests.robot.oracle import obstacle_distance, point_segment_distance
 
 from evenroad.geometry.shapes import Capsule
-from evenroad.robot.reference.engine_world import capsule_shapes
+from evenroad.robot.reference.coal_world import capsule_shapes
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle
 from tests_peers.engines.surface import link_surfaces, shape_surface

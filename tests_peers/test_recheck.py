@@ -12,8 +12,7 @@ from evenroad.cli import main
 from evenroad.errors import BrokenFile
 from evenroad.robot import ArmWorld, Obstacle, Scene, link_poses, load_robot
 from evenroad.robot.load import load_model
-from evenroad.robot.reference.coal_world import CoalWorld
-from evenroad.robot.reference.engine_world import original_shapes
+from evenroad.robot.reference.coal_world import CoalWorld, original_shapes
 from evenroad.robot.reference.recheck import has_meshes, recheck, unseen_pairs
 from evenroad.space.path import resample
 

@@ -24,7 +24,6 @@ def _read_homes() -> dict[str, str]:
 
 
 _HOMES = _read_homes()
-
 __all__ = ["__version__", *_HOMES]
 
 

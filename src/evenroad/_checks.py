@@ -15,13 +15,16 @@ from evenroad.errors import InvalidValue, NotAvailable, UnknownName, shown
 LARGEST_COUNT = 2**31 - 1
 """Nodes of a roadmap are numbered by int32: nothing that is counted here can sensibly be larger."""
 
+# Made once: a union is as dear as the rest of a check.
+_WHOLE, _REAL = (int, np.integer), (int, float, np.integer, np.floating)
+
 FARTHEST = 1e9
 """Lengths and places of bodies [m]: their squares and cubes then are numbers, in single precision, too."""
 
 
 def require_count(name: str, value: object, at_least: int = 1) -> int:
     """Return `value` as an int >= `at_least`, or raise InvalidValue naming it (`n`, `d`, `k`, ...)."""
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < at_least:
+    if isinstance(value, bool) or not isinstance(value, _WHOLE) or value < at_least:
         raise InvalidValue(f"{name} must be an integer >= {at_least}, got {shown(value)}")
     if value > LARGEST_COUNT:
         raise InvalidValue(
@@ -33,7 +36,7 @@ def require_count(name: str, value: object, at_least: int = 1) -> int:
 def require_positive(name: str, value: object, *, or_zero: bool = False, at_most: float = math.inf) -> float:
     """Return `value` as a finite float > 0 (or >= 0) and <= `at_most`, or raise InvalidValue naming it."""
     allowed = "a finite number >= 0" if or_zero else "a finite number > 0"
-    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
+    if isinstance(value, bool) or not isinstance(value, _REAL):
         raise InvalidValue(f"{name} must be {allowed}, got {shown(value)}")
     try:
         number = float(value)

@@ -22,7 +22,6 @@ class Fingerprinted(Protocol):
 
         Raises NotAvailable if the value cannot know, such as a world made from a function without a name.
         """
-        ...
 
 
 def fingerprint_of(*values: object) -> str:
@@ -43,9 +42,8 @@ def _canonical(value: Any) -> bytes:
         plain = value.item() if isinstance(value, np.generic) else value
         return _tagged(type(plain).__name__, repr(plain).encode())
     if isinstance(value, np.ndarray) and value.dtype != object:
-        return _tagged(
-            "array", f"{value.dtype.str} {value.shape}".encode(), np.ascontiguousarray(value).tobytes()
-        )
+        head = f"{value.dtype.str} {value.shape}".encode()
+        return _tagged("array", head, np.ascontiguousarray(value).tobytes())
     if isinstance(value, Fingerprinted) and not isinstance(value, type):
         return _tagged("fingerprint", value.fingerprint().encode())
     if is_dataclass(value) and not isinstance(value, type):

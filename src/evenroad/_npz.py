@@ -55,9 +55,7 @@ def read_npz(path: Path, what: str, *layouts: Collection[str]) -> Arrays:
         if not isinstance(archive, np.lib.npyio.NpzFile):
             raise BrokenFile(f"{path} is a plain array, not a .npz {what}")
         if set(archive.files) not in map(set, layouts):
-            raise BrokenFile(
-                f"{path} holds {shown(sorted(archive.files))}, a {what} holds {sorted(layouts[0])}"
-            )
+            raise BrokenFile(f"{path} holds {shown(sorted(archive.files))}, a {what} {sorted(layouts[0])}")
         for name in archive.files:
             arrays[name] = archive[name]
             if not isinstance(arrays[name], np.ndarray):

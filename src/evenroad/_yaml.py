@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -88,15 +88,12 @@ def _require_distinct_keys(loader: Any, root: yaml.Node, path: Path) -> None:
                 lines |= {str(made): line, made: line}
 
 
-def require_keys(
-    entry: Mapping[str, object], required: Iterable[str], optional: Iterable[str], where: str
-) -> None:
+def require_keys(keys: Iterable[str], required: Collection[str], optional: Iterable[str], where: str) -> None:
     """Raise UnknownName for a key that is neither required nor optional, BrokenFile for one that is missing."""
-    required = tuple(required)
     known = (*required, *optional)
-    for key in entry:
+    for key in keys:
         require_known(f"key of {where}:", key, known)
-    missing = [key for key in required if key not in entry]
+    missing = [key for key in required if key not in keys]
     if missing:
         raise BrokenFile(f"{where} lacks {', '.join(missing)}; it needs {', '.join(required)}")
 

@@ -8,6 +8,7 @@ import platform
 from collections.abc import Sequence
 from dataclasses import asdict
 from importlib import metadata
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,9 @@ import numpy.typing as npt
 
 from evenroad import __version__
 from evenroad._files import atomic_write
-from evenroad.roadmap import PlanResult
+from evenroad.errors import BrokenFile
+from evenroad.points import Origin
+from evenroad.roadmap import PlanResult, Status
 
 
 def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
@@ -37,6 +40,44 @@ def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
         "origin": asdict(result.origin),
         "versions": versions(),
     }
+
+
+def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]:
+    """Return a plan from the JSON that ``evenroad plan`` wrote, without its phases and origin, and what was asked.
+
+    Raises BrokenFile if the file is missing, or is no such record.
+    """
+    try:
+        record = json.loads(Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise BrokenFile(f"cannot read the plan {path}: {error.strerror or error}") from error
+    except ValueError as error:
+        raise BrokenFile(f"{path} is not JSON: {error}") from error
+    try:
+        query = dict(record["query"])
+        start, goals = (np.array(query[name], dtype=np.float64) for name in ("start", "goals"))
+        way = None if record["path"] is None else np.array(record["path"], dtype=np.float64)
+        if goals.shape != (len(goals), *start.shape) or (way is not None and way.shape[1:] != start.shape):
+            raise ValueError("start, goals and path must have the same joints")
+        if not all(np.isfinite(each).all() for each in (start, goals, *([] if way is None else [way]))):
+            raise ValueError("configurations must be finite")
+        result = PlanResult(
+            status=Status(record["status"]),
+            message=str(record["message"]),
+            start=start,
+            goals=goals,
+            path=way,
+            origin=Origin(family="none", method="read from a file"),
+            rule=str(record["rule"]),
+            goal_index=record["goal_index"],
+            proof=record["proof"],
+            cost=record["cost"],
+            planner=str(record["planner"]),
+            seconds={str(phase): float(value) for phase, value in record["seconds"].items()},
+        )
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise BrokenFile(f"{path} is not a plan of evenroad: {type(error).__name__} {error}") from error
+    return result, query
 
 
 def versions() -> dict[str, str]:

@@ -111,7 +111,8 @@ def test_json_has_the_same_measures(run):
     points = draw("halton", 50, 2)
     save_points("set.npz", points)
     record = json.loads(run("measure", "set.npz", "--json")[1])
-    from evenroad.points.measures import MEASURES, separation
+    from evenroad.points.measures import MEASURES
+    from evenroad.research.measures import separation
 
     assert record["hash"] == points.hash
     assert record["hickernell_rooted"] == MEASURES["hickernell"].rooted(points)
@@ -387,7 +388,7 @@ def test_an_empty_set_has_nothing_to_measure(run):
 
 
 def test_a_value_beyond_the_range_of_a_float_is_left_out_and_said_so():
-    from evenroad.cli.points import _finite
+    from evenroad.research.commands.measure import _finite
 
     assert _finite("a", 0.5, "note") == ("a", 0.5, "note")
     for value in (np.inf, np.nan):

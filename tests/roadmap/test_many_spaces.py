@@ -7,7 +7,8 @@ from evenroad.points import draw
 from evenroad.research.worlds import Corridor
 from evenroad.roadmap import KEarlier, KNearest, Radius, Roadmap, fmt, plan, plan_anytime
 from evenroad.space import SE2, SE3, JointSpace
-from evenroad.world import Counting, FunctionWorld
+from evenroad.world import FunctionWorld
+from tests.counting import Counting
 
 
 def _slit(q):

@@ -8,7 +8,8 @@ from evenroad.roadmap import Budget, KNearest, Roadmap, Status, fmt, plan, plan_
 from evenroad.roadmap.proof import confirmed
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.space.path import path_length
-from evenroad.world import Counting, GridMap
+from evenroad.world import GridMap
+from tests.counting import Counting
 from tests.roadmap.gappy import GappyWorld
 
 # A slalom: the way from the lower left to the upper right goes round the free ends of four thin walls.

@@ -1,3 +1,5 @@
+import dataclasses
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -5,7 +7,16 @@ from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import rotation_from_rpy
-from evenroad.robot import capsule_ends, joint_values, link_poses, load_robot, with_group
+from evenroad.robot import (
+    Joint,
+    Robot,
+    capsule_ends,
+    joint_values,
+    link_poses,
+    load_robot,
+    tip_links,
+    with_group,
+)
 from evenroad.robot.urdf import read_urdf
 from tests.robot.urdf_texts import LIMIT, joint, link, urdf, write
 
@@ -136,3 +147,23 @@ def test_the_rotation_of_an_origin_is_roll_pitch_yaw(tmp_path):
     )  # fmt: skip
     rotation = read_urdf(write(tmp_path, text)).joints[0].rotation
     np.testing.assert_allclose(rotation, rotation_from_rpy(0.3, -0.7, 2.1), atol=1e-14)
+
+
+def test_the_tip_of_a_chain_is_its_last_link_before_it_branches():
+    def moved(name, parent, child, kind="revolute"):
+        return Joint(
+            name, kind, parent, child, (0.0, 0.0, 0.1), (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+        )
+
+    joints = (
+        moved("left", "body", "left arm"),
+        moved("left wrist", "left arm", "left hand"),
+        moved("thumb", "left hand", "thumb"),
+        moved("finger", "left hand", "finger"),
+        moved("right", "body", "right arm"),
+        moved("flange", "right arm", "right flange", "fixed"),
+    )
+    links = ("body", "left arm", "left hand", "thumb", "finger", "right arm", "right flange")
+    robot = Robot("two arms", links, joints, (), (), ("left", "left wrist", "right"))
+    assert tip_links(robot) == ("left hand", "right flange")
+    assert tip_links(dataclasses.replace(robot, group=("left",))) == ("left hand",)

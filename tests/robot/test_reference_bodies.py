@@ -8,7 +8,7 @@ import pytest
 from evenroad.errors import InvalidValue
 from evenroad.geometry.shapes import Capsule, Sphere
 from evenroad.robot.load import load_robot
-from evenroad.robot.reference.engine_world import (
+from evenroad.robot.reference.coal_world import (
     capsule_shapes,
     original_shapes,
     sound_shapes,

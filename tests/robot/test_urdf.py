@@ -7,7 +7,7 @@ import pytest
 
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
 from evenroad.robot import ArmWorld, Scene, in_scene, load_model
-from evenroad.robot.reference.engine_world import original_shapes
+from evenroad.robot.reference.coal_world import original_shapes
 from evenroad.robot.urdf import read_urdf
 from evenroad.robot.urdf_xml import RobotFile, find_mesh
 from tests.robot.urdf_texts import LIMIT, SPHERE, joint, link, two_joints, urdf, write

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
+from evenroad.research.worlds.chain import ChainSpace
 from evenroad.space import SE2, SE3, SO3, Box, Circle, JointSpace, Product, Rectangle
-from evenroad.space.chain import ChainSpace
 from evenroad.space.protocol import all_distances
 
 SPACES = {

@@ -87,7 +87,7 @@ def test_a_stadium_is_at_its_radius_from_its_segment():
 
 def _view(world, result, pair):
     """A view of what is within 1.5 m, as colours (rows, columns, 3), and where points are in it: column, row."""
-    view = View(np.full(2, -1.5), np.full(2, 1.5), (400, 400))
+    view = View(np.full(2, -1.5), np.full(2, 1.5), 400 / 3)
     draw_arm_view(view, result, world, pair)
     return np.asarray(view.image).astype(int), lambda points: (points * [1, -1] + 1.5) * FINER * 400 / 3
 
@@ -132,7 +132,7 @@ def test_a_solved_plan_shows_the_way_of_the_tip_from_start_to_goal(reach):
 
 
 def test_a_view_of_something_long_and_flat_has_both_sides():
-    assert View(np.zeros(2), np.array([1000.0, 0.1]), (400, 300)).image.size == (400 * FINER, FINER)
+    assert View(np.zeros(2), np.array([1000.0, 0.1]), 0.4).image.size == (400 * FINER, FINER)
 
 
 @pytest.mark.parametrize(("low", "high"), [(-0.3, 0.9), (0.0, 1e-3), (-5e4, 7e4), (0.94, 1.06)])

@@ -13,7 +13,7 @@ from PIL import Image
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.world import MapFrame, load_map
 from evenroad.world.gridmap import load_image
-from evenroad.world.gridmap.image import LARGEST_IMAGE
+from evenroad.world.gridmap.load import LARGEST_IMAGE
 
 
 def saved(folder, image, name="map.png", **options):

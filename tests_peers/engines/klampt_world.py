@@ -16,7 +16,7 @@ from evenroad.errors import BrokenFile
 from evenroad.geometry import TriangleMesh
 from evenroad.geometry.mesh import merged
 from evenroad.robot.kinematics import joint_values
-from evenroad.robot.reference.engine_world import EngineWorld
+from evenroad.robot.reference.coal_world import EngineWorld
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
 from tests_peers.engines.surface import link_surfaces, shape_surface

@@ -12,11 +12,15 @@ import numpy.typing as npt
 from evenroad._checks import require_extra
 from evenroad.geometry.shapes import Shape
 from evenroad.robot.kinematics import joint_values
-from evenroad.robot.reference.coal_world import asking_for_contacts, coal_shape, tests_of
-from evenroad.robot.reference.engine_world import EngineWorld
+from evenroad.robot.reference.coal_world import (
+    EngineWorld,
+    asking_for_contacts,
+    coal_shape,
+    require_coal,
+    tests_of,
+)
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
-from evenroad.world.mesh import require_coal
 from tests_peers.engines.urdf_text import as_urdf
 
 

@@ -12,7 +12,6 @@ from collections.abc import Sequence
 
 INTERRUPTED = 130
 """Exit code after Ctrl-C."""
-
 SOON = 0.05
 """Seconds after which an interrupt that was dropped comes again."""
 

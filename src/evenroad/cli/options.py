@@ -91,9 +91,7 @@ def _number(info: PrimitiveTypeInfo) -> PrimitiveConstructorSpec[Any] | None:
         except ValueError:
             raise ValueError(f"must be {NUMBERS[kind]}, got {shown(words[0])}") from None
 
-    return PrimitiveConstructorSpec(
-        1, kind.__name__.upper(), read, lambda _: True, lambda value: [str(value)]
-    )
+    return PrimitiveConstructorSpec(1, kind.__name__.upper(), read, lambda _: True, lambda each: [str(each)])
 
 
 def _in_words(box: str) -> str:

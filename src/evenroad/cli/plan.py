@@ -165,6 +165,19 @@ class PlanArm(PlanOptions, RobotOptions):
     """Angles of start and goal are in degrees."""
     resolution: float = 0.05
     """Largest step of a motion check, > 0, in radians."""
+    trajectory: tyro.conf.UseAppendAction[tuple[Path, ...]] = ()
+    """Give the path times, and write it here, too: .json, .csv, .yaml (ROS 2 JointTrajectory), .mcap (the same as a
+    bag), .script (URScript, by the clock) or .movej.script (waypoint by waypoint).  May be given more than once."""
+    speed: float = 1.0
+    """With --trajectory: share of full speed, > 0 and at most 1."""
+    limits: Path | None = None
+    """With --trajectory: a MoveIt joint_limits.yaml.  Default: velocities of the URDF, full speed after .5 s."""
+    deviation: float = 0.05
+    """With --trajectory: how far from the path it may round off a corner, >= 0, in radians."""
+    step: float = 0.008
+    """With --trajectory: seconds between two states, > 0; 0.002 for a UR of the e-Series."""
+    controller_joints: str | None = None
+    """With --trajectory: all joints of the controller, in its order, with commas between them."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -202,9 +215,7 @@ def plan_type(words: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
         return chosen
     if for_arm == ("--robot-radius" in given):
         many = "both" if for_arm else "neither"
-        raise InvalidValue(
-            f"give --robot-radius (a disk) or --robot (an arm), exactly one of them, not {many}"
-        )
+        raise InvalidValue(f"give --robot-radius (a disk) or --robot (an arm), one of them, not {many}")
     other, needs = (PlanDisk, "--robot-radius") if chosen is PlanArm else (PlanArm, "--robot")
     for option in sorted(given & (option_names(other) - option_names(chosen))):
         raise InvalidValue(f"{option} goes with {needs} only")

@@ -22,6 +22,7 @@ from evenroad.cli.plan_parts import (
 )
 from evenroad.cli.roadmap import kept_roadmap
 from evenroad.cli.robot import bodiless_rows
+from evenroad.cli.trajectory import require_trajectory_options, trajectory_rows
 from evenroad.io import plan_record
 from evenroad.roadmap import default_rule, find_path
 from evenroad.robot import find_robot, find_scene, held_values, load_scene
@@ -53,6 +54,7 @@ def plan_arm(plan: PlanArm) -> int:
     query = query if known is None else replace(query, world=known.world)
     of_robot = () if plan.robot is None else find_robot(plan.robot)
     inputs = (find_scene(plan.world), *of_robot, plan.srdf, plan.bodies, plan.roadmap)
+    require_trajectory_options(plan, [path for path in inputs if path is not None])
     files = output_files(plan, [path for path in inputs if path is not None], ("json", "csv"), "file")
     world, start, goals = query.world, query.start, query.goals
     rule = chosen_rule(plan, default_rule(world.space).k)
@@ -66,6 +68,7 @@ def plan_arm(plan: PlanArm) -> int:
     else:
         result = plan_on_points(query, points, rule=rule, shorten=not plan.raw, budget=budget)
     result, meshes = finished(query, result, certified=plan.certified)
+    more_rows, trajectory = trajectory_rows(plan, world, result)
     robot, model = world.robot, query.model
     asked = {
         "scene": str(plan.world),
@@ -82,12 +85,14 @@ def plan_arm(plan: PlanArm) -> int:
         "no_body": [] if model is None else list(model.bodiless),
         "drawn_only": [] if model is None else list(model.drawn_only),
         "checked_with": world.checked_with,
+        "trajectory": trajectory,
         "meshes": None if meshes is None else asdict(meshes),
     }
     held = ", ".join(f"{name} at {value:.6g}" for name, value in held_values(robot).items())
     rows = [("joints", ", ".join(robot.group)), *([("held", held)] if held else [])]
     rows += [] if model is None else bodiless_rows(model)
     rows += [("checked by", world.checked_with), *([] if meshes is None else [("meshes", str(meshes))])]
+    rows += more_rows
 
     def draw(file: Path) -> None:
         from evenroad.viz.arm import save_arm_picture

@@ -32,7 +32,6 @@ PROOFS = {
 
 _FEW = 16
 """Points of a plan that only loads compiled code."""
-
 _TAKES = {"halton": {"plain", "skip"}, "sobol": {"plain", "skip"}, "sukharev": {"allow_fewer"}}
 """Options that only these samplers take."""
 

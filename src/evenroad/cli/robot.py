@@ -19,16 +19,7 @@ from evenroad._files import atomic_write, require_writable_folder
 from evenroad._rng import generator
 from evenroad._terminal import print_table
 from evenroad.cli.plan import RobotOptions
-from evenroad.robot import (
-    ArmWorld,
-    Joint,
-    RobotModel,
-    Scene,
-    held_values,
-    in_scene,
-    load_model,
-    load_scene,
-)
+from evenroad.robot import ArmWorld, Joint, RobotModel, Scene, held_values, in_scene, load_model, load_scene
 from evenroad.robot import Robot as Arm
 from evenroad.robot.srdf_writer import srdf_text
 
@@ -36,7 +27,6 @@ _CONFIGURATIONS = 4096
 _MOTIONS = 256
 _MOST_SEGMENTS = 1000
 """Motions that are timed are cut off there: between limits of a million radians each would take ten seconds."""
-
 _SECONDS = 0.2
 
 

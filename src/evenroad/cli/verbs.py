@@ -14,7 +14,6 @@ from evenroad.errors import EvenroadError
 
 DONE = 0
 BAD_INPUT = 2
-
 LONGEST = 600
 """Most characters of an error: input that was pasted by mistake is not shown in full."""
 
@@ -24,16 +23,17 @@ VERBS = {
         "evenroad.cli.roadmap:MakeRoadmap",
         "a roadmap for one arm in its cell, good for every scene",
     ),
+    "view": ("evenroad.cli.view:View", "an arm, its scene and its path in the browser, or as a GIF"),
     "points": (
         "evenroad.cli.points:Points",
         "write a point set: shipped, constructed, or annealed on demand",
     ),
-    "measure": ("evenroad.cli.points:Measure", "print every measure of a point set"),
+    "measure": ("evenroad.research.commands.measure:Measure", "print every measure of a point set"),
     "train": ("evenroad.research.commands.train:Train", "train point sets for any objective"),
     "bench": ("evenroad.research.commands.bench:Bench", "run benchmarks into a store"),
     "report": ("evenroad.research.commands.report:Report", "page, figures and tables of a store"),
     "robot": ("evenroad.cli.robot:Robot", "what an arm is made of, and how fast it is checked"),
-    "export": ("evenroad.research.commands.export:Export", "a store for OMPL's Planner Arena"),
+    "export": ("evenroad.research.commands.report:Export", "a store for OMPL's Planner Arena"),
     "demo": ("evenroad.cli.plan:Demo", "plan through a maze that ships with evenroad"),
 }
 """Name of a verb -> where it is, loaded when it is asked for, and what it does."""

@@ -32,14 +32,8 @@ def fit_capsules(shape: Shape) -> tuple[Capsule, ...]:
 
     A sphere and a capsule are kept.  A cylinder gets the smallest capsule around it on its axis.  A box gets capsules
     along its longest edge, side by side along the next: as many as make their cross-sections near square, at most
-    4.  A mesh gets up to 4 capsules, each around some of its triangles (see :func:`capsules_around_mesh`).
-
-    Raises
-    ------
-    NotAvailable, BrokenFile
-        As :func:`evenroad.geometry.load_mesh`, for a mesh.
-    InvalidValue
-        If the shape is a point cloud.
+    4.  A mesh gets up to 4 capsules, each around some of its triangles (see :func:`capsules_around_mesh`).  Raises as
+    :func:`evenroad.geometry.load_mesh` for a mesh, InvalidValue for a point cloud.
     """
     rotation, xyz = shape.pose.rotation_matrix, np.array(shape.pose.xyz)
     # Rotating and shifting round in the last digits, which must not cost a vertex its cover.

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from evenroad._arrays import Floats
+from evenroad._arrays import Floats, set_fields
 from evenroad.errors import InvalidValue
 from evenroad.geometry.fit import best_cut, divided
 from evenroad.geometry.fit_points import extreme
@@ -33,9 +33,7 @@ class Hull:
     link: str
 
     def __post_init__(self) -> None:
-        points = np.array(self.points, dtype=np.float64).reshape(-1, 3)
-        points.setflags(write=False)
-        object.__setattr__(self, "points", points)
+        set_fields(self, points=np.array(self.points, dtype=np.float64).reshape(-1, 3))
 
     @cached_property
     def _hash(self) -> int:
@@ -132,9 +130,8 @@ def piece_of(shape: Shape) -> Piece:
     elif isinstance(shape, Cylinder):
         turn, outward = np.arange(SIDES) * 2.0 * np.pi / SIDES, 1.0 / np.cos(np.pi / SIDES)
         ring = shape.radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
-        points = np.concatenate(
-            [np.c_[ring, np.full(SIDES, end)] for end in (-0.5, 0.5) * np.array(shape.length)]
-        )
+        ends = (-0.5, 0.5) * np.array(shape.length)
+        points = np.concatenate([np.c_[ring, np.full(SIDES, end)] for end in ends])
     elif isinstance(shape, Mesh):
         mesh = shape.triangles
         return _piece_around(shape.pose.apply(mesh.vertices)[mesh.triangles], shape.link)

@@ -20,9 +20,7 @@ from evenroad._checks import FARTHEST, as_row
 from evenroad.errors import InvalidValue
 
 Vector = tuple[float, float, float]
-
 NO_ROTATION = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-
 _ORTHONORMAL = 1e-6
 """How far products of rows may be from those of a rotation: room for matrices read from text."""
 
@@ -123,17 +121,8 @@ def _three(xyz: Sequence[float]) -> Vector:
 class Pose:
     """A rotation, then a translation: ``p -> R p + xyz``.
 
-    Parameters
-    ----------
-    xyz : sequence of 3 floats
-        Origin of the pose's own frame [m].
-    rotation : sequence of 9 floats
-        From the pose's own frame, row by row; a 3x3 array will do.
-
-    Raises
-    ------
-    InvalidValue
-        If these are not finite numbers, or the rotation is none.
+    `xyz` is the origin of the pose's own frame [m], `rotation` from that frame, row by row; a 3x3 array will do.
+    InvalidValue if these are not finite numbers, or the rotation is none.
     """
 
     xyz: Vector = (0.0, 0.0, 0.0)

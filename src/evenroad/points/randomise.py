@@ -22,7 +22,6 @@ class Symmetry(StrEnum):
 
 
 ALL_SYMMETRIES = frozenset(Symmetry)
-
 LARGEST_COORDINATE = float(np.nextafter(1.0, 0.0))
 
 

@@ -18,7 +18,6 @@ from evenroad.research.problems.fair import FAIR_PROBLEMS, FairProblem, Stream
 
 SEED = 1
 """Of the published results: it draws sets.  Widths and mazes were designed with other seeds, random worlds have one."""
-
 COUNTS = (128, 256, 512, 1024)
 
 
@@ -42,12 +41,9 @@ def chosen_names(only: Iterable[str], known: Iterable[str]) -> tuple[str, ...]:
 PAPER_QUICK_RUNS = 40
 PAPER_QUICK_COUNT = 256
 """Most runs and points of a quick suite, which is a part of the whole one: its rows serve both."""
-
 STOCK = "k=10 earlier"
 """The connection that the paper's table was made with: OMPL's PRM, start and goal first."""
-
 SYMMETRISED = "k=10 symmetrised"
-
 MAZE_COUNTS = (32, 64, 128, 256, 512, 1024)
 
 
@@ -124,18 +120,13 @@ def _cells(problem: str, counts: Iterable[int]) -> list[tuple[str, int]]:
 
 DRAWS = 3
 """Sets a world."""
-
 FAIR_RULES = tuple(f"k={k} symmetrised" for k in (4, 6, 10, 20))
-
 LAZY_RULE = "k=20 symmetrised"
 """With this one the lazy search is run, too, on the first set of each world, for the checks that it takes."""
-
 MAIN_DIFFICULTY = 50
 """Where N varies and the lazy search runs; the other difficulties have the N of the calibration."""
-
 DIMENSIONS = (2, 3, 5, 7, 10)
 """Of balls and boxes; others are there for tuning."""
-
 FAIR_QUICK_RUNS = 30
 
 

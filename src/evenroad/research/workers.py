@@ -16,7 +16,6 @@ from evenroad._checks import require_count
 
 Arguments = ParamSpec("Arguments")
 Result = TypeVar("Result")
-
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 

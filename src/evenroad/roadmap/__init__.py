@@ -2,7 +2,6 @@
 
 from evenroad.roadmap.anytime import plan_anytime as plan_anytime
 from evenroad.roadmap.budget import Budget as Budget
-from evenroad.roadmap.cost import EdgeCost as EdgeCost
 from evenroad.roadmap.find_path import find_path as find_path
 from evenroad.roadmap.kept import Roadmap as Roadmap
 from evenroad.roadmap.kept import WorldRoadmap as WorldRoadmap
@@ -12,6 +11,7 @@ from evenroad.roadmap.npz import save_roadmap as save_roadmap
 from evenroad.roadmap.npz import save_world_roadmap as save_world_roadmap
 from evenroad.roadmap.plan import fmt as fmt
 from evenroad.roadmap.plan import plan as plan
+from evenroad.roadmap.query import EdgeCost as EdgeCost
 from evenroad.roadmap.query import Query as Query
 from evenroad.roadmap.result import PlanResult as PlanResult
 from evenroad.roadmap.result import SearchedGraph as SearchedGraph

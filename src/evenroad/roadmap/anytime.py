@@ -8,23 +8,21 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._checks import require_count
+from evenroad._checks import require_count, require_known
 from evenroad._rng import RngLike
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad.errors import InvalidValue
 from evenroad.points.pointset import PointSet
 from evenroad.points.samplers import Sampler, make_sampler
 from evenroad.roadmap.answer import answer, refusal
 from evenroad.roadmap.attempt import Attempt, Searched
 from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.cost import EdgeCost
-from evenroad.roadmap.query import LINKS, Query, as_points, read_places
+from evenroad.roadmap.query import LINKS, EdgeCost, Query, as_points, read_places
 from evenroad.roadmap.result import PlanResult, Stage
 from evenroad.roadmap.rules import Rule, default_rule
 from evenroad.roadmap.search import FREE, UNKNOWN, find_lazily
 from evenroad.world import World
 
 UNTIL = ("solved", "settled", "budget")
-
 SETTLED = 0.01
 """A path counts as settled when doubling the points has shortened it by no more than this share."""
 
@@ -65,19 +63,11 @@ def plan_anytime(
     rng : int or SeedSequence
         For the sampler.
 
-    Returns
-    -------
-    PlanResult
-        ``status`` is ``budget_spent`` when there was no path until then; ``stages`` tells how it went.  Counts are
-        those of the last stage, checks those of all.
-
-    Raises
-    ------
-    InvalidValue, UnknownName
-        As in :func:`plan`, and if the sampler's sets do not begin with the smaller ones.
+    The status is ``budget_spent`` when there was no path until then; ``stages`` tells how it went.  Counts are those of
+    the last stage, checks those of all.  Raises as :func:`plan`, and InvalidValue if the sampler's sets do not begin
+    with the smaller ones.
     """
-    if until not in UNTIL:
-        raise UnknownName.among("until", until, UNTIL)
+    require_known("until", until, UNTIL)
     first = require_count("first", first)
     rule = default_rule(world.space) if rule is None else rule
     budget = budget or Budget()

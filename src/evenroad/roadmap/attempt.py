@@ -10,10 +10,9 @@ import numpy as np
 from evenroad._arrays import Bools, Floats, Ints32
 from evenroad.points.pointset import Origin
 from evenroad.roadmap.budget import Budget, BudgetSpent, Stopwatch
-from evenroad.roadmap.cost import BOUND, edge_costs
 from evenroad.roadmap.neighbours import Surroundings, nearest_of
 from evenroad.roadmap.proof import confirm
-from evenroad.roadmap.query import Query
+from evenroad.roadmap.query import BOUND, Query, edge_costs
 from evenroad.roadmap.rules import Rule
 from evenroad.roadmap.rules.near import ascending
 from evenroad.roadmap.search import (

@@ -34,12 +34,7 @@ class Budget:
         Points drawn by a planner that grows, valid or not, >= 1.
     rounds : int or None
         How often a planner that improves plans again, >= 1; with it and without `seconds` the path is the same on
-        every machine.  None: no limit.
-
-    Raises
-    ------
-    InvalidValue
-        If a limit is not such a number.
+        every machine.  None: no limit.  InvalidValue for any other limit.
     """
 
     seconds: float | None = 60.0

@@ -24,12 +24,9 @@ from evenroad.world import ConnectsAnew, ConnectsItself, World
 
 SECONDS = 5.0
 """Wall time of a budget that is not given."""
-
 NO_POINTS = Origin(family="none", method="no points")
-
 NO_BETTER = 1e-9
 """A path is not improved on that exceeds the shortest possible by no more than this share."""
-
 LEAST_MOTIONS, LONGER = 1000, 4
 """A round gives up after so many motions, or after so many times those of the first path, whichever is more."""
 
@@ -58,16 +55,9 @@ def find_path(
         Go on after the first path, until the budget is spent, and return the best of all.  The count ``rounds`` then
         says how often it was planned anew, and `stages` when better paths were found.
 
-    Returns
-    -------
-    PlanResult
-        ``not_connected`` is proved; without path and proof the status is ``budget_spent``, and the message says
-        where start or goal can hardly leave their places.
-
-    Raises
-    ------
-    InvalidValue
-        If start or goal does not have the dimension of the space, or is not finite.
+    The status ``not_connected`` is proved; without path and proof it is ``budget_spent``, and the message says where
+    start or goal can hardly leave their places.  InvalidValue if one of them does not have the dimension of the space,
+    or is not finite.
     """
     budget = budget or Budget(seconds=SECONDS)
     query = Query(*read_places(start, goal, world.space), shorten=shorten, budget=budget)

@@ -14,13 +14,10 @@ from evenroad.world import Explains, World
 
 DIRECTIONS = 128
 """Short motions that are tried from a place."""
-
 SHORT = 0.1
 """How long they are, as a share of the distance to an even point of the space at the median."""
-
 HEMMED = 0.1
 """A place is hemmed in from which no more than this share of them is free."""
-
 _SHARES = np.linspace(0.05, 1.0, 20)
 """Where along a short motion something may touch."""
 

@@ -17,9 +17,8 @@ from evenroad.points.pointset import PointSet
 from evenroad.roadmap.answer import answer, connected, proved_apart, refusal
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.cost import BOUND, EdgeCost, edge_costs
 from evenroad.roadmap.neighbours import Surroundings, nearest_of
-from evenroad.roadmap.query import LINKS, Query, as_points, read_places
+from evenroad.roadmap.query import BOUND, LINKS, EdgeCost, Query, as_points, edge_costs, read_places
 from evenroad.roadmap.result import PlanResult
 from evenroad.roadmap.rules import KNearest, Rule
 from evenroad.roadmap.search import (
@@ -49,16 +48,9 @@ class Roadmap:
     """Milestones and candidate edges for any world of one space; made by :meth:`build`, never changed.
 
     The rule joins all points, whether a world will find them valid or not; invalid ones fill some of the k places,
-    so that a larger k than in `plan` is wise: 20 rather than 10.
-
-    Attributes
-    ----------
-    space, points, rule
-        Where the milestones are, the points of its unit cube, and what joined them.
-    configurations : ndarray, shape (n, dim)
-        The milestones, in the order of the points; read-only.
-    edges : ndarray of int32, shape (m, 2)
-        Pairs of milestones to try, smaller first, ascending; read-only.
+    so that a larger k than in `plan` is wise: 20 rather than 10.  `points` are of the unit cube of `space`;
+    `configurations`, (n, dim), the milestones in their order; `edges`, (m, 2), pairs of these to try, smaller first,
+    ascending; both are read-only.
     """
 
     space: Space
@@ -206,30 +198,20 @@ class WorldRoadmap:
         connect: bool = True,
         budget: Budget | None = None,
     ) -> PlanResult:
-        """Find a short free path from start to goal.
+        """Find a short free path from start to goal; what is known is never asked again.
 
         Both are joined to one another, to milestones as the rule's :class:`Reach` says, and to as many as `links` says.
-        Where one of them is cut off from the other, the world joins them itself if it can.
+        Counts of checks are those of this query; `planner` says who found the path: ``prm lazy``, or ``prm lazy, then
+        trees``.
 
         Parameters
         ----------
         start, goal, search, success_only, shorten, links, budget
-            As in :func:`plan`; by default lazily.  What is known is never asked again.
+            As in :func:`plan`, whose errors these are; by default lazily.
         connect : bool
             Let a world that connects itself look for a path where the roadmap has none; not with an `edge_cost`.
         keep_graph : bool
             Put the searched graph into the result, for pictures.
-
-        Returns
-        -------
-        PlanResult
-            Its counts ``edges_checked`` and ``configurations_checked`` are those of this query.  `planner` says who
-            found the path: ``prm lazy``, or ``prm lazy, then trees``.
-
-        Raises
-        ------
-        InvalidValue, UnknownName
-            As :func:`plan`.
         """
         query = Query(
             *read_places(start, goal, self.world.space),

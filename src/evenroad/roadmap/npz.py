@@ -11,8 +11,8 @@ from evenroad._fingerprint import Fingerprinted
 from evenroad._npz import Arrays, Path, digest, read_npz, require_array, write_npz
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, NotAvailable
 from evenroad.points.npz import points_of
-from evenroad.roadmap.cost import EdgeCost
 from evenroad.roadmap.kept import Roadmap, WorldRoadmap
+from evenroad.roadmap.query import EdgeCost
 from evenroad.roadmap.rules import rule_named
 from evenroad.roadmap.search import BLOCKED, FREE, UNKNOWN
 from evenroad.space import Space
@@ -32,12 +32,9 @@ def save_roadmap(path: Path, roadmap: Roadmap) -> None:
 
 
 def save_world_roadmap(path: Path, known: WorldRoadmap) -> None:
-    """Write a roadmap with all that is known of it in its world, atomically; errors as :func:`save_roadmap`, and:
+    """Write a roadmap with all that is known of it in its world, atomically; errors as :func:`save_roadmap`.
 
-    Raises
-    ------
-    NotAvailable
-        If the world cannot say which it is (`Fingerprinted`), so that a wrong one could not be refused later.
+    NotAvailable if the world cannot say which it is (`Fingerprinted`): a wrong one could not be refused later.
     """
     node_states, edge_states = known.states
     in_world = dict(
@@ -52,25 +49,17 @@ def save_world_roadmap(path: Path, known: WorldRoadmap) -> None:
 def load_roadmap(path: Path, space: Space) -> Roadmap:
     """Read a roadmap written by either function for this space, leaving out what is known of a world.
 
-    Raises
-    ------
-    BrokenFile
-        If the file is missing, is no such npz or was damaged.
-    InvalidValue
-        If the space maps the points to other configurations than when the roadmap was saved.
+    Raises BrokenFile if the file is missing, is no such npz or was damaged; InvalidValue if the space maps the points
+    to other configurations than when the roadmap was saved.
     """
     return _roadmap(path, _read(path), space)
 
 
 def load_world_roadmap(path: Path, world: World, *, edge_cost: EdgeCost | None = None) -> WorldRoadmap:
-    """Read a roadmap with what is known of it in a world; errors as :func:`load_roadmap`, and:
+    """Read a roadmap with what is known of it in a world; errors as :func:`load_roadmap`.
 
-    Raises
-    ------
-    InvalidValue
-        If it was saved in another world.
-    NotAvailable
-        If the file knows of no world, or the world cannot say which it is.
+    InvalidValue also if it was saved in another world; NotAvailable if the file knows of no world, or the world cannot
+    say which it is.
     """
     arrays = _read(path)
     if "fingerprint" not in arrays:
@@ -135,9 +124,8 @@ def _roadmap(path: Path, arrays: Arrays, space: Space) -> Roadmap:
     require_array(path, "configurations", configurations, np.float64, (n, None))
     require_array(path, "edges", edges, np.int32, (None, 2))
     if edges.size and (edges.min() < 0 or edges.max() >= n):
-        raise BrokenFile(
-            f"{path}: edges must join milestones 0 .. {n - 1}, got {edges.min()} .. {edges.max()}"
-        )
+        low, high = edges.min(), edges.max()
+        raise BrokenFile(f"{path}: edges must join milestones 0 .. {n - 1}, got {low} .. {high}")
     points = points_of(path, arrays)
     try:
         rule = rule_named(str(arrays["rule"]))

@@ -8,8 +8,7 @@ from evenroad.points.pointset import PointSet
 from evenroad.roadmap.answer import answer, refusal
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.cost import EdgeCost
-from evenroad.roadmap.query import LINKS, Query, as_points, read_places
+from evenroad.roadmap.query import LINKS, EdgeCost, Query, as_points, read_places
 from evenroad.roadmap.result import PlanResult
 from evenroad.roadmap.rules import Rule, default_rule
 from evenroad.roadmap.search import FREE, Finder, march
@@ -63,18 +62,9 @@ def plan(
     budget : Budget, optional
         Default: a minute.
 
-    Returns
-    -------
-    PlanResult
-        Also when there is no path: the status and the message then say why.
-
-    Raises
-    ------
-    InvalidValue
-        If start, goal or points do not have the dimension of the space, or are not finite, or an edge costs
-        less than its length.
-    UnknownName
-        If there is no such search.
+    Where there is no path, the result's status and message say why.  Raises InvalidValue if start, goal or points do
+    not have the dimension of the space, or are not finite, or an edge costs less than its length; UnknownName if there
+    is no such search.
     """
     query = Query(
         *read_places(start, goal, world.space),

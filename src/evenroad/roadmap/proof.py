@@ -50,9 +50,7 @@ def require_certified(world: World, result: PlanResult) -> PlanResult:
     if result.path is None or result.proof == "exact":
         return result
     if not (isinstance(world, Rechecks) and world.proof == "certified"):
-        message = (
-            "the path is free at the states that were tested; motions of this world cannot be proved free"
-        )
+        message = "the path is free at the states tested; motions of this world cannot be proved free"
         return replace(result, status=Status.NOT_CERTIFIED, message=message)
     failed = np.flatnonzero(~world.recheck(result.path))
     if not len(failed):

@@ -1,19 +1,20 @@
-"""Query: what is asked of a planner."""
+"""Query: what is asked of a planner, and what the edges of an answer cost: their length, or more."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass, field
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._arrays import Floats
-from evenroad._checks import require_count
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad._arrays import Floats, Ints32
+from evenroad._checks import require_count, require_known
+from evenroad.errors import InvalidValue
 from evenroad.points.pointset import PointSet
 from evenroad.points.samplers import make_sampler
 from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.cost import EdgeCost
 from evenroad.roadmap.search import FINDERS, Finder, find_any
 from evenroad.space import Space
 
@@ -26,6 +27,12 @@ A start in a narrow place sees few of its nearest milestones.  On shelves, 100 l
 
 FEW = 256
 """Up to so many milestones, start and goals are linked to all."""
+
+
+EdgeCost: TypeAlias = Callable[[Floats, Floats], Floats]
+"""Costs of the motions between the rows of two (m, dim) arrays, (m,); the same both ways, >= their lengths."""
+BOUND = 1.0 - 1e-9
+"""Costs are at least this share of the length: room for the rounding of a cost that should be the length."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +54,7 @@ class Query:
     budget: Budget = field(default_factory=Budget)
 
     def __post_init__(self) -> None:
-        if self.search not in FINDERS:
-            raise UnknownName.among("search", self.search, FINDERS)
+        require_known("search", self.search, FINDERS)
         if self.links is not None:
             require_count("links", self.links)
         for array in (self.start, self.goals):
@@ -113,3 +119,25 @@ def _finite(value: npt.ArrayLike) -> Floats:
     except (TypeError, ValueError):
         return np.empty((0, 0))
     return array if np.isfinite(array).all() else np.empty((0, 0))
+
+
+def edge_costs(space: Space, q: Floats, edges: Ints32, cost: EdgeCost | None = None) -> Floats:
+    """Return what the edges between rows of `q` cost, (m,): by default their lengths.
+
+    InvalidValue for a `cost` of another shape, not finite or below the length: the metric then is no bound.
+    """
+    a, b = q[edges[:, 0]], q[edges[:, 1]]
+    lengths = space.distance(a, b)
+    if cost is None:
+        return lengths
+    costs = np.asarray(cost(a, b), dtype=np.float64)
+    if costs.shape != lengths.shape:
+        raise InvalidValue(f"the edge cost must return shape {lengths.shape}, got {costs.shape}")
+    bad = ~(np.isfinite(costs) & (costs >= lengths * BOUND))
+    if bad.any():
+        i = int(np.flatnonzero(bad)[0])
+        raise InvalidValue(
+            f"the edge cost must be finite and at least the length: the motion from {a[i].tolist()} to"
+            f" {b[i].tolist()} has length {lengths[i]:.6g} and cost {costs[i]:.6g}"
+        )
+    return costs

@@ -7,6 +7,7 @@ from enum import StrEnum
 
 from evenroad._arrays import Floats, Ints32
 from evenroad.points.pointset import Origin
+from evenroad.roadmap.notebook import as_html
 
 
 class Status(StrEnum):
@@ -126,3 +127,11 @@ class PlanResult:
     def goal(self) -> Floats:
         """The goal that the path ends at, (dim,); without a path the first one."""
         return self.goals[0 if self.goal_index is None else self.goal_index]
+
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        rows = {"status": f"{self.status}: {self.message}", "planner": self.planner}
+        if self.cost is not None:
+            rows |= {"cost": f"{self.cost:.6g}", "proved": str(self.proof)}
+        rows["time"] = f"{1e3 * sum(self.seconds.values()):.1f} ms"
+        return as_html(rows, self.path)

@@ -11,15 +11,14 @@ import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad.roadmap.budget import BudgetSpent, in_time
-from evenroad.roadmap.cost import EdgeCost
 from evenroad.roadmap.proof import confirmed
+from evenroad.roadmap.query import EdgeCost
 from evenroad.roadmap.search import shortest_path
 from evenroad.space import Space
 from evenroad.space.path import motion_lengths, subdivide
 from evenroad.world import World
 
 Indices: TypeAlias = npt.NDArray[np.integer]
-
 SPREADS = (32, 96)
 """Waypoints offered to a round, first of the coarse rounds, then of the fine ones; all pairs of them are checked.
 

@@ -14,7 +14,7 @@ from evenroad.errors import NotAvailable, UnknownName
 from evenroad.robot.kernel import scalar
 from evenroad.robot.kernel.certify import motions_certified
 from evenroad.robot.kernel.lane_world import LaneWorld
-from evenroad.robot.kernel.obstacles import obstacle_rows, tested_contacts
+from evenroad.robot.kernel.obstacles import obstacle_rows, refuse, tested_contacts
 from evenroad.robot.kernel.robot_tables import RobotTables
 from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
 from evenroad.robot.kernel.selftest import lanes_failure
@@ -89,16 +89,21 @@ class ArmWorld:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "resolution", require_positive("resolution", self.resolution))
-        space, longest, of_robot, by_joint = prepared(self.robot)
+        space, longest, of_robot, by_joint, bounds, by_joint_at = prepared(self.robot)
         require_few_segments(self.resolution, longest / self.resolution)
         tested = tested_contacts(of_robot.capsules, self.robot.links, self.scene)
-        tables = arm_tables(of_robot, obstacle_rows(self.scene), tested)
-        object.__setattr__(self, "_space", space)
-        object.__setattr__(self, "bounds", by_joint[: 3 * space.dim].reshape(3, space.dim))
-        object.__setattr__(self, "robot_tables", of_robot)
-        object.__setattr__(self, "tables", tables)
-        object.__setattr__(self, "lanes", LaneWorld(tables.lanes, by_joint, self.resolution))
-        object.__setattr__(self, "backend", _chosen(self.backend))
+        tables, lanes_at, too_far = arm_tables(of_robot, obstacle_rows(self.scene), tested)
+        if too_far >= 0:
+            refuse(self.scene.obstacles[too_far])
+        lanes = LaneWorld(tables.lanes, by_joint, self.resolution, (lanes_at, by_joint_at))
+        self.__dict__.update(
+            _space=space,
+            bounds=bounds,
+            robot_tables=of_robot,
+            tables=tables,
+            lanes=lanes,
+            backend=_chosen(self.backend),
+        )
 
     @property
     def space(self) -> JointSpace:

@@ -3,29 +3,24 @@
 A joint that turns by dq moves a point of the robot by at most |dq| times the point's distance from its axis,
 one that slides by |dq|.  Let ``arm_cj`` bound that distance, over all configurations, for the segment inside
 capsule c (``evenroad.robot.kernel.placed_capsules``).  While a motion, by dq in all, goes from share t to u,
-straight in the joints, the segment's points then move by at most
+straight in the joints, the segment's points then move by at most ``|u - t| D_c``, ``D_c = sum_j arm_cj |dq_j|``, and
+the segments c and e of one robot against each other by at most ``|u - t| D_ce``, whose sum runs over the joints that
+carry one of the two and not the other: a common one moves both as one body.
 
-    |u - t| D_c,    D_c = sum_j arm_cj |dq_j|,
-
-and the segments c and e of one robot against each other by at most ``|u - t| D_ce``, whose sum runs over the
-joints that carry one of the two and not the other: a common one moves both as one body.
-
-If at share t every capsule is farther than ``h D_c`` from every obstacle, and every pair farther apart than
-``h D_ce``, then nothing touches between the shares t - h and t + h.  So the motion's middle is tested with those
-margins, h one half; where that fails the motion is halved, and so on, into 2^15 pieces at most.  (The idea is
-that of F. Schwarzer, M. Saha and J.-C. Latombe, Adaptive Dynamic Collision Checking, 2005.)  Distances are those
-of the model: exact between capsules, and hulls, and to obstacles from spheres that cover them.  The lanes prove
-sixteen pieces at once in single precision, with bodies larger by what that may lose; the backend "scalar" works in
-double precision.
-
-"No" means blocked, or that somewhere the clearance is too small to tell.
+If at share t every capsule is farther than ``h D_c`` from every obstacle, and every pair farther apart than ``h D_ce``,
+then nothing touches between the shares t - h and t + h.  So the motion's middle is tested with those margins, h one
+half; where that fails the motion is halved, and so on, into 2^15 pieces at most (F. Schwarzer, M. Saha and J.-C.
+Latombe, Adaptive Dynamic Collision Checking, 2005).  Distances are those of the model: exact between capsules, and
+hulls, and to obstacles from spheres that cover them.  The lanes prove sixteen pieces at once in single precision, with
+bodies larger by what that may lose; the backend "scalar" works in double precision.  "No" means blocked, or that
+somewhere the clearance is too small to tell.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from evenroad._arrays import Bools, Floats
+from evenroad._arrays import Bools, Floats, set_fields
 from evenroad._checks import require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.robot.arm_world import ArmWorld
@@ -46,7 +41,7 @@ class CertifiedWorld:
     tolerance: float = 1e-4
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "tolerance", require_positive("tolerance", self.tolerance))
+        set_fields(self, tolerance=require_positive("tolerance", self.tolerance))
 
     @property
     def space(self) -> JointSpace:

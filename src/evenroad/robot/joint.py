@@ -11,7 +11,6 @@ from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.pose import Pose
 
 Kind = Literal["revolute", "continuous", "prismatic", "fixed"]
-
 _ROUNDING = 1e-9
 """Limits that a follower would move by less than this stay as they are written [rad or m]."""
 
@@ -27,24 +26,12 @@ class Mimic:
 
 @dataclass(frozen=True)
 class Joint:
-    """How a link moves on its parent, as URDF has it.
+    """How a link, the `child`, moves on its `parent`, as URDF has it.
 
-    Attributes
-    ----------
-    kind : {"revolute", "continuous", "prismatic", "fixed"}
-        Rotates about, or slides along, its axis; or neither.
-    parent, child : str
-        Names of the links it joins.
-    xyz, rotation : tuples of 3 and 9 floats
-        The joint's frame in the parent link's: origin [m], rotation row by row.  The child's frame is the joint's at 0.
-    axis : tuple of 3 floats
-        Unit vector in the joint's frame; of no meaning where fixed.
-    lower, upper : float
-        Limits [rad or m]; -inf and inf for a continuous joint.
-    velocity : float
-        Largest speed [rad/s or m/s]; inf where not given.
-    mimic : Mimic or None
-        The joint that this one follows.
+    `xyz` [m] and `rotation`, row by row, are the joint's frame in the parent link's; the child's is the joint's at 0.
+    `axis` is a unit vector in the joint's frame, of no meaning where fixed.  Limits [rad or m] are -inf and inf for
+    a continuous joint, the largest speed, `velocity` [rad/s or m/s], is inf where not given; `mimic` is the joint that
+    this one follows.
     """
 
     name: str
@@ -98,9 +85,8 @@ def with_direct_mimics(joints: Sequence[Joint], where: str) -> list[Joint]:
             if by_name[name].kind == "fixed":
                 raise BrokenFile(f"joint {followed.name!r} in {where} mimics {name!r}, which is fixed")
             if name in seen:
-                raise BrokenFile(
-                    f"joints of {where} mimic each other in a circle: {' -> '.join([*seen, name])}"
-                )
+                circle = " -> ".join([*seen, name])
+                raise BrokenFile(f"joints of {where} mimic each other in a circle: {circle}")
             offset += multiplier * followed.mimic.offset
             multiplier *= followed.mimic.multiplier
             followed = by_name[name]

@@ -61,6 +61,28 @@ def held_values(robot: KinematicTree) -> dict[str, float]:
     }
 
 
+def tip_links(robot: KinematicTree) -> tuple[str, ...]:
+    """Return the last link of each chain that is planned for, before it branches: one for each arm of a robot."""
+    moved = {joint.child: joint for joint in robot.joints}
+    children: dict[str, list[str]] = {link: [] for link in robot.links}
+    for joint in robot.joints:
+        children[joint.parent].append(joint.child)
+    carrying = set()
+    for joint in robot.joints:
+        link = joint.parent
+        while joint.name in robot.group and link in moved:
+            carrying.add(moved[link].name)
+            link = moved[link].parent
+    tips = []
+    for joint in robot.joints:
+        if joint.name in robot.group and joint.name not in carrying:
+            tip = joint.child
+            while len(children[tip]) == 1:
+                tip = children[tip][0]
+            tips.append(tip)
+    return tuple(tips)
+
+
 def link_poses(robot: KinematicTree, q: npt.ArrayLike) -> Floats:
     """Return the frames of all links in that of the root: (n, links, 4, 4) for configurations (n, dim) [m].
 

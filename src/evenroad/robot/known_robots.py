@@ -12,6 +12,7 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._checks import require_known
 from evenroad.errors import InvalidValue
+from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.robot_tables import RobotTables, robot_tables
 from evenroad.robot.robot import Robot
 from evenroad.space import JointSpace
@@ -45,18 +46,22 @@ def joint_space(robot: Robot) -> JointSpace:
 
 
 class Prepared(NamedTuple):
-    """What is a robot's in every scene: `longest` bounds the length of a motion, `by_joint` is as in ``LaneWorld``."""
+    """What is a robot's in every scene: `longest` bounds the length of a motion, `by_joint` is as in ``LaneWorld``.
+
+    `bounds`, (3, dim), are its first rows; `place` is its address.
+    """
 
     space: JointSpace
     longest: float
     tables: RobotTables
     by_joint: Floats
+    bounds: Floats
+    place: int
 
 
 _recent: dict[int, tuple[Robot, dict[str, float], Prepared]] = {}
 """By identity, which costs less to look up than a key of a robot's values; a dictionary is the only part of a robot
 that can change."""
-
 _FIELDS = tuple(each.name for each in fields(Robot) if each.name not in ("states", "held"))
 
 
@@ -86,4 +91,5 @@ def _kept(values: tuple[Any, ...], held: tuple[tuple[str, float], ...]) -> Prepa
     arms, pair_arms = (np.ravel(speeds.T) for speeds in (tables.speeds, tables.pair_speeds))
     by_joint = np.concatenate([low, high, space.flat.period, arms, pair_arms])
     by_joint.setflags(write=False)
-    return Prepared(space, float(np.linalg.norm(high - low)), tables, by_joint)
+    bounds = by_joint[: 3 * space.dim].reshape(3, space.dim)
+    return Prepared(space, float(np.linalg.norm(high - low)), tables, by_joint, bounds, address(by_joint))

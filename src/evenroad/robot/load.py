@@ -27,7 +27,6 @@ from evenroad.robot.urdf_xml import RobotFile
 DATA = Path(__file__).parent / "data"
 ROBOTS = ("arm7", "ur5")
 """Names of the shipped robots."""
-
 PathLike = str | os.PathLike[str]
 
 
@@ -99,17 +98,10 @@ def load_model(
     progress : callable, optional
         Called with step, steps and a text before each body is fitted; not at all for a robot from the cache.
 
-    Raises
-    ------
-    UnknownName
-        If there is neither such a file nor such a robot; if a group, a joint or a link is not known.
-    BrokenFile
-        If a file is missing, broken or lacks a piece, the links do not form a tree, a mesh is missing or empty, or the
-        robot has no body at all.
-    InvalidValue
-        If a number is not one, or out of its range.
-    NotAvailable
-        If an extra is needed that is not installed.
+    Raises UnknownName if there is neither such a file nor such a robot, or a group, a joint or a link is not known;
+    BrokenFile if a file is missing, broken or lacks a piece, the links do not form a tree, a mesh is missing or empty,
+    or the robot has no body at all; InvalidValue if a number is not one, or out of its range; NotAvailable if an extra
+    is needed that is not installed.
     """
     path, own_srdf = find_robot(source)
     file = RobotFile(
@@ -196,9 +188,7 @@ def _build(
 
 
 def _capsules(
-    urdf: Urdf,
-    given: dict[str, tuple[Capsule, ...]],
-    progress: Callable[[int, int, str], None] | None,
+    urdf: Urdf, given: dict[str, tuple[Capsule, ...]], progress: Callable[[int, int, str], None] | None
 ) -> dict[str, tuple[Capsule, ...]]:
     found: dict[str, tuple[Capsule, ...]] = {}
     fitted = [shape for shape in urdf.shapes if shape.link not in given]

@@ -28,14 +28,8 @@ def read_mjcf(file: RobotFile) -> Urdf:
 
     Bodies are links and keep their names; of a body with several joints, or with one whose anchor is not its origin,
     links without a body lie between.  A free joint, or a ball, stays as it is drawn; a linear equality of two joints
-    makes a mimic.  Geoms that collide with nothing are no bodies.
-
-    Raises
-    ------
-    BrokenFile
-        If the file is missing or MuJoCo does not take it, or a mesh is not in a file of its own.
-    NotAvailable
-        If MuJoCo is not installed.
+    makes a mimic.  Geoms that collide with nothing are no bodies.  Raises BrokenFile if the file is missing or MuJoCo
+    does not take it, or a mesh is not in a file of its own; NotAvailable if MuJoCo is not installed.
     """
     read_xml(file.path, "robot", "an MJCF", "mujoco")
     mujoco = require_extra("mujoco", "mjcf", f"{file.path} is an MJCF, which")
@@ -79,21 +73,14 @@ class _Reader:
         """Yield the joints that lead to a body from its parent, one after the other."""
         model, link = self.model, self.links[body]
         pose = _pose(model.body_pos[body], model.body_quat[body])
-        parent, first, count = (
-            self.links[model.body_parentid[body]],
-            model.body_jntadr[body],
-            model.body_jntnum[body],
-        )
-        anchor = IDENTITY
+        parent, anchor = self.links[model.body_parentid[body]], IDENTITY
+        first, count = model.body_jntadr[body], model.body_jntnum[body]
         for number in range(first, first + count):
-            name, kind = (
-                _name(model.joint(number), "joint"),
-                self.mujoco.mjtJoint(model.jnt_type[number]).name,
-            )
+            name = _name(model.joint(number), "joint")
+            kind = self.mujoco.mjtJoint(model.jnt_type[number]).name
             if kind not in _KINDS:
-                self.notes.append(
-                    f"joint {name!r} of {link!r}, {'free' if 'FREE' in kind else 'a ball'}, is fixed"
-                )
+                said = "free" if "FREE" in kind else "a ball"
+                self.notes.append(f"joint {name!r} of {link!r}, {said}, is fixed")
                 continue
             own = Pose(tuple(model.jnt_pos[number].tolist()))
             last = number == first + count - 1 and not model.jnt_pos[number].any()

@@ -26,23 +26,14 @@ def read_scene_text(path: Path) -> Scene:
     """Read a ``.scene`` file: a name, then objects that begin with ``*``, and a full stop.
 
     An object has a name, in newer files a pose, the number of its shapes, and each shape with its dimensions, pose and
-    colour; in newer files subframes follow, which are skipped.
-
-    Raises
-    ------
-    BrokenFile
-        If the file is missing or ends too early, or a number is none.
-    UnknownName
-        If a shape is none of box, sphere and cylinder.
-    InvalidValue
-        If a dimension is not > 0, a quaternion has no direction, or two objects share a name.
+    colour; in newer files subframes follow, which are skipped.  Raises BrokenFile if the file is missing or ends too
+    early, or a number is none; UnknownName if a shape is none of box, sphere and cylinder; InvalidValue if a dimension
+    is not > 0, a quaternion has no direction, or two objects share a name.
     """
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
     except (OSError, ValueError) as error:
-        raise BrokenFile(
-            f"cannot read the scene {path}: {getattr(error, 'strerror', None) or error}"
-        ) from error
+        raise BrokenFile(f"cannot read scene {path}: {getattr(error, 'strerror', None) or error}") from error
     return Scene(lines[0].strip() or path.stem if lines else path.stem, tuple(_from_text(lines, path)))
 
 
@@ -95,12 +86,7 @@ def _from_text(lines: list[str], path: Path) -> Iterator[Obstacle]:
 def read_planning_scene(document: Mapping[str, Any], path: Path) -> Scene:
     """Return the scene of a planning scene that was read from YAML: objects in ``world: collision_objects``.
 
-    Raises
-    ------
-    BrokenFile
-        If a piece is missing.
-    UnknownName, InvalidValue
-        As :func:`read_scene_text`; and if an object has a mesh, which scenes do not take yet.
+    Raises as :func:`read_scene_text`; InvalidValue also if an object has a mesh, which scenes do not take yet.
     """
     world = document.get("world")
     if not isinstance(world, dict):
@@ -112,7 +98,7 @@ def read_planning_scene(document: Mapping[str, Any], path: Path) -> Scene:
         name = str(each["id"])
         if each.get("meshes") or each.get("planes"):
             raise InvalidValue(
-                f"object {name!r} in {path} must consist of {', '.join(_SIZES)}: it has a mesh or plane"
+                f"object {name!r} in {path} must be of {', '.join(_SIZES)}: it has a mesh or plane"
             )
         frame = _pose(each["pose"], name, path) if "pose" in each else IDENTITY
         primitives, poses = each.get("primitives") or [], each.get("primitive_poses") or []

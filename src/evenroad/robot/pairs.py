@@ -16,13 +16,10 @@ from evenroad.robot.kinematics import KinematicTree, held_values, poses_at, with
 
 SAMPLES = 1000
 """Random configurations that tell pairs that are always in contact."""
-
 TOUCHING = "touch in every sample"
 """Why a pair is not tested whose shapes are in contact in all of them."""
-
 HELD_TOUCHING = "touch in every sample with the other joints where they are held"
 """Why another is not, until these are held elsewhere."""
-
 _MOST_HULLS = 128
 """A link of so many is not split."""
 _ROUNDS = 12
@@ -30,7 +27,6 @@ _LOOKED_AT = 400
 """Samples, of all of these, by which hulls are judged."""
 _FEW = 0.003
 """Share of them in which hulls of a pair may touch though what is inside does not."""
-
 Pieces = Mapping[str, Sequence[Piece]]
 """The shapes of every link that has any, as hulls and what these are around."""
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 
+from evenroad._arrays import set_fields
 from evenroad._checks import require_known
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
@@ -23,56 +24,40 @@ from evenroad.robot.urdf_xml import RobotFile
 
 @dataclass(frozen=True)
 class Robot:
-    """A kinematic tree with bodies.
-
-    Attributes
-    ----------
-    links : tuple of str
-        The root first, every parent before its children.
-    joints : tuple of Joint
-        ``joints[i]`` is the joint whose child is ``links[i + 1]``.
-    capsules : tuple of Capsule
-        The bodies.
-    pairs : tuple of pairs of str
-        Links that are tested against each other.
-    group : tuple of str
-        Joints that are planned for, in the order of the configuration; none is fixed or a mimic.
-    held : mapping of str to float
-        Joint -> value of other movable joints [rad or m]; where not given: 0, or the nearest to it within limits.
-    states : mapping of str to mapping of str to float
-        Named configurations: joint -> value, of joints outside of the group, too, where they are known.
-    hulls : tuple of Hull
-        Convex pieces that contain the links' shapes more tightly than capsules: where capsules of a pair touch, these
-        decide.  Links without any are their capsules.
-    pairs_given : bool
-        Whether `pairs` were given by somebody, as by an SRDF; else a pair that the group does not move and that touches
-        where it is held is left out.
-    resting : tuple of pairs of str
-        Pairs that are not tested, for they touch whatever the group does as long as the others are held where they are.
-    """
+    """A kinematic tree with bodies."""
 
     name: str
     links: tuple[str, ...]
+    """The root first, every parent before its children."""
     joints: tuple[Joint, ...]
+    """``joints[i]`` is the joint whose child is ``links[i + 1]``."""
     capsules: tuple[Capsule, ...]
+    """The bodies."""
     pairs: tuple[tuple[str, str], ...]
+    """Links that are tested against each other."""
     group: tuple[str, ...]
+    """Joints that are planned for, in the order of the configuration; none is fixed or a mimic."""
     held: Mapping[str, float] = field(default_factory=dict)
+    """Joint -> value of other movable joints [rad or m]; where not given: 0, or the nearest to it within limits."""
     states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    """Named configurations: joint -> value, of joints outside of the group, too, where they are known."""
     hulls: tuple[Hull, ...] = ()
+    """Convex pieces that contain the links' shapes more tightly than capsules: where capsules of a pair touch, these
+    decide.  Links without any are their capsules."""
     pairs_given: bool = True
+    """Whether `pairs` were given by somebody, as by an SRDF; else a pair that the group does not move and that touches
+    where it is held is left out."""
     resting: tuple[tuple[str, str], ...] = ()
+    """Pairs that are not tested, for they touch whatever the group does while the others are held where they are."""
 
     def __post_init__(self) -> None:
         # The kernel takes the ends as they are: a capsule with a pose of its own gets them in its link's frame.
-        object.__setattr__(self, "capsules", tuple(map(without_pose, self.capsules)))
+        set_fields(self, capsules=tuple(map(without_pose, self.capsules)))
 
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of what decides verdicts; the names of the robot and its states do not."""
-        names_alone = ("name", "states")
-        return fingerprint_of(
-            *(getattr(self, each.name) for each in fields(self) if each.name not in names_alone)
-        )
+        names = (each.name for each in fields(self) if each.name not in ("name", "states"))
+        return fingerprint_of(*(getattr(self, name) for name in names))
 
     def with_tool(
         self, tool: Robot | Sequence[Shape], at: str, *, pose: Pose = IDENTITY, prefix: str = ""
@@ -93,12 +78,8 @@ class Robot:
         prefix : str
             Put before the names of all of the tool's links and joints.
 
-        Raises
-        ------
-        UnknownName
-            If the robot has no such link.
-        InvalidValue
-            If the tool has no body, or a name in common with the robot.
+        Raises UnknownName if the robot has no such link; InvalidValue if the tool has no body, or a name in common with
+        the robot.
         """
         require_known(f"link of {self.name!r}", at, self.links)
         if not isinstance(tool, Robot):
@@ -191,37 +172,25 @@ class LinkBody:
 
 @dataclass(frozen=True)
 class RobotModel:
-    """A robot and how it was made.
-
-    Attributes
-    ----------
-    bodies : tuple of LinkBody
-        One for each link that has a body.
-    pairs_from : str
-        ``SRDF`` or ``computed``.
-    dropped : tuple of (str, str, str)
-        Pairs of links with bodies that are not tested, each with the reason.
-    drawn_only : tuple of str
-        Links that are drawn and have no body: nothing is ever found to touch them.
-    always_touching : tuple of pairs of str
-        Pairs that the SRDF does not disable and that touch in every sampled configuration: none is free.
-    never_free : str
-        Where no sampled configuration is free of self-collision: that, the pair that blocks most, and what to do.
-    notes : tuple of str
-        What was read otherwise than it stands in the file.
-    file : RobotFile or None
-        Where the robot was read, and how.
-    """
+    """A robot and how it was made."""
 
     robot: Robot
     bodies: tuple[LinkBody, ...]
+    """One for each link that has a body."""
     pairs_from: str
+    """``SRDF`` or ``computed``."""
     dropped: tuple[tuple[str, str, str], ...]
+    """Pairs of links with bodies that are not tested, each with the reason."""
     drawn_only: tuple[str, ...] = ()
+    """Links that are drawn and have no body: nothing is ever found to touch them."""
     always_touching: tuple[tuple[str, str], ...] = ()
+    """Pairs that the SRDF does not disable and that touch in every sampled configuration: none is free."""
     never_free: str = ""
+    """Where no sampled configuration is free of self-collision: that, the pair that blocks most, and what to do."""
     notes: tuple[str, ...] = ()
+    """What was read otherwise than it stands in the file."""
     file: RobotFile | None = field(default=None, compare=False)
+    """Where the robot was read, and how."""
 
     @property
     def bodiless(self) -> tuple[str, ...]:
@@ -273,9 +242,7 @@ def with_limits(robot: Robot, limits: Mapping[str, tuple[float, float]]) -> Robo
     for name, (lower, upper) in limits.items():
         require_known("joint", name, names)
         if not lower < upper:
-            raise InvalidValue(
-                f"limits of joint {name!r} must satisfy lower < upper, got {lower!r}, {upper!r}"
-            )
+            raise InvalidValue(f"limits of joint {name!r} must have lower < upper, got {lower!r}, {upper!r}")
     joints = []
     for joint in robot.joints:
         if joint.name in limits:

@@ -4,32 +4,33 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from struct import Struct
 
+from evenroad._arrays import set_fields
 from evenroad._checks import require_known
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import NO_ROTATION, Pose, Vector
 from evenroad.geometry.shapes import PRIMITIVES, Capsule, Shape, along_z, shape_of
 
+_ROW = Struct("16d")
+_NUMBERS = {kind: number for number, kind in enumerate(PRIMITIVES)}
+
 
 @dataclass(frozen=True)
 class Obstacle:
-    """A body that does not move.
+    """A body that does not move, by a name that is unique in its scene.
 
-    Parameters
-    ----------
-    name : str
-        Unique in its scene.
-    body : Shape
-        A box, sphere, cylinder or capsule, with its pose in the frame of the robot's root link; others, and what is
-        fixed to a link, are refused (InvalidValue).
-    cell : bool
-        Part of the fixed cell, the same for every task of this installation.
+    `body` is a box, sphere, cylinder or capsule, with its pose in the frame of the robot's root link; others, and what
+    is fixed to a link, are refused (InvalidValue).  `cell` says whether it is part of the fixed cell, the same for
+    every task of this installation.
     """
 
     name: str
     body: Shape
     cell: bool = False
+    row: bytes = field(init=False, repr=False, compare=False)
+    """Sixteen doubles, as compiled code reads obstacles, see ``kernel/obstacles.py``."""
 
     def __post_init__(self) -> None:
         body = along_z(self.body) if isinstance(self.body, Capsule) else self.body
@@ -39,7 +40,10 @@ class Obstacle:
             raise InvalidValue(
                 f"obstacle {self.name!r} must be fixed to the world, not to a link, got {body.link!r}"
             )
-        object.__setattr__(self, "body", body)
+        # Now rather than for every world: an obstacle is in many scenes.
+        size = (*body.size, 0.0, 0.0)[:3]
+        row = _ROW.pack(_NUMBERS[body.kind], *size, *body.pose.rotation, *body.pose.xyz)
+        set_fields(self, body=body, row=row)
 
     @classmethod
     def of(
@@ -88,26 +92,16 @@ class Obstacle:
 
 @dataclass(frozen=True)
 class Scene:
-    """Obstacles, allowed contacts and named configurations.
-
-    Attributes
-    ----------
-    obstacles : tuple of Obstacle
-        The obstacles; no two of one name (InvalidValue).
-    allowed : frozenset of (link, obstacle) pairs of str
-        Contacts that are not tested, e.g. of the base with its table.
-    states : mapping of str to mapping of str to float
-        Named configurations: joint -> value; joints that are not planned for are held there.
-    limits : mapping of str to (float, float)
-        Ranges to plan in, joint -> (lower, upper) [rad or m]; the robot takes them over by
-        :func:`evenroad.robot.in_scene`.
-    """
+    """Obstacles, no two of one name (InvalidValue); allowed contacts and named configurations."""
 
     name: str
     obstacles: tuple[Obstacle, ...] = ()
     allowed: frozenset[tuple[str, str]] = frozenset()
+    """Contacts that are not tested, (link, obstacle), e.g. of the base with its table."""
     states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    """Named configurations: joint -> value; joints that are not planned for are held there."""
     limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    """Ranges to plan in, joint -> (lower, upper) [rad or m], which :func:`evenroad.robot.in_scene` takes over."""
 
     def __post_init__(self) -> None:
         names = [obstacle.name for obstacle in self.obstacles]

@@ -17,7 +17,6 @@ from evenroad.robot.scene import Obstacle, Scene
 
 SCENES = ("box-reach", "box-reach-narrow")
 """Names of the shipped scenes."""
-
 _SECTIONS = ("name", "allowed", "states", "limits")
 _OPTIONAL = ("xyz", "rpy", "quaternion", "cell")
 
@@ -59,14 +58,8 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
     The length of a capsule is without its caps; ``quaternion: [w, x, y, z]`` may stand for ``rpy``; ``cell: true``
     marks what belongs to the fixed cell.  MoveIt's scenes are read, too (:mod:`evenroad.robot.moveit_scene`).
 
-    Raises
-    ------
-    BrokenFile
-        If the file is missing, not YAML, lacks something, or has a key twice.
-    UnknownName
-        If there is a key that a scene does not have, a shape or an obstacle that there is not.
-    InvalidValue
-        If a value has the wrong type or range.
+    Raises BrokenFile if the file is missing, not YAML, lacks something, or has a key twice; UnknownName for a key, a
+    shape or an obstacle that there is not; InvalidValue for a value of the wrong type or range.
     """
     path = find_scene(source)
     if not path.is_file():

@@ -33,16 +33,10 @@ class Srdf:
 def read_srdf(path: Path, urdf: Urdf) -> Srdf:
     """Read the SRDF that belongs to a URDF; what has to do with neither groups, states nor pairs is skipped.
 
-    Virtual joints, which tie the root to the world, are skipped in groups and states, too: no URDF has them.
-
-    Raises
-    ------
-    BrokenFile
-        If the file is missing, not XML or not an SRDF, an element lacks an attribute, or groups contain each other.
-    UnknownName
-        If it names a joint, link or group that there is not.
-    InvalidValue
-        If a joint of a state has a value that is not a finite number.
+    Virtual joints, which tie the root to the world, are skipped in groups and states, too: no URDF has them.  Raises
+    BrokenFile if the file is missing, not XML or not an SRDF, an element lacks an attribute, or groups contain each
+    other; UnknownName if it names a joint, link or group that there is not; InvalidValue if a joint of a state has a
+    value that is not a finite number.
     """
     root = read_xml(path, "SRDF", "an SRDF")
     elements = {_attribute(group, "name", path): group for group in root.findall("group")}
@@ -143,22 +137,11 @@ def _known(what: str, name: str, known: Collection[str], path: Path) -> str:
 def choose_group(urdf: Urdf, srdf: Srdf | None, wanted: str | Sequence[str] | None) -> tuple[str, ...]:
     """Return the joints that are planned for.
 
-    Parameters
-    ----------
-    urdf, srdf : Urdf, Srdf or None
-        The robot.
-    wanted : str, sequence of str, or None
-        Groups of the SRDF and names of joints (as a text: with commas between them), in the order that is wanted; of
-        two groups that share a joint the first has it.  None: the SRDF's group where it has one, else every joint that
-        moves, is no mimic and, by the SRDF, not passive.  None of a rigid body: another robot may carry it as a tool.
-
-    Raises
-    ------
-    UnknownName
-        If there is no such group or joint.
-    InvalidValue
-        If the SRDF has several groups and none is wanted, a joint does not move or follows another, one is named
-        twice, or no joint is left.
+    `wanted` are groups of the SRDF and names of joints (as a text: with commas between them), in the order that is
+    wanted; of two groups that share a joint the first has it.  None: the SRDF's group where it has one, else every
+    joint that moves, is no mimic and, by the SRDF, not passive.  None of a rigid body: another robot may carry it as a
+    tool.  Raises UnknownName if there is no such group or joint; InvalidValue if the SRDF has several groups and none
+    is wanted, a joint does not move or follows another, one is named twice, or no joint is left.
     """
     groups = {} if srdf is None else srdf.groups
     if wanted is not None:

@@ -29,23 +29,11 @@ def named_states(robot: Robot, scene: Scene | None = None) -> dict[str, dict[str
 
 
 def at_states(robot: Robot, texts: Iterable[str], scene: Scene | None = None) -> Robot:
-    """Return the robot with the joints outside of its group held where named states have them.
+    """Return the robot with the joints outside of its group held where named states, also of the scene, have them.
 
-    Parameters
-    ----------
-    robot : Robot
-        A robot.
-    texts : iterable of str
-        Start and goal of a plan, as :func:`configuration` takes them; other texts hold no joint.
-    scene : Scene, optional
-        Whose named states are known, too.
-
-    Raises
-    ------
-    InvalidValue
-        If two states have such a joint in different places, or one has it outside its limits.
-    UnknownName
-        If a state has a joint that the robot does not have.
+    `texts` are start and goal of a plan, as :func:`configuration` takes them; those that name no state hold no joint.
+    Raises InvalidValue if two states have such a joint in different places, or one has it outside its limits;
+    UnknownName if a state has a joint that the robot does not have.
     """
     states = named_states(robot, scene)
     joints = {joint.name: joint for joint in robot.joints}
@@ -115,14 +103,10 @@ def configuration(robot: Robot, text: str, scene: Scene | None = None, *, degree
     degrees : bool
         Angles in `text` are degrees; lengths stay metres, and named states what they are.
 
-    Raises
-    ------
-    InvalidValue
-        If a number is not one, there are too many or too few, a joint is given twice, or a value is outside the
-        joint's limits: the text says which joint, and by how much.  If a state has a joint outside of the group
-        elsewhere than where the robot holds it, which would be another posture: see :func:`at_states`.
-    UnknownName
-        If there is no such state, or no such joint in the group.
+    Raises InvalidValue if a number is not one, there are too many or too few, a joint is given twice, or a value is
+    outside the joint's limits: the text says which joint, and by how much; or if a state has a joint outside of the
+    group elsewhere than where the robot holds it, which would be another posture: see :func:`at_states`.  UnknownName
+    if there is no such state, or no such joint in the group.
     """
     if not text.replace(",", " ").split():
         raise InvalidValue(f"a configuration of {robot.name!r} must not be empty")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from functools import cache
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -24,8 +24,9 @@ Floats = npt.NDArray[np.float64]
 MOST_MOTIONS = 1_000_000
 SECONDS = 5.0
 
-_CAPACITY = 1024
-"""Nodes of a tree there is room for at first; doubled when it is full."""
+_CAPACITY = 1040
+"""Nodes of a tree there is room for at first; doubled when it is full.  Not a power of two: columns would then take
+each other's place in the processor's cache."""
 
 _SLICE = 1000
 """Batches of sixteen checks between two looks at the clock: about 10 ms."""
@@ -100,11 +101,12 @@ def connect(
     dim = world.space.dim
     limit = require_positive("seconds", seconds)
     most = require_count("most_motions", most_motions)
-    ends = as_batch("start and goals", _stacked(start, goals, dim), dim)
+    first, others = _ends(start, goals, dim)
     samples = None if sequence is None else _as_sequence(sequence, dim)
     if world.fixed_contact is not None or world.backend == "scalar":
+        _require_finite(first, others)
         return Connection(np.empty((0, dim)), -1, 0, 0, 0)
-    return _grown(world, ends, samples, most, limit)
+    return _grown(world, first, others, samples, most, limit)
 
 
 def shorten(world: PlansWithTrees, path: npt.ArrayLike) -> tuple[Floats, int]:
@@ -125,14 +127,20 @@ def shorten(world: PlansWithTrees, path: npt.ArrayLike) -> tuple[Floats, int]:
     InvalidValue
         If `path` is no such array.
     """
-    waypoints = as_batch("path", path, world.space.dim)
-    if len(waypoints) < 2:
-        raise InvalidValue(f"a path must have 2 waypoints or more, got {len(waypoints)}")
+    dim = world.space.dim
+    # An array as planners give it needs no look here; that it is finite compiled code sees.
+    if not (
+        type(path) is np.ndarray and path.dtype == np.float64 and path.ndim == 2 and path.shape[1] == dim
+    ):
+        path = as_batch("path", path, dim)
+    if len(path) < 2:
+        raise InvalidValue(f"a path must have 2 waypoints or more, got {len(path)}")
     if world.backend == "scalar":
-        return _shortened(world, waypoints)
-    from evenroad.robot.kernel.shorten import shorten_path
-
-    return shorten_path(world.lanes, waypoints, share_pairs())
+        return _shortened(world, as_batch("path", path, dim))
+    short, motions = _shorten_path()(world.lanes, path, *_place(share_pairs))
+    if not len(short):
+        as_batch("path", path, dim)
+    return short, motions
 
 
 def _shortened(world: PlansWithTrees, path: Floats) -> tuple[Floats, int]:
@@ -172,89 +180,92 @@ def _shortened(world: PlansWithTrees, path: Floats) -> tuple[Floats, int]:
 
 
 def _grown(
-    world: PlansWithTrees, ends: Floats, samples: Floats | None, most: int, seconds: float
+    world: PlansWithTrees, first: Floats, goals: Floats, samples: Floats | None, most: int, seconds: float
 ) -> Connection:
-    # Imported late: where the vector type cannot even be defined, all else still works.
-    from evenroad.robot.kernel import tree_steps
-    from evenroad.robot.kernel import trees as kernel
-
+    kernel, tree_steps = _tree_kernels()
+    grow = kernel.grow
     order = None
-    if len(ends) > 2:
+    if len(goals) > 1:
         # The nearest goals are tried first.
-        distances = world.space.distance(np.broadcast_to(ends[0], ends[1:].shape), ends[1:])
+        distances = world.space.distance(np.broadcast_to(first, goals.shape), goals)
         order = np.argsort(distances, kind="stable")
-        ends = ends[np.concatenate([[0], 1 + order])]
-    count, dim = ends.shape
+        goals = goals[order]
+    count, dim = len(goals) + 1, len(first)
     capacity = -(-max(_CAPACITY, 2 * count + kernel.ROOM) // 16) * 16
-    block = np.empty(kernel.room_for(count, capacity, dim))
-    state, begin = block[: kernel.STATE + 2].view(np.int64), kernel.STATE + 2 + count * dim
-    state[:], block[kernel.STATE + 2 : begin] = 0, ends.ravel()
+    steps = tree_steps.memory_for(dim)
+    memory, arguments = world.lanes.arguments(steps + kernel.room_for(count, capacity, dim))
+    block, place = memory[steps:], arguments[-1] + 8 * steps
+    begin, middle = kernel.STATE + 2, kernel.STATE + 2 + dim
+    block[:begin], block[begin:middle] = 0.0, first
+    block[middle : middle + goals.size] = goals.ravel()
     sequence = _place(cube_points, dim) if samples is None else (address(samples), len(samples))
     driven_by = *sequence, *_place(ball_points, dim)
-    _, arguments = world.lanes.arguments(tree_steps.memory_for(dim))
-    if not kernel.grow.overloads:
+    if not grow.overloads:
         # Compiled, or loaded, before the clock runs; no motion is looked at.
-        kernel.grow(address(block), count, capacity, *driven_by, 0, _SLICE, *arguments)
-    place, deadline = address(block), time.perf_counter() + seconds
+        grow(place, count, capacity, *driven_by, 0, _SLICE, *arguments)
+    deadline = time.perf_counter() + seconds
     while True:
-        ended = kernel.grow(place, count, capacity, *driven_by, most, _SLICE, *arguments)
+        ended = grow(place, count, capacity, *driven_by, most, _SLICE, *arguments)
         if ended == kernel.FULL:
-            block = _with_more_room(block, begin, capacity, dim)
+            block = _with_more_room(block, begin + count * dim, capacity, dim)
             place, capacity = address(block), 2 * capacity
         elif ended != kernel.PAUSED or time.perf_counter() >= deadline:
             break
-    state = block[: kernel.STATE + 2].view(np.int64)
+    if ended == kernel.NO_NUMBERS:
+        _require_finite(first, goals)
+    motions, configurations, *_, waypoints, reached, nodes, others = block[:begin].view(np.int64).tolist()
     path, goal = np.empty((0, dim)), -1
     if ended == kernel.SOLVED:
-        nodes, links, _ = _trees(block, begin, capacity, dim)
-        here, there = (
-            _to_root(links[kernel.PARENT, tree], state[kernel.START_NODE + tree]) for tree in (0, 1)
-        )
-        path = np.concatenate([nodes[0, here[::-1]], nodes[1, there]])
-        goal = int(links[kernel.PROVED, 1, there[-1]]) - 1
-        goal = goal if order is None else int(order[goal])
-    motions, configurations, _, *_, first, second = state.tolist()
-    return Connection(path, goal, first + second, configurations, motions)
+        columns = begin + count * dim + (2 * dim + 8) * capacity
+        path = block[columns : columns + waypoints * dim].reshape(waypoints, dim).copy()
+        goal = reached - 1 if order is None else int(order[reached - 1])
+    return Connection(path, goal, nodes + others, configurations, motions)
 
 
-def _to_root(parents: npt.NDArray[np.int64], node: int) -> list[int]:
-    """Return the nodes from one to the root of its tree."""
-    way = []
-    while node >= 0:
-        way.append(node)
-        node = int(parents[node])
-    return way
+# Imported late: where the vector type cannot even be defined, all else still works.
+@cache
+def _tree_kernels() -> tuple[Any, Any]:
+    from evenroad.robot.kernel import tree_steps, trees
+
+    return trees, tree_steps
 
 
-def _trees(
-    block: Floats, begin: int, capacity: int, dim: int
-) -> tuple[Floats, npt.NDArray[np.int64], npt.NDArray[np.float32]]:
-    """Return nodes, links and columns, the last things in the memory of the trees."""
-    links = begin + 2 * capacity * dim
-    columns = links + 8 * capacity
-    return (
-        block[begin:links].reshape(2, capacity, dim),
-        block[links:columns].view(np.int64).reshape(4, 2, capacity),
-        block[columns:].view(np.float32).reshape(2, dim, capacity),
-    )
+@cache
+def _shorten_path() -> Callable[[LaneWorld, Floats, int, int], tuple[Floats, int]]:
+    from evenroad.robot.kernel.shorten import shorten_path
+
+    return shorten_path
 
 
 def _with_more_room(block: Floats, begin: int, capacity: int, dim: int) -> Floats:
-    """Return the memory of the trees with room for twice as many nodes."""
-    larger = np.empty(begin + 2 * (len(block) - begin))
+    """Return the memory of the trees, of which nodes, links and columns begin there, with room for twice as many."""
+    larger = np.empty(begin + 2 * (4 * dim + 8) * capacity)
     larger[:begin] = block[:begin]
     nodes, links, columns = _trees(larger, begin, 2 * capacity, dim)
     nodes[:, :capacity], links[..., :capacity], columns[..., :capacity] = _trees(block, begin, capacity, dim)
     return larger
 
 
+def _trees(
+    block: Floats, begin: int, capacity: int, dim: int
+) -> tuple[Floats, npt.NDArray[np.int64], npt.NDArray[np.float32]]:
+    links = begin + 2 * capacity * dim
+    columns = links + 8 * capacity
+    return (
+        block[begin:links].reshape(2, capacity, dim),
+        block[links:columns].view(np.int64).reshape(4, 2, capacity),
+        block[columns : columns + capacity * dim].view(np.float32).reshape(2, dim, capacity),
+    )
+
+
 @cache
-def _place(points: Callable[[int], Floats], dim: int) -> tuple[int, int]:
+def _place(points: Callable[..., Floats], *dim: int) -> tuple[int, int]:
     """Return the address of points that are kept for good, and how many they are."""
-    return address(points(dim)), len(points(dim))
+    return address(points(*dim)), len(points(*dim))
 
 
-def _stacked(start: npt.ArrayLike, goals: npt.ArrayLike, dim: int) -> Floats:
+def _ends(start: npt.ArrayLike, goals: npt.ArrayLike, dim: int) -> tuple[Floats, Floats]:
+    """Return start, (dim,), and goals, (g, dim); that they are finite is left to compiled code."""
     try:
         first, others = np.asarray(start, dtype=np.float64), np.asarray(goals, dtype=np.float64)
     except (TypeError, ValueError) as error:
@@ -263,7 +274,11 @@ def _stacked(start: npt.ArrayLike, goals: npt.ArrayLike, dim: int) -> Floats:
         raise InvalidValue(f"start must have shape ({dim},), got {first.shape}")
     if others.ndim != 2 or others.shape[1] != dim or len(others) == 0:
         raise InvalidValue(f"goals must have shape (g, {dim}), g >= 1, got {others.shape}")
-    return np.concatenate([first[np.newaxis], others])
+    return first, others
+
+
+def _require_finite(first: Floats, goals: Floats) -> None:
+    as_batch("start and goals", np.concatenate([first[np.newaxis], goals]), len(first))
 
 
 def _as_sequence(sequence: npt.ArrayLike, dim: int) -> Floats:

@@ -29,21 +29,11 @@ _ANY = 1000.0
 class Urdf:
     """What the file of a robot says about motion and collision.
 
-    Attributes
-    ----------
-    links : tuple of str
-        All links; the root first, every parent before its children.
-    joints : tuple of Joint
-        ``joints[i]`` is the joint whose child is ``links[i + 1]``; a mimic follows a joint that is no mimic, with
-        limits that keep the mimic within its own.
-    order : tuple of str
-        Names of the joints as the file lists them: the order of configurations.
-    shapes : tuple of Shape
-        The collision geometry, each shape in its link's frame.
-    drawn_only : tuple of str
-        Links that are drawn and have no collision geometry.
-    notes : tuple of str
-        What was read otherwise than it stands in the file.
+    Of the `links` the root comes first, every parent before its children; ``joints[i]`` is the joint whose child is
+    ``links[i + 1]``, and a mimic follows a joint that is no mimic, with limits that keep the mimic within its own.
+    `order` are the joints' names as the file lists them: the order of configurations.  `shapes` are the collision
+    geometry, each in its link's frame; `drawn_only` are links that are drawn and have none; `notes` say what was read
+    otherwise than it stands in the file.
     """
 
     name: str
@@ -71,15 +61,9 @@ def read_urdf(source: Path | RobotFile) -> Urdf:
     Meshes are looked for but not opened.  An element ``<capsule radius="r" length="l"/>``, a cylinder of length l
     along z with half balls on both ends, is understood beside those of the standard.
 
-    Raises
-    ------
-    BrokenFile
-        If the file is missing, broken or not a URDF, a piece is missing, a mesh is not found, or the links do not form
-        a tree.
-    InvalidValue
-        If a number is not one, or out of its range.
-    UnknownName
-        If a joint is of a type that is not supported (floating, planar).
+    Raises BrokenFile if the file is missing, broken or not a URDF, a piece is missing, a mesh is not found, or the
+    links do not form a tree; InvalidValue if a number is not one, or out of its range; UnknownName if a joint is of a
+    type that is not supported (floating, planar).
     """
     file = source if isinstance(source, RobotFile) else RobotFile(source)
     root, notes = read_urdf_xml(file)
@@ -137,9 +121,8 @@ def _joint(element: Element, path: Path, notes: list[str]) -> Joint:
     lower, upper, velocity = _limits(element.find("limit"), kind, where, notes)
     mimic = None
     if follows is not None and kind != "fixed":
-        mimic = Mimic(
-            follows.attrib["joint"], float(follows.get("multiplier", 1.0)), float(follows.get("offset", 0.0))
-        )
+        multiplier, offset = float(follows.get("multiplier", 1.0)), float(follows.get("offset", 0.0))
+        mimic = Mimic(follows.attrib["joint"], multiplier, offset)
     return Joint(
         name=name,
         kind=cast(Kind, kind),
@@ -188,14 +171,12 @@ def _limits(limit: Element | None, kind: str, where: str, notes: list[str]) -> t
         )
     lower, upper = given.get("lower", 0.0), given.get("upper", 0.0)
     if missing:
+        note = f"{where.partition(' in ')[0]} has no {missing} limit: 0 by the specification"
         locked = ", so that it cannot move; one that turns without limits is of type continuous"
-        locked = locked if lower == upper else ""
-        notes.append(f"{where.partition(' in ')[0]} has no {missing} limit: 0 by the specification{locked}")
+        notes.append(note + (locked if lower == upper else ""))
     if lower > upper:
         absent = f" ({missing} is not given: 0 by the specification)" if missing else ""
-        raise InvalidValue(
-            f"the limits of {where} must satisfy lower <= upper, got {lower:g}, {upper:g}{absent}"
-        )
+        raise InvalidValue(f"limits of {where} must have lower <= upper, got {lower:g}, {upper:g}{absent}")
     return lower, upper, velocity
 
 
@@ -204,10 +185,8 @@ def _shape(link: str, collision: Element, file: RobotFile) -> Shape:
     if shape.tag == "mesh":
         x, y, z = np.broadcast_to(_numbers(shape, "scale", (1.0,)), 3).tolist()
         return Mesh(find_mesh(shape.attrib["filename"], file, link), (x, y, z), pose=pose, link=link)
-    size = [
-        number for name, _ in PRIMITIVES[shape.tag].dimensions for number in _numbers(shape, name, (0.0,))
-    ]
-    return shape_of(shape.tag, size, pose, link)
+    names = [name for name, _ in PRIMITIVES[shape.tag].dimensions]
+    return shape_of(shape.tag, [size for name in names for size in _numbers(shape, name, (0.0,))], pose, link)
 
 
 def _pose(owner: Element) -> Pose:
@@ -244,10 +223,8 @@ def in_tree_order(links: Sequence[str], joints: Sequence[Joint], where: str) -> 
     for joint in joints:
         for role, link in (("parent", joint.parent), ("child", joint.child)):
             if link not in links:
-                raise BrokenFile(
-                    f"joint {joint.name!r} in {where} has the {role} {link!r}, which is no link; "
-                    f"links: {', '.join(links)}"
-                )
+                said = f"joint {joint.name!r} in {where} has the {role} {link!r}, which is no link"
+                raise BrokenFile(f"{said}; links: {', '.join(links)}")
         if joint.child in parent_joint:
             raise BrokenFile(
                 f"link {joint.child!r} in {where} hangs on two joints,"

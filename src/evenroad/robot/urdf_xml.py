@@ -52,29 +52,24 @@ _IGNORED = ("inertial", "material", "transmission", "gazebo", "sensor", "ros2_co
 class RobotFile:
     """The file of a robot, and how it is to be read.
 
-    With `use_visuals`, links without collision geometry get what is drawn of them.  `packages` are folders of packages,
-    (name, folder), beside those that are found; `arguments` are those of a xacro, (name, value).
+    With `use_visuals`, links without collision geometry get what is drawn of them; with `as_drawn` all links do, where
+    anything is.  `packages` are folders of packages, (name, folder), beside those that are found; `arguments` are those
+    of a xacro, (name, value).
     """
 
     path: Path
     use_visuals: bool = False
     packages: tuple[tuple[str, str], ...] = ()
     arguments: tuple[tuple[str, str], ...] = ()
+    as_drawn: bool = False
 
 
 def read_urdf_xml(file: RobotFile) -> tuple[Element, list[str]]:
     """Return the ``<robot>`` element of a URDF or xacro without what collision checking does not need, and notes.
 
-    Numbers are rewritten with blanks between them; of a ``<visual>`` is kept that it is there.
-
-    Raises
-    ------
-    BrokenFile
-        If the file is missing, not XML or not a URDF, or an element lacks a piece.
-    InvalidValue
-        If an attribute does not hold the numbers that it must.
-    NotAvailable
-        If it is a xacro and the extra for these is not installed.
+    Numbers are rewritten with blanks between them; of a ``<visual>`` is kept that it is there.  Raises BrokenFile if
+    the file is missing, not XML or not a URDF, or an element lacks a piece; InvalidValue if an attribute does not hold
+    the numbers that it must; NotAvailable if it is a xacro and the extra for these is not installed.
     """
     path, notes = file.path, list[str]()
     root = read_xml(path, "robot", "a URDF")
@@ -87,7 +82,9 @@ def read_urdf_xml(file: RobotFile) -> tuple[Element, list[str]]:
     drawn = []
     for link in root.findall("link"):
         visuals = link.findall("visual")
-        if file.use_visuals and visuals and link.find("collision") is None:
+        for collision in link.findall("collision") if file.as_drawn and visuals else ():
+            link.remove(collision)
+        if (file.use_visuals or file.as_drawn) and visuals and link.find("collision") is None:
             drawn.append(str(link.get("name")))
             for visual in visuals:
                 visual.tag = "collision"
@@ -232,9 +229,7 @@ def _numbers(what: str, attribute: str, text: str, count: int) -> list[float]:
     if attribute in _LENGTHS and min(numbers) < 0.0:
         raise InvalidValue(f"{what} must be >= 0, got {text!r}")
     if attribute == "scale" and 0.0 in numbers:
-        raise InvalidValue(
-            f"{what} must not be 0, got {text!r}: a mesh without volume would hardly ever collide"
-        )
+        raise InvalidValue(f"{what} must not be 0, got {text!r}: a flat mesh would hardly ever collide")
     return numbers
 
 
@@ -253,9 +248,7 @@ def find_mesh(name: str, file: RobotFile, link: str) -> Path:
     looked = ", ".join(str(place) for place in places[:4]) + (", ..." if len(places) > 4 else "")
     package = name.removeprefix("package://").partition("/")[0] if name.startswith("package://") else ""
     hint = f"; --package {package}=FOLDER says where that package is" if package else ""
-    raise BrokenFile(
-        f"the mesh {name!r} of link {link!r} in {file.path} is missing; looked for {looked}{hint}"
-    )
+    raise BrokenFile(f"mesh {name!r} of link {link!r} in {file.path} is missing; looked for {looked}{hint}")
 
 
 def _candidates(name: str, file: RobotFile) -> Iterator[Path]:

@@ -15,19 +15,9 @@ from evenroad.errors import InvalidValue
 class FlatMetric:
     """The metric ``sqrt(sum_k (scale_k wrap_k(b_k - a_k))^2)``: what a neighbour tree needs to know of a space.
 
-    ``wrap_k(x)`` is `x` shifted by the multiple of ``period_k`` that brings it nearest to 0.
-
-    Parameters
-    ----------
-    scale : array_like, shape (dim,)
-        What a unit of each coordinate counts, finite and > 0.
-    period : array_like, shape (dim,)
-        After how much each coordinate repeats, > 0; ``inf`` where it does not.
-
-    Raises
-    ------
-    InvalidValue
-        If the two are not such arrays of one length >= 1.
+    ``wrap_k(x)`` is `x` shifted by the multiple of ``period_k`` that brings it nearest to 0.  `scale`, (dim,), is what
+    a unit of each coordinate counts, finite and > 0; `period`, (dim,), after how much each repeats, > 0, ``inf`` where
+    it does not.  InvalidValue if the two are not such arrays of one length >= 1.
     """
 
     scale: Floats

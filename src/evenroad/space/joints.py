@@ -10,14 +10,7 @@ import numpy as np
 
 from evenroad._arrays import Bools, Floats, set_fields
 from evenroad.errors import InvalidValue
-from evenroad.space.batch import (
-    as_batch,
-    as_batch_pair,
-    as_bounds,
-    as_cube_batch,
-    as_fractions,
-    as_weights,
-)
+from evenroad.space.batch import as_batch, as_batch_pair, as_bounds, as_cube_batch, as_fractions, as_weights
 from evenroad.space.flat import FlatMetric
 from evenroad.space.protocol import Space
 
@@ -105,17 +98,8 @@ class FlatSpace(Space):
 class Box(FlatSpace):
     """The box ``[low_1, high_1] x ... x [low_dim, high_dim]``; straight lines are its shortest paths.
 
-    Parameters
-    ----------
-    low, high : sequence of floats, length dim
-        The bounds, ``low < high`` on every axis; stored as tuples.
-    weights : sequence of floats, length dim, optional
-        What a unit of each axis counts in the metric, > 0; 1 by default.
-
-    Raises
-    ------
-    InvalidValue
-        If the bounds or weights are not such numbers.
+    `low` and `high`, ``low < high`` on every axis, are stored as tuples; `weights`, > 0, are what a unit of each axis
+    counts in the metric, 1 by default.  InvalidValue if they are not such numbers.
     """
 
     low: Sequence[float]
@@ -155,12 +139,7 @@ class JointSpace(FlatSpace):
     wrapping : bool or sequence of bools, length dim
         Which joints wrap; one bool stands for all.
     weights : sequence of floats, length dim, optional
-        What a unit of each joint counts in the metric, > 0; 1 by default.
-
-    Raises
-    ------
-    InvalidValue
-        If the ranges, `wrapping` or `weights` are not such values.
+        What a unit of each joint counts in the metric, > 0; 1 by default.  InvalidValue for any other value.
     """
 
     low: Sequence[float]

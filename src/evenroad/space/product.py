@@ -32,14 +32,8 @@ class Product(Space):
     weights : sequence of floats, one a part, optional
         What a unit of each part's distance counts, > 0; 1 by default.
     combine : {"sum", "l2"}
-        The distance: ``sum_i w_i d_i``, or ``sqrt(sum_i (w_i d_i)^2)``.
-
-    Raises
-    ------
-    InvalidValue
-        If there are no parts, or the weights are not such numbers.
-    UnknownName
-        If `combine` is neither.
+        The distance: ``sum_i w_i d_i``, or ``sqrt(sum_i (w_i d_i)^2)``; another is an UnknownName, all else that is
+        not such an InvalidValue.
     """
 
     parts: Sequence[Space]
@@ -145,12 +139,8 @@ def SE2(
     weights : sequence of two floats
         What a unit of length and a radian count, > 0.
     combine : {"sum", "l2"}
-        How the two distances make one; with "l2" the metric is flat, so that neighbours are found in a tree.
-
-    Raises
-    ------
-    InvalidValue, UnknownName
-        As `Box` and `Product`.
+        How the two distances make one; with "l2" the metric is flat, so that neighbours are found in a tree.  Errors
+        are those of `Box` and `Product`.
     """
     return Product((_position(low, high, 2), Circle()), weights, combine)
 

@@ -22,7 +22,6 @@ class Space(Protocol):
     @property
     def dim(self) -> int:
         """Number of coordinates of a configuration."""
-        ...
 
     @property
     def cube_dim(self) -> int:
@@ -36,7 +35,6 @@ class Space(Protocol):
 
     def from_cube(self, u: Floats) -> Floats:
         """Map points of the unit cube, (n, cube_dim), to configurations, (n, dim), preserving measure."""
-        ...
 
     def contains(self, q: Floats) -> Bools:
         """Return for each row of `q`, (n, dim), whether it lies in the space, bounds included: (n,)."""
@@ -44,11 +42,9 @@ class Space(Protocol):
 
     def distance(self, a: Floats, b: Floats) -> Floats:
         """Return the distance of each row of `a` from the same row of `b`: two (n, dim) arrays -> (n,)."""
-        ...
 
     def interpolate(self, a: Floats, b: Floats, t: Floats | float) -> Floats:
         """Return the points a fraction `t` (scalar or (n,), in [0, 1]) from `a` to `b`, (n, dim)."""
-        ...
 
 
 def all_distances(space: Space, a: Floats, b: Floats) -> Floats:

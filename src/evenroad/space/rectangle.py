@@ -16,26 +16,15 @@ from evenroad.space.protocol import Space
 
 _LARGEST_COSINE = 1e-9
 """Edges count as perpendicular up to this cosine: room for the rounding of a yaw, not for a slanted frame."""
-
 _ROUNDING = 1e-9
 """Share of an edge by which a point may be outside: room for the rounding of a rotated frame far from the origin."""
 
 
 @dataclass(frozen=True)
 class Rectangle(Space):
-    """The rectangle ``corner + s * edge_u + t * edge_v`` for s, t in [0, 1].
+    """The rectangle ``corner + s * edge_u + t * edge_v`` for s, t in [0, 1]; the cube's origin goes to `corner`.
 
-    Parameters
-    ----------
-    corner : tuple of two floats
-        The corner that the cube's origin goes to.
-    edge_u, edge_v : tuple of two floats
-        The sides that leave `corner`, perpendicular and not of length zero, in the units of `corner`.
-
-    Raises
-    ------
-    InvalidValue
-        If an entry is not a finite number, an edge has length zero, or the edges are not perpendicular.
+    InvalidValue if an entry is not a finite number, an edge has length zero, or the edges are not perpendicular.
     """
 
     corner: tuple[float, float]

@@ -15,7 +15,6 @@ from evenroad.space.protocol import Space
 
 _UNIT_TOLERANCE = 1e-6
 """How far a norm may be from 1: room for quaternions read from a text file with seven digits."""
-
 SMALL_ANGLE = 1e-8
 """Below it a chord and its arc agree to the last bit, and sin(angle) is too small to divide by safely."""
 

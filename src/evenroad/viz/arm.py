@@ -11,8 +11,8 @@ from PIL import Image, ImageColor
 from evenroad._arrays import Floats
 from evenroad._files import atomic_write
 from evenroad.roadmap import PlanResult, Status
-from evenroad.robot.kinematics import capsule_ends, link_poses
-from evenroad.space.path import resample
+from evenroad.robot.kinematics import capsule_ends, link_poses, tip_links
+from evenroad.space.path import place_at, resample
 from evenroad.viz import style
 from evenroad.viz.outline import obstacle_bounds, obstacle_outline, stadium
 from evenroad.viz.sheet import Colour, Sheet, View
@@ -25,6 +25,10 @@ VIEWS = (("from above", (0, 1)), ("from the side", (0, 2)), ("from the front", (
 SIZE = (1920, 744)
 """Pixels of the picture."""
 _AXES = "xyz"
+_TOWARDS = (1.0, -1.0, 1.0)
+"""Along x, y and z: the sign of what is nearer to the eye, where the other two point to the right and up."""
+_FRAMES, _FRAME, _PAUSE = 48, 60, 800
+"""Of a moving picture; milliseconds of each, and of the first and the last."""
 _BETWEEN = 7
 """Places between start and goal at which the arm is shown."""
 _STEP = 0.05
@@ -39,44 +43,72 @@ def save_arm_picture(path: str | os.PathLike[str], result: PlanResult, world: Ar
         picture.save(file, format="png", compress_level=1)
 
 
-def draw_arm_plan(result: PlanResult, world: ArmWorld) -> Image.Image:
-    """Return a picture of a plan of an arm: from above, from the side and from the front.
+def save_arm_gif(path: str | os.PathLike[str], result: PlanResult, world: ArmWorld) -> None:
+    """Save a moving picture of the arm on its path as GIF, atomically; without a path of start and goal in turn."""
+    if result.path is None:
+        places = np.stack([result.start, result.goal])
+    else:
+        places = place_at(result.path, world.space, np.linspace(0.0, 1.0, _FRAMES))
+    frames = [draw_arm_plan(result, world, now=q).reduce(2).quantize(160) for q in places]
+    pauses = [_PAUSE, *(len(frames) - 2) * [_FRAME], _PAUSE]
+    with atomic_write(path) as file:
+        frames[0].save(file, format="gif", save_all=True, append_images=frames[1:], duration=pauses, loop=0)
 
-    The start is green, the goal blue, with the arm along the path between them and the path of its tip in red.  Without
-    a path start and goal are shown; a body in collision is red.
+
+def draw_arm_plan(result: PlanResult, world: ArmWorld, *, now: Floats | None = None) -> Image.Image:
+    """Return a picture of a plan of an arm: from above, from the side and from the front, on one scale.
+
+    The start is green, the goal blue, with the arm along the path between them, or where it is `now`, (dim,); the path
+    of each planned chain's tip is red.  Without a path start and goal are shown; a body in collision is red.  What is
+    nearer to the eye hides what is behind it.
     """
     title = f"{world.robot.name} in {world.scene.name}: {result.status}; {result.message}"
     sheet = Sheet(SIZE, len(VIEWS), title)
     low, high = _limits(world, _shown(result, world))
+    scale = min(float(np.min(np.array(sheet.room) / (high - low)[list(pair)])) for _, pair in VIEWS)
     for i, (name, pair) in enumerate(VIEWS):
-        view = View(low[list(pair)], high[list(pair)], sheet.room)
-        draw_arm_view(view, result, world, pair)
+        view = View(low[list(pair)], high[list(pair)], scale)
+        draw_arm_view(view, result, world, pair, now=now)
         first, second = (_AXES[axis] for axis in pair)
         sheet.add(view, i, f"{name} ({first}, {second})", (f"{first} [m]", f"{second} [m]"))
     sheet.legend(_legend(result, world))
     return sheet.image
 
 
-def draw_arm_view(view: View, result: PlanResult, world: ArmWorld, pair: tuple[int, int]) -> None:
-    """Draw what is seen in the plane of two of the axes x, y, z; what is drawn later is in front."""
+def draw_arm_view(
+    view: View, result: PlanResult, world: ArmWorld, pair: tuple[int, int], *, now: Floats | None = None
+) -> None:
+    """Draw what is seen in the plane of two of the axes x, y, z, from the far to the near."""
     shown = _shown(result, world)
-    places = list(enumerate(capsule_ends(world.robot, shown)))
-    for i, ends in [*places[1:-1], places[0], places[-1]]:
-        share, at_end = i / (len(shown) - 1), i in (0, len(shown) - 1)
-        fill, edge = _tint(share, 0.55 if at_end else 0.25), _tint(share, 1.0 if at_end else 0.45)
-        for outline in _bodies(world.robot, ends, pair):
-            view.polygon(outline, fill, edge, 1.5 if at_end else 1.0)
+    last = len(shown) - 1
+    arms = [(i / last, ends) for i, ends in enumerate(capsule_ends(world.robot, shown))]
+    between = arms[1:-1]
+    if now is not None:
+        between = [(0.5, capsule_ends(world.robot, now[np.newaxis])[0])]
+    axis, towards = next((k, _TOWARDS[k]) for k in range(3) if k not in pair)
+    things: list[tuple[float, Floats, Colour, Colour, float]] = []
+    for share, ends in [*between, arms[0], arms[-1]]:
+        # Of many places those in between are a hint; of a moving picture that one is what it is about.
+        faint = (share in (0.0, 1.0)) == (now is not None)
+        fill, edge = _tint(share, 0.25 if faint else 0.55), _tint(share, 0.45 if faint else 1.0)
+        for body, outline in zip(ends, _bodies(world.robot, ends, pair), strict=True):
+            depth = -np.inf if faint else towards * float(body[:, axis].mean())
+            things.append((depth, outline, fill, edge, 1.0 if faint else 1.5))
     for obstacle in world.scene.obstacles:
         colour = style.OUTSIDE if obstacle.cell else style.OBSTACLE
-        view.polygon(obstacle_outline(obstacle, pair), _faint(colour, 0.16), style.OBSTACLE, 1.5)
+        depth = towards * float(np.mean([corner[axis] for corner in obstacle_bounds(obstacle)]))
+        things.append((depth, obstacle_outline(obstacle, pair), _faint(colour, 0.16), style.OBSTACLE, 1.5))
+    for _, outline, fill, edge, width in sorted(things, key=lambda thing: thing[0]):
+        view.polygon(outline, fill, edge, width)
     if result.path is not None:
-        view.line(_tips(result.path, world, _STEP)[:, pair], style.PATH, 3)
+        for tips in _tips(result.path, world, _STEP):
+            view.line(tips[:, pair], style.PATH, 3)
     if result.status in (Status.START_INVALID, Status.GOAL_INVALID):
         for outline in _colliding(result, world, pair):
             view.polygon(outline, _faint(style.COLLISION, 0.35), style.COLLISION, 3)
-    ends = _tips(np.stack([result.start, result.goal]), world)[:, pair]
-    for place, colour in zip(ends, (style.START, style.GOAL), strict=True):
-        view.dot(place, colour, 6)
+    for tips in _tips(np.stack([result.start, result.goal]), world):
+        for place, colour in zip(tips[:, pair], (style.START, style.GOAL), strict=True):
+            view.dot(place, colour, 6)
 
 
 def _shown(result: PlanResult, world: ArmWorld) -> Floats:
@@ -96,20 +128,11 @@ def _bodies(robot: Robot, ends: Floats, pair: tuple[int, int]) -> list[Floats]:
     ]
 
 
-def _tip(robot: Robot) -> int:
-    """Return the number of the link at the tip: what hangs, fixed, on the last joint of the group."""
-    children = {joint.name: joint.child for joint in robot.joints}
-    tip = children[robot.group[-1]]
-    for joint in robot.joints:
-        if joint.kind == "fixed" and joint.parent == tip:
-            tip = joint.child
-    return robot.links.index(tip)
-
-
-def _tips(path: Floats, world: ArmWorld, step: float | None = None) -> Floats:
-    """Return where the tip is at configurations, (n, dim), or every `step` on the path through them."""
+def _tips(path: Floats, world: ArmWorld, step: float | None = None) -> list[Floats]:
+    """Return where each tip is, (n, 3), at configurations, (n, dim), or every `step` on the path through them."""
     dense = path if step is None else resample(path, world.space, step)[0]
-    return link_poses(world.robot, dense)[:, _tip(world.robot), :3, 3]
+    poses = link_poses(world.robot, dense)
+    return [poses[:, world.robot.links.index(tip), :3, 3] for tip in tip_links(world.robot)]
 
 
 def _colliding(result: PlanResult, world: ArmWorld, pair: tuple[int, int]) -> list[Floats]:
@@ -117,9 +140,7 @@ def _colliding(result: PlanResult, world: ArmWorld, pair: tuple[int, int]) -> li
     end = result.start if result.status is Status.START_INVALID else result.goal
     reason = world.explain(end)
     bodies = _bodies(world.robot, capsule_ends(world.robot, end[np.newaxis])[0], pair)
-    named = [
-        body for body, each in zip(bodies, world.robot.capsules, strict=True) if repr(each.link) in reason
-    ]
+    named = [body for body, own in zip(bodies, world.robot.capsules, strict=True) if repr(own.link) in reason]
     obstacles = [each for each in world.scene.obstacles if repr(each.name) in reason]
     return named + [obstacle_outline(each, pair) for each in obstacles]
 
@@ -127,9 +148,8 @@ def _colliding(result: PlanResult, world: ArmWorld, pair: tuple[int, int]) -> li
 def _tint(share: float, strength: float) -> Colour:
     """Return the colour between start and goal, paler for less strength."""
     start, goal = (np.array(ImageColor.getrgb(colour)) for colour in (style.START, style.GOAL))
-    red, green, blue = (
-        np.rint(255 - strength * (255 - (1.0 - share) * start - share * goal)).astype(int).tolist()
-    )
+    colour = 255 - strength * (255 - (1.0 - share) * start - share * goal)
+    red, green, blue = np.rint(colour).astype(int).tolist()
     return red, green, blue
 
 
@@ -161,7 +181,7 @@ def _legend(result: PlanResult, world: ArmWorld) -> list[tuple[str, Colour, Colo
     ]
     if result.path is not None:
         entries.append(("along the path", _tint(0.5, 0.25), _tint(0.5, 0.45)))
-        entries.append((f"path of {world.robot.links[_tip(world.robot)]}", style.PATH, None))
+        entries.append((f"path of {', '.join(tip_links(world.robot))}", style.PATH, None))
     elif result.status in (Status.START_INVALID, Status.GOAL_INVALID):
         entries.append(("in collision", _faint(style.COLLISION, 0.35), style.COLLISION))
     if world.scene.obstacles:

@@ -13,23 +13,21 @@ from evenroad._arrays import Floats
 
 FINER = 2
 """Bodies are drawn so many times as large, and shrunk: their edges are smooth then."""
-
 TEXT, GRID = "#000000", "#e3e9ee"
 _LEFT, _BETWEEN, _TOP, _BOTTOM = 95, 105, 105, 125
 """Margins in pixels; ticks and labels of a view are left of it and below."""
-
 Colour = tuple[int, int, int] | tuple[int, int, int, int] | str
 
 
 class View:
     """What is seen along one axis, between the corners `low` and `high`, (2,) each, in metres.
 
-    Its ``image`` is `FINER` times as large as it is shown.
+    It has `scale` pixels a metre.  Its ``image`` is `FINER` times as large as it is shown.
     """
 
-    def __init__(self, low: Floats, high: Floats, room: tuple[int, int]) -> None:
+    def __init__(self, low: Floats, high: Floats, scale: float) -> None:
         self.low, self.high = low, high
-        self.scale = FINER * float(np.min(np.array(room) / (high - low)))
+        self.scale = FINER * scale
         width, height = (FINER * max(1, round(side / FINER)) for side in self.scale * (high - low))
         self.image = Image.new("RGB", (width, height), "white")
         self._draw = ImageDraw.Draw(self.image, "RGBA")

@@ -1,14 +1,10 @@
 """Worlds: which configurations and motions are free, in batches."""
 
 from evenroad._fingerprint import Fingerprinted as Fingerprinted
-from evenroad.geometry.mesh import TriangleMesh as TriangleMesh
-from evenroad.geometry.mesh import load_mesh as load_mesh
-from evenroad.world.counting import Counting as Counting
 from evenroad.world.function import FunctionWorld as FunctionWorld
 from evenroad.world.gridmap import GridMap as GridMap
 from evenroad.world.gridmap import MapFrame as MapFrame
 from evenroad.world.gridmap import load_map as load_map
-from evenroad.world.mesh import MeshWorld as MeshWorld
 from evenroad.world.protocol import Connection as Connection
 from evenroad.world.protocol import ConnectsAnew as ConnectsAnew
 from evenroad.world.protocol import ConnectsItself as ConnectsItself
@@ -17,5 +13,3 @@ from evenroad.world.protocol import Rechecks as Rechecks
 from evenroad.world.protocol import Separates as Separates
 from evenroad.world.protocol import Shortens as Shortens
 from evenroad.world.protocol import World as World
-from evenroad.world.solids import OrientedBox as OrientedBox
-from evenroad.world.solids import SolidWorld as SolidWorld

@@ -17,7 +17,6 @@ from evenroad.errors import InvalidValue
 
 MOST_SEGMENTS = 2**30
 """More of them in one motion would take hours: then the resolution is a slip."""
-
 _STATES_AT_ONCE = 65536
 """States handed out at a time: many enough to hide the cost of a call, few enough to stay in memory."""
 

@@ -18,7 +18,6 @@ from evenroad.world.bisection import MOST_SEGMENTS, between_ends, require_few_se
 
 OUTSIDE = "it lies outside the bounds of the space"
 """Why a configuration is not free that the space does not contain."""
-
 FINER = 20
 """How many times as densely `FunctionWorld.recheck` looks at states."""
 
@@ -26,6 +25,8 @@ FINER = 20
 @dataclass(frozen=True, eq=False)
 class FunctionWorld:
     """The configurations that a function calls free, and motions that are free at states close together.
+
+    InvalidValue if `is_valid` cannot be called, or `resolution` is not of the kind described below.
 
     A motion is divided into ``n = ceil(distance / resolution)`` segments of one length and free if all n + 1 ends of
     segments are: the states of OMPL's DiscreteMotionValidator, which takes the first of them for granted.  What lies
@@ -49,11 +50,6 @@ class FunctionWorld:
     name : str, optional
         What the function tests, with all that its answers depend on, for example ``"cell 7, tool v2"``.  Only with a
         name can a roadmap of this world be saved with what is known: a function cannot be compared.
-
-    Raises
-    ------
-    InvalidValue
-        If `is_valid` cannot be called, or `resolution` is not of that kind.
     """
 
     proof: ClassVar[str] = "resolution"
@@ -112,9 +108,7 @@ class FunctionWorld:
         Raises NotAvailable if the world has no name, or its space cannot be told from others.
         """
         if self.name is None:
-            raise NotAvailable(
-                "a FunctionWorld has a fingerprint only with a name: FunctionWorld(..., name='cell 7')"
-            )
+            raise NotAvailable("a FunctionWorld has a fingerprint only with a name, such as name='cell 7'")
         return fingerprint_of("function", self.name, self.space, self.resolution)
 
     def explain(self, q: Floats) -> str:
@@ -185,9 +179,7 @@ def _as_resolution(resolution: object, space: Space) -> float | tuple[float, ...
     if not isinstance(resolution, Sequence | np.ndarray) or isinstance(resolution, str):
         return require_positive("resolution", resolution)
     if not isinstance(space, Product):
-        raise InvalidValue(
-            f"resolution must be one number, unless the space is a Product, got {resolution!r}"
-        )
+        raise InvalidValue(f"resolution must be one number unless the space is a Product, got {resolution!r}")
     row = as_row("resolution", list(np.atleast_1d(resolution)), len(space.parts))
     for value in row:
         require_positive("resolution", value)

@@ -23,15 +23,12 @@ class World(Protocol):
     @property
     def space(self) -> Space:
         """The space that the configurations live in."""
-        ...
 
     def valid(self, q: Floats) -> Bools:
         """Return for each configuration, (n, dim), whether it is free: (n,)."""
-        ...
 
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return for each pair of rows of two (m, dim) arrays whether the motion is free: (m,)."""
-        ...
 
 
 @runtime_checkable
@@ -40,7 +37,6 @@ class Explains(Protocol):
 
     def explain(self, q: Floats) -> str:
         """Return for one configuration, (dim,), that is not free, what it collides with."""
-        ...
 
 
 @runtime_checkable
@@ -50,11 +46,9 @@ class Rechecks(Protocol):
     @property
     def proof(self) -> str:
         """What `recheck` shows: ``resolution`` (states closer than planned with) or ``certified`` (no gap)."""
-        ...
 
     def recheck(self, path: Floats) -> Bools:
         """Return which motions of a path, (p, dim), are free by the strict check: (p - 1,)."""
-        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +73,6 @@ class Shortens(Protocol):
 
     def shorten(self, path: Floats) -> tuple[Floats, int]:
         """Return a path that is not longer and passes the strict check, and how many motions were checked."""
-        ...
 
 
 @runtime_checkable
@@ -89,11 +82,9 @@ class ConnectsItself(Shortens, Protocol):
     @property
     def planner(self) -> str:
         """What results call this planner."""
-        ...
 
     def connect(self, start: Floats, goals: Floats, *, most_motions: int, seconds: float) -> Connection:
         """Join the start, (dim,), to the first of the goals, (g, dim), that can be reached within the budget."""
-        ...
 
 
 @runtime_checkable
@@ -104,7 +95,6 @@ class ConnectsAnew(ConnectsItself, Protocol):
         self, start: Floats, goals: Floats, *, variant: int, most_motions: int, seconds: float
     ) -> Connection:
         """As `connect`, planned in another way for each variant >= 1; the same one gives the same path."""
-        ...
 
 
 @runtime_checkable
@@ -113,4 +103,3 @@ class Separates(Protocol):
 
     def may_connect(self, a: Floats, b: Floats) -> bool:
         """Return False where it is proved that no path leads from `a` to `b`, (dim,) each; True says nothing."""
-        ...

@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue
 from evenroad.points import SAMPLERS, draw
-from evenroad.points.measures import MEASURES, riesz_rooted, separation
+from evenroad.points.measures import MEASURES
 from evenroad.points.samplers import korobov
 from evenroad.points.samplers.korobov import Even, Korobov, korobov_generator
+from evenroad.research.measures import riesz_rooted, separation
 from tests.points.samplers.sampler_contract import SamplerContract
 
 

@@ -11,7 +11,7 @@ from evenroad.research.worlds import Corridor
 from evenroad.roadmap import rule_named
 from evenroad.roadmap.search import FREE, EdgeStates
 from evenroad.space import Box
-from evenroad.world.counting import Counting
+from tests.counting import Counting
 
 
 class _Graph:

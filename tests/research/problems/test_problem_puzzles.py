@@ -10,8 +10,8 @@ import pytest
 from evenroad.points import draw
 from evenroad.research.problems import source_named
 from evenroad.research.problems.puzzles import cubicles, pillar, twistycool
+from evenroad.research.worlds.rigid import OrientedBox, SolidWorld
 from evenroad.roadmap import KEarlier, KNearest, plan
-from evenroad.world import OrientedBox, SolidWorld
 
 NAMES = ["cubicles", "twistycool", "cubicles-6d", "twistycool-6d"]
 

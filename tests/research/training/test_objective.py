@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue, UnknownName
-from evenroad.points.measures import MEASURES, riesz_rooted
+from evenroad.points.measures import MEASURES
+from evenroad.research.measures import riesz_rooted
 from evenroad.research.training.objective import Objective, Term, known_names, parse_objective
 
 POINTS = np.random.default_rng(0).random((12, 3))

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points import SAMPLERS, Origin, PointSet, draw
-from evenroad.points.measures import separation
 from evenroad.points.randomise import Symmetry
 from evenroad.points.randomise import randomise as randomise_by
+from evenroad.research.measures import separation
 from evenroad.research.training.objective import Term, known_names, parse_objective
 from evenroad.research.training.symmetries import move, symmetries_of
 

@@ -14,12 +14,9 @@ from evenroad.points.pointset import as_unit_points
 
 BUDGET = 4e8
 """Default limit on the estimated work of the exact linf-dispersion: about a minute."""
-
 EXACT_UP_TO = 3
 """Largest dimension with an exact algorithm."""
-
 NORMS = {"l2": 2.0, "linf": np.inf}
-
 _SLABS = 32
 """Slabs that the search is split into; any number gives the same answer."""
 

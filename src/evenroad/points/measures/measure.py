@@ -94,8 +94,7 @@ class Measure:
             return columns, np.ones(d)
         if not self.weighted:
             raise InvalidValue(
-                f"{self.name} takes no coordinate weights: its factors have no constant part that a weight"
-                " could leave alone"
+                f"{self.name} takes no weights: its factors have no constant part to leave alone"
             )
         try:
             gamma = np.asarray(weights, dtype=np.float64)
@@ -103,7 +102,7 @@ class Measure:
             gamma = np.array(np.nan)
         if gamma.shape != (d,) or not np.isfinite(gamma).all() or (gamma < 0).any():
             raise InvalidValue(
-                f"weights must be {d} finite numbers >= 0, one a coordinate, got {shown(weights)}"
+                f"weights must be {d} finite numbers >= 0, a coordinate each, got {shown(weights)}"
             )
         return columns, gamma
 

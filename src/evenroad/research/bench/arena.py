@@ -32,24 +32,7 @@ STATUSES = {
 }
 """Ours -> number and text; the numbers are OMPL's where it has such a status."""
 
-TABLES = """
-CREATE TABLE experiments (
-    id INTEGER PRIMARY KEY AUTOINCREMENT, name VARCHAR(512), totaltime REAL, timelimit REAL, memorylimit REAL,
-    runcount INTEGER, version VARCHAR(128), hostname VARCHAR(1024), cpuinfo TEXT, date DATETIME, seed INTEGER,
-    setup TEXT,
-    N INTEGER
-);
-CREATE TABLE plannerConfigs (id INTEGER PRIMARY KEY AUTOINCREMENT, name VARCHAR(512) NOT NULL, settings TEXT);
-CREATE TABLE enums (name VARCHAR(512), value INTEGER, description TEXT, PRIMARY KEY (name, value));
-CREATE TABLE runs (
-    id INTEGER PRIMARY KEY AUTOINCREMENT, experimentid INTEGER, plannerid INTEGER,
-    time REAL, solved BOOLEAN, status ENUM, valid_milestones INTEGER, valid_milestones_at_solution INTEGER,
-    motions_checked INTEGER, solution_length REAL, run INTEGER, problem_instance INTEGER,
-    FOREIGN KEY (experimentid) REFERENCES experiments(id) ON DELETE CASCADE,
-    FOREIGN KEY (plannerid) REFERENCES plannerConfigs(id) ON DELETE CASCADE
-);
-CREATE TABLE progress (runid INTEGER, time REAL, PRIMARY KEY (runid, time));
-"""
+TABLES = (Path(__file__).parent / "arena.sql").read_text(encoding="utf-8")
 
 
 def write_arena(store: str | os.PathLike[str], out: str | os.PathLike[str]) -> int:
@@ -85,17 +68,10 @@ def _write(path: Path, rows: Rows, session: Session) -> None:
             here = experiment == number
             ran = (float(np.nansum(rows.seconds[here])), int(here.sum()))
             of_session = (f"evenroad {session.evenroad}", session.platform, session.started)
+            last = (int(rows.seed[row]), versions, int(rows.n[row]))
             connection.execute(
                 "INSERT INTO experiments VALUES (?, ?, ?, 0, 0, ?, ?, ?, '', ?, ?, ?, ?)",
-                (
-                    number,
-                    rows.problem[row],
-                    *ran,
-                    *of_session,
-                    int(rows.seed[row]),
-                    versions,
-                    int(rows.n[row]),
-                ),
+                (number, rows.problem[row], *ran, *of_session, *last),
             )
         for number, row in enumerate(first_of_planner, 1):
             sampler, rule, search = rows.sampler[row], rows.rule[row], rows.search[row]
@@ -103,9 +79,8 @@ def _write(path: Path, rows: Rows, session: Session) -> None:
                 "INSERT INTO plannerConfigs VALUES (?, ?, ?)",
                 (number, f"{sampler}, {rule}, {search}", f"sampler={sampler}; rule={rule}; search={search}"),
             )
-        connection.executemany(
-            f"INSERT INTO runs VALUES ({', '.join('?' * 12)})", _runs(rows, experiment, planner)
-        )
+        places = ", ".join("?" * 12)
+        connection.executemany(f"INSERT INTO runs VALUES ({places})", _runs(rows, experiment, planner))
         connection.commit()
 
 

@@ -111,7 +111,6 @@ def _warm_up(task: Task, problem: Problem) -> None:
 
 DEFAULT_LIMIT = 600.0
 """Seconds for a task; the slowest of the suites take less than one."""
-
 LONGEST_LIMIT = 1e6
 """Seconds; the clocks of some platforms take no much larger number."""
 

@@ -18,16 +18,12 @@ from evenroad.research.bench.task import Outcome, Task
 from evenroad.research.workers import Workers
 
 POLL_SECONDS = 0.2
-
 IN_FLIGHT = 2
 """Chunks for each worker: one to work on and one to go on with."""
-
 DEATHS_OF_A_TASK = 2
 """A task whose worker died so often, the last time with this task alone, is given up as lost."""
-
 DEATHS_IN_A_ROW = 8
 """So many dead workers without a single finished chunk between them are not the tasks' doing."""
-
 Callback = Callable[[int, int], object]
 
 
@@ -200,10 +196,8 @@ def _has_result(future: Future[Done]) -> bool:
 
 CHUNK_SECONDS = 0.7
 """Work in a chunk: much against the milliseconds of sending it, little to lose, or to wait for."""
-
 FIRST_CHUNK = 2
 """Tasks in the first chunks of a kind, whose pace is not known yet."""
-
 LARGEST_CHUNK = 500
 
 

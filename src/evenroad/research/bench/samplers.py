@@ -19,10 +19,8 @@ from evenroad.points.samplers.lattice import MAX_D
 PERMUTED_FROM = 5
 """From this dimension on, a set whose coordinates are permuted anew counts as another set; below, there are too few
 orders of the coordinates."""
-
 STRETCH = 32
 """Runs of a block protocol whose points are generated together."""
-
 Drawn = tuple[PointSet, str]
 
 

@@ -7,14 +7,13 @@ from concurrent.futures import BrokenExecutor, Executor, Future
 from typing import Any
 
 from evenroad import __version__
+from evenroad._checks import require_extra
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.research.workers import Workers
 
 CONNECT_SECONDS = 8.0
-
 WORKER_SECONDS = 60.0
 """How long a cluster may be without any worker: these may be just starting."""
-
 ADDRESS = re.compile(r"(tcp|tls|wss?)://([^\s/:\[\]]+|\[[0-9a-fA-F:.]+\]):\d{1,5}")
 
 
@@ -38,18 +37,12 @@ def dask_workers(address: str) -> Workers:
 
 
 def _connect(address: str) -> _DaskExecutor:
-    try:
-        from distributed import Client
-        from distributed.security import Security
-    except ImportError as error:
-        raise NotAvailable(
-            f"a Dask scheduler needs the extra [dask]: pip install 'evenroad[dask]' ({error})"
-        ) from error
+    dask = require_extra("distributed", "dask", "a Dask scheduler")
     encrypted = address.startswith(("tls:", "wss:"))
-    if encrypted and Security().get_connection_args("client")["ssl_context"] is None:
+    if encrypted and dask.Security().get_connection_args("client")["ssl_context"] is None:
         raise NotAvailable(f"{address!r} needs certificates, which Dask's configuration has none of")
     try:
-        client = Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
+        client = dask.Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
     except (OSError, ValueError) as error:
         raise NotAvailable(
             f"no Dask scheduler answers at {address!r} within {CONNECT_SECONDS:g} s: is it running there? ({error})"

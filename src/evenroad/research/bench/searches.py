@@ -12,7 +12,7 @@ from numba import njit
 
 from evenroad._arrays import Ints32
 from evenroad._checks import require_known
-from evenroad.roadmap.cost import edge_costs
+from evenroad.roadmap.query import edge_costs
 from evenroad.roadmap.search import FINDERS, FREE, UNKNOWN, EdgeStates, join, length_along, search_problem
 
 

@@ -36,12 +36,9 @@ from evenroad.research.bench.task import PROTOCOL, Outcome, Task, key_of
 
 Row = tuple[str | int | float | None, ...]
 """The values of COLUMNS, texts as texts."""
-
 COMMIT_SECONDS = 0.5
 """Rows are committed together, this often: what a kill can lose at most."""
-
 _STATUS = COLUMNS.index("status")
-
 _INSERT_ROW = f"INSERT OR REPLACE INTO rows VALUES ({', '.join('?' * (len(COLUMNS) + 1))})"
 
 _INSERT_NAME = (

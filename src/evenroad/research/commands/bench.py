@@ -174,9 +174,7 @@ def _per_cent(solved: np.ndarray) -> str:
 
 def _print_failures(rows: Rows, failures: int) -> None:
     """Say what becomes of runs without an answer, and what the most frequent one said last."""
-    print(
-        f"{failures} without an answer (failed, timeout, lost) count as not solved; --retry runs them again"
-    )
+    print(f"{failures} without answer (failed, timeout, lost) count as not solved; --retry runs them again")
     messages: Counter[str] = Counter()
     for failure in failures_of(rows):
         messages[failure.message or failure.status] += failure.runs

@@ -1,4 +1,4 @@
-"""``evenroad report``: from a store of benchmark rows to one page, figures, tables and CSV."""
+"""``evenroad report`` and ``evenroad export``: a store of benchmark rows as one page, or for OMPL's Planner Arena."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import tyro
 
 from evenroad._terminal import WIDTH, print_table, table_width
 from evenroad.research import report
+from evenroad.research.bench.arena import write_arena
 from evenroad.research.bench.store import rescue_file
 from evenroad.research.report.analysis import Analysis
 from evenroad.research.report.comparisons import REFERENCES
@@ -99,3 +100,21 @@ def _print_fair(analysis: Analysis) -> None:
     ]
     title = f"Fair suite, {pooled_rules(analysis.runs.settings)}: success minus uniform's [points]"
     print_table(rows, ("sampler", "worlds", "runs", "difference"), title, right=(1, 2, 3))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Export:
+    """Write benchmark results for OMPL's Planner Arena (CSV and tables: evenroad report)."""
+
+    store: tyro.conf.Positional[Path]
+    """The store that ``evenroad bench`` wrote."""
+    arena: bool = False
+    """As a Planner Arena database; the one format there is, so it need not be said."""
+    out: Annotated[Path, tyro.conf.arg(aliases=["-o"])]
+    """The file to write."""
+
+    def run(self) -> int:
+        """Export, and say how much."""
+        runs = write_arena(self.store, self.out)
+        print(f"{self.out}: {runs} runs; open it with: DATABASE={self.out} plannerarena")
+        return 0

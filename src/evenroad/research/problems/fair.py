@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Callable, Mapping
 from enum import IntEnum
 from functools import partial
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -14,13 +16,12 @@ from evenroad.geometry import rotation_from_heading, rotation_from_quaternion
 from evenroad.research.bench.task import Problem, ProblemSource
 from evenroad.research.mazes import MazeDesign, draw_maze
 from evenroad.research.worlds import PeriodicBalls, PeriodicBoxes
+from evenroad.research.worlds.rigid import OrientedBox, SolidWorld
 from evenroad.space import SE2, SE3
 from evenroad.world import World
-from evenroad.world.solids import OrientedBox, SolidWorld
 
 FarApart = Callable[[Floats, Floats], Bools]
 """Which pairs of rows of two (m, d) arrays of the cube may be a start and a goal, (m,)."""
-
 ENTROPY = 20_261_121
 """Root of every instance of the fair suite; the seed of a suite draws sets, never worlds."""
 
@@ -47,11 +48,9 @@ class Family(IntEnum):
     SE3 = 4
 
 
-def instance_rng(
-    stream: Stream, family: Family, d: int, difficulty: int, instance: int
-) -> np.random.Generator:
+def instance_rng(stream: Stream, family: Family, d: int, difficulty: int, number: int) -> np.random.Generator:
     """Return the generator of one instance: the same numbers in every process, others for every other instance."""
-    key = (int(stream), int(family), d, difficulty, instance)
+    key = (int(stream), int(family), d, difficulty, number)
     return np.random.default_rng(np.random.SeedSequence(ENTROPY, spawn_key=key))
 
 
@@ -79,7 +78,6 @@ def make_instance(
 
 PAIRS = 512
 """Pairs of configurations that are tried in one world."""
-
 BATCH = 32
 """Pairs whose validity is asked about together: few, since most worlds need no more."""
 
@@ -176,10 +174,8 @@ BODY = {
 
 BODY_REACH = {2: 0.15, 3: 0.22}
 """How far the body reaches from its reference point, at most."""
-
 RESOLUTION = {2: (0.01, 0.05), 3: (0.02, 0.08)}
 """Distance, and rotation [rad] as the space measures it, between states that are tested on a motion."""
-
 ROTATION_WEIGHT = {2: 0.15, 3: 0.3}
 """What a radian of the space's metric counts: about the way that it moves the far end of the body."""
 
@@ -208,41 +204,15 @@ def _random_rotation(dim: int, rng: np.random.Generator) -> tuple[float, ...]:
     return rotation_from_quaternion(rng.standard_normal(4).tolist())
 
 
-# How large the obstacles are was measured with uniform points alone, by `python -m benchmarks.fair_calibrate`
-# (docs/data/fair_calibration.csv): at these sizes they solve 25, 50 and 75 % of the instances with k = 10 symmetrised;
-# where that was tried again, they did up to 6 points more or less.
-
 DIFFICULTIES = (25, 50, 75)
 """Success of uniform points [%]."""
-
-_CUBE_POINTS = {2: 128, 3: 256, 4: 256, 5: 256, 6: 512, 7: 512, 10: 512}
-
-CALIBRATED_AT: Mapping[tuple[Family, int], int] = {
-    **{(family, d): n for family in (Family.BALLS, Family.BOXES) for d, n in _CUBE_POINTS.items()},
-    (Family.MAZE, 2): 512,
-    (Family.SE2, 3): 256,
-    (Family.SE3, 6): 256,
-}
+_TABLE = tomllib.loads((Path(__file__).parent / "fair.toml").read_text(encoding="utf-8"))
+_MEASURED = {(Family[name.upper()], int(d)): of for name, by_d in _TABLE.items() for d, of in by_d.items()}
+CALIBRATED_AT: Mapping[tuple[Family, int], int] = {key: of["n"] for key, of in _MEASURED.items()}
 """Family and dimension of the sets -> N of the calibration."""
 
 SIZES: Mapping[tuple[Family, int], tuple[float, float, float]] = {
-    (Family.BALLS, 2): (0.1428, 0.1176, 0.09682),
-    (Family.BALLS, 3): (0.2015, 0.1843, 0.1685),
-    (Family.BALLS, 4): (0.2589, 0.2455, 0.2328),
-    (Family.BALLS, 5): (0.3086, 0.2961, 0.2842),
-    (Family.BALLS, 6): (0.3666, 0.3548, 0.3434),
-    (Family.BALLS, 7): (0.4246, 0.4139, 0.4034),
-    (Family.BALLS, 10): (0.5776, 0.5659, 0.5544),
-    (Family.BOXES, 2): (0.1154, 0.09369, 0.07603),
-    (Family.BOXES, 3): (0.1746, 0.1586, 0.144),
-    (Family.BOXES, 4): (0.1499, 0.1367, 0.1247),
-    (Family.BOXES, 5): (0.1485, 0.1344, 0.1216),
-    (Family.BOXES, 6): (0.1578, 0.1429, 0.1294),
-    (Family.BOXES, 7): (0.1528, 0.1383, 0.1252),
-    (Family.BOXES, 10): (0.1488, 0.1321, 0.1172),
-    (Family.MAZE, 2): (29.5, 35.93, 43.76),
-    (Family.SE2, 3): (0.04396, 0.01752, 0.006979),
-    (Family.SE3, 6): (0.05804, 0.04362, 0.03279),
+    key: tuple(of["sizes"]) for key, of in _MEASURED.items()
 }
 """Family and dimension -> size for each difficulty: radius, middle half extent, for mazes width of doors [pixels]."""
 
@@ -302,5 +272,4 @@ _EVERY = (
 )
 FAIR_PROBLEMS = {each.name: each for each in _EVERY if each.stream is Stream.REPORTING or each.tuned_on}
 """Name -> problem: ``fair-..`` for what is reported, ``tune-..`` for what chooses."""
-
 FAIR = tuple(problem.source() for problem in FAIR_PROBLEMS.values())

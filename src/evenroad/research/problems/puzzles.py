@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
-from typing import NamedTuple
+import tomllib
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from evenroad.geometry import rotation_from_heading
 from evenroad.research.bench.task import Problem
+from evenroad.research.worlds.rigid import OrientedBox, SolidWorld
 from evenroad.space import SE3
-from evenroad.world.solids import OrientedBox, SolidWorld
 
 Triple = tuple[float, float, float]
-
 _SHARE = 0.01
 """Resolution of motions, as a share of the extents of the translations and of the rotations: OMPL's default."""
-
 _NOT_ROTATED = (1.0, 0.0, 0.0, 0.0)
 
 
@@ -43,10 +43,8 @@ def problem_of(make: Callable[[], Puzzle], set_dim: int, instance: int) -> Probl
 
 _SECTION = 11.75
 """Width of the body's bars."""
-
 _CORNER = (-16.99, -17.906, -24.839)
 """The bars' common corner, from the body's reference point."""
-
 _TILT = math.atan2(2.63, 54.94)
 """By which the body's axes are rotated about -y."""
 
@@ -100,61 +98,7 @@ def _obstacles() -> tuple[OrientedBox, ...]:
     )
 
 
-Range = tuple[float, float]
-
-_LOW, _HIGH = (-508.88, -230.13, -123.75), (319.62, 531.87, 101.0)
-_HOUSE_X, _HOUSE_Y = (-508.9, 319.6), (-230.1, 531.9)
-_BASEMENT_X = (53.2, 319.6)
-_BASEMENT, _FLOOR, _GROUND, _ALL = (-123.75, 0.0), (9.84, 101.0), (0.0, 101.0), (-123.75, 101.0)
-"""Ranges of z: of the walls of the basement, of the floor above, and of the outer walls without and with a basement."""
-
-_HOLES_X, _HOLES_Y = (110.0, 296.0), ((-200.0, -91.0), (303.0, 465.0))
-"""Holes in the slab between floor and basement, under the room of the goal, which has no door, and under another.
-
-Of the first, only the area is known, from the share of free poses; where in the room it is does not matter to success.
-"""
-
-# fmt: off
-_WALLS = (
-    ("outer wall", 0, _GROUND, ((-508.9, *_HOUSE_Y),)),
-    ("outer wall", 0, _ALL, ((319.6, *_HOUSE_Y),)),
-    ("outer wall", 1, _GROUND, ((-230.1, _HOUSE_X[0], _BASEMENT_X[0]),)),
-    ("outer wall", 1, _ALL, ((-230.1, *_BASEMENT_X),)),
-    ("outer wall", 1, _GROUND, ((531.9, _HOUSE_X[0], _BASEMENT_X[0]),)),
-    ("outer wall", 1, _ALL, ((531.9, *_BASEMENT_X),)),
-    ("wall", 0, _FLOOR, (
-        (-483.2, -209.9, -49.1), (-483.2, -20.6, 486.9), (-349.9, -49.1, -20.6), (-245.0, 45.3, 80.3),
-        (-98.5, -107.8, 45.3), (-98.5, 80.3, 323.9), (-71.0, -107.8, 37.1), (-71.0, 72.4, 323.9),
-        (71.5, -209.9, 37.1), (74.6, 266.9, 486.9), (98.6, 266.9, 486.9), (89.9, -213.5, 6.8),
-        (89.9, 30.7, 72.4), (306.3, -213.5, 6.8), (306.3, 30.7, 486.9),
-    )),
-    ("wall", 1, _FLOOR, (
-        (-213.5, 89.9, 306.3), (-209.9, -483.2, 71.5), (-107.8, -98.5, -71.0), (-49.1, -483.2, -349.9),
-        (-20.6, -483.2, -349.9), (6.8, 89.9, 306.3), (30.7, 89.9, 306.3), (37.1, -71.0, 71.5),
-        (45.3, -245.0, -98.5), (80.3, -245.0, -98.5), (72.4, -71.0, 89.9), (266.9, 74.6, 98.6),
-        (323.9, -98.5, -71.0), (486.9, -483.2, 74.6), (486.9, 98.6, 306.3),
-    )),
-    ("basement wall", 0, _BASEMENT, (
-        (53.2, *_HOUSE_Y), (72.3, -203.9, 531.9), (73.0, 476.8, 531.9), (301.8, -203.9, 301.0),
-        (307.8, 301.0, 476.8),
-    )),
-    ("basement wall", 1, _BASEMENT, (
-        (-203.9, 72.3, 301.8), (301.0, 301.8, 307.8), (476.8, 73.0, 307.8),
-    )),
-)
-# fmt: on
-"""Walls by name, the axis that they are across (x or y), their range of z, and of each its place on that axis and its
-range on the other."""
-
-_PILLARS: tuple[tuple[Range, Range, Range], ...] = (
-    ((-381.0, -315.0), (287.0, 344.0), _FLOOR),
-    ((-210.0, -152.0), (167.0, 217.0), _FLOOR),
-    ((-247.0, -181.0), (-141.0, -65.0), _FLOOR),
-    ((170.0, 233.0), (74.0, 146.0), _FLOOR),
-    ((90.5, 154.0), (-84.0, -27.0), _BASEMENT),
-)
-"""Bounding boxes of hexagonal pillars: their x, y and z."""
-
+Range = Sequence[float]
 _ARM = ((-22.0, -46.0, -13.24), (-3.0, 31.5, 13.24))
 _FOOT = ((-3.0, 15.0, -13.24), (24.4, 31.4, 13.24))
 _ANGLES_OF_BODY = (1.2, 1.7)
@@ -168,14 +112,16 @@ def cubicles() -> Puzzle:
     surfaces: below the floor, outside of the basement, the body is free, as it is there.  Pillars are solid; of all
     poses 2 in 100 000 would be free inside of hollow ones.
     """
-    pillars = (box for x, y, z in _PILLARS for box in pillar(x, y, z))
+    scene = tomllib.loads((Path(__file__).parent / "cubicles.toml").read_text(encoding="utf-8"))
+    heights = scene["z"]
+    pillars = (box for of in scene["pillars"] for box in pillar(of["x"], of["y"], heights[of["z"]]))
     return Puzzle(
-        low=_LOW,
-        high=_HIGH,
+        low=tuple(scene["low"]),
+        high=tuple(scene["high"]),
         start=(-4.96, -40.62, 70.57),
         goal=(200.0, -40.62, 70.57),
         body=_body(),
-        obstacles=(*_walls(), *_slab(), *pillars),
+        obstacles=(*_walls(scene), *_slab(scene), *pillars),
     )
 
 
@@ -193,20 +139,22 @@ def _body() -> tuple[OrientedBox, ...]:
     )
 
 
-def _walls() -> Iterator[OrientedBox]:
-    for name, axis, (bottom, top), walls in _WALLS:
-        for at, *ends in walls:
-            low, high = ((at, end) if axis == 0 else (end, at) for end in ends)
-            yield OrientedBox.spanning((*low, bottom), (*high, top), name)
+def _walls(scene: dict[str, Any]) -> Iterator[OrientedBox]:
+    for walls in scene["walls"]:
+        bottom, top = scene["z"][walls["z"]]
+        for at, *ends in walls["at"]:
+            low, high = ((at, end) if walls["axis"] == 0 else (end, at) for end in ends)
+            yield OrientedBox.spanning((*low, bottom), (*high, top), walls["name"])
 
 
-def _slab() -> list[OrientedBox]:
+def _slab(scene: dict[str, Any]) -> list[OrientedBox]:
     """Return the floor around its holes.  Too thin for the body to fit inside, it may as well be solid."""
-    beside_the_holes = ((_HOUSE_X[0], _HOLES_X[0]), (_HOLES_X[1], _HOUSE_X[1]))
-    edges = (_HOUSE_Y[0], *(y for hole in _HOLES_Y for y in hole), _HOUSE_Y[1])
+    house, holes = scene["house"], scene["holes"]
+    beside_the_holes = ((house["x"][0], holes["x"][0]), (holes["x"][1], house["x"][1]))
+    edges = (house["y"][0], *(y for hole in holes["y"] for y in hole), house["y"][1])
     between_the_holes = zip(edges[::2], edges[1::2], strict=True)
-    pieces = [*((x, _HOUSE_Y) for x in beside_the_holes), *((_HOLES_X, y) for y in between_the_holes)]
-    bottom, top = _GROUND[0], _FLOOR[0]
+    pieces = [*((x, house["y"]) for x in beside_the_holes), *((holes["x"], y) for y in between_the_holes)]
+    bottom, top = scene["z"]["ground"][0], scene["z"]["floor"][0]
     return [OrientedBox.spanning((x[0], y[0], bottom), (x[1], y[1], top), name="slab") for x, y in pieces]
 
 

@@ -84,16 +84,12 @@ def as_png(figure: Figure) -> bytes:
 
 DODGE = 0.025
 """On an axis of log2 N, the distance between the error bars of two samplers at the same N."""
-
 MAZES = "maze-"
 """Begin of the names of the paper's mazes."""
-
 GROUPINGS_DRAWN = ("generator", "dimension", "rule")
 """Groupings of the fair suite that have a panel."""
-
 GROUP_DODGE = 0.07
 """Distance between two samplers of a group; groups are 1 apart."""
-
 SETS_DRAWN = ("uniform", "halton paper-blocks", "sobol paper-blocks", "mpmc", "even")
 COUNTS_DRAWN = (32, 64, 128, 256)
 """Samplers and numbers of points in the picture of point sets."""

@@ -12,12 +12,7 @@ import numpy as np
 from evenroad._arrays import Ints
 from evenroad.research.problems import PROBLEMS
 from evenroad.research.report.cells import cell_codes, grouping_of
-from evenroad.research.report.comparisons import (
-    SIGNIFICANT,
-    also_over_sets,
-    differences_from,
-    holm_of_tested,
-)
+from evenroad.research.report.comparisons import SIGNIFICANT, also_over_sets, differences_from, holm_of_tested
 from evenroad.research.report.runs import Runs, Setting, combined, first_rows, natural_key, sums_by_unit
 from evenroad.research.statistics.rates import Interval
 from evenroad.research.statistics.resampling import percentile_interval, resampled_ratios

@@ -6,6 +6,7 @@ import base64
 import re
 from collections.abc import Sequence
 from html import escape
+from pathlib import Path
 from typing import NamedTuple
 
 from matplotlib.figure import Figure
@@ -35,21 +36,7 @@ from evenroad.research.report.sections import (
 )
 from evenroad.research.report.tables import Table, as_html
 
-_STYLE = """
-body { font: 15px/1.45 system-ui, sans-serif; color: #22262b; max-width: 1560px; margin: 2rem auto; padding: 0 1rem }
-h1 { font-size: 1.7rem } h2 { font-size: 1.3rem; margin-top: 2.6rem; border-bottom: 1px solid #ccd2d9 }
-figure { margin: 1.4rem 0 } figcaption { font-weight: 600; margin-bottom: .35rem }
-img { max-width: 100%; height: auto } .wide { overflow-x: auto }
-table { border-collapse: collapse; font-size: 13px; font-variant-numeric: tabular-nums }
-th, td { padding: .18rem .45rem; text-align: right; white-space: nowrap; border-bottom: 1px solid #e6e9ed }
-th { border-bottom: 1.5px solid #69727d } td.label, th.label { text-align: left }
-td.better { background: #d9f0e1 } td.worse { background: #fbe0de } td.differs { background: #fdecc8 }
-td.better::after { content: " ▲" } td.worse::after { content: " ▼" } td.differs::after { content: " ≠" }
-td.faint { color: #99a1aa }
-.note { font-size: 12.5px; color: #59626c; margin: .3rem 0; max-width: 60rem }
-nav ul { columns: 2; font-size: 14px } dl { display: grid; grid-template-columns: max-content 1fr; gap: .15rem 1rem }
-dt { font-weight: 600 } dd { margin: 0 } pre { background: #f4f6f8; padding: .5rem .8rem; overflow-x: auto }
-"""
+_STYLE = "\n" + (Path(__file__).parent / "page.css").read_text(encoding="utf-8")
 
 
 class Picture(NamedTuple):

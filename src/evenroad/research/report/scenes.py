@@ -20,6 +20,7 @@ from evenroad.research.bench.task import Problem
 from evenroad.research.problems import PROBLEMS
 from evenroad.research.report.charts import DPI, new_figure
 from evenroad.research.worlds.chain import ChainWorld
+from evenroad.research.worlds.rigid import OrientedBox, SolidWorld
 from evenroad.roadmap import KNearest, PlanResult, plan
 from evenroad.robot import ArmWorld
 from evenroad.space.path import place_at
@@ -27,16 +28,13 @@ from evenroad.viz import style
 from evenroad.viz.arm import draw_arm_plan
 from evenroad.viz.plan import draw_plan
 from evenroad.world.gridmap import DiskWorld
-from evenroad.world.solids import OrientedBox, SolidWorld
 
 SCENES = ("maze-1", "maze-2", "maze-3", "chain-10d", "cubicles", "twistycool", "ur5-c", "ur5-a")
 """Problems that have a picture."""
 SAME_SCENE = {"cubicles-6d": "cubicles", "twistycool-6d": "twistycool"}
 """Problems that share the picture of another one."""
-
 TRIES = ((1024, 10), (2048, 10), (4096, 10), (2048, 40), (8192, 40))
 """Numbers of points and of neighbours that are tried in turn; a goal deep in a box needs more neighbours."""
-
 CHAIN_POSES = 25
 BODY_POSES = 13
 """Poses along the path that are drawn."""

@@ -123,9 +123,7 @@ def bonett_price(only_first: int, only_second: int, pairs: int) -> Interval:
     return Interval(max(-1.0, difference - half), min(1.0, difference + half), "bonett-price")
 
 
-def student_interval(
-    sums: npt.ArrayLike, runs: npt.ArrayLike, unit: str, *, lowest: float = -1.0
-) -> Interval:
+def student_interval(sums: npt.ArrayLike, runs: npt.ArrayLike, unit: str, lowest: float = -1.0) -> Interval:
     """Return the interval of ``sum(sums) / sum(runs)``, a rate or a paired difference, over units, (units,) each.
 
     The ratio's linearised error with Student's quantile for as many units (W. G. Cochran 1977, Sampling Techniques,
@@ -153,7 +151,7 @@ def _ratio_and_error(sums: npt.ArrayLike, runs: npt.ArrayLike) -> tuple[float, f
     above, below = np.asarray(sums, dtype=np.float64), as_counts("runs", runs)
     if above.ndim != 1 or above.shape != below.shape or len(above) == 0 or np.any(below < 1):
         raise InvalidValue(
-            f"sums and runs must be lists of one length >= 1, with runs >= 1, got {sums!r}, {runs!r}"
+            f"sums and runs must be lists of one length, with runs >= 1, got {sums!r}, {runs!r}"
         )
     units, total = len(above), float(below.sum())
     ratio = float(above.sum()) / total

@@ -39,9 +39,7 @@ def resampled_ratios(numerators: npt.ArrayLike, denominators: npt.ArrayLike, *, 
     above = np.asarray(numerators, dtype=np.float64)
     below = np.asarray(denominators, dtype=np.float64)
     if above.ndim not in (1, 2) or above.shape != below.shape or len(above) == 0:
-        raise InvalidValue(
-            f"a bootstrap needs two lists of one length >= 1, got {above.shape}, {below.shape}"
-        )
+        raise InvalidValue(f"a bootstrap needs lists of one length >= 1, got {above.shape}, {below.shape}")
     finite = np.all(np.isfinite(above)) and np.all(np.isfinite(below))
     if not finite or np.any(below < 0) or np.any(below.sum(axis=0) <= 0):
         raise InvalidValue("a bootstrap needs finite numbers, and denominators >= 0 with a positive sum")

@@ -34,7 +34,6 @@ FEW_UNITS = 10
 """With fewer units than this a bootstrap is too narrow."""
 MANY_UNITS = 1000
 """With more units than this a bootstrap of a difference says what Student's interval says."""
-
 SHORT = 4000
 """Below this, adding zeros up takes less time than leaving them out one by one."""
 
@@ -70,9 +69,7 @@ def clustered_difference(sums: npt.ArrayLike, pairs: npt.ArrayLike, unit: str) -
     """
     differences, totals = np.asarray(sums), as_counts("pairs", pairs)
     if differences.ndim != 1 or differences.shape != totals.shape or len(totals) == 0:
-        raise InvalidValue(
-            f"sums and pairs must be lists of one length, got {differences.shape}, {totals.shape}"
-        )
+        raise InvalidValue(f"sums and pairs must be of one length, got {differences.shape}, {totals.shape}")
     if np.any(totals < 1) or np.any(np.abs(differences) > totals):
         raise InvalidValue("a unit has at least one pair, and as many pairs as its sum")
     ratios = differences / totals

@@ -20,8 +20,9 @@ from evenroad._arrays import Floats
 from evenroad._files import atomic_write
 from evenroad._terminal import LineProgress
 from evenroad.points.bank.bank import DATA, INDEX, SEED, Bank, cell_name
-from evenroad.points.measures import MEASURES, separation
+from evenroad.points.measures import MEASURES
 from evenroad.points.pointset import BELOW_ONE, PointSet
+from evenroad.research.measures import separation
 from evenroad.research.training import anneal_many
 from evenroad.research.training.folder import one_at_a_time
 

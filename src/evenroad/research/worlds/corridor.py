@@ -1,8 +1,9 @@
-"""Corridor: a corridor along edges of the unit cube, of any dimension; the reference world."""
+"""What compiled worlds share; and Corridor, along edges of the unit cube of any dimension: the reference world."""
 
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -13,14 +14,73 @@ from numba import njit
 from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import require_count, require_known, require_positive
 from evenroad.errors import InvalidValue
-from evenroad.research.worlds.compiled import CompiledWorld, is_in_cube
-from evenroad.space import Box
+from evenroad.space import Box, Space
+from evenroad.space.batch import as_batch, as_batch_pair
+
+ROUNDING = 1e-9
+"""What bounds leave for rounding, so that they never decide what the exact test would decide otherwise."""
+
+
+class CompiledWorld(ABC):
+    """A world with compiled checks; a subclass gives its space and the checks of sound batches."""
+
+    @property
+    @abstractmethod
+    def space(self) -> Space:
+        """The space that the configurations live in."""
+
+    def valid(self, q: Floats) -> Bools:
+        """Return which configurations, (n, dim), are free: (n,)."""
+        return self._valid(as_batch("q", q, self.space.dim))
+
+    def motion_valid(self, a: Floats, b: Floats) -> Bools:
+        """Return which motions from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,)."""
+        return self._motion_valid(*as_batch_pair(a, b, self.space.dim))
+
+    @abstractmethod
+    def _valid(self, q: Floats) -> Bools: ...
+
+    @abstractmethod
+    def _motion_valid(self, a: Floats, b: Floats) -> Bools: ...
+
+
+class CubeWorld(CompiledWorld):
+    """One in the unit cube of dimension `d`."""
+
+    d: int
+
+    @cached_property
+    def space(self) -> Box:
+        """The unit cube with the Euclidean metric."""
+        return Box([0.0] * self.d, [1.0] * self.d)
+
+
+@njit(cache=True, nogil=True, inline="always")
+def comes_first(a: Floats, b: Floats) -> bool:
+    """Return whether `a` is not after `b` in the order of words.
+
+    Motions are tested from the end that comes first: one and its reverse then give the same bits.
+    """
+    for k in range(len(a)):
+        if a[k] != b[k]:
+            return bool(a[k] < b[k])
+    return True
+
+
+@njit(cache=True, nogil=True)
+def is_in_cube(q: Floats) -> bool:
+    """Return whether `q`, (d,), lies in the closed unit cube."""
+    inside = True
+    for coordinate in q:
+        inside &= 0.0 <= coordinate <= 1.0
+    return inside
+
 
 _SIDES = ("comment", "demo")
 
 
 @dataclass(frozen=True)
-class Corridor(CompiledWorld):
+class Corridor(CubeWorld):
     """The corridor of width `lam` along d edges of the unit cube, from (0, .., 0) to (1, .., 1).
 
     A configuration is free iff it lies in [0, 1]^d and there is a k with ``x_i <= lam`` for all i < k and
@@ -53,11 +113,6 @@ class Corridor(CompiledWorld):
         axes = axes if self.side == "comment" else axes[::-1].copy()
         axes.setflags(write=False)
         return axes
-
-    @cached_property
-    def space(self) -> Box:
-        """The unit cube with the Euclidean metric."""
-        return Box([0.0] * self.d, [1.0] * self.d)
 
     @property
     def resolution(self) -> float:

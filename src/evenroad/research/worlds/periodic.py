@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -13,13 +12,12 @@ from numba import njit
 from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import require_count, require_positive
 from evenroad.errors import InvalidValue
-from evenroad.research.worlds.compiled import ROUNDING, CompiledWorld, comes_first, is_in_cube
-from evenroad.space import Box
+from evenroad.research.worlds.corridor import ROUNDING, CubeWorld, comes_first, is_in_cube
 from evenroad.space.batch import as_cube_batch
 
 
 @dataclass(frozen=True, eq=False)
-class PeriodicBalls(CompiledWorld):
+class PeriodicBalls(CubeWorld):
     """A point robot in [0, 1]^d among open balls of one radius that repeat with period 1 along every axis.
 
     With centres, (n, d) in [0, 1], drawn uniformly the free set is stationary: no place of the cube, at its faces or in
@@ -39,14 +37,9 @@ class PeriodicBalls(CompiledWorld):
         set_fields(self, centres=centres, radius=require_positive("radius", self.radius))
 
     @property
-    def d(self) -> int:
+    def d(self) -> int:  # type: ignore[override]
         """Dimension."""
         return int(self.centres.shape[1])
-
-    @cached_property
-    def space(self) -> Box:
-        """The unit cube with the Euclidean metric."""
-        return Box([0.0] * self.d, [1.0] * self.d)
 
     def _valid(self, q: Floats) -> Bools:
         return _points_miss_balls(q, self.centres, self.radius**2)
@@ -156,7 +149,7 @@ def _misses_balls(
 
 
 @dataclass(frozen=True, eq=False)
-class PeriodicBoxes(CompiledWorld):
+class PeriodicBoxes(CubeWorld):
     """A point robot in [0, 1]^d among open boxes in some of the coordinates, with period 1 along every axis.
 
     A configuration is in a box if each of the box's own m coordinates is closer to the centre than the half extent;
@@ -186,11 +179,6 @@ class PeriodicBoxes(CompiledWorld):
         outside = self.half_extents[(self.half_extents <= 0.0) | (self.half_extents > 0.5)]
         if len(outside):
             raise InvalidValue(f"half_extents must be in (0, 0.5], got {float(outside[0])!r}")
-
-    @cached_property
-    def space(self) -> Box:
-        """The unit cube with the Euclidean metric."""
-        return Box([0.0] * self.d, [1.0] * self.d)
 
     def _valid(self, q: Floats) -> Bools:
         return _points_miss_boxes(q, self.axes, self.centres, self.half_extents)

@@ -46,11 +46,9 @@ class Rule(Protocol):
             How many of the last rows are starts and goals.  Rules that depend on an order of insertion take
             them as the first; for all others they come last among ties.
         """
-        ...
 
     def reach(self, milestones: int, space: Space) -> Reach:
         """Return how a start or goal is joined to a finished roadmap of so many milestones."""
-        ...
 
 
 def ascending(pairs: npt.NDArray[np.integer], n: int) -> Ints32:

@@ -31,10 +31,8 @@ class Found(NamedTuple):
 
 
 NOT_FOUND = Found(np.empty(0, dtype=np.int32), np.empty(0, dtype=np.int32))
-
 MOST = 1 << 61
 """What bounds are cut to: the sum of one and any path is still a 64-bit integer."""
-
 _NEXT_TO_ZERO = 1e-280
 """A quantum of a shorter length would lose its digits, or be 0."""
 

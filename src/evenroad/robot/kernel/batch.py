@@ -53,7 +53,6 @@ def check_configurations(
     n: int,
     dim: int,
     free: int,
-    motion_check: int,
     check: int,
     resolution: float,
     tables: int,
@@ -62,7 +61,7 @@ def check_configurations(
     room: int,
 ) -> None:
     """Do the work of `configurations_free`, arrays by their addresses."""
-    checks = checks_of(motion_check, check, resolution, tables, by_joint, memory, room)
+    checks = checks_of(check, resolution, tables, by_joint, memory, room)
     rows, verdicts = matrix_at(q, (n, dim)), bytes_at(free, (n,))
     for first in range(0, n, LANES):
         count = min(LANES, n - first)
@@ -92,7 +91,6 @@ def check_motions(
     dim: int,
     tolerance: float,
     free: int,
-    motion_check: int,
     check: int,
     resolution: float,
     tables: int,
@@ -101,7 +99,7 @@ def check_motions(
     room: int,
 ) -> None:
     """Do the work of `motions_free`, arrays by their addresses."""
-    checks = checks_of(motion_check, check, resolution, tables, by_joint, memory, room)
+    checks = checks_of(check, resolution, tables, by_joint, memory, room)
     starts, ends, verdicts = matrix_at(a, (m, dim)), matrix_at(b, (m, dim)), bytes_at(free, (m,))
     inner_ends = matrix_at(room + 8 * COUNTS, (2, dim))
     start, end = inner_ends[0], inner_ends[1]

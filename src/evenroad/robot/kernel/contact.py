@@ -13,8 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel.addresses import call_at
 from evenroad.robot.kernel.forward_kinematics import scratch_places
-from evenroad.robot.kernel.hull_contact import bodies_meet
 from evenroad.robot.kernel.lanes import (
     ONE,
     ZERO,
@@ -44,15 +44,15 @@ Singles = npt.NDArray[np.float32]
 
 
 @inner
-def blocked_lanes(scratch: Singles, ints: Ints, table: Singles, enough: int) -> int:
+def blocked_lanes(scratch: Singles, ints: Ints, table: Singles, enough: int, hulls: int) -> int:
     """Return the mask of the configurations placed in `scratch` that touch something.
 
-    `enough` is 1 to stop at the first lane that is blocked, 16 to find all.
+    `enough` is 1 to stop at the first lane that is blocked, 16 to find all; at `hulls` is what decides pairs by hulls.
     """
     blocked = _meeting_obstacles(scratch, ints, table, enough)
     if blocked == ALL or (blocked != 0 and enough == 1):
         return blocked
-    return _meeting_themselves(scratch, ints, table, blocked, enough)
+    return _meeting_themselves(scratch, ints, table, blocked, enough, hulls)
 
 
 @inner
@@ -171,7 +171,9 @@ def _meeting_one(
 
 
 @inner
-def _meeting_themselves(scratch: Singles, ints: Ints, table: Singles, blocked: int, enough: int) -> int:
+def _meeting_themselves(
+    scratch: Singles, ints: Ints, table: Singles, blocked: int, enough: int, hulls: int
+) -> int:
     """Return `blocked` and the mask of lanes in which two bodies of a pair touch."""
     bodies, capsules = scratch_places(ints)
     by_hulls = ints[at.BODY_PAIRS] - ints[at.HULL_PAIRS]
@@ -216,7 +218,7 @@ def _meeting_themselves(scratch: Singles, ints: Ints, table: Singles, blocked: i
         while undecided != 0:
             lane = lowest_bit(undecided)
             undecided &= undecided - 1
-            if bodies_meet(scratch, lane, LANES, table[margins + p], p, ints, table):
+            if call_at(hulls, (scratch, lane, np.float64(table[margins + p]), p, ints, table)) != 0:
                 blocked |= 1 << lane
                 if enough == 1:
                     return blocked

@@ -7,17 +7,18 @@ soon, calls bodies free that touch.  The search is that of E. Gilbert, D. Johnso
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 from llvmlite import ir
-from numba import types
+from numba import cfunc, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.addresses import doubles_at, integers_at
+from evenroad.robot.kernel.addresses import ANY_LENGTH, doubles_at, integers_at, singles_at
 from evenroad.robot.kernel.layout import quick
 
 Floats = npt.NDArray[np.float64]
@@ -53,6 +54,22 @@ def bodies_meet(places: Any, lane: int, lanes: int, margin: float, pair: int, in
     pose = doubles_at(_room(12), (12,))
     _write_relative(places, 12 * lanes * ints[a] + lane, 12 * lanes * ints[b] + lane, lanes, pose)
     return hulls_meet(ints[a + 3], ints[b + 3], pose, margin, ints, table) != APART
+
+
+@cache
+def meeting_address() -> int:
+    """Return the address, good for this process, of `bodies_meet` in lanes; compiled when first asked.
+
+    Few robots have hulls: those without do not wait for this to be compiled.
+    """
+    kind = types.int64(types.int64, types.int64, types.float64, *[types.int64] * 3)
+    return int(cfunc(kind, cache=True, error_model="numpy", _nrt=False)(_meeting).address)
+
+
+def _meeting(scratch: int, lane: int, margin: float, pair: int, ints: int, table: int) -> int:
+    places, floats = singles_at(scratch, (ANY_LENGTH,)), singles_at(table, (ANY_LENGTH,))
+    integers = integers_at(ints, (ANY_LENGTH,))
+    return 1 if bodies_meet(places, lane, at.LANES, margin, pair, integers, floats) else 0
 
 
 @quick

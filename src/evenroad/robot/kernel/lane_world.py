@@ -15,6 +15,7 @@ from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.layout import DESK, LANES, MOST_WAITING
 
 Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,37 +31,42 @@ class LaneWorld:
         and the two of a pair against each other, (dim, capsule pairs), at most [m/rad].
     resolution : float
         Largest distance between neighbouring states of a motion.
+    at : tuple of two int, optional
+        Addresses of the two arrays, where they are known.
     """
 
     tables: npt.NDArray[np.int64]
     by_joint: Floats
     resolution: float
+    at: tuple[int, int] | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return how a copy is made, here or in another process: it finds out for itself where its arrays are."""
         return LaneWorld, (self.tables, self.by_joint, self.resolution)
 
-    def arguments(self, more: int) -> tuple[Floats, tuple[int, int, float, int, int, int, int]]:
+    def arguments(self, more: int) -> tuple[Floats, tuple[int, float, int, int, int, int]]:
         """Return `more` doubles of memory, and what a program ends with: what ``checks_of`` takes, and their address.
 
         The memory is this thread's, for the next call of a program only.
         """
-        tables, by_joint, doubles = self._places
+        checks, tables, by_joint, doubles = self._places
         array, begin = _memory.array, _memory.address
         if len(array) < doubles + more:
             array = _memory.array = np.empty(doubles + more)
             begin = _memory.address = address(array)
-        given = *check_addresses(), self.resolution, tables, by_joint, begin, begin + 8 * doubles
+        given = checks, self.resolution, tables, by_joint, begin, begin + 8 * doubles
         return array[doubles : doubles + more], given
 
     @cached_property
-    def _places(self) -> tuple[int, int, int]:
-        """Addresses of the two arrays, and how much memory a program's checks need."""
+    def _places(self) -> tuple[int, int, int, int]:
+        """Addresses of the checks and of the two arrays, and how much memory a program's checks need."""
         header = self.tables[: at.HEADER].tolist()
         dim, things = header[at.COORDINATES], header[at.CAPSULES] + header[at.PAIRS]
         places = (LANES + 3) * dim + LANES + things + 2 * MOST_WAITING
-        doubles = DESK + LANES + places + header[at.SCRATCH] // 2 + len(self.tables)
-        return address(self.tables), address(self.by_joint), doubles
+        doubles = DESK + 2 * LANES + places + header[at.SCRATCH] // 2 + len(self.tables)
+        checks = _address_of_checks(header[at.HULL_PAIRS] > 0)
+        tables, by_joint = self.at or (address(self.tables), address(self.by_joint))
+        return checks, tables, by_joint, doubles
 
 
 class _Memory(threading.local):
@@ -74,10 +80,23 @@ _memory = _Memory()
 
 
 @cache
-def check_addresses() -> tuple[int, int]:
-    """Return the addresses of the checks of a motion and of sixteen configurations; compiled when first asked."""
+def check_addresses(with_hulls: bool) -> Ints:
+    """Return the addresses of the checks of a motion, of sixteen configurations and of hulls, good for this process.
+
+    They are compiled when first asked for; that of hulls, which few robots have, is 0 without them.
+    """
     # Imported late: where the vector type cannot even be defined, all else still works.
     from evenroad.robot.kernel.lane_check import check_address
     from evenroad.robot.kernel.motion_checks import motion_check_address
 
-    return motion_check_address(), check_address()
+    hulls = 0
+    if with_hulls:
+        from evenroad.robot.kernel.hull_contact import meeting_address
+
+        hulls = meeting_address()
+    return np.array([motion_check_address(), check_address(), hulls])
+
+
+@cache
+def _address_of_checks(with_hulls: bool) -> int:
+    return address(check_addresses(with_hulls))

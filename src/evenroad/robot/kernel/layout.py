@@ -126,6 +126,17 @@ quick = njit(nogil=True, no_cpython_wrapper=True, no_cfunc_wrapper=True, error_m
 """Decorator of such a function that makes no arrays, does not count references to those it is given, which costs more
 than the rest, and does not look whether it divides by zero."""
 
+quick_inlined = njit(
+    nogil=True,
+    no_cpython_wrapper=True,
+    no_cfunc_wrapper=True,
+    error_model="numpy",
+    _nrt=False,
+    forceinline=True,
+)
+"""Decorator of such a function that is put where it is called: one that is given many arrays, which are handed over
+number by number."""
+
 program = njit(cache=True, nogil=True, no_cfunc_wrapper=True, error_model="numpy", _nrt=False)
 """Decorator of what Python calls: it takes numbers alone, and arrays by their addresses, which is soon compiled, soon
 called, and never compiled anew for other kinds of arrays."""

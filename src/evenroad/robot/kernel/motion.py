@@ -7,12 +7,12 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.robot.kernel.layout import inlined, quick
+from evenroad.robot.kernel.layout import inlined, quick_inlined
 
 Floats = npt.NDArray[np.float64]
 
 
-@quick
+@quick_inlined
 def enter(q: Floats, bounds: Floats, into: Floats) -> bool:
     """Write `q` with its wrapping coordinates in their ranges and return whether the others are within theirs.
 
@@ -39,7 +39,7 @@ def wrapped(value: float, low: float, high: float, period: float) -> float:
     return value
 
 
-@quick
+@quick_inlined
 def span(start: Floats, end: Floats, bounds: Floats, resolution: float, direction: Floats) -> int:
     """Put the ends in dictionary order, write the short way between them and return its number of segments.
 
@@ -64,7 +64,7 @@ def span(start: Floats, end: Floats, bounds: Floats, resolution: float, directio
     return math.ceil(math.sqrt(squared) / resolution)
 
 
-@quick
+@quick_inlined
 def canonical(q: Floats, bounds: Floats) -> None:
     """Bring `q` into bounds: wrapping coordinates into their ranges, the others cut."""
     enter(q, bounds, q)
@@ -73,7 +73,7 @@ def canonical(q: Floats, bounds: Floats) -> None:
             q[k] = min(max(q[k], bounds[0, k]), bounds[1, k])
 
 
-@quick
+@quick_inlined
 def distance_and_way(a: Floats, b: Floats, bounds: Floats, way: Floats) -> float:
     """Write the short way from `a` to `b` and return its length."""
     squared = 0.0

@@ -21,7 +21,7 @@ from evenroad.robot.kernel.addresses import (
     matrix_at,
     singles_at,
 )
-from evenroad.robot.kernel.layout import DESK, LANES, MOST_WAITING, quick
+from evenroad.robot.kernel.layout import DESK, LANES, MOST_WAITING, quick, quick_inlined
 from evenroad.robot.kernel.motion import span
 from evenroad.robot.kernel.motion_proof import is_proved
 from evenroad.robot.kernel.motion_states import COUNTS, MOTIONS, Motion, World, are_free, blocked_states
@@ -62,10 +62,10 @@ class Checks(NamedTuple):
 
 @quick
 def checks_of(
-    motion_check: int, check: int, resolution: float, tables: int, by_joint: int, memory: int, counts: int
+    addresses: int, resolution: float, tables: int, by_joint: int, memory: int, counts: int
 ) -> Checks:
     """Return the checks of a world; its memory is cut up, and what does not move put into its place."""
-    ints = integers_at(tables, (ANY_LENGTH,))
+    ints, check = integers_at(tables, (ANY_LENGTH,)), integers_at(addresses, (3,))
     dim, capsules, pairs = ints[at.COORDINATES], ints[at.CAPSULES], ints[at.PAIRS]
     table = tables + 8 * ints[at.INTEGERS]
     bounds = matrix_at(by_joint, (3, dim))
@@ -74,18 +74,19 @@ def checks_of(
     # Lanes begin on a cache line.
     states = (memory + 8 * DESK + 63) // 64 * 64
     scratch = states + 8 * LANES * dim
-    enlarged = scratch + 4 * ints[at.SCRATCH]
+    # Behind the places the check of sixteen keeps where hulls are decided.
+    enlarged = scratch + 4 * ints[at.SCRATCH] + 64
     floats = ints[at.BLOCK_FLOATS] + at.BLOCK_FLOAT_ROW * ints[at.BLOCKS]
     given, copied = singles_at(table, (floats,)), singles_at(enlarged, (floats,))
     for place in range(floats):
         copied[place] = given[place]
     motion = enlarged + (4 * floats + 7) // 8 * 8
-    desk[0], desk[1], desk[2], desk[3], desk[4], desk[5] = check, by_joint, states, counts, tables, table
+    desk[0], desk[1], desk[2], desk[3], desk[4], desk[5] = check[1], by_joint, states, counts, tables, table
     desk[6], desk[7], desk[8], desk[9] = arms, arms + 8 * dim * capsules, scratch, enlarged
     desk[10], desk[11], desk[12], desk[13] = motion, dim, capsules, pairs
-    call_at(check, (scratch, states, tables, table, 0))
+    call_at(check[1], (scratch, check[2], tables, table, 0))
     return Checks(
-        motion_check,
+        check[0],
         memory,
         resolution,
         doubles_at(states, (dim * LANES,)),
@@ -94,13 +95,13 @@ def checks_of(
     )
 
 
-@quick
+@quick_inlined
 def blocked(c: Checks) -> int:
     """Return the mask of the sixteen configurations in ``c.states`` that touch something."""
     return call_at(c.address, (0, 0, STATES, 0.0, 0, 1.0, c.desk))
 
 
-@quick
+@quick_inlined
 def motion_free(a: Floats, b: Floats, known: int, c: Checks) -> bool:
     """Return whether the motion from `a` to `b`, both within bounds, is free at its states.
 
@@ -111,7 +112,7 @@ def motion_free(a: Floats, b: Floats, known: int, c: Checks) -> bool:
     return call_at(c.address, (a, b, known, 0.0, 0, c.resolution, c.desk)) != 0
 
 
-@quick
+@quick_inlined
 def motion_proved(a: Floats, b: Floats, tolerance: float, most_batches: int, c: Checks) -> bool:
     """Return whether the motion from `a` to `b`, within bounds, is proved free: throughout, not at states alone.
 

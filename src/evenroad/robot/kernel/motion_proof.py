@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.lanes import row
-from evenroad.robot.kernel.layout import LANES, MOST_WAITING, quick
+from evenroad.robot.kernel.layout import LANES, MOST_WAITING, quick, quick_inlined
 from evenroad.robot.kernel.motion_states import CONFIGURATIONS, Motion, World, blocked_states, write_states
 
 Floats = npt.NDArray[np.float64]
@@ -20,7 +20,7 @@ _UP = np.float32(1.0 + 3e-7)
 """What sums of single precision are multiplied by to be no less than the true ones."""
 
 
-@quick
+@quick_inlined
 def is_proved(m: Motion, tolerance: float, most_batches: int, w: World) -> bool:
     """Return whether a motion is proved free throughout; see `motion_proved`."""
     fastest = max(_write_speeds(w.arms, m.way, m.speeds), _write_speeds(w.pair_arms, m.way, m.pair_speeds))
@@ -77,7 +77,7 @@ def _wider(length: np.float32, margin: float) -> np.float32:
     return (length + np.float32(margin)) * _UP
 
 
-@quick
+@quick_inlined
 def _enlarge(half: float, m: Motion, w: World) -> None:
     """Write lengths that are larger by what `half` of a motion can move the bodies: all that a test is decided by."""
     ints, given, wide = w.ints, w.table, w.enlarged

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import call_at
 from evenroad.robot.kernel.lanes import store_along
-from evenroad.robot.kernel.layout import LANES, quick
+from evenroad.robot.kernel.layout import LANES, quick_inlined
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -77,21 +77,21 @@ class Motion(NamedTuple):
     centres: Floats
 
 
-@quick
+@quick_inlined
 def blocked_states(w: World, table: Singles, enough: int) -> int:
     """Return the mask of the sixteen states that touch something; with `enough` 1, of the first that do."""
     w.counts[BATCHES] += 1
     return call_at(w.check, (w.scratch, w.states, w.ints, table, enough))
 
 
-@quick
+@quick_inlined
 def write_states(m: Motion, w: World) -> None:
     """Write the configurations at the sixteen shares of a motion."""
     for k in range(len(m.start)):
         store_along(w.states, k * LANES, m.start[k], m.share, m.way[k])
 
 
-@quick
+@quick_inlined
 def are_free(m: Motion, segments: int, first: int, last: int, sixteen_do: bool, w: World) -> bool:
     """Return whether the states of a motion from number `first` to `last`, of 0 to `segments`, are free."""
     count = last - first + 1

@@ -12,6 +12,7 @@ from numba import njit
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.layout import quick
 from evenroad.robot.kernel.obstacles import BOX, CYLINDER, ROTATION, SIZE, SPHERE, TRANSLATION
+from evenroad.robot.kernel.placed_capsules import FARTHEST
 from evenroad.robot.kernel.robot_tables import PADDING, RobotTables
 from evenroad.robot.kernel.scalar import squared_distance_to_obstacle
 
@@ -56,12 +57,13 @@ class ArmTables:
     fixed_contact: tuple[int, int] | None
 
 
-def arm_tables(robot: RobotTables, obstacles: Floats, tested: Bools) -> ArmTables:
+def arm_tables(robot: RobotTables, obstacles: Floats, tested: Bools) -> tuple[ArmTables, int, int]:
     """Return a robot's tables with those of obstacles, as `obstacle_rows` gives them, behind them.
 
-    `tested` says which capsules are tested against which obstacles, (capsules, n).
+    `tested` says which capsules are tested against which obstacles, (capsules, n).  The numbers are the address of
+    `lanes`, and the first obstacle that is too far or too large for single precision, or -1.
     """
-    ints, floats, lanes, added, kept, capsule, obstacle = _pack(
+    ints, floats, lanes, added, kept, capsule, obstacle, place, too_far = _pack(
         robot.ints, robot.floats, robot.singles, robot.reach, obstacles, tested
     )
     kept = kept[: ints[at.OBSTACLES]]
@@ -69,7 +71,8 @@ def arm_tables(robot: RobotTables, obstacles: Floats, tested: Bools) -> ArmTable
         array.setflags(write=False)
     # Once for what is added, once more for what rounding may add to that.
     margin = 2.0 * (PADDING * max(1.0, robot.reach) + added)
-    return ArmTables(ints, floats, lanes, margin, kept, None if capsule < 0 else (capsule, obstacle))
+    contact = None if capsule < 0 else (capsule, obstacle)
+    return ArmTables(ints, floats, lanes, margin, kept, contact), place, too_far
 
 
 @njit(cache=True, nogil=True, no_cfunc_wrapper=True, error_model="numpy")
@@ -80,14 +83,21 @@ def _pack(
     reach: float,
     obstacles: Floats,
     tested: Bools,
-) -> tuple[Ints, Floats, Ints, float, Ints, int, int]:
-    """Return what `ArmTables` holds, and by how much the lanes' obstacles are larger at most [m]."""
+) -> tuple[Ints, Floats, Ints, float, Ints, int, int, int, int]:
+    """Return what `arm_tables` does, and by how much the lanes' obstacles are larger at most [m]."""
     # Rows of all obstacles, of which those that the robot can reach are kept.
     kept, forms = np.empty((2, len(obstacles)), dtype=np.int64)
     rows = np.empty((len(obstacles), at.OBSTACLE_FLOAT_ROW))
     # Not a plain 0: numba compiles a function once more for a literal.
     count, first = 0, np.int64(0)
+    too_far = -1
     for k in range(len(obstacles)):
+        largest = 0.0
+        for entry in range(1, obstacles.shape[1]):
+            largest = max(largest, abs(obstacles[k, entry]))
+        turned = obstacles[k, 0] != BOX or not _is_straight(obstacles[k, ROTATION:TRANSLATION])
+        if largest > FARTHEST and turned and too_far < 0:
+            too_far = k
         form = _write_obstacle(rows[count], obstacles[k], reach)
         far = reach + rows[count, 15]
         if squared_distance_to_obstacle(0.0, 0.0, 0.0, form, rows[count], first) <= far * far:
@@ -133,7 +143,7 @@ def _pack(
             if tested[i, kept[row]]:
                 ints[first_int + count + i * blocks + row // at.LANES] |= 1 << (row % at.LANES)
     capsule, obstacle = _fixed_contact(ints, floats, kept, tested)
-    return ints, floats, lanes, added, kept, capsule, obstacle
+    return ints, floats, lanes, added, kept, capsule, obstacle, lanes.ctypes.data, too_far
 
 
 @quick

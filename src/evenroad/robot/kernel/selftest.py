@@ -80,7 +80,7 @@ def small_tables() -> ArmTables:
         Obstacle.of("pipe", "capsule", (0.05, 0.4), (0.4, -0.4, 0.2), _STRAIGHT),
     )
     tables, scene = robot_tables(robot), Scene("small", obstacles)
-    return arm_tables(tables, obstacle_rows(scene), tested_contacts(tables.capsules, links, scene))
+    return arm_tables(tables, obstacle_rows(scene), tested_contacts(tables.capsules, links, scene))[0]
 
 
 def _read_only(array: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import doubles_at, matrix_at
 from evenroad.robot.kernel.lane_world import LaneWorld
-from evenroad.robot.kernel.layout import program, quick
+from evenroad.robot.kernel.layout import program, quick, quick_inlined
 from evenroad.robot.kernel.motion import canonical, distance_and_way, enter
 from evenroad.robot.kernel.motion_checks import (
     COARSE,
@@ -32,8 +32,8 @@ MOST_CUTS = 64
 """So many cuts of corners are tried at most."""
 
 
-def shorten_path(world: LaneWorld, path: Floats, pairs: Floats) -> tuple[Floats, int]:
-    """Return a path that is no longer, and how many motions were looked at.
+def shorten_path(world: LaneWorld, path: Floats, pairs: int, count: int) -> tuple[Floats, int]:
+    """Return a path that is no longer, without waypoints where it is not finite, and how many motions were looked at.
 
     Parameters
     ----------
@@ -41,17 +41,17 @@ def shorten_path(world: LaneWorld, path: Floats, pairs: Floats) -> tuple[Floats,
         The robot in its scene.
     path : float64 array, shape (p, dim), p >= 2
         Waypoints, every motion free.
-    pairs : float64 array, shape (n, 2)
-        Shares of the path's length, from 0 to 1: between which places a straight motion is tried.
+    pairs, count
+        Address of a float64 array, (count, 2): shares of the path's length, from 0 to 1, between which places a
+        straight motion is tried.
     """
     size, dim = path.shape
-    rows = size + len(pairs) + MOST_CUTS + 4
-    room, arguments = world.arguments(COUNTS + 2 * len(pairs) + rows * (dim + 1) + 3 * dim)
-    counts, points = room[:COUNTS].view(np.int64), room[-rows * dim :].reshape(rows, dim)
-    counts[:], points[:size] = 0, path
-    room[COUNTS : COUNTS + pairs.size] = pairs.ravel()
-    left = shorten_points(rows, size, dim, len(pairs), *arguments)
-    return points[:left].copy(), int(counts[MOTIONS])
+    rows = size + count + MOST_CUTS + 4
+    room, arguments = world.arguments(COUNTS + rows * (dim + 1) + 3 * dim)
+    points = room[-rows * dim :].reshape(rows, dim)
+    room[:COUNTS], points[:size] = 0.0, path
+    left = shorten_points(rows, size, dim, pairs, count, *arguments)
+    return points[:left].copy(), int(room[:COUNTS].view(np.int64)[MOTIONS])
 
 
 @program
@@ -59,8 +59,8 @@ def shorten_points(
     rows: int,
     size: int,
     dim: int,
+    shares: int,
     count: int,
-    motion_check: int,
     check: int,
     resolution: float,
     tables: int,
@@ -68,14 +68,19 @@ def shorten_points(
     memory: int,
     room: int,
 ) -> int:
-    """Do the work of `shorten_path` on the last `rows` of the memory, and return how many are left."""
-    checks = checks_of(motion_check, check, resolution, tables, by_joint, memory, room)
-    pairs = matrix_at(room + 8 * COUNTS, (count, 2))
-    own = room + 8 * (COUNTS + 2 * count)
+    """Do the work of `shorten_path` on the last `rows` of the memory, and return how many are left.
+
+    0 where the path is not finite.
+    """
+    checks = checks_of(check, resolution, tables, by_joint, memory, room)
+    pairs, own = matrix_at(shares, (count, 2)), room + 8 * COUNTS
     ends, way = matrix_at(own, (2, dim)), doubles_at(own + 8 * 2 * dim, (dim,))
     places = doubles_at(own + 8 * 3 * dim, (rows,))
     points = matrix_at(own + 8 * (3 * dim + rows), (rows, dim))
     for i in range(size):
+        for k in range(dim):
+            if not np.isfinite(points[i, k]):
+                return 0
         enter(points[i], checks.bounds, points[i])
     size = _pass_by(points, size, checks)
     _measure(points, places, size, way, checks)
@@ -151,7 +156,7 @@ def _joined(
     return size
 
 
-@quick
+@quick_inlined
 def _is_shortcut(a: Floats, b: Floats, checks: Checks) -> bool:
     """Return whether the motion between two free configurations is free and proved."""
     return motion_free(a, b, COARSE, checks) and motion_proved(a, b, TOLERANCE, BATCHES, checks)
@@ -175,7 +180,7 @@ def _pass_by(points: Floats, size: int, checks: Checks) -> int:
     return size
 
 
-@quick
+@quick_inlined
 def _measure(points: Floats, places: Floats, size: int, way: Floats, checks: Checks) -> None:
     """Write how far along the path each waypoint is."""
     places[0] = 0.0
@@ -183,7 +188,7 @@ def _measure(points: Floats, places: Floats, size: int, way: Floats, checks: Che
         places[i] = places[i - 1] + distance_and_way(points[i - 1], points[i], checks.bounds, way)
 
 
-@quick
+@quick_inlined
 def _place_at(
     points: Floats, places: Floats, i: int, along: float, into: Floats, way: Floats, checks: Checks
 ) -> None:

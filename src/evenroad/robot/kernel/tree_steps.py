@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import integers_at, matrix_at, singles_at
-from evenroad.robot.kernel.layout import LANES, quick
+from evenroad.robot.kernel.layout import LANES, quick, quick_inlined
 from evenroad.robot.kernel.motion import canonical, distance_and_way
 from evenroad.robot.kernel.motion_checks import Checks, blocked
 from evenroad.robot.kernel.motion_states import CONFIGURATIONS, COUNTS, MOTIONS
@@ -18,9 +18,10 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 Singles = npt.NDArray[np.float32]
 
-NEXT_SAMPLE, NEXT_STEP, GROWING, STRAIGHT, START_NODE, GOAL_NODE, BEGUN, STATE = range(COUNTS, COUNTS + 8)
+NEXT_SAMPLE, NEXT_STEP, GROWING, STRAIGHT, START_NODE, GOAL_NODE, BEGUN = range(COUNTS, COUNTS + 7)
+WAYPOINTS, REACHED, STATE = range(COUNTS + 7, COUNTS + 10)
 """What is kept from call to call, behind the counts: places in the two sequences, the tree that grows, how many goals
-were tried straight on, where the trees met, and whether they have roots."""
+were tried straight on, where the trees met, whether they have roots, the size of the path and the end it leads to."""
 
 STEPS_AT_ONCE = LANES // 2
 EXTENSIONS = 3
@@ -96,7 +97,7 @@ def memory_of(room: int, bounds: Floats) -> Memory:
     )
 
 
-@quick
+@quick_inlined
 def candidates(
     trees: Trees, tree: int, state: Ints, sequence: Floats, ball: Floats, memory: Memory, checks: Checks
 ) -> int:

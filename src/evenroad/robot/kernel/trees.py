@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import integers_at, matrix_at
-from evenroad.robot.kernel.layout import LANES, program, quick
+from evenroad.robot.kernel.layout import LANES, program, quick, quick_inlined
 from evenroad.robot.kernel.motion import canonical, distance_and_way, enter
 from evenroad.robot.kernel.motion_checks import (
     BOTH_ENDS,
@@ -37,10 +37,12 @@ from evenroad.robot.kernel.tree_steps import (
     BEGUN,
     GOAL_NODE,
     GROWING,
+    REACHED,
     START_NODE,
     STATE,
     STEPS_AT_ONCE,
     STRAIGHT,
+    WAYPOINTS,
     Memory,
     candidates,
     memory_of,
@@ -50,9 +52,9 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 Singles = npt.NDArray[np.float32]
 
-PAUSED, FULL, SPENT, NOT_FREE, SOLVED = range(5)
-"""What a call of `grow` ends with: its slice used up, no room in the trees, the budget spent, start or goals not free,
-a path found."""
+PAUSED, FULL, SPENT, NOT_FREE, NO_NUMBERS, SOLVED = range(6)
+"""What a call of `grow` ends with: its slice used up, no room in the trees, the budget spent, start or goals not free
+or not finite, a path found."""
 
 MOST_STEPS = 64
 """So many steps at most are made in one go towards the other tree."""
@@ -70,7 +72,7 @@ PROOF_BATCHES = 1024
 
 def room_for(count: int, capacity: int, dim: int) -> int:
     """Return how many doubles the trees take, see `grow`."""
-    return STATE + 2 + count * dim + (3 * dim + 8) * capacity
+    return STATE + 2 + count * dim + (4 * dim + 8) * capacity
 
 
 @program
@@ -84,7 +86,6 @@ def grow(
     steps_count: int,
     most_motions: int,
     slice_batches: int,
-    motion_check: int,
     check: int,
     resolution: float,
     tables: int,
@@ -102,7 +103,8 @@ def grow(
         `room_for` doubles, one after the other: counts and what else is kept from call to call, sizes of the trees,
         integers that are zeros at first; start and goals, (count, dim), of which the goals become the roots of the
         second tree, and the first are tried straight on; nodes, links and columns of ``Trees``, with room for
-        2 count + ROOM nodes at least.
+        2 count + ROOM nodes at least, and as much as the columns again.  A path that was found is written over the
+        columns; how many waypoints it has, and which of the ends it leads to, stand among the counts.
     samples, samples_count
         Float64 array, (n, dim): points of the unit cube.  After the last one it goes on from the first, each time
         shifted a little further.
@@ -112,10 +114,10 @@ def grow(
         After so many motions the budget is spent.
     slice_batches
         After about so many batches of sixteen checks the call returns, for the caller to look at the clock.
-    motion_check, check, resolution, tables, by_joint, memory, room
+    check, resolution, tables, by_joint, memory, room
         As ``LaneWorld.arguments`` gives them, with room for ``memory_of``.
     """
-    checks = checks_of(motion_check, check, resolution, tables, by_joint, memory, kept)
+    checks = checks_of(check, resolution, tables, by_joint, memory, kept)
     bounds = checks.bounds
     dim = bounds.shape[1]
     state, ends = integers_at(kept, (STATE,)), matrix_at(kept + 8 * (STATE + 2), (count, dim))
@@ -124,6 +126,10 @@ def grow(
     sizes = trees.sizes
     own = memory_of(room + 8 * dim, bounds)
     if state[BEGUN] == 0:
+        for end in range(count):
+            for k in range(dim):
+                if not np.isfinite(ends[end, k]):
+                    return NO_NUMBERS
         _begin(ends, trees, own, checks)
         state[BEGUN] = 1
     if sizes[0] == 0 or sizes[1] == 0:
@@ -161,6 +167,8 @@ def grow(
             if met >= 0:
                 state[START_NODE + tree], state[GOAL_NODE - tree] = met, other
                 if _is_proved(trees, state, checks):
+                    columns = kept + 8 * (STATE + 2 + count * dim + (2 * dim + 8) * capacity)
+                    _write_path(trees, state, matrix_at(columns, (2 * capacity, dim)))
                     return SOLVED
                 # Nodes may have been removed: the other candidates know old numbers.
                 break
@@ -194,7 +202,7 @@ def _begin(ends: Floats, trees: Trees, memory: Memory, checks: Checks) -> None:
             return
 
 
-@quick
+@quick_inlined
 def _extended(trees: Trees, tree: int, origin: int, target: Floats, checks: Checks) -> int:
     """Return the number of a new node at `target`, or -1 where the motion there from `origin` is blocked."""
     if not motion_free(trees.nodes[tree, origin], target, START, checks):
@@ -202,7 +210,7 @@ def _extended(trees: Trees, tree: int, origin: int, target: Floats, checks: Chec
     return add_node(trees, tree, target, origin)
 
 
-@quick
+@quick_inlined
 def _reach(trees: Trees, tree: int, found: int, other: int, memory: Memory, checks: Checks) -> int:
     """Go from a node towards one of the other tree in equal steps, each a new node, until one is blocked.
 
@@ -222,6 +230,24 @@ def _reach(trees: Trees, tree: int, found: int, other: int, memory: Memory, chec
             return found
         found = add_node(trees, tree, target, found)
     return -1
+
+
+@quick
+def _write_path(trees: Trees, state: Ints, path: Floats) -> None:
+    """Write the way from the start to the goal that was reached, its size and which of the ends the goal is."""
+    size, node = 0, state[START_NODE]
+    while node >= 0:
+        size, node = size + 1, trees.links[PARENT, 0, node]
+    row, step = size - 1, -1
+    for tree in range(2):
+        node = state[START_NODE + tree]
+        while node >= 0:
+            for k in range(path.shape[1]):
+                path[row, k] = trees.nodes[tree, node, k]
+            state[REACHED] = trees.links[PROVED, tree, node]
+            row, node = row + step, trees.links[PARENT, tree, node]
+        row, step = size if tree == 0 else row, 1
+    state[WAYPOINTS] = row
 
 
 @quick

@@ -1,7 +1,9 @@
-"""CoalWorld: a robot's own shapes, meshes included, among a scene's, checked by coal."""
+"""Worlds of a robot's own shapes, meshes included, checked by others' engines: EngineWorld; and CoalWorld, by coal."""
 
 from __future__ import annotations
 
+import os
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import product
@@ -9,13 +11,50 @@ from typing import Any
 
 import numpy as np
 
-from evenroad._arrays import Bools, Floats
-from evenroad.geometry.shapes import Mesh, Shape
+from evenroad._arrays import Bools, Floats, set_fields
+from evenroad._checks import require_extra
+from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.geometry.mesh import TriangleMesh
+from evenroad.geometry.shapes import Mesh, Shape, along_z
 from evenroad.robot.kinematics import link_poses
-from evenroad.robot.reference.engine_world import EngineWorld
+from evenroad.robot.known_robots import joint_space
+from evenroad.robot.load import find_robot, read_robot
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
-from evenroad.world.mesh import require_coal, tree_of
+from evenroad.robot.urdf_xml import RobotFile
+from evenroad.space import JointSpace
+from evenroad.world.function import FunctionWorld, TestedAtStates
+
+
+@dataclass(frozen=True, eq=False)
+class EngineWorld(TestedAtStates, ABC):
+    """A robot's shapes among a scene's, checked state by state; subclasses say by whom.
+
+    `shapes` are those of the links, each in its link's frame, as of :func:`original_shapes`; by default the robot's
+    capsules.  Raises NotAvailable if the engine is not installed, BrokenFile if a mesh is missing or broken,
+    InvalidValue if a link would have no shape, or a shape is of a link that is not there.
+    """
+
+    robot: Robot
+    scene: Scene
+    shapes: Sequence[Shape] | None = None
+    resolution: float = 0.05
+    _shapes: tuple[Shape, ...] = field(init=False, repr=False)
+    _states: FunctionWorld = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        shapes = sound_shapes(self.robot, self.shapes)
+        states = FunctionWorld(joint_space(self.robot), self._free, self.resolution)
+        set_fields(self, shapes=shapes, _shapes=shapes, _states=states)
+
+    @property
+    def space(self) -> JointSpace:
+        """The ranges of the group's joints."""
+        return self._states.space  # type: ignore[return-value]
+
+    @abstractmethod
+    def _free(self, q: Floats) -> Bools:
+        """Return which configurations within the limits, (n, dim), touch nothing: (n,)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,13 +75,13 @@ class CoalWorld(EngineWorld):
         coal = require_coal()
         super().__post_init__()
         bodies = [obstacle.body for obstacle in self.scene.obstacles]
-        for name, value in (
-            ("_coal", coal),
-            ("_solids", [coal_shape(coal, shape) for shape in self._shapes]),
-            ("_obstacles", [(coal_shape(coal, body), _transform(coal, body.pose.matrix)) for body in bodies]),
-            ("_tests", tests_of(self.robot, self.scene, self._shapes)),
-        ):
-            object.__setattr__(self, name, value)
+        set_fields(
+            self,
+            _coal=coal,
+            _solids=[coal_shape(coal, shape) for shape in self._shapes],
+            _obstacles=[(coal_shape(coal, body), _transform(coal, body.pose.matrix)) for body in bodies],
+            _tests=tests_of(self.robot, self.scene, self._shapes),
+        )
 
     def explain(self, q: Floats) -> str:
         """Return in words why one configuration, (dim,), is not free."""
@@ -118,3 +157,61 @@ def asking_for_contacts(request: Any) -> Any:
     """
     request.enable_contact = True
     return request
+
+
+def require_coal() -> Any:
+    """Return the module coal; NotAvailable if it is not installed."""
+    return require_extra("coal", "mesh", "checking meshes")
+
+
+def tree_of(coal: Any, mesh: TriangleMesh) -> Any:
+    """Return coal's tree of oriented boxes over the triangles of a mesh; its surface as it is, nothing made convex.
+
+    Raises BrokenFile if coal leaves triangles out.
+    """
+    tree = coal.BVHModelOBBRSS()
+    tree.beginModel(len(mesh.triangles), len(mesh.vertices))
+    tree.addVertices(mesh.vertices)
+    tree.addTriangles(mesh.triangles)
+    tree.endModel()
+    if not tree.num_tris == len(mesh.triangles) > 0:
+        raise BrokenFile(
+            f"coal took {tree.num_tris} of {len(mesh.triangles)} triangles: the others would never collide"
+        )
+    return tree
+
+
+def original_shapes(source: str | os.PathLike[str] | RobotFile, robot: Robot) -> tuple[Shape, ...]:
+    """Return the collision shapes that a robot's file, or a shipped robot, gives, before capsules were fitted.
+
+    Links of `robot` that have no shape there, because their capsules were given, keep those.  Raises as
+    :func:`evenroad.robot.load_model`.
+    """
+    file = source if isinstance(source, RobotFile) else RobotFile(find_robot(source)[0])
+    shapes = read_robot(file).shapes
+    there = {shape.link for shape in shapes}
+    return shapes + tuple(shape for shape in capsule_shapes(robot) if shape.link not in there)
+
+
+def capsule_shapes(robot: Robot) -> tuple[Shape, ...]:
+    """Return the capsules of a robot as collision shapes."""
+    return tuple(map(along_z, robot.capsules))
+
+
+def sound_shapes(robot: Robot, shapes: Sequence[Shape] | None) -> tuple[Shape, ...]:
+    """Return the shapes to test: those given, or the robot's capsules.
+
+    Raises InvalidValue if there is none, one is of a link that is not there, or a link with capsules has none: its
+    checks would all pass.
+    """
+    chosen = capsule_shapes(robot) if shapes is None else tuple(shapes)
+    links = {shape.link for shape in chosen}
+    unknown = sorted(links - set(robot.links))
+    bare = sorted({capsule.link for capsule in robot.capsules} - links)
+    if not chosen or unknown or bare:
+        raise InvalidValue(
+            f"shapes must be those of links of {robot.name!r}, one or more; got {len(chosen)}"
+            + (f", of links that are not there: {', '.join(unknown)}" if unknown else "")
+            + (f", none of {', '.join(bare)}" if bare else "")
+        )
+    return chosen

@@ -13,18 +13,15 @@ from evenroad._arrays import Floats
 from evenroad._rng import generator
 from evenroad.errors import NotAvailable
 from evenroad.robot.pairs import HELD_TOUCHING, TOUCHING
-from evenroad.robot.reference.coal_world import CoalWorld
-from evenroad.robot.reference.engine_world import original_shapes
+from evenroad.robot.reference.coal_world import CoalWorld, original_shapes
 from evenroad.robot.robot import Robot, RobotModel
 from evenroad.robot.scene import Scene
 from evenroad.robot.urdf_xml import RobotFile
 from evenroad.space.path import resample
 
 Verdict = Literal["free", "in collision", "not checked"]
-
 FINER = 10
 """States are this many times as dense as those that a motion was planned with."""
-
 SAMPLES = 100
 """Random configurations that tell pairs whose shapes are always in contact."""
 
@@ -78,24 +75,10 @@ def recheck(
     links touch whose capsules say nothing about them (`unseen`), or the capsules were given by the user and leave out
     a piece of a shape, or something is wrong with one of the two checkers: the path is not to be driven.
 
-    Parameters
-    ----------
-    source : str, path-like or RobotFile
-        The file that `robot` was loaded from.
-    robot, scene : Robot, Scene
-        What was planned with.
-    path : ndarray, shape (p, dim)
-        Waypoints [rad or m]; each motion is divided as ArmWorld divides it, ten times as finely.
-    resolution : float
-        As for :class:`evenroad.robot.arm_world.ArmWorld`.
-    unseen : sequence of pairs of str
-        Pairs of links that are tested here beside the robot's own, as of `unseen_pairs`.  Left out are those whose
-        shapes touch whatever the joints do.
-
-    Raises
-    ------
-    BrokenFile, InvalidValue
-        If the URDF or a mesh is missing, broken or empty by now.
+    `source` is the file that `robot` was loaded from; each motion of the path, (p, dim) [rad or m], is divided as
+    ArmWorld of this `resolution` divides it, ten times as finely.  `unseen` are pairs of links that are tested beside
+    the robot's own, as of `unseen_pairs`; left out are those whose shapes touch whatever the joints do.  Raises
+    BrokenFile or InvalidValue if the URDF or a mesh is missing, broken or empty by now.
     """
     every = replace(robot, pairs=(*robot.pairs, *unseen))
     try:

@@ -6,7 +6,7 @@ The grid is *padded*: one ring of occupied cells around the map stands for the o
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -22,6 +22,9 @@ FREE = 2
 """FREE + s: every point of the closed cell is at least `radius` + s from every obstacle."""
 
 
+Runs: TypeAlias = npt.NDArray[np.uint16]
+
+
 class DiskTables(NamedTuple):
     """What the kernels know of one disk on one map; arrays over the padded grid, (rows + 2, cols + 2)."""
 
@@ -29,8 +32,8 @@ class DiskTables(NamedTuple):
     """`MapFrame.coefficients()`."""
     cells: npt.NDArray[np.uint8]
     """The class of each cell, see `classify`."""
-    above: npt.NDArray[np.uint16]
-    below: npt.NDArray[np.uint16]
+    above: Runs
+    below: Runs
     """Rows to the nearest occupied cell of the column, see `vertical_runs`."""
     radius: float
     """Of the disk, in pixels."""
@@ -41,7 +44,7 @@ _LARGEST_RUN = 65535
 
 
 @njit(cache=True, nogil=True)
-def vertical_runs(padded: Bools) -> tuple[npt.NDArray[np.uint16], npt.NDArray[np.uint16]]:
+def vertical_runs(padded: Bools) -> tuple[Runs, Runs]:
     """Return how many rows up, and how many down, the nearest occupied cell of the same column is; 0 in one.
 
     Runs end at 65535: in no map that fits in memory is the nearest obstacle of a point that far.
@@ -61,9 +64,7 @@ def vertical_runs(padded: Bools) -> tuple[npt.NDArray[np.uint16], npt.NDArray[np
 
 
 @njit(cache=True, nogil=True)
-def classify(
-    above: npt.NDArray[np.uint16], below: npt.NDArray[np.uint16], radius: float
-) -> npt.NDArray[np.uint8]:
+def classify(above: Runs, below: Runs, radius: float) -> npt.NDArray[np.uint8]:
     """Return the class of every cell of the padded grid: BLOCKED, UNDECIDED or FREE + slack.
 
     The farthest that a point of a cell can be from a square (dc, dr) cells away is hypot(dc, dr): where that is less

@@ -18,7 +18,6 @@ from evenroad.world.gridmap.kernel import squared_gap
 
 _AROUND = 3
 """Cells around a place where two components come close that belong to the gate."""
-
 PARTS = 16
 """A cell at a gate is looked at in so many by so many parts, to tell whether the gate is shut."""
 

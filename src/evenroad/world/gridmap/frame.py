@@ -22,25 +22,10 @@ class MapFrame:
 
     * ``y_up=False``, a bare image: x to the right, y DOWN, `origin` is the image's top-left corner;
     * ``y_up=True``, a ROS map: `origin` is the lower-left corner of the lower-left pixel, y up along the
-      image's left side, the whole image rotated by `yaw` (anticlockwise) about `origin`.
+      image's left side, the whole image rotated by `yaw` (anticlockwise, radians) about `origin`.
 
-    Parameters
-    ----------
-    rows, cols : int
-        Size of the image in pixels.
-    resolution : float
-        Side of a pixel in map units (metres in a ROS map).
-    origin : tuple of two floats
-        In map units.
-    yaw : float
-        In radians; 0 for a bare image.
-    y_up : bool
-        Which of the two conventions.
-
-    Raises
-    ------
-    InvalidValue
-        If a size is not positive, or a number is not finite.
+    `rows` and `cols` are the image's size in pixels, `resolution` the side of a pixel in map units (metres in a ROS
+    map), as `origin` is.  InvalidValue if a size is not positive, or a number is not finite.
     """
 
     rows: int
@@ -71,11 +56,10 @@ class MapFrame:
         )
 
     def coefficients(self) -> Floats:
-        """Return the eight numbers with which the kernels turn map coordinates into pixels.
+        """Return the origin, the map directions of increasing column and row, the resolution, and the origin's row.
 
-        They are the origin; the map directions of increasing column and of increasing row; the resolution; and the row
-        of the origin.  A point's column is ``(q - origin) . direction / resolution``: subtracting first and dividing
-        last keeps round numbers round, so that a disk that just touches is seen to just touch.
+        A point's column is ``(q - origin) . direction / resolution``: subtracting first and dividing last keeps round
+        numbers round, so that a disk that just touches is seen to just touch.
         """
         cosine, sine = math.cos(self.yaw), math.sin(self.yaw)
         if not self.y_up:

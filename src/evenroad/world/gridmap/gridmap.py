@@ -29,29 +29,22 @@ from evenroad.world.protocol import Connection
 
 _SPREADS = (32, 96)
 """Points that a path is offered to be straightened with, in the coarse rounds and in the fine ones."""
-
 _SMALLEST_RADIUS = 1e-150
 """In pixels: its square is still above 0, so that a disk of any size touches what its centre lies on."""
 
 
 @dataclass(frozen=True, eq=False)
 class GridMap:
-    """Which cells of a map are occupied, and where the map lies.
+    """Which cells of a map are occupied, and where the map lies; InvalidValue if the arrays are not of one size.
 
     Parameters
     ----------
-    occupied : array_like of bool, shape (rows, cols)
+    occupied : array_like of bool, shape (rows, cols), at least one cell
         True where a cell is an obstacle; row 0 is the top of the image.  Copied to a read-only array.
     frame : MapFrame, optional
         Where the cells lie; by default that of a bare image of this size: x right, y down, unit = pixel.
     unknown : array_like of bool, shape (rows, cols), optional
         Cells of which a map says nothing; whether they are obstacles, `occupied` says.  Default: none.
-
-    Raises
-    ------
-    InvalidValue
-        If `occupied` or `unknown` is not a boolean array with at least one cell, or a size differs from that of
-        `occupied`.
     """
 
     occupied: Bools
@@ -98,19 +91,9 @@ class GridMap:
         return GridMap(self.occupied[inside], frame, self.unknown[inside])
 
     def world(self, robot_radius: float, clearance: float = 0.0) -> DiskWorld:
-        """Return the world of a disk robot on this map.
+        """Return the world of a disk of `robot_radius`, > 0, that keeps a `clearance`, >= 0, from every obstacle.
 
-        Parameters
-        ----------
-        robot_radius : float
-            In map units (pixels for a bare image, metres for a ROS map), > 0.
-        clearance : float
-            Added to the radius: how far from obstacles the robot must stay, >= 0.
-
-        Raises
-        ------
-        InvalidValue
-            If one of them is not such a number.
+        Both are in map units, pixels for a bare image, metres for a ROS map; else InvalidValue.
         """
         radius = require_positive("robot_radius", robot_radius)
         room = require_positive("clearance", clearance, or_zero=True)
@@ -133,19 +116,8 @@ class DiskWorld:
 
     Obstacles are the closed squares of the occupied cells and everything outside the map; a disk is free if its centre
     is at least `radius` away from all of them, so touching is free.  Motions are swept disks along straight segments,
-    tested without any step length: exact up to float rounding, about 1e-12 pixels.
-
-    Parameters
-    ----------
-    grid : GridMap
-        The map.
-    radius : float
-        Of the disk with any clearance added, in map units, > 0.
-
-    Raises
-    ------
-    InvalidValue
-        If `radius` is not such a number.
+    tested without any step length: exact up to float rounding, about 1e-12 pixels.  `radius` is the disk's with any
+    clearance added, in map units, > 0, else InvalidValue.
     """
 
     proof: ClassVar[str] = "exact"

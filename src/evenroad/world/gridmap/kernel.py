@@ -32,16 +32,21 @@ def motions_are_free(a: Floats, b: Floats, disk: DiskTables) -> Bools:
     """Return for each pair of finite map points, (m, 2), whether the disk can move straight, (m,)."""
     free = np.empty(len(a), np.bool_)
     for i in range(len(a)):
-        ax, ay = to_padded(a[i, 0], a[i, 1], disk.frame)
-        bx, by = to_padded(b[i, 0], b[i, 1], disk.frame)
-        if not point_is_free(ax, ay, disk) or not point_is_free(bx, by, disk):
-            free[i] = False
-        elif bx < ax or (bx == ax and by < ay):
-            # One direction for both orders: a motion and its reverse round alike.
-            free[i] = motion_is_free(bx, by, ax, ay, disk)
-        else:
-            free[i] = motion_is_free(ax, ay, bx, by, disk)
+        free[i] = free_between(a[i, 0], a[i, 1], b[i, 0], b[i, 1], disk)
     return free
+
+
+@njit(cache=True, nogil=True)
+def free_between(ax: float, ay: float, bx: float, by: float, disk: DiskTables) -> bool:
+    """Say whether the motion between two map points is free."""
+    ax, ay = to_padded(ax, ay, disk.frame)
+    bx, by = to_padded(bx, by, disk.frame)
+    if not point_is_free(ax, ay, disk) or not point_is_free(bx, by, disk):
+        return False
+    # One direction for both orders: a motion and its reverse round alike.
+    if bx < ax or (bx == ax and by < ay):
+        return _motion_is_free(bx, by, ax, ay, disk)
+    return _motion_is_free(ax, ay, bx, by, disk)
 
 
 @njit(cache=True, nogil=True)
@@ -88,7 +93,7 @@ def squared_gap(x: float, y: float, row: int, col: int, reach: int, enough: floa
 
 
 @njit(cache=True, nogil=True)
-def motion_is_free(ax: float, ay: float, bx: float, by: float, disk: DiskTables) -> bool:
+def _motion_is_free(ax: float, ay: float, bx: float, by: float, disk: DiskTables) -> bool:
     """Follow the segment from a to b (ax <= bx), both free, cell by cell; parameter t runs from 0 to 1.
 
     Every piece of the segment from one t to the next lies in the closed cell that is looked at, and the pieces leave no

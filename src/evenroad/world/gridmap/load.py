@@ -1,4 +1,7 @@
-"""Reading a map of any kind: a bare image, or a YAML file of the ROS map_server beside an image."""
+"""Reading a map of any kind: a bare image, or a YAML file of the ROS map_server beside an image.
+
+With the checks that a file from anywhere needs.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ import os
 import warnings
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import IO, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -15,14 +18,12 @@ from PIL import Image
 from evenroad._arrays import Bools
 from evenroad._checks import require_known, require_positive
 from evenroad._yaml import numbers, read_mapping, require_keys
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.world.gridmap.frame import MapFrame
 from evenroad.world.gridmap.gridmap import GridMap
-from evenroad.world.gridmap.image import load_image, open_image
 
 _IMAGES = (".png", ".pgm")
 _ROS_MAPS = (".yaml", ".yml")
-
 _REQUIRED = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
 _MODES = ("trinary", "scale", "raw")
 
@@ -35,10 +36,8 @@ class RosMapMeta(NamedTuple):
     origin: tuple[float, ...]
     """x and y of the lower-left corner of the lower-left pixel, and yaw."""
     negate: bool
-    """White, not black, is occupied."""
     occupied_thresh: float
     free_thresh: float
-    """``0 <= free_thresh < occupied_thresh <= 1``"""
     mode: str
     passed_over: tuple[str, ...]
     """Keys that nothing is known of."""
@@ -47,19 +46,8 @@ class RosMapMeta(NamedTuple):
 def load_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False) -> GridMap:
     """Read a map: a bare image (.png, .pgm) or a ROS map_server file (.yaml, .yml).
 
-    Parameters
-    ----------
-    path : str or path-like
-        See `load_image` and `load_ros_map` for what the pixels mean and where the map then lies.
-    unknown_is_free : bool
-        Take the unknown cells of a ROS map as free; a bare image has none.
-
-    Raises
-    ------
-    UnknownName
-        If the suffix is another one, or as `load_ros_map`.
-    BrokenFile, InvalidValue
-        As `load_image` and `load_ros_map`.
+    `load_image` and `load_ros_map` say what the pixels mean, where the map then lies, and what they raise; with
+    `unknown_is_free` the unknown cells of a ROS map are free.  UnknownName if the suffix is another one.
     """
     suffix = Path(path).suffix.lower()
     if suffix in _IMAGES:
@@ -90,22 +78,9 @@ def load_ros_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False)
       values above 100 are unknown.  map_server leaves the verdict to whoever uses the percentage; here it is
       the same two thresholds.
 
-    Parameters
-    ----------
-    path : str or path-like
-        The YAML file.
-    unknown_is_free : bool
-        By default, unknown cells are obstacles, like the occupied ones.
-
-    Raises
-    ------
-    BrokenFile
-        If the YAML file or the image is missing or broken, or a key is missing or there twice.
-    UnknownName
-        If a key is nearly one that map_server knows, or a mode is none of them; the known ones are listed.  Other keys
-        are passed over with a warning.
-    InvalidValue
-        If a value has the wrong type or range.
+    Unknown cells are obstacles, unless `unknown_is_free`.  Raises BrokenFile if the YAML file or the image is missing
+    or broken, or a key is missing or there twice; UnknownName if a key is nearly one that map_server knows, or a mode
+    is none of them (other keys are passed over with a warning); InvalidValue if a value has the wrong type or range.
     """
     meta = read_ros_meta(path)
     if meta.passed_over:
@@ -125,9 +100,7 @@ def read_ros_meta(path: str | os.PathLike[str]) -> RosMapMeta:
     known = (*_REQUIRED, "mode")
     # Newer map servers write more; what looks like a slip of the pen is no newer key.
     strange = [key for key in document if key not in known and not get_close_matches(str(key), known)]
-    require_keys(
-        {key: document[key] for key in document if key not in strange}, _REQUIRED, ("mode",), str(file)
-    )
+    require_keys([key for key in document if key not in strange], _REQUIRED, ("mode",), str(file))
     image, mode, negate = document["image"], document.get("mode", "trinary"), document["negate"]
     if not isinstance(image, str) or not image:
         raise InvalidValue(f"image in {file} must be the name of a file, got {image!r}")
@@ -185,3 +158,91 @@ def _summed_channels(image: Image.Image, *, with_alpha: bool) -> tuple[npt.NDArr
         return pixels, 255 if image.mode == "L" else 65535
     channels = 4 if image.mode == "RGBA" and with_alpha else 3
     return pixels[:, :, :channels].sum(axis=2, dtype=np.uint16), 255 * channels
+
+
+LARGEST_IMAGE = 100_000_000
+"""Most pixels that a map may have: 10 000 x 10 000.  Its world then takes about 0.6 GB."""
+DARK = 128.0
+"""A bare image's cell is an obstacle if its luminance, of 255, is below this."""
+_FORMATS = ("PNG", "PPM")
+"""The only decoders let loose on a file; PPM is Pillow's name for the family of PGM."""
+
+
+def load_image(path: str | os.PathLike[str], *, dark: float = DARK) -> GridMap:
+    """Read a bare PNG or PGM image as a map: pixels whose luminance, of 255, is below `dark` are obstacles.
+
+    Colours count by ITU-R BT.601 (.299 R + .587 G + .114 B, rounded), transparent pixels as if on white paper.  The
+    frame is the image's own: x right, y down, origin in the top-left corner, unit = pixel.  Raises BrokenFile if the
+    file is missing, is not a whole PNG or PGM image, or has more than 100 million pixels; InvalidValue if `dark` is not
+    in (0, 255].
+    """
+    if require_positive("dark", dark) > 255.0:
+        raise InvalidValue(f"dark must be in (0, 255], got {dark!r}")
+    luminance, white = _luminance(open_image(path))
+    return GridMap(luminance < dark * (white / 255.0))
+
+
+def open_image(path: str | os.PathLike[str]) -> Image.Image:
+    """Return the decoded image at `path`: mode L, I;16 (grey, 16 bit), RGB or RGBA.  Errors as `load_image`."""
+    file = Path(path)
+    try:
+        with file.open("rb") as stream:
+            return _decoded(stream, file)
+    except BrokenFile:
+        raise
+    except (OSError, ValueError) as error:  # ValueError: a name that no file can have
+        raise BrokenFile(f"cannot read the image {file}: {getattr(error, 'strerror', error)}") from error
+
+
+def _decoded(stream: IO[bytes], file: Path) -> Image.Image:
+    try:
+        with warnings.catch_warnings():
+            # Pillow warns from 89 million pixels on; the limit here is ours.
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            image = Image.open(stream, formats=_FORMATS)
+    except Image.DecompressionBombError:
+        raise BrokenFile(f"the image {file} is too large: at most {LARGEST_IMAGE} pixels are read") from None
+    except Exception as error:  # a decoder fed with garbage may raise anything
+        raise BrokenFile(f"{file} is not a PNG or PGM image{_reason(error)}") from error
+    columns, rows = image.size
+    if columns * rows > LARGEST_IMAGE:
+        raise BrokenFile(
+            f"the image {file} is too large: {columns} x {rows} pixels, at most {LARGEST_IMAGE} are read"
+        )
+    try:
+        image.load()
+        return _in_known_mode(image)
+    except Exception as error:
+        raise BrokenFile(f"the image {file} is broken or cut short{_reason(error)}") from error
+
+
+def _in_known_mode(image: Image.Image) -> Image.Image:
+    if image.mode in ("I", "I;16", "I;16B", "I;16L", "I;16N"):
+        levels = np.asarray(image).astype(np.uint16)
+        if "transparency" in image.info:
+            levels[levels == image.info["transparency"]] = 65535  # as if on white paper
+        return Image.fromarray(levels)
+    if image.has_transparency_data:
+        return image.convert("RGBA")
+    if image.mode in ("1", "L"):
+        return image.convert("L")
+    if image.mode in ("RGB", "P"):
+        return image.convert("RGB")
+    raise ValueError(f"pixels of kind {image.mode} are not supported")
+
+
+def _luminance(image: Image.Image) -> tuple[npt.NDArray[np.uint8 | np.uint16], int]:
+    """Return the luminance of each pixel, (rows, cols), and the value that white has."""
+    if image.mode == "I;16":
+        return np.asarray(image), 65535
+    if image.mode == "RGBA":
+        paper = Image.new("RGBA", image.size, "white")
+        paper.alpha_composite(image)
+        image = paper
+    return np.asarray(image.convert("L")), 255
+
+
+def _reason(error: Exception) -> str:
+    """Return the decoder's own words in brackets, on one line, unless they only repeat the file's name."""
+    text = " ".join(str(error).split())
+    return f" ({text})" if text and "cannot identify" not in text else ""

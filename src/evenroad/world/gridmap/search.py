@@ -16,7 +16,7 @@ from numba import njit
 
 from evenroad._arrays import Bools, Floats
 from evenroad.world.gridmap.cells import BLOCKED, FREE, DiskTables
-from evenroad.world.gridmap.kernel import motion_is_free, point_is_free, to_padded
+from evenroad.world.gridmap.kernel import free_between, to_padded
 
 _BUCKETS = 64
 """More than the largest step of the key of A*, twice the dearest step: a key names its bucket."""
@@ -32,7 +32,6 @@ STEPS = np.array(
 
 COSTS = np.array([10] * 4 + [14] * 4 + [5] * 4 + [7] * 4 + [11] * 8)
 """Of the steps: about ten times their lengths in pixels."""
-
 _LINKS = 24
 """Lattice points that an end is linked to."""
 
@@ -122,7 +121,7 @@ def find_path(
                     continue
                 motions += 1
                 to_x, to_y = _to_map(0.5 * to_c, 0.5 * to_r, disk.frame)
-                if not _free_between(from_x, from_y, to_x, to_y, disk):
+                if not free_between(from_x, from_y, to_x, to_y, disk):
                     continue
             reached[to] = cost
             came[to] = s
@@ -179,7 +178,7 @@ def _links(x: float, y: float, disk: DiskTables, gates: Bools) -> tuple[Any, int
                     continue
                 tried += 1
                 to_x, to_y = _to_map(0.5 * c, 0.5 * r, disk.frame)
-                if _free_between(x, y, to_x, to_y, disk):
+                if free_between(x, y, to_x, to_y, disk):
                     linked.append(np.int64(r * (2 * cols + 1) + c))
         if len(linked) >= _LINKS:
             break
@@ -223,18 +222,6 @@ def _trace(node: int, came: Any, wide: int, start: Any, goal: Any, disk: DiskTab
 
 
 @njit(cache=True, nogil=True)
-def _free_between(ax: float, ay: float, bx: float, by: float, disk: DiskTables) -> bool:
-    """Say whether the motion between two map points is free, as `motions_are_free` does."""
-    ax, ay = to_padded(ax, ay, disk.frame)
-    bx, by = to_padded(bx, by, disk.frame)
-    if not point_is_free(ax, ay, disk) or not point_is_free(bx, by, disk):
-        return False
-    if bx < ax or (bx == ax and by < ay):
-        return motion_is_free(bx, by, ax, ay, disk)
-    return motion_is_free(ax, ay, bx, by, disk)
-
-
-@njit(cache=True, nogil=True)
 def _to_map(column: float, row: float, frame: Any) -> tuple[float, float]:
     """Return the map point at padded coordinates, as `MapFrame.to_map` does for the map's own."""
     along, down = (column - 1.0) * frame[6], (row - 1.0 - frame[7]) * frame[6]
@@ -253,14 +240,14 @@ def _skip_ahead(path: Any, disk: DiskTables) -> tuple[Floats, int]:
         while near < last:
             far = min(at + stride, last)
             motions += 1
-            if not _free_between(path[at, 0], path[at, 1], path[far, 0], path[far, 1], disk):
+            if not free_between(path[at, 0], path[at, 1], path[far, 0], path[far, 1], disk):
                 break
             near = far
             stride *= 2
         while far - near > 1:
             middle = (near + far) // 2
             motions += 1
-            if _free_between(path[at, 0], path[at, 1], path[middle, 0], path[middle, 1], disk):
+            if free_between(path[at, 0], path[at, 1], path[middle, 0], path[middle, 1], disk):
                 near = middle
             else:
                 far = middle
@@ -313,7 +300,7 @@ def _best_selection(points: Any, disk: DiskTables) -> tuple[Floats, int]:
                 continue
             # Pieces of a free motion, too: their ends are rounded.
             motions += 1
-            if not _free_between(points[i, 0], points[i, 1], points[j, 0], points[j, 1], disk):
+            if not free_between(points[i, 0], points[i, 1], points[j, 0], points[j, 1], disk):
                 continue
             length[j], before[j] = through, i
     if not np.isfinite(length[count - 1]):

@@ -1,0 +1,93 @@
+"""``evenroad view``: an arm in its scene and its path, on a page of this computer or as a GIF."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import tyro
+
+from evenroad._arrays import Floats
+from evenroad._files import require_writable_folder
+from evenroad.arms import ArmQuery, arm_query
+from evenroad.cli.plan import RobotOptions
+from evenroad.errors import InvalidValue
+from evenroad.io import load_plan
+from evenroad.roadmap import Budget, PlanResult
+from evenroad.roadmap.find_path import find_path
+from evenroad.robot import find_robot
+from evenroad.robot.urdf_xml import RobotFile
+
+SECONDS = 0.5
+"""To plan again at most, while somebody moves an end by hand."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class View(RobotOptions):
+    """Show an arm in its scene with the path under a slider, on a page that this computer serves to itself.
+
+    Start and goal are moved by hand; the path is planned again as they move.  Ctrl-C ends it.
+    """
+
+    world: tyro.conf.Positional[Path]
+    """What evenroad plan --robot wrote (.json); or a scene (.yaml), with --robot."""
+    robot: str | None = None
+    """A URDF, xacro or MJCF file, or the name of a shipped robot (ur5, arm7).  Default: that of the plan."""
+    start: str = "home"
+    """Of a scene: one number a joint with commas between them, name=value,..., or a named state."""
+    goal: str | None = None
+    """As start.  Default: the start."""
+    port: int = 8080
+    """Where the page is; 0 takes any that is free."""
+    gif: Path | None = None
+    """Write a moving picture there in place of a page."""
+
+    def run(self) -> int:
+        """Show until Ctrl-C, or write the picture; return 0."""
+        if not 0 <= self.port < 65536:
+            raise InvalidValue(f"port must be from 0 to 65535, got {self.port}")
+        if self.gif is not None:
+            if self.gif.suffix.lower() != ".gif":
+                raise InvalidValue(f"--gif must name a .gif, got {str(self.gif)!r}")
+            require_writable_folder(self.gif)
+        query, result = self._query()
+        if self.gif is not None:
+            from evenroad.viz.arm import save_arm_gif
+
+            save_arm_gif(self.gif, result, query.world)
+            print(f"wrote {self.gif}")
+            return 0
+        from evenroad.viz.page import ArmPage
+
+        def plan(start: Floats, goal: Floats) -> PlanResult:
+            return find_path(query.world, start, goal[np.newaxis], budget=Budget(seconds=SECONDS))
+
+        file = query.source
+        if file is None and self.robot is not None:
+            file = RobotFile(find_robot(self.robot)[0])
+        page = ArmPage(query.world, result, plan, file, port=self.port)
+        print(f"{page.address}   (Ctrl-C ends it)", flush=True)
+        try:
+            page.serve()
+        finally:
+            page.close()
+        return 0
+
+    def _query(self) -> tuple[ArmQuery, PlanResult]:
+        options = self.options()
+        if self.world.suffix.lower() != ".json":
+            if self.robot is None:
+                raise InvalidValue("give --robot, the arm that moves in this scene")
+            goal = self.start if self.goal is None else self.goal
+            query = arm_query(self.robot, self.world, self.start, goal, **options)
+            return query, find_path(query.world, query.start, query.goals, budget=Budget(seconds=SECONDS))
+        result, asked = load_plan(self.world)
+        robot = self.robot or asked.get("robot")
+        if not isinstance(robot, str) or not isinstance(asked.get("scene"), str):
+            raise InvalidValue(f"{self.world} is not the plan of an arm: it names no robot and scene")
+        for name in ("srdf", "bodies"):
+            options[name] = options[name] or asked.get(name)
+        options["group"] = options["group"] or ",".join(asked["joints"])
+        query = arm_query(robot, asked["scene"], result.start, list(result.goals), **options)
+        return query, result

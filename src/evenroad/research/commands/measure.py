@@ -1,0 +1,81 @@
+"""``evenroad measure``: how even a set is."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import tyro
+
+from evenroad._terminal import print_table
+from evenroad.errors import EvenroadError, InvalidValue
+from evenroad.points import PointSet
+from evenroad.points.measures import MEASURES, dispersion
+from evenroad.points.npz import read_points
+from evenroad.research.measures import riesz_rooted, separation, star_discrepancy
+
+
+@dataclass(frozen=True, kw_only=True)
+class Measure:
+    """Print every measure of a point set: discrepancies, dispersion, separation, energy."""
+
+    file: tyro.conf.Positional[Path]
+    """A .npy array of shape (n, d), or a .npz point set."""
+    json: bool = False
+    """Print JSON instead of a table."""
+
+    def run(self) -> int:
+        """Measure and print."""
+        points = read_points(self.file)
+        if points.n == 0:
+            raise InvalidValue(f"{self.file} holds no points, there is nothing to measure")
+        rows = measure_all(points)
+        if self.json:
+            record = {"file": str(self.file), "n": points.n, "d": points.d, "hash": points.hash}
+            print(json.dumps(record | {name: value for name, value, _ in rows}, indent=2, allow_nan=False))
+        else:
+            title = f"{self.file}: n={points.n}, d={points.d}, {points.origin}"
+            shown = [(name, "-" if value is None else f"{value:.6g}", note) for name, value, note in rows]
+            print_table(shown, ("measure", "value", ""), title, right=(1,))
+        return 0
+
+
+def measure_all(points: PointSet) -> list[tuple[str, float | None, str]]:
+    """Return (name, value, note) of every measure; a value is None where it cannot be had, and the note says why."""
+    rows: list[tuple[str, float | None, str]] = []
+
+    def add(name: str, note: str, compute: Callable[[], float]) -> None:
+        try:
+            with np.errstate(all="ignore"):
+                rows.append((name, compute(), note))
+        except EvenroadError as error:
+            rows.append((name, None, str(error)))
+
+    for measure in MEASURES.values():
+        add(f"{measure.name}_rooted", "L2 discrepancy", partial(measure.rooted, points))
+        add(f"{measure.name}_squared", "its square", partial(measure.squared, points))
+    add("star_discrepancy", "L-infinity, exact", lambda: star_discrepancy(points))
+    for norm in ("l2", "linf"):
+        if points.d <= dispersion.EXACT_UP_TO:
+            exact = partial(getattr(dispersion, f"dispersion_{norm}"), points)
+            add(f"dispersion_{norm}", "largest hole, exact", exact)
+        else:
+            bound = partial(dispersion.dispersion_lower_bound, points, norm)
+            add(f"dispersion_{norm}_lower_bound", "by search", bound)
+    add("separation", "smallest distance", lambda: separation(points))
+    add("separation_periodic", "on the torus", lambda: separation(points, periodic=True))
+    add("riesz_rooted", "periodic, s = 2d", lambda: riesz_rooted(points))
+    add("riesz_open_rooted", "not periodic, s = 2d", lambda: riesz_rooted(points, periodic=False))
+    return [_finite(*row) for row in rows]
+
+
+def _finite(name: str, value: float | None, note: str) -> tuple[str, float | None, str]:
+    """Leave out a value that a float cannot hold: infinity is neither JSON nor a measure."""
+    if value is None or math.isfinite(value):
+        return name, None if value is None else float(value), note
+    return name, None, f"{note}: beyond the range of a float"

@@ -1,0 +1,84 @@
+"""The trajectory of an arm along a path that was planned for it: limits, joints and tip are those of its robot."""
+
+from __future__ import annotations
+
+import numpy.typing as npt
+
+from evenroad._arrays import Floats
+from evenroad.robot import ArmWorld, Robot, held_values, tip_links
+from evenroad.robot.kinematics import link_poses
+from evenroad.trajectory.limits import Limits, limits_of
+from evenroad.trajectory.trajectory import DEVIATION, STEP, Trajectory, make_trajectory
+from evenroad.trajectory.urscript import with_radii
+
+
+def arm_trajectory(
+    world: ArmWorld,
+    path: npt.ArrayLike,
+    limits: Limits | None = None,
+    *,
+    speed: float = 1.0,
+    deviation: float = DEVIATION,
+    step: float = STEP,
+    rounded_by_controller: bool = False,
+) -> Trajectory:
+    """Return the trajectory of an arm along a path, checked in its world as it is driven.
+
+    Parameters
+    ----------
+    world : ArmWorld
+        The arm among its obstacles.
+    path : array_like, shape (p, dim)
+        As :attr:`PlanResult.path`.
+    limits : Limits, optional
+        Default: those of the robot, see :func:`limits_of`.
+    speed : float
+        0 < speed <= 1: takes ``1 / speed`` as long as at full speed.
+    deviation, step
+        As :func:`make_trajectory`.
+    rounded_by_controller : bool
+        Find out, too, how far the controller may round off the corners, for ``.movej.script``.
+
+    Raises
+    ------
+    InvalidValue, NotAvailable
+        As :func:`make_trajectory`.
+    """
+    robot = world.robot
+    within = (limits_of(robot) if limits is None else limits).at_speed(speed)
+    held = {name: value for name, value in held_values(robot).items() if name in controller_joints(robot)}
+    trajectory = make_trajectory(
+        path, within, world=world, names=robot.group, held=held, deviation=deviation, step=step
+    )
+    if not rounded_by_controller:
+        return trajectory
+    tip = robot.links.index(tip_links(robot)[-1])
+
+    def tip_at(q: Floats) -> Floats:
+        places: Floats = link_poses(robot, q)[:, tip, :3, 3]
+        return places
+
+    return with_radii(trajectory, world, tip_at)
+
+
+def controller_joints(robot: Robot) -> tuple[str, ...]:
+    """Return the joints that one controller is likely to drive, in the order of the chain.
+
+    They are those that are planned for, those before them, and those behind as long as the chain does not branch.
+    """
+    child = {joint.name: joint.child for joint in robot.joints}
+    parent_joint = {joint.child: joint for joint in robot.joints}
+    links = {child[name] for name in robot.group}
+    for link in tuple(links):
+        while link in parent_joint:
+            links.add(link)
+            link = parent_joint[link].parent
+    for link in tip_links(robot):
+        while link in parent_joint and link not in links:
+            links.add(link)
+            link = parent_joint[link].parent
+    return tuple(
+        joint.name
+        for joint in robot.joints
+        if joint.child in links and joint.kind != "fixed" and joint.mimic is None
+    )

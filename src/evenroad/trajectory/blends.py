@@ -1,0 +1,96 @@
+"""A path whose corners are rounded by arcs of circles, with its direction and its bend at every length."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from evenroad._arrays import Floats, Ints
+
+_STRAIGHT = 1e-6
+"""Turns smaller than this are driven through as if they were none [rad]; the next arc is that much off, at most."""
+
+
+@dataclass(frozen=True, eq=False)
+class RoundedPath:
+    """Straight lines and arcs, one after the other (Kunz and Stilman 2012, section IV).
+
+    Row by row of `pieces`: a piece from length ``starts[i]`` to ``starts[i + 1]``; on a line of direction ``along[i]``
+    from ``origin[i]``, where ``bend[i]`` is 0; else on a circle of radius ``1 / bend[i]`` about ``origin[i]``, from
+    the direction ``out[i]``, seen from there, towards ``along[i]``.  Waypoints within the path, (p - 2,), are passed at
+    the lengths `corners`; at the lengths `stops` the direction jumps.
+    """
+
+    starts: Floats
+    origin: Floats
+    out: Floats
+    along: Floats
+    bend: Floats
+    corners: Floats
+    stops: Floats
+
+    @property
+    def length(self) -> float:
+        """Of the whole path."""
+        return float(self.starts[-1])
+
+    def piece_at(self, s: Floats) -> Ints:
+        """Return for each length the piece that it is on, the later one where two meet."""
+        return np.clip(np.searchsorted(self.starts, s, side="right") - 1, 0, len(self.bend) - 1)
+
+    def at(self, s: Floats, piece: Ints | None = None) -> tuple[Floats, Floats, Floats]:
+        """Return place, direction and bend, (n, dim) each, at lengths (n,): the path and its first two derivatives."""
+        i = self.piece_at(s) if piece is None else piece
+        after = (s - self.starts[i])[:, None]
+        bend, out, along = self.bend[i][:, None], self.out[i], self.along[i]
+        turned = after * bend
+        cosine, sine = np.cos(turned), np.sin(turned)
+        radius = np.divide(1.0, bend, out=np.zeros_like(bend), where=bend > 0.0)
+        reached = np.where(bend > 0.0, radius * sine, after)
+        place = self.origin[i] + radius * cosine * out + reached * along
+        return place, cosine * along - sine * out, -bend * (cosine * out + sine * along)
+
+
+def rounded(path: Floats, deviation: Floats) -> RoundedPath:
+    """Round the corners of a path, (p, dim), no two waypoints in a row equal, p >= 2.
+
+    The arc at waypoint i passes it at the distance ``deviation[i]``, (p,), at most, and takes half of each of the two
+    motions at most.  Where `deviation` is 0 the path keeps its corner and has to stop there.
+    """
+    steps = np.diff(path, axis=0)
+    lengths = np.linalg.norm(steps, axis=1)
+    directions = steps / lengths[:, None]
+    before, after = directions[:-1], directions[1:]
+    # Half of the angle by which the direction turns, exactly for small ones, too.
+    half = np.arctan2(np.linalg.norm(after - before, axis=1), np.linalg.norm(after + before, axis=1))
+    turns = half > 0.5 * _STRAIGHT
+    # A path that turns back on itself has no arc.
+    round_off = turns & (half < 0.5 * np.pi - 1e-3) & (deviation[1:-1] > 0.0)
+    room = 0.5 * np.minimum(lengths[:-1], lengths[1:])
+    cut = np.zeros(len(path))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        by_deviation = deviation[1:-1] * np.sin(half) / (1.0 - np.cos(half))
+    cut[1:-1] = np.where(round_off, np.minimum(room, by_deviation), 0.0)
+
+    pieces: list[tuple[float, Floats, Floats, Floats, float]] = []
+    corners, stops, nowhere, total = [], [], np.zeros(path.shape[1]), 0.0
+    for i, (length, direction) in enumerate(zip(lengths, directions, strict=True)):
+        if i and round_off[i - 1]:
+            radius = cut[i] / np.tan(half[i - 1])
+            inward = after[i - 1] - before[i - 1]
+            inward /= np.linalg.norm(inward)
+            centre = path[i] + inward * (radius / np.cos(half[i - 1]))
+            out = path[i] - cut[i] * before[i - 1] - centre
+            pieces.append((total, centre, out / radius, before[i - 1], 1.0 / radius))
+            corners.append(total + radius * half[i - 1])
+            total += radius * 2.0 * half[i - 1]
+        elif i:
+            corners.append(total)
+            stops += [total] if turns[i - 1] else []
+        line = length - cut[i] - cut[i + 1]
+        if line > 1e-12 * length:
+            pieces.append((total, path[i] + cut[i] * direction, nowhere, direction, 0.0))
+            total += line
+    starts, origin, out, along, bend = (np.array(column) for column in zip(*pieces, strict=True))
+    return RoundedPath(np.append(starts, total), origin, out, along, bend, np.array(corners), np.array(stops))

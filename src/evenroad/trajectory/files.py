@@ -1,0 +1,225 @@
+"""A trajectory on disk: JSON that is read back, CSV, and ROS 2's JointTrajectory as YAML and as a bag."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from evenroad._checks import require_extra
+from evenroad._files import atomic_write
+from evenroad.errors import BrokenFile, UnknownName
+from evenroad.trajectory.limits import Limits
+from evenroad.trajectory.trajectory import Trajectory
+from evenroad.trajectory.urscript import movej_script, servoj_script
+
+FORMAT = "evenroad trajectory 1"
+TOPIC = "/joint_trajectory"
+_TABLES = ("positions", "velocities", "accelerations")
+_MESSAGE = "trajectory_msgs/msg/JointTrajectory"
+
+
+def save_trajectory(
+    path: str | os.PathLike[str], trajectory: Trajectory, order: Sequence[str] | None = None
+) -> None:
+    """Write a trajectory in the format that the name of the file asks for, atomically.
+
+    Parameters
+    ----------
+    path : str or path-like
+        ``.json`` (read by :func:`load_trajectory`), ``.csv``, ``.yaml`` (ROS 2's ``trajectory_msgs/JointTrajectory``),
+        ``.mcap`` (the same as a bag, on the topic ``/joint_trajectory``; extra ``ros``), ``.script`` (URScript, by the
+        clock) or ``.movej.script`` (URScript, from waypoint to waypoint).
+    trajectory : Trajectory
+        Any.
+    order : sequence of str, optional
+        The joints of the controller, in its order; default: those that move, then those that are held.
+
+    Raises
+    ------
+    UnknownName
+        For another suffix, or a joint that the trajectory has not.
+    InvalidValue
+        If a joint that moves is left out; if URScript is asked for joints that are not six.
+    NotAvailable
+        If rosbags is not installed.
+    BrokenFile
+        If the file cannot be written.
+    """
+    save_trajectories([path], trajectory, order)
+
+
+def save_trajectories(
+    paths: Iterable[str | os.PathLike[str]], trajectory: Trajectory, order: Sequence[str] | None = None
+) -> None:
+    """Write a trajectory to several files, see :func:`save_trajectory`; none if one of them cannot have it."""
+    contents = [(path, WRITERS[format_of(path)](trajectory, order)) for path in paths]
+    for path, data in contents:
+        with atomic_write(path) as file:
+            file.write(data)
+
+
+def format_of(path: str | os.PathLike[str]) -> str:
+    """Return the suffix of a file that a trajectory can be written to, or raise UnknownName."""
+    name = Path(path).name.lower()
+    known = [suffix for suffix in WRITERS if name.endswith(suffix) and name != suffix]
+    if not known:
+        raise UnknownName.among("format of a trajectory", Path(path).suffix or str(path), WRITERS)
+    return max(known, key=len)
+
+
+def load_trajectory(path: str | os.PathLike[str]) -> Trajectory:
+    """Read a trajectory from the JSON that :func:`save_trajectory` wrote.
+
+    Raises BrokenFile if it cannot be read, or is not what it says: shapes, numbers, order of time, and limits.
+    """
+    try:
+        record = json.loads(Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise BrokenFile(f"cannot read the trajectory {path}: {error.strerror or error}") from error
+    except ValueError as error:
+        raise BrokenFile(f"{path} is not JSON: {error}") from error
+    if not isinstance(record, dict) or record.get("format") != FORMAT:
+        raise BrokenFile(f"{path} is not a trajectory: its 'format' must be {FORMAT!r}")
+    try:
+        return _from_record(record)
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
+        raise BrokenFile(f"{path} is a damaged trajectory: {error}") from error
+
+
+def _from_record(record: dict[str, Any]) -> Trajectory:
+    names = tuple(map(str, record["joint_names"]))
+    limits = Limits(**record["limits"])
+    times = np.array(record["times"], dtype=np.float64)
+    tables = [np.array(record[name], dtype=np.float64) for name in _TABLES]
+    shape = (len(times), len(names))
+    waypoints = np.array(record["waypoints"], dtype=np.float64)
+    radii = tuple(map(float, record["radii"]))
+    if waypoints.ndim != 2 or len(waypoints) < 2 or waypoints.shape[1] != len(names):
+        raise ValueError("waypoints must have one number a joint")
+    if len(times) < 2 or len(limits.velocity) != len(names) or any(table.shape != shape for table in tables):
+        raise ValueError(f"times, joint_names, limits and states must belong together, {shape}")
+    if not all(np.isfinite(table).all() for table in (times, waypoints, *tables)):
+        raise ValueError("states must be finite numbers")
+    if times[0] != 0.0 or np.any(np.diff(times) <= 0.0):
+        raise ValueError("times must begin with 0 and grow")
+    moved, room = np.abs(np.diff(tables[0], axis=0)), np.diff(times)[:, None] * np.array(limits.velocity)
+    if np.any(moved > 1.001 * room + 1e-9) or np.any(np.abs(tables[1]) > 1.001 * np.array(limits.velocity)):
+        raise ValueError("it moves faster than its own limits say")
+    return Trajectory(
+        names=names,
+        times=times,
+        positions=tables[0],
+        velocities=tables[1],
+        accelerations=tables[2],
+        waypoints=waypoints,
+        limits=limits,
+        deviation=float(record["deviation"]),
+        stops=int(record["stops"]),
+        highest={str(kind): float(share) for kind, share in record["highest"].items()},
+        held={str(name): float(value) for name, value in record["held"].items()},
+        proof=str(record["proof"]),
+        radii=radii,
+    )
+
+
+def _json(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
+    del order  # It keeps both kinds of joints apart, under their names.
+    limits = {kind: getattr(trajectory.limits, kind) for kind in ("velocity", "acceleration", "jerk")}
+    record = {
+        "format": FORMAT,
+        "units": {"time": "s", "angle": "rad", "length": "m"},
+        "joint_names": trajectory.names,
+        "held": dict(trajectory.held),
+        "limits": limits,
+        "duration": trajectory.duration,
+        "deviation": trajectory.deviation,
+        "stops": trajectory.stops,
+        "highest": dict(trajectory.highest),
+        "proof": trajectory.proof,
+        "radii": trajectory.radii,
+        "waypoints": trajectory.waypoints.tolist(),
+        "times": trajectory.times.tolist(),
+        **{name: getattr(trajectory, name).tolist() for name in _TABLES},
+    }
+    return (json.dumps(record, allow_nan=False) + "\n").encode()
+
+
+def _csv(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
+    names, tables = trajectory.columns(order)
+    units = ("", "/s", "/s^2")
+    header = ["time [s]", *(f"{name} [rad or m]{unit}" for unit in units for name in names)]
+    rows = np.column_stack([trajectory.times, *tables]).tolist()
+    lines = [header, *(map(repr, row) for row in rows)]
+    return "".join(",".join(line) + "\n" for line in lines).encode()
+
+
+def _yaml(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
+    names, tables = trajectory.columns(order)
+    points = [
+        {
+            **dict(zip(_TABLES, (row.tolist() for row in rows), strict=True)),
+            "effort": [],
+            "time_from_start": dict(zip(("sec", "nanosec"), _stamp(time), strict=True)),
+        }
+        for time, *rows in zip(trajectory.times, *tables, strict=True)
+    ]
+    header = {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": ""}
+    message = {"header": header, "joint_names": list(names), "points": points}
+    dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+    text: str = yaml.dump(message, Dumper=dumper, sort_keys=False, default_flow_style=None, width=1000)
+    return text.encode()
+
+
+def _mcap(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
+    rosbags = require_extra("rosbags.rosbag2", "ros", "a bag of ROS 2")
+    stores = require_extra("rosbags.typesys", "ros", "a bag of ROS 2")
+    store = stores.get_typestore(stores.Stores.ROS2_HUMBLE)
+    kinds = store.types
+    names, tables = trajectory.columns(order)
+    time, header = kinds["builtin_interfaces/msg/Time"], kinds["std_msgs/msg/Header"]
+    duration, point = (
+        kinds["builtin_interfaces/msg/Duration"],
+        kinds["trajectory_msgs/msg/JointTrajectoryPoint"],
+    )
+    points = [
+        point(*rows, effort=np.zeros(0), time_from_start=duration(*_stamp(at)))
+        for at, *rows in zip(trajectory.times, *tables, strict=True)
+    ]
+    message = kinds[_MESSAGE](header(time(0, 0), ""), list(names), points)
+    with tempfile.TemporaryDirectory() as folder:
+        bag = Path(folder) / "bag"
+        with rosbags.Writer(bag, version=9, storage_plugin=rosbags.StoragePlugin.MCAP) as writer:
+            connection = writer.add_connection(TOPIC, _MESSAGE, typestore=store)
+            writer.write(connection, 0, store.serialize_cdr(message, _MESSAGE))
+        return (bag / "bag.mcap").read_bytes()
+
+
+def _stamp(time: float) -> tuple[int, int]:
+    """Return whole seconds and nanoseconds."""
+    return divmod(round(time * 1e9), 1_000_000_000)
+
+
+def _servoj(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
+    return servoj_script(trajectory, order).encode()
+
+
+def _movej(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
+    return movej_script(trajectory, order).encode()
+
+
+WRITERS: dict[str, Callable[[Trajectory, Sequence[str] | None], bytes]] = {
+    ".json": _json,
+    ".csv": _csv,
+    ".yaml": _yaml,
+    ".mcap": _mcap,
+    ".script": _servoj,
+    ".movej.script": _movej,
+}
+"""Suffix -> what makes the contents of such a file."""

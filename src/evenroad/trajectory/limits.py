@@ -1,0 +1,119 @@
+"""Limits: how fast joints may move, speed up and jerk; read from a robot and from MoveIt's joint_limits.yaml."""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from evenroad._checks import as_row, require_known, require_positive
+from evenroad._yaml import read_mapping
+from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.robot import Robot
+
+SECONDS_TO_FULL_SPEED = 0.5
+"""Where nobody says how fast a joint speeds up, it takes so long to its full speed: URDF has no acceleration."""
+
+_KINDS = ("velocity", "acceleration", "jerk")
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What each joint can do, in either direction.
+
+    Attributes
+    ----------
+    velocity, acceleration : tuples of float
+        > 0, one a joint [rad/s, rad/s^2; m where it slides].
+    jerk : tuple of float or None
+        > 0, one a joint [rad/s^3]; None where it may be anything.
+    """
+
+    velocity: tuple[float, ...]
+    acceleration: tuple[float, ...]
+    jerk: tuple[float, ...] | None = None
+
+    def __post_init__(self) -> None:
+        for kind in _KINDS:
+            values = getattr(self, kind)
+            if kind == "jerk" and values is None:
+                continue
+            row = as_row(kind, values, None if kind == "velocity" else len(self.velocity))
+            if min(row) <= 0.0:
+                raise InvalidValue(f"{kind} must be > 0 for every joint, got {values!r}")
+            object.__setattr__(self, kind, row)
+
+    def at_speed(self, speed: float) -> Limits:
+        """Return the limits with which everything takes ``1 / speed`` as long, 0 < speed <= 1."""
+        if require_positive("speed", speed) > 1.0:
+            raise InvalidValue(f"speed must be at most 1, the robot's own limits, got {speed!r}")
+
+        def scaled(row: tuple[float, ...], power: int) -> tuple[float, ...]:
+            return tuple(value * speed**power for value in row)
+
+        jerk = None if self.jerk is None else scaled(self.jerk, 3)
+        return Limits(scaled(self.velocity, 1), scaled(self.acceleration, 2), jerk)
+
+
+def limits_of(robot: Robot, file: str | os.PathLike[str] | None = None) -> Limits:
+    """Return the limits of the joints that are planned for.
+
+    Parameters
+    ----------
+    robot : Robot
+        Its joints have the velocities of the URDF.
+    file : str or path-like, optional
+        MoveIt's ``joint_limits.yaml``; ``max_velocity``, ``max_acceleration`` and ``max_jerk`` replace what is there.
+        A joint without acceleration gets to its full speed in .5 s; jerk is limited if it is given for every joint.
+
+    Raises
+    ------
+    BrokenFile, UnknownName
+        If the file cannot be read, or names a joint or key that is not known.
+    InvalidValue
+        If a limit is not > 0, or a joint has no velocity anywhere.
+    """
+    by_name = {joint.name: joint for joint in robot.joints}
+    given = {} if file is None else _read(Path(file), set(by_name))
+    velocity, acceleration, jerk = [], [], []
+    for name in robot.group:
+        said = given.get(name, {})
+        fastest = said.get("velocity", by_name[name].velocity)
+        if not 0.0 < fastest < math.inf:
+            raise InvalidValue(
+                f"joint {name!r} of {robot.name!r} has no velocity limit: give it a max_velocity > 0 in a"
+                " joint_limits.yaml"
+            )
+        velocity.append(fastest)
+        acceleration.append(said.get("acceleration", fastest / SECONDS_TO_FULL_SPEED))
+        jerk.append(said.get("jerk", math.inf))
+    return Limits(tuple(velocity), tuple(acceleration), tuple(jerk) if max(jerk) < math.inf else None)
+
+
+def _read(path: Path, joints: set[str]) -> dict[str, dict[str, float]]:
+    """Return joint -> kind of limit -> value of a file, without those that it says do not hold."""
+    document = read_mapping(path, "joint_limits file")
+    table = document.get("joint_limits")
+    if not isinstance(table, dict):
+        raise BrokenFile(f"{path} must have a mapping 'joint_limits', joint -> limits")
+    limits = {}
+    for name, row in table.items():
+        require_known(f"joint in {path}", name, joints)
+        if not isinstance(row, dict):
+            raise BrokenFile(f"joint_limits of {name!r} in {path} must be a mapping, got {row!r}")
+        limits[str(name)] = _limits_of_joint(row, f"{name} in {path}")
+    return limits
+
+
+def _limits_of_joint(row: dict[Any, Any], where: str) -> dict[str, float]:
+    known = {f"max_{kind}" for kind in _KINDS} | {f"has_{kind}_limits" for kind in _KINDS}
+    known |= {"has_position_limits", "min_position", "max_position"}
+    for key in row:
+        require_known(f"limit of {where}", key, known)
+    return {
+        kind: require_positive(f"max_{kind} of {where}", row[f"max_{kind}"])
+        for kind in _KINDS
+        if f"max_{kind}" in row and row.get(f"has_{kind}_limits", True)
+    }

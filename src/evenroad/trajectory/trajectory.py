@@ -1,0 +1,255 @@
+"""Trajectory: where every joint is at every moment; made of a path, within limits, and checked again as it is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+from scipy.interpolate import CubicHermiteSpline
+
+from evenroad._arrays import Bools, Floats
+from evenroad._checks import as_batch, require_known, require_positive
+from evenroad.errors import InvalidValue, NotAvailable
+from evenroad.trajectory.blends import rounded
+from evenroad.trajectory.limits import Limits
+from evenroad.trajectory.timing import TimeLaw, fastest, paused, stretched
+from evenroad.world import Rechecks, World
+
+STEP = 0.008
+"""Between two states of a trajectory [s]: the cycle of a UR controller, 125 Hz."""
+
+DEVIATION = 0.05
+"""How far a corner may be cut when nothing else is said [rad or m]."""
+
+_FINER = 8
+"""Limits are checked at so many places a step."""
+
+_HALVINGS = 6
+"""So often is a corner that touches cut half as much; then the robot stops there."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Trajectory:
+    """States of a robot at equal steps of time, from rest to rest.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Of the joints.
+    times : ndarray, shape (n,)
+        From 0 on, equally far apart [s].
+    positions, velocities, accelerations : ndarrays, shape (n, dim)
+        [rad or m, and per second].
+    waypoints : ndarray, shape (p, dim)
+        Of the path that it was made of.
+    limits : Limits
+        Within which it stays.
+    deviation : float
+        Largest distance from the path that it was made of [rad or m], measured on a fine grid.
+    stops : int
+        At how many corners within the path the robot stands still, since cutting them would touch something.
+    highest : mapping of str to float
+        ``velocity``, ``acceleration`` and ``jerk``: the largest share of a limit that is used, on a fine grid.
+    held : mapping of str to float
+        Joints of the same controller that stay where they are, with their places [rad or m].
+    proof : str
+        What is shown of the motions from state to state: ``exact``, ``certified`` or ``resolution``; ``unchecked``
+        where there was no world to ask.
+    radii : tuple of float
+        For each waypoint within the path, how far from it the tip may begin to round it off [m], see
+        :func:`evenroad.trajectory.urscript.with_radii`; empty where nobody asked.
+    """
+
+    names: tuple[str, ...]
+    times: Floats
+    positions: Floats
+    velocities: Floats
+    accelerations: Floats
+    waypoints: Floats
+    limits: Limits
+    deviation: float
+    stops: int = 0
+    highest: Mapping[str, float] = field(default_factory=dict)
+    held: Mapping[str, float] = field(default_factory=dict)
+    proof: str = "unchecked"
+    radii: tuple[float, ...] = ()
+
+    def columns(
+        self, order: Sequence[str] | None = None
+    ) -> tuple[tuple[str, ...], tuple[Floats, Floats, Floats]]:
+        """Return names, and positions, velocities and accelerations, of held joints, too, in this order.
+
+        Default: the moving ones first.  Raises UnknownName for a joint that is neither, InvalidValue if one that moves
+        is left out.
+        """
+        order = (*self.names, *self.held) if order is None else tuple(order)
+        for name in order:
+            require_known("joint of the trajectory", name, (*self.names, *self.held))
+        if missing := sorted(set(self.names) - set(order)):
+            raise InvalidValue(
+                f"the order of joints must have every one that moves; {missing[0]!r} is not in it"
+            )
+        tables = []
+        for rows, held in ((self.positions, self.held), (self.velocities, {}), (self.accelerations, {})):
+            own = dict(zip(self.names, rows.T, strict=True))
+            constant = {name: np.full(len(rows), held.get(name, 0.0)) for name in self.held}
+            tables.append(np.column_stack([(constant | own)[name] for name in order]))
+        return order, (tables[0], tables[1], tables[2])
+
+    @property
+    def duration(self) -> float:
+        """From the first to the last state [s]."""
+        return float(self.times[-1])
+
+
+def make_trajectory(
+    path: npt.ArrayLike,
+    limits: Limits,
+    *,
+    world: World | None = None,
+    names: Sequence[str] | None = None,
+    held: Mapping[str, float] | None = None,
+    deviation: float = DEVIATION,
+    step: float = STEP,
+) -> Trajectory:
+    """Give a path the times at which a robot is fastest along it, its corners rounded.
+
+    Corners become arcs of circles (Kunz and Stilman 2012); the law of time is the fastest for the rounded path within
+    velocities and accelerations (Pham and Pham 2018).  Where jerk is limited, it is then averaged over the time
+    that the largest share ``2 acceleration / jerk`` takes, which keeps all limits.  An arc that is not free is made
+    smaller; where even a small one is not, the robot stops at the corner.
+
+    Parameters
+    ----------
+    path : array_like, shape (p, dim)
+        Waypoints, p >= 2, at least two of them different, joined by straight motions.
+    limits : Limits
+        Of each joint.
+    world : World, optional
+        Is asked about the path as it is driven: by its strict check where it has one.  Default: nothing is checked.
+    names : sequence of str, optional
+        Of the joints; default ``joint_1``, ...
+    held : mapping of str to float, optional
+        Handed on.
+    deviation : float
+        How far from the path it may be, >= 0 [rad or m]; 0 stops at every corner.
+    step : float
+        Between two states, > 0 [s].
+
+    Returns
+    -------
+    Trajectory
+        Its duration is a whole number of steps.
+
+    Raises
+    ------
+    InvalidValue
+        If the path has one place only, or an argument is out of its range.
+    NotAvailable
+        If what would be driven is not free, or leaves limits or deviation: the path itself is not free, as a rule.
+    """
+    deviation = require_positive("deviation", deviation, or_zero=True)
+    step = require_positive("step", step)
+    waypoints = as_batch("path", path, len(limits.velocity))
+    waypoints = waypoints[np.concatenate([[True], np.any(np.diff(waypoints, axis=0) != 0.0, axis=1)])]
+    if len(waypoints) < 2:
+        raise InvalidValue("path must lead somewhere: it needs two different waypoints or more")
+    joints = tuple(names) if names is not None else tuple(f"joint_{i + 1}" for i in range(waypoints.shape[1]))
+    if len(joints) != waypoints.shape[1]:
+        raise InvalidValue(f"names must be {waypoints.shape[1]}, one a joint, got {len(joints)}")
+    window = 0.0 if limits.jerk is None else float(np.max(2.0 * np.divide(limits.acceleration, limits.jerk)))
+    cuts = np.full(len(waypoints), deviation)
+    for halved in range(_HALVINGS + 1):
+        curve = rounded(waypoints, cuts)
+        law = _on_steps(paused(fastest(curve, limits), window), limits, window, step)
+        fine = np.linspace(0.0, law.duration + window, _FINER * round((law.duration + window) / step) + 1)
+        states = _averaged(law, window, fine)
+        off = _distance_to(waypoints, states[0])
+        positions = states[0][::_FINER]
+        free, proof = drivable(world, positions)
+        bad = np.concatenate([fine[:-_FINER:_FINER][~free], fine[off > deviation + 1e-6]])
+        if len(bad) == 0:
+            break
+        cuts = _less(cuts, curve.corners, law.length_at(bad - 0.5 * window), stop=halved >= _HALVINGS - 1)
+    else:
+        raise NotAvailable(
+            f"the trajectory is not proved free, or not near enough to its path, at {bad[0]:.3f} s"
+        )
+    highest = _shares(states, limits)
+    if limits.jerk is not None:
+        highest["jerk"] = float(np.max(np.abs(np.diff(states[2], axis=0)) / fine[1] / limits.jerk))
+    return Trajectory(
+        names=joints,
+        times=fine[::_FINER],
+        positions=positions,
+        velocities=states[1][::_FINER],
+        accelerations=states[2][::_FINER],
+        waypoints=waypoints,
+        limits=limits,
+        deviation=float(np.max(off)),
+        stops=len(curve.stops),
+        highest=highest,
+        held=dict(held or {}),
+        proof=proof,
+    )
+
+
+def _on_steps(law: TimeLaw, limits: Limits, window: float, step: float) -> TimeLaw:
+    """Return a law that keeps its limits between the places of its grid, too, and ends on a whole step."""
+    within = law.times[:-1, None] + np.diff(law.times)[:, None] * np.linspace(0.0, 1.0 - 1e-9, _FINER)
+    shares = _shares(law.at(within.ravel()), limits)
+    law = stretched(law, max(1.0, shares["velocity"], math.sqrt(shares["acceleration"])))
+    steps = max(math.ceil((law.duration + window) / step - 1e-9), math.floor(window / step) + 1)
+    return stretched(law, (steps * step - window) / law.duration)
+
+
+def _averaged(law: TimeLaw, window: float, t: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return positions, velocities and accelerations, (n, dim) each, averaged over the `window` before each time."""
+    if window == 0.0:
+        return law.at(t)
+    grid = np.linspace(-window, law.duration + window, len(t) + 1)
+    place, velocity, _ = law.at(grid)
+    travelled = CubicHermiteSpline(grid, place, velocity).antiderivative()
+    (place, velocity, _), (place_before, velocity_before, _) = law.at(t), law.at(t - window)
+    positions = (travelled(t) - travelled(t - window)) / window
+    positions[[0, -1]] = place[[0, -1]]
+    return positions, (place - place_before) / window, (velocity - velocity_before) / window
+
+
+def _shares(states: tuple[Floats, Floats, Floats], limits: Limits) -> dict[str, float]:
+    """Return the largest share of velocity and of acceleration that states use."""
+    used = {"velocity": states[1], "acceleration": states[2]}
+    return {kind: float(np.max(np.abs(rows) / getattr(limits, kind))) for kind, rows in used.items()}
+
+
+def _distance_to(path: Floats, places: Floats) -> Floats:
+    """Return how far each place, (n, dim), is from a path, (p, dim): (n,)."""
+    nearest = np.full(len(places), np.inf)
+    for a, b in pairwise(path):
+        along = b - a
+        share = np.clip((places - a) @ along / (along @ along), 0.0, 1.0)
+        nearest = np.minimum(nearest, np.linalg.norm(places - a - share[:, None] * along, axis=1))
+    return nearest
+
+
+def drivable(world: World | None, positions: Floats) -> tuple[Bools, str]:
+    """Return which motions from state to state are free, (n - 1,), and what shows it."""
+    if world is None:
+        return np.ones(len(positions) - 1, dtype=bool), "unchecked"
+    if isinstance(world, Rechecks):
+        return world.recheck(positions), world.proof
+    return world.motion_valid(positions[:-1], positions[1:]), str(getattr(world, "proof", "resolution"))
+
+
+def _less(cuts: Floats, corners: Floats, lengths: Floats, *, stop: bool) -> Floats:
+    """Return `cuts`, (p,), smaller at the corners that are nearest to the lengths where something is wrong."""
+    if len(corners) == 0:
+        return cuts
+    near = 1 + np.unique(np.argmin(np.abs(lengths[:, None] - corners), axis=1))
+    cuts = cuts.copy()
+    cuts[near] = 0.0 if stop else 0.5 * cuts[near]
+    return cuts

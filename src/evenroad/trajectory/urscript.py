@@ -1,0 +1,137 @@
+"""URScript: a trajectory as a program for the controller of a UR arm, state by state or by corners."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from evenroad._arrays import Floats
+from evenroad.errors import InvalidValue
+from evenroad.trajectory.trajectory import Trajectory, drivable
+from evenroad.world import World
+
+CYCLES = (0.008, 0.002)
+"""Of the controllers [s]: CB3 (125 Hz) and e-Series (500 Hz)."""
+
+_JOINTS = 6
+_AT_START = 0.01
+"""With a joint farther from the start than this the program does not begin [rad]."""
+
+_FASTEST = 3.14
+"""The controller takes no ``movej`` that is faster [rad/s]."""
+
+_SHARES = (0.45, 0.2, 0.1, 0.05)
+"""Of the shorter motion at a corner, tried in turn; two corners never share a place."""
+
+_CHORDS = 16
+
+
+def servoj_script(trajectory: Trajectory, order: Sequence[str] | None = None) -> str:
+    """Return a program that drives through the states one a cycle, by ``servoj``, and stops at the last one.
+
+    Raises InvalidValue unless there are six joints and the states are 8 ms (CB3) or 2 ms (e-Series) apart.
+    """
+    _, (positions, _, _) = _columns(trajectory, order)
+    cycle = float(trajectory.times[1])
+    if not np.isclose(cycle, CYCLES).any():
+        raise InvalidValue(
+            f"URScript needs states 0.008 s apart (CB3) or 0.002 s (e-Series), these are {cycle:.6g} s apart"
+        )
+    moves = [f"servoj({_row(q)}, t={cycle:g}, lookahead_time=0.1, gain=300)" for q in positions[1:]]
+    return _program("evenroad_servoj", positions[0], [*moves, "stopj(2.0)"])
+
+
+def movej_script(trajectory: Trajectory, order: Sequence[str] | None = None) -> str:
+    """Return a program that drives to each waypoint of the path by ``movej``.
+
+    Corners are rounded off as far as `radii` allow, else it stops at each.  No joint is faster, or speeds up faster,
+    than the slowest one may.  Raises InvalidValue unless there are six joints.
+    """
+    names, _ = _columns(trajectory, order)
+    path = trajectory.waypoints
+    places = {name: np.full(len(path), value) for name, value in trajectory.held.items()}
+    places |= dict(zip(trajectory.names, path.T, strict=True))
+    waypoints = np.column_stack([places[name] for name in names])
+    radii = [*(trajectory.radii or np.zeros(len(path) - 2)), 0.0]
+    fastest = (
+        f"a={min(trajectory.limits.acceleration):.6g}, v={min(*trajectory.limits.velocity, _FASTEST):.6g}"
+    )
+    rows = zip(waypoints[1:], radii, strict=True)
+    moves = [f"movej({_row(q)}, {fastest}, r={radius:.6g})" for q, radius in rows]
+    return _program("evenroad_movej", waypoints[0], moves)
+
+
+def with_radii(trajectory: Trajectory, world: World, tip_at: Callable[[Floats], Floats]) -> Trajectory:
+    """Return the trajectory with the radii at which a controller may leave the path before a corner, and come back.
+
+    The controller rounds a corner off within the triangle of the places where it leaves and comes back.  A radius is
+    given where the triangle is free: straight motions between the two sides are, at sixteenths of them.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        Of an arm.
+    world : World
+        Whose configurations are those of the trajectory.
+    tip_at : callable
+        Where the tip is, (n, 3) [m], at configurations, (n, dim).
+    """
+    path, radii = trajectory.waypoints, []
+    for before, corner, after in zip(path[:-2], path[1:-1], path[2:], strict=True):
+        reach = next((share for share in _SHARES if _triangle_free(world, before, corner, after, share)), 0.0)
+        radii.append(_radius(tip_at, before, corner, after, reach))
+    return replace(trajectory, radii=tuple(radii))
+
+
+def _triangle_free(world: World, before: Floats, corner: Floats, after: Floats, share: float) -> bool:
+    sides = np.linspace(0.0, share, _CHORDS + 1)[1:, None]
+    leaves, returns = corner + sides * (before - corner), corner + sides * (after - corner)
+    return all(drivable(world, np.array(chord))[0].all() for chord in zip(leaves, returns, strict=True))
+
+
+def _radius(
+    tip_at: Callable[[Floats], Floats], before: Floats, corner: Floats, after: Floats, share: float
+) -> float:
+    """Return the largest radius [m] within which the tip is only where the corner is nearer than `share`."""
+    if share == 0.0:
+        return 0.0
+    beyond = np.linspace(share, 1.0, 64)[:, None]
+    around = np.concatenate([corner + beyond * (before - corner), corner + beyond * (after - corner)])
+    gap = np.linalg.norm(tip_at(around) - tip_at(corner[None]), axis=1)
+    return float(np.min(gap))
+
+
+def _columns(
+    trajectory: Trajectory, order: Sequence[str] | None
+) -> tuple[tuple[str, ...], tuple[Floats, Floats, Floats]]:
+    names, tables = trajectory.columns(order)
+    if len(names) != _JOINTS:
+        raise InvalidValue(f"URScript needs the six joints of a UR arm, got {len(names)}: {', '.join(names)}")
+    return names, tables
+
+
+def _program(name: str, start: Floats, moves: Sequence[str]) -> str:
+    """Return a program that refuses to move from anywhere but the start."""
+    lines = [
+        f"def {name}():",
+        f"  start = {_row(start)}",
+        "  actual = get_actual_joint_positions()",
+        "  i = 0",
+        f"  while i < {_JOINTS}:",
+        f"    if norm(actual[i] - start[i]) > {_AT_START}:",
+        '      popup("The robot is not at the start of this path.", title="evenroad", error=True, blocking=True)',
+        "      halt",
+        "    end",
+        "    i = i + 1",
+        "  end",
+        *(f"  {move}" for move in moves),
+        "end",
+        f"{name}()",
+    ]
+    return "".join(line + "\n" for line in lines)
+
+
+def _row(q: Floats) -> str:
+    return "[" + ", ".join(f"{value:.9g}" for value in q) + "]"

@@ -1,0 +1,145 @@
+import json
+import re
+
+import numpy as np
+import pytest
+import yaml
+
+from evenroad.errors import BrokenFile, InvalidValue, UnknownName
+from evenroad.trajectory import Limits, load_trajectory, make_trajectory, save_trajectory
+from evenroad.trajectory.files import save_trajectories
+
+NAMES = ("a", "b", "c", "d", "e")
+
+
+@pytest.fixture(scope="module")
+def trajectory():
+    path = np.random.default_rng(0).uniform(-1.0, 1.0, (4, 5))
+    return make_trajectory(path, Limits((1.0,) * 5, (2.0,) * 5), names=NAMES, held={"tool": 0.25})
+
+
+def test_json_is_read_back_bit_for_bit(trajectory, tmp_path):
+    save_trajectory(tmp_path / "t.json", trajectory)
+    read = load_trajectory(tmp_path / "t.json")
+    for name in ("times", "positions", "velocities", "accelerations", "waypoints"):
+        np.testing.assert_array_equal(getattr(read, name), getattr(trajectory, name))
+    for name in ("names", "held", "limits", "deviation", "stops", "proof", "duration", "radii", "highest"):
+        assert getattr(read, name) == getattr(trajectory, name)
+
+
+def test_csv_has_all_joints_with_their_units(trajectory, tmp_path):
+    save_trajectory(tmp_path / "t.csv", trajectory, ("tool", *NAMES))
+    lines = (tmp_path / "t.csv").read_text().splitlines()
+    assert lines[0].split(",")[:3] == ["time [s]", "tool [rad or m]", "a [rad or m]"]
+    rows = np.array([line.split(",") for line in lines[1:]], dtype=float)
+    np.testing.assert_array_equal(rows[:, 0], trajectory.times)
+    np.testing.assert_array_equal(rows[:, 1], 0.25)
+    np.testing.assert_array_equal(rows[:, 2:7], trajectory.positions)
+
+
+def test_yaml_is_the_message_of_ros(trajectory, tmp_path):
+    save_trajectory(tmp_path / "t.yaml", trajectory, (*NAMES, "tool"))
+    message = yaml.safe_load((tmp_path / "t.yaml").read_text())
+    assert list(message) == ["header", "joint_names", "points"]
+    assert message["joint_names"] == [*NAMES, "tool"]
+    np.testing.assert_allclose([point["positions"][:5] for point in message["points"]], trajectory.positions)
+    assert {point["positions"][5] for point in message["points"]} == {0.25}
+    assert {point["velocities"][5] for point in message["points"]} == {0.0}
+    stamps = [point["time_from_start"] for point in message["points"]]
+    assert all(0 <= stamp["nanosec"] < 10**9 for stamp in stamps)
+    times = [stamp["sec"] + 1e-9 * stamp["nanosec"] for stamp in stamps]
+    np.testing.assert_allclose(times, trajectory.times, atol=1e-9)
+
+
+def interpret(script):
+    """Run the moves of a program, and nothing else of it."""
+    calls = re.findall(r"(servoj|movej)\(\[(.*?)\], (.*?)\)\n", script)
+    places = np.array([[float(x) for x in row.split(",")] for _, row, _ in calls])
+    options = [dict(pair.split("=") for pair in rest.split(", ")) for _, _, rest in calls]
+    return places, options
+
+
+def test_urscript_drives_through_every_state_by_the_clock(trajectory, tmp_path):
+    save_trajectory(tmp_path / "t.script", trajectory, (*NAMES, "tool"))
+    script = (tmp_path / "t.script").read_text()
+    places, options = interpret(script)
+    np.testing.assert_allclose(places[:, :5], trajectory.positions[1:], atol=1e-8)
+    assert {option["t"] for option in options} == {"0.008"}
+    start = re.search(r"start = \[(.*?)\]", script).group(1).split(",")
+    np.testing.assert_allclose(np.array(start, dtype=float)[:5], trajectory.positions[0], atol=1e-8)
+    assert script.index("halt") < script.index("servoj([")
+
+
+def test_movej_goes_from_waypoint_to_waypoint(trajectory, tmp_path):
+    save_trajectory(tmp_path / "t.movej.script", trajectory, (*NAMES, "tool"))
+    places, options = interpret((tmp_path / "t.movej.script").read_text())
+    np.testing.assert_allclose(places[:, :5], trajectory.waypoints[1:], atol=1e-8)
+    assert {option["r"] for option in options} == {"0"}
+
+
+def test_urscript_needs_six_joints_and_the_cycle_of_a_controller(trajectory, tmp_path):
+    with pytest.raises(InvalidValue, match="six joints"):
+        save_trajectory(tmp_path / "t.script", trajectory, NAMES)
+    slow = make_trajectory([[0.0] * 6, [1.0] * 6], Limits((1.0,) * 6, (1.0,) * 6), step=0.01)
+    with pytest.raises(InvalidValue, match=r"0\.008"):
+        save_trajectory(tmp_path / "t.script", slow)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_several_files_are_all_written_or_none(trajectory, tmp_path):
+    with pytest.raises(InvalidValue, match="six joints"):
+        save_trajectories([tmp_path / "t.json", tmp_path / "t.script"], trajectory, NAMES)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("order", [(*NAMES, "elbow"), NAMES[:3]])
+def test_an_order_must_have_the_joints_that_move(trajectory, tmp_path, order):
+    with pytest.raises((UnknownName, InvalidValue), match="joint"):
+        save_trajectory(tmp_path / "t.csv", trajectory, order)
+
+
+@pytest.mark.parametrize("name", ["t.txt", "t", ".json"])
+def test_an_unknown_format_is_named(trajectory, tmp_path, name):
+    with pytest.raises(UnknownName, match="format of a trajectory"):
+        save_trajectory(tmp_path / name, trajectory)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"format": "other"}, "format"),
+        ({"times": [0.0]}, "belong together"),
+        ({"joint_names": ["a"]}, "waypoints"),
+        ({"positions": None}, "damaged"),
+        ({"velocities": [[1e9] * 5]}, "belong together"),
+        ({"limits": {"velocity": [0.1] * 5, "acceleration": [1.0] * 5}}, "faster"),
+        ({"limits": 3}, "damaged"),
+        ({"waypoints": [[0.0] * 4] * 3}, "waypoints"),
+    ],
+)
+def test_a_damaged_file_is_named(trajectory, tmp_path, change, said):
+    file = tmp_path / "t.json"
+    save_trajectory(file, trajectory)
+    file.write_text(json.dumps(json.loads(file.read_text()) | change))
+    with pytest.raises(BrokenFile, match=said):
+        load_trajectory(file)
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{", '{"format": "evenroad trajectory 1"}', "\x00"])
+def test_what_is_no_trajectory_is_named(tmp_path, text):
+    file = tmp_path / "t.json"
+    file.write_text(text)
+    with pytest.raises(BrokenFile):
+        load_trajectory(file)
+    with pytest.raises(BrokenFile, match="cannot read"):
+        load_trajectory(tmp_path / "none.json")
+
+
+def test_a_file_whose_times_go_back_is_refused(trajectory, tmp_path):
+    file = tmp_path / "t.json"
+    save_trajectory(file, trajectory)
+    record = json.loads(file.read_text())
+    record["times"][3] = record["times"][2]
+    file.write_text(json.dumps(record))
+    with pytest.raises(BrokenFile, match="grow"):
+        load_trajectory(file)

@@ -1,0 +1,95 @@
+"""The page in a browser: opened, its slider moved, and looked at."""
+
+import threading
+import time
+
+import numpy as np
+import pytest
+
+from evenroad.arms import arm_query
+from evenroad.roadmap import Budget
+from evenroad.roadmap.find_path import find_path
+from evenroad.robot.kinematics import link_poses
+
+viser = pytest.importorskip("viser")
+pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
+
+CHROMIUM = "/usr/bin/chromium"
+FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+FLAGS += ["--disable-background-networking", "--no-first-run"]
+
+
+@pytest.fixture(scope="module")
+def page():
+    from evenroad.viz.page import ArmPage
+
+    query = arm_query("ur5", "box-reach", "home", "inside")
+
+    def plan(start, goal):
+        return find_path(query.world, start, goal[np.newaxis], budget=Budget(seconds=0.5))
+
+    page = ArmPage(query.world, plan(query.start, query.goals[0]), plan, port=0)
+    threading.Thread(target=page.serve, daemon=True).start()
+    yield page
+    page.close()
+
+
+def test_the_slider_moves_the_arm_and_the_browser_shows_it(page, tmp_path):
+    playwright = pytest.importorskip("playwright.sync_api")
+    with playwright.sync_playwright() as browsers:
+        try:
+            browser = browsers.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        except playwright.Error as error:
+            pytest.skip(f"no Chromium: {error}")
+        tab = browser.new_page(viewport={"width": 900, "height": 700})
+        asked = []
+        tab.on("request", lambda request: asked.append(request.url))
+        tab.goto(page.address)
+        tab.wait_for_selector("canvas", timeout=60_000)
+        tab.get_by_text("solved").wait_for(timeout=60_000)
+        time.sleep(6.0)
+        before = tab.screenshot(path=tmp_path / "before.png")
+        box = tab.locator("input[type=text]").first
+        box.fill("100")
+        box.press("Enter")
+        time.sleep(4.0)
+        after = tab.screenshot(path=tmp_path / "after.png")
+        browser.close()
+    assert page.slider.value == 100.0
+    assert before != after
+    goal = link_poses(page.world.robot, page.result.goal[np.newaxis])[0]
+    for link, handle in page._arms["arm"].items():
+        np.testing.assert_allclose(
+            handle.position, goal[page.world.robot.links.index(link), :3, 3], atol=1e-6
+        )
+    assert _changed(before, after) > 0.005
+    # Nothing from outside of this computer: it works without a network.
+    assert all(url.startswith(("http://127.0.0.1", "http://localhost", "data:", "blob:")) for url in asked)
+
+
+def _changed(before, after):
+    """Return the share of pixels that differ plainly between two screenshots, the panel at the right left out."""
+    from io import BytesIO
+
+    from PIL import Image
+
+    first, second = (
+        np.asarray(Image.open(BytesIO(raw)).convert("RGB"), dtype=float) for raw in (before, after)
+    )
+    differs = np.abs(first - second).max(axis=2) > 40
+    return differs[:, :550].mean()
+
+
+def test_a_goal_that_is_dragged_is_planned_again_at_least_twenty_times_a_second(page):
+    tip = page.world.robot.links.index(page._tip)
+    pose = link_poses(page.world.robot, page._ends["goal"][np.newaxis])[0, tip]
+    from evenroad.viz.page import _wxyz
+
+    began, moves = time.perf_counter(), 40
+    for i in range(moves):
+        away = pose[:3, 3] + [-0.002 * i, 0.0, 0.0]
+        result = page.move_end("goal", away, _wxyz(pose[:3, :3]))
+        place = link_poses(page.world.robot, result.goal[np.newaxis])[0, tip, :3, 3]
+        assert result.solved
+        np.testing.assert_allclose(place, away, atol=2e-3)
+    assert moves / (time.perf_counter() - began) > 20.0
