@@ -17,7 +17,7 @@ from evenroad.robot_roadmap import lazy_search as search
 from evenroad.robot_roadmap import search_memory as at
 from evenroad.robot_roadmap.known_graph import KnownGraph
 from evenroad.robot_roadmap.lazy_search import EDGE, FOUND, FULL, NODE, STRAIGHT
-from evenroad.robot_roadmap.search_memory import BLOCKED, PROVED
+from evenroad.robot_roadmap.search_memory import BLOCKED, PROVED, UNKNOWN
 
 ENDS_TAKEN, SPENT, PAUSED = range(FULL + 1, FULL + 4)
 """What a search ends with besides what ``lazy_search.step`` does: start or goals not free, motions or time over, and
@@ -46,6 +46,7 @@ def ask(
     goals: Floats,
     *,
     links: int,
+    greed: float,
     most_motions: int,
     deadline: float,
 ) -> Asked:
@@ -55,7 +56,7 @@ def ask(
     """
     room = 1
     while True:
-        graph.prepare(start, goals, links, room)
+        graph.prepare(start, goals, links, greed, room)
         by = _by_lanes if world.backend == "lanes" and day.backend == "lanes" else _one_by_one
         asked = by(world, day, graph, most_motions, deadline)
         if asked.ended != FULL:
@@ -68,13 +69,13 @@ def _by_lanes(world: ArmWorld, day: ArmWorld, graph: KnownGraph, most_motions: i
     from evenroad.robot_roadmap import lane_search as lanes
 
     path, report = graph.path, np.zeros(lanes.REPORT, dtype=np.int64)
-    day_tables, day_by_joint, doubles = day.lanes.places
-    _, arguments = world.lanes.arguments(COUNTS + doubles)
-    arguments = day_tables, day_by_joint, arguments[-1] + 8 * COUNTS, *arguments
+    day_checks, _, day_tables, day_by_joint, begin, end = day.lanes.arguments(0)[1]
+    _, arguments = world.lanes.arguments(COUNTS + (end - begin) // 8)
+    own = day_checks, day_tables, day_by_joint, arguments[-1] + 8 * COUNTS
     given = address(graph.desk), address(path), len(path), address(report)
     fresh = 1
     while True:
-        ended = lanes.find_way(*given, fresh, most_motions, _SLICE, *arguments)
+        ended = lanes.find_way(*given, fresh, most_motions, _SLICE, *own, *arguments)
         fresh = 0
         if ended != PAUSED:
             break
@@ -85,18 +86,20 @@ def _by_lanes(world: ArmWorld, day: ArmWorld, graph: KnownGraph, most_motions: i
     return Asked(ended, path[:rows][::-1].copy(), goal if ended == FOUND else -1, milestones, motions)
 
 
-def _one_by_one(world: ArmWorld, day: ArmWorld, graph: KnownGraph, most_motions: int, deadline: float) -> Asked:
-    desk, nothing = address(graph.desk), np.empty((0, len(graph.asked[0])))
+def _one_by_one(
+    world: ArmWorld, day: ArmWorld, graph: KnownGraph, most_motions: int, deadline: float
+) -> Asked:
+    desk, path, nothing = graph.desk, graph.path, np.empty((0, len(graph.asked[0])))
     milestones = motions = 0
     if not world.valid(graph.ends).all():
         return Asked(ENDS_TAKEN, nothing, -1, 0, 0)
     graph.ends[:] = world.space.interpolate(graph.ends, graph.ends, 0.0)
-    _begin(desk)
+    question, verdict = -1, UNKNOWN
     while True:
-        question = _step(desk)
+        question = _go_on(address(desk), question, verdict, address(path), len(path))
         if question == FOUND:
-            rows, goal = divmod(_way_back(desk, address(graph.path), len(graph.path)), len(graph.ends))
-            return Asked(question, graph.path[:rows][::-1].copy(), goal, milestones, motions)
+            rows = int(desk[at.BY])
+            return Asked(FOUND, path[:rows][::-1].copy(), int(desk[at.TO]) - 1, milestones, motions)
         if question > STRAIGHT:
             return Asked(question, nothing, -1, milestones, motions)
         if motions >= most_motions or time.perf_counter() >= deadline:
@@ -106,29 +109,26 @@ def _one_by_one(world: ArmWorld, day: ArmWorld, graph: KnownGraph, most_motions:
             free = day.valid(graph.asked[:1])[0]
         else:
             motions += 1
-            old = question == EDGE and graph.desk[at.BY] < graph.desk[at.BASE]
-            free = (day if old else world).motion_certified(graph.asked[:1], graph.asked[1:], RECHECK_TOLERANCE)[0]
-        _answer(desk, question, PROVED if free else BLOCKED)
+            old = question == EDGE and desk[at.BY] < desk[at.BASE]
+            free = (day if old else world).motion_certified(
+                graph.asked[:1], graph.asked[1:], RECHECK_TOLERANCE
+            )[0]
+        verdict = PROVED if free else BLOCKED
 
 
 @program
-def _begin(desk: int) -> None:
-    search.begin(at.search_at(desk))
+def _go_on(desk: int, answered: int, verdict: int, path: int, rows: int) -> int:
+    """Take the answer to a question, or begin where there was none, and return the next one.
 
-
-@program
-def _step(desk: int) -> int:
-    return search.step(at.search_at(desk))
-
-
-@program
-def _answer(desk: int, question: int, verdict: int) -> None:
-    search.answer(at.search_at(desk), question, verdict)
-
-
-@program
-def _way_back(desk: int, path: int, rows: int) -> int:
-    """Write the way back, and return how many rows it has and, as the rest by the number of ends, its goal."""
+    Of a way that was found, its waypoints are written, and in place of a question its goal and how many they are.
+    """
     s = at.search_at(desk)
-    goal = -s.entries[s.desk[at.PENDING], at.STATE] - 1
-    return search.way_back(s, matrix_at(path, (rows, s.desk[at.DIM]))) * s.desk[at.ENDS] + goal
+    if answered < 0:
+        search.begin(s)
+    else:
+        search.answer(s, answered, verdict)
+    question = search.step(s)
+    if question == FOUND:
+        s.desk[at.TO] = -s.entries[s.desk[at.PENDING], at.STATE]
+        s.desk[at.BY] = search.way_back(s, matrix_at(path, (rows, s.desk[at.DIM])))
+    return question

@@ -6,12 +6,12 @@ from copy import copy
 
 import numpy as np
 
-from evenroad._arrays import Floats, Ints
+from evenroad._arrays import Floats, Ints, Ints32
 from evenroad.robot.kernel.addresses import address, matrix_at
 from evenroad.robot.kernel.layout import program, quick
 from evenroad.robot_roadmap import search_memory as at
-from evenroad.robot_roadmap.lazy_search import BITS, length_of_edge
 from evenroad.robot_roadmap.search_memory import BLOCKED, FREE, PROVED, UNKNOWN, Search, search_at
+from evenroad.robot_roadmap.search_metric import BITS, length_of_edge
 from evenroad.robot_roadmap.turns import TURN, OneTurn
 
 JOINED = 8
@@ -30,13 +30,9 @@ class KnownGraph:
         Of the roadmap.
     one : OneTurn
         The ranges of its joints.
-    greed : float
-        What the bound of the search is multiplied by, >= 1: 1 for the shortest way.
     """
 
-    def __init__(
-        self, milestones: Floats, edges: Ints, turns: Ints, one: OneTurn, greed: float
-    ) -> None:
+    def __init__(self, milestones: Floats, edges: Ints32, turns: Ints, one: OneTurn) -> None:
         n, dim = milestones.shape
         own = np.concatenate([edges[:, 0], edges[:, 1]])
         order = np.argsort(own, kind="stable")
@@ -45,7 +41,7 @@ class KnownGraph:
         self.rules = np.empty((at.RULE_ROWS, dim))
         self.rules[[at.LOW, at.HIGH]] = one.limits
         self.rules[at.LIFTS], self.rules[at.ENDLESS] = one.lifts, one.wraps & ~one.lifts
-        self.rules[at.MIDDLE], self.rules[at.GREED] = 0.5 * (one.low + one.high), greed
+        self.rules[at.MIDDLE], self.rules[at.GREED] = 0.5 * (one.low + one.high), 1.0
         self.desk[at.DIM] = dim
         self._make_room(n, count, len(edges))
         self.desk[[at.NODES, at.HALVES_MADE, at.EDGES_MADE, at.BASE]] = n, count, len(edges), len(edges)
@@ -106,9 +102,12 @@ class KnownGraph:
             after[: len(before)] = before
         self.columns[:, : len(old[0])] = old[0].T
 
-    def prepare(self, start: Floats, goals: Floats, links: int, room: int = 1) -> None:
-        """Write a query, of which nothing is known yet; `room` times the usual memory."""
-        desk, e = self.desk, 1 + len(goals)
+    def prepare(self, start: Floats, goals: Floats, links: int, greed: float, room: int = 1) -> None:
+        """Write a query, of which nothing is known yet.
+
+        `greed` multiplies the bound of the search, 1 for the shortest way; `room` the usual memory.
+        """
+        desk, e, self.rules[at.GREED] = self.desk, 1 + len(goals), greed
         dim, capacity = int(desk[at.DIM]), int(desk[at.CAPACITY])
         desk[at.LINKS] = min(links, desk[at.NODES])
         if self._shape != (e, room):
@@ -132,10 +131,11 @@ class KnownGraph:
         """Take the waypoints of a path, (p, dim), for milestones; its motions are proved free today."""
         path = np.ascontiguousarray(path)
         if not len(self._query):
-            self.prepare(path[0], path[:1], 1)
+            # Room that is worked in.
+            self.prepare(self.milestones[0], self.milestones[:1], 1, 1.0)
         while not _learn(address(self.desk), address(path), len(path)):
             self._grow()
-            self.prepare(path[0], path[:1], 1)
+            self.prepare(path[0], path[:1], 1, 1.0)
 
 
 @program
@@ -170,7 +170,7 @@ def _add_milestone(s: Search, q: Floats) -> tuple[int, int]:
         turn = np.rint((q[k] - s.rules[at.MIDDLE, k]) / TURN) if s.rules[at.LIFTS, k] > 0.0 else 0.0
         s.milestones[new, k] = q[k] - TURN * turn
         s.columns[k * d[at.CAPACITY] + new] = s.milestones[new, k]
-        packed += np.int64(turn) << (BITS * k)
+        packed += int(turn) << (BITS * k)
     for i in range(new):
         if s.nodes[i] == BLOCKED:
             continue
@@ -200,7 +200,7 @@ def _add_milestone(s: Search, q: Floats) -> tuple[int, int]:
         for k in range(dim):
             if s.rules[at.LIFTS, k] > 0.0:
                 apart = s.milestones[new, k] - s.milestones[i, k]
-                turns += np.int64(np.rint(apart / TURN)) << (BITS * k)
+                turns += int(np.rint(apart / TURN)) << (BITS * k)
         _add_edge(s, new, i, turns, UNKNOWN)
     return new, packed
 

@@ -70,11 +70,11 @@ def find_way(
     fresh: int,
     most_motions: int,
     slice_batches: int,
+    day_checks: int,
     day_tables: int,
     day_by_joint: int,
     day_memory: int,
-    motion_check: int,
-    check: int,
+    checks: int,
     resolution: float,
     tables: int,
     by_joint: int,
@@ -84,10 +84,10 @@ def find_way(
     """Search until there is a way that is proved free, and return how the call ended.
 
     `desk` is that of `search_at`; `path`, (rows, dim), takes the way from the goal back to the start, `report` what was
-    counted.  `fresh` is 1 for a new query, 0 to go on.  The three that follow are of the day's obstacles alone.
+    counted.  `fresh` is 1 for a new query, 0 to go on.  The four that follow are of the day's obstacles alone.
     """
-    full = checks_of(motion_check, check, resolution, tables, by_joint, memory, room)
-    day = checks_of(motion_check, check, resolution, day_tables, day_by_joint, day_memory, room)
+    full = checks_of(checks, resolution, tables, by_joint, memory, room)
+    day = checks_of(day_checks, resolution, day_tables, day_by_joint, day_memory, room)
     s, counted = search_at(desk), integers_at(report, (REPORT,))
     full.counts[BATCHES] = 0
     if fresh != 0:
@@ -161,8 +161,8 @@ def _is_proved(s: Search, day: Checks, full: Checks) -> bool:
         question = question_of(s, entry)
         if verdict_of(s, question) != PROVED:
             write_asked(s, entry, question)
-            checks = day if _is_old(s, question) else full
-            proved = motion_proved(s.asked[0], s.asked[1], TOLERANCE, MOST_BATCHES, checks)
+            whole = day if _is_old(s, question) else full
+            proved = motion_proved(s.asked[0], s.asked[1], TOLERANCE, MOST_BATCHES, whole)
             answer(s, question, PROVED if proved else BLOCKED)
             if not proved:
                 return False

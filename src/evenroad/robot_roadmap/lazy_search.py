@@ -19,7 +19,6 @@ from evenroad.robot_roadmap.search_memory import (
     BY,
     CAPACITY,
     DIM,
-    ENDLESS,
     ENDS,
     ENTRIES,
     FREE,
@@ -54,7 +53,7 @@ from evenroad.robot_roadmap.search_memory import (
     WAITING,
     Search,
 )
-from evenroad.robot_roadmap.turns import TURN
+from evenroad.robot_roadmap.search_metric import distance, measure, write
 
 Floats = npt.NDArray[np.float64]
 
@@ -68,16 +67,13 @@ ONWARD = 0.5
 AIMED = 4
 """A goal of which so many links were blocked before a free one was found is approached by that one."""
 
-BITS = 4
-_OFFSETS = sum(2 ** (BITS - 1) << (BITS * k) for k in range(14))
-
 
 @quick
 def begin(s: Search) -> None:
     """Measure how far milestones are from the ends, and choose those that each is tried to be linked to."""
     d, capacity = s.desk, s.desk[CAPACITY]
     for end in range(d[ENDS]):
-        _measure(s, end)
+        measure(s, end)
     for end in range(d[ENDS]):
         count, last, s.radius[end] = 0, np.inf, 0.0
         for i in range(d[NODES]):
@@ -101,43 +97,17 @@ def begin(s: Search) -> None:
             s.radius[end] = max(s.radius[end], s.away[end * capacity + s.near[end, rank]])
         for rank in range(count, d[LINKS]):
             s.near[end, rank] = -1
-    for i in range(d[NODES]):
-        s.heads[i] = -1
-    d[SIZE], d[MADE], d[WAITING], d[PENDING], d[AIM], d[PHASE] = 0, 0, 0, -1, -1, ASK_STRAIGHT
+    _clear(s)
+    d[AIM], d[AIMED_END], d[PHASE] = -1, -1, ASK_STRAIGHT
 
 
 @quick
-def _measure(s: Search, end: int) -> None:
-    """Write how far each milestone is from an end, after the turns that bring it nearest."""
-    n, capacity = s.desk[NODES], s.desk[CAPACITY]
-    away = s.away[end * capacity : end * capacity + n]
-    for i in range(n):
-        away[i] = 0.0
-    lifted = False
-    for k in range(s.desk[DIM]):
-        column, here = s.columns[k * capacity : k * capacity + n], np.float32(s.ends[end, k])
-        if s.rules[LIFTS, k] > 0.0:
-            low, high = s.rules[LOW, k], s.rules[HIGH, k]
-            for i in range(n):
-                if not lifted:
-                    s.turns[end, i] = 0
-                value = s.milestones[i, k]
-                turn = np.rint((s.ends[end, k] - value) / TURN)
-                turn = min(max(turn, np.ceil((low - value) / TURN)), np.floor((high - value) / TURN))
-                apart = np.float32(value + TURN * turn - s.ends[end, k])
-                away[i] += apart * apart
-                s.turns[end, i] += np.int64(turn) << (BITS * k)
-            lifted = True
-        elif s.rules[ENDLESS, k] > 0.0:
-            for i in range(n):
-                apart = np.float32(_apart(s, k, s.milestones[i, k] - s.ends[end, k]))
-                away[i] += apart * apart
-        else:
-            for i in range(n):
-                apart = column[i] - here
-                away[i] += apart * apart
-    for i in range(n):
-        away[i] = np.sqrt(away[i])
+def _clear(s: Search) -> None:
+    """Forget what the search has got to."""
+    d = s.desk
+    d[SIZE], d[MADE], d[WAITING], d[PENDING] = 0, 0, 0, -1
+    for i in range(d[NODES]):
+        s.heads[i] = -1
 
 
 @quick
@@ -165,7 +135,13 @@ def step(s: Search) -> int:
     while True:
         if d[PENDING] < 0:
             if d[WAITING] == 0:
-                return NONE
+                if d[AIM] < 0:
+                    return NONE
+                # Not by the milestone that was aimed at: once more with all links of the goals.
+                _clear(s)
+                d[AIM] = -1
+                _open(s)
+                continue
             d[PENDING] = _pop(s)
         entry = d[PENDING]
         state, question = s.entries[entry, STATE], question_of(s, entry)
@@ -209,7 +185,7 @@ def _goal_link(s: Search) -> int:
                     s.asked[0, k] = s.ends[end, k]
                 write(s, i, s.turns[end, i], s.asked[1])
                 return LINK
-            if missed >= AIMED:
+            if missed >= AIMED and s.rules[GREED, 0] > 1.0:
                 d[AIM], d[AIMED_END] = i, end
             return NONE
     return CUT_OFF
@@ -221,7 +197,7 @@ def _open(s: Search) -> None:
     d = s.desk
     for end in range(1, d[ENDS]):
         if s.straight[end] != BLOCKED:
-            _push(s, -end, -1, -1, _distance(s, s.ends[0], s.ends[end]), 0.0)
+            _push(s, -end, -1, -1, distance(s, s.ends[0], s.ends[end]), 0.0)
     for rank in range(d[LINKS]):
         i = s.near[0, rank]
         if i >= 0 and s.links[0, i] != BLOCKED:
@@ -272,15 +248,6 @@ def _write_place(s: Search, row: int, entry: int) -> None:
             s.asked[row, k] = s.ends[-state, k]
     else:
         write(s, s.states[state, OF], s.states[state, LIFTED], s.asked[row])
-
-
-@quick
-def write(s: Search, node: int, packed: int, q: Floats) -> None:
-    """Write the configuration of a milestone after turns."""
-    for k in range(s.desk[DIM]):
-        q[k] = s.milestones[node, k]
-        if s.rules[LIFTS, k] > 0.0:
-            q[k] += TURN * _turn(packed, k)
 
 
 @quick
@@ -362,43 +329,14 @@ def _state(s: Search, node: int, packed: int) -> int:
             inside &= s.rules[LOW, k] <= s.asked[1, k] <= s.rules[HIGH, k]
     if d[AIM] >= 0:
         write(s, d[AIM], s.turns[d[AIMED_END], d[AIM]], s.asked[0])
-        least = _distance(s, s.asked[1], s.asked[0]) + s.away[d[AIMED_END] * d[CAPACITY] + d[AIM]]
+        least = distance(s, s.asked[1], s.asked[0]) + s.away[d[AIMED_END] * d[CAPACITY] + d[AIM]]
     else:
         for end in range(1, d[ENDS]):
-            least = min(least, _distance(s, s.asked[1], s.ends[end]))
+            least = min(least, distance(s, s.asked[1], s.ends[end]))
     s.bounds[state, LEFT], s.bounds[state, LEAST] = s.rules[GREED, 0] * least, np.inf
     if not inside:
         s.bounds[state, LEFT] = np.inf
     return state if inside else -1
-
-
-@quick
-def length_of_edge(s: Search, a: int, b: int, turns: int) -> float:
-    """Return how long the motion between two milestones is that leads past the second by packed turns."""
-    write(s, a, 0, s.asked[0])
-    write(s, b, turns, s.asked[1])
-    return _distance(s, s.asked[0], s.asked[1])
-
-
-@quick
-def _distance(s: Search, a: Floats, b: Floats) -> float:
-    squared = 0.0
-    for k in range(s.desk[DIM]):
-        squared += _apart(s, k, b[k] - a[k]) ** 2
-    return np.sqrt(squared)
-
-
-@quick
-def _apart(s: Search, k: int, apart: float) -> float:
-    """Return how far two values of a joint are apart the short way."""
-    return apart - TURN * np.rint(apart / TURN) if s.rules[ENDLESS, k] > 0.0 else apart
-
-
-@quick
-def _turn(packed: int, k: int) -> int:
-    """Return the turns of one joint from those of all, whose sum ``sum_k turn_k 16^k`` is their packed form."""
-    # Each is brought to 0 .. 15 first, so that a negative one does not borrow from the next.
-    return (((packed + _OFFSETS) >> (BITS * k)) & (2**BITS - 1)) - 2 ** (BITS - 1)
 
 
 @quick

@@ -1,4 +1,4 @@
-"""Where the search of a roadmap keeps what it knows: one table of counts and addresses, and the arrays that it tells of."""
+"""Where the search of a roadmap keeps what it knows: a table of counts and addresses, and arrays that it tells of."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ NODES, HALVES_MADE, EDGES_MADE, BASE = range(8, 12)
 and cell."""
 
 PHASE, SIZE, MADE, WAITING, PENDING, TO, BY, AIM, AIMED_END = range(12, 21)
-"""Desk: what the search has got to: states, entries, those in the queue, the one at hand; of a question the milestone or
-end, and the edge or the milestone it is linked to; the milestone by which a goal is approached, or -1, and which."""
+"""Desk: what the search has got to: states, entries, those in the queue, the one at hand; of a question the milestone
+or end, and the edge or the milestone it is linked to; the milestone by which a goal is approached, or -1, and which."""
 
 ASK_STRAIGHT, ASK_GOALS, OPEN, SEARCH = range(4)
 """Phases of a search."""
@@ -54,7 +54,6 @@ LEFT, LEAST = range(2)
 
 STATE, PARENT, VIA = range(3)
 """Of an entry: a state, or a goal as minus its row; the entry before, or -1; and the edge, or -1 of a link."""
-
 
 
 class Search(NamedTuple):
@@ -117,7 +116,13 @@ def known_room(capacity: int, dim: int) -> int:
 def query_room(desk: Ints) -> int:
     """Return how many doubles a query needs."""
     ends, capacity, dim = int(desk[ENDS]), int(desk[CAPACITY]), int(desk[DIM])
-    return (ends + 2) * dim + 2 * ends + (4 * ends + 1) * capacity + 6 * int(desk[STATES]) + 6 * int(desk[ENTRIES])
+    return (
+        (ends + 2) * dim
+        + 2 * ends
+        + (4 * ends + 1) * capacity
+        + 6 * int(desk[STATES])
+        + 6 * int(desk[ENTRIES])
+    )
 
 
 @quick
