@@ -31,6 +31,7 @@ from evenroad.robot import (
     in_scene,
     load_model,
     load_scene,
+    scene_seen_by,
 )
 from evenroad.robot.goals import Goals, goals_of
 from evenroad.robot.load import RobotOptions
@@ -269,6 +270,7 @@ def arm_query(
     goals = _places(goal)
     texts = [place for place in (start, *goals) if isinstance(place, str)]
     robot = at_states(in_scene(robot, scene), texts, scene)
+    scene = scene_seen_by(robot, scene)
     first = _configuration(robot, scene, "start", start, degrees)
     world = ArmWorld(robot, scene, resolution=resolution)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -69,7 +70,7 @@ def answer(
     else:
         # Under ``complete`` nothing but more points helps.
         wider = "radius" if "radius" in attempt.rule else "k" if attempt.rule.startswith("k") else ""
-        advice = f"try n={2 * points}" + (f" or a larger {wider}" if wider else "")
+        advice = f"try n={2 * points}" + (f" or a larger {wider}" if wider else "") + _few_directions(attempt)
         failed = _result(attempt, Status.NOT_CONNECTED, f"{so_far}, {missing} {made}: {advice}")
     return replace(failed, counts=counts, roadmap=graph)
 
@@ -158,6 +159,18 @@ def _reach(attempt: Attempt, searched: Searched, counts: dict[str, int]) -> tupl
         among = f"{int(np.count_nonzero(open_nodes))} milestones not known to be invalid"
     so_far = f"start reaches {counts['start_component']} and goal {counts['goal_component']} of {among}"
     return so_far, "and the two components do not meet"
+
+
+def _few_directions(attempt: Attempt) -> str:
+    """Return what to say of a lattice whose points have fewer neighbours than directions."""
+    k, d = re.match(r"k=(\d+) ", attempt.rule), attempt.world.space.cube_dim
+    if (
+        k is None
+        or int(k[1]) >= 2 * d
+        or not ("lattice" in attempt.origin.method or "A_d*" in attempt.origin.method)
+    ):
+        return ""
+    return f"; a lattice's nearest points come in opposite pairs, so that fewer than {2 * d} leave directions out"
 
 
 def _result(attempt: Attempt, status: Status, message: str, **more: Any) -> PlanResult:
