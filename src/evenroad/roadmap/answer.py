@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -68,7 +70,7 @@ def answer(
     else:
         # Under ``complete`` nothing but more points helps.
         wider = "radius" if "radius" in attempt.rule else "k" if attempt.rule.startswith("k") else ""
-        advice = f"try n={2 * points}" + (f" or a larger {wider}" if wider else "")
+        advice = f"try n={2 * points}" + (f" or a larger {wider}" if wider else "") + _few_directions(attempt)
         failed = _result(attempt, Status.NOT_CONNECTED, f"{so_far}, {missing} {made}: {advice}")
     return replace(failed, counts=counts, roadmap=graph)
 
@@ -123,8 +125,10 @@ def _with_path(
             length = float(np.sum(measure(path[:-1], path[1:])))
     named = "length" if cost is None else "cost"
     to = f" to goal {goal}" if len(query.goals) > 1 else ""
-    return replace(
-        _result(attempt, Status.SOLVED, f"path of {named} {length:.6g} with {len(path)} waypoints{to}"),
+    return _result(
+        attempt,
+        Status.SOLVED,
+        f"path of {named} {length:.6g} with {len(path)} waypoints{to}",
         goal_index=goal,
         path=path,
         milestone_path=raw,
@@ -157,7 +161,19 @@ def _reach(attempt: Attempt, searched: Searched, counts: dict[str, int]) -> tupl
     return so_far, "and the two components do not meet"
 
 
-def _result(attempt: Attempt, status: Status, message: str) -> PlanResult:
+def _few_directions(attempt: Attempt) -> str:
+    """Return what to say of a lattice whose points have fewer neighbours than directions."""
+    k, d = re.match(r"k=(\d+) ", attempt.rule), attempt.world.space.cube_dim
+    if (
+        k is None
+        or int(k[1]) >= 2 * d
+        or not ("lattice" in attempt.origin.method or "A_d*" in attempt.origin.method)
+    ):
+        return ""
+    return f"; a lattice's nearest points come in opposite pairs, so that fewer than {2 * d} leave directions out"
+
+
+def _result(attempt: Attempt, status: Status, message: str, **more: Any) -> PlanResult:
     return PlanResult(
         status=status,
         message=message,
@@ -168,6 +184,7 @@ def _result(attempt: Attempt, status: Status, message: str) -> PlanResult:
         links=attempt.query.links,
         planner=attempt.planner,
         seconds=attempt.watch.seconds,
+        **more,
     )
 
 

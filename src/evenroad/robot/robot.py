@@ -282,6 +282,9 @@ def in_scene(robot: Robot, scene: Scene) -> Robot:
                 )
             continue
         robot = robot.holding(held)
+    if not scene.limits:
+        # The same robot: what is known of it need not be looked up by all of its values.
+        return robot
     joints = {joint.name: joint for joint in robot.joints}
     limits = {}
     for name, (lower, upper) in scene.limits.items():

@@ -48,7 +48,7 @@ def at_states(robot: Robot, texts: Iterable[str], scene: Scene | None = None) ->
                     f" {said[joint]!r} to {value:.6g} in {name!r}; the group is {','.join(robot.group)}"
                 )
             said.setdefault(joint, name)
-    return with_group(robot, robot.group, {**robot.held, **held})
+    return with_group(robot, robot.group, {**robot.held, **held}) if held else robot
 
 
 def state_values(robot: Robot, name: str, scene: Scene | None = None) -> Floats:

@@ -86,6 +86,8 @@ class FlatSpace(Space):
 
     def _canonical(self, q: Floats) -> Floats:
         """Do as `wrapped`, for a sound batch."""
+        if not self._flat.wraps:
+            return q
         # What is in its range already is not rounded.
         outside = ((q < self._low) | (q >= self._high)) & self._flat.wrapping
         if not outside.any():

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats, Ints32
-from evenroad.roadmap.budget import BudgetSpent, Stopwatch, in_time
+from evenroad.roadmap.budget import BudgetSpent, Pace, Stopwatch, in_time
 from evenroad.world import World
 
 States: TypeAlias = npt.NDArray[np.int8]
@@ -60,11 +60,12 @@ class EdgeStates:
         self.configurations_checked = self.motions_checked = 0
         self.watch = Stopwatch() if watch is None else watch
         self.most_motions, self.deadline = most_motions, deadline
+        self._node_pace, self._edge_pace = Pace(), Pace()
 
     def ask_nodes(self, nodes: npt.NDArray[np.integer]) -> None:
         """Ask the world about those of the nodes that are not known yet; BudgetSpent if time does not allow all."""
         unknown = nodes[self.node_states[nodes] == UNKNOWN]
-        for rows in in_time(unknown, self.deadline):
+        for rows in in_time(unknown, self.deadline, self._node_pace):
             with self.watch("validity"):
                 free = self.world.valid(self.configurations[rows])
             self.node_states[rows] = np.where(free, FREE, BLOCKED)
@@ -76,7 +77,7 @@ class EdgeStates:
         wanted = len(unknown)
         if self.most_motions is not None:
             unknown = unknown[: self.most_motions - self.motions_checked]
-        for rows in in_time(unknown, self.deadline):
+        for rows in in_time(unknown, self.deadline, self._edge_pace):
             pairs = self.edges[rows]
             a, b = self.configurations[pairs[:, 0]], self.configurations[pairs[:, 1]]
             with self.watch("motions"):
