@@ -47,8 +47,9 @@ def first_links(robot: Robot, joints: int) -> Robot:
     return replace(with_group(robot, group), capsules=capsules, pairs=(), hulls=(), resting=())
 
 
-def is_locked(problem: Problem, end: np.ndarray, joints: int, reach: tuple[float, ...]) -> bool:
-    """Return whether it is proved by the first joints that no path leads from an end to the other."""
+def is_locked(problem: Problem, backwards: bool, joints: int, reach: tuple[float, ...]) -> bool:
+    """Return whether it is proved by the first joints that no path leads from one end to the other."""
+    end, goal = (problem.goal, problem.start) if backwards else (problem.start, problem.goal)
     robot = first_links(problem.robot, joints)
     tables = ArmWorld(robot, Scene("nothing", ())).robot_tables
     space = ArmWorld(robot, problem.scene).space
@@ -69,9 +70,7 @@ def is_locked(problem: Problem, end: np.ndarray, joints: int, reach: tuple[float
         rest = np.stack(np.meshgrid([first], *middles[1:], indexing="ij"), axis=-1).reshape(-1, joints)
         free[i] = world.valid(rest).reshape(free.shape[1:])
     pieces, _ = label(free)
-    here, other = (
-        np.floor((q[:joints] - low) / size).astype(int) for q in (end, problem.goal + problem.start - end)
-    )
+    here, other = (np.floor((q[:joints] - low) / size).astype(int) for q in (end, goal))
     number = pieces[tuple(np.minimum(here, count - 1))]
     assert number > 0, "the end is free, so its cell is not blocked throughout"
     piece = pieces == number
@@ -98,9 +97,8 @@ def thinner(robot: Robot, half: np.ndarray) -> Robot:
 
 def locked_by(problem: Problem) -> int:
     """Return by how many of the first joints it is proved that there is no path; 0 where that is not proved."""
-    ends = problem.start, problem.goal
-    tries = ((joints, end, reach) for joints, reach in TRIES for end in ends)
-    return next((joints for joints, end, reach in tries if is_locked(problem, end, joints, reach)), 0)
+    tries = ((way, *cells) for cells in TRIES for way in (False, True))
+    return next((joints for way, joints, reach in tries if is_locked(problem, way, joints, reach)), 0)
 
 
 def main() -> None:
