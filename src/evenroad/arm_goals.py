@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 
 import numpy as np
 
 from evenroad._arrays import Floats, Ints
+from evenroad._clock import now
 from evenroad.roadmap import Budget, PlanResult
 from evenroad.roadmap.answer import connected, refusal
 from evenroad.roadmap.attempt import Attempt
@@ -78,7 +78,7 @@ class _Search:
     def reach(self, rows: Ints) -> bool:
         """Try some goals for a short while; return whether one was reached, and keep its path if it is the best."""
         attempt, world = self.attempt, self.world
-        seconds = attempt.deadline - time.perf_counter()
+        seconds = attempt.deadline - now()
         most = MOTIONS if attempt.query.budget.motions is None else min(MOTIONS, attempt.query.budget.motions)
         if seconds <= 0.0:
             return False

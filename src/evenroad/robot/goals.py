@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad._clock import now
 from evenroad.geometry.pose import Pose
 from evenroad.robot.chain import default_tip
 from evenroad.robot.inverse_kinematics import Checks, Reached, misses, reach, task_of
@@ -58,7 +58,7 @@ def goals_of(
     rows: list[Floats] = []
     names: list[str] = []
     poses = []
-    began = time.perf_counter()
+    began = now()
     for place in places:
         if not isinstance(place, Pose | PoseGoal):
             rows.append(read(place)[np.newaxis])
@@ -72,7 +72,7 @@ def goals_of(
         names += [str(goal)] * len(reached.configurations)
     if not names:
         rows = [reached.nearest[np.newaxis] for _, reached in poses]
-    took = time.perf_counter() - began if poses else 0.0
+    took = now() - began if poses else 0.0
     return Goals(np.concatenate(rows), tuple(names), tuple(poses), took)
 
 
