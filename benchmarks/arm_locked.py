@@ -23,14 +23,13 @@ from evenroad.robot.robot import Robot, with_group
 from evenroad.robot.scene import Scene
 
 TRIES = (
-    (2, (np.inf, np.inf)),
-    (3, (0.35, 0.35, np.inf)),
-    (4, (0.35, 0.7, 1.4, np.inf)),
-    (4, (0.35, 0.35, np.inf, np.inf)),
+    (2, (np.inf, np.inf), 1_000_000),
+    (3, (0.35, 0.35, np.inf), 20_000_000),
+    (4, (0.35, 0.7, 1.4, np.inf), 40_000_000),
+    (4, (0.35, 0.35, np.inf, np.inf), 100_000_000),
+    (4, (0.5, 0.5, np.inf, np.inf), 300_000_000),
 )
-"""So many of the first joints are looked at, and how far from an end the cells reach along each [rad]."""
-
-MOST_CELLS = {2: 1_000_000, 3: 20_000_000, 4: 100_000_000}
+"""How many of the first joints are looked at, how far from an end the cells reach along each [rad], how many cells."""
 
 _SLACK = 1e-4
 """More than single precision can be wrong by [m]."""
@@ -47,7 +46,7 @@ def first_links(robot: Robot, joints: int) -> Robot:
     return replace(with_group(robot, group), capsules=capsules, pairs=(), hulls=(), resting=())
 
 
-def is_locked(problem: Problem, backwards: bool, joints: int, reach: tuple[float, ...]) -> bool:
+def is_locked(problem: Problem, backwards: bool, joints: int, reach: tuple[float, ...], cells: int) -> bool:
     """Return whether it is proved by the first joints that no path leads from one end to the other."""
     end, goal = (problem.goal, problem.start) if backwards else (problem.start, problem.goal)
     robot = first_links(problem.robot, joints)
@@ -58,9 +57,7 @@ def is_locked(problem: Problem, backwards: bool, joints: int, reach: tuple[float
     high = np.minimum(most, end[:joints] + reach)
     # Half a cell along any joint moves the links by about as much, the finer the better.
     fastest = np.maximum(tables.speeds.max(axis=0), 0.05)
-    count = np.ceil(
-        (high - low) * fastest * (MOST_CELLS[joints] / np.prod((high - low) * fastest)) ** (1 / joints)
-    )
+    count = np.ceil((high - low) * fastest * (cells / np.prod((high - low) * fastest)) ** (1 / joints))
     count = np.maximum(count.astype(int), 2)
     size = (high - low) / count
     world = ArmWorld(thinner(robot, 0.5 * size), problem.scene)
@@ -97,8 +94,8 @@ def thinner(robot: Robot, half: np.ndarray) -> Robot:
 
 def locked_by(problem: Problem) -> int:
     """Return by how many of the first joints it is proved that there is no path; 0 where that is not proved."""
-    tries = ((way, *cells) for cells in TRIES for way in (False, True))
-    return next((joints for way, joints, reach in tries if is_locked(problem, way, joints, reach)), 0)
+    tries = ((way, *grid) for grid in TRIES for way in (False, True))
+    return next((joints for way, joints, *grid in tries if is_locked(problem, way, joints, *grid)), 0)
 
 
 def main() -> None:
