@@ -254,23 +254,23 @@ def draw_picture(path: Path, rows: list[dict[str, Any]], holes: dict[tuple[str, 
     for d, colour in zip(SETS, ("C0", "C1", "C2"), strict=True):
         mine = [row for row in cost if row["d"] == d]
         said = [row["bound"] / row["optimum"] for row in mine]
-        left.loglog(
+        left.plot(
             said, [row["cost"] / row["optimum"] for row in mine], ".", ms=3, color=colour, label=f"d = {d}"
         )
     most = max(row["bound"] / row["optimum"] for row in cost)
     left.plot([1, most], [1, most], "k-", lw=0.8)
-    left.annotate("a claim above this line\nwould be false", (2.0, 2.1), rotation=0, fontsize=8)
+    left.annotate("above this line\na claim is false", (1.2, 2.6), fontsize=8)
     left.set(
         xlabel="certified: at most so many times the optimum", ylabel="the roadmap's path, times the optimum"
     )
-    left.legend(loc="upper left", markerscale=3)
+    left.set(xlim=(1.0, 1.02 * most), ylim=(0.0, 4.0))
+    left.legend(loc="upper right", markerscale=3)
     dimensions = sorted({d for _, _, d in holes})
     for sampler, colour in (("cover", "C3"), ("even", "C0"), ("uniform", "C7")):
         for n, style in ((256, ":"), (1024, "-")):
             beta = [holes[sampler, n, d] for d in dimensions]
             right.plot(dimensions, beta, style, marker="o", ms=3, color=colour, label=f"{sampler}, N = {n}")
-    right.axhline(0.5, color="k", lw=0.8)
-    right.annotate("half the side of the cube: no path has such a clearance", (2.1, 0.52), fontsize=8)
+    right.axhline(0.5, color="k", lw=0.8, label="half the side of the cube")
     right.set(xlabel="dimension", ylabel="beta: the least clearance that is certified", ylim=(0, 1.0))
     right.legend(loc="upper left", fontsize=8, bbox_to_anchor=(0, 0.98))
     figure.savefig(path, dpi=110)
