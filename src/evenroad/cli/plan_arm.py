@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import asdict, replace
 from pathlib import Path
 
-import numpy as np
-
 from evenroad._compiled import say_if_compiling
 from evenroad.arms import SEARCH, arm_query, finished, plan_on_points
 from evenroad.cli.plan import PlanArm
@@ -61,7 +59,6 @@ def plan_arm(plan: PlanArm) -> int:
     points = draw_points(plan, world.space.cube_dim) if wants_points(plan) else None
     load_compiled_code(world, start, goals, points, rule, SEARCH)
     if known is not None:
-        known.connect(start, start[np.newaxis])
         result = known.plan(start, goals, budget=budget, shorten=not plan.raw)
     elif points is None:
         result = find_path(world, start, goals, budget=budget, shorten=not plan.raw, improve=plan.improve)
@@ -105,6 +102,8 @@ def plan_arm(plan: PlanArm) -> int:
 def _say_if_compiling(plan: PlanArm) -> None:
     kernel, points = "evenroad.robot.kernel", wants_points(plan)
     said = say_if_compiling(f"{kernel}.batch", "check_configurations", 30 if points else 20)
+    if plan.roadmap is not None and lanes_failure() is None:
+        said = say_if_compiling("evenroad.robot_roadmap.lane_search", "find_way", 10) or said
     # Where the lanes do not work, the trees are never compiled.
     if not (said or points) and lanes_failure() is None:
         say_if_compiling(f"{kernel}.trees", "grow", 15)

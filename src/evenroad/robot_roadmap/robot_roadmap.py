@@ -41,11 +41,11 @@ GREED = 3.0
 its paths are no longer."""
 
 TRIED_LINKS, TRIED_MOTIONS = 30, 200
-"""Where trees may follow, so many links of each end are tried, and so many motions: trees find ways out of narrow places
-with fewer checks than long links do."""
+"""Where trees may follow, so many links of each end are tried, and so many motions: trees find ways out of narrow
+places with fewer checks than long links do."""
 
 PAIRS, CUTS = 32, 16
-"""What a path along the roadmap is shortened with: a third of the work on trees' paths, for a few thousandths of length."""
+"""What a path along the roadmap is shortened with: half of the work on trees' paths, for half a percent of length."""
 
 _LONG = 1e8
 """Seconds that stand for no limit."""
