@@ -13,6 +13,7 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -68,14 +69,12 @@ def costs(name: str, count: int, n: int, kinds: list[str]) -> None:
             quick = QuickWorld(world.robot, world.scene)
             copies = [SceneRoadmap(made, world.scene) for _ in range(COPIES)]
             for number, (start, goal) in enumerate(pairs):
+                ends = partial(find_path, start=start, goal=goal, budget=LIMIT)
                 calls = {
-                    "trees": [lambda: find_path(world, start, goal, budget=LIMIT)] * COPIES,  # noqa: B023
-                    "trees, shortened as much": [lambda: find_path(quick, start, goal, budget=LIMIT)]
-                    * COPIES,
-                    "roadmap, kept scene": [lambda k=k: k.plan(start, goal, budget=LIMIT) for k in copies],  # noqa: B023
-                    "roadmap, new scene": [
-                        lambda: SceneRoadmap(made, world.scene).plan(start, goal, budget=LIMIT)
-                    ]
+                    "trees": [partial(ends, world)] * COPIES,
+                    "trees, shortened as much": [partial(ends, quick)] * COPIES,
+                    "roadmap, kept scene": [partial(k.plan, start, goal, budget=LIMIT) for k in copies],
+                    "roadmap, new scene": [partial(made.plan, world.scene, start, goal, budget=LIMIT)]
                     * COPIES,
                 }
                 answers = {title: timed(some) for title, some in calls.items()}
