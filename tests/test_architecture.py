@@ -13,7 +13,7 @@ ROOT = Path(evenroad.__file__).parent
 
 BASE = {
     *("errors", "_checks", "_rng", "_files", "_npz", "_yaml"),
-    *("_arrays", "_terminal", "_compiled", "_fingerprint"),
+    *("_arrays", "_clock", "_terminal", "_compiled", "_fingerprint"),
 }
 MAY_IMPORT = {
     "points": BASE,
@@ -27,12 +27,15 @@ MAY_IMPORT = {
     "viz": BASE | {"points", "space", "world", "geometry", "robot", "roadmap"},
     "robot": BASE | {"space", "geometry", "world"},
     "robot_roadmap": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
-    "arms": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
+    "arms": BASE | {"points", "space", "geometry", "world", "robot", "roadmap", "arm_ways", "arm_goals"},
+    "arm_ways": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
+    "arm_goals": BASE | {"space", "world", "roadmap"},
     "trajectory": BASE | {"space", "world", "robot"},
-    "research": BASE | {"points", "space", "world", "geometry", "robot", "roadmap", "io", "viz"},
+    "research": BASE
+    | {"points", "space", "world", "geometry", "robot", "roadmap", "robot_roadmap", "io", "viz"},
     "cli": BASE
     | {"points", "space", "world", "geometry", "robot", "roadmap", "robot_roadmap"}
-    | {"arms", "research", "io", "viz", "trajectory"},
+    | {"arms", "arm_ways", "arm_goals", "research", "io", "viz", "trajectory"},
     **dict.fromkeys(BASE, BASE),
 }
 """Part -> the parts it may import: the arrows of docs/design.md."""

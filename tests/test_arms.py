@@ -8,7 +8,7 @@ import pytest
 import evenroad as er
 from evenroad import arms
 from evenroad.cli import main
-from evenroad.robot import Obstacle
+from evenroad.robot import Obstacle, link_poses
 from evenroad.robot.reference.recheck import MeshCheck
 from tests.robot.mesh_arms import write_fork_arm
 
@@ -158,3 +158,44 @@ def test_a_goal_that_an_arm_cannot_leave_is_explained():
         assert "leave its place: " in result.message
         assert "'forearm_link' touches 'ball" in result.message
         assert "The start can" not in result.message
+
+
+def tip_of(robot, q, tip):
+    return link_poses(robot, np.atleast_2d(q))[0, robot.links.index(tip)]
+
+
+def test_a_pose_is_a_goal_and_the_path_ends_there():
+    pose = er.Pose.from_rpy((0.65, 0.0, 0.2), (0.0, np.pi / 2, 0.0))
+    result = er.plan_arm("ur5", "box-reach", "home", pose)
+    assert result.solved
+    assert "(tool0 at (0.65, 0, 0.2))" in result.message
+    assert np.abs(tip_of(er.load_robot("ur5"), result.path[-1], "tool0") - pose.matrix).max() < 1e-6
+    assert "goals" in result.seconds
+
+
+def test_of_poses_and_configurations_the_path_ends_at_one_and_the_cheapest_where_that_is_asked_for():
+    poses = [er.Pose.from_rpy((0.65, y, 0.2), (0.0, np.pi / 2, 0.0)) for y in (0.05, -0.05)]
+    first = er.plan_arm("ur5", "box-reach", "home", [*poses, "inside"])
+    best = er.plan_arm(
+        "ur5", "box-reach", "home", [*poses, "inside"], improve=True, budget=er.Budget(rounds=30)
+    )
+    assert first.solved
+    assert best.cost <= first.cost
+    assert len(first.goals) > 3
+
+
+def test_a_pose_that_cannot_be_reached_is_an_answer():
+    far = er.plan_arm("ur5", "box-reach", "home", er.Pose((2.0, 0.0, 0.0)))
+    assert far.status is er.Status.GOAL_UNREACHABLE
+    assert "out of reach" in far.message
+    assert far.path is None
+    inside_wall = er.plan_arm(
+        "ur5", "box-reach", "home", er.PoseGoal(er.Pose((0.9, 0.0, 0.2)), position_only=True)
+    )
+    assert inside_wall.status is er.Status.GOAL_INVALID
+    assert "touches 'box back'" in inside_wall.message
+
+
+def test_one_pose_that_cannot_be_reached_does_not_stop_the_others():
+    result = er.plan_arm("ur5", "box-reach", "home", [er.Pose((2.0, 0.0, 0.0)), "inside"])
+    assert result.solved

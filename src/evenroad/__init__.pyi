@@ -7,6 +7,7 @@ from evenroad.errors import InvalidValue as InvalidValue
 from evenroad.errors import NotAvailable as NotAvailable
 from evenroad.errors import UnknownName as UnknownName
 from evenroad.errors import WorkerLost as WorkerLost
+from evenroad.geometry import Pose as Pose
 from evenroad.points import Origin as Origin
 from evenroad.points import PointSet as PointSet
 from evenroad.points import draw as draw
@@ -24,8 +25,11 @@ from evenroad.roadmap import save_roadmap as save_roadmap
 from evenroad.roadmap.find_path import find_path as find_path
 from evenroad.roadmap.plan import plan as plan
 from evenroad.robot import ArmWorld as ArmWorld
+from evenroad.robot import PoseGoal as PoseGoal
 from evenroad.robot import Robot as Robot
 from evenroad.robot import Scene as Scene
+from evenroad.robot import Straight as Straight
+from evenroad.robot import Upright as Upright
 from evenroad.robot import configuration as configuration
 from evenroad.robot import load_robot as load_robot
 from evenroad.robot import load_scene as load_scene

@@ -28,7 +28,17 @@ def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
     """
     places = {name: getattr(result, name).tolist() for name in ("start", "goal", "goals")}
     paths = {name: getattr(result, name) for name in ("path", "milestone_path")}
-    same = ("cost", "milestone_cost", "proof", "goal_index", "planner", "rule", "links", "counts")
+    same = (
+        "cost",
+        "milestone_cost",
+        "proof",
+        "goal_index",
+        "planner",
+        "rule",
+        "links",
+        "counts",
+        "deviation",
+    )
     return {
         "status": str(result.status),
         "message": result.message,

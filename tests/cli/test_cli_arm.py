@@ -120,7 +120,10 @@ def test_a_path_with_a_motion_that_is_not_proved_is_none_where_a_proof_was_asked
 def test_a_goal_is_missed(run):
     code, out, err = run("plan", "box-reach.yaml", "--robot", "ur5", "--start", "home")
     assert (code, out) == (2, "")
-    assert err == "evenroad: error: missing from evenroad plan: --goal; all options: evenroad plan --help\n"
+    assert (
+        err
+        == "evenroad: error: missing from evenroad plan: --goal, or --goal-pose; all options: evenroad plan --help\n"
+    )
 
 
 def test_improving_does_not_go_with_points(run):

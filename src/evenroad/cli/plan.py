@@ -161,8 +161,31 @@ class PlanArm(PlanOptions, RobotOptions):
     roadmap: Path | None = None
     """Plan along this roadmap, which ``evenroad roadmap`` made and which knows its arm and its cell; --robot may be
     given, too, and then has to be that arm."""
+    goal: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]] = ()
+    """As start.  Given more than once, also with --goal-pose, the path ends at a cheap one.
+    With points or --improve at the cheapest."""
+    goal_pose: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]] = ()
+    """Where a link is to be: "x y z qx qy qz qw" or "x y z roll pitch yaw" (metres, radians), or "x y z", turned at
+    will.  All configurations found that bring it there are goals; may be given more than once."""
+    tip: str = ""
+    """The link that goal poses, --straight and --upright are of (default: the last one)."""
+    frame: str = ""
+    """The link in the frame of which they are, which stands still (default: the root)."""
+    free_axis: str | None = None
+    """The tip may be turned about this axis of its own frame at will: x, y, z or "x y z"."""
+    tolerance: str | None = None
+    """By how much goal poses may be missed: "0.002" (metres) or "0.002 0.01" (metres and radians)."""
+    straight: str | None = None
+    """The tip comes to its goal, and leaves its start, in straight lines: "0.1" (metres) or "0.1 0.05", goal first."""
+    away: str | None = None
+    """In which direction it leaves, and from where it comes: x, -x, ... or "x y z" of the tip's frame, or up
+    (default: -z)."""
+    upright: float | None = None
+    """An axis of the tip is tilted by no more than this along the whole path, in radians."""
+    upright_axis: str | None = None
+    """That axis, in the tip's frame (default: the one that is most upright at the start)."""
     deg: bool = False
-    """Angles of start and goal are in degrees."""
+    """Angles are in degrees: of start, goal, "roll pitch yaw" and --upright."""
     resolution: float = 0.05
     """Largest step of a motion check, > 0, in radians."""
     trajectory: tyro.conf.UseAppendAction[tuple[Path, ...]] = ()
@@ -214,8 +237,8 @@ def plan_type(words: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
     if not HELP.isdisjoint(words):
         return chosen
     if for_arm == ("--robot-radius" in given):
-        many = "both" if for_arm else "neither"
-        raise InvalidValue(f"give --robot-radius (a disk) or --robot (an arm), one of them, not {many}")
+        text = "give --robot-radius (a disk) or --robot (an arm), exactly one of them, not"
+        raise InvalidValue(f"{text} {'both' if for_arm else 'neither'}")
     other, needs = (PlanDisk, "--robot-radius") if chosen is PlanArm else (PlanArm, "--robot")
     for option in sorted(given & (option_names(other) - option_names(chosen))):
         raise InvalidValue(f"{option} goes with {needs} only")

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, replace
 from pathlib import Path
 
+from evenroad._arrays import Floats
 from evenroad._compiled import say_if_compiling
-from evenroad.arms import SEARCH, arm_query, finished, plan_on_points
+from evenroad.arm_goals import find_cheapest
+from evenroad.arm_ways import plan_ways
+from evenroad.arms import SEARCH, Goal, arm_query, finished, plan_on_points, unreached
 from evenroad.cli.plan import PlanArm
 from evenroad.cli.plan_parts import (
     chosen_budget,
@@ -21,12 +25,17 @@ from evenroad.cli.plan_parts import (
 from evenroad.cli.roadmap import kept_roadmap
 from evenroad.cli.robot import bodiless_rows
 from evenroad.cli.trajectory import require_trajectory_options, trajectory_rows
+from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
-from evenroad.roadmap import default_rule, find_path
+from evenroad.roadmap import PlanResult, default_rule
 from evenroad.robot import find_robot, find_scene, held_values, load_scene
 from evenroad.robot.kernel.selftest import lanes_failure
+from evenroad.robot.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
+from evenroad.robot.straight import Straight
+from evenroad.robot.upright import Upright
 from evenroad.robot_roadmap.cell import day_and_all
 from evenroad.robot_roadmap.robot_roadmap import SceneRoadmap
+from evenroad.world import World
 
 
 def plan_arm(plan: PlanArm) -> int:
@@ -36,6 +45,7 @@ def plan_arm(plan: PlanArm) -> int:
     """
     budget = chosen_budget(plan)
     kept = None if plan.roadmap is None else kept_roadmap(plan)
+    ways = _ways(plan)
     _say_if_compiling(plan)
     robot = kept.robot if kept is not None and plan.robot is None else plan.robot
     assert robot is not None
@@ -43,7 +53,7 @@ def plan_arm(plan: PlanArm) -> int:
         robot,
         plan.world if kept is None else day_and_all(kept.cell, load_scene(plan.world))[1],
         " ".join(plan.start),
-        [" ".join(words) for words in plan.goal],
+        _goals(plan),
         resolution=plan.resolution,
         degrees=plan.deg,
         **({} if plan.robot is None else plan.options()),
@@ -58,12 +68,18 @@ def plan_arm(plan: PlanArm) -> int:
     rule = chosen_rule(plan, default_rule(world.space).k)
     points = draw_points(plan, world.space.cube_dim) if wants_points(plan) else None
     load_compiled_code(world, start, goals, points, rule, SEARCH)
-    if known is not None:
-        result = known.plan(start, goals, budget=budget, shorten=not plan.raw)
-    elif points is None:
-        result = find_path(world, start, goals, budget=budget, shorten=not plan.raw, improve=plan.improve)
+
+    def plan_once(world: World, start: Floats, goals: Floats, shorten: bool) -> PlanResult:
+        if known is not None:
+            return known.plan(start, goals, budget=budget, shorten=shorten)
+        if points is None:
+            return find_cheapest(world, start, goals, budget=budget, shorten=shorten, improve=plan.improve)
+        return plan_on_points(world, start, goals, points, rule=rule, shorten=shorten, budget=budget)
+
+    if (refused := unreached(query)) is not None:
+        result = refused
     else:
-        result = plan_on_points(query, points, rule=rule, shorten=not plan.raw, budget=budget)
+        result = plan_ways(query.ends, *ways, plan_once, shorten=not plan.raw)
     result, meshes = finished(query, result, certified=plan.certified)
     more_rows, trajectory = trajectory_rows(plan, world, result)
     robot, model = world.robot, query.model
@@ -76,6 +92,8 @@ def plan_arm(plan: PlanArm) -> int:
         "joints": list(robot.group),
         "goal_names": list(query.goal_names),
         "held": held_values(robot),
+        "holds": list(robot.holds),
+        "goal_poses": query.given.records(world, None if result.path is None else result.path[-1]),
         "resolution": world.resolution,
     }
     record = plan_record(result, asked | common_query(plan)) | {
@@ -87,6 +105,14 @@ def plan_arm(plan: PlanArm) -> int:
     }
     held = ", ".join(f"{name} at {value:.6g}" for name, value in held_values(robot).items())
     rows = [("joints", ", ".join(robot.group)), *([("held", held)] if held else [])]
+    rows += [("holds", ", ".join(robot.holds))] if robot.holds else []
+    rows += [
+        (
+            "goal pose",
+            f"{goal}: {reached.branches} postures, {reached.blocked} in collision ({reached.solver})",
+        )
+        for goal, reached in query.given.poses
+    ]
     rows += [] if model is None else bodiless_rows(model)
     rows += [("checked by", world.checked_with), *([] if meshes is None else [("meshes", str(meshes))])]
     rows += more_rows
@@ -99,8 +125,55 @@ def plan_arm(plan: PlanArm) -> int:
     return finish(files, result, record, robot.group, draw, rows)
 
 
+def _goals(plan: PlanArm) -> list[Goal]:
+    """Return the goals that were asked for, configurations first."""
+    if not (plan.goal or plan.goal_pose):
+        raise InvalidValue(
+            "missing from evenroad plan: --goal, or --goal-pose; all options: evenroad plan --help"
+        )
+    for option in ("frame", "free_axis", "tolerance"):
+        if getattr(plan, option) and not plan.goal_pose:
+            raise InvalidValue(f"--{option.replace('_', '-')} goes with --goal-pose")
+    if plan.tip and not (plan.goal_pose or plan.straight or plan.upright):
+        raise InvalidValue("--tip goes with --goal-pose, --straight or --upright")
+    near, tilt = 0.0, 0.0
+    if plan.tolerance is not None:
+        near, tilt, *_ = (*as_numbers("--tolerance", plan.tolerance, (1, 2)), 0.0)
+    axis = None if plan.free_axis is None else as_axis("--free-axis", plan.free_axis)
+    goals: list[Goal] = [" ".join(words) for words in plan.goal]
+    for words in plan.goal_pose:
+        pose, turned = pose_of(" ".join(words), degrees=plan.deg)
+        if axis is not None and not turned:
+            raise InvalidValue(
+                f"--free-axis needs a rotation, got the goal pose {' '.join(words)!r} without one"
+            )
+        goals.append(PoseGoal(pose, plan.tip, plan.frame, axis, not turned, near, tilt))
+    return goals
+
+
+def _ways(plan: PlanArm) -> tuple[Straight | None, Upright | None]:
+    """Return what is said of the tip's way."""
+    straight, upright = None, None
+    if plan.straight is not None:
+        approach, retreat, *_ = (*as_numbers("--straight", plan.straight, (1, 2)), 0.0)
+        straight = Straight(approach, retreat, plan.away or "-z", plan.tip)
+    elif plan.away is not None:
+        raise InvalidValue("--away goes with --straight")
+    if plan.upright is not None:
+        if plan.roadmap is not None:
+            raise InvalidValue("--upright goes without --roadmap: the roadmap's motions are not upright")
+        upright = Upright(
+            math.radians(plan.upright) if plan.deg else plan.upright, plan.upright_axis, plan.tip
+        )
+    elif plan.upright_axis is not None:
+        raise InvalidValue("--upright-axis goes with --upright")
+    return straight, upright
+
+
 def _say_if_compiling(plan: PlanArm) -> None:
     kernel, points = "evenroad.robot.kernel", wants_points(plan)
+    if plan.goal_pose or plan.straight or plan.upright:
+        say_if_compiling(f"{kernel}.reach", "solve", 5)
     said = say_if_compiling(f"{kernel}.batch", "check_configurations", 30 if points else 20)
     if plan.roadmap is not None and lanes_failure() is None:
         said = say_if_compiling("evenroad.robot_roadmap.lane_search", "find_way", 10) or said

@@ -2,15 +2,17 @@
 
 ``paper``: the experiments of Chahine et al. 2025, section 4, with more samplers and more runs.  ``fair``: every world
 is new, obstacles favour no place, and the difficulty was set by uniform points alone.  Run i plans in world i // 3 with
-set i, the same worlds for every sampler, N and rule: samplers are compared world by world.
+set i, the same worlds for every sampler, N and rule: samplers are compared world by world.  ``arms``: robots among
+obstacles, points of the joint box beside roadmaps made for the robot; see :mod:`evenroad.research.arms.suite`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from evenroad._checks import require_count, require_known
+from evenroad.research.arms.suite import arm_tasks
 from evenroad.research.bench.samplers import SAMPLERS, why_not
 from evenroad.research.bench.task import Task
 from evenroad.research.problems import PROBLEMS
@@ -168,5 +170,13 @@ def _in_one_world(
             yield Task(problem, instance, sampler, n, LAZY_RULE, "lazy", run, seed)
 
 
-SUITES: dict[str, Callable[..., Suite]] = {"paper": paper_suite, "fair": fair_suite}
+def arms_suite(
+    runs: int | None = None, seed: int = SEED, only: Iterable[str] = (), quick: bool = False, **options: Any
+) -> Suite:
+    """Return the tasks of the arms; parameters as :func:`evenroad.research.arms.suite.arm_tasks`."""
+    seed = require_count("seed", seed, at_least=0)
+    return Suite("arms", arm_tasks(runs, seed, only, quick, **options))
+
+
+SUITES: dict[str, Callable[..., Suite]] = {"paper": paper_suite, "fair": fair_suite, "arms": arms_suite}
 """Name -> how to make it from ``runs``, ``seed``, ``only`` and ``quick``."""

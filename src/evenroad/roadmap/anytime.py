@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._checks import require_count, require_known
+from evenroad._clock import now
 from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import PointSet
@@ -118,7 +118,7 @@ class _Growth:
         if cost is not None and cost < min(self._costs(), default=np.inf):
             self.best = self.last
         self.stages.append(Stage(points.n, len(self.milestones), checked, cost, attempt.elapsed()))
-        return not attempt.spent and time.perf_counter() < attempt.deadline
+        return not attempt.spent and now() < attempt.deadline
 
     def is_done(self, until: str) -> bool:
         """Return whether the last stage ends the work."""

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints32
+from evenroad._clock import now
 from evenroad.points.pointset import Origin
 from evenroad.roadmap.budget import Budget, BudgetSpent, Stopwatch
 from evenroad.roadmap.neighbours import Surroundings, nearest_of
-from evenroad.roadmap.proof import confirm
 from evenroad.roadmap.query import BOUND, Query, edge_costs
 from evenroad.roadmap.rules import Rule
 from evenroad.roadmap.rules.near import ascending
@@ -24,6 +23,7 @@ from evenroad.roadmap.search import (
     Found,
     Known,
     SearchProblem,
+    confirm,
     length_along,
     search_problem,
 )
@@ -64,7 +64,7 @@ class Attempt:
     spent: bool = False
 
     def __post_init__(self) -> None:
-        self.began = time.perf_counter()
+        self.began = now()
         self.deadline = self.query.budget.deadline()
         self.goals = np.arange(len(self.query.goals))
 
@@ -141,7 +141,7 @@ class Attempt:
         start, goals, motions = self.query.start, self.query.goals[self.goals], self.query.budget.motions
         if motions is not None:
             most = min(most, max(motions - self.motions_checked, 1))
-        seconds = min(max(self.deadline - time.perf_counter(), 1e-3), _LONG)
+        seconds = min(max(self.deadline - now(), 1e-3), _LONG)
         with self.watch("search"):
             if variant and isinstance(world, ConnectsAnew):
                 found = world.connect_anew(start, goals, variant=variant, most_motions=most, seconds=seconds)
@@ -152,12 +152,12 @@ class Attempt:
 
     def elapsed(self) -> float:
         """Return the seconds since the query began."""
-        return time.perf_counter() - self.began
+        return now() - self.began
 
     def left(self) -> Budget | None:
         """Return what is left of the budget, or None when nothing is."""
         budget, motions = self.query.budget, self.query.budget.motions
-        seconds = self.deadline - time.perf_counter()
+        seconds = self.deadline - now()
         if seconds <= 0.0 or (motions is not None and motions <= self.motions_checked):
             return None
         return replace(

@@ -7,6 +7,7 @@ from enum import StrEnum
 
 from evenroad._arrays import Floats, Ints32
 from evenroad.points.pointset import Origin
+from evenroad.roadmap.certificate import Certificate
 from evenroad.roadmap.notebook import as_html
 
 
@@ -16,6 +17,7 @@ class Status(StrEnum):
     SOLVED = "solved"
     START_INVALID = "start_invalid"
     GOAL_INVALID = "goal_invalid"
+    GOAL_UNREACHABLE = "goal_unreachable"
     NOT_CONNECTED = "not_connected"
     BUDGET_SPENT = "budget_spent"
     MESH_COLLISION = "mesh_collision"
@@ -58,8 +60,9 @@ class PlanResult:
     Attributes
     ----------
     status : Status
-        ``goal_invalid``: all goals are.  ``mesh_collision``: the path is free in its world, but the robot's meshes
-        touch something.  ``not_certified``: a proof was asked for, and the path is free only at states tested.
+        ``goal_invalid``: all goals are.  ``goal_unreachable``: no configuration was found for a pose.
+        ``mesh_collision``: the path is free in its world, but the robot's meshes touch something.  ``not_certified``: a
+        proof was asked for, and the path is free only at states tested.
     message : str
         One sentence for people: what happened and, without a path, what to try.
     start, goals : ndarrays, shapes (dim,) and (g, dim)
@@ -93,8 +96,14 @@ class PlanResult:
         Who searched: ``prm full``, ``prm lazy``, ``prm any`` (some path, not the shortest), each with
         ``+ lazy milestones`` where those were checked late; ``prm anytime``, ``fmt*``; or the world itself, with
         ``trees`` or ``cells``.
+    deviation : dict of str to float
+        Of a path whose tip is told its way, the largest deviations on fine grids: ``line_m`` and ``line_rad`` from the
+        straight lines, ``tilt_rad`` from upright.
     stages : tuple of Stage
         How a plan that grows or improves came about, its cost over time; empty for all others.
+    certificate : Certificate or None
+        What the roadmap guarantees, where :func:`plan` was told to certify.  Without a path, and if it is `complete`,
+        no path has a clearance of its `dispersion`.
     roadmap : SearchedGraph or None
         What was searched; None when start or goal is invalid, and where a reused roadmap was asked.
     """
@@ -115,7 +124,9 @@ class PlanResult:
     milestone_cost: float | None = None
     counts: dict[str, int] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)
+    deviation: dict[str, float] = field(default_factory=dict)
     stages: tuple[Stage, ...] = ()
+    certificate: Certificate | None = None
     roadmap: SearchedGraph | None = None
 
     @property

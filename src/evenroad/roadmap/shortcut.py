@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import math
-import time
 from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats, Ints
+from evenroad._clock import now
 from evenroad.roadmap.budget import BudgetSpent, in_time
-from evenroad.roadmap.proof import confirmed
 from evenroad.roadmap.query import EdgeCost
-from evenroad.roadmap.search import shortest_path
+from evenroad.roadmap.search import confirmed, shortest_path
 from evenroad.space import Space
 from evenroad.space.path import motion_lengths, subdivide
 from evenroad.world import World
@@ -38,13 +37,12 @@ def shortcut(
 
     Each round puts waypoints evenly along the path, few at first, joins every pair that `world` says can be joined,
     and takes the shortest way through them; its own waypoints are always among those offered, so a round never makes
-    the path longer.  At the end, waypoints that can be passed by are dropped.  It draws no random numbers.
-
-    Where the world has a strict check (`Rechecks`), the motions of a round's way have to pass it, too; those that
-    fail are taken away, in time with those beside them, and the next shortest way is tried.
+    the path longer.  At the end, waypoints that can be passed by are dropped.  It draws no random numbers.  Where the
+    world has a strict check (`Rechecks`), the motions of a round's way have to pass it, too; those that fail are taken
+    away, in time with those beside them, and the next shortest way is tried.
 
     `path`, (p, dim), p >= 2, has free motions; costs are lengths by default.  At the deadline, on the clock of
-    ``time.perf_counter``, what was reached so far is the answer.  The second number are the motions checked, rechecks
+    ``evenroad._clock``, what was reached so far is the answer.  The second number are the motions checked, rechecks
     apart.
     """
     work = _Shortcut(path, world, world.space.distance if cost is None else cost, deadline)
@@ -108,7 +106,7 @@ class _Shortcut:
 
     def _holds(self, waypoints: Floats, way: Indices, pairs: _Pairs) -> bool:
         """Return whether the world confirms a way; if it does not, some of its pairs are not usable any more."""
-        if time.perf_counter() >= self.deadline:
+        if now() >= self.deadline:
             raise BudgetSpent
         along = pairs.along(way)
         passed = confirmed(self.world, waypoints[way], ~pairs.trusted[along])

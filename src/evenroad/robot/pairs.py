@@ -60,7 +60,7 @@ def self_pairs(
     that.
     """
     order = [link for link in robot.links if link in pieces]
-    rigid, above = _rigid(robot), _bodied_above(robot, pieces)
+    rigid, above = rigid_links(robot), bodied_above(robot, pieces)
     reasons: dict[tuple[str, str], str] = {}
     for first, second in combinations(order, 2):
         if rigid[first] == rigid[second]:
@@ -92,7 +92,7 @@ def _unless_round(hulls: Iterable[Hull]) -> tuple[Hull, ...]:
     return () if all(hull.is_round for hull in every) else every
 
 
-def _rigid(robot: KinematicTree) -> dict[str, str]:
+def rigid_links(robot: KinematicTree) -> dict[str, str]:
     """Return for every link the first of those that no joint moves on it."""
     first = {robot.links[0]: robot.links[0]}
     for joint in robot.joints:
@@ -100,7 +100,7 @@ def _rigid(robot: KinematicTree) -> dict[str, str]:
     return first
 
 
-def _bodied_above(robot: KinematicTree, bodied: Collection[str]) -> dict[str, tuple[str, int]]:
+def bodied_above(robot: KinematicTree, bodied: Collection[str]) -> dict[str, tuple[str, int]]:
     """Return for every link the next one above it that has a body, if any, and how many joints between them move."""
     # Two joints with a length between them fold, and bring together what does not touch by construction.
     above = {robot.links[0]: ("", 0)}

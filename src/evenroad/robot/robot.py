@@ -15,6 +15,7 @@ from evenroad.geometry.fit import fit_capsules
 from evenroad.geometry.hulls import Hull, Piece, piece_of
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import Capsule, Shape, without_pose
+from evenroad.robot.held import HeldObject, held_parts, same_bodies
 from evenroad.robot.joint import Joint, require_within, within_limits_of_mimics
 from evenroad.robot.kinematics import held_values
 from evenroad.robot.pairs import self_pairs
@@ -24,31 +25,33 @@ from evenroad.robot.urdf_xml import RobotFile
 
 @dataclass(frozen=True)
 class Robot:
-    """A kinematic tree with bodies."""
+    """A kinematic tree with bodies.
+
+    Of the `links` the root comes first, every parent before its children; ``joints[i]`` is the joint whose child is
+    ``links[i + 1]``, and `capsules` are the bodies.  `group` are the joints that are planned for, in the order of the
+    configuration, none of them fixed or a mimic; `held` has values of other movable joints, joint -> value [rad or m],
+    where not given 0, or the nearest to it within limits.  `states` are named configurations: joint -> value, of joints
+    outside of the group, too, where they are known.
+
+    Links in `pairs` are tested against each other.  `hulls` are convex pieces that contain the links' shapes more
+    tightly than capsules: where capsules of a pair touch, these decide; links without any are their capsules.
+    `pairs_given` says whether the pairs were given by somebody, as by an SRDF; else those in `resting` are left out,
+    which touch whatever the group does as long as the others are held where they are.  `holds` are links that are
+    bodies which the robot carries for a while, see :meth:`holding`.
+    """
 
     name: str
     links: tuple[str, ...]
-    """The root first, every parent before its children."""
     joints: tuple[Joint, ...]
-    """``joints[i]`` is the joint whose child is ``links[i + 1]``."""
     capsules: tuple[Capsule, ...]
-    """The bodies."""
     pairs: tuple[tuple[str, str], ...]
-    """Links that are tested against each other."""
     group: tuple[str, ...]
-    """Joints that are planned for, in the order of the configuration; none is fixed or a mimic."""
     held: Mapping[str, float] = field(default_factory=dict)
-    """Joint -> value of other movable joints [rad or m]; where not given: 0, or the nearest to it within limits."""
     states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    """Named configurations: joint -> value, of joints outside of the group, too, where they are known."""
     hulls: tuple[Hull, ...] = ()
-    """Convex pieces that contain the links' shapes more tightly than capsules: where capsules of a pair touch, these
-    decide.  Links without any are their capsules."""
     pairs_given: bool = True
-    """Whether `pairs` were given by somebody, as by an SRDF; else a pair that the group does not move and that touches
-    where it is held is left out."""
     resting: tuple[tuple[str, str], ...] = ()
-    """Pairs that are not tested, for they touch whatever the group does while the others are held where they are."""
+    holds: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         # The kernel takes the ends as they are: a capsule with a pose of its own gets them in its link's frame.
@@ -56,7 +59,7 @@ class Robot:
 
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of what decides verdicts; the names of the robot and its states do not."""
-        names = (each.name for each in fields(self) if each.name not in ("name", "states"))
+        names = (each.name for each in fields(self) if each.name not in ("name", "states", "holds"))
         return fingerprint_of(*(getattr(self, name) for name in names))
 
     def with_tool(
@@ -64,19 +67,10 @@ class Robot:
     ) -> Robot:
         """Return the robot with a tool fixed to one of its links.
 
-        The group stays the robot's; the tool's joints are held.  Pairs within the robot and within the tool stay; those
-        between the two are computed as for a robot without an SRDF.
-
-        Parameters
-        ----------
-        tool : Robot, or sequence of Shape
-            A robot of its own; or shapes in the frame of a new link ``tool``, to which capsules are fitted.
-        at : str
-            The link that carries it.
-        pose : Pose
-            Of the tool's root link in the frame of that link.
-        prefix : str
-            Put before the names of all of the tool's links and joints.
+        The tool is a robot of its own, or shapes in the frame of a new link ``tool``, to which capsules are fitted; the
+        link `at` carries it, with `pose` that of its root link in that link's frame.  `prefix` is put before the names
+        of all of its links and joints.  The group stays the robot's; the tool's joints are held.  Pairs within the
+        robot and within the tool stay; those between the two are computed as for a robot without an SRDF.
 
         Raises UnknownName if the robot has no such link; InvalidValue if the tool has no body, or a name in common with
         the robot.
@@ -116,6 +110,60 @@ class Robot:
             if (pair[0] in tool.links) != (pair[1] in tool.links)
         )
         return replace(joined, pairs=(*self.pairs, *tool.pairs, *between))
+
+    def holding(
+        self, shape: Shape | HeldObject, link: str = "", *, touches: Sequence[str] = (), name: str = "held"
+    ) -> Robot:
+        """Return the robot with a body in its hand.
+
+        Capsules and a hull are fitted to it, as to the links of a URDF; nothing is sampled, and the robot's own pairs
+        stay.  It is tested against all obstacles and against every link that joints move on `link`.
+
+        Parameters
+        ----------
+        shape : Shape, or HeldObject
+            With its pose in the frame of the link that carries it; a HeldObject says all that follows itself.
+        link : str
+            That link.
+        touches : sequence of str
+            Links that it may touch.
+        name : str
+            What it is called: a scene can allow it to touch an obstacle, and verdicts name it.
+
+        Raises
+        ------
+        UnknownName
+            If a link is not there.
+        InvalidValue
+            If it is no shape that has capsules, or the name is that of a link: attached twice.
+        """
+        held = shape if isinstance(shape, HeldObject) else HeldObject(name, shape, link, tuple(touches))
+        parts = held_parts(self, held, neighbours=not self.pairs_given)
+        hulls = () if parts.hull.is_round and not self.hulls else (parts.hull,)
+        return replace(
+            self,
+            links=(*self.links, held.name),
+            joints=(*self.joints, parts.joint),
+            capsules=(*self.capsules, *parts.capsules),
+            pairs=(*self.pairs, *parts.pairs),
+            hulls=(*self.hulls, *hulls),
+            holds=(*self.holds, held.name),
+        )
+
+    def empty_handed(self) -> Robot:
+        """Return the robot without what it holds."""
+        held = set(self.holds)
+        if not held:
+            return self
+        return replace(
+            self,
+            links=tuple(link for link in self.links if link not in held),
+            joints=tuple(joint for joint in self.joints if joint.child not in held),
+            capsules=tuple(capsule for capsule in self.capsules if capsule.link not in held),
+            pairs=tuple(pair for pair in self.pairs if held.isdisjoint(pair)),
+            hulls=tuple(hull for hull in self.hulls if hull.link not in held),
+            holds=(),
+        )
 
 
 def pieces_of(robot: Robot) -> dict[str, list[Piece]]:
@@ -220,10 +268,23 @@ def with_group(robot: Robot, group: Sequence[str], held: Mapping[str, float] | N
 
 
 def in_scene(robot: Robot, scene: Scene) -> Robot:
-    """Return the robot with the scene's ranges to plan in, where they are narrower than its own limits.
+    """Return the robot as it is in a scene: with the ranges to plan in, where narrower, and what it holds there.
 
-    Raises UnknownName if the scene names a joint that the robot does not have; InvalidValue if no value is within both.
+    Raises UnknownName if the scene names a joint or a link that the robot does not have; InvalidValue if no value is
+    within both ranges, or the robot holds something else of the same name.
     """
+    for held in scene.attached:
+        if held.name in robot.holds:
+            if not same_bodies(robot, held):
+                raise InvalidValue(
+                    f"{held.name!r} is attached twice: scene {scene.name!r} and robot {robot.name!r} have two bodies"
+                    " of that name"
+                )
+            continue
+        robot = robot.holding(held)
+    if not scene.limits:
+        # The same robot: what is known of it need not be looked up by all of its values.
+        return robot
     joints = {joint.name: joint for joint in robot.joints}
     limits = {}
     for name, (lower, upper) in scene.limits.items():
@@ -242,7 +303,8 @@ def with_limits(robot: Robot, limits: Mapping[str, tuple[float, float]]) -> Robo
     for name, (lower, upper) in limits.items():
         require_known("joint", name, names)
         if not lower < upper:
-            raise InvalidValue(f"limits of joint {name!r} must have lower < upper, got {lower!r}, {upper!r}")
+            got = f"got {lower!r}, {upper!r}"
+            raise InvalidValue(f"limits of joint {name!r} must satisfy lower < upper, {got}")
     joints = []
     for joint in robot.joints:
         if joint.name in limits:

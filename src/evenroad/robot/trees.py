@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from functools import cache
 from typing import Any, Protocol
@@ -11,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._checks import require_count, require_positive
+from evenroad._clock import now
 from evenroad.errors import InvalidValue
 from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.lane_world import LaneWorld
@@ -208,13 +208,13 @@ def _grown(
     if not grow.overloads:
         # Compiled, or loaded, before the clock runs; no motion is looked at.
         grow(place, count, capacity, *driven_by, 0, _SLICE, *arguments)
-    deadline = time.perf_counter() + seconds
+    deadline = now() + seconds
     while True:
         ended = grow(place, count, capacity, *driven_by, most, _SLICE, *arguments)
         if ended == kernel.FULL:
             block = _with_more_room(block, begin + count * dim, capacity, dim)
             place, capacity = address(block), 2 * capacity
-        elif ended != kernel.PAUSED or time.perf_counter() >= deadline:
+        elif ended != kernel.PAUSED or now() >= deadline:
             break
     if ended == kernel.NO_NUMBERS:
         _require_finite(first, goals)
@@ -236,7 +236,7 @@ def _tree_kernels() -> tuple[Any, Any]:
 
 
 @cache
-def _shorten_path() -> Callable[[LaneWorld, Floats, int, int], tuple[Floats, int]]:
+def _shorten_path() -> Callable[..., tuple[Floats, int]]:
     from evenroad.robot.kernel.shorten import shorten_path
 
     return shorten_path

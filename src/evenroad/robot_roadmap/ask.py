@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad._clock import now
 from evenroad.robot import ArmWorld
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
 from evenroad.robot.kernel.addresses import address, matrix_at
@@ -79,7 +79,7 @@ def _by_lanes(world: ArmWorld, day: ArmWorld, graph: KnownGraph, most_motions: i
         fresh = 0
         if ended != PAUSED:
             break
-        if time.perf_counter() >= deadline:
+        if now() >= deadline:
             ended = SPENT
             break
     rows, milestones, motions, goal = report.tolist()
@@ -102,7 +102,7 @@ def _one_by_one(
             return Asked(FOUND, path[:rows][::-1].copy(), int(desk[at.TO]) - 1, milestones, motions)
         if question > STRAIGHT:
             return Asked(question, nothing, -1, milestones, motions)
-        if motions >= most_motions or time.perf_counter() >= deadline:
+        if motions >= most_motions or now() >= deadline:
             return Asked(SPENT, nothing, -1, milestones, motions)
         if question == NODE:
             milestones += 1

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from evenroad.errors import InvalidValue
+from evenroad.geometry.shapes import PRIMITIVES
 from evenroad.robot import Obstacle, Robot, Scene, held_values, in_scene
 
 
@@ -39,6 +40,19 @@ def day_and_all(cell: Scene, scene: Scene) -> tuple[Scene, Scene]:
     return scene_without(scene, fixed), everything
 
 
+def left_to_check(robot: Robot, cell: Scene, day: Scene, everything: Scene) -> tuple[Robot, Scene]:
+    """Return robot and scene of what a roadmap, free of the empty-handed robot and its cell, does not know.
+
+    That is the obstacles of the day; and of what the robot holds all obstacles and the robot itself.
+    """
+    held = set(robot.holds)
+    if not held:
+        return replace(robot, pairs=()), day
+    known = {(link, fixed.name) for link in robot.links if link not in held for fixed in cell.obstacles}
+    pairs = tuple(pair for pair in robot.pairs if not held.isdisjoint(pair))
+    return replace(robot, pairs=pairs), replace(everything, allowed=everything.allowed | known)
+
+
 def _narrower(cell: Scene, scene: Scene) -> dict[str, tuple[float, float]]:
     """Return the ranges of a scene, cut to those of the cell."""
     ranges = {}
@@ -54,6 +68,8 @@ def scene_without(scene: Scene, names: dict[str, Obstacle]) -> Scene:
 
 
 def _text(obstacle: Obstacle) -> str:
+    if obstacle.shape not in PRIMITIVES:
+        return str(obstacle.body)
     size, xyz = (", ".join(f"{value:g}" for value in values) for values in (obstacle.size, obstacle.xyz))
     return f"{obstacle.shape} of {size} at ({xyz})"
 

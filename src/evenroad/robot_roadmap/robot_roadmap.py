@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -12,16 +11,16 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints, Ints32
+from evenroad._clock import now
 from evenroad.roadmap import Budget, PlanResult, Status
 from evenroad.roadmap.answer import connected, gave_up, refusal
 from evenroad.roadmap.attempt import Attempt
-from evenroad.roadmap.find_path import NO_POINTS, SECONDS
-from evenroad.roadmap.hemmed import with_reasons
+from evenroad.roadmap.find_path import NO_POINTS, SECONDS, with_reasons
 from evenroad.roadmap.query import FEW, LINKS, Query, read_places
 from evenroad.robot import ArmWorld, Robot, Scene, configuration, in_scene
 from evenroad.robot.trees import shorten
 from evenroad.robot_roadmap.ask import ENDS_TAKEN, Asked, ask
-from evenroad.robot_roadmap.cell import day_and_all, require_same_robot
+from evenroad.robot_roadmap.cell import day_and_all, left_to_check, require_same_robot
 from evenroad.robot_roadmap.known_graph import KnownGraph
 from evenroad.robot_roadmap.learned import with_paths
 from evenroad.robot_roadmap.turns import OneTurn, one_turn, whole_turns
@@ -155,12 +154,12 @@ class SceneRoadmap:
     def __init__(self, roadmap: RobotRoadmap, scene: Scene, robot: Robot | None = None) -> None:
         day, everything = day_and_all(roadmap.cell, scene)
         robot = in_scene(roadmap.robot if robot is None else robot, everything)
-        require_same_robot(roadmap.robot, roadmap.cell, robot)
+        require_same_robot(roadmap.robot, roadmap.cell, robot.empty_handed())
         resolution = roadmap.resolution
         self.roadmap = roadmap
         self.world = ArmWorld(robot, everything, resolution=resolution)
         # What the roadmap knows to be free of the robot and its cell is asked about the other obstacles alone.
-        self._day = ArmWorld(replace(robot, pairs=()), day, resolution=resolution)
+        self._day = ArmWorld(*left_to_check(robot, roadmap.cell, day, everything), resolution=resolution)
         self._graph = roadmap.graph.within(np.array(self.world.space.low), np.array(self.world.space.high))
         self.learned: list[Floats] = []
         # Compiled, or loaded, before a clock runs; nothing is checked but the ends.
@@ -182,7 +181,7 @@ class SceneRoadmap:
         Each is tried to be linked to `links` milestones, of few to all; the path is the shortest one along the roadmap
         where `greed` is 1.
         """
-        asked = self._ask(start, goals, most_motions, time.perf_counter() + seconds, links, greed)
+        asked = self._ask(start, goals, most_motions, now() + seconds, links, greed)
         return Connection(asked.path, asked.goal, self._size, asked.milestones, asked.motions)
 
     def _ask(
@@ -238,7 +237,7 @@ class SceneRoadmap:
         """
         budget = _BUDGET if budget is None else budget
         first, goals = read_places(self._place(start), self._places(goal), self.world.space)
-        began, deadline = time.perf_counter(), budget.deadline()
+        began, deadline = now(), budget.deadline()
         most = 2**31 - 1 if budget.motions is None else budget.motions
         links = self._size if self._size <= FEW and not trees else TRIED_LINKS if trees else LINKS
         limits = min(most, TRIED_MOTIONS) if trees else most, began + SHARE * min(deadline - began, _LONG)
@@ -248,7 +247,7 @@ class SceneRoadmap:
         query = Query(first, goals, shorten=shorten, budget=budget)
         attempt = Attempt(self.world, query, NO_POINTS, "none", PLANNER)
         attempt.deadline, attempt.motions_checked = deadline, asked.motions
-        attempt.watch.seconds["search"] = time.perf_counter() - began
+        attempt.watch.seconds["search"] = now() - began
         if (refused := refusal(attempt)) is not None:
             return refused
         if asked.ended == ENDS_TAKEN:
@@ -278,7 +277,7 @@ class SceneRoadmap:
 
     def _solved(self, asked: Asked, start: Floats, goals: Floats, shorter: bool, began: float) -> PlanResult:
         """Return the result of a query that the roadmap answered."""
-        world, path, found = self.world, asked.path, time.perf_counter()
+        world, path, found = self.world, asked.path, now()
         length = raw_length = self._length(path)
         counts = dict(
             nodes=self._size,
@@ -288,7 +287,7 @@ class SceneRoadmap:
         seconds = {"search": found - began}
         if shorter:
             path, counts["shortcut_motions"] = shorten(world, path, pairs=PAIRS, cuts=CUTS)
-            length, seconds["shortcut"] = self._length(path), time.perf_counter() - found
+            length, seconds["shortcut"] = self._length(path), now() - found
         to = f" to goal {asked.goal}" if len(goals) > 1 else ""
         return PlanResult(
             status=Status.SOLVED,

@@ -20,6 +20,7 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue
+from evenroad.research.arms.execute import SEARCHES_OF_ARMS, run_on_arm
 from evenroad.research.bench.samplers import draw_set
 from evenroad.research.bench.searches import Finding, search_named
 from evenroad.research.bench.task import Outcome, Problem, Task
@@ -44,6 +45,8 @@ def run_task(task: Task, limit: float | None = None) -> Outcome:
 
 
 def _run(task: Task) -> Outcome:
+    if task.search in SEARCHES_OF_ARMS:
+        return run_on_arm(task)
     problem = _problem(task.problem, task.instance)
     _warm_up(task, problem)
     milestones, set_id, validity_seconds = _milestones(

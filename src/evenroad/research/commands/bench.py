@@ -5,23 +5,24 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import tyro
 
 from evenroad._terminal import print_table, progress_shown
 from evenroad.errors import InvalidValue, UnknownName
+from evenroad.research.arms.results import TABLE_HEADER, arm_lines, table_rows
 from evenroad.research.bench.execute import DEFAULT_LIMIT, require_limit
 from evenroad.research.bench.rows import Rows
 from evenroad.research.bench.runner import Report, run_tasks
 from evenroad.research.bench.samplers import SAMPLERS
 from evenroad.research.bench.store import open_store, read_rows
 from evenroad.research.bench.task import Task
-from evenroad.research.commands.interrupt import interrupt_between_steps
 from evenroad.research.problems import PROBLEMS
 from evenroad.research.report.analysis import failures_of
 from evenroad.research.suites import SUITES, Suite
-from evenroad.research.workers import Workers, in_process, processes
+from evenroad.research.workers import Workers, in_process, interrupt_between_steps, processes
 
 HEADINGS = {
     "halton paper-blocks": ("halton", "blocks"),
@@ -41,15 +42,23 @@ class Bench:
     """
 
     suite: tyro.conf.Positional[str] = "paper"
-    """paper: the published experiments. fair: a new random world in every run."""
+    """paper: the published experiments. fair: a new random world in every run. arms: robots, and roadmaps for them."""
     list: bool = False
     """Show suites, problems and samplers, and run nothing."""
-    runs: int = 400
-    """Runs of every cell."""
+    runs: int | None = None
+    """Runs of every cell, by default 400; of arms the problems of each robot and generator, by default 40."""
     quick: bool = False
     """A taste in minutes; its rows are part of the whole suite's."""
     only: str = ""
-    """Names of problems, with commas between them; empty: all of the suite."""
+    """Names of problems, with commas between them; empty: all of the suite.  Of arms also robots and generators."""
+    draws: int | None = None
+    """Of arms: sets of each sampler, by default 2."""
+    counts: str = ""
+    """Of arms: numbers of points, with commas; by default 64,256."""
+    neighbours: str = ""
+    """Of arms: how many neighbours milestones are joined to, with commas; by default 10."""
+    samplers: str = ""
+    """Of arms: names of samplers, with commas; empty: all, and trees."""
     store: Path = Path("results.db")
     """The SQLite file for the rows, made where there is none; rows that it cannot take are left in STORE.rescue."""
     jobs: int | None = None
@@ -74,17 +83,30 @@ class Bench:
             raise InvalidValue("--jobs does not go with --scheduler, whose workers are counted there")
         if self.limit is not None and self.scheduler is not None:
             raise InvalidValue("--limit does not go with --scheduler, whose workers run tasks in threads")
-        only = [name.strip() for name in self.only.split(",") if name.strip()]
-        suite = SUITES[self.suite](runs=self.runs, seed=self.seed, only=only, quick=self.quick)
+        suite = self._suite()
         report = self._run(suite)
         rows = read_rows(self.store, problems=sorted({task.problem for task in suite.tasks}))
-        print_success(suite, rows)
+        if suite.name == "arms":
+            print_arms(rows.where(rows.seed == self.seed))
+        else:
+            print_success(suite, rows)
         failures = f", {report.failures} of them failures" if report.failures else ""
         print(f"{self.store}: {report.finished} tasks run now{failures}, {report.found} found done")
         if failed := report.failures + report.found_failures:
             _print_failures(rows, failed)
         print(f"report: evenroad report {self.store} -o out/")
         return 1 if failed else 0
+
+    def _suite(self) -> Suite:
+        asked: dict[str, Any] = {"seed": self.seed, "only": words_of(self.only), "quick": self.quick}
+        if self.runs is not None:
+            asked["runs"] = self.runs
+        of_arms: dict[str, Any] = {"draws": self.draws, "samplers": words_of(self.samplers)}
+        of_arms |= {name: counts_of(name, getattr(self, name)) for name in ("counts", "neighbours")}
+        of_arms = {name: value for name, value in of_arms.items() if value}
+        if of_arms and self.suite != "arms":
+            raise InvalidValue(f"--{next(iter(of_arms))} goes with the suite arms, got {self.suite!r}")
+        return SUITES[self.suite](**asked, **of_arms)
 
     def _run(self, suite: Suite) -> Report:
         # Tasks in threads, as Dask's are, cannot be stopped.
@@ -111,6 +133,27 @@ class Bench:
 
             return dask_workers(self.scheduler)
         return in_process() if self.jobs == 1 else processes(self.jobs)
+
+
+def words_of(text: str) -> list[str]:
+    """Return the words between commas."""
+    return [word.strip() for word in text.split(",") if word.strip()]
+
+
+def counts_of(name: str, text: str) -> list[int]:
+    """Return the whole numbers between commas."""
+    words = words_of(text)
+    if not all(word.isdecimal() for word in words):
+        raise InvalidValue(f"--{name} must be whole numbers with commas between them, got {text!r}")
+    return [int(word) for word in words]
+
+
+def print_arms(rows: Rows) -> None:
+    """Print the success of each robot, k, N and sampler, and what the roadmap gains on it."""
+    for (robot, k), texts in table_rows(arm_lines(rows)).items():
+        neighbours = "" if k == "-" else f" · k = {k}"
+        print_table(texts, TABLE_HEADER, f"Success [%] · {robot}{neighbours}", right=range(2, 9), gap=1)
+        print()
 
 
 def _print_catalogue() -> None:
@@ -174,7 +217,8 @@ def _per_cent(solved: np.ndarray) -> str:
 
 def _print_failures(rows: Rows, failures: int) -> None:
     """Say what becomes of runs without an answer, and what the most frequent one said last."""
-    print(f"{failures} without answer (failed, timeout, lost) count as not solved; --retry runs them again")
+    kinds = "(failed, timeout, lost)"
+    print(f"{failures} without an answer {kinds} count as not solved; --retry runs them again")
     messages: Counter[str] = Counter()
     for failure in failures_of(rows):
         messages[failure.message or failure.status] += failure.runs

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from evenroad._checks import require_known
+from evenroad.research.arms.problems import ARM_PROBLEMS
 from evenroad.research.bench.task import ProblemSource
 from evenroad.research.problems.fair import FAIR
 from evenroad.research.problems.paper import CHAINS, CORRIDORS, MAZES, UR5
@@ -25,7 +26,9 @@ PUZZLES = tuple(
 )
 """With sets that give the translation, as published, and with sets that give the rotation, too."""
 
-PROBLEMS = {source.name: source for source in (*MAZES, *CORRIDORS, *CHAINS, *PUZZLES, *UR5, *FAIR)}
+PROBLEMS = {
+    source.name: source for source in (*MAZES, *CORRIDORS, *CHAINS, *PUZZLES, *UR5, *FAIR, *ARM_PROBLEMS)
+}
 """Name -> where the problem comes from."""
 
 

@@ -12,6 +12,7 @@ from typing import NamedTuple
 from matplotlib.figure import Figure
 
 from evenroad.research.report.analysis import Analysis
+from evenroad.research.report.arms import arm_pictures, arm_tables
 from evenroad.research.report.cells import Cell
 from evenroad.research.report.charts import (
     as_png,
@@ -69,6 +70,8 @@ def sections_of(analysis: Analysis) -> tuple[Section, ...]:
         sections.append(_expected(analysis))
     if analysis.pooled:
         sections.append(_fair(analysis))
+    if analysis.arms:
+        sections.append(_arms(analysis))
     sections += [_setting(analysis, each) for each in settings]
     if mazes := maze_settings(settings):
         sections.append(_mazes([cell for cell in analysis.cells if cell.setting in mazes]))
@@ -93,6 +96,11 @@ def _fair(analysis: Analysis) -> Section:
     tables += [lazy_table(analysis.lazy)] if analysis.lazy else []
     picture = _picture("fair-gains", "Gain over uniform points", draw_fair_gains(analysis.pooled))
     return Section("fair", "Fair suite: random worlds, starts and goals", "", (picture,), tuple(tables))
+
+
+def _arms(analysis: Analysis) -> Section:
+    pictures = tuple(_picture(*each) for each in arm_pictures(analysis.arm_rows, analysis.arms))
+    return Section("arms", "Arms: roadmaps made for one robot", "", pictures, arm_tables(analysis.arms))
 
 
 def _setting(analysis: Analysis, setting: Setting) -> Section:

@@ -1,0 +1,216 @@
+"""Scenes at random, and where the tool goes in them: shelf, clutter, tight, boxes and cage.
+
+Each generator has two ranges of parameters: constants are chosen on the one, figures come from the other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from evenroad._arrays import Floats
+from evenroad.robot import Obstacle
+
+
+class Region(NamedTuple):
+    """A box for the tool's place: centre and half extents, (3,) each [m], turned about z by an angle."""
+
+    centre: Floats
+    half: Floats
+    angle: float
+
+
+Places = tuple[list[Obstacle], list[Region]]
+"""Obstacles and regions; without any, the ends are anywhere."""
+
+
+def _about_z(angle: float) -> Floats:
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+
+
+def _boxes(centre: Floats, angle: float, parts: list[tuple[list[float], list[float]]]) -> list[Obstacle]:
+    """Return boxes, each given by its place and full extents in a frame at `centre` turned about z."""
+    turn = _about_z(angle)
+    return [_box(size, centre + turn @ place, turn) for place, size in parts]
+
+
+def _box(size: list[float] | Floats, place: Floats, turn: Floats) -> Obstacle:
+    return Obstacle.of(
+        "", "box", tuple(map(float, size)), tuple(map(float, place)), tuple(turn.ravel().tolist())
+    )
+
+
+def _before(rng: np.random.Generator) -> Region:
+    """Return a region above the table, anywhere around the robot, where arms wait."""
+    angle = rng.uniform(-np.pi, np.pi)
+    return Region(np.array([0.45 * np.cos(angle), 0.45 * np.sin(angle), 0.55]), np.full(3, 0.1), angle)
+
+
+class _Ranges(NamedTuple):
+    """What a stream draws from, uniformly [m, rad]; counts without their last."""
+
+    shelf_angle: tuple[float, float]
+    shelf_away: tuple[float, float]
+    shelf_width: tuple[float, float]
+    shelf_height: tuple[float, float]
+    shelf_columns: tuple[int, int]
+    things: tuple[int, int]
+    thing_height: tuple[float, float]
+    window: tuple[float, float]
+    wall_away: tuple[float, float]
+    boxes: tuple[int, int]
+    box_half: tuple[float, float]
+    cage_width: tuple[float, float]
+    cage_bars: tuple[int, int]
+
+
+RANGES = {
+    "tune": _Ranges(
+        shelf_angle=(-0.6, 0.6),
+        shelf_away=(0.62, 0.72),
+        shelf_width=(0.32, 0.40),
+        shelf_height=(0.28, 0.32),
+        shelf_columns=(2, 3),
+        things=(6, 11),
+        thing_height=(0.15, 0.4),
+        window=(0.22, 0.30),
+        wall_away=(0.5, 0.58),
+        boxes=(6, 13),
+        box_half=(0.04, 0.15),
+        cage_width=(0.5, 0.56),
+        cage_bars=(1, 2),
+    ),
+    "report": _Ranges(
+        shelf_angle=(-1.2, 1.2),
+        shelf_away=(0.58, 0.78),
+        shelf_width=(0.30, 0.46),
+        shelf_height=(0.26, 0.36),
+        shelf_columns=(2, 4),
+        things=(8, 16),
+        thing_height=(0.1, 0.45),
+        window=(0.20, 0.28),
+        wall_away=(0.46, 0.62),
+        boxes=(9, 19),
+        box_half=(0.03, 0.18),
+        cage_width=(0.46, 0.64),
+        cage_bars=(1, 3),
+    ),
+}
+"""Stream -> its parameters."""
+
+
+def _shelf(ranges: _Ranges, rng: np.random.Generator) -> Places:
+    """Return a shelf of three rows, its open side towards the robot; the tool goes into compartments."""
+    angle, away = rng.uniform(*ranges.shelf_angle), rng.uniform(*ranges.shelf_away)
+    columns, board, depth = int(rng.integers(*ranges.shelf_columns)), 0.02, 0.3
+    width, height = rng.uniform(*ranges.shelf_width), rng.uniform(*ranges.shelf_height)
+    centre = np.array([away * np.cos(angle), away * np.sin(angle), rng.uniform(0.02, 0.15)])
+    pitch = width + board
+    sides = pitch * (np.arange(columns + 1) - 0.5 * columns)
+    parts = [([0.0, 0.0, row * height], [depth, columns * pitch + board, board]) for row in range(4)]
+    parts += [([0.0, side, 1.5 * height], [depth, board, 3.0 * height]) for side in sides]
+    turn = _about_z(angle)
+    regions = [
+        Region(
+            centre + turn @ np.array([-0.03, side + 0.5 * pitch, (row + 0.5) * height]),
+            np.array([0.08, 0.3 * width, 0.25 * height]),
+            angle,
+        )
+        for side in sides[:-1]
+        for row in range(3)
+    ]
+    return _boxes(centre, angle, parts), [*regions, _before(rng)]
+
+
+def _clutter(ranges: _Ranges, rng: np.random.Generator) -> Places:
+    """Return a table with things on it; the tool goes low between them."""
+    obstacles = []
+    for _ in range(int(rng.integers(*ranges.things))):
+        angle, away, tall = rng.uniform(-1.4, 1.4), rng.uniform(0.35, 0.8), rng.uniform(*ranges.thing_height)
+        place = np.array([away * np.cos(angle), away * np.sin(angle), 0.5 * tall])
+        if rng.random() < 0.5:
+            size = (float(rng.uniform(0.03, 0.07)), float(tall))
+            obstacles.append(Obstacle.of("", "cylinder", size, tuple(place.tolist())))
+        else:
+            size2 = [*rng.uniform(0.05, 0.15, 2), tall]
+            obstacles.append(_box(size2, place, _about_z(rng.uniform(-np.pi, np.pi))))
+    regions = []
+    for _ in range(2):
+        angle, away = rng.uniform(-1.2, 1.2), rng.uniform(0.4, 0.7)
+        centre = np.array([away * np.cos(angle), away * np.sin(angle), rng.uniform(0.1, 0.2)])
+        regions.append(Region(centre, np.array([0.08, 0.08, 0.06]), angle))
+    return obstacles, regions
+
+
+def _tight(ranges: _Ranges, rng: np.random.Generator) -> Places:
+    """Return a wall with two windows, hardly larger than the hand; the tool goes through them."""
+    angle, away, thick = rng.uniform(-0.8, 0.8), rng.uniform(*ranges.wall_away), 0.02
+    centre = np.array([away * np.cos(angle), away * np.sin(angle), 0.0])
+    tall, half = 0.9, 0.5
+    windows = []
+    for side in (-1.0, 1.0):
+        wide, high = rng.uniform(*ranges.window, 2)
+        windows.append((side * rng.uniform(0.18, 0.3), rng.uniform(0.25, 0.6), wide, high))
+    # Upright strips beside the windows, and what is below and above each.
+    edges = [-half, *(y + s * 0.5 * wide for y, _, wide, _ in windows for s in (-1, 1)), half]
+    parts = []
+    for low, high in zip(edges[::2], edges[1::2], strict=True):
+        parts.append(([0.0, 0.5 * (low + high), 0.5 * tall], [thick, high - low, tall]))
+    for y, z, wide, high in windows:
+        for bottom, top in ((0.0, z - 0.5 * high), (z + 0.5 * high, tall)):
+            parts.append(([0.0, y, 0.5 * (bottom + top)], [thick, wide, top - bottom]))
+    turn = _about_z(angle)
+    regions = [
+        Region(centre + turn @ np.array([0.09, y, z]), np.array([0.05, 0.3 * wide, 0.3 * high]), angle)
+        for y, z, wide, high in windows
+    ]
+    return _boxes(centre, angle, parts), [*regions, _before(rng)]
+
+
+def _random_boxes(ranges: _Ranges, rng: np.random.Generator) -> Places:
+    """Return boxes anywhere in reach, turned about z; both ends are anywhere."""
+    obstacles = []
+    for _ in range(int(rng.integers(*ranges.boxes))):
+        angle, away = rng.uniform(-np.pi, np.pi), rng.uniform(0.3, 1.0)
+        place = np.array([away * np.cos(angle), away * np.sin(angle), rng.uniform(0.0, 1.0)])
+        size = 2.0 * rng.uniform(*ranges.box_half, 3)
+        obstacles.append(_box(size, place, _about_z(rng.uniform(-np.pi, np.pi))))
+    return obstacles, []
+
+
+def _cage(ranges: _Ranges, rng: np.random.Generator) -> Places:
+    """Return a cage of bars, one along every edge and some between; the tool goes in between bars."""
+    angle, away, bar = rng.uniform(-0.8, 0.8), rng.uniform(0.5, 0.62), 0.015
+    width, height = rng.uniform(*ranges.cage_width), rng.uniform(0.45, 0.6)
+    between = int(rng.integers(*ranges.cage_bars))
+    centre = np.array([away * np.cos(angle), away * np.sin(angle), 0.0])
+    half = 0.5 * width
+    parts = []
+    for side in (-half, half):
+        for u in np.linspace(-half, half, between + 2):
+            parts.append(([side, u, 0.5 * height], [bar, bar, height]))
+        for u in np.linspace(-half, half, between + 2)[1:-1]:
+            parts.append(([u, side, 0.5 * height], [bar, bar, height]))
+        for z in (0.5 * height, height):
+            parts.append(([side, 0.0, z], [bar, width, bar]))
+            parts.append(([0.0, side, z], [width, bar, bar]))
+    inside = Region(centre + np.array([0.0, 0.0, 0.45 * height]), np.full(3, 0.12), angle)
+    return _boxes(centre, angle, parts), [inside, _before(rng)]
+
+
+GENERATORS: dict[str, Callable[[_Ranges, np.random.Generator], Places]] = {
+    "shelf": _shelf,
+    "clutter": _clutter,
+    "tight": _tight,
+    "boxes": _random_boxes,
+    "cage": _cage,
+}
+"""Name -> obstacles without names, and regions."""
+
+
+def places_of(generator: str, stream: str, rng: np.random.Generator) -> Places:
+    """Return the obstacles and regions that a generator draws for a stream, ``tune`` or ``report``."""
+    return GENERATORS[generator](RANGES[stream], rng)

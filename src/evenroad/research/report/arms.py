@@ -1,0 +1,138 @@
+"""The arms' part of a report: a table for each robot, and pictures of success over points and over what it costs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from evenroad._arrays import Floats
+from evenroad.research.arms.execute import KEPT, TREES
+from evenroad.research.arms.results import (
+    REFERENCE,
+    TABLE_HEADER,
+    Line,
+    is_of_arms,
+    robots_first_k,
+    table_rows,
+    title_of,
+)
+from evenroad.research.arms.scenes import GENERATORS
+from evenroad.research.bench.rows import Rows
+from evenroad.research.report.tables import Table, row
+
+STYLES = {
+    "uniform": ("0.75", ":"),
+    "sobol scrambled": ("0.45", "-"),
+    "halton scrambled": ("0.6", "--"),
+    "even": ("tab:green", "--"),
+    "hickernell": ("tab:olive", ":"),
+    "mpmc": ("tab:purple", ":"),
+    "rejection": ("tab:cyan", "-"),
+    "control": ("tab:blue", "-"),
+    REFERENCE: ("tab:red", "-"),
+}
+"""Sampler -> colour and line."""
+
+CURVES = ("sobol scrambled", "control", REFERENCE)
+"""Samplers whose costs are drawn, beside trees."""
+
+
+def arm_tables(lines: Sequence[Line]) -> tuple[Table, ...]:
+    """Return a table for each robot and number of neighbours."""
+    note = (
+        "Success [%] by generator. Milestones and motions of the joint box know nothing of the robot; rejection and"
+        " control are free of it and of its cell. Differences are paired by problem, with standard errors over"
+        " problems, tests by sign flips, and Holm's correction over all tables."
+    )
+    return tuple(
+        Table(
+            name=f"arms-{robot}-k{k}",
+            title=f"{robot}, k = {k}: success [%]" if k != "-" else f"{robot}: trees",
+            header=TABLE_HEADER,
+            rows=[row(*texts) for texts in rows],
+            labels=2,
+            notes=(note,),
+        )
+        for (robot, k), rows in table_rows(lines).items()
+    )
+
+
+def draw_success(lines: Sequence[Line], robot: str, k: str) -> Figure:
+    """Draw success over milestones for one robot, a panel for each generator."""
+    mine = [line for line in lines if (line.robot, line.k) == (robot, k) and line.n]
+    figure = Figure(figsize=(12.0, 3.2), layout="constrained")
+    panels = figure.subplots(1, len(GENERATORS), sharey=True)
+    counts = sorted({line.n for line in mine})
+    for panel, generator in zip(panels, GENERATORS, strict=True):
+        for sampler, (colour, style) in STYLES.items():
+            for search in ("connect", KEPT):
+                curve = [
+                    line
+                    for line in mine
+                    if (line.sampler, line.generator, line.search) == (sampler, generator, search)
+                ]
+                if curve:
+                    panel.plot(
+                        [line.n for line in curve],
+                        [100.0 * line.success for line in curve],
+                        color=colour,
+                        linestyle=style if search == KEPT else "-.",
+                        marker="o",
+                        markersize=3,
+                        linewidth=2.2 if sampler == REFERENCE else 1.2,
+                        label=title_of(curve[0]),
+                    )
+        panel.set(xscale="log", xticks=counts, xticklabels=counts, xlabel="milestones", title=generator)
+        panel.minorticks_off()
+    panels[0].set(ylabel="solved [%]", ylim=(-3, 103))
+    panels[-1].legend(fontsize=7, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    figure.suptitle(f"{robot}, k = {k}", fontsize=10)
+    return figure
+
+
+def draw_costs(rows: Rows, robot: str, rule: str) -> Figure:
+    """Draw the share of problems that are solved within so many checks, and so many milliseconds."""
+    mine = np.array([is_of_arms(name) and f"arm-{robot}-" in f"{name}" for name in rows.problem.names])
+    rows = rows.where(mine[rows.problem.codes])
+    counts = np.unique(rows.n[rows.sampler.is_in([REFERENCE])])
+    figure = Figure(figsize=(10.0, 3.6), layout="constrained")
+    panels = figure.subplots(1, 2, sharey=True)
+    for sampler in CURVES:
+        for n, style in zip(counts[[0, -1]].tolist(), ("--", "-"), strict=True):
+            here = rows.sampler.is_in([sampler]) & rows.rule.is_in([rule]) & (rows.n == n)
+            label = f"{'owen' if sampler.startswith('sobol') else sampler}, {n}"
+            _cost_curves(panels, rows.where(here), label, STYLES[sampler][0], style)
+    _cost_curves(panels, rows.where(rows.sampler.is_in([TREES])), TREES, "black", "-")
+    panels[0].set(xscale="log", xlabel="motions and milestones checked", ylabel="solved [%]", ylim=(-3, 103))
+    panels[1].set(xscale="log", xlabel="ms of one core, from the scene to the path")
+    panels[1].legend(fontsize=8)
+    figure.suptitle(f"{robot}, all generators, {rule}", fontsize=10)
+    return figure
+
+
+def _cost_curves(panels: Sequence[Axes], rows: Rows, label: str, colour: str, style: str) -> None:
+    if not len(rows):
+        return
+    # Of trees the configurations are those inside of motions.
+    checks = rows.edges_checked + np.where(rows.search.is_in([TREES]), 0, rows.valid)
+    for panel, cost in zip(panels, (checks, 1e3 * rows.seconds), strict=True):
+        taken: Floats = np.sort(np.asarray(cost, dtype=np.float64)[rows.solved])
+        share = 100.0 * np.arange(1, len(taken) + 1) / len(rows)
+        panel.step(np.maximum(taken, 1e-3), share, where="post", color=colour, linestyle=style, label=label)
+
+
+def arm_pictures(rows: Rows, lines: Sequence[Line]) -> list[tuple[str, str, Figure]]:
+    """Return name, title and figure of each picture."""
+    pictures = []
+    for robot, k, rule in robots_first_k(lines):
+        title = f"{robot}, k = {k}"
+        pictures.append(
+            (f"arms-{robot}-k{k}", f"Success on the arms' problems: {title}", draw_success(lines, robot, k))
+        )
+        pictures.append(
+            (f"arms-{robot}-k{k}-costs", f"What success costs: {title}", draw_costs(rows, robot, rule))
+        )
+    return pictures

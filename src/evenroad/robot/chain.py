@@ -1,0 +1,170 @@
+"""Chain: the joints between a robot's root and one of its links, as compiled code takes them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from evenroad._arrays import Bools, Floats, Ints
+from evenroad._checks import require_known
+from evenroad.errors import InvalidValue
+from evenroad.geometry.pose import IDENTITY, Pose
+from evenroad.robot.kernel.moving_tree import MovingFrame, MovingTree
+from evenroad.robot.kernel.robot_tables import RobotTables
+from evenroad.robot.known_robots import prepared
+from evenroad.robot.robot import Robot
+from evenroad.robot.tree_sequences import cube_points
+
+TURN = 2.0 * math.pi
+
+_EVEN = 2048
+"""Configurations whose tips are known: the nearest are where numeric solutions begin."""
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """The frames that carry a tip, from the root on."""
+
+    tip: str
+    """The link."""
+    group: tuple[str, ...]
+    """The coordinates."""
+    frames: tuple[MovingFrame, ...]
+    ints: Ints
+    """Coordinate of each frame that carries the tip, and whether it slides, (k, 2)."""
+    rows: Floats
+    """Rotation (9) and translation (3) in the frame before, multiplier and offset; last the tip's, (k + 1, 14)."""
+    low: Floats
+    high: Floats
+    """Limits; of a coordinate that can make a whole turn none, since turns are added later."""
+    bounds: Floats
+    """Limits as they are, (2, dim); of those that wrap from -pi to pi."""
+    turns: Bools
+    """Which coordinates are in the same posture after a whole turn."""
+
+    @cached_property
+    def moving(self) -> Ints:
+        """Coordinates that move the tip."""
+        return np.unique(self.ints[:, 0])
+
+    @cached_property
+    def even(self) -> tuple[Floats, Floats]:
+        """Even configurations, (n, dim), and where they have the tip, (n, 12)."""
+        low, high = np.maximum(self.low, self.bounds[0]), np.minimum(self.high, self.bounds[1])
+        width = np.where(self.turns, np.minimum(high - low, TURN), high - low)
+        middle = np.where(
+            self.turns & (high - low > TURN), np.clip(0.0, low + math.pi, high - math.pi), 0.5 * (low + high)
+        )
+        q = np.repeat(middle[np.newaxis], _EVEN, axis=0)
+        points = cube_points(len(self.moving))[:_EVEN]
+        q[:, self.moving] += (points - 0.5) * width[self.moving]
+        return q, self.places(q)
+
+    def places(self, q: Floats) -> Floats:
+        """Return where configurations, (n, dim), have the tip: rotation row by row, and origin, (n, 12)."""
+        from evenroad.robot.kernel.reach import places
+
+        out = np.empty((len(q), 12))
+        places(np.array(q), self.ints, self.rows, out)
+        return out
+
+    def reach(self) -> tuple[Floats, float]:
+        """Return a point that no joint moves and how far from it the tip is at most [m]."""
+        far, before = 0.0, len(self.frames)
+        for i in range(len(self.frames) - 1, -1, -1):
+            far += math.hypot(*self.rows[i + 1, 9:12])
+            frame = self.frames[i]
+            if frame.slides:
+                ends = self.bounds[:, frame.coordinate] * frame.multiplier + frame.offset
+                far += float(np.abs(ends).max())
+            before = i
+        return self.rows[before, 9:12], far
+
+
+_recent: dict[tuple[int, str], tuple[RobotTables, Chain]] = {}
+
+
+def chain_of(robot: Robot, tip: str) -> Chain:
+    """Return the chain from the root to a link, kept; UnknownName if it is none, InvalidValue if nothing moves it."""
+    made = prepared(robot)
+    space, tables = made.space, made.tables
+    kept = _recent.get((id(tables), tip))
+    if kept is not None:
+        return kept[1]
+    tree = tables.tree
+    require_known(f"link of {robot.name!r}", tip, tree.links)
+    frames = _carrying(tree, tree.links[tip].frame)
+    if not frames:
+        raise InvalidValue(f"no joint of the group, {','.join(robot.group)}, moves the link {tip!r}")
+    place = tree.links[tip]
+    rows = np.zeros((len(frames) + 1, 14))
+    for row, frame in zip(rows, frames, strict=False):
+        row[:] = *frame.rotation.ravel(), *frame.translation, frame.multiplier, frame.offset
+    # A link is placed by what takes its points into its frame.
+    rows[-1, :12] = *place.rotation.ravel(), *place.translation
+    ints = np.array([[frame.coordinate, int(frame.slides)] for frame in frames], dtype=np.int64)
+    ranges = np.array([space.low, space.high])
+    # All that a coordinate moves has to be where it was after a turn, not the tip alone.
+    turns = np.ones(len(robot.group), dtype=np.bool_)
+    for frame in tree.frames:
+        whole = not frame.slides and frame.multiplier == round(frame.multiplier)
+        turns[frame.coordinate] &= whole
+    full = turns & (ranges[1] - ranges[0] >= TURN - 1e-9)
+    chain = Chain(
+        tip,
+        robot.group,
+        frames,
+        ints,
+        rows,
+        np.where(full, -np.inf, ranges[0]),
+        np.where(full, np.inf, ranges[1]),
+        ranges,
+        turns,
+    )
+    if len(_recent) >= 32:
+        _recent.clear()
+    _recent[id(tables), tip] = tables, chain
+    return chain
+
+
+def _carrying(tree: MovingTree, number: int) -> tuple[MovingFrame, ...]:
+    frames: list[MovingFrame] = []
+    while number > 0:
+        frames.insert(0, tree.frames[number - 1])
+        number = frames[0].parent
+    return tuple(frames)
+
+
+def default_tip(robot: Robot) -> str:
+    """Return the link at the end of what the group moves, none that is held; InvalidValue if there are several."""
+    tree = prepared(robot).tables.tree
+    carried = {
+        link: len({frame.coordinate for frame in _carrying(tree, place.frame)})
+        for link, place in tree.links.items()
+        if link not in robot.holds
+    }
+    most, parents = max(carried.values()), {joint.parent for joint in robot.joints if joint.child in carried}
+    farthest = [link for link in carried if carried[link] == most]
+    leaves = [link for link in farthest if link not in parents] or farthest[-1:]
+    if len(leaves) > 1:
+        raise InvalidValue(
+            f"say of which link the pose is (--tip): at the end of {robot.name!r} are {', '.join(leaves[:8])}"
+        )
+    return leaves[0]
+
+
+def frame_pose(robot: Robot, frame: str) -> Pose:
+    """Return a link's pose in the frame of the root; InvalidValue if the group moves it, UnknownName if it is not."""
+    if not frame or frame == robot.links[0]:
+        return IDENTITY
+    links = prepared(robot).tables.tree.links
+    require_known(f"link of {robot.name!r}", frame, links)
+    place = links[frame]
+    if place.frame != 0:
+        raise InvalidValue(
+            f"the frame of a goal pose must stand still, but the group moves the link {frame!r}"
+        )
+    return Pose(tuple(place.translation.tolist()), tuple(place.rotation.ravel().tolist()))

@@ -1,0 +1,97 @@
+"""What a plan is to reach: configurations, and poses of links, for which all stand that reach them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from evenroad._arrays import Floats
+from evenroad._clock import now
+from evenroad.geometry.pose import Pose
+from evenroad.robot.chain import default_tip
+from evenroad.robot.inverse_kinematics import Checks, Reached, misses, reach, task_of
+from evenroad.robot.pose_goal import PoseGoal, as_pose_goal
+
+
+@dataclass(frozen=True, eq=False)
+class Goals:
+    """What a plan is to reach."""
+
+    configurations: Floats
+    """Goals, (g, dim); where no pose is reached and nothing else is a goal, what comes nearest."""
+    names: tuple[str, ...]
+    """What the caller called each, or nothing."""
+    poses: tuple[tuple[PoseGoal, Reached], ...] = ()
+    """The poses, and what reaches them."""
+    seconds: float = 0.0
+    """That took."""
+
+    @property
+    def unreached(self) -> str:
+        """Where nothing is to be planned to: why; else nothing."""
+        if len(self.names) or not self.poses:
+            return ""
+        return "; ".join(reached.why for _, reached in self.poses)
+
+    @property
+    def in_collision(self) -> bool:
+        """Whether some pose is reached, but in collision each time."""
+        return any(reached.in_collision for _, reached in self.poses)
+
+    def records(self, world: Checks, end: Floats | None) -> list[dict[str, Any]]:
+        """Return the poses as plain values; `end`, (dim,), is where a path ends: by how much it misses them."""
+        return [_record(world, goal, reached, end) for goal, reached in self.poses]
+
+
+def goals_of(
+    world: Checks,
+    start: Floats,
+    places: Sequence[Any],
+    read: Callable[[Any], Floats],
+    tip: str = "",
+    frame: str = "",
+) -> Goals:
+    """Return the goals of some places: poses, with this tip and frame where they name none, and what `read` reads."""
+    rows: list[Floats] = []
+    names: list[str] = []
+    poses = []
+    began = now()
+    for place in places:
+        if not isinstance(place, Pose | PoseGoal):
+            rows.append(read(place)[np.newaxis])
+            names.append(place.strip() if isinstance(place, str) else "")
+            continue
+        goal = as_pose_goal(place, tip, frame)
+        goal = goal if goal.tip else replace(goal, tip=default_tip(world.robot))
+        reached = reach(world, goal, start)
+        poses.append((goal, reached))
+        rows.append(reached.configurations)
+        names += [str(goal)] * len(reached.configurations)
+    if not names:
+        rows = [reached.nearest[np.newaxis] for _, reached in poses]
+    took = now() - began if poses else 0.0
+    return Goals(np.concatenate(rows), tuple(names), tuple(poses), took)
+
+
+def _record(world: Checks, goal: PoseGoal, reached: Reached, end: Floats | None) -> dict[str, Any]:
+    record = {
+        "tip": goal.tip,
+        "frame": goal.frame or world.robot.links[0],
+        "xyz": list(goal.pose.xyz),
+        "rotation": list(goal.pose.rotation),
+        "free_axis": None if goal.free_axis is None else list(goal.free_axis),
+        "position_only": goal.position_only,
+        "position_tolerance": goal.position_tolerance,
+        "angle_tolerance": goal.angle_tolerance,
+        "solver": reached.solver,
+        "postures": reached.branches,
+        "in_collision": reached.blocked,
+        "goals": len(reached.configurations),
+        "why_not": reached.why,
+    }
+    if end is not None:
+        record["off_m"], record["off_rad"] = misses(*task_of(world.robot, goal), end)
+    return record

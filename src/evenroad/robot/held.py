@@ -1,0 +1,89 @@
+"""HeldObject: a body that a link carries for a while, as a gripper carries a box."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+from evenroad._checks import require_known
+from evenroad.errors import InvalidValue, shown
+from evenroad.geometry.fit import fit_capsules
+from evenroad.geometry.hulls import Hull, piece_of
+from evenroad.geometry.pose import IDENTITY
+from evenroad.geometry.shapes import Capsule, Shape
+from evenroad.robot.joint import Joint
+from evenroad.robot.kinematics import KinematicTree
+from evenroad.robot.pairs import bodied_above, rigid_links
+
+
+@dataclass(frozen=True)
+class HeldObject:
+    """A body that a link carries.
+
+    Parameters
+    ----------
+    name : str
+        What it is called in verdicts; it becomes a link of the robot, with the body's own frame: goal poses may be its.
+    body : Shape
+        With its pose in the frame of the link that carries it.
+    link : str
+        That link.
+    touches : sequence of str
+        Links that it may touch, as those that hold it.  Links that no joint moves against `link` are never tested.
+    """
+
+    name: str
+    body: Shape
+    link: str
+    touches: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.body, Shape):
+            raise InvalidValue(f"what is held must be a Shape, got {shown(self.body)}")
+        if not self.name or not isinstance(self.name, str):
+            raise InvalidValue(f"what is held must have a name, got {self.name!r}")
+        touches = (self.touches,) if isinstance(self.touches, str) else tuple(self.touches)
+        object.__setattr__(self, "touches", touches)
+        object.__setattr__(self, "body", replace(self.body, link=self.name))
+
+
+class HeldParts(NamedTuple):
+    """What a held body adds to a robot."""
+
+    joint: Joint
+    capsules: tuple[Capsule, ...]
+    hull: Hull
+    pairs: tuple[tuple[str, str], ...]
+
+
+def held_parts(robot: KinematicTree, held: HeldObject, *, neighbours: bool) -> HeldParts:
+    """Return what a held body adds to a robot: it is tested against all links that may come near and are not allowed.
+
+    Where pairs were computed and not given, neighbours in the tree are not tested, as of the robot itself.  Raises
+    UnknownName if a link is not there, InvalidValue if the name is taken.
+    """
+    what = f"link of the robot that holds {held.name!r}:"
+    for link in (held.link, *held.touches):
+        require_known(what, link, robot.links)
+    name = f"{held.link}-{held.name}"
+    if held.name in robot.links or name in [joint.name for joint in robot.joints]:
+        raise InvalidValue(f"{held.name!r} is a link already: nothing can be attached twice under one name")
+    pose, body = held.body.pose, replace(held.body, pose=IDENTITY)
+    joint = Joint(name, "fixed", held.link, held.name, pose.xyz, pose.rotation)
+    rigid = rigid_links(robot)
+    bodied = {capsule.link for capsule in robot.capsules}
+    spared = {*held.touches, *(link for link in bodied if rigid[link] == rigid[held.link])}
+    if neighbours:
+        above, joints = (held.link, 0) if held.link in bodied else bodied_above(robot, bodied)[held.link]
+        if joints == 1:
+            spared.add(above)
+    pairs = tuple((link, held.name) for link in robot.links if link in bodied - spared)
+    return HeldParts(joint, fit_capsules(body), piece_of(body).hull, pairs)
+
+
+def same_bodies(robot: KinematicTree, held: HeldObject) -> bool:
+    """Return whether what a robot holds under this name is this."""
+    pose, body = held.body.pose, replace(held.body, pose=IDENTITY)
+    joint = next(joint for joint in robot.joints if joint.child == held.name)
+    capsules = tuple(capsule for capsule in robot.capsules if capsule.link == held.name)
+    return (joint.parent, joint.origin, capsules) == (held.link, pose, fit_capsules(body))

@@ -1,0 +1,128 @@
+"""PoseGoal: where a link is to be, in place of a configuration; and poses as people write them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from evenroad._arrays import set_fields
+from evenroad._checks import as_row, require_positive
+from evenroad.errors import InvalidValue, shown
+from evenroad.geometry.pose import Pose, Vector
+
+AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+
+_UNIT = 1e-3
+"""How far the norm of a quaternion that is written may be from 1."""
+
+
+@dataclass(frozen=True)
+class PoseGoal:
+    """Where a link of the robot is to be.
+
+    Parameters
+    ----------
+    pose : Pose
+        Of the link `tip`, in the frame of the link `frame`.
+    tip : str
+        Default: the only link at the end of what the group moves.
+    frame : str
+        A link that the group does not move; default: the root.
+    free_axis : sequence of 3 floats, or "x", "y", "z"
+        In the frame of the tip: it may be turned about this axis at will.  Default: it may not.
+    position_only : bool
+        It may be turned at will.
+    position_tolerance, angle_tolerance : float
+        By how much the origin, and the rotation, may be off, >= 0 [m, rad].
+
+    Raises
+    ------
+    InvalidValue
+        If a number is none, or an axis has no direction.
+    """
+
+    pose: Pose
+    tip: str = ""
+    frame: str = ""
+    free_axis: Vector | None = None
+    position_only: bool = False
+    position_tolerance: float = 0.0
+    angle_tolerance: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.pose, Pose):
+            raise InvalidValue(f"a pose goal must have a Pose, got {shown(self.pose)}")
+        if self.free_axis is not None:
+            if self.position_only:
+                raise InvalidValue("position_only frees all axes: free_axis goes without it")
+            set_fields(self, free_axis=as_axis("free_axis", self.free_axis))
+        for name in ("position_tolerance", "angle_tolerance"):
+            set_fields(self, **{name: require_positive(name, getattr(self, name), or_zero=True)})
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether place and rotation are given in full."""
+        loose = self.position_only or self.position_tolerance or self.angle_tolerance
+        return self.free_axis is None and not loose
+
+    def __str__(self) -> str:
+        return f"{self.tip or 'the tip'} at ({', '.join(f'{value:g}' for value in self.pose.xyz)})"
+
+
+def as_axis(name: str, axis: str | Sequence[float]) -> Vector:
+    """Return a direction of length 1 from three numbers, or from x, -x, y, -y, z, -z."""
+    if isinstance(axis, str):
+        sign, letter = (-1.0, axis[1:]) if axis.startswith("-") else (1.0, axis)
+        if letter in AXES:
+            x, y, z = AXES[letter]
+            return sign * x + 0.0, sign * y + 0.0, sign * z + 0.0
+        axis = as_numbers(name, axis, (3,))
+    row = as_row(name, axis, 3)
+    length = math.hypot(*row)
+    if length == 0.0:
+        raise InvalidValue(f"{name} must be a direction, got zeros")
+    x, y, z = (value / length for value in row)
+    return x, y, z
+
+
+def as_numbers(name: str, text: str, counts: Sequence[int]) -> tuple[float, ...]:
+    """Return the finite numbers of a text, blanks or commas between them, as many as one of `counts`."""
+    words = text.replace(",", " ").split()
+    try:
+        row = tuple(map(float, words))
+    except ValueError:
+        row = ()
+    if len(words) not in counts or not row or not all(map(math.isfinite, row)):
+        wanted = " or ".join(map(str, counts))
+        raise InvalidValue(f"{name} must be {wanted} finite numbers, got {shown(text)}")
+    return row
+
+
+def pose_of(text: str, *, degrees: bool = False) -> tuple[Pose, bool]:
+    """Return a pose that somebody wrote, and whether it has a rotation.
+
+    ``x y z``, ``x y z roll pitch yaw`` (`degrees` or radians) or ``x y z qx qy qz qw`` [m], as ROS has them.  Raises
+    InvalidValue if these are not so many finite numbers, or the quaternion is not of norm 1 up to 0.001.
+    """
+    row = as_numbers("a goal pose", text, (3, 6, 7))
+    xyz, rest = row[:3], row[3:]
+    if len(rest) == 3:
+        return Pose.from_rpy(xyz, np.radians(rest).tolist() if degrees else rest), True
+    if len(rest) == 4:
+        norm = math.hypot(*rest)
+        if abs(norm - 1.0) > _UNIT:
+            raise InvalidValue(
+                f"the quaternion qx qy qz qw of a goal pose must be of norm 1, got {norm:.6g} in {shown(text)}: it is"
+                " no rotation"
+            )
+        return Pose.from_quaternion(xyz, (rest[3], *rest[:3])), True
+    return Pose((row[0], row[1], row[2])), False
+
+
+def as_pose_goal(goal: Pose | PoseGoal, tip: str = "", frame: str = "") -> PoseGoal:
+    """Return a goal of a pose, with this tip and frame where it names none itself."""
+    goal = PoseGoal(goal) if isinstance(goal, Pose) else goal
+    return replace(goal, tip=goal.tip or tip, frame=goal.frame or frame)

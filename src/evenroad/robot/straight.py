@@ -1,0 +1,127 @@
+"""Straight lines of a link: how a tip comes to its goal, and how it leaves its start."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from evenroad._arrays import Floats, set_fields
+from evenroad._checks import require_positive
+from evenroad.errors import InvalidValue
+from evenroad.geometry.pose import Pose, Vector
+from evenroad.robot.arm_world import ArmWorld
+from evenroad.robot.chain import Chain
+from evenroad.robot.inverse_kinematics import followed_from, task
+from evenroad.robot.pose_goal import as_axis
+
+STEP = 0.005
+"""Between configurations of a line [m]."""
+
+FINE = 16
+"""States, between two of these, at which it is measured how far the tip is from the line."""
+
+_LONGEST = 0.2
+"""No joint moves by more in such a step [rad or m]."""
+
+
+@dataclass(frozen=True)
+class Straight:
+    """How far a tip moves in straight lines, its rotation kept.
+
+    Parameters
+    ----------
+    approach, retreat : float
+        How far before the goal, and from the start, >= 0 [m].
+    away : sequence of 3 floats, "x", "-x", ..., or "up"
+        The direction in which it leaves its start, and from which it comes to its goal: in the frame of the tip, or
+        along the root's z axis.
+    tip : str
+        The link; default: that of the goal poses, or the last one.
+    line_tolerance, angle_tolerance : float
+        A line that is missed by more is refused, > 0 [m, rad].
+    """
+
+    approach: float = 0.0
+    retreat: float = 0.0
+    away: Vector | str = "-z"
+    tip: str = ""
+    line_tolerance: float = 1e-3
+    angle_tolerance: float = 1e-2
+
+    def __post_init__(self) -> None:
+        for name in ("approach", "retreat"):
+            set_fields(self, **{name: require_positive(name, getattr(self, name), or_zero=True)})
+        for name in ("line_tolerance", "angle_tolerance"):
+            set_fields(self, **{name: require_positive(name, getattr(self, name))})
+        if not (self.approach or self.retreat):
+            raise InvalidValue("a straight line must have a length: give approach or retreat")
+        if self.away != "up":
+            set_fields(self, away=as_axis("away", self.away))
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A straight line as configurations, (n, dim), from where it begins; or why there is none.
+
+    `off_m` and `off_rad` are by how much the tip misses line and rotation at most on a fine grid.
+    """
+
+    path: Floats
+    why: str = ""
+    off_m: float = 0.0
+    off_rad: float = 0.0
+
+
+def line_from(world: ArmWorld, chain: Chain, straight: Straight, q: Floats, length: float) -> Line:
+    """Return the line on which the tip leaves a configuration, (dim,), which is free, by `length` [m]."""
+    tip = chain.places(q[np.newaxis])[0]
+    turn, here = tip[:9].reshape(3, 3), tip[9:]
+    away = np.array([0.0, 0.0, 1.0]) if straight.away == "up" else turn @ np.array(straight.away)
+    count = max(1, int(np.ceil(length / STEP)))
+    shares = length * np.arange(count + 1) / count
+    tasks = np.tile(task(Pose(tuple(here.tolist()), tuple(tip[:9].tolist()))), (count + 1, 1))
+    tasks[:, 9:12] = here + shares[:, np.newaxis] * away
+    way, done = followed_from(chain, tasks, q, _LONGEST, world.space.flat.wrapping)
+    where = f"of the straight line of {length:g} m"
+    if done <= count:
+        return Line(way[:1], f"after {shares[max(done - 1, 0)]:.3g} m {where} no joint angles go on")
+    free = world.recheck(way)
+    if not free.all():
+        first = int(np.flatnonzero(~free)[0])
+        states = between(world, way[first : first + 2], FINE)
+        blocked = states[~world.valid(states)]
+        why = world.explain(blocked[0]) if len(blocked) else "it comes too near to contact to tell"
+        return Line(way[:1], f"after {length * first / count:.3g} m {where} {why}")
+    off_m, off_rad = _off(world, chain, way, here, away, turn)
+    if off_m > straight.line_tolerance or off_rad > straight.angle_tolerance:
+        return Line(way[:1], f"the tip misses the straight line by {off_m:.3g} m and {off_rad:.3g} rad")
+    return Line(way, "", off_m, off_rad)
+
+
+def _off(
+    world: ArmWorld, chain: Chain, way: Floats, here: Floats, away: Floats, turn: Floats
+) -> tuple[float, float]:
+    """Return by how much the tip misses a line and its rotation on a fine grid [m, rad]."""
+    tips = chain.places(between(world, way, FINE))
+    gap = tips[:, 9:] - here
+    gap -= np.outer(gap @ away, away)
+    turns = np.einsum("nij,kj->nik", tips[:, :9].reshape(-1, 3, 3), turn)
+    sine = 0.5 * np.linalg.norm(turns - turns.transpose(0, 2, 1), axis=(1, 2)) / np.sqrt(2.0)
+    cosine = 0.5 * (np.trace(turns, axis1=1, axis2=2) - 1.0)
+    return float(np.linalg.norm(gap, axis=1).max()), float(np.arctan2(sine, cosine).max())
+
+
+def between(world: ArmWorld, way: Floats, count: int) -> Floats:
+    """Return the states of a path at `count` equal parts of each of its motions, (n, dim)."""
+    shares = np.tile(np.arange(1, count + 1) / count, len(way) - 1)
+    first, last = (np.repeat(way[i : len(way) - 1 + i], count, axis=0) for i in (0, 1))
+    return np.concatenate([way[:1], world.space.interpolate(first, last, shares)])
+
+
+def tilts(chain: Chain, q: Floats, axis: Sequence[float], direction: Sequence[float]) -> Floats:
+    """Return the angles, (n,) [rad], between a direction of the root's frame and an axis of the tip's, at (n, dim)."""
+    pointing = chain.places(q)[:, :9].reshape(-1, 3, 3) @ np.array(axis)
+    across = np.linalg.norm(np.cross(pointing, np.array(direction)), axis=1)
+    return np.arctan2(across, pointing @ np.array(direction))

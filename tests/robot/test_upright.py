@@ -1,0 +1,130 @@
+"""An axis that stays upright: along the whole path, on a grid of its own, or there is no path."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import evenroad as er
+from evenroad.errors import InvalidValue
+from evenroad.geometry import Pose
+from evenroad.robot import ArmWorld, Scene, Straight, Upright, link_poses, load_robot
+from evenroad.robot.chain import chain_of
+from evenroad.robot.inverse_kinematics import reach
+from evenroad.robot.pose_goal import PoseGoal
+from evenroad.robot.upright import UprightWorld, upright_world
+from tests.robot.kernel_arms import random_scene
+
+ARM7 = load_robot("arm7")
+DOWN = (math.pi, 0.0, 0.0)
+
+
+def tilt_along(robot, path, tip):
+    """Largest angle between the tip's z axis and straight down, at 50 states of every motion."""
+    dense = np.concatenate([np.linspace(a, b, 50) for a, b in pairwise(path)])
+    axis = link_poses(robot, dense)[:, robot.links.index(tip), :3, 2]
+    return np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), -axis[:, 2]).max()
+
+
+def problem(seed):
+    """A scene, and two poses that point down: a configuration of the one, a goal at the other."""
+    scene, rng = random_scene(seed, count=6, spread=0.8, clear=0.35), np.random.default_rng(seed)
+    world, found = ArmWorld(ARM7, scene), []
+    while len(found) < 2:
+        xyz = (*rng.uniform([-0.5, -0.5], [0.5, 0.5]), rng.uniform(0.2, 0.7))
+        goal = PoseGoal(Pose.from_rpy(xyz, DOWN), free_axis="z")
+        if len(rows := reach(world, goal, np.zeros(7)).configurations):
+            found.append((rows[0], goal))
+    return scene, found[0][0], found[1][1]
+
+
+@pytest.mark.parametrize("tolerance", [0.3, 0.03])
+def test_a_path_keeps_the_axis_upright_where_one_that_is_not_told_to_does_not(tolerance):
+    plain = []
+    for seed in (1, 2, 5, 6):
+        scene, start, goal = problem(seed)
+        result = er.plan_arm(ARM7, scene, start, goal, upright=Upright(tolerance))
+        assert result.solved
+        tilt = tilt_along(ARM7, result.path, "flange")
+        assert tilt <= tolerance
+        assert result.deviation["tilt_rad"] <= tolerance
+        assert tilt <= result.deviation["tilt_rad"] + 0.1 * tolerance
+        world = ArmWorld(ARM7, scene)
+        assert world.recheck(result.path).all()
+        assert result.proof == "certified"
+        assert result.path[0].tolist() == start.tolist()
+        plain.append(tilt_along(ARM7, er.plan_arm(ARM7, scene, start, goal).path, "flange"))
+    assert max(plain) > 0.3
+
+
+@pytest.fixture(scope="module")
+def world():
+    arm = ArmWorld(ARM7, Scene("empty"))
+    start = reach(arm, PoseGoal(Pose.from_rpy((0.4, 0.1, 0.4), DOWN)), np.zeros(7)).configurations[0]
+    return upright_world(arm, chain_of(ARM7, "flange"), Upright(0.1), start)
+
+
+def test_milestones_are_projected(world):
+    q = world.space.from_cube(np.random.default_rng(0).random((300, 7)))
+    axis = link_poses(ARM7, q)[:, ARM7.links.index("flange"), :3, 2]
+    tilt = np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), -axis[:, 2])
+    assert np.abs(tilt - world.tilts(q)).max() < 1e-12
+    assert (tilt <= 0.1).mean() > 0.8
+    assert not world.valid(q)[tilt > 0.1].any()
+
+
+def test_a_motion_ends_on_the_branch_of_its_end_and_never_jumps(world):
+    q = world.space.from_cube(np.random.default_rng(1).random((400, 7)))
+    q = q[world.valid(q)]
+    a, b = q[0:200:2], q[1:200:2]
+    free = world.motion_valid(a, b)
+    assert 5 < free.sum() < len(free) - 5
+    for first, last, ok in zip(a, b, free, strict=True):
+        way = world.along(first, last)
+        assert (way is not None) == ok
+        if ok:
+            assert (way[0] == first).all()
+            assert (way[-1] == last).all()
+            assert np.linalg.norm(np.diff(way, axis=0), axis=1).max() < 0.3
+            assert tilt_along(ARM7, way, "flange") <= 0.1
+    assert (world.motion_valid(b, a) == free).all()
+
+
+def test_a_start_or_goals_that_are_tilted_are_refused():
+    _, start, _ = problem(1)
+    tilted = start.copy()
+    tilted[5] += 0.4
+    result = er.plan_arm(ARM7, Scene("empty"), tilted, start, upright=Upright(0.1, axis="z"))
+    assert result.status is er.Status.START_INVALID
+    assert "at the start 'flange' is tilted by" in result.message
+    result = er.plan_arm(ARM7, Scene("empty"), start, tilted, upright=Upright(0.1))
+    assert result.status is er.Status.GOAL_INVALID
+    assert "more than 0.1" in result.message
+
+
+def test_straight_and_upright_go_together():
+    scene, start, goal = problem(6)
+    result = er.plan_arm(ARM7, scene, start, goal, upright=Upright(0.1), straight=Straight(0.05, away="up"))
+    assert result.solved
+    assert set(result.deviation) == {"tilt_rad", "line_m", "line_rad"}
+    assert tilt_along(ARM7, result.path, "flange") <= 0.1
+
+
+def test_a_tolerance_that_is_none_is_refused():
+    with pytest.raises(InvalidValue, match="tolerance of upright must be a finite number > 0, got 0"):
+        Upright(0.0)
+    with pytest.raises(InvalidValue, match="at most"):
+        Upright(4.0)
+    with pytest.raises(InvalidValue, match="axis of upright must be"):
+        Upright(0.1, axis="up")
+
+
+def test_a_path_that_is_tilted_by_too_much_on_the_finer_grid_is_not_handed_out(monkeypatch):
+    through = UprightWorld.path_through
+    monkeypatch.setattr(UprightWorld, "path_through", lambda *a, **options: (through(*a, **options)[0], 0.11))
+    scene, start, goal = problem(6)
+    result = er.plan_arm(ARM7, scene, start, goal, upright=Upright(0.1))
+    assert result.status is er.Status.NOT_CONNECTED
+    assert "tilted by 0.11 rad, more than 0.1" in result.message
+    assert result.path is None
