@@ -16,7 +16,7 @@ from evenroad.roadmap import Budget, PlanResult, Status
 from evenroad.roadmap.answer import connected, gave_up, refusal
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.find_path import NO_POINTS, SECONDS, with_reasons
-from evenroad.roadmap.query import FEW, LINKS, Query, read_places
+from evenroad.roadmap.query import FEW, Query, read_places
 from evenroad.robot import ArmWorld, Robot, Scene, configuration, in_scene
 from evenroad.robot.trees import shorten
 from evenroad.robot_roadmap.ask import ENDS_TAKEN, Asked, ask
@@ -38,6 +38,10 @@ SHARE = 0.5
 GREED = 3.0
 """What the bound of the search is multiplied by: a third of the checks of a shortest way, and once they are shortened
 its paths are no longer."""
+
+LINKS = 300
+"""Each end is tried to be linked to so many milestones where no trees follow: asked lazily, more links cost little but
+where ends are cut off, and there they are worth more than more milestones."""
 
 TRIED_LINKS, TRIED_MOTIONS = 30, 200
 """Where trees may follow, so many links of each end are tried, and so many motions: trees find ways out of narrow
