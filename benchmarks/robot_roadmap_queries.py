@@ -1,8 +1,9 @@
 """What queries of a robot's roadmap cost, what whole turns are worth, and whether remembered paths help elsewhere.
 
     python -m benchmarks.robot_roadmap_queries --queries 100
-    python -m benchmarks.robot_roadmap_queries --turns 75
-    python -m benchmarks.robot_roadmap_queries --remember 75
+    python -m benchmarks.robot_roadmap_queries --counts 60
+    python -m benchmarks.robot_roadmap_queries --turns 40
+    python -m benchmarks.robot_roadmap_queries --remember 40
 
 Scenes and problems come from the seeds kept for reporting.  Times are of the processor, the best of three: three copies
 of a kept roadmap learn the same side by side, so that none answers a query that it knows.
@@ -107,6 +108,24 @@ def costs(name: str, count: int, n: int, kinds: list[str]) -> None:
         )
 
 
+def counts(name: str, count: int, n: int, kinds: list[str]) -> None:
+    """Print how many configurations and motions the first query in a scene asks about, without trees: medians."""
+    pool = Pool(arm(name))
+    made = make_roadmap(pool.robot, table_of(next(problems(pool, REPORTING))), n)
+    for kind in kinds:
+        results = [
+            made.in_scene(p.scene).plan(p.start, p.goal, shorten=False, trees=False)
+            for p in indirect(pool, REPORTING[:count], (kind,))
+        ]
+        asked = np.array([[r.counts["configurations_checked"], r.counts["edges_checked"]] for r in results])
+        share = 100 * np.mean([r.solved for r in results])
+        print(
+            f"{kind}: median of {np.median(asked[:, 0]):.0f} configurations and {np.median(asked[:, 1]):.0f} motions,"
+            f" {share:.0f} % of {len(results)} solved",
+            flush=True,
+        )
+
+
 def ratio_of_tails(a: np.ndarray, b: np.ndarray) -> tuple[float, float, float]:
     """Return the ratio of the 95 % quantiles of two paired samples, and its 95 % interval by bootstrap."""
     rng = np.random.default_rng(0)
@@ -201,6 +220,7 @@ def main() -> None:
     )
     parser.add_argument("--robot", default="ur5")
     parser.add_argument("--queries", type=int, default=0, help="in each scene")
+    parser.add_argument("--counts", type=int, default=0, help="problems of each kind")
     parser.add_argument("--turns", type=int, default=0, help="problems of each kind")
     parser.add_argument("--remember", type=int, default=0, help="problems of each kind")
     parser.add_argument("--draws", type=int, default=2)
@@ -209,6 +229,8 @@ def main() -> None:
     options = parser.parse_args()
     if options.queries:
         costs(options.robot, options.queries, options.n or 1024, options.kinds)
+    if options.counts:
+        counts(options.robot, options.counts, options.n or 1024, options.kinds)
     if options.turns:
         turns(options.robot, options.turns, options.n or 256, options.draws)
     if options.remember:
