@@ -23,6 +23,7 @@ def test_json_is_read_back_bit_for_bit(trajectory, tmp_path):
     read = load_trajectory(tmp_path / "t.json")
     for name in ("times", "positions", "velocities", "accelerations", "waypoints"):
         np.testing.assert_array_equal(getattr(read, name), getattr(trajectory, name))
+    assert read.controller == (*trajectory.names, *trajectory.held)
     for name in ("names", "held", "limits", "deviation", "stops", "proof", "duration", "radii", "highest"):
         assert getattr(read, name) == getattr(trajectory, name)
 

@@ -48,12 +48,11 @@ def trajectory_rows(
         for file in plan.trajectory:
             file.unlink(missing_ok=True)
         return [], None
-    from evenroad.trajectory import arm_trajectory, controller_joints, limits_of
+    from evenroad.trajectory import arm_trajectory, limits_of
     from evenroad.trajectory.files import save_trajectories
 
-    order = controller_joints(world.robot)
-    if plan.controller_joints is not None:
-        order = tuple(name.strip() for name in plan.controller_joints.split(","))
+    joints = plan.controller_joints
+    order = None if joints is None else [*map(str.strip, joints.split(","))]
     trajectory = arm_trajectory(
         world,
         result.path,

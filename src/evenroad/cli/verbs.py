@@ -24,6 +24,7 @@ VERBS = {
         "a roadmap for one arm in its cell, good for every scene",
     ),
     "view": ("evenroad.cli.view:View", "an arm, its scene and its path in the browser, or as a GIF"),
+    "send": ("evenroad.cli.send:Send", "a trajectory to a UR arm; a dry run unless told otherwise"),
     "points": (
         "evenroad.cli.points:Points",
         "write a point set: shipped, constructed, or annealed on demand",

@@ -46,9 +46,16 @@ def arm_trajectory(
     """
     robot = world.robot
     within = (limits_of(robot) if limits is None else limits).at_speed(speed)
-    held = {name: value for name, value in held_values(robot).items() if name in controller_joints(robot)}
+    controller = controller_joints(robot)
     trajectory = make_trajectory(
-        path, within, world=world, names=robot.group, held=held, deviation=deviation, step=step
+        path,
+        within,
+        world=world,
+        names=robot.group,
+        held={name: value for name, value in held_values(robot).items() if name in controller},
+        controller=controller,
+        deviation=deviation,
+        step=step,
     )
     if not rounded_by_controller:
         return trajectory

@@ -124,19 +124,20 @@ def _from_record(record: dict[str, Any]) -> Trajectory:
         stops=int(record["stops"]),
         highest={str(kind): float(share) for kind, share in record["highest"].items()},
         held={str(name): float(value) for name, value in record["held"].items()},
+        controller=tuple(map(str, record["controller"])),
         proof=str(record["proof"]),
         radii=radii,
     )
 
 
 def _json(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
-    del order  # It keeps both kinds of joints apart, under their names.
     limits = {kind: getattr(trajectory.limits, kind) for kind in ("velocity", "acceleration", "jerk")}
     record = {
         "format": FORMAT,
         "units": {"time": "s", "angle": "rad", "length": "m"},
         "joint_names": trajectory.names,
         "held": dict(trajectory.held),
+        "controller": trajectory.columns(order)[0],
         "limits": limits,
         "duration": trajectory.duration,
         "deviation": trajectory.deviation,

@@ -56,6 +56,8 @@ class Trajectory:
         ``velocity``, ``acceleration`` and ``jerk``: the largest share of a limit that is used, on a fine grid.
     held : mapping of str to float
         Joints of the same controller that stay where they are, with their places [rad or m].
+    controller : tuple of str
+        All joints of the controller, in its order; empty where it is not known.
     proof : str
         What is shown of the motions from state to state: ``exact``, ``certified`` or ``resolution``; ``unchecked``
         where there was no world to ask.
@@ -75,6 +77,7 @@ class Trajectory:
     stops: int = 0
     highest: Mapping[str, float] = field(default_factory=dict)
     held: Mapping[str, float] = field(default_factory=dict)
+    controller: tuple[str, ...] = ()
     proof: str = "unchecked"
     radii: tuple[float, ...] = ()
 
@@ -83,10 +86,10 @@ class Trajectory:
     ) -> tuple[tuple[str, ...], tuple[Floats, Floats, Floats]]:
         """Return names, and positions, velocities and accelerations, of held joints, too, in this order.
 
-        Default: the moving ones first.  Raises UnknownName for a joint that is neither, InvalidValue if one that moves
-        is left out.
+        Default: that of the controller, else the moving ones first.  Raises UnknownName for a joint that is neither,
+        InvalidValue if one that moves is left out.
         """
-        order = (*self.names, *self.held) if order is None else tuple(order)
+        order = tuple(order or self.controller or (*self.names, *self.held))
         for name in order:
             require_known("joint of the trajectory", name, (*self.names, *self.held))
         if missing := sorted(set(self.names) - set(order)):
@@ -113,6 +116,7 @@ def make_trajectory(
     world: World | None = None,
     names: Sequence[str] | None = None,
     held: Mapping[str, float] | None = None,
+    controller: Sequence[str] = (),
     deviation: float = DEVIATION,
     step: float = STEP,
 ) -> Trajectory:
@@ -134,6 +138,7 @@ def make_trajectory(
     names : sequence of str, optional
         Of the joints; default ``joint_1``, ...
     held : mapping of str to float, optional
+    controller : sequence of str, optional
         Handed on.
     deviation : float
         How far from the path it may be, >= 0 [rad or m]; 0 stops at every corner.
@@ -194,6 +199,7 @@ def make_trajectory(
         stops=len(curve.stops),
         highest=highest,
         held=dict(held or {}),
+        controller=tuple(controller),
         proof=proof,
     )
 

@@ -33,7 +33,7 @@ def servoj_script(trajectory: Trajectory, order: Sequence[str] | None = None) ->
 
     Raises InvalidValue unless there are six joints and the states are 8 ms (CB3) or 2 ms (e-Series) apart.
     """
-    _, (positions, _, _) = _columns(trajectory, order)
+    _, (positions, _, _) = columns_of_ur(trajectory, order)
     cycle = float(trajectory.times[1])
     if not np.isclose(cycle, CYCLES).any():
         raise InvalidValue(
@@ -49,7 +49,7 @@ def movej_script(trajectory: Trajectory, order: Sequence[str] | None = None) -> 
     Corners are rounded off as far as `radii` allow, else it stops at each.  No joint is faster, or speeds up faster,
     than the slowest one may.  Raises InvalidValue unless there are six joints.
     """
-    names, _ = _columns(trajectory, order)
+    names, _ = columns_of_ur(trajectory, order)
     path = trajectory.waypoints
     places = {name: np.full(len(path), value) for name, value in trajectory.held.items()}
     places |= dict(zip(trajectory.names, path.T, strict=True))
@@ -103,9 +103,10 @@ def _radius(
     return float(np.min(gap))
 
 
-def _columns(
+def columns_of_ur(
     trajectory: Trajectory, order: Sequence[str] | None
 ) -> tuple[tuple[str, ...], tuple[Floats, Floats, Floats]]:
+    """Return what `Trajectory.columns` does of the six joints of a UR arm; InvalidValue for other numbers of joints."""
     names, tables = trajectory.columns(order)
     if len(names) != _JOINTS:
         raise InvalidValue(f"URScript needs the six joints of a UR arm, got {len(names)}: {', '.join(names)}")

@@ -1,0 +1,234 @@
+"""Sending a trajectory to a UR arm, state by state, through ur_rtde; nothing moves unless everything was checked."""
+
+from __future__ import annotations
+
+import multiprocessing
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from evenroad._arrays import Floats
+from evenroad._checks import require_extra, require_positive
+from evenroad.errors import EvenroadError, InvalidValue, NotAvailable
+from evenroad.trajectory.trajectory import Trajectory
+from evenroad.trajectory.urscript import CYCLES, columns_of_ur
+
+AT_START = 0.01
+"""With a joint farther from the start than this nothing moves [rad]."""
+
+ASTRAY = 0.3
+"""With a joint farther from where it should be than this the arm is stopped [rad]."""
+
+_RUNNING, _NORMAL, _REDUCED = 7, 1, 2
+"""Modes of a robot whose brakes are released, and of its safety."""
+
+_READ = ["timestamp", "actual_q", "robot_mode", "safety_mode", "runtime_state"]
+_PATIENCE = 8.0
+"""Seconds without a word after which the connection is taken for lost."""
+
+_ERRORS = {kind.__name__: kind for kind in (InvalidValue, NotAvailable)}
+_LOOKAHEAD, _GAIN = 0.1, 300.0
+_STOP = 2.0
+"""At the end, and when something is wrong [rad/s^2]."""
+
+
+@dataclass(frozen=True)
+class Sent:
+    """What was done: states sent, and the largest distance of a joint from where it should have been [rad]."""
+
+    states: int
+    largest_error: float
+
+
+def send_trajectory(
+    trajectory: Trajectory,
+    host: str,
+    *,
+    model: str,
+    fastest: float,
+    go: bool = False,
+    order: Sequence[str] | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Sent:
+    """Drive a UR arm along a trajectory; unless `go`, only check that it could be done.
+
+    The states are sent one a cycle, so that the controller stops the arm by itself when the connection is lost.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        Of six joints, its states 8 ms (CB3) or 2 ms (e-Series) apart.
+    host : str
+        Address of the controller.
+    model : str
+        Of the arm, as its controller says it: ``UR5``.
+    fastest : float
+        Most speed of a joint that is allowed here, > 0 [rad/s].
+    go : bool
+        Move.
+    order : sequence of str, optional
+        As :func:`save_trajectory`.
+    progress : callable, optional
+        Called with the states sent, and all of them.
+
+    Raises
+    ------
+    InvalidValue
+        If the trajectory is too fast or not of a UR arm, the arm is another one, not ready, or not at the start.
+    NotAvailable
+        If ur_rtde is not installed, nobody answers, or the connection is lost; or the arm is astray, or was stopped.
+    """
+    limit = require_positive("fastest", fastest)
+    names, (positions, velocities, _) = columns_of_ur(trajectory, order)
+    cycle = float(trajectory.times[1])
+    if not np.isclose(cycle, CYCLES).any():
+        raise InvalidValue(
+            f"a controller takes a state every 0.008 s or 0.002 s, these are {cycle:g} s apart"
+        )
+    speeds = np.abs(velocities).max(axis=0)
+    if speeds.max() > limit:
+        name = names[int(np.argmax(speeds))]
+        raise InvalidValue(
+            f"{name} moves at up to {speeds.max():.3g} rad/s, faster than the {limit:g} rad/s allowed"
+        )
+    spawned = multiprocessing.get_context("spawn")
+    ours, theirs = spawned.Pipe()
+    talk = (theirs, host, names, positions, cycle, model, go)
+    process = spawned.Process(target=_talk, args=talk, daemon=True)
+    process.start()
+    theirs.close()
+    try:
+        return _listened(ours, host, progress)
+    finally:
+        # Without a listener, as after Ctrl-C, it stops the arm; where it hangs, the controller does so by itself.
+        ours.close()
+        process.join(_PATIENCE)
+        process.kill()
+        process.join()
+
+
+def _listened(pipe: Any, host: str, progress: Callable[[int, int], None] | None) -> Sent:
+    """Return what the process that talks to the arm says it has done; give up where it is silent."""
+    while True:
+        if not pipe.poll(_PATIENCE):
+            raise NotAvailable(f"lost the connection to {host!r}; the controller stops the arm by itself")
+        try:
+            kind, *said = pipe.recv()
+        except EOFError:
+            raise NotAvailable(f"lost the connection to {host!r}: what talked to it died") from None
+        if kind == "sent" and progress is not None:
+            progress(*said)
+        elif kind == "done":
+            return Sent(*said)
+        elif kind in _ERRORS:
+            raise _ERRORS[kind](said[0])
+
+
+def _talk(
+    pipe: Any, host: str, names: Sequence[str], positions: Floats, cycle: float, model: str, go: bool
+) -> None:
+    """Check, and drive if told to; a process of its own, since ur_rtde may wait for ever for an answer."""
+    try:
+        pipe.send(("ready", 0))
+        sent = _checked_and_driven(pipe, host, names, positions, cycle, model, go)
+        pipe.send(("done", sent.states, sent.largest_error))
+    except EvenroadError as error:
+        pipe.send((type(error).__name__, str(error)))
+    except (KeyboardInterrupt, OSError):
+        # The process that asked is gone, or says so.
+        pass
+
+
+def _checked_and_driven(
+    pipe: Any, host: str, names: Sequence[str], positions: Floats, cycle: float, model: str, go: bool
+) -> Sent:
+    receive = require_extra("rtde_receive", "ur", "sending to an arm")
+    with _connection_to(host):
+        state = receive.RTDEReceiveInterface(host, 1.0 / cycle, _READ)
+    try:
+        _require_ready(host, state, names, positions[0], model)
+        if not go:
+            return Sent(0, 0.0)
+        drive = require_extra("rtde_control", "ur", "sending to an arm")
+        with _connection_to(host):
+            control = drive.RTDEControlInterface(host, 1.0 / cycle)
+        return _driven(pipe, control, state, names, positions, cycle)
+    finally:
+        with suppress(Exception):
+            state.disconnect()
+
+
+class _connection_to:
+    """Turns whatever ur_rtde raises into one line about the controller."""
+
+    def __init__(self, host: str) -> None:
+        self.host = host
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, *_: object) -> None:
+        if isinstance(error, RuntimeError | ValueError | OSError) and not isinstance(error, EvenroadError):
+            raise NotAvailable(
+                f"no answer that makes sense from a controller at {self.host!r}: {error}"
+            ) from None
+
+
+def _require_ready(host: str, state: Any, names: Sequence[str], start: Floats, model: str) -> None:
+    dashboards = require_extra("dashboard_client", "ur", "sending to an arm")
+    with _connection_to(host):
+        dashboard = dashboards.DashboardClient(host)
+        dashboard.connect(2000)
+        there = str(dashboard.getRobotModel()).strip()
+        dashboard.disconnect()
+    if there.lower() != model.lower():
+        raise InvalidValue(f"the arm at {host} is a {there}, not a {model}")
+    with _connection_to(host):
+        q = np.array(state.getActualQ(), dtype=np.float64)
+        mode, safety = state.getRobotMode(), state.getSafetyMode()
+    if mode != _RUNNING or safety not in (_NORMAL, _REDUCED):
+        raise InvalidValue(f"the arm at {host} is not ready to move: robot mode {mode}, safety mode {safety}")
+    if q.shape != start.shape:
+        raise NotAvailable(f"the controller at {host} does not say where the arm is")
+    off = np.abs(q - start)
+    if off.max() > AT_START:
+        i = int(np.argmax(off))
+        raise InvalidValue(
+            f"the arm is not at the start: {names[i]} is at {q[i]:.4f} rad, more than {AT_START} from {start[i]:.4f}"
+        )
+
+
+def _driven(
+    pipe: Any, control: Any, state: Any, names: Sequence[str], positions: Floats, cycle: float
+) -> Sent:
+    """Send the states; stop the arm whatever happens."""
+    worst, i = 0.0, 0
+    try:
+        for i, q in enumerate(positions):
+            began = control.initPeriod()
+            sent = control.servoJ(q.tolist(), 0.0, 0.0, cycle, _LOOKAHEAD, _GAIN)
+            if not sent or not state.isConnected():
+                raise RuntimeError("no answer")
+            if state.getSafetyMode() not in (_NORMAL, _REDUCED):
+                raise NotAvailable(f"the arm was stopped after {i * cycle:.3f} s by its safety")
+            off = np.abs(np.array(state.getActualQ()) - q)
+            worst = max(worst, float(off.max()))
+            if worst > ASTRAY:
+                name = names[int(np.argmax(off))]
+                raise NotAvailable(f"stopped after {i * cycle:.3f} s: {name} is {worst:.3f} rad astray")
+            pipe.send(("sent", i + 1, len(positions)))
+            control.waitPeriod(began)
+    except RuntimeError as error:
+        raise NotAvailable(
+            f"lost the connection after {i * cycle:.3f} s; the controller stops the arm by itself ({error})"
+        ) from None
+    finally:
+        # Also after Ctrl-C.
+        with suppress(Exception):
+            control.servoStop(_STOP)
+        with suppress(Exception):
+            control.stopScript()
+    return Sent(len(positions), worst)
