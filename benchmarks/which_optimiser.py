@@ -1,6 +1,6 @@
 """Which optimiser makes the better sets in equal time: the network, annealing, or the network and then annealing?
 
-    python -m benchmarks.which_optimiser --seconds 60 --out out/bench
+    python -m benchmarks.which_optimiser --seconds 4 --out out/bench
 
 Eight sets a cell, one thread.  Every method gets the same processor time for all eight: its number of steps is chosen
 from the measured time of a few steps, because its learning rate must know where it ends; the time really taken is
@@ -19,8 +19,8 @@ import numpy as np
 
 from evenroad.points import PointSet
 from evenroad.points.measures import MEASURES
-from evenroad.research.network import NetworkConfig, refine, train
-from evenroad.research.training import anneal_many
+from evenroad.research.network import NetworkConfig, refine
+from evenroad.research.training import anneal_many, train_many
 
 CELLS = [(d, n) for n in (128, 512) for d in (2, 5, 10)]
 SETS = 8
@@ -31,13 +31,13 @@ Made = tuple[tuple[PointSet, ...], str]
 
 
 def network(n: int, d: int, seconds: float) -> Made:
-    """Train the network for about so many seconds."""
+    """Train a network for each set, for about so many seconds in all."""
 
-    def config(steps: int) -> NetworkConfig:
-        return NetworkConfig(n=n, d=d, sets=SETS, steps=steps, patience=None, seed=SEED)
+    def run(steps: int) -> tuple[PointSet, ...]:
+        return train_many(NetworkConfig(n, d, steps=steps), SETS, rng=SEED, workers=1)
 
-    steps = _steps_in(seconds, lambda count: train(config(count), device="cpu"), probe=6)
-    return train(config(steps), device="cpu"), str(steps)
+    steps = _steps_in(seconds, run, probe=20)
+    return run(steps), str(steps)
 
 
 def annealing(n: int, d: int, seconds: float) -> Made:
@@ -80,22 +80,23 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument(
-        "--seconds", type=float, default=60.0, help="processor time a method, at n=512 doubled"
+        "--seconds", type=float, default=4.0, help="processor time a method, at n=512 four times"
     )
     parser.add_argument("--out", type=Path, default=Path("out/bench"))
+    parser.add_argument("--methods", nargs="+", choices=METHODS, default=list(METHODS))
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     path = options.out / "which_optimiser.csv"
     rows = list(csv.DictReader(path.open())) if path.exists() else []
     measure = MEASURES["hickernell"].rooted
     for d, n in CELLS:
-        for name, make in METHODS.items():
-            budget = options.seconds * (2 if n == 512 else 1)
+        for name in options.methods:
+            budget = options.seconds * (4 if n == 512 else 1)
             wanted = (str(d), str(n), name, str(budget))
             if any((row["d"], row["n"], row["method"], str(row["budget [s]"])) == wanted for row in rows):
                 continue
             began = time.process_time()
-            sets, steps = make(n, d, budget)
+            sets, steps = METHODS[name](n, d, budget)
             taken = time.process_time() - began
             values = [measure(each) for each in sets]
             numbers = [f"{value:.6g}" for value in (np.mean(values), np.std(values), np.min(values))]

@@ -2,8 +2,8 @@
 
     python tools/draw_network.py        # docs/network.png
 
-Left: the random points that one set starts from, with the nearest-neighbour graph that stays fixed during training.
-Right: points of low discrepancy (a shipped `hickernell` set, so that no training is needed to draw the figure).
+Left: the scrambled Sobol points that a training starts from, with the graph of nearest neighbours that stays fixed.
+Right: the points that the trained network makes of them.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
 
 from evenroad.points import draw
+from evenroad.research.network import NetworkConfig, train
 from evenroad.roadmap import KNearest
 
 N = 64
@@ -41,11 +42,11 @@ def boxes(axes: Axes) -> None:
     axes.set(xlim=(0, 10), ylim=(0, 4))
     axes.axis("off")
     stages = [
-        (0.3, 1.3, "encoder", "linear\nd → 128", "#e8edf3"),
+        (0.3, 1.3, "encoder", "linear\nd → 32", "#e8edf3"),
         (2.2, 1.7, "layer 1", "", "#d5e1f5"),
         (4.3, 1.7, "layer 2", "", "#d5e1f5"),
         (6.4, 1.7, "layer 3", "", "#d5e1f5"),
-        (8.5, 1.3, "decoder", "linear\n128 → d,\nsigmoid", "#e8edf3"),
+        (8.5, 1.3, "decoder", "linear\n32 → d,\nmoves", "#e8edf3"),
     ]
     for x, width, name, text, colour in stages:
         box = FancyBboxPatch(
@@ -64,13 +65,11 @@ def boxes(axes: Axes) -> None:
     for x in (3.05, 5.15, 7.25):
         axes.annotate("", (x, 1.12), (x, 0.62), arrowprops={"arrowstyle": "->", "color": "#6b7680"})
     axes.plot([0.0, 7.25], [0.62, 0.62], color="#6b7680", linewidth=1)
-    axes.text(
-        0.0, 0.22, "graph of nearest neighbours of the initial points, fixed", fontsize=8, color="#4a535c"
-    )
+    axes.text(0.0, 0.22, "graph of nearest neighbours of the starts, fixed", fontsize=8, color="#4a535c")
     axes.text(
         5.0,
         3.55,
-        "loss: mean over the sets of the discrepancy, exact gradient",
+        "loss: the discrepancy of the moved points, exact gradient",
         ha="center",
         fontsize=9,
         color=RED,
@@ -83,13 +82,13 @@ def main() -> None:
     FigureCanvasAgg(figure)
     scatter(
         figure.add_axes((0.01, 0.08, 0.22, 0.78)),
-        draw("uniform", N, 2, rng=3).points,
-        "random points",
+        draw("sobol", N, 2, rng=np.random.default_rng(3)).points,
+        "scrambled Sobol points",
         BLUE,
         True,
     )
     boxes(figure.add_axes((0.26, 0.05, 0.48, 0.9)))
-    even = draw("hickernell", N, 2, rng=3).points
+    even = train(NetworkConfig(N, 2), rng=3).points
     scatter(figure.add_axes((0.775, 0.08, 0.22, 0.78)), even, "points of low discrepancy", RED, False)
     figure.savefig(OUT)
 

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from evenroad.points import SAMPLERS, PointSet, draw, load_points, save_points
-from evenroad.research.commands.interrupt import interrupt_between_steps
+from evenroad.research.measures import star_discrepancy
+from evenroad.research.workers import interrupt_between_steps
 
 
 def test_a_shipped_set_is_written_as_a_plain_array(run, tmp_path):
@@ -185,12 +186,23 @@ def test_the_network_trains_from_the_command_line(run, tmp_path):
         5,
         "--refine",
         20,
+        "--jobs",
+        1,
         "-o",
         "sets",
     )
     assert run(*line)[0] == 0
     assert load_points(tmp_path / "sets" / "set-0001.npz").origin.family == "mpmc"
     assert load_points(tmp_path / "sets" / "refined-0001.npz").origin.method.endswith("+annealed")
+
+
+def test_orders_are_searched_from_the_command_line(run, tmp_path):
+    line = ("train", "-n", 12, "-d", 2, "--method", "order", "--objective", "star", "--sets", 2, "--jobs", 1)
+    code, out, _ = run(*line, "--steps", 200, "-o", "sets")
+    assert code == 0
+    best = min(star_discrepancy(load_points(tmp_path / "sets" / f"set-000{i}.npz")) for i in range(2))
+    assert "2 sets, star discrepancy: mean" in out
+    assert out.strip().endswith(f"best {best:.6g}")
 
 
 @pytest.mark.parametrize(
@@ -213,7 +225,7 @@ def test_bad_requests_to_train_get_one_line(run, tmp_path, arguments, says):
     assert re.search(says, err)
 
 
-MPMC = ("train", "-n", 12, "-d", 2, "--method", "mpmc", "--sets", 2, "-o", "sets")
+MPMC = ("train", "-n", 12, "-d", 2, "--method", "mpmc", "--sets", 2, "--jobs", 1, "-o", "sets")
 
 
 @pytest.mark.parametrize(
@@ -225,10 +237,11 @@ MPMC = ("train", "-n", 12, "-d", 2, "--method", "mpmc", "--sets", 2, "-o", "sets
         (("--seed", -1), "seed must be"),
         (("--jobs", 0), "jobs must be"),
         (("--refine", 5), "--refine does not go with the method 'anneal'"),
-        (("--device", "cpu"), "--device does not go with the method 'anneal'"),
+        (("--method", "order"), "in d = 2 for --objective star, not in d = 2 for 'hickernell'"),
+        (("--method", "order", "--objective", "star", "-d", 3), "not in d = 3"),
+        (("--method", "order", "--objective", "star", "--refine", 3), "--refine does not go"),
         (("--method", "mpmc", "--refine", -1), "refine must be"),
-        (("--method", "mpmc", "--device", "bogus"), "device must be"),
-        (("--method", "mpmc", "--jobs", 2), "--jobs does not go with the method 'mpmc'"),
+        (("--method", "mpmc", "--jobs", 0), "jobs must be"),
         (("--method", "mpmc", "-n", 1), "n must be"),
     ],
 )
@@ -247,8 +260,6 @@ def test_bad_requests_to_train_leave_no_folder(run, tmp_path, arguments, says):
         ("--objective", "hickernell+" * 500),
         ("--objective", "(" * 5000),
         ("--objective", "1" * 5000 + "*riesz"),
-        ("--method", "mpmc", "--device", "cuda:" + "9" * 5000),
-        ("--method", "mpmc", "--device", "x" * 5000),
     ],
 )
 def test_an_error_repeats_a_little_of_what_was_asked_for(run, arguments):
@@ -319,39 +330,6 @@ def test_refined_sets_are_kept_one_by_one_and_read_back(run, tmp_path, monkeypat
     assert "steps=20, asked for steps=21; use another folder (what there is: refined.json)" in err
 
 
-INTERRUPTED_INSIDE_STEP_5 = """
-import os, signal, sys
-import evenroad.research.network
-from evenroad.cli import main
-
-training = sys.modules["evenroad.research.network.train"]  # the name in the package is the function
-step = training.advance
-
-def advance(state, *rest):
-    if state.step == 4:
-        os.kill(os.getpid(), signal.SIGINT)
-    step(state, *rest)
-
-training.advance = advance
-sys.exit(main(sys.argv[1:]))
-"""
-
-
-def test_ctrl_c_inside_a_step_of_the_network_keeps_the_steps_before(run, tmp_path):
-    line = [str(each) for each in (*MPMC, "--steps", 8)]
-    stopped = subprocess.run(
-        [sys.executable, "-c", INTERRUPTED_INSIDE_STEP_5, *line], capture_output=True, text=True, timeout=120
-    )
-    assert stopped.returncode == 130, stopped.stderr
-    assert "Traceback" not in stopped.stderr
-    kept = {path.name for path in (tmp_path / "sets").iterdir()}
-    assert any("checkpoint" in name for name in kept), kept
-    assert run(*line)[0] == 0
-    resumed = [load_points(tmp_path / "sets" / f"set-000{i}.npz") for i in range(2)]
-    assert run(*line[:-3], "whole", *line[-2:])[0] == 0
-    assert resumed == [load_points(tmp_path / "whole" / f"set-000{i}.npz") for i in range(2)]
-
-
 def test_the_first_ctrl_c_waits_for_the_step_and_the_second_does_not():
     before = signal.getsignal(signal.SIGINT)
     with interrupt_between_steps() as check:
@@ -362,15 +340,6 @@ def test_the_first_ctrl_c_waits_for_the_step_and_the_second_does_not():
         with pytest.raises(KeyboardInterrupt):
             os.kill(os.getpid(), signal.SIGINT)
     assert signal.getsignal(signal.SIGINT) == before
-
-
-def test_without_torch_the_network_says_what_to_install(run, monkeypatch):
-    for name in [name for name in sys.modules if name.startswith("evenroad.research.network")]:
-        monkeypatch.delitem(sys.modules, name)
-    monkeypatch.setitem(sys.modules, "torch", None)
-    code, _, err = run("train", "-n", 8, "-d", 2, "--method", "mpmc", "--sets", 1, "-o", "sets")
-    assert code == 2
-    assert "evenroad[train]" in err
 
 
 def test_given_points_are_the_family_of_plain_arrays():

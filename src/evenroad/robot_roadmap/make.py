@@ -11,6 +11,7 @@ from evenroad._arrays import Floats, Ints, Ints32
 from evenroad._checks import require_count, require_positive
 from evenroad._rng import RngLike, generator
 from evenroad.errors import InvalidValue
+from evenroad.geometry.shapes import PRIMITIVES
 from evenroad.points import draw
 from evenroad.roadmap.neighbours import nearest
 from evenroad.robot import ArmWorld, Robot, Scene, in_scene
@@ -94,6 +95,12 @@ def make_roadmap(
     if n > MOST:
         raise InvalidValue(f"n must be at most {MOST}, got {n}")
     cell = Scene("nothing") if cell is None else cell
+    for obstacle in cell.obstacles:
+        if obstacle.shape not in PRIMITIVES:
+            raise InvalidValue(
+                f"a cell must consist of {', '.join(PRIMITIVES)}, which a roadmap's file holds, got"
+                f" {obstacle.name!r}, a {obstacle.body}: leave it to the scene of the day"
+            )
     robot = in_scene(robot, cell)
     if robot.holds:
         raise InvalidValue(

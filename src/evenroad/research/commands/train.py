@@ -12,13 +12,14 @@ import tyro
 from evenroad._checks import require_count
 from evenroad._files import require_writable_folder
 from evenroad._terminal import progress_shown
-from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.errors import BrokenFile, InvalidValue, shown
 from evenroad.points import PointSet, load_points, save_points
 from evenroad.points.bank.anneal import SCHEDULE, Callback, require_points_for
-from evenroad.research.commands.interrupt import interrupt_between_steps
-from evenroad.research.training import anneal_many
+from evenroad.research.measures import star_discrepancy
+from evenroad.research.training import anneal_many, order_many, train_many
 from evenroad.research.training.folder import claim_folder
 from evenroad.research.training.objective import parse_objective
+from evenroad.research.workers import interrupt_between_steps
 
 if TYPE_CHECKING:
     from evenroad.research.network import NetworkConfig
@@ -32,8 +33,9 @@ class Train:
     """How many points."""
     d: Annotated[int, tyro.conf.arg(aliases=["-d"])]
     """How many dimensions."""
-    method: Literal["anneal", "mpmc"] = "anneal"
-    """anneal: noisy Adam on the coordinates. mpmc: the message-passing network (needs the extra [train])."""
+    method: Literal["anneal", "mpmc", "order"] = "anneal"
+    """anneal: noisy Adam on the coordinates. mpmc: the message-passing network. order: d = 2, --objective star alone,
+    and this the exact star discrepancy: orders of the points are tried, each with its best places."""
     objective: str = "hickernell"
     """What is made small: a sum of measures, energies or their logs, e.g. "hickernell+10*riesz"."""
     sets: int = 8
@@ -42,12 +44,10 @@ class Train:
     """Steps of the optimiser."""
     refine: int = 0
     """mpmc: anneal the network's sets for so many more steps, and write them as OUT/refined-0000.npz, ..."""
-    device: str | None = None
-    """mpmc: auto, cpu or cuda (default: auto)."""
     seed: int = 0
     """Set i depends on this seed and i alone, whatever the number of processes."""
     jobs: int | None = None
-    """Processes for anneal (default: one a processor)."""
+    """Processes (default: one a processor)."""
     out: Annotated[Path, tyro.conf.arg(aliases=["-o"])]
     """The folder for the sets; made if its parent exists."""
 
@@ -62,10 +62,14 @@ class Train:
                 check()
                 report(step, steps, best)
 
-            sets = self._anneal(callback) if self.method == "anneal" else self._network(callback)
+            make = {"anneal": self._anneal, "mpmc": self._network, "order": self._order}[self.method]
+            sets = make(callback)
         objective = parse_objective(self.objective)
-        values = np.array([objective.value(each) for each in sets])
-        print(f"{self.out}: {len(sets)} sets, {objective}: mean {values.mean():.6g}, best {values.min():.6g}")
+        name, value = str(objective), objective.value
+        if self.method == "order":
+            name, value = "star discrepancy", star_discrepancy
+        values = np.array([value(each) for each in sets])
+        print(f"{self.out}: {len(sets)} sets, {name}: mean {values.mean():.6g}, best {values.min():.6g}")
         return 0
 
     def _check(self) -> None:
@@ -74,17 +78,17 @@ class Train:
         for name, at_least in least.items():
             require_count(name, getattr(self, name), at_least)
         require_points_for(parse_objective(self.objective), self.n)
-        foreign = ("refine", "device") if self.method == "anneal" else ("jobs",)
-        for name in foreign:
-            if getattr(self, name):
-                raise InvalidValue(f"--{name} does not go with the method {self.method!r}")
+        if self.refine and self.method != "mpmc":
+            raise InvalidValue(f"--refine does not go with the method {self.method!r}")
+        if self.method == "order" and (self.d, self.objective) != (2, "star"):
+            raise InvalidValue(
+                f"the method 'order' makes sets in d = 2 for --objective star,"
+                f" not in d = {self.d} for {shown(self.objective)}"
+            )
         if self.jobs is not None:
             require_count("jobs", self.jobs)
         if self.method == "mpmc":
-            from evenroad.research.network.config import choose_device
-
             self._config()
-            choose_device(self.device or "auto")
 
     def _make_folder(self) -> None:
         if self.out.exists() and not self.out.is_dir():
@@ -107,17 +111,26 @@ class Train:
             callback=callback,
         )
 
+    def _order(self, callback: Callback) -> tuple[PointSet, ...]:
+        return order_many(
+            self.n,
+            self.sets,
+            steps=self.steps,
+            rng=self.seed,
+            workers=self.jobs,
+            folder=self.out,
+            callback=callback,
+        )
+
     def _config(self) -> NetworkConfig:
         from evenroad.research.network import NetworkConfig
 
-        return NetworkConfig(
-            n=self.n, d=self.d, objective=self.objective, sets=self.sets, steps=self.steps, seed=self.seed
-        )
+        return NetworkConfig(self.n, self.d, self.objective, steps=self.steps)
 
     def _network(self, callback: Callback) -> tuple[PointSet, ...]:
-        from evenroad.research.network import train
-
-        sets = train(self._config(), folder=self.out, callback=callback, device=self.device or "auto")
+        sets = train_many(
+            self._config(), self.sets, rng=self.seed, workers=self.jobs, folder=self.out, callback=callback
+        )
         if not self.refine:
             return sets
         claim_folder(self.out, {"steps": self.refine, "schedule": SCHEDULE}, "refined.json")

@@ -1,142 +1,140 @@
-"""Training and refining: from a config to sets, in a folder where a stopped training goes on."""
+"""Training the network on one set of points, and annealing what it made."""
 
 from __future__ import annotations
 
-import os
-import time
+import math
 from collections.abc import Sequence
-from dataclasses import asdict, replace
-from pathlib import Path
+from dataclasses import replace
+from typing import TypeAlias
 
 import numpy as np
+import numpy.typing as npt
+from scipy.spatial import cKDTree
 
-from evenroad._checks import require_count, require_positive
+from evenroad._arrays import Floats, Ints
+from evenroad._checks import require_count
+from evenroad._rng import RngLike, generator
 from evenroad.errors import InvalidValue
-from evenroad.points.bank.anneal import Callback, anneal
-from evenroad.points.npz import save_points
-from evenroad.points.pointset import Origin, PointSet
-from evenroad.research.network.config import NetworkConfig, choose_device, same_bits
-from evenroad.research.network.state import (
-    MicroBatch,
-    TrainingState,
-    advance,
-    first_state,
-    is_finished,
-    load_checkpoint,
-    save_checkpoint,
-)
-from evenroad.research.training.folder import claim_folder, read_set, set_name
+from evenroad.points.bank.anneal import LOWEST, Annealed, Callback, anneal, first_rate, noise_over_rate
+from evenroad.points.pointset import BELOW_ONE, Origin, PointSet
+from evenroad.points.samplers import draw
+from evenroad.research.network.config import NetworkConfig
+from evenroad.research.network.layers import adam_step, backward, forward
 from evenroad.research.training.objective import Objective, parse_objective
 
+Weights: TypeAlias = npt.NDArray[np.float32]
 
-def origin_of(config: NetworkConfig, replica: int) -> Origin:
-    """Return the origin of one set of a training."""
-    return Origin(
-        family="mpmc", method="network", objective=config.objective, seed=config.seed, replica=replica
-    )
+INSET = 1e-4
+"""Starts lie so far inside the faces of the cube, where the logit would be infinite."""
 
 
-def finished_sets(folder: Path, config: NetworkConfig) -> tuple[PointSet, ...] | None:
-    """Return the sets of `folder`; None if one is missing or damaged, and all have to be written again."""
-    sets = []
-    for index in range(config.sets):
-        points = read_set(folder / set_name(index), origin_of(config, index), (config.n, config.d))
-        if points is None:
-            return None
-        sets.append(points)
-    return tuple(sets)
+class Network:
+    """The weights of a network and what it remembers of its last pass: all float32, the weights in one flat array."""
+
+    def __init__(self, config: NetworkConfig, draws: np.random.Generator) -> None:
+        d, width, layers = config.d, config.channels, config.layers
+        shapes = ((d + 1, width), (layers, 5, width, width), (layers, 3, width), (width + 1, d))
+        self.weights = np.zeros(sum(map(math.prod, shapes)), np.float32)
+        self.slopes = np.zeros_like(self.weights)
+        self._first, self._second = np.zeros_like(self.weights), np.zeros_like(self.weights)
+        self._parts, self._slope_parts = _split(self.weights, shapes), _split(self.slopes, shapes)
+        encoder, maps, biases, decoder = self._parts
+        # Uniform within 1 / sqrt(inputs), as is usual; less in the decoder: the points begin near their starts.
+        for part, bound in ((encoder, 1.7 / math.sqrt(d + 1)), (maps, 1.0), (biases, 1.0), (decoder, 0.1)):
+            scale = bound if part is encoder else bound / math.sqrt(width)
+            part[:] = draws.uniform(-scale, scale, part.shape)
+        self._rooms: dict[int, tuple[Weights, ...]] = {}
+        self._step = 0
+
+    def moves(self, starts: Floats, neighbours: Ints) -> Floats:
+        """Return by how much to move each start, (n, d), in the logit of its coordinates."""
+        (n, d), (layers, _, width, _) = starts.shape, self._parts[1].shape
+        if n not in self._rooms:
+            shapes = ((n, d + 1), (layers + 1, 6, n, width), (layers, width), (n, d))
+            self._rooms[n] = tuple(np.ones(shape, np.float32) for shape in shapes)
+        inputs, saved, scales, moves = self._rooms[n]
+        inputs[:, :-1] = 2.0 * starts - 1.0
+        forward(inputs, neighbours, *self._parts, saved, scales, moves)
+        self._last = inputs, neighbours, saved, scales
+        return moves.astype(np.float64)
+
+    def learn(self, slope: Floats, rate: float) -> None:
+        """Do a step of Adam, given the slope of the objective in the last moves."""
+        inputs, neighbours, saved, scales = self._last
+        slope = np.ascontiguousarray(slope, np.float32)
+        backward(inputs, neighbours, *self._parts, saved, scales, slope, self._slope_parts)
+        self._step += 1
+        adam_step(self.weights, self.slopes, self._first, self._second, self._step, rate)
 
 
-def train(
-    config: NetworkConfig,
-    *,
-    folder: str | os.PathLike[str] | None = None,
-    resume: bool = True,
-    callback: Callback | None = None,
-    device: str = "auto",
-    threads: int = 1,
-    checkpoint_seconds: float = 60.0,
-) -> tuple[PointSet, ...]:
-    """Train a network that turns random points into even ones, and return the best points it made.
+def _split(flat: Weights, shapes: Sequence[tuple[int, ...]]) -> tuple[Weights, ...]:
+    """Return views of a flat array, one after the other, in these shapes."""
+    ends = np.cumsum([math.prod(shape) for shape in shapes])[:-1]
+    return tuple(part.reshape(shape) for part, shape in zip(np.split(flat, ends), shapes, strict=True))
 
-    The method of Message-Passing Monte Carlo (Rusch, Kirk, Bronstein, Lemieux, Rus 2024): all sets go through one
-    network, whose weights Adam changes so that the mean of the objective over the sets falls.
+
+def nearest(points: Floats, k: int) -> Ints:
+    """Return the k nearest others of every point, or all others if n <= k, shape (n, k); equal points in any order."""
+    n = len(points)
+    k = min(k, n - 1)
+    _, found = cKDTree(points).query(points, k=k + 1)
+    other = found != np.arange(n)[:, np.newaxis]
+    # If more than k others lie at distance 0, the point itself may not be among the k + 1 nearest.
+    other[other.all(axis=1), -1] = False
+    return found[other].reshape(n, k).astype(np.int64)
+
+
+def train(config: NetworkConfig, *, rng: RngLike = 0, callback: Callback | None = None) -> Annealed:
+    """Train a network to move the points of a start, and return the best points that it made.
+
+    The method of Message-Passing Monte Carlo (Rusch, Kirk, Bronstein, Lemieux, Rus 2024) with three changes: every set
+    has a network of its own; the network says by how much to move a start, not where a point is; and the start is a
+    scrambled Sobol set, which drifts by a noise that cools.  Graph, layers and loss are the paper's.
 
     Parameters
     ----------
     config : NetworkConfig
-        Everything that decides the result.
-    folder : path, optional
-        An existing folder.  It gets a checkpoint every `checkpoint_seconds` and ``set-0000.npz``, ... at the end; the
-        same call goes on where a stopped one was, and reads the sets if they are all there.
-    resume : bool
-        False starts over, in place of what the folder holds of the same request.
+        Everything else that decides the result.
+    rng : int, SeedSequence or Generator
+        Draws the start, the first weights and the noise.
     callback : callable, optional
-        Called as ``callback(step, steps, best)`` after every step, with the best mean of the objective so far;
-        what it raises stops the training, with a checkpoint written first.
-    device : str
-        Where the network runs: ``auto`` takes a GPU when there is one, else the CPU; ``cpu``, ``cuda``,
-        ``cuda:1``.  The objective is always computed on the CPU.
-    threads : int
-        Threads of torch on a CPU.  Resuming continues bit for bit on a CPU with the same number.
-
-    Returns
-    -------
-    tuple of PointSet
-        The best points of every set over all steps, with their origin.
+        Called as ``callback(step, steps, best)`` after every step; what it raises stops the training.
 
     Raises
     ------
-    InvalidValue, BrokenFile, NotAvailable
-        For an argument out of range, a folder of another request, or a training that diverges; for a folder that is
-        missing or cannot be written, or a damaged checkpoint; for a GPU that is not there.
+    InvalidValue
+        If the training diverges.
     """
-    place = choose_device(device)
-    require_count("threads", threads)
-    require_positive("checkpoint_seconds", checkpoint_seconds, or_zero=True)
-    home = None if folder is None else Path(folder)
-    if home is not None:
-        claim_folder(home, {"method": "network", **asdict(config)})
-        if resume and (sets := finished_sets(home, config)) is not None:
-            return sets
-    with same_bits(place, threads):
-        state, batches = first_state(config, place)
-        if home is not None and resume:
-            load_checkpoint(home, config, state)
-        _run(config, state, batches, home, callback, checkpoint_seconds)
-    sets = tuple(PointSet(each, origin_of(config, i)) for i, each in enumerate(state.best_points))
-    if home is not None:
-        for index, points in enumerate(sets):
-            save_points(home / set_name(index), points)
-    return sets
-
-
-def _run(
-    config: NetworkConfig,
-    state: TrainingState,
-    batches: tuple[MicroBatch, ...],
-    home: Path | None,
-    callback: Callback | None,
-    checkpoint_seconds: float,
-) -> None:
+    draws = generator(rng)
     objective = parse_objective(config.objective)
-    saved_step, saved_at = state.step, time.monotonic()
-    while not is_finished(state, config):
-        advance(state, batches, config, objective)
-        if home is not None and time.monotonic() - saved_at >= checkpoint_seconds:
-            save_checkpoint(home, config, state)
-            saved_step, saved_at = state.step, time.monotonic()
-        try:
-            if callback is not None:
-                callback(state.step, config.steps, state.best_mean)
-        except BaseException:
-            # Between two steps the state is whole, so that nothing done so far needs to be lost.
-            if home is not None:
-                save_checkpoint(home, config, state)
-            raise
-    # The last one stays: should a set's file be damaged later, it is written again without training.
-    if home is not None and saved_step != state.step:
-        save_checkpoint(home, config, state)
+    starts = np.clip(draw(config.start, config.n, config.d, rng=draws).points, INSET, 1.0 - INSET)
+    network, neighbours = Network(config, draws), nearest(starts, config.k)
+    spread = config.drift * noise_over_rate(objective, config.n, config.d) * first_rate(config.n, config.d)
+    best_value, best_points = math.inf, starts
+    for step in range(1, config.steps + 1):
+        cooling = 0.5 * (1.0 + math.cos(math.pi * (step - 1) / config.steps))
+        points = moved(starts, network.moves(starts, neighbours))
+        value, columns = objective.of_columns(np.ascontiguousarray(points.T))
+        if not (math.isfinite(value) and np.isfinite(columns).all()):
+            raise InvalidValue(
+                f"the objective '{objective}' is {value} at step {step}: the training has diverged"
+            )
+        if value < best_value:
+            best_value, best_points = value, points
+        network.learn(columns.T * points * (1.0 - points), config.rate * cooling)
+        if spread:
+            drift = spread * cooling * draws.standard_normal(starts.shape)
+            starts = np.clip(starts + drift, INSET, 1.0 - INSET)
+        if callback is not None:
+            callback(step, config.steps, best_value)
+    best_points.setflags(write=False)
+    return Annealed(best_points, best_value)
+
+
+def moved(starts: Floats, moves: Floats) -> Floats:
+    """Return the starts moved in the logit of their coordinates: they stay in the open cube, below 1 as float32 too."""
+    odds = starts / (1.0 - starts) * np.exp(np.clip(moves, -40.0, 40.0))
+    return np.clip(odds / (1.0 + odds), LOWEST, BELOW_ONE)
 
 
 def refine(

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -23,31 +22,18 @@ from evenroad.points.bank.bank import DATA, INDEX, SEED, Bank, cell_name
 from evenroad.points.measures import MEASURES
 from evenroad.points.pointset import BELOW_ONE, PointSet
 from evenroad.research.measures import separation
-from evenroad.research.training import anneal_many
+from evenroad.research.training import anneal_many, train_many
 from evenroad.research.training.folder import one_at_a_time
 
 COUNTS = (16, 32, 64, 128, 256, 512, 1024, 2048)
 """Numbers of points."""
 HICKERNELL_DIMENSIONS = tuple(range(1, 15))
 MPMC_CELLS = tuple((2, n) for n in COUNTS[1:-1]) + tuple(
-    (d, n) for n in (128, 256, 512, 1024) for d in (3, 5, 10)
+    (d, n) for n in (128, 256, 512, 1024) for d in (3, 5, 6, 10)
 )
 
 LOCK = ".lock"
 """Lock file for changes of the index: several builds may work on one bank, on different cells."""
-
-NETWORK_WIDTH, NETWORK_RATE = 64, 3e-3
-"""Half the usual width: a step takes a third of the time, and in equal time on a CPU the sets are better.  Three times
-the usual first rate suits a network that makes one set only."""
-
-POINTS_OF_A_NETWORK = 256
-"""Points of all sets of a network together.  In d = 10 a network of sixteen sets of 128 points is a sixth worse than a
-network of one (mean D_H .241 and .208); but one of one set of 32 points often ends in a poor minimum (d = 2: .026 and
-.023)."""
-
-MEAN_NEIGHBOURS, LARGEST_RADIUS = 4.0, 0.35
-"""The radius within which points send each other messages holds so many neighbours on average, but is at most the
-paper's 0.35.  In d = 10 hardly any point is so near, and the network moves each point by itself."""
 
 MEASURED: dict[str, Callable[[Floats], float]] = {
     "hickernell_rooted": MEASURES["hickernell"].rooted,
@@ -63,7 +49,7 @@ class Recipe:
     """One cell of the bank: how the `sets` sets of n points in d dimensions are made.
 
     `objective` is made small in so many `steps`, by the method ``annealed`` (noisy Adam on the coordinates) or
-    ``network`` (needs the extra ``[train]``).
+    ``network``.
     """
 
     family: str
@@ -82,10 +68,18 @@ def recipes() -> list[Recipe]:
     annealed = [
         Recipe("hickernell", d, n, _sets(d, n), "hickernell", _steps(d, n)) for d in order for n in COUNTS
     ]
-    # Pools of large sets are small: on a CPU a set of 1024 points takes a minute.
     return annealed + [
-        Recipe("mpmc", d, n, 16 if n <= 256 else 4, "hickernell", 2_000, "network") for d, n in MPMC_CELLS
+        Recipe("mpmc", d, n, 8, "hickernell", _network_steps(n, d), "network") for d, n in MPMC_CELLS
     ]
+
+
+def _network_steps(n: int, d: int) -> int:
+    """Return the steps of a network: fewer where one takes long."""
+    if d <= 3:
+        return 10_000 if n <= 512 else 6_000
+    if n <= 256:
+        return 10_000
+    return (6_000 if d == 10 else 8_000) if n == 512 else 4_000
 
 
 def _sets(d: int, n: int) -> int:
@@ -131,39 +125,11 @@ def _anneal(recipe: Recipe, work: Path, jobs: int, progress: LineProgress) -> tu
 
 
 def _train(recipe: Recipe, work: Path, jobs: int, progress: LineProgress) -> tuple[PointSet, ...]:
-    """Train several networks of few sets each: a network serves few sets better."""
-    # Here, because only these cells need torch.
-    from evenroad.research.network import NetworkConfig, train
+    # Here, because only these cells need it.
+    from evenroad.research.network import NetworkConfig
 
-    made: list[PointSet] = []
-    together = min(max(POINTS_OF_A_NETWORK // recipe.n, 1), recipe.sets)
-    networks = recipe.sets // together
-    for network in range(networks):
-        config = NetworkConfig(
-            n=recipe.n,
-            d=recipe.d,
-            objective=recipe.objective,
-            sets=together,
-            width=NETWORK_WIDTH,
-            radius=_radius(recipe.n, recipe.d),
-            steps=recipe.steps,
-            rate=NETWORK_RATE,
-            seed=SEED + network,
-        )
-        own_work = work / f"network-{network:02d}"
-        own_work.mkdir(exist_ok=True)
-        before = network * recipe.steps
-
-        def report(step: int, steps: int, best: float, before: int = before) -> None:
-            progress(before + step, networks * steps, best)
-
-        made += train(config, folder=own_work, callback=report, threads=jobs)
-    return tuple(made)
-
-
-def _radius(n: int, d: int) -> float:
-    ball = math.pi ** (d / 2) / math.gamma(d / 2 + 1)
-    return min((MEAN_NEIGHBOURS / (n * ball)) ** (1 / d), LARGEST_RADIUS)
+    config = NetworkConfig(recipe.n, recipe.d, recipe.objective, steps=recipe.steps)
+    return train_many(config, recipe.sets, rng=SEED, workers=jobs, folder=work, callback=progress)
 
 
 def store(recipe: Recipe, sets: Sequence[PointSet], folder: Path) -> None:

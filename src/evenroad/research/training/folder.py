@@ -8,9 +8,9 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,6 +20,10 @@ from evenroad.points.bank.anneal import SCHEDULE, Callback, anneal
 from evenroad.points.npz import load_points, save_points
 from evenroad.points.pointset import Origin, PointSet
 from evenroad.research.training.objective import parse_objective
+from evenroad.research.training.order import search_orders
+
+if TYPE_CHECKING:
+    from evenroad.research.network import NetworkConfig
 
 REQUEST_FILE = "request.json"
 
@@ -73,7 +77,11 @@ def read_set(path: Path, origin: Origin, shape: tuple[int, int]) -> PointSet | N
 
 @dataclass(frozen=True)
 class SetTask:
-    """All that a process needs to anneal one set: what its origin will say, its own seeds, and its file if any."""
+    """All that a process needs to make one set: what its origin will say, its own seeds, and its file if any.
+
+    With a `network` it is trained as that says; by the origin's method ``order`` it is a search over orders, else it is
+    annealed.
+    """
 
     n: int
     d: int
@@ -81,6 +89,7 @@ class SetTask:
     seeds: np.random.SeedSequence
     origin: Origin
     path: Path | None
+    network: NetworkConfig | None = None
 
     @property
     def replica(self) -> int:
@@ -89,10 +98,18 @@ class SetTask:
 
 
 def make_set(task: SetTask, callback: Callback) -> PointSet:
-    """Anneal the set of a task, save it if it has a file, and return it."""
-    objective = parse_objective(task.origin.objective)
-    annealed = anneal(task.n, task.d, objective, steps=task.steps, rng=task.seeds, callback=callback)
-    points = PointSet(annealed.points, task.origin)
+    """Make the set of a task, save it if it has a file, and return it."""
+    if task.network is not None:
+        # Here, because the network's configs are built on this folder.
+        from evenroad.research.network.train import train
+
+        made = train(task.network, rng=task.seeds, callback=callback)
+    elif task.origin.method == "order":
+        made = search_orders(task.n, steps=task.steps, rng=task.seeds, callback=callback)
+    else:
+        objective = parse_objective(task.origin.objective)
+        made = anneal(task.n, task.d, objective, steps=task.steps, rng=task.seeds, callback=callback)
+    points = PointSet(made.points, task.origin)
     if task.path is not None:
         save_points(task.path, points)
     return points
@@ -105,13 +122,14 @@ def finished_set(task: SetTask) -> PointSet | None:
 
 def request_of(task: SetTask) -> dict[str, Any]:
     """Return what all sets of a folder have in common; their number is not part of it."""
+    method = {"schedule": SCHEDULE} if task.network is None else {"network": asdict(task.network)}
     return {
         "n": task.n,
         "d": task.d,
         "objective": task.origin.objective,
         "steps": task.steps,
         "family": task.origin.family,
-        "schedule": SCHEDULE,
+        **method,
         "seed": task.origin.seed,
         "entropy": str(task.seeds.entropy),
         "spawn_key": list(task.seeds.spawn_key[:-1]),

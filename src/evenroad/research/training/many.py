@@ -1,4 +1,4 @@
-"""Annealing many sets, one a process; finished ones are on disk at once, so that a stopped run goes on."""
+"""Many sets, annealed or trained, one a process; finished ones are on disk at once, so that a stopped run goes on."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from concurrent.futures import Future, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -28,6 +28,9 @@ from evenroad.research.training.folder import (
 )
 from evenroad.research.training.objective import Objective, parse_objective
 from evenroad.research.workers import ProcessPool, usable_processors
+
+if TYPE_CHECKING:
+    from evenroad.research.network import NetworkConfig
 
 _POLL_SECONDS = 0.2
 
@@ -77,24 +80,68 @@ def anneal_many(
     WorkerLost
         If a process was killed.  Finished sets are in the folder; the same call goes on.
     """
-    n, d, sets = require_count("n", n), require_count("d", d), require_count("sets", sets)
-    steps = require_count("steps", steps)
-    processes = require_count("workers", usable_processors() if workers is None else workers)
+    n, d, steps = require_count("n", n), require_count("d", d), require_count("steps", steps)
     target = parse_objective(objective)
     require_points_for(target, n)
-    root, home = _root_sequence(rng), None if folder is None else Path(folder)
     text = str(target)
     origin = Origin(
         family=text if family is None else family, method="annealed", objective=text, seed=seed_of(rng)
     )
+    first = SetTask(n, d, steps, _root_sequence(rng), origin, None)
+    return _make_all(first, sets, workers, folder, callback)
+
+
+def train_many(
+    config: NetworkConfig,
+    sets: int = 1,
+    *,
+    rng: RngLike = 0,
+    workers: int | None = None,
+    folder: str | os.PathLike[str] | None = None,
+    callback: Callback | None = None,
+) -> tuple[PointSet, ...]:
+    """Train `sets` independent networks, each with its own seed and one set: all else as :func:`anneal_many`."""
+    origin = Origin(family="mpmc", method="network", objective=config.objective, seed=seed_of(rng))
+    first = SetTask(config.n, config.d, config.steps, _root_sequence(rng), origin, None, config)
+    return _make_all(first, sets, workers, folder, callback)
+
+
+def order_many(
+    n: int,
+    sets: int = 1,
+    *,
+    steps: int = 5000,
+    rng: RngLike = 0,
+    workers: int | None = None,
+    folder: str | os.PathLike[str] | None = None,
+    callback: Callback | None = None,
+) -> tuple[PointSet, ...]:
+    """Search orders of n points in the plane for `sets` sets of small star discrepancy: else as :func:`anneal_many`.
+
+    `n` and `steps` are those of :func:`~evenroad.research.training.order.search_orders`.
+    """
+    n, steps = require_count("n", n), require_count("steps", steps)
+    origin = Origin(family="order", method="order", objective="star", seed=seed_of(rng))
+    return _make_all(SetTask(n, 2, steps, _root_sequence(rng), origin, None), sets, workers, folder, callback)
+
+
+def _make_all(
+    first: SetTask,
+    sets: int,
+    workers: int | None,
+    folder: str | os.PathLike[str] | None,
+    callback: Callback | None,
+) -> tuple[PointSet, ...]:
+    """Make sets like the `first`, each of its own child of the seed, and with its own file in the folder."""
+    sets, home = require_count("sets", sets), None if folder is None else Path(folder)
+    processes = require_count("workers", usable_processors() if workers is None else workers)
+    root = first.seeds
     tasks = [
-        SetTask(
-            n,
-            d,
-            steps,
-            np.random.SeedSequence(root.entropy, spawn_key=(*root.spawn_key, i)),
-            replace(origin, replica=i),
-            home and home / set_name(i),
+        replace(
+            first,
+            seeds=np.random.SeedSequence(root.entropy, spawn_key=(*root.spawn_key, i)),
+            origin=replace(first.origin, replica=i),
+            path=home and home / set_name(i),
         )
         for i in range(sets)
     ]
@@ -102,9 +149,8 @@ def anneal_many(
         claim_folder(home, request_of(tasks[0]))
     done = {task.replica: points for task in tasks if (points := finished_set(task)) is not None}
     missing = [task for task in tasks if task.replica not in done]
-    already = steps * len(done)
     make = _one_by_one if min(processes, len(missing)) <= 1 else _in_processes
-    for points in make(missing, processes, already, steps * sets, callback):
+    for points in make(missing, processes, first.steps * len(done), first.steps * sets, callback):
         done[points.origin.replica or 0] = points
     return tuple(done[i] for i in range(sets))
 

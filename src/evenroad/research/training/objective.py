@@ -3,13 +3,16 @@
 As text it is ``hickernell`` or ``log(average_squared) + 10*log(riesz)``:
 
     expression := term { "+" term }
-    term       := [ number "*" ] ( name | "log(" name ")" )
+    term       := [ number "*" ] ( name | "log(" name ")" | "prefixes(" name ")" )
 
 A discrepancy D falls with n and an energy is an inverse length, so the weight of a plain sum of the two would
 mean something else for every n and d: at d = 2, n = 128, D is .005 and the rooted energy 1.5.  In the sum of
 their logs a weight is a ratio of relative changes, whatever the units.  So where an energy stands without ``log``
 beside other terms, all terms are taken in the log: ``hickernell+10*riesz`` is short for
 ``log(hickernell) + 10*log(riesz)``, that is log D + 10 log(E)/s with s = 2d, and its ``str`` says so.
+
+``prefixes(hickernell)`` is the mean of log D over all beginnings of the set, each of n points with weight 1/n: for sets
+that are used from their first point on.
 """
 
 from __future__ import annotations
@@ -28,6 +31,7 @@ from evenroad.points.measures import MEASURES
 from evenroad.points.pointset import as_unit_points
 from evenroad.points.randomise import ALL_SYMMETRIES, Symmetry
 from evenroad.research.measures import log_riesz_of_columns
+from evenroad.research.training.prefixes import PREFIXED, of_prefixes
 
 ENERGIES = {"riesz": ALL_SYMMETRIES, "riesz_open": ALL_SYMMETRIES - {Symmetry.SHIFT}}
 """Riesz energies with s = 2d, rooted, on the torus and in the open cube; and what leaves each as it is."""
@@ -45,7 +49,7 @@ _TOKEN = re.compile(
 
 @dataclass(frozen=True)
 class Term:
-    """One term: ``weight * name`` or ``weight * log(name)``.
+    """One term: ``weight * name``, ``weight * log(name)`` or ``weight * prefixes(name)``.
 
     `name` is one of ``MEASURES``, meaning its rooted value, or of ``ENERGIES``, else UnknownName; `weight` a finite
     number > 0, else InvalidValue.
@@ -54,10 +58,13 @@ class Term:
     name: str
     weight: float = 1.0
     logarithm: bool = False
+    prefixes: bool = False
 
     def __post_init__(self) -> None:
         if self.name not in MEASURES and self.name not in ENERGIES:
             raise UnknownName.among("term", self.name, [*MEASURES, *ENERGIES])
+        if self.prefixes and self.name not in PREFIXED:
+            raise InvalidValue(f"prefixes(...) takes {' or '.join(PREFIXED)}, got {shown(self.name)}")
         require_positive("weight", self.weight)
 
     @property
@@ -71,6 +78,8 @@ class Term:
 
     def of_columns(self, columns: Floats) -> tuple[float, Floats]:
         """Return the unweighted term and its gradient, (d, n), at points of shape (d, n)."""
+        if self.prefixes:
+            return of_prefixes(self.name, columns)
         if self.name in ENERGIES:
             s = 2 * len(columns)
             value, gradient = log_riesz_of_columns(columns, s, self.name == "riesz", want_gradient=True)
@@ -84,6 +93,8 @@ class Term:
 
     def __str__(self) -> str:
         inner = f"log({self.name})" if self.logarithm else self.name
+        if self.prefixes:
+            inner = f"prefixes({self.name})"
         if self.weight == 1.0:
             return inner
         factor = int(self.weight) if self.weight.is_integer() and self.weight < 1e15 else self.weight
@@ -198,13 +209,14 @@ class _Reader:
                 raise InvalidValue(f"{self._place}: a weight must be finite and > 0, got {weight!r}")
             self._advance()
             self.take("*", "'*' after the weight")
-        if self.word != "log":
+        function = self.word
+        if function not in ("log", "prefixes"):
             return Term(self._take_name(), weight)
         self._advance()
-        self.take("(", "'(' after log")
+        self.take("(", f"'(' after {function}")
         name = self._take_name()
         self.take(")", "')'")
-        return Term(name, weight, logarithm=True)
+        return Term(name, weight, logarithm=True, prefixes=function == "prefixes")
 
     def _take_name(self) -> str:
         known, name = known_names(), ALIASES.get(self.word, self.word)
