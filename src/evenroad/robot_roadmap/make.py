@@ -129,7 +129,7 @@ def make_roadmap(
         robot, cell, pool, scaled, ends, pocket_rng, lambda share: progress("pockets", share)
     )
     progress("choosing milestones", 0.0)
-    order = spread_order(scaled, weights * _periods(one), preference, n, *seen)
+    order = spread_order(scaled, weights * _periods(one), preference, n, seen.first, seen.which)
     progress("joining milestones", 0.0)
     nothing = RobotRoadmap(
         robot,

@@ -53,15 +53,17 @@ def links_of(n: int) -> int:
 
 
 class Seen(NamedTuple):
-    """Which configurations ends can be joined to: those of end e are ``which[first[e]:first[e + 1]]``."""
+    """Which configurations ends can be joined to: the end ``own[e]`` to ``which[first[e]:first[e + 1]]``."""
 
+    own: Ints
     first: Ints
     which: Ints
 
 
 def no_ends() -> Seen:
     """Return what no end sees."""
-    return Seen(np.zeros(1, dtype=np.int64), np.empty(0, dtype=np.int64))
+    nothing = np.empty(0, dtype=np.int64)
+    return Seen(nothing, np.zeros(1, dtype=np.int64), nothing)
 
 
 def ends_in_pockets(
@@ -79,6 +81,7 @@ def ends_in_pockets(
     """
     around = Surroundings.of(robot, pool)
     tips = _tips(robot, pool)
+    own_of: list[int] = []
     found: list[Ints] = []
     for _ in range(TRIES * count if tips.shape[1] else 0):
         if len(found) == count:
@@ -92,11 +95,12 @@ def ends_in_pockets(
         others = np.flatnonzero((np.abs((tips[:, tip] - centre) @ turn) < INSIDE * half).all(axis=1))
         others = rng.permutation(others[world.valid(pool[others])])[: IN_ONE - 1]
         for end in np.unique(np.append(others, own))[: count - len(found)]:
+            own_of.append(int(end))
             found.append(_seen(world, pool, scaled, int(end)))
         progress(len(found) / count)
     if not found:
         return no_ends()
-    return Seen(np.cumsum([0, *map(len, found)]), np.concatenate(found))
+    return Seen(np.array(own_of), np.cumsum([0, *map(len, found)]), np.concatenate(found))
 
 
 def _seen(world: ArmWorld, pool: Floats, scaled: Floats, end: int) -> Ints:

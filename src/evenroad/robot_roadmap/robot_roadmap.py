@@ -16,13 +16,14 @@ from evenroad.roadmap import Budget, PlanResult, Status
 from evenroad.roadmap.answer import connected, gave_up, refusal
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.find_path import NO_POINTS, SECONDS, with_reasons
-from evenroad.roadmap.query import FEW, Query, read_places
+from evenroad.roadmap.query import Query, read_places
 from evenroad.robot import ArmWorld, Robot, Scene, configuration, in_scene
 from evenroad.robot.trees import shorten
 from evenroad.robot_roadmap.ask import ENDS_TAKEN, Asked, ask
 from evenroad.robot_roadmap.cell import day_and_all, left_to_check, require_same_robot
 from evenroad.robot_roadmap.known_graph import KnownGraph
 from evenroad.robot_roadmap.learned import with_paths
+from evenroad.robot_roadmap.pockets import links_of
 from evenroad.robot_roadmap.turns import OneTurn, one_turn, whole_turns
 from evenroad.space.path import path_length
 from evenroad.world.protocol import Connection
@@ -40,8 +41,8 @@ GREED = 3.0
 its paths are no longer."""
 
 LINKS = 300
-"""Each end is tried to be linked to so many milestones where no trees follow: asked lazily, more links cost little but
-where ends are cut off, and there they are worth more than more milestones."""
+"""Each end is tried to be linked to so many milestones where nothing else is said; plans without trees go by
+`links_of`: asked lazily, more links cost little but where ends are cut off, and there they are worth much."""
 
 TRIED_LINKS, TRIED_MOTIONS = 30, 200
 """Where trees may follow, so many links of each end are tried, and so many motions: trees find ways out of narrow
@@ -243,7 +244,7 @@ class SceneRoadmap:
         first, goals = read_places(self._place(start), self._places(goal), self.world.space)
         began, deadline = now(), budget.deadline()
         most = 2**31 - 1 if budget.motions is None else budget.motions
-        links = self._size if self._size <= FEW and not trees else TRIED_LINKS if trees else LINKS
+        links = TRIED_LINKS if trees else links_of(self._size)
         limits = min(most, TRIED_MOTIONS) if trees else most, began + SHARE * min(deadline - began, _LONG)
         asked = self._ask(first, goals, *limits, links)
         if asked.goal >= 0:

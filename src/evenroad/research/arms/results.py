@@ -179,8 +179,9 @@ def table_rows(lines: Sequence[Line]) -> dict[tuple[str, str], list[tuple[str, .
 
 
 def robots_first_k(lines: Sequence[Line]) -> list[tuple[str, str, str]]:
-    """Return each robot and k that has kept roadmaps, with their rule: what pictures are drawn for."""
-    return list(dict.fromkeys((line.robot, line.k, line.rule) for line in lines if line.search == KEPT))
+    """Return each robot and k that has kept roadmaps, with the rule of the largest: what pictures are drawn for."""
+    rules = {(line.robot, line.k): line.rule for line in lines if line.search == KEPT}
+    return [(*key, rule) for key, rule in rules.items()]
 
 
 TABLE_HEADER = ("N", "points", *GENERATORS, ALL, "roadmap - this", "p (Holm)")

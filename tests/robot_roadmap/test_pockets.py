@@ -1,0 +1,138 @@
+"""Ends in pockets at random, and milestones that are chosen for what such ends see."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from evenroad.robot import ArmWorld, Obstacle, Scene, load_robot, with_group, with_limits
+from evenroad.robot_roadmap import pockets
+from evenroad.robot_roadmap.chance import Surroundings
+from evenroad.robot_roadmap.make import make_roadmap
+from evenroad.robot_roadmap.pockets import ends_in_pockets, links_of
+from evenroad.robot_roadmap.spread import spread_order
+from tests.robot.kernel_arms import ur5
+
+NOTHING = Scene("nothing")
+TABLE = Scene(
+    "cell",
+    (Obstacle.of("table", "box", (1.6, 1.6, 0.05), (0.3, 0.0, -0.03)),),
+    frozenset({("base_link", "table"), ("shoulder_link", "table")}),
+)
+
+
+@pytest.fixture(scope="module")
+def arm():
+    return ur5(joints=4)
+
+
+@pytest.fixture(scope="module")
+def pool(arm):
+    world = ArmWorld(arm, NOTHING)
+    q = world.space.from_cube(np.random.default_rng(3).random((600, 4)))
+    return q[world.valid(q)]
+
+
+def test_a_pocket_holds_the_tip_between_five_walls_and_is_open_to_the_side_of_the_robot_or_above(arm, pool):
+    around, rng = Surroundings.of(arm, pool), np.random.default_rng(0)
+    tips = pockets._tips(arm, pool)
+    open_above = 0
+    for tip in tips[:100, 0]:
+        walls, centre, turn, half = pockets._pocket(tip, around, rng)
+        assert len(walls) == 5
+        assert np.all(np.abs((tip - centre) @ turn) <= 0.5 * half + 1e-12)
+        np.testing.assert_allclose(turn @ turn.T, np.eye(3), atol=1e-12)
+        assert np.linalg.det(turn) > 0.0
+        way_out = -turn[:, 0]
+        if way_out[2] > 0.5:
+            open_above += 1
+        else:
+            outwards = (tip - around.base)[:2]
+            assert way_out[:2] @ outwards < 0.0
+        # No wall is where the way out is.
+        assert not any(np.dot(np.array(wall.xyz) - centre, way_out) > 0.5 * half[0] for wall in walls)
+    assert 15 <= open_above <= 45
+
+
+def test_ends_see_what_straight_motions_reach_and_never_themselves(arm, pool, monkeypatch):
+    kept = []
+    seen_of = pockets._seen
+
+    def noting(world, pool, scaled, end):
+        found = seen_of(world, pool, scaled, end)
+        kept.append((world, end, found))
+        return found
+
+    monkeypatch.setattr(pockets, "_seen", noting)
+    seen = ends_in_pockets(arm, NOTHING, pool, pool, 30, np.random.default_rng(1))
+    assert len(seen.first) == 31
+    assert seen.first[-1] == len(seen.which) > 0
+    for number, (world, end, found) in enumerate(kept):
+        assert seen.which[seen.first[number] : seen.first[number + 1]].tolist() == found.tolist()
+        assert end not in found
+        assert world.valid(pool[end : end + 1])[0]
+        assert world.motion_valid(np.broadcast_to(pool[end], (len(found), 4)), pool[found]).all()
+
+
+def test_the_same_generator_gives_the_same_ends(arm, pool):
+    first, again = (ends_in_pockets(arm, NOTHING, pool, pool, 10, np.random.default_rng(2)) for _ in range(2))
+    assert first.which.tolist() == again.which.tolist()
+
+
+def test_an_arm_whose_tip_stays_where_it_is_has_no_pockets(arm, pool):
+    still = replace(arm, group=arm.group[:1])
+    spun = np.zeros((50, 1))
+    seen = ends_in_pockets(still, NOTHING, spun, spun, 10, np.random.default_rng(0))
+    assert seen.first.tolist() == [0]
+
+
+def test_what_ends_see_comes_first_and_each_end_counts_less_once_it_is_served():
+    points = np.random.default_rng(0).random((200, 2))
+    # Two ends: one sees the first ten points, the other the next ten.
+    first, which = np.array([0, 10, 20]), np.arange(20)
+    order = spread_order(points, np.full(2, np.inf), np.ones(200), 30, first, which)
+    assert set(order[:10].tolist()) <= set(range(20))
+    assert order[0] // 10 != order[1] // 10
+    # Served, they leave the rest to spreading.
+    assert set(order[20:].tolist()) - set(range(20))
+
+
+def test_an_order_without_ends_is_the_farthest_first():
+    points = np.random.default_rng(1).random((100, 3))
+    plain = spread_order(points, np.full(3, np.inf), np.ones(100), 20)
+    chosen = [0]
+    while len(chosen) < 20:
+        apart = np.linalg.norm(points[:, np.newaxis] - points[chosen], axis=2).min(axis=1)
+        chosen.append(int(apart.argmax()))
+    assert plain.tolist() == chosen
+
+
+def test_more_ends_see_a_roadmap_that_learned_from_others():
+    arm = load_robot("ur5")
+    arm = with_limits(with_group(arm, arm.group[:5]), dict.fromkeys(arm.group[:5], (-3.14, 3.14)))
+    world = ArmWorld(arm, TABLE)
+    learned, plain = (make_roadmap(arm, TABLE, 24, gamma=0.0, ends=ends).milestones for ends in (600, 0))
+    q = world.space.from_cube(np.random.default_rng(99).random((2400, 5)))
+    q = q[world.valid(q)][:700]
+    everything = np.concatenate([q, learned, plain])
+    seen = ends_in_pockets(arm, TABLE, everything, everything, 300, np.random.default_rng(5))
+    of_end = [
+        each
+        for own, each in zip(seen.own, np.split(seen.which, seen.first[1:-1]), strict=True)
+        if own < len(q)
+    ]
+    share = [
+        np.mean([np.any(which // 24 == kind) for which in (each[each >= len(q)] - len(q) for each in of_end)])
+        for kind in (0, 1)
+    ]
+    assert share[0] > share[1] + 0.03
+
+
+def test_ends_are_linked_to_all_of_few_milestones_and_to_a_falling_share_of_many():
+    assert [links_of(n) for n in (1, 64, 256, 1024, 4096)] == [1, 64, 256, 512, 1024]
+
+
+@pytest.mark.parametrize("ends", [-1, 1.5])
+def test_a_number_of_ends_that_is_none_is_refused(ends):
+    with pytest.raises(ValueError, match="ends"):
+        make_roadmap(ur5(joints=3), NOTHING, 8, ends=ends)
