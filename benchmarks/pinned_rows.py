@@ -20,9 +20,9 @@ from evenroad._terminal import LineProgress
 from evenroad.research.bench.runner import run_tasks
 from evenroad.research.bench.store import open_store, read_rows
 from evenroad.research.bench.task import Task
+from evenroad.research.report.analysis import Verdict, load_expected, verdicts_of
 from evenroad.research.report.cells import cells_of
 from evenroad.research.report.runs import runs_of
-from evenroad.research.report.verdicts import Verdict, load_expected, verdicts_of
 from evenroad.research.suites import SEED, paper_suite
 from evenroad.research.workers import processes
 

@@ -94,7 +94,8 @@ def as_batch(name: str, values: object, dim: int) -> Floats:
     batch = np.ascontiguousarray(array).view()
     batch.setflags(write=False)
     finite = np.isfinite(batch)
-    if not finite.all():
+    # Counted: `all` takes longer than the rest.
+    if np.count_nonzero(finite) != finite.size:
         i, k = np.argwhere(~finite)[0]
         raise InvalidValue(f"{name} must be finite: entry [{i}, {k}] is {float(batch[i, k])!r}")
     return batch

@@ -17,6 +17,9 @@ from evenroad.robot.upright import Upright, UprightWorld, upright_world
 from evenroad.space.path import path_length
 from evenroad.world import World
 
+LINES = 16
+"""Goals that are planned to, the nearest to which a straight line leads."""
+
 Planner = Callable[[World, Floats, Floats, bool], PlanResult]
 """Plans in a world from a start, (dim,), to goals, (g, dim), and shortens the path or not."""
 
@@ -101,20 +104,29 @@ def _between_lines(
         if leaving.why:
             return ends.refused(Status.NOT_CONNECTED, f"no straight way from the start: {leaving.why}")
     rows = np.flatnonzero(free[1:])
-    coming = [Line(ends.goals[i : i + 1]) for i in rows]
-    if straight.approach:
-        coming = [line_from(ends.world, chain, straight, ends.goals[i], straight.approach) for i in rows]
-    kept = [k for k, line in enumerate(coming) if not line.why]
-    if not kept:
-        every = "the goal" if len(rows) == 1 else f"any of {len(rows)} goals; to the first"
-        return ends.refused(Status.NOT_CONNECTED, f"no straight way to {every}: {coming[0].why}")
-    beginnings = np.array([coming[k].path[-1] for k in kept])
+    first, why = np.broadcast_to(leaving.path[-1], ends.goals[rows].shape), ""
+    rows = rows[np.argsort(ends.world.space.distance(first, ends.goals[rows]), kind="stable")]
+    coming: dict[int, Line] = {}
+    for row in rows.tolist():
+        line = Line(ends.goals[row : row + 1])
+        if straight.approach:
+            line = line_from(ends.world, chain, straight, ends.goals[row], straight.approach)
+        if line.why:
+            why = why or line.why
+            continue
+        coming[row] = line
+        if len(coming) == LINES:
+            break
+    if not coming:
+        every = "the goal" if len(rows) == 1 else f"any of {len(rows)} goals; to the nearest"
+        return ends.refused(Status.NOT_CONNECTED, f"no straight way to {every}: {why}")
+    beginnings = np.array([line.path[-1] for line in coming.values()])
     result = plan(ends.world, leaving.path[-1], beginnings, shorten)
     result = replace(result, start=ends.start, goals=ends.goals)
     if result.path is None or result.goal_index is None:
         return replace(result, message=f"between the straight lines: {result.message}")
-    last = coming[kept[result.goal_index]]
-    result = replace(result, goal_index=int(rows[kept[result.goal_index]]))
+    row, last = list(coming.items())[result.goal_index]
+    result = replace(result, goal_index=row)
     raw = result.path if result.milestone_path is None else result.milestone_path
     whole = [np.concatenate([leaving.path[:-1], way, last.path[::-1][1:]]) for way in (result.path, raw)]
     off = {name: max(getattr(leaving, name), getattr(last, name)) for name in ("off_m", "off_rad")}

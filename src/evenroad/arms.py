@@ -12,15 +12,15 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats
 from evenroad._rng import RngLike
+from evenroad.arm_goals import find_cheapest
 from evenroad.arm_ways import Ends, plan_ways
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import Pose
 from evenroad.points import PointSet, draw
 from evenroad.roadmap import Budget, PlanResult, Rule, Status
-from evenroad.roadmap.find_path import SECONDS, find_path
-from evenroad.roadmap.hemmed import with_reasons
+from evenroad.roadmap.answer import require_certified
+from evenroad.roadmap.find_path import SECONDS, with_reasons
 from evenroad.roadmap.plan import plan
-from evenroad.roadmap.proof import require_certified
 from evenroad.robot import (
     ArmWorld,
     Robot,
@@ -31,6 +31,7 @@ from evenroad.robot import (
     in_scene,
     load_model,
     load_scene,
+    scene_seen_by,
 )
 from evenroad.robot.goals import Goals, goals_of
 from evenroad.robot.load import RobotOptions
@@ -119,7 +120,7 @@ def plan_arm(
         A value that is outside of its joint's limits by no more than 1e-6 is brought to the limit.
     goal : str, array_like, Pose, PoseGoal, or a sequence of such
         As `start`, or where a link is to be: all configurations that are known to bring it there are goals.  Of several
-        the path ends at the first that is reached, with points or `improve` at the cheapest.
+        the path ends at a cheap one, with points or `improve` at the cheapest.
     points : int or PointSet, optional
         Plan on a roadmap (ps-PRM) of this set, or of exactly so many points of the sampler ``even``.  Default: no
         roadmap, but trees that grow from both ends until they meet.
@@ -182,7 +183,7 @@ def plan_arm(
 
     def plan_once(world: World, start: Floats, goals: Floats, shorten: bool) -> PlanResult:
         if points is None:
-            return find_path(world, start, goals, budget=budget, shorten=shorten, improve=improve)
+            return find_cheapest(world, start, goals, budget=budget, shorten=shorten, improve=improve)
         return plan_on_points(world, start, goals, points, rule=rule, shorten=shorten, budget=budget)
 
     result = plan_ways(query.ends, straight, upright, plan_once, shorten=shorten)
@@ -269,6 +270,7 @@ def arm_query(
     goals = _places(goal)
     texts = [place for place in (start, *goals) if isinstance(place, str)]
     robot = at_states(in_scene(robot, scene), texts, scene)
+    scene = scene_seen_by(robot, scene)
     first = _configuration(robot, scene, "start", start, degrees)
     world = ArmWorld(robot, scene, resolution=resolution)
 

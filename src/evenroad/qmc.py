@@ -29,16 +29,10 @@ class FamilyEngine(QMCEngine):
     Exhausted when fewer are left than asked for.  A set is even as a whole, but its first points alone are
     not, those of a lattice least of all: choose as n what you will use.
 
-    Parameters
-    ----------
-    d, n : int
-        Dimension and size of the set, >= 1; NotAvailable is raised if the family has none.
-    optimization : {None, "random-cd", "lloyd"}
-        SciPy's post-processing of what ``random`` returns.  It does not keep what the set was made for.
-    rng, seed : int, SeedSequence, Generator or None
-        None takes fresh entropy, as everywhere in SciPy.  A Generator is spawned.  `seed` is SciPy's old name.
-    **options
-        The sampler's own, e.g. ``train=True`` of a trained family.
+    `d` and `n`, >= 1, are dimension and size of the set; NotAvailable is raised if the family has none.  SciPy's
+    `optimization` of what ``random`` returns does not keep what the set was made for.  An `rng` of None takes fresh
+    entropy, as everywhere in SciPy; a Generator is spawned, and `seed` is SciPy's old name.  Other options are the
+    sampler's own, e.g. ``train=True`` of a trained family.
     """
 
     family: ClassVar[str]

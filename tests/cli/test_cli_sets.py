@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from evenroad.points import SAMPLERS, PointSet, draw, load_points, save_points
-from evenroad.research.commands.interrupt import interrupt_between_steps
 from evenroad.research.measures import star_discrepancy
+from evenroad.research.workers import interrupt_between_steps
 
 
 def test_a_shipped_set_is_written_as_a_plain_array(run, tmp_path):

@@ -36,9 +36,11 @@ FLAT = TriangleMesh(np.eye(3), [[0, 1, 2]], "flat")
         (lambda: Capsule((0, 0, 0), (0, 0, 1), 0.0), "radius of a capsule .* > 0, got 0.0"),
         (lambda: Capsule.along_z(1, 0), "length of a capsule"),
         (lambda: Mesh(FLAT, (1, 0, 1)), "scale of mesh flat must not be 0"),
-        (lambda: PointCloud(np.zeros((3, 2))), "point cloud .*3, 2"),
+        (lambda: PointCloud(np.zeros((3, 2))), "points of a cloud .*3, 2"),
+        (lambda: PointCloud(np.zeros((0, 3))), "one point or more"),
         (lambda: PointCloud(np.full((1, 3), np.inf)), "finite"),
-        (lambda: PointCloud(np.zeros((1, 3)), -1.0), "radius of a point cloud"),
+        (lambda: PointCloud(np.full((1, 3), 1e10)), "within 1e.09 m"),
+        (lambda: PointCloud(np.zeros((1, 3)), -1.0), "radius of a cloud"),
         (lambda: shape_of("box", (1.0, 1.0)), "a box must have 3"),
     ],
 )
@@ -60,18 +62,26 @@ def test_a_shape_is_made_again_from_its_kind_and_size(shape):
     assert shape_of(placed.kind, placed.size, placed.pose, placed.link) == placed
 
 
-def test_point_clouds_are_read_only_copies_and_equal_only_to_themselves():
+def test_point_clouds_are_read_only_copies_and_equal_by_value():
     points = np.zeros((2, 3))
     cloud = PointCloud(points)
     points[0] = 1.0
     assert (cloud.points == 0.0).all()
     with pytest.raises(ValueError, match="read-only"):
         cloud.points[0] = 1.0
-    assert cloud != PointCloud(np.zeros((2, 3)))
+    assert cloud == PointCloud(np.zeros((2, 3)))
+    assert hash(cloud) == hash(PointCloud(np.zeros((2, 3))))
+    for other in (
+        PointCloud(np.ones((2, 3))),
+        PointCloud(points, 0.1),
+        PointCloud(np.zeros((2, 3)), pose=PLACE),
+    ):
+        assert cloud != other
+    assert cloud != "cloud"
 
 
 def test_no_capsules_are_fitted_to_a_point_cloud():
-    with pytest.raises(InvalidValue, match="point cloud"):
+    with pytest.raises(InvalidValue, match="cloud of 1 points"):
         fit_capsules(PointCloud(np.zeros((1, 3))))
 
 

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from evenroad.roadmap import Budget, find_path, plan
-from evenroad.roadmap.hemmed import with_reasons
+from evenroad.roadmap.find_path import with_reasons
 from evenroad.space import Box
 from evenroad.world import FunctionWorld
 

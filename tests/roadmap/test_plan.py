@@ -39,6 +39,16 @@ def test_no_way_around_a_wall_is_an_answer_with_its_reason():
     assert "or a larger radius" in by_radius.message
 
 
+def test_few_neighbours_on_a_lattice_are_named_as_a_cause():
+    def message(points, rule):
+        return plan(WALL.world(0.5), (2, 2), (18, 18), points, rule=rule).message
+
+    for family in ("even", "lattice"):
+        assert "fewer than 4 leave directions out" in message(draw(family, 64, 2), KNearest(3))
+        assert "directions" not in message(draw(family, 64, 2), KNearest(4))
+    assert "directions" not in message(draw("halton", 64, 2), KNearest(3))
+
+
 @pytest.mark.parametrize(
     ("start", "goal", "status"),
     [

@@ -5,7 +5,7 @@ import pytest
 
 from evenroad.points import draw
 from evenroad.roadmap import Budget, KNearest, Roadmap, Status, fmt, plan, plan_anytime
-from evenroad.roadmap.proof import confirmed
+from evenroad.roadmap.search import confirmed
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.space.path import path_length
 from evenroad.world import GridMap

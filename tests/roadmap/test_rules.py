@@ -18,10 +18,11 @@ from evenroad.roadmap import (
     Radius,
     RadiusStar,
     TheoryRadius,
+    default_rule,
     prm_star_gamma,
     rule_named,
 )
-from evenroad.space import Rectangle
+from evenroad.space import Box, Rectangle
 from tests.roadmap.clouds import clouds, nearest_by_sorting
 from tests.roadmap.spaces import Great, Torus
 
@@ -194,3 +195,8 @@ def test_the_hole_of_a_set_is_within_the_bound_that_the_theory_radius_takes():
     assert dispersion_linf([[0.0, 0.375], [0.55, 0.975]]) > star_discrepancy(
         [[0.0, 0.375], [0.55, 0.975]]
     ) ** (1 / 2)
+
+
+@pytest.mark.parametrize(("d", "k"), [(2, 10), (5, 10), (6, 20), (10, 20), (14, 28)])
+def test_the_default_k_spans_all_directions_of_a_lattice(d, k):
+    assert default_rule(Box([0.0] * d, [1.0] * d)) == KNearest(k)

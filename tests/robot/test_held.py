@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import evenroad as er
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.geometry import Box, Cylinder, Pose, Sphere
-from evenroad.robot import ArmWorld, HeldObject, Obstacle, Scene, in_scene, load_robot, load_scene
+from evenroad.robot import ArmWorld, HeldObject, Obstacle, Scene, in_scene, link_poses, load_robot, load_scene
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.robot.load import DATA
 from evenroad.robot_roadmap.make import make_roadmap
@@ -199,3 +199,28 @@ def test_a_robots_roadmap_serves_a_robot_with_its_hands_full():
 def test_a_roadmap_is_made_of_a_robot_with_empty_hands():
     with pytest.raises(InvalidValue, match="empty hands"):
         make_roadmap(UR5.holding(BOX, "tool0"), Scene("nothing"), 8)
+
+
+def test_a_file_that_attaches_something_twice_is_refused(tmp_path):
+    entry = "  crate: {shape: sphere, radius: 0.1, link: tool0}\n"
+    (tmp_path / "pick.yaml").write_text(f"obstacles: {{}}\nattach:\n{entry}{entry}")
+    with pytest.raises(BrokenFile, match="crate"):
+        load_scene(tmp_path / "pick.yaml")
+
+
+def test_a_goal_pose_may_be_that_of_what_is_held():
+    held = HeldObject(
+        "crate",
+        Box((0.1, 0.1, 0.2), pose=Pose.from_rpy((0, 0, 0.12), (0, 0.3, 0))),
+        "tool0",
+        ("wrist_2_link",),
+    )
+    goal = Pose.from_rpy((0.4, 0.2, 0.5), (0.0, 2.5, 0.0))
+    start = [0.5, -1.9, 1.2, -0.8, -1.57, 0.0]
+    result = er.plan_arm("ur5", Scene("air", attached=(held,)), start, goal, tip="crate")
+    assert result.solved
+    robot = in_scene(UR5, Scene("air", attached=(held,)))
+    at = link_poses(robot, result.path[-1:])[0]
+    assert np.abs(at[robot.links.index("crate")] - goal.matrix).max() < 1e-6
+    tool = at[robot.links.index("tool0")] @ held.body.pose.matrix
+    assert np.abs(tool - goal.matrix).max() < 1e-6

@@ -70,7 +70,7 @@ BROKEN = {
     "an unknown shape": (
         "obstacles: {a: {shape: cone}}",
         UnknownName,
-        "shape of obstacle 'a' in .*'cone'; known: box, capsule, cylinder, sphere",
+        "shape of obstacle 'a' in .*'cone'; known: box, capsule, cloud, cylinder, mesh, sphere",
     ),
     "a shape that is no name": (
         "obstacles: {a: {shape: [box]}}",
@@ -296,9 +296,13 @@ def test_a_capsule_as_an_obstacle_is_along_z_whatever_its_ends():
         (lambda: Obstacle.of("x", "sphere", (-1.0,)), InvalidValue, "obstacle 'x': .* > 0, got -1"),
         (lambda: Obstacle.of("x", "sphere", (1.0,), (0, np.inf, 0)), InvalidValue, "'x': xyz .*inf"),
         (lambda: Obstacle.of("x", "sphere", (1.0,), (0, 0, 0), (2.0,) * 9), InvalidValue, "'x': rotation"),
-        (lambda: Obstacle("x", PointCloud(np.zeros((1, 3)))), InvalidValue, "capsule, got a point cloud"),
-        (lambda: Obstacle("x", Mesh("part.stl")), InvalidValue, "capsule, got a mesh part.stl"),
-        (lambda: Obstacle("x", "box"), InvalidValue, "one of box, sphere, cylinder, capsule, got a box"),
+        (
+            lambda: Obstacle("x", PointCloud(np.zeros((1, 3)))),
+            InvalidValue,
+            "cloud 'x' must have a radius > 0",
+        ),
+        (lambda: Obstacle("x", Mesh("part.stl")), BrokenFile, "mesh part.stl is missing"),
+        (lambda: Obstacle("x", "box"), InvalidValue, "cylinder, capsule, cloud, mesh, got a box"),
         (lambda: Obstacle("x", Sphere(1.0, link="hand")), InvalidValue, "not to a link, got 'hand'"),
     ],
 )

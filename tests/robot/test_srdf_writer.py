@@ -1,7 +1,7 @@
 """An SRDF that is written says of a robot what is known, and is read again to the same robot."""
 
 from evenroad.robot import load_model
-from evenroad.robot.srdf_writer import chains, srdf_text
+from evenroad.robot.srdf import chains, srdf_text
 from tests.robot.urdf_texts import LIMIT, joint, link, urdf, write
 
 TWO_ARMS = urdf(

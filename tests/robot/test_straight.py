@@ -98,7 +98,7 @@ def test_a_plan_goes_straight_from_its_start_and_to_its_goal():
 
 def test_points_plan_between_lines_too():
     pose = Pose.from_rpy((0.62, 0.0, 0.2), (0.0, math.pi / 2, 0.0))
-    result = er.plan_arm("ur5", "box-reach", START, pose, 1024, straight=Straight(0.05))
+    result = er.plan_arm("ur5", "box-reach", START, pose, 1024, seconds=60, straight=Straight(0.05))
     assert result.solved
     assert result.planner == "prm lazy"
     assert "line_m" in result.deviation

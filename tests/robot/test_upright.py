@@ -13,7 +13,7 @@ from evenroad.robot import ArmWorld, Scene, Straight, Upright, link_poses, load_
 from evenroad.robot.chain import chain_of
 from evenroad.robot.inverse_kinematics import reach
 from evenroad.robot.pose_goal import PoseGoal
-from evenroad.robot.upright import upright_world
+from evenroad.robot.upright import UprightWorld, upright_world
 from tests.robot.kernel_arms import random_scene
 
 ARM7 = load_robot("arm7")
@@ -118,3 +118,13 @@ def test_a_tolerance_that_is_none_is_refused():
         Upright(4.0)
     with pytest.raises(InvalidValue, match="axis of upright must be"):
         Upright(0.1, axis="up")
+
+
+def test_a_path_that_is_tilted_by_too_much_on_the_finer_grid_is_not_handed_out(monkeypatch):
+    through = UprightWorld.path_through
+    monkeypatch.setattr(UprightWorld, "path_through", lambda *a, **options: (through(*a, **options)[0], 0.11))
+    scene, start, goal = problem(6)
+    result = er.plan_arm(ARM7, scene, start, goal, upright=Upright(0.1))
+    assert result.status is er.Status.NOT_CONNECTED
+    assert "tilted by 0.11 rad, more than 0.1" in result.message
+    assert result.path is None

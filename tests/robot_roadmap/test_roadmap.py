@@ -13,7 +13,7 @@ from evenroad.robot_roadmap.cell import day_and_all
 from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.robot_roadmap import SceneRoadmap
 from evenroad.robot_roadmap.spread import displacement_weights, spread_order
-from evenroad.robot_roadmap.turns import whole_turns
+from evenroad.robot_roadmap.turns import lifted_motions_free, whole_turns
 from tests.robot.kernel_arms import STRAIGHT, Z, box_scene, ur5
 
 TABLE = Scene(
@@ -264,3 +264,30 @@ def test_content_that_no_roadmap_has_is_broken(roadmap, tmp_path, field, value, 
     er.save_robot_roadmap(file, replace(roadmap, **{field: value(getattr(roadmap, field))}))
     with pytest.raises(er.BrokenFile, match=said):
         er.load_robot_roadmap(file)
+
+
+def test_paths_are_remembered_as_milestones_in_every_scene_of_the_cell(roadmap, tmp_path):
+    known = roadmap.in_scene(box_scene())
+    path = known.world.connect(np.array([0.0, -1.5, 0.0]), np.array([[2.0, -1.0, 1.0]])).path
+    longer = roadmap.remember(path, path[::-1])
+    new = longer.milestones[40:]
+    # Of the second path nothing is new.
+    assert len(new) == len(path)
+    np.testing.assert_array_equal(longer.milestones[:40], roadmap.milestones)
+    np.testing.assert_allclose(np.cos(new), np.cos(path))
+    before = {(a, b, *t) for (a, b), t in zip(roadmap.edges.tolist(), roadmap.turns.tolist(), strict=True)}
+    after = {(a, b, *t) for (a, b), t in zip(longer.edges.tolist(), longer.turns.tolist(), strict=True)}
+    assert before < after
+    a, b = longer.milestones[longer.edges[:, 0]], longer.milestones[longer.edges[:, 1]]
+    assert lifted_motions_free(longer.world, longer.one_turn, a, b, longer.turns.astype(int)).all()
+    er.save_robot_roadmap(tmp_path / "a.roadmap", longer)
+    again = er.load_robot_roadmap(tmp_path / "a.roadmap").in_scene(box_scene())
+    assert again.plan(path[0], path[-1], trees=False).solved
+
+
+def test_a_path_that_is_not_free_of_robot_and_cell_is_not_remembered(roadmap):
+    through = np.array([[0.0, -1.5, 0.0], [0.0, 0.6, 0.0]])
+    with pytest.raises(er.InvalidValue, match="path 1 cannot be remembered: its motion 0 is not free"):
+        roadmap.remember(through[:1].repeat(2, axis=0), through)
+    with pytest.raises(er.InvalidValue, match="path 0"):
+        roadmap.remember(np.zeros((3, 2)))

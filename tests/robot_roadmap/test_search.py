@@ -1,4 +1,4 @@
-"""The compiled lazy search against Dijkstra's over everything, edge by edge, in plain Python."""
+"""The compiled lazy search against Dijkstra's over everything, edge by edge, in plain Python; and what it learns."""
 
 import heapq
 import itertools
@@ -11,6 +11,7 @@ from evenroad.robot import ArmWorld, Scene, with_limits
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
 from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.robot_roadmap import SceneRoadmap
+from evenroad.robot_roadmap.search_memory import ENTRIES
 from evenroad.robot_roadmap.turns import MOST_TURNS, one_turn
 from evenroad.space import JointSpace
 from tests.robot.kernel_arms import box_scene, ur5
@@ -29,7 +30,7 @@ def shortest(known, start, goals):
         return bool(world.motion_certified(a[np.newaxis], b[np.newaxis], RECHECK_TOLERANCE)[0])
 
     def length(a, b):
-        return float(np.linalg.norm(roadmap.weights * (b - a)))
+        return float(np.linalg.norm(b - a))
 
     def nearest_lift(i, place):
         best = [
@@ -85,8 +86,8 @@ def roadmap():
     return make_roadmap(ur5(joints=3), cell, 48, k=5, gamma=2.0)
 
 
-def length_of(roadmap, path):
-    return float(np.sum(np.linalg.norm(roadmap.weights * np.diff(path, axis=0), axis=1)))
+def length_of(path):
+    return float(np.sum(np.linalg.norm(np.diff(path, axis=0), axis=1)))
 
 
 def test_the_path_is_as_long_as_that_of_a_slow_search_and_proved_again(roadmap):
@@ -97,14 +98,19 @@ def test_the_path_is_as_long_as_that_of_a_slow_search_and_proved_again(roadmap):
         ends = q[known.world.valid(q)]
         for i in range(0, 8 * (1 + goals), 1 + goals):
             start, there = ends[i], ends[i + 1 : i + 1 + goals]
-            connection = known.connect(start, there)
+            connection = known.connect(start, there, greed=1.0)
+            greedy = known.connect(start, there)
             expected = shortest(known, start, there)
             if connection.goal < 0:
                 assert expected == np.inf
+                assert greedy.goal < 0
                 continue
             found += 1
             path = connection.path
-            assert length_of(roadmap, path) == pytest.approx(expected, rel=1e-9)
+            # Links are measured in single precision.
+            assert length_of(path) == pytest.approx(expected, rel=1e-6)
+            assert length_of(greedy.path) >= expected * (1.0 - 1e-6)
+            assert known.world.recheck(greedy.path).all()
             assert known.world.recheck(path).all()
             np.testing.assert_array_equal(path[0], start)
             np.testing.assert_array_equal(path[-1], there[connection.goal])
@@ -191,18 +197,63 @@ def test_a_world_without_lanes_finds_the_same_path(roadmap):
     )
 
 
-def test_what_the_roadmap_cannot_do_in_its_time_is_left_to_the_trees(roadmap, monkeypatch):
+def test_what_the_roadmap_does_not_lead_to_soon_is_left_to_the_trees_and_learned(roadmap, monkeypatch):
+    monkeypatch.setattr("evenroad.robot_roadmap.robot_roadmap.TRIED_MOTIONS", 1)
     known = SceneRoadmap(roadmap, box_scene())
     start, goal = far_apart(known)
-    assert known.connect(start, goal, seconds=1e-9).goal == -2
-    monkeypatch.setattr(ArmWorld, "connect", lambda world, start, goals, **_: fake(start, goals))
-    monkeypatch.setattr(
-        known, "connect", lambda *_, **__: SceneRoadmap.connect(known, start, goal, seconds=1e-9)
-    )
-    assert known.plan(start, goal[0], shorten=False).planner == "robot roadmap, then trees"
+    first = known.plan(start, goal[0], shorten=False)
+    assert first.planner == "robot roadmap, then trees"
+    assert known.world.recheck(first.path).all()
+    np.testing.assert_array_equal(known.learned[0], first.path)
+    monkeypatch.undo()
+    # Both ends are milestones now, and the way between them is proved.
+    second = known.plan(start, goal[0], shorten=False)
+    assert second.planner == "robot roadmap"
+    assert second.counts["edges_checked"] < 10
+    assert known.world.recheck(second.path).all()
 
 
-def fake(start, goals):
-    from evenroad.world.protocol import Connection
+def test_there_is_room_for_more_than_was_taken_at_first(roadmap, monkeypatch):
+    monkeypatch.setattr("evenroad.robot_roadmap.known_graph.ROOM", 2)
+    small = replace(roadmap)
+    known, other = SceneRoadmap(small, box_scene()), SceneRoadmap(roadmap, box_scene())
+    start, goal = far_apart(other)
+    paths = [other.connect(*ends, greed=1.0).path for ends in itertools.islice(hard(other), 6)]
+    for path in paths:
+        known._graph.learn(path)
+    for path in paths:
+        again = known.connect(path[0], path[-1:], greed=1.0)
+        assert again.goal == 0
+        assert length_of(again.path) <= length_of(path) * (1.0 + 1e-6)
+        assert known.world.recheck(again.path).all()
+    assert known.connect(start, goal).goal == 0
 
-    return Connection(np.stack([start, goals[0]]), 0, 2, 0, 1)
+
+def test_a_search_without_room_begins_again_with_more(roadmap, monkeypatch):
+    known = SceneRoadmap(roadmap, box_scene())
+    start, goal = far_apart(known)
+    expected = SceneRoadmap(roadmap, box_scene()).connect(start, goal)
+    prepare, rooms = known._graph.prepare, []
+
+    def little(*arguments):
+        prepare(*arguments)
+        rooms.append(arguments[-1])
+        if arguments[-1] < 4:
+            known._graph.desk[ENTRIES] = 60
+
+    monkeypatch.setattr(known._graph, "prepare", little)
+    found = known.connect(start, goal)
+    assert rooms == [1, 2, 4]
+    np.testing.assert_array_equal(found.path, expected.path)
+
+
+def test_a_goal_that_is_not_free_is_left_out(roadmap):
+    known = SceneRoadmap(roadmap, box_scene())
+    start, goal = far_apart(known)
+    touching = np.array([0.0, 0.6, 0.0])
+    assert not known.world.valid(touching[np.newaxis])[0]
+    result = known.plan(start, np.stack([touching, goal[0]]))
+    assert result.solved
+    assert result.goal_index == 1
+    assert known.plan(start, touching).status == "goal_invalid"
+    assert known.plan(touching, goal[0]).status == "start_invalid"

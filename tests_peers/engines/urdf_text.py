@@ -25,7 +25,15 @@ def as_urdf(robot: Robot, meshes: Mapping[str, str] | None = None) -> str:
         Link -> file of its mesh.
     """
     bodies = meshes or {}
-    lines = [f"<robot name={quoteattr(robot.name)}>", '<klampt freebase="0" use_vis_geom="0"/>']
+    lines = [f"<robot name={quoteattr(robot.name)}>", '<klampt use_vis_geom="0"/>']
+    if "world" not in robot.links:
+        # Klamp't lets every robot fly whose root has another name.
+        root = quoteattr(robot.links[0])
+        lines += [
+            '<link name="world"/>',
+            '<joint name="fixed to the world" type="fixed"><parent link="world"/>',
+        ]
+        lines += [f"<child link={root}/></joint>"]
     for link in robot.links:
         body = ""
         if link in bodies:

@@ -162,7 +162,7 @@ class PlanArm(PlanOptions, RobotOptions):
     """Plan along this roadmap, which ``evenroad roadmap`` made and which knows its arm and its cell; --robot may be
     given, too, and then has to be that arm."""
     goal: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]] = ()
-    """As start.  Given more than once, also with --goal-pose, the path ends at the first one that is reached.
+    """As start.  Given more than once, also with --goal-pose, the path ends at a cheap one.
     With points or --improve at the cheapest."""
     goal_pose: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]] = ()
     """Where a link is to be: "x y z qx qy qz qw" or "x y z roll pitch yaw" (metres, radians), or "x y z", turned at
@@ -237,8 +237,8 @@ def plan_type(words: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
     if not HELP.isdisjoint(words):
         return chosen
     if for_arm == ("--robot-radius" in given):
-        many = "both" if for_arm else "neither"
-        raise InvalidValue(f"give --robot-radius (a disk) or --robot (an arm), one of them, not {many}")
+        text = "give --robot-radius (a disk) or --robot (an arm), exactly one of them, not"
+        raise InvalidValue(f"{text} {'both' if for_arm else 'neither'}")
     other, needs = (PlanDisk, "--robot-radius") if chosen is PlanArm else (PlanArm, "--robot")
     for option in sorted(given & (option_names(other) - option_names(chosen))):
         raise InvalidValue(f"{option} goes with {needs} only")

@@ -10,6 +10,7 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._compiled import say_if_compiling
+from evenroad.arm_goals import find_cheapest
 from evenroad.arm_ways import plan_ways
 from evenroad.arms import SEARCH, Goal, arm_query, finished, plan_on_points, unreached
 from evenroad.cli.plan import PlanArm
@@ -28,7 +29,7 @@ from evenroad.cli.robot import bodiless_rows
 from evenroad.cli.trajectory import require_trajectory_options, trajectory_rows
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
-from evenroad.roadmap import PlanResult, default_rule, find_path
+from evenroad.roadmap import PlanResult, default_rule
 from evenroad.robot import find_robot, find_scene, held_values, load_scene
 from evenroad.robot.kernel.selftest import lanes_failure
 from evenroad.robot.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
@@ -76,7 +77,7 @@ def plan_arm(plan: PlanArm) -> int:
         if known is not None:
             return known.plan(start, goals, budget=budget, shorten=shorten)
         if points is None:
-            return find_path(world, start, goals, budget=budget, shorten=shorten, improve=plan.improve)
+            return find_cheapest(world, start, goals, budget=budget, shorten=shorten, improve=plan.improve)
         return plan_on_points(world, start, goals, points, rule=rule, shorten=shorten, budget=budget)
 
     if (refused := unreached(query)) is not None:

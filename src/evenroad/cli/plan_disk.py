@@ -25,8 +25,7 @@ from evenroad.cli.plan_parts import (
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
 from evenroad.roadmap import Status, find_path
-from evenroad.roadmap.answer import PROVED
-from evenroad.roadmap.proof import require_certified
+from evenroad.roadmap.answer import PROVED, require_certified
 from evenroad.world import GridMap, load_map
 from evenroad.world.gridmap.load import map_files
 

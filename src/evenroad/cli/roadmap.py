@@ -36,9 +36,8 @@ class MakeRoadmap(RobotOptions):
     """How many milestones."""
     k: Annotated[int, tyro.conf.arg(aliases=["-k"])] = 16
     """Each is joined to so many of the nearest ones that it can reach freely."""
-    gamma: float | None = None
-    """Milestones are as dense as the chance of being free in random scenes to this power, >= 0.  Default: by n, and 0
-    from seven joints on."""
+    gamma: float = 2.0
+    """Milestones are as dense as the chance of being free in random scenes to this power, >= 0."""
     resolution: float = 0.05
     """Largest step of a motion check, > 0, in radians."""
     seed: int = 0

@@ -21,7 +21,7 @@ from evenroad._terminal import print_table
 from evenroad.cli.plan import RobotOptions
 from evenroad.robot import ArmWorld, Joint, RobotModel, Scene, held_values, in_scene, load_model, load_scene
 from evenroad.robot import Robot as Arm
-from evenroad.robot.srdf_writer import srdf_text
+from evenroad.robot.srdf import srdf_text
 
 _CONFIGURATIONS = 4096
 _MOTIONS = 256

@@ -29,6 +29,10 @@ VERBS = {
         "write a point set: shipped, constructed, or annealed on demand",
     ),
     "measure": ("evenroad.research.commands.measure:Measure", "print every measure of a point set"),
+    "certify": (
+        "evenroad.cli.certify:Certify",
+        "what a roadmap guarantees in every world, in every dimension",
+    ),
     "train": ("evenroad.research.commands.train:Train", "train point sets for any objective"),
     "bench": ("evenroad.research.commands.bench:Bench", "run benchmarks into a store"),
     "report": ("evenroad.research.commands.report:Report", "page, figures and tables of a store"),

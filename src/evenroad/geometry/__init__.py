@@ -1,5 +1,6 @@
 """Geometry: poses, shapes, meshes, distances, and capsules fitted to shapes; it knows nothing of robots."""
 
+from evenroad.geometry.cloud_file import load_cloud as load_cloud
 from evenroad.geometry.distance import segment_distance as segment_distance
 from evenroad.geometry.fit import fit_capsules as fit_capsules
 from evenroad.geometry.fit_points import union_volume as union_volume

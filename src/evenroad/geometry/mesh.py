@@ -6,18 +6,20 @@ import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
 
-from evenroad._arrays import Floats, Ints, set_fields
+from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import as_batch, require_positive
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 
 
 @dataclass(frozen=True, eq=False)
 class TriangleMesh:
-    """Triangles between vertices; a surface, with nothing inside.
+    """Triangles between vertices; a surface.  Equal by value.
 
     Parameters
     ----------
@@ -55,6 +57,18 @@ class TriangleMesh:
             )
         set_fields(self, vertices=vertices, triangles=triangles.astype(np.int64))
 
+    @cached_property
+    def _values(self) -> tuple[object, ...]:
+        return self.name, *(sha256(array.tobytes()).digest() for array in (self.vertices, self.triangles))
+
+    def __hash__(self) -> int:
+        return hash(self._values)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, TriangleMesh):
+            return NotImplemented
+        return self is other or self._values == other._values
+
 
 def merged(meshes: tuple[TriangleMesh, ...]) -> TriangleMesh:
     """Return several meshes, at least one, as one."""
@@ -85,6 +99,29 @@ def volume_of(mesh: TriangleMesh) -> float:
         return float(ConvexHull(corners.reshape(-1, 3)).volume)
     except QhullError:
         return 0.0
+
+
+def closed_parts(mesh: TriangleMesh) -> tuple[Bools, bool]:
+    """Return which triangles belong to closed parts, (t,), and whether their sides tell inside from outside.
+
+    A part, of triangles that share corners, is closed where every side belongs to an even number of triangles; its
+    sides tell, where each is run along in both directions equally often.  Corners are the same where their numbers are.
+    """
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    _, number = np.unique(mesh.vertices, axis=0, return_inverse=True)
+    faces = number.reshape(-1)[mesh.triangles]
+    a, b = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).T
+    count = int(faces.max()) + 1
+    _, part = connected_components(
+        coo_matrix((np.ones(len(a)), (a, b)), shape=(count, count)), directed=False
+    )
+    _, side = np.unique(np.minimum(a, b) * count + np.maximum(a, b), return_inverse=True)
+    times, turns = np.bincount(side), np.bincount(side, weights=np.sign(b - a))
+    is_open, unturned = (np.unique(part[a[bad[side]]]) for bad in (times % 2 != 0, turns != 0.0))
+    closed = ~np.isin(part, is_open)
+    return closed[faces[:, 0]], not (closed[faces[:, 0]] & np.isin(part, unturned)[faces[:, 0]]).any()
 
 
 def load_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> TriangleMesh:

@@ -9,13 +9,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
+from hashlib import sha256
 from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
 
 from evenroad._arrays import Floats, set_fields
-from evenroad._checks import FARTHEST, as_row, require_known, require_positive
+from evenroad._checks import FARTHEST, as_batch, as_row, require_known, require_positive
 from evenroad.errors import InvalidValue
 from evenroad.geometry.mesh import TriangleMesh, load_mesh, scaled, volume_of
 from evenroad.geometry.pose import IDENTITY, Pose, Vector, rotation_from_z
@@ -194,21 +196,46 @@ class Mesh(Shape):
 
 @dataclass(frozen=True, eq=False)
 class PointCloud(Shape):
-    """Balls of one radius around points, (n, 3) [m], as a depth camera sees them; of radius 0: the points alone."""
+    """Balls of one radius around points, (n, 3) [m], as a depth camera sees them; of radius 0: the points alone.
 
-    kind: ClassVar[str] = "point cloud"
+    Equal by value.
+    """
+
+    kind: ClassVar[str] = "cloud"
 
     points: Floats
     radius: float = 0.0
 
     def __post_init__(self) -> None:
-        points = np.array(self.points, dtype=np.float64)
-        if points.ndim != 2 or points.shape[1] != 3 or len(points) == 0 or not np.isfinite(points).all():
+        points = np.array(as_batch("points of a cloud", self.points, 3))
+        if len(points) == 0:
+            raise InvalidValue("a cloud must have one point or more: one without would never collide")
+        if np.abs(points).max() > FARTHEST:
             raise InvalidValue(
-                f"a point cloud must be an (n, 3) array of finite numbers, n >= 1, got shape {points.shape}"
+                f"points of a cloud must lie within {FARTHEST:g} m, got {np.abs(points).max():g}"
             )
-        radius = require_positive("the radius of a point cloud", self.radius, or_zero=True)
+        radius = require_positive("the radius of a cloud", self.radius, or_zero=True, at_most=FARTHEST)
         set_fields(self, points=points, radius=radius)
+
+    @property
+    def volume(self) -> float:
+        """Volume of a ball around every point, however they overlap [m^3]."""
+        return len(self.points) * _ball(self.radius)
+
+    @cached_property
+    def _values(self) -> tuple[object, ...]:
+        return self.radius, self.pose, self.link, sha256(self.points.tobytes()).digest()
+
+    def __hash__(self) -> int:
+        return hash(self._values)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, PointCloud):
+            return NotImplemented
+        return self is other or self._values == other._values
+
+    def __str__(self) -> str:
+        return f"cloud of {len(self.points)} points"
 
 
 PRIMITIVES: dict[str, type[Shape]] = {shape.kind: shape for shape in (Box, Sphere, Cylinder, Capsule)}

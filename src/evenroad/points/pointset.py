@@ -23,20 +23,10 @@ BELOW_ONE = float(np.nextafter(np.float32(1.0), np.float32(0.0)))
 class Origin:
     """Where a point set came from: enough to make it, or find it, again.
 
-    Attributes
-    ----------
-    family, method : str
-        The sampler or family (``halton``, ``hickernell``), and how it was made (``plain``, ``annealed``, ``given``).
-    objective : str
-        The expression that was minimised, or "" for constructions.
-    seed : int or None
-        None when a Generator was passed, or nothing was drawn.
-    replica, steps : int or None
-        Index of the set in its pool, and steps of the optimiser (trained families).
-    start : int
-        Index of the first point (sequences only, else 0).
-    version : str
-        Of evenroad, when it was made.
+    `family` is the sampler or family (``halton``, ``hickernell``), `method` how it was made (``plain``, ``annealed``,
+    ``given``), `objective` the expression that was minimised, or "" for constructions.  `seed` is None when a Generator
+    was passed, or nothing was drawn; `replica` and `steps` are the index of the set in its pool, and the steps of the
+    optimiser (trained families), `start` the index of the first point (sequences, else 0), `version` evenroad's.
     """
 
     family: str
@@ -61,11 +51,7 @@ class Origin:
 class PointSet:
     """`n` points of the unit cube [0, 1)^d, frozen, with their origin.
 
-    Parameters
-    ----------
-    points : array_like, shape (n, d)
-        Real numbers in [0, 1), d >= 1, else InvalidValue; copied to a read-only C-contiguous float64 array.
-    origin : Origin
+    `points`, (n, d), d >= 1, are real numbers in [0, 1), else InvalidValue; copied to a read-only float64 array.
     """
 
     points: Floats

@@ -30,15 +30,8 @@ def randomise(points: PointSet, symmetries: Collection[Symmetry], *, rng: RngLik
 
     The method of the origin says what was done, with all digits: ``annealed, permuted 2 0 1, reflected 0``.  A
     coordinate that would be reflected to 1 becomes the largest float below 1: the cube is half open.
-
-    Parameters
-    ----------
-    points : PointSet
-    symmetries : collection of Symmetry
-        ``make_sampler(name).symmetries`` are those that keep the quality of its sets; the studies' ``symmetries_of``
-        tells those of sets made for an objective.
-    rng : int, SeedSequence or Generator
-        A passed Generator is spawned.
+    ``make_sampler(name).symmetries`` are those that keep the quality of its sets; the studies' ``symmetries_of`` tells
+    those of sets made for an objective.  A Generator that is passed as `rng` is spawned.
     """
     random = generator(rng)
     if Symmetry.PERMUTATION in symmetries:

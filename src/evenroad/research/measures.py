@@ -33,16 +33,8 @@ def riesz_rooted(points: object, s: int | None = None, periodic: bool = True) ->
     """Return the Riesz s-energy to the power 1/s: as s grows, the spacing n^(-1/d) over the smallest distance.
 
     The energy is (1/n) sum over i and j != i of (spacing / distance_ij)^s, and so hardly depends on n.  The distance of
-    coincident points counts as 10^-100.  Bad arguments are an InvalidValue.
-
-    Parameters
-    ----------
-    points : array_like or PointSet, shape (n, d)
-        Coordinates in [0, 1), n >= 2.
-    s : int, optional
-        The exponent >= 1; 2d if not given, which makes close pairs count and far ones not.
-    periodic : bool
-        Whether distances are those of the torus, each coordinate wrapping modulo 1.
+    coincident points counts as 10^-100.  `points` and `periodic` are as for :func:`separation`; the exponent `s`, >= 1,
+    is 2d if not given, which makes close pairs count and far ones not.  Bad arguments are an InvalidValue.
     """
     coordinates = _checked(points, "an energy")
     exponent = 2 * coordinates.shape[1] if s is None else require_count("s", s)

@@ -2,6 +2,9 @@
 
 from evenroad.roadmap.anytime import plan_anytime as plan_anytime
 from evenroad.roadmap.budget import Budget as Budget
+from evenroad.roadmap.certificate import Certificate as Certificate
+from evenroad.roadmap.certify import certify as certify
+from evenroad.roadmap.certify import certify_roadmap as certify_roadmap
 from evenroad.roadmap.find_path import find_path as find_path
 from evenroad.roadmap.kept import Roadmap as Roadmap
 from evenroad.roadmap.kept import WorldRoadmap as WorldRoadmap

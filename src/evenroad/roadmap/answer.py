@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad.roadmap.attempt import Attempt, Searched
-from evenroad.roadmap.proof import proof_of
 from evenroad.roadmap.result import PlanResult, SearchedGraph, Status
 from evenroad.roadmap.search import BLOCKED, FREE, EdgeStates, components
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.space.path import path_length
-from evenroad.world import Connection, Explains, Rechecks, Separates, Shortens
+from evenroad.world import Connection, Explains, Rechecks, Separates, Shortens, World
 
 PROVED = "proved: there is no path; start and goal lie in two components of the free space"
 
@@ -69,7 +70,7 @@ def answer(
     else:
         # Under ``complete`` nothing but more points helps.
         wider = "radius" if "radius" in attempt.rule else "k" if attempt.rule.startswith("k") else ""
-        advice = f"try n={2 * points}" + (f" or a larger {wider}" if wider else "")
+        advice = f"try n={2 * points}" + (f" or a larger {wider}" if wider else "") + _few_directions(attempt)
         failed = _result(attempt, Status.NOT_CONNECTED, f"{so_far}, {missing} {made}: {advice}")
     return replace(failed, counts=counts, roadmap=graph)
 
@@ -124,8 +125,10 @@ def _with_path(
             length = float(np.sum(measure(path[:-1], path[1:])))
     named = "length" if cost is None else "cost"
     to = f" to goal {goal}" if len(query.goals) > 1 else ""
-    return replace(
-        _result(attempt, Status.SOLVED, f"path of {named} {length:.6g} with {len(path)} waypoints{to}"),
+    return _result(
+        attempt,
+        Status.SOLVED,
+        f"path of {named} {length:.6g} with {len(path)} waypoints{to}",
         goal_index=goal,
         path=path,
         milestone_path=raw,
@@ -158,7 +161,19 @@ def _reach(attempt: Attempt, searched: Searched, counts: dict[str, int]) -> tupl
     return so_far, "and the two components do not meet"
 
 
-def _result(attempt: Attempt, status: Status, message: str) -> PlanResult:
+def _few_directions(attempt: Attempt) -> str:
+    """Return what to say of a lattice whose points have fewer neighbours than directions."""
+    k, d = re.match(r"k=(\d+) ", attempt.rule), attempt.world.space.cube_dim
+    if (
+        k is None
+        or int(k[1]) >= 2 * d
+        or not ("lattice" in attempt.origin.method or "A_d*" in attempt.origin.method)
+    ):
+        return ""
+    return f"; a lattice's nearest points come in opposite pairs, so that fewer than {2 * d} leave directions out"
+
+
+def _result(attempt: Attempt, status: Status, message: str, **more: Any) -> PlanResult:
     return PlanResult(
         status=status,
         message=message,
@@ -169,6 +184,7 @@ def _result(attempt: Attempt, status: Status, message: str) -> PlanResult:
         links=attempt.query.links,
         planner=attempt.planner,
         seconds=attempt.watch.seconds,
+        **more,
     )
 
 
@@ -178,3 +194,30 @@ def _searched_graph(states: EdgeStates, ends: int) -> SearchedGraph:
     number = np.cumsum(kept, dtype=np.int32) - 1
     edges = states.edges[states.edge_states == FREE]
     return SearchedGraph(states.configurations[kept], number[edges].astype(np.int32), int(kept.sum()) - ends)
+
+
+def proof_of(world: World) -> str:
+    """Return what is shown of every path in a world: ``exact``, ``certified``, or ``resolution`` if it does not say."""
+    # Not by `isinstance`, which takes as long as some checks.
+    return str(getattr(world, "proof", "resolution"))
+
+
+def require_certified(world: World, result: PlanResult) -> PlanResult:
+    """Return the plan if all motions of its path are proved free, by a check of its own, else ``not_certified``.
+
+    The message then names the first motion that is not; the path stays in the result.
+    """
+    if result.path is None or result.proof == "exact":
+        return result
+    if not (isinstance(world, Rechecks) and world.proof == "certified"):
+        message = "the path is free at the states tested; motions of this world cannot be proved free"
+        return replace(result, status=Status.NOT_CERTIFIED, message=message)
+    failed = np.flatnonzero(~world.recheck(result.path))
+    if not len(failed):
+        return replace(result, proof="certified")
+    first, last = ("(" + ", ".join(f"{x:.6g}" for x in result.path[failed[0] + i]) + ")" for i in (0, 1))
+    message = (
+        f"motion {failed[0] + 1} of {len(result.path) - 1} is not proved free, from {first} to {last}:"
+        " it may touch, or pass too near to contact to tell"
+    )
+    return replace(result, status=Status.NOT_CERTIFIED, message=message, proof="resolution")

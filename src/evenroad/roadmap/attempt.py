@@ -11,7 +11,6 @@ from evenroad._clock import now
 from evenroad.points.pointset import Origin
 from evenroad.roadmap.budget import Budget, BudgetSpent, Stopwatch
 from evenroad.roadmap.neighbours import Surroundings, nearest_of
-from evenroad.roadmap.proof import confirm
 from evenroad.roadmap.query import BOUND, Query, edge_costs
 from evenroad.roadmap.rules import Rule
 from evenroad.roadmap.rules.near import ascending
@@ -24,6 +23,7 @@ from evenroad.roadmap.search import (
     Found,
     Known,
     SearchProblem,
+    confirm,
     length_along,
     search_problem,
 )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -67,20 +66,33 @@ class BudgetSpent(Exception):
     """Nothing more may be checked; caught where the budget was given."""
 
 
-def in_time(rows: npt.NDArray[np.integer], deadline: float) -> Iterator[npt.NDArray[np.integer]]:
+class Pace:
+    """How many rows a world is asked about at once where time is limited: as many as take it some milliseconds."""
+
+    size: int = _FIRST_BATCH
+
+
+def in_time(
+    rows: npt.NDArray[np.integer], deadline: float, pace: Pace | None = None
+) -> Iterator[npt.NDArray[np.integer]]:
     """Yield `rows` in batches, all at once if there is no deadline.
 
-    Raises BudgetSpent when the deadline (on the clock of ``evenroad._clock``) has passed and there are rows left.
+    A pace is kept from call to call.  Raises BudgetSpent when the deadline (on the clock of ``evenroad._clock``) has
+    passed and there are rows left.
     """
-    size = _FIRST_BATCH if math.isfinite(deadline) else max(len(rows), 1)
-    first = 0
+    pace = Pace() if pace is None else pace
+    first, is_limited = 0, math.isfinite(deadline)
     while first < len(rows):
         began = now()
         if began >= deadline:
             raise BudgetSpent
+        size = pace.size if is_limited else len(rows)
         yield rows[first : first + size]
         first += size
-        size = 2 * size if now() - began < _FAST else max(size // 2, 1)
+        if now() - began >= _FAST:
+            pace.size = max(pace.size // 2, 1)
+        elif size <= len(rows):
+            pace.size = 2 * pace.size
 
 
 class Stopwatch:
@@ -92,19 +104,22 @@ class Stopwatch:
     def __init__(self) -> None:
         self.seconds: dict[str, float] = {}
         self._running: list[str] = []
+        self._next = ""
         self._since = 0.0
 
-    @contextmanager
-    def __call__(self, phase: str) -> Iterator[None]:
-        """Time the block under this name."""
+    def __call__(self, phase: str) -> Stopwatch:
+        """Return what times a block under this name."""
+        self._next = phase
+        return self
+
+    def __enter__(self) -> None:
         self._turn()
-        self._running.append(phase)
-        self.seconds.setdefault(phase, 0.0)
-        try:
-            yield
-        finally:
-            self._turn()
-            self._running.pop()
+        self._running.append(self._next)
+        self.seconds.setdefault(self._next, 0.0)
+
+    def __exit__(self, *error: object) -> None:
+        self._turn()
+        self._running.pop()
 
     def _turn(self) -> None:
         """Give the time since the last turn to the phase that was running."""

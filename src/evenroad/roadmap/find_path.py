@@ -1,26 +1,28 @@
 """A path without a number of points: by the world's own planner where it has one, else with points that grow.
 
-More time buys better paths: `improve` plans again in other ways, and keeps the best.
+More time buys better paths: `improve` plans again in other ways, and keeps the best.  Without a path, the answer says
+whether the start or a goal can hardly leave its place.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
 from itertools import count
 
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._arrays import Floats
 from evenroad._clock import now
 from evenroad.points.pointset import Origin
 from evenroad.roadmap.answer import connected, gave_up, proved_apart, refusal
 from evenroad.roadmap.anytime import plan_anytime
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.hemmed import with_reasons
-from evenroad.roadmap.query import Query, read_places
-from evenroad.roadmap.result import PlanResult, Stage
-from evenroad.world import ConnectsAnew, ConnectsItself, World
+from evenroad.roadmap.query import Query, as_points, read_places
+from evenroad.roadmap.result import PlanResult, Stage, Status
+from evenroad.world import ConnectsAnew, ConnectsItself, Explains, World
 
 SECONDS = 5.0
 """Wall time of a budget that is not given."""
@@ -119,9 +121,8 @@ def _by_growth(attempt: Attempt, first: PlanResult, stage: Stage) -> PlanResult:
     if left is None or not _goes_on(attempt, first, 1):
         return replace(first, counts=first.counts | {"rounds": 0}, stages=(stage,))
     before = attempt.elapsed()
-    grown = plan_anytime(
-        attempt.world, query.start, query.goals, until="budget", budget=left, shorten=query.shorten
-    )
+    ends = (query.start, query.goals)
+    grown = plan_anytime(attempt.world, *ends, until="budget", budget=left, shorten=query.shorten)
     stages = [stage, *(replace(each, seconds=before + each.seconds) for each in grown.stages)]
     best = grown if grown.cost is not None and grown.cost < _cost(first) else first
     return replace(best, counts=best.counts | {"rounds": len(grown.stages)}, stages=tuple(stages))
@@ -142,3 +143,69 @@ def _goes_on(attempt: Attempt, best: PlanResult, variant: int) -> bool:
 def _cost(result: PlanResult) -> float:
     assert result.cost is not None
     return result.cost
+
+
+DIRECTIONS = 128
+"""Short motions that are tried from a place."""
+SHORT = 0.1
+"""How long they are, as a share of the distance to an even point of the space at the median."""
+HEMMED = 0.1
+"""A place is hemmed in from which no more than this share of them is free."""
+_SHARES = np.linspace(0.05, 1.0, 20)
+"""Where along a short motion something may touch."""
+
+
+def with_reasons(world: World, result: PlanResult) -> PlanResult:
+    """Return a result without a path, its message with what is in the way of the start or the goals.
+
+    Nothing is added where there is a path, a proof that there is none, or nothing to be said.  Costs some hundred
+    checks for the start and for each goal.
+    """
+    if result.path is not None or result.status not in (Status.NOT_CONNECTED, Status.BUDGET_SPENT):
+        return result
+    several = len(result.goals) > 1
+    places = [("the start", result.start)] + [
+        (f"goal {i}" if several else "the goal", goal)
+        for i, goal in enumerate(result.goals)
+        if world.valid(goal[np.newaxis])[0]
+    ]
+    reasons = [text for name, place in places if (text := why_hemmed(world, name, place)) is not None]
+    sentences = [result.message, *(text[0].upper() + text[1:] for text in reasons)]
+    return replace(result, message=". ".join(sentences)) if reasons else result
+
+
+def why_hemmed(world: World, name: str, place: Floats) -> str | None:
+    """Return in words how few short motions leave a free place, (dim,), and what touches; None where enough do."""
+    samples = world.space.from_cube(as_points(DIRECTIONS, world.space).points)
+    here = np.broadcast_to(place, samples.shape)
+    distances = world.space.distance(here, samples)
+    step = SHORT * float(np.median(distances))
+    ends = world.space.interpolate(here, samples, np.minimum(1.0, step / np.maximum(distances, step)))
+    free = world.motion_valid(here, ends)
+    number = int(np.count_nonzero(free))
+    if number > HEMMED * DIRECTIONS:
+        return None
+    away = distances[world.valid(samples)].min(initial=np.inf)
+    can = "cannot leave its place" if number == 0 else "can hardly leave its place"
+    text = (
+        f"{name} {can}: {number} of {DIRECTIONS} motions of length {step:.2g} from it are free"
+        f"{_what_touches(world, here[~free], ends[~free])}"
+    )
+    return f"{text}; the nearest free sample is {away:.3g} away" if np.isfinite(away) else text
+
+
+def _what_touches(world: World, a: Floats, b: Floats) -> str:
+    """Return what most of the blocked motions meet first, where the world can tell."""
+    if not isinstance(world, Explains):
+        return ""
+    met: Counter[str] = Counter()
+    for first, last in zip(a, b, strict=True):
+        shape = (len(_SHARES), len(first))
+        states = world.space.interpolate(np.broadcast_to(first, shape), np.broadcast_to(last, shape), _SHARES)
+        blocked = np.flatnonzero(~world.valid(states))
+        if len(blocked):
+            met[world.explain(states[blocked[0]])] += 1
+    if not met:
+        return ""
+    reason, times = met.most_common(1)[0]
+    return f", {reason} in {times}"

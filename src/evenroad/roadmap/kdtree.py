@@ -84,9 +84,8 @@ def k_nearest(points, period, k, earlier):  # type: ignore[no-untyped-def]
                 if other == query or other >= end:
                     continue
                 total = _distance(points, other, query, period, wraps)
-                if count == k and (
-                    total > distance[k - 1] or (total == distance[k - 1] and other > found[k - 1])
-                ):
+                last = distance[k - 1]
+                if count == k and (total > last or (total == last and other > found[k - 1])):
                     continue
                 slot = count if count < k else k - 1
                 while slot > 0 and (

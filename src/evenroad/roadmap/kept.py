@@ -61,13 +61,13 @@ class Roadmap:
 
     @classmethod
     def build(cls, space: Space, points: PointSet | int, rule: Rule | None = None) -> Roadmap:
-        """Join the points (or so many even ones) by the rule, by default ``KNearest(20)``; memory O(m).
+        """Join the points (or so many even ones) by the rule, by default ``KNearest(20)``, or 2 d; memory O(m).
 
         The graphs of the last 64 sets that came from a pool (the bank, or the user's cache) are kept for the process.
         Raises InvalidValue if the points do not have the dimension of the space's cube.
         """
         points = as_points(points, space)
-        rule = KNearest(20) if rule is None else rule
+        rule = KNearest(max(20, 2 * space.cube_dim)) if rule is None else rule
         # The sets of a pool come again and again, others hardly ever; a user's own space may not be hashable.
         from_pool = points.origin.replica is not None and isinstance(space, Hashable)
         joined: Callable[..., Any] = _joined_once if from_pool and isinstance(rule, Hashable) else _joined

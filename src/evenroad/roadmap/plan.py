@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy.typing as npt
 
+from evenroad.errors import InvalidValue
 from evenroad.points.pointset import PointSet
 from evenroad.roadmap.answer import answer, refusal
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
+from evenroad.roadmap.certify import certify_graph
 from evenroad.roadmap.query import LINKS, EdgeCost, Query, as_points, read_places
-from evenroad.roadmap.result import PlanResult
+from evenroad.roadmap.result import PlanResult, Status
 from evenroad.roadmap.rules import Rule, default_rule
 from evenroad.roadmap.search import FREE, Finder, march
 from evenroad.world import World
@@ -29,6 +33,7 @@ def plan(
     shorten: bool = True,
     links: int | None = LINKS,
     budget: Budget | None = None,
+    certify: bool = False,
 ) -> PlanResult:
     """Find a short free path from start to goal over the given points.
 
@@ -61,10 +66,15 @@ def plan(
         None: as the rule says, which is what published protocols do.
     budget : Budget, optional
         Default: a minute.
+    certify : bool
+        Put a :class:`Certificate` into the result: how much longer than the best path the one along the roadmap can
+        be, and what clearance a path would have had to have that was not found.  Not with `edge_cost` or
+        `success_only`.
 
     Where there is no path, the result's status and message say why.  Raises InvalidValue if start, goal or points do
-    not have the dimension of the space, or are not finite, or an edge costs less than its length; UnknownName if there
-    is no such search.
+    not have the dimension of the space, or are not finite, or an edge costs less than its length, or a certificate is
+    asked for of what has none; NotAvailable if it is asked for where the metric is not flat; UnknownName if there is no
+    such search.
     """
     query = Query(
         *read_places(start, goal, world.space),
@@ -75,8 +85,12 @@ def plan(
         links=links,
         budget=budget or Budget(),
     )
-    planner = query.planner(lazy_milestones)
-    return _on_points(world, query, points, rule, planner, query.find, lazy_milestones=lazy_milestones)
+    if certify and (success_only or edge_cost is not None):
+        raise InvalidValue("certify speaks of shortest paths: it goes without edge_cost and success_only")
+    planner, find = query.planner(lazy_milestones), query.find
+    return _on_points(
+        world, query, points, rule, planner, find, lazy_milestones=lazy_milestones, certify=certify
+    )
 
 
 def fmt(
@@ -112,6 +126,7 @@ def _on_points(
     find: Finder,
     *,
     lazy_milestones: bool = False,
+    certify: bool = False,
 ) -> PlanResult:
     """Map the points into the space, join them by the rule, and find a path along what the world calls free."""
     points = as_points(points, world.space)
@@ -124,4 +139,14 @@ def _on_points(
         milestones = milestones[attempt.valid(milestones)]
     states = attempt.candidates(rule, milestones)
     states.node_states[len(milestones) if lazy_milestones else 0 :] = FREE
-    return answer(attempt, attempt.search(find, states), points.n)
+    certificate = None
+    if certify:
+        ends = 1 + len(attempt.goals)
+        certificate = certify_graph(points, world.space, states.configurations, states.edges, ends)
+    result = answer(attempt, attempt.search(find, states), points.n)
+    if certificate is None or result.status not in (Status.SOLVED, Status.NOT_CONNECTED):
+        return result
+    message = result.message
+    if not result.solved and certificate.complete:
+        message += f"; certified: no path has a clearance of {certificate.dispersion:.6g}"
+    return replace(result, certificate=certificate, message=message)

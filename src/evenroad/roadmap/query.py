@@ -92,9 +92,8 @@ def read_places(start: npt.ArrayLike, goal: npt.ArrayLike, space: Space) -> tupl
     if first.shape != (dim,):
         raise InvalidValue(f"start must be {dim} finite numbers, got {start!r}")
     if goals.shape != (dim,) and (goals.ndim != 2 or goals.shape[1] != dim or not len(goals)):
-        raise InvalidValue(
-            f"goal must be {dim} finite numbers, or an array (g, {dim}) of g >= 1 goals, got {goal!r}"
-        )
+        several = f"or an array (g, {dim}) of g >= 1 goals"
+        raise InvalidValue(f"goal must be {dim} finite numbers, {several}, got {goal!r}")
     return first, goals.reshape(-1, dim)
 
 

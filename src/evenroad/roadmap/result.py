@@ -7,6 +7,7 @@ from enum import StrEnum
 
 from evenroad._arrays import Floats, Ints32
 from evenroad.points.pointset import Origin
+from evenroad.roadmap.certificate import Certificate
 from evenroad.roadmap.notebook import as_html
 
 
@@ -100,6 +101,9 @@ class PlanResult:
         straight lines, ``tilt_rad`` from upright.
     stages : tuple of Stage
         How a plan that grows or improves came about, its cost over time; empty for all others.
+    certificate : Certificate or None
+        What the roadmap guarantees, where :func:`plan` was told to certify.  Without a path, and if it is `complete`,
+        no path has a clearance of its `dispersion`.
     roadmap : SearchedGraph or None
         What was searched; None when start or goal is invalid, and where a reused roadmap was asked.
     """
@@ -122,6 +126,7 @@ class PlanResult:
     seconds: dict[str, float] = field(default_factory=dict)
     deviation: dict[str, float] = field(default_factory=dict)
     stages: tuple[Stage, ...] = ()
+    certificate: Certificate | None = None
     roadmap: SearchedGraph | None = None
 
     @property

@@ -11,9 +11,8 @@ import numpy.typing as npt
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad._clock import now
 from evenroad.roadmap.budget import BudgetSpent, in_time
-from evenroad.roadmap.proof import confirmed
 from evenroad.roadmap.query import EdgeCost
-from evenroad.roadmap.search import shortest_path
+from evenroad.roadmap.search import confirmed, shortest_path
 from evenroad.space import Space
 from evenroad.space.path import motion_lengths, subdivide
 from evenroad.world import World
@@ -38,10 +37,9 @@ def shortcut(
 
     Each round puts waypoints evenly along the path, few at first, joins every pair that `world` says can be joined,
     and takes the shortest way through them; its own waypoints are always among those offered, so a round never makes
-    the path longer.  At the end, waypoints that can be passed by are dropped.  It draws no random numbers.
-
-    Where the world has a strict check (`Rechecks`), the motions of a round's way have to pass it, too; those that
-    fail are taken away, in time with those beside them, and the next shortest way is tried.
+    the path longer.  At the end, waypoints that can be passed by are dropped.  It draws no random numbers.  Where the
+    world has a strict check (`Rechecks`), the motions of a round's way have to pass it, too; those that fail are taken
+    away, in time with those beside them, and the next shortest way is tried.
 
     `path`, (p, dim), p >= 2, has free motions; costs are lengths by default.  At the deadline, on the clock of
     ``evenroad._clock``, what was reached so far is the answer.  The second number are the motions checked, rechecks

@@ -20,8 +20,11 @@ from evenroad.robot.robot import RobotModel as RobotModel
 from evenroad.robot.robot import in_scene as in_scene
 from evenroad.robot.robot import with_group as with_group
 from evenroad.robot.robot import with_limits as with_limits
+from evenroad.robot.scan import scene_seen_by as scene_seen_by
+from evenroad.robot.scan import without_robot as without_robot
 from evenroad.robot.scene import Obstacle as Obstacle
 from evenroad.robot.scene import Scene as Scene
+from evenroad.robot.scene import Seen as Seen
 from evenroad.robot.scene_file import find_scene as find_scene
 from evenroad.robot.scene_file import load_scene as load_scene
 from evenroad.robot.states import at_states as at_states

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
-from evenroad._arrays import Bools, Floats
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad._checks import require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue, NotAvailable, UnknownName
@@ -16,8 +17,10 @@ from evenroad.robot.kernel.certify import motions_certified
 from evenroad.robot.kernel.lane_world import LaneWorld
 from evenroad.robot.kernel.obstacles import obstacle_rows, refuse, tested_contacts
 from evenroad.robot.kernel.robot_tables import RobotTables
+from evenroad.robot.kernel.scene_surfaces import scene_surfaces
 from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
 from evenroad.robot.kernel.selftest import lanes_failure
+from evenroad.robot.kernel.surface_scalar import fixed_contact, scalar_check_address
 from evenroad.robot.known_robots import prepared
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
@@ -98,10 +101,15 @@ class ArmWorld:
         space, longest, of_robot, by_joint, bounds, by_joint_at = prepared(self.robot)
         require_few_segments(self.resolution, longest / self.resolution)
         tested = tested_contacts(of_robot.capsules, self.robot.links, self.scene)
+        solid = [bool(obstacle.row) for obstacle in self.scene.obstacles]
+        surfaces = None
+        if not all(solid):
+            surfaces = scene_surfaces(self.scene, of_robot, tested)
+            tested = np.ascontiguousarray(tested[:, solid])
         tables, lanes_at, too_far = arm_tables(of_robot, obstacle_rows(self.scene), tested)
         if too_far >= 0:
-            refuse(self.scene.obstacles[too_far])
-        lanes = LaneWorld(tables.lanes, by_joint, self.resolution, (lanes_at, by_joint_at))
+            refuse([obstacle for obstacle in self.scene.obstacles if obstacle.row][too_far])
+        lanes = LaneWorld(tables.lanes, by_joint, self.resolution, (lanes_at, by_joint_at), surfaces)
         self.__dict__.update(
             _space=space,
             bounds=bounds,
@@ -142,7 +150,7 @@ class ArmWorld:
             return np.zeros(len(configurations), dtype=np.bool_)
         tables = self.tables
         if self.backend == "scalar":
-            return scalar.configurations_free(configurations, self.bounds, tables.ints, tables.floats)
+            return scalar.configurations_free(configurations, self.bounds, self._ints, tables.floats)
         # Imported late: where the vector type cannot even be defined, all else still works.
         from evenroad.robot.kernel.batch import configurations_free
 
@@ -165,7 +173,7 @@ class ArmWorld:
 
             return motions_free(self.lanes, first, second, tolerance)
         tables = self.tables
-        return scalar.motions_free(first, second, self.resolution, self.bounds, tables.ints, tables.floats)
+        return scalar.motions_free(first, second, self.resolution, self.bounds, self._ints, tables.floats)
 
     @property
     def proof(self) -> str:
@@ -198,7 +206,7 @@ class ArmWorld:
             as_batch("b", second[rows], self._space.dim),
             tolerance,
             self.bounds,
-            tables.ints,
+            self._ints,
             tables.floats,
             self.robot_tables.speeds,
             self.robot_tables.pair_speeds,
@@ -260,13 +268,26 @@ class ArmWorld:
         bodies = self.fixed_contact or self._touching(row)
         return "it is free" if bodies is None else f"{bodies[0]!r} touches {bodies[1]!r}"
 
-    @property
+    @cached_property
     def fixed_contact(self) -> tuple[str, str] | None:
         """Two bodies that touch whatever the joints do, or None."""
-        if self.tables.fixed_contact is None:
-            return self.robot_tables.fixed_contact
-        capsule, obstacle = self.tables.fixed_contact
-        return self.robot_tables.capsules[capsule].link, self.scene.obstacles[obstacle].name
+        surfaces, of_capsules = self.lanes.surfaces, self.robot_tables.capsules
+        if self.tables.fixed_contact is not None:
+            capsule, obstacle = self.tables.fixed_contact
+            return of_capsules[capsule].link, self._solid(obstacle)
+        if surfaces is not None and (found := fixed_contact(surfaces, self.robot_tables)) is not None:
+            return of_capsules[found[0]].link, self.scene.obstacles[found[1]].name
+        return self.robot_tables.fixed_contact
+
+    def _solid(self, number: int) -> str:
+        """Return the name of an obstacle by its number among those that are neither clouds nor meshes."""
+        return [obstacle.name for obstacle in self.scene.obstacles if obstacle.row][number]
+
+    @property
+    def _ints(self) -> Ints:
+        """The integers of the tables, with the addresses of clouds and meshes where there are any."""
+        surfaces, ints = self.lanes.surfaces, self.tables.ints
+        return ints if surfaces is None else surfaces.added_to(ints, scalar_check_address())
 
     def _touching(self, q: Floats) -> tuple[str, str] | None:
         """Return two bodies that touch, or come as near as what single precision may call touching."""
@@ -275,10 +296,12 @@ class ArmWorld:
         margins, pair_margins = np.full(len(of_capsules), tables.margin), of_robot.pair_margins.copy()
         frames, capsules = np.empty((len(of_robot.tree.frames) + 1, 12)), np.empty((len(of_capsules), 6))
         kind, capsule, other = scalar.first_contact(
-            q, tables.ints, tables.floats, margins, pair_margins, frames, capsules
+            q, self._ints, tables.floats, margins, pair_margins, frames, capsules
         )
         if kind == scalar.MEETS_OBSTACLE:
-            return of_capsules[capsule].link, self.scene.obstacles[tables.kept[other]].name
+            return of_capsules[capsule].link, self._solid(tables.kept[other])
+        if kind == scalar.MEETS_SURFACE:
+            return of_capsules[capsule].link, self.scene.obstacles[other].name
         if kind == scalar.MEETS_ITSELF:
             first, second = of_robot.capsule_pairs[other]
             return of_capsules[first].link, of_capsules[second].link

@@ -26,36 +26,24 @@ _EVEN = 2048
 
 @dataclass(frozen=True, eq=False)
 class Chain:
-    """The frames that carry a tip, from the root on.
-
-    Attributes
-    ----------
-    tip : str
-        The link.
-    group : tuple of str
-        The coordinates.
-    frames : tuple of MovingFrame
-        Those that carry it.
-    ints, rows : ndarrays, shapes (k, 2) and (k + 1, 14)
-        Coordinate, and whether it slides; rotation (9) and translation (3) in the frame before, multiplier and offset;
-        the last row is the tip's in the last frame.
-    low, high : ndarrays, shape (dim,)
-        Limits; of a coordinate that can make a whole turn none, since turns are added later.
-    bounds : ndarray, shape (2, dim)
-        Limits as they are; of those that wrap from -pi to pi.
-    turns : ndarray of bool, shape (dim,)
-        Which coordinates are the same posture after a whole turn.
-    """
+    """The frames that carry a tip, from the root on."""
 
     tip: str
+    """The link."""
     group: tuple[str, ...]
+    """The coordinates."""
     frames: tuple[MovingFrame, ...]
     ints: Ints
+    """Coordinate of each frame that carries the tip, and whether it slides, (k, 2)."""
     rows: Floats
+    """Rotation (9) and translation (3) in the frame before, multiplier and offset; last the tip's, (k + 1, 14)."""
     low: Floats
     high: Floats
+    """Limits; of a coordinate that can make a whole turn none, since turns are added later."""
     bounds: Floats
+    """Limits as they are, (2, dim); of those that wrap from -pi to pi."""
     turns: Bools
+    """Which coordinates are in the same posture after a whole turn."""
 
     @cached_property
     def moving(self) -> Ints:

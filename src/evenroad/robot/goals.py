@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad._clock import now
 from evenroad.geometry.pose import Pose
 from evenroad.robot.chain import default_tip
 from evenroad.robot.inverse_kinematics import Checks, Reached, misses, reach, task_of
@@ -18,24 +18,16 @@ from evenroad.robot.pose_goal import PoseGoal, as_pose_goal
 
 @dataclass(frozen=True, eq=False)
 class Goals:
-    """What a plan is to reach.
-
-    Attributes
-    ----------
-    configurations : ndarray, shape (g, dim)
-        Goals; where no pose is reached and nothing else is a goal, what comes nearest.
-    names : tuple of str
-        What the caller called each, or nothing.
-    poses : tuple of (PoseGoal, Reached)
-        The poses, and what reaches them.
-    seconds : float
-        That took.
-    """
+    """What a plan is to reach."""
 
     configurations: Floats
+    """Goals, (g, dim); where no pose is reached and nothing else is a goal, what comes nearest."""
     names: tuple[str, ...]
+    """What the caller called each, or nothing."""
     poses: tuple[tuple[PoseGoal, Reached], ...] = ()
+    """The poses, and what reaches them."""
     seconds: float = 0.0
+    """That took."""
 
     @property
     def unreached(self) -> str:
@@ -66,7 +58,7 @@ def goals_of(
     rows: list[Floats] = []
     names: list[str] = []
     poses = []
-    began = time.perf_counter()
+    began = now()
     for place in places:
         if not isinstance(place, Pose | PoseGoal):
             rows.append(read(place)[np.newaxis])
@@ -80,7 +72,7 @@ def goals_of(
         names += [str(goal)] * len(reached.configurations)
     if not names:
         rows = [reached.nearest[np.newaxis] for _, reached in poses]
-    took = time.perf_counter() - began if poses else 0.0
+    took = now() - began if poses else 0.0
     return Goals(np.concatenate(rows), tuple(names), tuple(poses), took)
 
 

@@ -52,28 +52,20 @@ class Checks(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Reached:
-    """The configurations that reach a pose goal.
-
-    Attributes
-    ----------
-    configurations : ndarray, shape (n, dim)
-        Free ones, within limits, the nearest to the start first; empty where there is none.
-    branches, blocked : int
-        How many postures reach the pose within limits, and how many of these are in collision.
-    solver : str
-        ``closed form`` or ``numeric``.
-    nearest : ndarray, shape (dim,)
-        Where there is none: the posture that is in collision, or that comes nearest.
-    why : str
-        Where there is none: why.
-    """
+    """The configurations that reach a pose goal."""
 
     configurations: Floats
+    """Free ones, within limits, (n, dim), the nearest to the start first; empty where there is none."""
     branches: int
+    """How many postures reach the pose within limits."""
     blocked: int
+    """How many of these are in collision."""
     solver: str
+    """``closed form`` or ``numeric``."""
     nearest: Floats
+    """Where there is none: a posture that is in collision, or what comes nearest, (dim,)."""
     why: str = ""
+    """Where there is none: why."""
 
     @property
     def in_collision(self) -> bool:

@@ -117,9 +117,7 @@ class _Reader:
             follower = _name(model.joint(first), "joint")
             c0, c1, *others = model.eq_data[number][:5].tolist()
             if second < 0 or any(others):
-                self.notes.append(
-                    f"the equality of joint {follower!r} is left out: it is not linear in another joint"
-                )
+                self.notes.append(f"an equality of joint {follower!r} is left out: it is not a linear one")
                 continue
             at = model.qpos0[model.jnt_qposadr[[first, second]]].tolist()
             mimics[follower] = Mimic(_name(model.joint(second), "joint"), c1, c0 + at[0] - c1 * at[1])
@@ -134,9 +132,7 @@ class _Reader:
         pose = _pose(model.geom_pos[geom], model.geom_quat[geom])
         a, b, c = model.geom_size[geom].tolist()
         if kind in ("plane", "hfield"):
-            self.notes.append(
-                f"the {kind} of {link!r} is left out: the scene says what stands around the robot"
-            )
+            self.notes.append(f"the {kind} of {link!r} is left out: a scene says what is around the robot")
             return None
         if kind == "ellipsoid":
             self.notes.append(f"the ellipsoid of {link!r} is taken as the box around it")

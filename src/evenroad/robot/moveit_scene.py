@@ -17,6 +17,7 @@ from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import shape_of
 from evenroad.robot.scene import Obstacle, Scene
 
+Numbers = tuple[float, ...]
 _SIZES = {"box": 3, "sphere": 1, "cylinder": 2}
 _TYPES = {1: "box", 2: "sphere", 3: "cylinder", 4: "cone"}
 """Numbers of shape_msgs/SolidPrimitive."""
@@ -51,7 +52,7 @@ def _from_text(lines: list[str], path: Path) -> Iterator[Obstacle]:
             raise BrokenFile(f"{path} ends where {what} must be")
         return rest[-1].pop(0)
 
-    def row(count: int) -> tuple[float, ...]:
+    def row(count: int) -> Numbers:
         words = [word("a number") for _ in range(count)]
         try:
             return tuple(map(float, words))
@@ -98,7 +99,7 @@ def read_planning_scene(document: Mapping[str, Any], path: Path) -> Scene:
         name = str(each["id"])
         if each.get("meshes") or each.get("planes"):
             raise InvalidValue(
-                f"object {name!r} in {path} must be of {', '.join(_SIZES)}: it has a mesh or plane"
+                f"object {name!r} in {path} must consist of {', '.join(_SIZES)}: it has a mesh or plane"
             )
         frame = _pose(each["pose"], name, path) if "pose" in each else IDENTITY
         primitives, poses = each.get("primitives") or [], each.get("primitive_poses") or []
@@ -118,9 +119,7 @@ def read_planning_scene(document: Mapping[str, Any], path: Path) -> Scene:
     return Scene(str(document.get("name") or path.stem), tuple(obstacles))
 
 
-def _obstacles(
-    name: str, shapes: list[tuple[str, tuple[float, ...], Pose]], path: Path
-) -> Iterator[Obstacle]:
+def _obstacles(name: str, shapes: list[tuple[str, Numbers, Pose]], path: Path) -> Iterator[Obstacle]:
     for i, (kind, size, pose) in enumerate(shapes):
         try:
             body = shape_of(kind, size, pose)
@@ -146,7 +145,7 @@ def _pose(entry: object, name: str, path: Path) -> Pose:
     return _from_xyzw(rows[0], rows[1], f"object {name!r} in {path}")
 
 
-def _from_xyzw(xyz: tuple[float, ...], quaternion: tuple[float, ...], where: str) -> Pose:
+def _from_xyzw(xyz: Numbers, quaternion: Numbers, where: str) -> Pose:
     x, y, z, w = quaternion
     try:
         return Pose.from_quaternion(xyz, (w, x, y, z))

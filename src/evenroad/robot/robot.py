@@ -25,33 +25,33 @@ from evenroad.robot.urdf_xml import RobotFile
 
 @dataclass(frozen=True)
 class Robot:
-    """A kinematic tree with bodies."""
+    """A kinematic tree with bodies.
+
+    Of the `links` the root comes first, every parent before its children; ``joints[i]`` is the joint whose child is
+    ``links[i + 1]``, and `capsules` are the bodies.  `group` are the joints that are planned for, in the order of the
+    configuration, none of them fixed or a mimic; `held` has values of other movable joints, joint -> value [rad or m],
+    where not given 0, or the nearest to it within limits.  `states` are named configurations: joint -> value, of joints
+    outside of the group, too, where they are known.
+
+    Links in `pairs` are tested against each other.  `hulls` are convex pieces that contain the links' shapes more
+    tightly than capsules: where capsules of a pair touch, these decide; links without any are their capsules.
+    `pairs_given` says whether the pairs were given by somebody, as by an SRDF; else those in `resting` are left out,
+    which touch whatever the group does as long as the others are held where they are.  `holds` are links that are
+    bodies which the robot carries for a while, see :meth:`holding`.
+    """
 
     name: str
     links: tuple[str, ...]
-    """The root first, every parent before its children."""
     joints: tuple[Joint, ...]
-    """``joints[i]`` is the joint whose child is ``links[i + 1]``."""
     capsules: tuple[Capsule, ...]
-    """The bodies."""
     pairs: tuple[tuple[str, str], ...]
-    """Links that are tested against each other."""
     group: tuple[str, ...]
-    """Joints that are planned for, in the order of the configuration; none is fixed or a mimic."""
     held: Mapping[str, float] = field(default_factory=dict)
-    """Joint -> value of other movable joints [rad or m]; where not given: 0, or the nearest to it within limits."""
     states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    """Named configurations: joint -> value, of joints outside of the group, too, where they are known."""
     hulls: tuple[Hull, ...] = ()
-    """Convex pieces that contain the links' shapes more tightly than capsules: where capsules of a pair touch, these
-    decide.  Links without any are their capsules."""
     pairs_given: bool = True
-    """Whether `pairs` were given by somebody, as by an SRDF; else a pair that the group does not move and that touches
-    where it is held is left out."""
     resting: tuple[tuple[str, str], ...] = ()
-    """Pairs that are not tested, for they touch whatever the group does while the others are held where they are."""
     holds: tuple[str, ...] = ()
-    """Links that are bodies which the robot carries for a while, see :meth:`holding`."""
 
     def __post_init__(self) -> None:
         # The kernel takes the ends as they are: a capsule with a pose of its own gets them in its link's frame.
@@ -67,19 +67,10 @@ class Robot:
     ) -> Robot:
         """Return the robot with a tool fixed to one of its links.
 
-        The group stays the robot's; the tool's joints are held.  Pairs within the robot and within the tool stay; those
-        between the two are computed as for a robot without an SRDF.
-
-        Parameters
-        ----------
-        tool : Robot, or sequence of Shape
-            A robot of its own; or shapes in the frame of a new link ``tool``, to which capsules are fitted.
-        at : str
-            The link that carries it.
-        pose : Pose
-            Of the tool's root link in the frame of that link.
-        prefix : str
-            Put before the names of all of the tool's links and joints.
+        The tool is a robot of its own, or shapes in the frame of a new link ``tool``, to which capsules are fitted; the
+        link `at` carries it, with `pose` that of its root link in that link's frame.  `prefix` is put before the names
+        of all of its links and joints.  The group stays the robot's; the tool's joints are held.  Pairs within the
+        robot and within the tool stay; those between the two are computed as for a robot without an SRDF.
 
         Raises UnknownName if the robot has no such link; InvalidValue if the tool has no body, or a name in common with
         the robot.
@@ -291,6 +282,9 @@ def in_scene(robot: Robot, scene: Scene) -> Robot:
                 )
             continue
         robot = robot.holding(held)
+    if not scene.limits:
+        # The same robot: what is known of it need not be looked up by all of its values.
+        return robot
     joints = {joint.name: joint for joint in robot.joints}
     limits = {}
     for name, (lower, upper) in scene.limits.items():
@@ -309,7 +303,8 @@ def with_limits(robot: Robot, limits: Mapping[str, tuple[float, float]]) -> Robo
     for name, (lower, upper) in limits.items():
         require_known("joint", name, names)
         if not lower < upper:
-            raise InvalidValue(f"limits of joint {name!r} must have lower < upper, got {lower!r}, {upper!r}")
+            got = f"got {lower!r}, {upper!r}"
+            raise InvalidValue(f"limits of joint {name!r} must satisfy lower < upper, {got}")
     joints = []
     for joint in robot.joints:
         if joint.name in limits:

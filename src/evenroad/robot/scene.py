@@ -7,43 +7,71 @@ from dataclasses import dataclass, field, replace
 from struct import Struct
 
 from evenroad._arrays import set_fields
-from evenroad._checks import require_known
+from evenroad._checks import require_known, require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
 from evenroad.geometry.pose import NO_ROTATION, Pose, Vector
-from evenroad.geometry.shapes import PRIMITIVES, Capsule, Shape, along_z, shape_of
+from evenroad.geometry.shapes import PRIMITIVES, Capsule, Mesh, PointCloud, Shape, along_z, shape_of
 from evenroad.robot.held import HeldObject
+
+MARGIN = 0.02
+"""How near to the robot points of a scan are taken for its own, where nothing else is said [m]."""
 
 _ROW = Struct("16d")
 _NUMBERS = {kind: number for number, kind in enumerate(PRIMITIVES)}
 
 
 @dataclass(frozen=True)
+class Seen:
+    """Where a robot stood when a cloud was seen, as :func:`evenroad.robot.configuration` takes it, and a margin [m].
+
+    Balls of the cloud that come within the margin of its bodies there are its own; see
+    :func:`evenroad.robot.without_robot`, which takes them out.
+    """
+
+    at: str
+    margin: float = MARGIN
+
+    def __post_init__(self) -> None:
+        require_positive("the margin of a scan", self.margin, or_zero=True)
+
+
+@dataclass(frozen=True)
 class Obstacle:
     """A body that does not move, by a name that is unique in its scene.
 
-    `body` is a box, sphere, cylinder or capsule, with its pose in the frame of the robot's root link; others, and what
-    is fixed to a link, are refused (InvalidValue).  `cell` says whether it is part of the fixed cell, the same for
-    every task of this installation.
+    `body` is a box, sphere, cylinder, capsule, mesh, or cloud of radius > 0, with its pose in the frame of the robot's
+    root link; others, and what is fixed to a link, are refused (InvalidValue).  `cell` says whether it is part of the
+    fixed cell, the same for every task of this installation; `seen`, where the robot stands that is in a cloud itself.
     """
 
     name: str
     body: Shape
     cell: bool = False
+    seen: Seen | None = None
     row: bytes = field(init=False, repr=False, compare=False)
-    """Sixteen doubles, as compiled code reads obstacles, see ``kernel/obstacles.py``."""
+    """Sixteen doubles, as compiled code reads obstacles, see ``kernel/obstacles.py``; none for clouds and meshes."""
 
     def __post_init__(self) -> None:
         body = along_z(self.body) if isinstance(self.body, Capsule) else self.body
-        if getattr(body, "kind", None) not in PRIMITIVES:
-            raise InvalidValue(f"obstacle {self.name!r} must be one of {', '.join(PRIMITIVES)}, got a {body}")
+        kinds = (*PRIMITIVES, PointCloud.kind, Mesh.kind)
+        if getattr(body, "kind", None) not in kinds:
+            raise InvalidValue(f"obstacle {self.name!r} must be one of {', '.join(kinds)}, got a {body}")
+        if isinstance(body, PointCloud) and body.radius == 0.0:
+            raise InvalidValue(
+                f"the cloud {self.name!r} must have a radius > 0: between points it would be open"
+            )
+        if isinstance(body, Mesh):
+            # Read now: a file may change, or be gone, before its triangles are asked for.
+            body = replace(body, source=body.triangles, scale=(1.0, 1.0, 1.0))
         if body.link:
             raise InvalidValue(
                 f"obstacle {self.name!r} must be fixed to the world, not to a link, got {body.link!r}"
             )
         # Now rather than for every world: an obstacle is in many scenes.
-        size = (*body.size, 0.0, 0.0)[:3]
-        row = _ROW.pack(_NUMBERS[body.kind], *size, *body.pose.rotation, *body.pose.xyz)
+        size, row = (*body.size, 0.0, 0.0)[:3], b""
+        if body.kind in PRIMITIVES:
+            row = _ROW.pack(_NUMBERS[body.kind], *size, *body.pose.rotation, *body.pose.xyz)
         set_fields(self, body=body, row=row)
 
     @classmethod
@@ -72,7 +100,7 @@ class Obstacle:
 
     @property
     def shape(self) -> str:
-        """Kind of its body: ``box``, ``sphere``, ``cylinder`` or ``capsule``."""
+        """Kind of its body: ``box``, ``sphere``, ``cylinder``, ``capsule``, ``cloud`` or ``mesh``."""
         return self.body.kind
 
     @property
@@ -93,18 +121,20 @@ class Obstacle:
 
 @dataclass(frozen=True)
 class Scene:
-    """Obstacles, no two of one name (InvalidValue); allowed contacts and named configurations."""
+    """Obstacles, no two of one name (InvalidValue); allowed contacts and named configurations.
+
+    `allowed` are contacts that are not tested, (link, obstacle), e.g. of the base with its table; `states` are named
+    configurations, joint -> value, in which joints that are not planned for are held; `limits` are ranges to plan in,
+    joint -> (lower, upper) [rad or m]; `attached` is what the robot holds, no two of one name (InvalidValue).
+    :func:`evenroad.robot.in_scene` takes over both.
+    """
 
     name: str
     obstacles: tuple[Obstacle, ...] = ()
     allowed: frozenset[tuple[str, str]] = frozenset()
-    """Contacts that are not tested, (link, obstacle), e.g. of the base with its table."""
     states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    """Named configurations: joint -> value; joints that are not planned for are held there."""
     limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    """Ranges to plan in, joint -> (lower, upper) [rad or m], which :func:`evenroad.robot.in_scene` takes over."""
     attached: tuple[HeldObject, ...] = ()
-    """What the robot holds, no two of one name (InvalidValue); `in_scene` takes that over, too."""
 
     def __post_init__(self) -> None:
         held = [each.name for each in self.attached]
@@ -129,14 +159,13 @@ class Scene:
         for each in self.obstacles:
             numbers = (*each.size, *each.xyz, *each.rotation)
             # Zeros of both signs are one number.
-            rows.add((each.name, each.shape, *(number + 0.0 for number in numbers)))
+            content = (fingerprint_of(each.body),) if each.shape not in PRIMITIVES else ()
+            rows.add((each.name, each.shape, *(number + 0.0 for number in numbers), *content))
         return fingerprint_of(rows, self.allowed)
 
     def with_(self, *obstacles: Obstacle, allowed: Sequence[tuple[str, str]] = ()) -> Scene:
         """Return the scene with more obstacles, of new names, and more (link, obstacle) contacts left untested."""
-        return replace(
-            self, obstacles=(*self.obstacles, *obstacles), allowed=self.allowed | frozenset(allowed)
-        )
+        return replace(self, obstacles=(*self.obstacles, *obstacles), allowed=self.allowed.union(allowed))
 
     def without(self, *names: str) -> Scene:
         """Return the scene without the obstacles of these names, and without what was allowed to touch them.

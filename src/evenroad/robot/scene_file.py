@@ -10,17 +10,19 @@ from typing import Any
 from evenroad._checks import require_known, require_positive
 from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
+from evenroad.geometry.cloud_file import load_cloud
 from evenroad.geometry.pose import Pose
-from evenroad.geometry.shapes import PRIMITIVES, shape_of
+from evenroad.geometry.shapes import PRIMITIVES, Mesh, PointCloud, shape_of
 from evenroad.robot.held import HeldObject
 from evenroad.robot.load import DATA
 from evenroad.robot.moveit_scene import read_planning_scene, read_scene_text
-from evenroad.robot.scene import Obstacle, Scene
+from evenroad.robot.scene import MARGIN, Obstacle, Scene, Seen
 
 SCENES = ("box-reach", "box-reach-narrow")
 """Names of the shipped scenes."""
 _SECTIONS = ("name", "allowed", "states", "limits", "attach")
 _OPTIONAL = ("xyz", "rpy", "quaternion", "cell")
+_OF_A_CLOUD = ("seen_at", "margin")
 
 
 def is_scene(path: str | os.PathLike[str]) -> bool:
@@ -50,6 +52,8 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
           table: {shape: box, size: [1, 1.2, 0.05], xyz: [0.25, 0, -0.025], rpy: [0, 0, 0.1], cell: true}
           ball: {shape: sphere, radius: 0.1, xyz: [0.5, 0, 0.5]}
           post: {shape: cylinder, radius: 0.05, length: 1.0, xyz: [0, 0.6, 0.5]}   # along z; so is a capsule
+          scan: {shape: cloud, file: scan.ply, radius: 0.01, seen_at: home, margin: 0.02}
+          shelf: {shape: mesh, file: shelf.stl, scale: 0.001, xyz: [0.8, 0, 0]}    # also .obj, .ply, .dae
         allowed:                                  # contacts that are not tested
           table: [base_link]
         states:                                   # named configurations, joint by joint
@@ -60,7 +64,10 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
           crate: {shape: box, size: [0.1, 0.1, 0.2], link: tool0, xyz: [0, 0, 0.1], touches: [wrist_3_link, table]}
 
     The length of a capsule is without its caps; ``quaternion: [w, x, y, z]`` may stand for ``rpy``; ``cell: true``
-    marks what belongs to the fixed cell.  MoveIt's scenes are read, too (:mod:`evenroad.robot.moveit_scene`).
+    marks what belongs to the fixed cell.  Files of clouds (:func:`evenroad.geometry.load_cloud`) and meshes
+    (:func:`evenroad.geometry.load_mesh`) are looked for beside the scene; points within `margin` of the robot, where it
+    stood when it was `seen_at`, are left out when one plans.  MoveIt's scenes are read, too
+    (:mod:`evenroad.robot.moveit_scene`).
 
     Raises BrokenFile if the file is missing, not YAML, lacks something, or has a key twice; UnknownName for a key, a
     shape or an obstacle that there is not; InvalidValue for a value of the wrong type or range.
@@ -127,8 +134,19 @@ def _attached(
 def _obstacle(name: str, entry: dict[str, Any], path: Path, where: str = "") -> Obstacle:
     where = where or f"obstacle {name!r} in {path}"
     shape = entry.get("shape")
-    if not isinstance(shape, str) or shape not in PRIMITIVES:
-        raise UnknownName.among(f"shape of {where}:", shape, PRIMITIVES)
+    kinds = (*PRIMITIVES, PointCloud.kind, Mesh.kind)
+    if not isinstance(shape, str) or shape not in kinds:
+        raise UnknownName.among(f"shape of {where}:", shape, kinds)
+    cell = entry.get("cell", False)
+    if not isinstance(cell, bool):
+        raise InvalidValue(f"cell of {where} must be true or false, got {cell!r}")
+    if shape == PointCloud.kind:
+        return _cloud(name, entry, path, cell)
+    if shape == Mesh.kind:
+        require_keys(entry, ("shape", "file"), (*_OPTIONAL, "scale"), where)
+        scale = entry.get("scale", 1)
+        x, y, z = numbers(scale if isinstance(scale, list) else [scale] * 3, 3, f"scale of {where}")
+        return Obstacle(name, Mesh(_file(entry, path, where), (x, y, z), pose=_pose(entry, where)), cell)
     dimensions = PRIMITIVES[shape].dimensions
     require_keys(entry, ("shape", *(key for key, _ in dimensions)), _OPTIONAL, where)
     size: tuple[float, ...] = ()
@@ -136,21 +154,46 @@ def _obstacle(name: str, entry: dict[str, Any], path: Path, where: str = "") -> 
         size += numbers(entry[key], count, f"{key} of {where}")
     for value in size:
         require_positive(f"the size of {where}", value)
+    return Obstacle(name, shape_of(shape, size, _pose(entry, where)), cell)
+
+
+def _cloud(name: str, entry: dict[str, Any], path: Path, cell: bool) -> Obstacle:
+    where = f"obstacle {name!r} in {path}"
+    require_keys(entry, ("shape", "file", "radius"), (*_OPTIONAL, *_OF_A_CLOUD), where)
+    (radius,) = numbers(entry["radius"], 1, f"radius of {where}")
+    require_positive(f"the radius of {where}", radius)
+    (margin,) = numbers(entry.get("margin", MARGIN), 1, f"margin of {where}")
+    seen_at = entry.get("seen_at")
+    if seen_at is not None and not isinstance(seen_at, str):
+        raise InvalidValue(
+            f"seen_at of {where} must be the name of a state or a text as for --start, got {seen_at!r}"
+        )
+    if seen_at is None and "margin" in entry:
+        raise InvalidValue(f"margin of {where} goes with seen_at: where the robot stood")
+    seen = None if seen_at is None else Seen(seen_at, margin)
+    body = PointCloud(load_cloud(_file(entry, path, where)), radius, pose=_pose(entry, where))
+    return Obstacle(name, body, cell, seen)
+
+
+def _file(entry: dict[str, Any], path: Path, where: str) -> Path:
+    """Return the file that an entry names, beside the scene."""
+    if not isinstance(entry["file"], str):
+        raise InvalidValue(f"file of {where} must be the name of a file, got {entry['file']!r}")
+    return path.parent / entry["file"]
+
+
+def _pose(entry: dict[str, Any], where: str) -> Pose:
+    """Return the pose that an entry has."""
     xyz = numbers(entry.get("xyz", [0, 0, 0]), 3, f"xyz of {where}")
     if "rpy" in entry and "quaternion" in entry:
         raise InvalidValue(f"{where} must have one of rpy and quaternion, got both")
     if "quaternion" in entry:
         quaternion = numbers(entry["quaternion"], 4, f"quaternion of {where}")
         try:
-            pose = Pose.from_quaternion(xyz, quaternion)
+            return Pose.from_quaternion(xyz, quaternion)
         except InvalidValue as error:
             raise InvalidValue(f"{where}: {error}") from None
-    else:
-        pose = Pose.from_rpy(xyz, numbers(entry.get("rpy", [0, 0, 0]), 3, f"rpy of {where}"))
-    cell = entry.get("cell", False)
-    if not isinstance(cell, bool):
-        raise InvalidValue(f"cell of {where} must be true or false, got {cell!r}")
-    return Obstacle(name, shape_of(shape, size, pose), cell)
+    return Pose.from_rpy(xyz, numbers(entry.get("rpy", [0, 0, 0]), 3, f"rpy of {where}"))
 
 
 def _range(value: object, what: str) -> tuple[float, float]:

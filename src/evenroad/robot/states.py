@@ -48,7 +48,7 @@ def at_states(robot: Robot, texts: Iterable[str], scene: Scene | None = None) ->
                     f" {said[joint]!r} to {value:.6g} in {name!r}; the group is {','.join(robot.group)}"
                 )
             said.setdefault(joint, name)
-    return with_group(robot, robot.group, {**robot.held, **held})
+    return with_group(robot, robot.group, {**robot.held, **held}) if held else robot
 
 
 def state_values(robot: Robot, name: str, scene: Scene | None = None) -> Floats:
@@ -88,18 +88,14 @@ def _outside_group(robot: Robot, name: str, values: Mapping[str, float]) -> dict
 
 
 def configuration(robot: Robot, text: str, scene: Scene | None = None, *, degrees: bool = False) -> Floats:
-    """Return the configuration that a text describes, (dim,) [rad or m].
+    """Return the configuration that a text describes, (dim,) [rad or m], in the order of the robot's group.
 
     Parameters
     ----------
-    robot : Robot
-        Its group gives the order.
     text : str
         One number a joint of the group, with commas (or blanks) between them: ``0,-1.57,0,-1.57,0,0``; or
         ``name=value`` for some joints of the group, the others at 0, or at the nearest to it within limits; or the
-        name of a state.
-    scene : Scene, optional
-        Whose named states are known, too.
+        name of a state, also of the `scene`.
     degrees : bool
         Angles in `text` are degrees; lengths stay metres, and named states what they are.
 

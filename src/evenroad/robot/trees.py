@@ -109,7 +109,9 @@ def connect(
     return _grown(world, first, others, samples, most, limit)
 
 
-def shorten(world: PlansWithTrees, path: npt.ArrayLike) -> tuple[Floats, int]:
+def shorten(
+    world: PlansWithTrees, path: npt.ArrayLike, *, pairs: int = 1 << 30, cuts: int = 64
+) -> tuple[Floats, int]:
     """Return a path that is not longer, and how many motions were looked at.
 
     A motion is put in only where it is proved free throughout.  Motions of the path as it was given stay where
@@ -121,6 +123,8 @@ def shorten(world: PlansWithTrees, path: npt.ArrayLike) -> tuple[Floats, int]:
         The robot in its scene.
     path : array_like, shape (p, dim), p >= 2
         Waypoints; every motion is free in the world.
+    pairs, cuts : int
+        So many motions between places along the path are tried at most, by the lanes so many cuts of corners, too.
 
     Raises
     ------
@@ -137,7 +141,8 @@ def shorten(world: PlansWithTrees, path: npt.ArrayLike) -> tuple[Floats, int]:
         raise InvalidValue(f"a path must have 2 waypoints or more, got {len(path)}")
     if world.backend == "scalar":
         return _shortened(world, as_batch("path", path, dim))
-    short, motions = _shorten_path()(world.lanes, path, *_place(share_pairs))
+    places, count = _place(share_pairs)
+    short, motions = _shorten_path()(world.lanes, path, places, min(pairs, count), cuts)
     if not len(short):
         as_batch("path", path, dim)
     return short, motions
@@ -231,7 +236,7 @@ def _tree_kernels() -> tuple[Any, Any]:
 
 
 @cache
-def _shorten_path() -> Callable[[LaneWorld, Floats, int, int], tuple[Floats, int]]:
+def _shorten_path() -> Callable[..., tuple[Floats, int]]:
     from evenroad.robot.kernel.shorten import shorten_path
 
     return shorten_path

@@ -176,7 +176,8 @@ def _limits(limit: Element | None, kind: str, where: str, notes: list[str]) -> t
         notes.append(note + (locked if lower == upper else ""))
     if lower > upper:
         absent = f" ({missing} is not given: 0 by the specification)" if missing else ""
-        raise InvalidValue(f"limits of {where} must have lower <= upper, got {lower:g}, {upper:g}{absent}")
+        got = f"got {lower:g}, {upper:g}{absent}"
+        raise InvalidValue(f"the limits of {where} must satisfy lower <= upper, {got}")
     return lower, upper, velocity
 
 

@@ -206,9 +206,8 @@ def _check_geometry(geometry: Element | None, where: str) -> None:
     tags = [shape.tag for shape in geometry] if geometry is not None else []
     if len(tags) != 1 or tags[0] not in _SHAPES:
         found = f"has {', '.join(f'<{tag}>' for tag in tags)}" if tags else "is empty"
-        raise BrokenFile(
-            f"{where}: the geometry of a <collision> {found}; it must be one of {', '.join(_SHAPES)}"
-        )
+        allowed = ", ".join(_SHAPES)
+        raise BrokenFile(f"{where}: the geometry of a <collision> {found}; it must be one of {allowed}")
     assert geometry is not None
     filename = geometry[0].get("filename", "")
     if filename.lower().endswith(".gltf"):
@@ -248,7 +247,8 @@ def find_mesh(name: str, file: RobotFile, link: str) -> Path:
     looked = ", ".join(str(place) for place in places[:4]) + (", ..." if len(places) > 4 else "")
     package = name.removeprefix("package://").partition("/")[0] if name.startswith("package://") else ""
     hint = f"; --package {package}=FOLDER says where that package is" if package else ""
-    raise BrokenFile(f"mesh {name!r} of link {link!r} in {file.path} is missing; looked for {looked}{hint}")
+    where = f"of link {link!r} in {file.path}"
+    raise BrokenFile(f"the mesh {name!r} {where} is missing; looked for {looked}{hint}")
 
 
 def _candidates(name: str, file: RobotFile) -> Iterator[Path]:

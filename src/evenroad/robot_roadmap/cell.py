@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from evenroad.errors import InvalidValue
+from evenroad.geometry.shapes import PRIMITIVES
 from evenroad.robot import Obstacle, Robot, Scene, held_values, in_scene
 
 
@@ -67,6 +68,8 @@ def scene_without(scene: Scene, names: dict[str, Obstacle]) -> Scene:
 
 
 def _text(obstacle: Obstacle) -> str:
+    if obstacle.shape not in PRIMITIVES:
+        return str(obstacle.body)
     size, xyz = (", ".join(f"{value:g}" for value in values) for values in (obstacle.size, obstacle.xyz))
     return f"{obstacle.shape} of {size} at ({xyz})"
 

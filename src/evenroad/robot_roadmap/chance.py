@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -30,6 +31,26 @@ SEEN = 2000
 """Configurations that tell how far the robot reaches."""
 
 
+class Surroundings(NamedTuple):
+    """Where a robot gets to: its base and two corners, (3,) each, and how far from the base [m]."""
+
+    base: Floats
+    low: Floats
+    high: Floats
+    reach: float
+
+    @classmethod
+    def of(cls, robot: Robot, q: Floats) -> Surroundings:
+        """Return them from configurations, (n, dim)."""
+        some = q[:SEEN]
+        places = capsule_ends(robot, some).reshape(-1, 3)
+        moved_first = next(i for i, joint in enumerate(robot.joints) if joint.name == robot.group[0])
+        base = link_poses(robot, some[:1])[0, moved_first + 1, :3, 3]
+        thick = max(capsule.radius for capsule in robot.capsules)
+        low, high = places.min(axis=0) - thick, places.max(axis=0) + thick
+        return cls(base, low, high, thick + float(np.max(np.linalg.norm(places - base, axis=1))))
+
+
 def chance_of_freedom(
     robot: Robot,
     q: Floats,
@@ -41,17 +62,10 @@ def chance_of_freedom(
 
     The boxes stand anywhere within the robot's reach; they know of no task.
     """
-    bare = replace(robot, pairs=())
-    some = q[:SEEN]
-    places = capsule_ends(robot, some).reshape(-1, 3)
-    moved_first = next(i for i, joint in enumerate(robot.joints) if joint.name == robot.group[0])
-    base = link_poses(robot, some[:1])[0, moved_first + 1, :3, 3]
-    thick = max(capsule.radius for capsule in robot.capsules)
-    low, high = places.min(axis=0) - thick, places.max(axis=0) + thick
-    reach = thick + float(np.max(np.linalg.norm(places - base, axis=1)))
+    bare, around = replace(robot, pairs=()), Surroundings.of(robot, q)
     free = np.zeros(len(q))
     for i in range(scenes):
-        free += ArmWorld(bare, random_scene(base, low, high, reach, rng)).valid(q)
+        free += ArmWorld(bare, random_scene(*around, rng)).valid(q)
         progress((i + 1) / scenes)
     return free / scenes
 

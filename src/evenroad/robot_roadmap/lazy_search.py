@@ -1,323 +1,376 @@
-"""The search of a robot's roadmap: the shortest way first, by compiled code, then the world is asked about it."""
+"""The search of a roadmap in compiled code that asks before it goes on: whoever knows the world answers.
+
+A lazy A* (Cohen, Phillips and Likhachev 2015): a motion is asked about when the search would go along it, a milestone
+before the first motion to it.  Whether there is any way to a goal from outside is asked first.
+"""
 
 from __future__ import annotations
 
-import heapq
-import itertools
-import time
-from typing import Any, NamedTuple
-
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
-from evenroad._arrays import Bools, Floats, Ints
-from evenroad.robot.arm_world import RECHECK_TOLERANCE, ArmWorld
-from evenroad.robot_roadmap.turns import TURN
+from evenroad.robot.kernel.layout import quick
+from evenroad.robot_roadmap.search_memory import (
+    AIM,
+    AIMED_END,
+    ASK_GOALS,
+    ASK_STRAIGHT,
+    BLOCKED,
+    BY,
+    CAPACITY,
+    DIM,
+    ENDS,
+    ENTRIES,
+    FREE,
+    GREED,
+    HIGH,
+    LEAST,
+    LEFT,
+    LIFTED,
+    LIFTS,
+    LINKS,
+    LOW,
+    MADE,
+    NEXT,
+    NODES,
+    NUMBER,
+    OF,
+    OPEN,
+    OTHER,
+    PARENT,
+    PENDING,
+    PHASE,
+    REACHED,
+    SEARCH,
+    SIBLING,
+    SIZE,
+    STATE,
+    STATES,
+    TO,
+    TURNS,
+    UNKNOWN,
+    VIA,
+    WAITING,
+    Search,
+)
+from evenroad.robot_roadmap.search_metric import distance, measure, write
 
-Verdicts = npt.NDArray[np.int8]
-UNKNOWN, FREE, BLOCKED = 0, 1, 2
+Floats = npt.NDArray[np.float64]
 
-NONE, GAVE_UP = -1, -2
-"""In place of a goal: there is no path, or motions or time were over before."""
+NODE, EDGE, LINK, STRAIGHT, FOUND, NONE, CUT_OFF, FULL = range(8)
+"""What `step` ends with: a milestone, a motion of the roadmap, a link of an end or the motion straight to a goal to be
+asked about; a way, none, no free link of a goal, no room."""
 
-_EASY, _ANEW = 4, 16
-"""A query that so many searches have not answered is worth a closer bound, made anew after so many more."""
+ONWARD = 0.5
+"""Links are tried in the order of their length and this share of what is left beyond them."""
 
-_BITS = 4
-_ROOM = 1024
-"""States that there is room for at first; doubled when it is used up."""
-
-
-class Ways(NamedTuple):
-    """A roadmap by node, as compiled code reads it.
-
-    Of milestone i, the half edges ``first[i]`` to ``first[i + 1]`` lead to ``other``, by ``turns``, (h, dim), over
-    ``length``; ``edge`` is the number of the edge.  The rest is of the joints: see :class:`OneTurn`.
-    """
-
-    milestones: Floats
-    first: Ints
-    other: Ints
-    edge: Ints
-    turns: Any
-    length: Floats
-    weights: Floats
-    limits: Floats
-    lifts: Bools
-    endless: Bools
-    edges: int
-
-
-class Ends(NamedTuple):
-    """A start, (dim,), goals, (g, dim), and their links: to which milestone, by which turns and how long.
-
-    ``turns``, (1 + g, n), are packed; ``length``, (1 + g, n), is inf where there is no link.
-    """
-
-    start: Floats
-    goals: Floats
-    turns: Ints
-    length: Floats
-    straight: Floats
-
-
-@njit(cache=True, nogil=True)
-def ends_of(ways, start, goals, links):  # type: ignore[no-untyped-def]
-    """Return start and goals linked to the nearest milestones, `links` of each or all of them."""
-    n, dim = ways.milestones.shape
-    turns, length = np.zeros((1 + len(goals), n), dtype=np.int64), np.full((1 + len(goals), n), np.inf)
-    away, straight = np.empty(n), np.empty(len(goals))
-    for end in range(1 + len(goals)):
-        q = start if end == 0 else goals[end - 1]
-        for i in range(n):
-            squared = 0.0
-            for k in range(dim):
-                apart = ways.milestones[i, k] - q[k]
-                if ways.endless[k]:
-                    apart -= TURN * np.rint(apart / TURN)
-                elif ways.lifts[k]:
-                    turn = np.rint(-apart / TURN)
-                    turn = max(turn, np.ceil((ways.limits[0, k] - ways.milestones[i, k]) / TURN))
-                    turn = min(turn, np.floor((ways.limits[1, k] - ways.milestones[i, k]) / TURN))
-                    apart += TURN * turn
-                    turns[end, i] += np.int64(turn) << (_BITS * k)
-                squared += (ways.weights[k] * apart) ** 2
-            away[i] = np.sqrt(squared)
-        furthest = np.inf if links >= n else np.partition(away, links)[links]
-        for i in range(n):
-            if away[i] < furthest:
-                length[end, i] = away[i]
-        if end:
-            straight[end - 1] = _distance(ways, start, q)
-    return Ends(start, goals, turns, length, straight)
+AIMED = 4
+"""A goal of which so many links were blocked before a free one was found is approached by that one."""
 
 
-def lazy_path(
-    ways: Ways,
-    ends: Ends,
-    milestones: Verdicts,
-    edges: Verdicts,
-    motions_left: int,
-    deadline: float,
-    day: ArmWorld,
-    full: ArmWorld,
-) -> tuple[Floats, int, int, int]:
-    """Return the shortest path that the world calls free: waypoints, its goal or -1, and what was checked.
-
-    A lazy shortest-path search (Dellin and Srinivasa 2016): the best path over all that is not known to be blocked is
-    asked about, its milestones first and then its motions, until all of one path is free or there is none.
-
-    Parameters
-    ----------
-    ways, ends : Ways, Ends
-        The roadmap, and what is asked.
-    milestones, edges : int8 arrays
-        What is known of them so far, written to.  Behind the edges come the links of the start, those of each goal, and
-        the straight motions to the goals.
-    motions_left : int
-        Give up when so many motions were checked.
-    deadline : float
-        Or then, on the clock of ``time.perf_counter``.
-    day, full : ArmWorld
-        Of the day's obstacles alone, enough for what was proved free of the rest beforehand; and of everything.
-
-    Returns
-    -------
-    path : float64 array, shape (p, dim)
-    goal : int
-        NONE without a path, GAVE_UP where motions or time were over before.
-    configurations, motions : int
-        How many were checked.
-    """
-    configurations = motions = 0
-    nothing, left = np.empty((0, ways.milestones.shape[1])), np.zeros(len(ways.milestones))
-    for search in itertools.count():
-        if search % _ANEW == _EASY:
-            _write_way_left(ways, ends, milestones, edges, left)
-        nodes, between, along, goal = _shortest(ways, ends, milestones, edges, left)
-        if goal < 0 or time.perf_counter() >= deadline:
-            return nothing, NONE if goal < 0 else GAVE_UP, configurations, motions
-        path = np.concatenate([ends.start[np.newaxis], between, ends.goals[goal : goal + 1]])
-        unknown = milestones[nodes] == UNKNOWN
-        if unknown.any():
-            free = day.valid(between[unknown])
-            configurations += len(free)
-            milestones[nodes[unknown]] = np.where(free, FREE, BLOCKED)
-            if not free.all():
+@quick
+def begin(s: Search) -> None:
+    """Measure how far milestones are from the ends, and choose those that each is tried to be linked to."""
+    d, capacity = s.desk, s.desk[CAPACITY]
+    for end in range(d[ENDS]):
+        measure(s, end)
+    for end in range(d[ENDS]):
+        count, last, s.radius[end] = 0, np.inf, 0.0
+        for i in range(d[NODES]):
+            beyond = s.away[i]
+            if end == 0:
+                beyond = s.away[capacity + i]
+                for other in range(2, d[ENDS]):
+                    beyond = min(beyond, s.away[other * capacity + i])
+            key = s.away[end * capacity + i] + np.float32(ONWARD) * beyond
+            if (count == d[LINKS] and key >= last) or s.nodes[i] == BLOCKED or s.links[end, i] == BLOCKED:
                 continue
-        # The links of start and goal are the likeliest to be blocked, so that they come first.
-        for i in sorted(range(len(along)), key=lambda i: min(i, len(along) - 1 - i)):
-            if edges[along[i]] == UNKNOWN:
-                if motions >= motions_left:
-                    return nothing, GAVE_UP, configurations, motions
-                motions += 1
-                world = day if along[i] < ways.edges else full
-                free = world.motion_certified(path[i : i + 1], path[i + 1 : i + 2], RECHECK_TOLERANCE)
-                edges[along[i]] = FREE if free[0] else BLOCKED
-            if edges[along[i]] == BLOCKED:
-                break
-        else:
-            return path, goal, configurations, motions
-    raise AssertionError("the count of searches never ends")
+            # Kept in order.
+            count = min(count + 1, d[LINKS])
+            place = count - 1
+            while place > 0 and s.keys[place - 1] > key:
+                s.keys[place], s.near[end, place] = s.keys[place - 1], s.near[end, place - 1]
+                place -= 1
+            s.keys[place], s.near[end, place] = key, i
+            last = s.keys[count - 1]
+        for rank in range(count):
+            s.radius[end] = max(s.radius[end], s.away[end * capacity + s.near[end, rank]])
+        for rank in range(count, d[LINKS]):
+            s.near[end, rank] = -1
+    _clear(s)
+    d[AIM], d[AIMED_END], d[PHASE] = -1, -1, ASK_STRAIGHT
 
 
-@njit(cache=True, nogil=True)
-def _write_way_left(ways, ends, milestones, edges, left):  # type: ignore[no-untyped-def]
-    """Write how far it is from each milestone to a goal at least, (n,), with turns left out: Dijkstra (1959)."""
-    n = len(left)
-    queue: Any = [(0.0, np.int64(0)) for _ in range(0)]
-    left[:] = np.inf
-    for i in range(n):
-        for g in range(len(ends.goals)):
-            if edges[ways.edges + n * (1 + g) + i] != BLOCKED and milestones[i] != BLOCKED:
-                left[i] = min(left[i], ends.length[1 + g, i])
-        if left[i] < np.inf:
-            heapq.heappush(queue, (left[i], np.int64(i)))
-    while len(queue):
-        cost, i = heapq.heappop(queue)
-        if cost > left[i]:
-            continue
-        for half in range(ways.first[i], ways.first[i + 1]):
-            there: Any = ways.other[half]
-            reached = cost + ways.length[half]
-            if reached < left[there] and edges[ways.edge[half]] != BLOCKED and milestones[there] != BLOCKED:
-                left[there] = reached
-                heapq.heappush(queue, (reached, there))
+@quick
+def _clear(s: Search) -> None:
+    """Forget what the search has got to."""
+    d = s.desk
+    d[SIZE], d[MADE], d[WAITING], d[PENDING] = 0, 0, 0, -1
+    for i in range(d[NODES]):
+        s.heads[i] = -1
 
 
-@njit(cache=True, nogil=True)
-def _shortest(ways, ends, milestones, edges, left):  # type: ignore[no-untyped-def]
-    """Return milestones, configurations and edges of the shortest path not known to be blocked, and its goal or -1.
-
-    A* (Hart, Nilsson and Raphael 1968) over milestones with turns, with the distance to the nearest goal as its bound,
-    or the way that is `left`, (n,), at least, where that is longer.
-    """
-    n, dim = ways.milestones.shape
-    q, room = np.empty(dim), _ROOM
-    node, turned = np.empty(room, dtype=np.int64), np.empty(room, dtype=np.int64)
-    cost, bound = np.empty(room), np.empty(room)
-    parent, via = np.empty(room, dtype=np.int64), np.empty(room, dtype=np.int64)
-    closed = np.zeros(room, dtype=np.bool_)
-    slots = np.full(4 * room, -1, dtype=np.int64)
-    size = 0
-    open_states = [(0.0, np.int64(0)) for _ in range(0)]
-    last: Any = -1
-    best, goal, last_edge = np.inf, -1, -1
-    for g in range(len(ends.goals)):
-        straight = ways.edges + n * (1 + len(ends.goals)) + g
-        if edges[straight] != BLOCKED and ends.straight[g] < best:
-            best, goal, last, last_edge = ends.straight[g], g, -1, straight
-    state: Any = -1
+@quick
+def step(s: Search) -> int:
+    """Go on until something has to be asked about, there is a way, or there is none."""
+    d = s.desk
+    if d[PHASE] == ASK_STRAIGHT:
+        d[PHASE] = ASK_GOALS
+        for end in range(1, d[ENDS]):
+            if s.straight[end] == UNKNOWN:
+                d[TO], d[PHASE] = end, ASK_STRAIGHT
+                for k in range(d[DIM]):
+                    s.asked[0, k], s.asked[1, k] = s.ends[0, k], s.ends[end, k]
+                return STRAIGHT
+            if s.straight[end] >= FREE:
+                d[PHASE] = OPEN
+    if d[PHASE] == ASK_GOALS:
+        question = _goal_link(s)
+        if question != NONE:
+            return question
+        d[PHASE] = OPEN
+    if d[PHASE] == OPEN:
+        _open(s)
+        d[PHASE] = SEARCH
     while True:
-        # The start has no milestone: its links are its half edges.
-        begin, end = (0, n) if state < 0 else (ways.first[node[state]], ways.first[node[state] + 1])
-        for half in range(begin, end):
-            if state < 0:
-                there, edge = half, ways.edges + half
-                length, packed = ends.length[0, half], ends.turns[0, half]
-            else:
-                there, edge = ways.other[half], ways.edge[half]
-                length, packed = ways.length[half], turned[state] + ways.turns[half]
-            if length == np.inf or edges[edge] == BLOCKED or milestones[there] == BLOCKED:
+        if d[PENDING] < 0:
+            if d[WAITING] == 0:
+                if d[AIM] < 0:
+                    return NONE
+                # Not by the milestone that was aimed at: once more with all links of the goals.
+                _clear(s)
+                d[AIM] = -1
+                _open(s)
                 continue
-            if not _write_state(ways, there, packed, q):
+            d[PENDING] = _pop(s)
+        entry = d[PENDING]
+        state, question = s.entries[entry, STATE], question_of(s, entry)
+        verdict = verdict_of(s, question)
+        if state >= 0:
+            node = s.states[state, OF]
+            if s.states[state, REACHED] >= 0 or s.nodes[node] == BLOCKED:
+                verdict = BLOCKED
+            if question == EDGE and verdict != BLOCKED and s.nodes[node] == UNKNOWN:
+                d[TO] = node
+                write(s, node, s.states[state, LIFTED], s.asked[0])
+                return NODE
+        if verdict == UNKNOWN:
+            write_asked(s, entry, question)
+            return question
+        if verdict >= FREE and state < 0:
+            return FOUND
+        d[PENDING] = -1
+        if verdict >= FREE:
+            s.states[state, REACHED] = entry
+            if not _expand(s, state, entry):
+                return FULL
+
+
+@quick
+def _goal_link(s: Search) -> int:
+    """Return NONE where a free link of a goal is known; else the question for one, or CUT_OFF."""
+    d = s.desk
+    for end in range(1, d[ENDS]):
+        missed = 0
+        for rank in range(d[LINKS]):
+            i = s.near[end, rank]
+            if i < 0 or s.nodes[i] == BLOCKED:
                 continue
-            reached = length if state < 0 else cost[state] + length
-            slot = (there * 2654435761 + packed * 40503) % len(slots)
-            while slots[slot] >= 0 and (node[slots[slot]] != there or turned[slots[slot]] != packed):
-                slot = (slot + 1) % len(slots)
-            found = slots[slot]
-            if found < 0:
-                found = slots[slot] = size
-                size += 1
-                node[found], turned[found], cost[found] = there, packed, np.inf
-                nearest = np.inf
-                for g in range(len(ends.goals)):
-                    nearest = min(nearest, _distance(ways, q, ends.goals[g]))
-                bound[found] = max(nearest, left[there])
-            if reached < cost[found] and not closed[found]:
-                cost[found], parent[found], via[found] = reached, state, edge
-                heapq.heappush(open_states, (reached + bound[found], found))
-            if size == len(node):
-                room = 2 * size
-                node, turned = _longer(node, room), _longer(turned, room)
-                cost, bound = _longer(cost, room), _longer(bound, room)
-                parent, via, closed = _longer(parent, room), _longer(via, room), _longer(closed, room)
-                closed[size:] = False
-                slots = np.full(4 * room, -1, dtype=np.int64)
-                for i in range(size):
-                    slot = (node[i] * 2654435761 + turned[i] * 40503) % len(slots)
-                    while slots[slot] >= 0:
-                        slot = (slot + 1) % len(slots)
-                    slots[slot] = i
-        state = -1
-        while len(open_states):
-            least, candidate = heapq.heappop(open_states)
-            if least >= best:
-                break
-            if not closed[candidate]:
-                state = candidate
-                break
-        if state < 0:
-            break
-        closed[state] = True
-        i = node[state]
-        for g in range(len(ends.goals)):
-            edge = ways.edges + n * (1 + g) + i
-            there = cost[state] + ends.length[1 + g, i]
-            if turned[state] == ends.turns[1 + g, i] and edges[edge] != BLOCKED and there < best:
-                best = there
-                goal, last, last_edge = g, state, edge
-    count, state = 0, last
+            if s.links[end, i] == BLOCKED:
+                missed += 1
+                continue
+            if s.links[end, i] == UNKNOWN:
+                d[TO], d[BY] = end, i
+                for k in range(d[DIM]):
+                    s.asked[0, k] = s.ends[end, k]
+                write(s, i, s.turns[end, i], s.asked[1])
+                return LINK
+            if missed >= AIMED and s.rules[GREED, 0] > 1.0:
+                d[AIM], d[AIMED_END] = i, end
+            return NONE
+    return CUT_OFF
+
+
+@quick
+def _open(s: Search) -> None:
+    """Put the motions straight to goals and the links of the start into the queue."""
+    d = s.desk
+    for end in range(1, d[ENDS]):
+        if s.straight[end] != BLOCKED:
+            _push(s, -end, -1, -1, distance(s, s.ends[0], s.ends[end]), 0.0)
+    for rank in range(d[LINKS]):
+        i = s.near[0, rank]
+        if i >= 0 and s.links[0, i] != BLOCKED:
+            state = _state(s, i, s.turns[0, i])
+            if state >= 0:
+                _push(s, state, -1, -1, s.away[i], s.bounds[state, LEFT])
+
+
+@quick
+def question_of(s: Search, entry: int) -> int:
+    """Return what kind of motion an entry came by, and write which one."""
+    d, state, parent = s.desk, s.entries[entry, STATE], s.entries[entry, PARENT]
+    if parent >= 0 and state >= 0:
+        d[BY] = s.entries[entry, VIA]
+        return EDGE
+    if parent < 0 and state < 0:
+        d[TO] = -state
+        return STRAIGHT
+    if parent < 0:
+        d[TO], d[BY] = 0, s.states[state, OF]
+    else:
+        d[TO], d[BY] = -state, s.states[s.entries[parent, STATE], OF]
+    return LINK
+
+
+@quick
+def verdict_of(s: Search, question: int) -> int:
+    """Return what is known of what `question_of` wrote."""
+    if question == EDGE:
+        return s.edges[s.desk[BY]]
+    return s.straight[s.desk[TO]] if question == STRAIGHT else s.links[s.desk[TO], s.desk[BY]]
+
+
+@quick
+def write_asked(s: Search, entry: int, question: int) -> None:
+    """Write the ends of the motion that an entry came by; of a link the end of the query first."""
+    from_goal = question == LINK and s.entries[entry, STATE] < 0
+    _write_place(s, 1 if from_goal else 0, s.entries[entry, PARENT])
+    _write_place(s, 0 if from_goal else 1, entry)
+
+
+@quick
+def _write_place(s: Search, row: int, entry: int) -> None:
+    """Write where an entry leads to; -1 is the start."""
+    state = s.entries[entry, STATE] if entry >= 0 else 0
+    if entry < 0 or state < 0:
+        for k in range(s.desk[DIM]):
+            s.asked[row, k] = s.ends[-state, k]
+    else:
+        write(s, s.states[state, OF], s.states[state, LIFTED], s.asked[row])
+
+
+@quick
+def answer(s: Search, question: int, verdict: int) -> None:
+    """Write what a question was answered with."""
+    to, by = s.desk[TO], s.desk[BY]
+    if question == STRAIGHT:
+        s.straight[to] = verdict
+    elif question == NODE:
+        s.nodes[to] = verdict
+    elif question == EDGE:
+        s.edges[by] = verdict
+    else:
+        s.links[to, by] = verdict
+        if verdict >= FREE:
+            s.nodes[by] = FREE
+
+
+@quick
+def way_back(s: Search, path: Floats) -> int:
+    """Write the way that was found, from the goal back to the start, and return of how many waypoints."""
+    entry, rows = s.desk[PENDING], 0
+    while True:
+        _write_place(s, 0, entry)
+        for k in range(s.desk[DIM]):
+            path[rows, k] = s.asked[0, k]
+        rows += 1
+        if entry < 0:
+            return rows
+        entry = s.entries[entry, PARENT]
+
+
+@quick
+def _expand(s: Search, state: int, entry: int) -> bool:
+    """Put all that a state leads to into the queue; return whether there was room."""
+    d, node, packed, cost = s.desk, s.states[state, OF], s.states[state, LIFTED], s.costs[entry]
+    if d[MADE] + d[ENDS] > d[ENTRIES]:
+        return False
+    for end in range(1, d[ENDS]):
+        link, away = s.links[end, node], s.away[end * d[CAPACITY] + node]
+        wanted = d[AIM] < 0 and away <= s.radius[end]
+        if s.turns[end, node] == packed and (link >= FREE or (link == UNKNOWN and wanted)):
+            _push(s, -end, entry, -1, cost + away, 0.0)
+    half = s.first[node]
+    while half >= 0:
+        there, edge, reached = s.halves[half, OTHER], s.halves[half, NUMBER], cost + s.lengths[half]
+        turned = packed + s.halves[half, TURNS]
+        half = s.halves[half, NEXT]
+        if s.edges[edge] == BLOCKED or s.nodes[there] == BLOCKED:
+            continue
+        if d[SIZE] >= d[STATES] or d[MADE] >= d[ENTRIES]:
+            return False
+        other = _state(s, there, turned)
+        if other < 0 or s.states[other, REACHED] >= 0 or reached >= s.bounds[other, LEAST]:
+            continue
+        if s.edges[edge] >= FREE and s.nodes[there] == FREE:
+            s.bounds[other, LEAST] = reached
+        _push(s, other, entry, edge, reached, s.bounds[other, LEFT])
+    return True
+
+
+@quick
+def _state(s: Search, node: int, packed: int) -> int:
+    """Return the state of a milestone after turns, a new one where there was none; -1 where limits forbid it."""
+    state = s.heads[node]
     while state >= 0:
-        count, state = count + 1, parent[state]
-    nodes, between = np.empty(count, dtype=np.int64), np.empty((count, dim))
-    along = np.empty(count + 1, dtype=np.int64)
-    along[count], state = last_edge, last
-    for i in range(count - 1, -1, -1):
-        nodes[i], along[i] = node[state], via[state]
-        _write_state(ways, nodes[i], turned[state], between[i])
-        state = parent[state]
-    return nodes, between, along, goal
+        if s.states[state, LIFTED] == packed:
+            return state if s.bounds[state, LEFT] < np.inf else -1
+        state = s.states[state, SIBLING]
+    d, state = s.desk, s.desk[SIZE]
+    d[SIZE] += 1
+    s.states[state, OF], s.states[state, LIFTED] = node, packed
+    s.states[state, SIBLING], s.states[state, REACHED] = s.heads[node], -1
+    s.heads[node] = state
+    write(s, node, packed, s.asked[1])
+    least, inside = np.inf, True
+    for k in range(d[DIM]):
+        if s.rules[LIFTS, k] > 0.0:
+            inside &= s.rules[LOW, k] <= s.asked[1, k] <= s.rules[HIGH, k]
+    if d[AIM] >= 0:
+        write(s, d[AIM], s.turns[d[AIMED_END], d[AIM]], s.asked[0])
+        least = distance(s, s.asked[1], s.asked[0]) + s.away[d[AIMED_END] * d[CAPACITY] + d[AIM]]
+    else:
+        for end in range(1, d[ENDS]):
+            least = min(least, distance(s, s.asked[1], s.ends[end]))
+    s.bounds[state, LEFT], s.bounds[state, LEAST] = s.rules[GREED, 0] * least, np.inf
+    if not inside:
+        s.bounds[state, LEFT] = np.inf
+    return state if inside else -1
 
 
-@njit(cache=True, nogil=True)
-def _write_state(ways, node, packed, q):  # type: ignore[no-untyped-def]
-    """Write the configuration of a milestone after turns, and return whether it is within the limits."""
-    inside = True
-    for k in range(len(q)):
-        q[k] = ways.milestones[node, k]
-        if ways.lifts[k]:
-            q[k] += TURN * _turn(packed, k)
-            inside &= ways.limits[0, k] <= q[k] <= ways.limits[1, k]
-    return inside
+@quick
+def _push(s: Search, state: int, parent: int, via: int, cost: float, left: float) -> None:
+    """Make an entry and put it into the queue, a heap with the least key first."""
+    d, entry = s.desk, s.desk[MADE]
+    d[MADE] += 1
+    s.entries[entry, STATE], s.entries[entry, PARENT], s.entries[entry, VIA] = state, parent, via
+    s.costs[entry] = cost
+    key, place = cost + left, d[WAITING]
+    d[WAITING] += 1
+    while place > 0:
+        above = (place - 1) // 2
+        if s.keys[above] <= key:
+            break
+        s.keys[place], s.items[place] = s.keys[above], s.items[above]
+        place = above
+    s.keys[place], s.items[place] = key, entry
 
 
-@njit(cache=True, nogil=True)
-def _turn(packed, k):  # type: ignore[no-untyped-def]
-    """Return the turns of one joint from those of all, whose sum ``sum_k turn_k 16^k`` is their packed form."""
-    # Each is brought to 0 .. 15 first, so that a negative one does not borrow from the next.
-    shifted = packed + _OFFSETS
-    return ((shifted >> (_BITS * k)) & (2**_BITS - 1)) - 2 ** (_BITS - 1)
-
-
-_OFFSETS = sum(2 ** (_BITS - 1) << (_BITS * k) for k in range(14))
-
-
-@njit(cache=True, nogil=True)
-def _distance(ways, a, b):  # type: ignore[no-untyped-def]
-    squared = 0.0
-    for k in range(len(a)):
-        apart = b[k] - a[k]
-        if ways.endless[k]:
-            apart -= TURN * np.rint(apart / TURN)
-        squared += (ways.weights[k] * apart) ** 2
-    return np.sqrt(squared)
-
-
-@njit(cache=True, nogil=True)
-def _longer(array, size):  # type: ignore[no-untyped-def]
-    longer = np.empty(size, dtype=array.dtype)
-    longer[: len(array)] = array
-    return longer
+@quick
+def _pop(s: Search) -> int:
+    """Take the entry with the least key out of the queue."""
+    first = s.items[0]
+    s.desk[WAITING] -= 1
+    size = s.desk[WAITING]
+    key, item, place = s.keys[size], s.items[size], 0
+    while True:
+        below = 2 * place + 1
+        if below + 1 < size and s.keys[below + 1] < s.keys[below]:
+            below += 1
+        if below >= size or s.keys[below] >= key:
+            break
+        s.keys[place], s.items[place] = s.keys[below], s.items[below]
+        place = below
+    s.keys[place], s.items[place] = key, item
+    return first

@@ -11,10 +11,12 @@ from evenroad._arrays import Floats, Ints, Ints32
 from evenroad._checks import require_count, require_positive
 from evenroad._rng import RngLike, generator
 from evenroad.errors import InvalidValue
+from evenroad.geometry.shapes import PRIMITIVES
 from evenroad.points import draw
 from evenroad.roadmap.neighbours import nearest
 from evenroad.robot import ArmWorld, Robot, Scene, in_scene
 from evenroad.robot_roadmap.chance import chance_of_freedom
+from evenroad.robot_roadmap.pockets import ends_in_pockets
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
 from evenroad.robot_roadmap.spread import displacement_weights, spread_order
 from evenroad.robot_roadmap.turns import TURN, OneTurn, lifted_motions_free, one_turn, shifts, whole_turns
@@ -32,6 +34,12 @@ MOST = 1 << 15
 TRIED = 60
 """Nearest milestones that each is tried to be joined to."""
 
+GAMMA = 2.0
+"""Power of the chance of being free that milestones are as dense as, before the ends count."""
+
+ENDS = 1500
+"""Ends in pockets at random that milestones learn from."""
+
 SCENES = 400
 """Random scenes by which the chance of being free is measured."""
 
@@ -45,7 +53,8 @@ def make_roadmap(
     n: int = 1024,
     *,
     k: int = 16,
-    gamma: float | None = None,
+    gamma: float = GAMMA,
+    ends: int = ENDS,
     resolution: float = 0.05,
     rng: RngLike = 0,
     progress: Callable[[str, float], None] = lambda what, share: None,
@@ -53,7 +62,8 @@ def make_roadmap(
     """Make the roadmap of a robot in its cell: some seconds, once.
 
     Milestones are chosen from scrambled Sobol points that are free of robot and cell, each as far as possible from
-    those before, in the metric of displacement, and denser where random scenes leave the robot free.
+    those before, in the metric of displacement, and denser where random scenes leave the robot free, and where ends in
+    pockets at random can be joined to them: what fails without is an end that sees no milestone.
 
     Parameters
     ----------
@@ -66,8 +76,9 @@ def make_roadmap(
     k : int
         Each is joined to so many of its nearest ones that it can reach freely, >= 1, and to those that choose it.
     gamma : float, optional
-        The spacing is in proportion to the chance of being free to the power of -gamma, >= 0.  Default: 8 for 64
-        milestones, 6 for 256, 4 from 1024 on; 0 for seven joints and more, where it was no gain.
+        The spacing is in proportion to the chance of being free to the power of -gamma, >= 0.
+    ends : int
+        How many ends in pockets are learned from, >= 0.
     resolution : float
         Largest step of a motion check, > 0 [rad].
     rng : int, SeedSequence or Generator
@@ -80,10 +91,16 @@ def make_roadmap(
     InvalidValue
         If an argument is no such number, or the robot is never free in its cell; the text says what blocks.
     """
-    n, k = require_count("n", n), require_count("k", k)
+    n, k, ends = require_count("n", n), require_count("k", k), require_count("ends", ends, at_least=0)
     if n > MOST:
         raise InvalidValue(f"n must be at most {MOST}, got {n}")
     cell = Scene("nothing") if cell is None else cell
+    for obstacle in cell.obstacles:
+        if obstacle.shape not in PRIMITIVES:
+            raise InvalidValue(
+                f"a cell must consist of {', '.join(PRIMITIVES)}, which a roadmap's file holds, got"
+                f" {obstacle.name!r}, a {obstacle.body}: leave it to the scene of the day"
+            )
     robot = in_scene(robot, cell)
     if robot.holds:
         raise InvalidValue(
@@ -94,8 +111,8 @@ def make_roadmap(
         first, second = world.fixed_contact
         raise InvalidValue(f"the robot is never free in its cell: {first!r} always touches {second!r}")
     dim = world.space.dim
-    gamma = default_gamma(n, dim) if gamma is None else require_positive("gamma", gamma, or_zero=True)
-    pool_rng, scene_rng = generator(rng).spawn(2)
+    gamma = require_positive("gamma", gamma, or_zero=True)
+    pool_rng, scene_rng, pocket_rng = generator(rng).spawn(3)
     one = one_turn(world.space, whole_turns(robot))
     progress("drawing configurations", 0.0)
     pool = _free_pool(world, one, CANDIDATES * n, pool_rng)
@@ -107,8 +124,12 @@ def make_roadmap(
             robot, pool, SCENES, scene_rng, lambda share: progress("random scenes", share)
         )
         preference = np.maximum(chance, 1.0 / SCENES) ** gamma
+    scaled = weights * pool
+    seen = ends_in_pockets(
+        robot, cell, pool, scaled, ends, pocket_rng, lambda share: progress("pockets", share)
+    )
     progress("choosing milestones", 0.0)
-    order = spread_order(weights * pool, weights * _periods(one), preference, n)
+    order = spread_order(scaled, weights * _periods(one), preference, n, *seen)
     progress("joining milestones", 0.0)
     nothing = RobotRoadmap(
         robot,
@@ -129,11 +150,6 @@ def joined(roadmap: RobotRoadmap, milestones: Floats, k: int) -> RobotRoadmap:
     for array in (milestones, edges, turns, roadmap.weights):
         array.setflags(write=False)
     return replace(roadmap, milestones=milestones, edges=edges, turns=turns)
-
-
-def default_gamma(n: int, dim: int) -> float:
-    """Return the power that was best for so many milestones: fewer of them keep more to where there is room."""
-    return 0.0 if dim >= 7 else float(np.clip(8.0 - np.log2(n / 64.0), 4.0, 8.0))
 
 
 def _periods(one: OneTurn) -> Floats:

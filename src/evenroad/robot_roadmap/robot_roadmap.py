@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import time
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -11,26 +11,45 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints, Ints32
+from evenroad._clock import now
 from evenroad.roadmap import Budget, PlanResult, Status
 from evenroad.roadmap.answer import connected, gave_up, refusal
 from evenroad.roadmap.attempt import Attempt
-from evenroad.roadmap.find_path import NO_POINTS, SECONDS
-from evenroad.roadmap.hemmed import with_reasons
+from evenroad.roadmap.find_path import NO_POINTS, SECONDS, with_reasons
 from evenroad.roadmap.query import FEW, LINKS, Query, read_places
 from evenroad.robot import ArmWorld, Robot, Scene, configuration, in_scene
+from evenroad.robot.trees import shorten
+from evenroad.robot_roadmap.ask import ENDS_TAKEN, Asked, ask
 from evenroad.robot_roadmap.cell import day_and_all, left_to_check, require_same_robot
-from evenroad.robot_roadmap.lazy_search import Ways, ends_of, lazy_path
-from evenroad.robot_roadmap.turns import TURN, OneTurn, one_turn, whole_turns
+from evenroad.robot_roadmap.known_graph import KnownGraph
+from evenroad.robot_roadmap.learned import with_paths
+from evenroad.robot_roadmap.turns import OneTurn, one_turn, whole_turns
+from evenroad.space.path import path_length
 from evenroad.world.protocol import Connection
 
 Place = str | npt.ArrayLike
 """A configuration: numbers in the order of the group, or a text as :func:`evenroad.robot.configuration` takes it."""
 
+PLANNER = "robot roadmap"
+
 SHARE = 0.5
 """Of the time, for the roadmap; the rest is the trees', where it does not lead to the goal."""
 
+GREED = 3.0
+"""What the bound of the search is multiplied by: a third of the checks of a shortest way, and once they are shortened
+its paths are no longer."""
+
+TRIED_LINKS, TRIED_MOTIONS = 30, 200
+"""Where trees may follow, so many links of each end are tried, and so many motions: trees find ways out of narrow
+places with fewer checks than long links do."""
+
+PAIRS, CUTS = 32, 16
+"""What a path along the roadmap is shortened with: a third of the work on trees' paths, for thousandths of length."""
+
 _LONG = 1e8
 """Seconds that stand for no limit."""
+
+_BUDGET = Budget(seconds=SECONDS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,32 +96,23 @@ class RobotRoadmap:
         return one_turn(self.world.space, whole_turns(self.robot))
 
     @cached_property
-    def ways(self) -> Ways:
+    def graph(self) -> KnownGraph:
         """The roadmap by node, for the compiled search."""
-        one, m = self.one_turn, len(self.edges)
-        own = np.concatenate([self.edges[:, 0], self.edges[:, 1]]).astype(np.int64)
-        order = np.argsort(own, kind="stable")
-        first = np.searchsorted(own[order], np.arange(len(self.milestones) + 1))
-        turned = np.where(one.lifts, self.turns, 0) @ (16 ** np.arange(self.turns.shape[1]))
-        return Ways(
-            self.milestones,
-            first,
-            np.concatenate([self.edges[:, 1], self.edges[:, 0]])[order].astype(np.int64),
-            np.tile(np.arange(m), 2)[order],
-            np.concatenate([turned, -turned])[order],
-            np.tile(self.lengths, 2)[order],
-            self.weights,
-            one.limits,
-            one.lifts,
-            one.wraps & ~one.lifts,
-            m,
-        )
+        return KnownGraph(self.milestones, self.edges, self.turns, self.one_turn)
 
-    @property
-    def lengths(self) -> Floats:
-        """Lengths of the edges in the roadmap's metric, (m,)."""
-        a, b = self.milestones[self.edges[:, 0]], self.milestones[self.edges[:, 1]]
-        return np.linalg.norm(self.weights * (b + TURN * self.turns - a), axis=1)
+    def remember(self, *paths: npt.ArrayLike) -> RobotRoadmap:
+        """Return a roadmap with the waypoints of paths, (p, dim) each, as further milestones, joined to the others.
+
+        Whether they help in other scenes is measured in docs/robot-roadmaps.md.  :attr:`SceneRoadmap.learned` has those
+        that trees found where the roadmap led nowhere.  Raises InvalidValue if a path is no such array, or one of its
+        motions is not free of robot and cell.
+        """
+        known = self.milestones, self.edges, self.turns
+        grown = with_paths(self.world, self.one_turn, known, tuple(np.asarray(path) for path in paths))
+        for array in grown:
+            array.setflags(write=False)
+        milestones, edges, turns = grown
+        return replace(self, milestones=milestones, edges=edges, turns=turns)
 
     def in_scene(self, scene: Scene) -> SceneRoadmap:
         """Return the roadmap in the day's scene, for many queries in it: what one finds out serves the next."""
@@ -130,6 +140,8 @@ class SceneRoadmap:
     ----------
     world : ArmWorld
         The robot in its cell, with the day's obstacles.
+    learned : list of ndarrays, shapes (p, dim)
+        Ways that trees found where the roadmap led nowhere; their waypoints serve later queries here.
 
     Raises
     ------
@@ -146,20 +158,13 @@ class SceneRoadmap:
         resolution = roadmap.resolution
         self.roadmap = roadmap
         self.world = ArmWorld(robot, everything, resolution=resolution)
-        # What the roadmap knows to be free of the robot and its cell is asked about the others alone.
+        # What the roadmap knows to be free of the robot and its cell is asked about the other obstacles alone.
         self._day = ArmWorld(*left_to_check(robot, roadmap.cell, day, everything), resolution=resolution)
-        self._milestones = np.zeros(len(roadmap.milestones), dtype=np.int8)
-        self._edges = np.zeros(len(roadmap.edges), dtype=np.int8)
-        if not ends_of.overloads:
-            # Compiled, or loaded, before a clock runs; nothing is checked.
-            self.connect(roadmap.milestones[0], roadmap.milestones[:1], seconds=0.0)
-
-    @cached_property
-    def _ways(self) -> Ways:
-        """The roadmap by node, within the limits of today."""
-        ways, space = self.roadmap.ways, self.world.space
-        limits = np.stack([np.maximum(ways.limits[0], space.low), np.minimum(ways.limits[1], space.high)])
-        return ways._replace(limits=limits)
+        self._graph = roadmap.graph.within(np.array(self.world.space.low), np.array(self.world.space.high))
+        self.learned: list[Floats] = []
+        # Compiled, or loaded, before a clock runs; nothing is checked but the ends.
+        self._ask(roadmap.milestones[0], roadmap.milestones[:1], 0, math.inf, 1)
+        self._graph.learn(roadmap.milestones[:0])
 
     def connect(
         self,
@@ -169,25 +174,34 @@ class SceneRoadmap:
         most_motions: int = 2**31 - 1,
         seconds: float = SECONDS,
         links: int = LINKS,
+        greed: float = GREED,
     ) -> Connection:
-        """Join a start, (dim,), to the goal, (g, dim), that the roadmap leads to on the shortest way.
+        """Join a start, (dim,), to the goal, (g, dim), that the roadmap leads to.
 
-        Start and goals have to be free; each is linked to its nearest `links` milestones, of few to all.
+        Each is tried to be linked to `links` milestones, of few to all; the path is the shortest one along the roadmap
+        where `greed` is 1.
         """
-        n, m, g = len(self._milestones), len(self._edges), len(goals)
-        # Compiled code is made anew for arrays that can be written to.
-        start, goals = np.array(start), np.array(goals)
-        start.setflags(write=False)
-        goals.setflags(write=False)
-        ends = ends_of(self._ways, start, goals, n if n <= FEW else links)
-        edges = np.zeros(m + n * (1 + g) + g, dtype=np.int8)
-        edges[:m] = self._edges
-        deadline = time.perf_counter() + seconds
-        path, goal, configurations, motions = lazy_path(
-            self._ways, ends, self._milestones, edges, most_motions, deadline, self._day, self.world
+        asked = self._ask(start, goals, most_motions, now() + seconds, links, greed)
+        return Connection(asked.path, asked.goal, self._size, asked.milestones, asked.motions)
+
+    def _ask(
+        self, start: Floats, goals: Floats, most: int, deadline: float, links: int, greed: float = GREED
+    ) -> Asked:
+        return ask(
+            self.world,
+            self._day,
+            self._graph,
+            start,
+            goals,
+            links=links,
+            greed=greed,
+            most_motions=most,
+            deadline=deadline,
         )
-        self._edges[:] = edges[:m]
-        return Connection(path, goal, n, configurations, motions)
+
+    @property
+    def _size(self) -> int:
+        return len(self.roadmap.milestones)
 
     def plan(
         self,
@@ -198,7 +212,7 @@ class SceneRoadmap:
         shorten: bool = True,
         trees: bool = True,
     ) -> PlanResult:
-        """Plan from a start to one of the goals: along the roadmap and, where it does not lead there, with trees.
+        """Plan from a start to one of the goals: along the roadmap and, where it does not lead there soon, with trees.
 
         Parameters
         ----------
@@ -209,7 +223,7 @@ class SceneRoadmap:
         shorten : bool
             Whether the path is made shorter.
         trees : bool
-            Whether trees are tried.
+            Whether trees are tried, after 200 motions along the roadmap; else more of its links and all motions are.
 
         Returns
         -------
@@ -221,34 +235,84 @@ class SceneRoadmap:
         InvalidValue, UnknownName
             If start or goal is no configuration of the robot.
         """
-        budget = Budget(seconds=SECONDS) if budget is None else budget
-        places = read_places(self._place(start), self._places(goal), self.world.space)
-        query = Query(*places, shorten=shorten, budget=budget)
-        attempt = Attempt(self.world, query, NO_POINTS, "none", "robot roadmap")
+        budget = _BUDGET if budget is None else budget
+        first, goals = read_places(self._place(start), self._places(goal), self.world.space)
+        began, deadline = now(), budget.deadline()
+        most = 2**31 - 1 if budget.motions is None else budget.motions
+        links = self._size if self._size <= FEW and not trees else TRIED_LINKS if trees else LINKS
+        limits = min(most, TRIED_MOTIONS) if trees else most, began + SHARE * min(deadline - began, _LONG)
+        asked = self._ask(first, goals, *limits, links)
+        if asked.goal >= 0:
+            return self._solved(asked, first, goals, shorten, began)
+        query = Query(first, goals, shorten=shorten, budget=budget)
+        attempt = Attempt(self.world, query, NO_POINTS, "none", PLANNER)
+        attempt.deadline, attempt.motions_checked = deadline, asked.motions
+        attempt.watch.seconds["search"] = now() - began
         if (refused := refusal(attempt)) is not None:
             return refused
-        seconds = max(SHARE * min(attempt.deadline - time.perf_counter(), _LONG), 1e-3)
-        most = 2**31 - 1 if budget.motions is None else budget.motions
-        with attempt.watch("search"):
-            connection = self.connect(
-                query.start, query.goals[attempt.goals], most_motions=most, seconds=seconds
-            )
-        attempt.motions_checked += connection.motions
-        if connection.goal < 0 and trees and attempt.left() is not None:
-            attempt.planner = "robot roadmap, then trees"
-            grown = attempt.connect(self.world)
-            connection = replace(
-                grown,
-                configurations=connection.configurations + grown.configurations,
-                motions=connection.motions + grown.motions,
-            )
+        if asked.ended == ENDS_TAKEN:
+            # Without the goals that are not free.
+            asked = self._ask(first, goals[attempt.goals], *limits, links)
+            attempt.motions_checked = asked.motions
+        connection = Connection(asked.path, asked.goal, self._size, asked.milestones, asked.motions)
+        if asked.goal < 0 and trees and attempt.left() is not None:
+            connection = self._by_trees(attempt, asked)
         if connection.goal >= 0:
             return connected(attempt, connection)
         failed = gave_up(attempt, connection)
         if not trees:
-            text = f"the roadmap of {len(self._milestones)} milestones does not lead from start to goal today"
+            text = f"the roadmap of {self._size} milestones does not lead from start to goal today"
             failed = replace(failed, status=Status.NOT_CONNECTED, message=text)
         return with_reasons(self.world, failed)
+
+    def _by_trees(self, attempt: Attempt, asked: Asked) -> Connection:
+        """Return what trees find, and learn it."""
+        attempt.planner = f"{PLANNER}, then trees"
+        grown = attempt.connect(self.world)
+        if grown.goal >= 0:
+            self.learned.append(grown.path)
+            self._graph.learn(grown.path)
+        checked = asked.milestones + grown.configurations, asked.motions + grown.motions
+        return replace(grown, configurations=checked[0], motions=checked[1])
+
+    def _solved(self, asked: Asked, start: Floats, goals: Floats, shorter: bool, began: float) -> PlanResult:
+        """Return the result of a query that the roadmap answered."""
+        world, path, found = self.world, asked.path, now()
+        length = raw_length = self._length(path)
+        counts = dict(
+            nodes=self._size,
+            configurations_checked=1 + len(goals) + asked.milestones,
+            edges_checked=asked.motions,
+        )
+        seconds = {"search": found - began}
+        if shorter:
+            path, counts["shortcut_motions"] = shorten(world, path, pairs=PAIRS, cuts=CUTS)
+            length, seconds["shortcut"] = self._length(path), now() - found
+        to = f" to goal {asked.goal}" if len(goals) > 1 else ""
+        return PlanResult(
+            status=Status.SOLVED,
+            message=f"path of length {length:.6g} with {len(path)} waypoints{to}",
+            start=start,
+            goals=goals,
+            origin=NO_POINTS,
+            rule="none",
+            planner=PLANNER,
+            goal_index=asked.goal,
+            path=path,
+            milestone_path=asked.path,
+            proof=world.proof,
+            cost=length,
+            milestone_cost=raw_length,
+            counts=counts,
+            seconds=seconds,
+        )
+
+    def _length(self, path: Floats) -> float:
+        if np.any(self.world.space.wrapping):
+            return path_length(path, self.world.space)
+        # The same, in a third of the time.
+        way = path[1:] - path[:-1]
+        return float(np.sqrt(np.einsum("ij,ij->i", way, way)).sum())
 
     def _place(self, place: Place) -> npt.ArrayLike:
         """Return a configuration of a text; of numbers themselves."""

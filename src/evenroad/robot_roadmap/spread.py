@@ -15,6 +15,15 @@ LEAST_WEIGHT = 0.01
 """Of the joint that moves the body most: what a joint that moves nothing counts."""
 
 
+OFTEN = 0.7
+"""What an end counts after each point that it sees, as a share of before."""
+
+LEAST_SEEN = 1e-3
+"""Share of ends that every point counts to be seen by at least, so that spreading goes on when all are served."""
+
+_NONE = np.empty(0, dtype=np.int64)
+
+
 def displacement_weights(robot: KinematicTree, q: Floats) -> Floats:
     """Return what a unit of each joint counts, by how far it moves the robot's body: (dim,), of mean 1.
 
@@ -40,20 +49,45 @@ def _body_points(robot: KinematicTree, q: Floats) -> Floats:
     return np.concatenate([ends[:, :, 0], ends[:, :, 1], ends.mean(axis=2)], axis=1)
 
 
-@njit(cache=True, nogil=True)
-def spread_order(points: Floats, period: Floats, preference: Floats, count: int) -> Ints:
+def spread_order(
+    points: Floats, period: Floats, preference: Floats, count: int, first: Ints = _NONE, which: Ints = _NONE
+) -> Ints:
     """Return the first rows of `points`, (n, dim), in an order of which every beginning is well spread: (count,).
 
     Farthest-point order (Gonzalez 1985) with a preference, (n,) > 0: the next point has the largest product of its
     distance to those before and its preference, so that spacing is in proportion to 1 / preference.  Axes repeat after
-    `period`, (dim,); inf where they do not.
+    `period`, (dim,); inf where they do not.  Where end e sees the points ``which[first[e]:first[e + 1]]``, the
+    preference is also in proportion to LEAST_SEEN plus the share of ends that see a point, of which one counts
+    OFTEN^m as much after m of the points it sees were chosen.
     """
+    return _order(points, period, preference, count, first, which)
+
+
+@njit(cache=True, nogil=True)
+def _order(points, period, preference, count, first, which):  # type: ignore[no-untyped-def]
     n, dim = points.shape
+    ends = max(len(first) - 1, 1)
+    seeing, weight = np.zeros(n + 1, dtype=np.int64), np.ones(ends)
+    use = np.full(n, LEAST_SEEN)
+    for i in which:
+        seeing[i + 1] += 1
+        use[i] += 1.0 / ends
+    seeing = np.cumsum(seeing)
+    place, by_point = seeing[:n].copy(), np.empty(len(which), dtype=np.int64)
+    for e in range(len(first) - 1):
+        for i in which[first[e] : first[e + 1]]:
+            by_point[place[i]] = e
+            place[i] += 1
     order = np.empty(count, dtype=np.int64)
     nearest = np.full(n, np.inf)
-    chosen = int(np.argmax(preference))
+    chosen = int(np.argmax(preference * use))
     for i in range(count):
         order[i] = chosen
+        for e in by_point[seeing[chosen] : seeing[chosen + 1]]:
+            lost = (1.0 - OFTEN) * weight[e]
+            weight[e] -= lost
+            for row in which[first[e] : first[e + 1]]:
+                use[row] -= lost / ends
         best, following = -1.0, 0
         for row in range(n):
             squared = 0.0
@@ -64,7 +98,7 @@ def spread_order(points: Floats, period: Floats, preference: Floats, count: int)
                 squared += apart * apart
             if squared < nearest[row]:
                 nearest[row] = squared
-            value = np.sqrt(nearest[row]) * preference[row]
+            value = np.sqrt(nearest[row]) * preference[row] * use[row]
             if value > best:
                 best, following = value, row
         chosen = following

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numba import njit
@@ -22,6 +22,7 @@ class FlatMetric:
 
     scale: Floats
     period: Floats
+    _turning: tuple[int, ...] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         for name in ("scale", "period"):
@@ -35,9 +36,9 @@ class FlatMetric:
         if not np.isfinite(self.scale).all():
             raise InvalidValue(f"scale must be finite, got {self.scale!r}")
         if len(self.scale) != len(self.period):
-            raise InvalidValue(
-                f"scale and period must have one length, got {len(self.scale)} and {len(self.period)}"
-            )
+            lengths = f"{len(self.scale)} and {len(self.period)}"
+            raise InvalidValue(f"scale and period must have one length, got {lengths}")
+        set_fields(self, _turning=tuple(np.flatnonzero(self.wrapping).tolist()))
 
     @property
     def dim(self) -> int:
@@ -49,6 +50,11 @@ class FlatMetric:
         """Which coordinates wrap, (dim,)."""
         return np.isfinite(self.period)
 
+    @property
+    def wraps(self) -> bool:
+        """Whether any coordinate does."""
+        return len(self._turning) > 0
+
     def difference(self, a: Floats, b: Floats) -> Floats:
         """Return ``b - a`` the short way round, not scaled, for two (n, dim) arrays as (n, dim).
 
@@ -56,7 +62,7 @@ class FlatMetric:
         both directions and, within one period, does not cross its ends.
         """
         difference = b - a
-        for k in np.flatnonzero(self.wrapping):
+        for k in self._turning:
             # rint takes one half to zero: exactly opposite places are left as they are.
             difference[:, k] -= self.period[k] * np.rint(difference[:, k] / self.period[k])
         return difference

@@ -86,6 +86,8 @@ class FlatSpace(Space):
 
     def _canonical(self, q: Floats) -> Floats:
         """Do as `wrapped`, for a sound batch."""
+        if not self._flat.wraps:
+            return q
         # What is in its range already is not rounded.
         outside = ((q < self._low) | (q >= self._high)) & self._flat.wrapping
         if not outside.any():
@@ -129,17 +131,9 @@ class JointSpace(FlatSpace):
     """Bounded and wrapping joints in one vector, with the weighted Euclidean metric.
 
     A revolute joint that can turn on and on wraps; one with stops does not, even where its range exceeds a
-    full turn: the two ends of such a range are far apart.
-
-    Parameters
-    ----------
-    low, high : sequence of floats, length dim
-        The ranges, ``low < high``; a wrapping joint repeats after ``high - low``, so in radians they are
-        2 pi apart.  Stored as tuples.
-    wrapping : bool or sequence of bools, length dim
-        Which joints wrap; one bool stands for all.
-    weights : sequence of floats, length dim, optional
-        What a unit of each joint counts in the metric, > 0; 1 by default.  InvalidValue for any other value.
+    full turn: the two ends of such a range are far apart.  A wrapping joint repeats after ``high - low``, so in radians
+    these are 2 pi apart; `wrapping` says which joints wrap, one bool stands for all.  `low`, `high` and `weights` are
+    as for :class:`Box`; InvalidValue for any other value.
     """
 
     low: Sequence[float]

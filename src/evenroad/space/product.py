@@ -130,17 +130,10 @@ def SE2(
     weights: Sequence[float] = (1.0, 1.0),
     combine: Literal["sum", "l2"] = "l2",
 ) -> Product:
-    """Return the poses (x, y, heading) of a body in the plane.
+    """Return the poses (x, y, heading) of a body in the plane, its position bounded by `low` and `high`.
 
-    Parameters
-    ----------
-    low, high : sequence of two floats
-        Bounds of the position.
-    weights : sequence of two floats
-        What a unit of length and a radian count, > 0.
-    combine : {"sum", "l2"}
-        How the two distances make one; with "l2" the metric is flat, so that neighbours are found in a tree.  Errors
-        are those of `Box` and `Product`.
+    `weights`, > 0, are what a unit of length and a radian count, `combine` how the two distances make one; with "l2"
+    the metric is flat, so that neighbours are found in a tree.  Errors are those of `Box` and `Product`.
     """
     return Product((_position(low, high, 2), Circle()), weights, combine)
 

@@ -91,9 +91,8 @@ def _require_units(**batches: Floats) -> None:
         norm = _norm(batch)
         wrong = np.flatnonzero(np.abs(norm - 1.0) > _UNIT_TOLERANCE)
         if len(wrong):
-            raise InvalidValue(
-                f"{name} must hold unit quaternions: row {wrong[0]} has norm {float(norm[wrong[0]])!r}"
-            )
+            row, bad = int(wrong[0]), float(norm[wrong[0]])
+            raise InvalidValue(f"{name} must hold unit quaternions: row {row} has norm {bad!r}")
 
 
 def _norm(q: Floats) -> Floats:

@@ -204,7 +204,12 @@ def _on_steps(law: TimeLaw, limits: Limits, window: float, step: float) -> TimeL
     shares = _shares(law.at(within.ravel()), limits)
     law = stretched(law, max(1.0, shares["velocity"], math.sqrt(shares["acceleration"])))
     steps = max(math.ceil((law.duration + window) / step - 1e-9), math.floor(window / step) + 1)
-    return stretched(law, (steps * step - window) / law.duration)
+    while True:
+        law = stretched(law, (steps * step - window) / law.duration)
+        fine = np.linspace(0.0, law.duration + window, _FINER * steps + 1)
+        if max(_shares(law.at(fine), limits).values()) <= 1.0:
+            return law
+        steps += 1
 
 
 def _averaged(law: TimeLaw, window: float, t: Floats) -> tuple[Floats, Floats, Floats]:

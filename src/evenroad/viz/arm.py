@@ -10,12 +10,13 @@ from PIL import Image, ImageColor
 
 from evenroad._arrays import Floats
 from evenroad._files import atomic_write
+from evenroad.geometry.shapes import Mesh, PointCloud
 from evenroad.roadmap import PlanResult, Status
 from evenroad.robot.kinematics import capsule_ends, link_poses, tip_links
 from evenroad.space.path import place_at, resample
 from evenroad.viz import style
 from evenroad.viz.outline import obstacle_bounds, obstacle_outline, stadium
-from evenroad.viz.sheet import Colour, Sheet, View
+from evenroad.viz.sheet import Colour, Faint, Sheet, View
 
 if TYPE_CHECKING:
     from evenroad.robot import ArmWorld, Robot
@@ -96,6 +97,16 @@ def draw_arm_view(
             things.append((depth, outline, fill, edge, 1.0 if faint else 1.5))
     for obstacle in world.scene.obstacles:
         colour = style.OUTSIDE if obstacle.cell else style.OBSTACLE
+        # A cloud or a mesh is all around: faint, before what is drawn from the far to the near.
+        if isinstance(obstacle.body, PointCloud):
+            points = obstacle.body.pose.apply(obstacle.body.points)[:, list(pair)]
+            view.balls(points, obstacle.body.radius, _faint(colour, 0.16), _faint(style.OBSTACLE, 0.4))
+            continue
+        if isinstance(obstacle.body, Mesh):
+            mesh = obstacle.body.triangles
+            corners = obstacle.body.pose.apply(mesh.vertices)[mesh.triangles][:, :, list(pair)]
+            view.polygons(corners, _faint(colour, 0.16), _faint(style.OBSTACLE, 0.25))
+            continue
         depth = towards * float(np.mean([corner[axis] for corner in obstacle_bounds(obstacle)]))
         things.append((depth, obstacle_outline(obstacle, pair), _faint(colour, 0.16), style.OBSTACLE, 1.5))
     for _, outline, fill, edge, width in sorted(things, key=lambda thing: thing[0]):
@@ -141,7 +152,8 @@ def _colliding(result: PlanResult, world: ArmWorld, pair: tuple[int, int]) -> li
     reason = world.explain(end)
     bodies = _bodies(world.robot, capsule_ends(world.robot, end[np.newaxis])[0], pair)
     named = [body for body, own in zip(bodies, world.robot.capsules, strict=True) if repr(own.link) in reason]
-    obstacles = [each for each in world.scene.obstacles if repr(each.name) in reason]
+    # A cloud or a mesh is all around: the robot's own body says where.
+    obstacles = [each for each in world.scene.obstacles if repr(each.name) in reason and each.row]
     return named + [obstacle_outline(each, pair) for each in obstacles]
 
 
@@ -153,7 +165,7 @@ def _tint(share: float, strength: float) -> Colour:
     return red, green, blue
 
 
-def _faint(colour: str, opacity: float) -> Colour:
+def _faint(colour: str, opacity: float) -> Faint:
     red, green, blue = ImageColor.getrgb(colour)[:3]
     return red, green, blue, round(255 * opacity)
 

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad.geometry.shapes import Mesh, PointCloud
 from evenroad.robot.scene import Obstacle
 
 _ROUND = 32
@@ -37,6 +38,13 @@ def obstacle_outline(obstacle: Obstacle, axes: tuple[int, int]) -> Floats:
 
 def obstacle_bounds(obstacle: Obstacle) -> tuple[Floats, Floats]:
     """Return the lower and the upper corner, (3,) each, of an obstacle's bounding box."""
+    body = obstacle.body
+    if isinstance(body, PointCloud | Mesh):
+        points, radius = (
+            (body.triangles.vertices, 0.0) if isinstance(body, Mesh) else (body.points, body.radius)
+        )
+        points = body.pose.apply(points)
+        return points.min(axis=0) - radius, points.max(axis=0) + radius
     top, side = obstacle_outline(obstacle, (0, 1)), obstacle_outline(obstacle, (0, 2))
     return (np.append(top.min(axis=0), side[:, 1].min()), np.append(top.max(axis=0), side[:, 1].max()))
 

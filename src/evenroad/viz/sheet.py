@@ -16,7 +16,8 @@ FINER = 2
 TEXT, GRID = "#000000", "#e3e9ee"
 _LEFT, _BETWEEN, _TOP, _BOTTOM = 95, 105, 105, 125
 """Margins in pixels; ticks and labels of a view are left of it and below."""
-Colour = tuple[int, int, int] | tuple[int, int, int, int] | str
+Faint = tuple[int, int, int, int]
+Colour = tuple[int, int, int] | Faint | str
 
 
 class View:
@@ -50,6 +51,33 @@ class View:
     def line(self, points: Floats, colour: Colour, width: float) -> None:
         """Draw a line through points, (n, 2)."""
         self._draw.line(self.pixels(points), fill=colour, width=round(FINER * width), joint="curve")
+
+    def balls(self, points: Floats, radius: float, fill: Faint, edge: Faint) -> None:
+        """Fill all that is within `radius` of points, (n, 2), and mark the points themselves."""
+        from scipy.ndimage import distance_transform_edt
+
+        width, height = self.image.size
+        columns, rows = np.rint(np.array(self.pixels(points)).T).astype(np.int64)
+        shown = (columns >= 0) & (columns < width) & (rows >= 0) & (rows < height)
+        if not shown.any():
+            return
+        away = np.ones((height, width), dtype=np.bool_)
+        away[rows[shown], columns[shown]] = False
+        within = distance_transform_edt(away) <= max(self.scale * radius, 1.0)
+        for mask, colour in ((within, fill), (~away, edge)):
+            self.image.paste(colour[:3], mask=Image.fromarray((mask * colour[3]).astype(np.uint8)))
+
+    def polygons(self, outlines: Floats, fill: Faint, edge: Faint) -> None:
+        """Fill the union of areas, (n, corners, 2), and mark their edges."""
+        size = self.image.size
+        masks = Image.new("L", size), Image.new("L", size)
+        draws = [ImageDraw.Draw(mask) for mask in masks]
+        for outline in outlines:
+            corners = self.pixels(outline)
+            draws[0].polygon(corners, fill=fill[3])
+            draws[1].line([*corners, corners[0]], fill=edge[3])
+        for mask, colour in zip(masks, (fill, edge), strict=True):
+            self.image.paste(colour[:3], mask=mask)
 
     def dot(self, place: Floats, colour: Colour, radius: float) -> None:
         """Draw a dot with a white rim."""

@@ -26,8 +26,6 @@ FINER = 20
 class FunctionWorld:
     """The configurations that a function calls free, and motions that are free at states close together.
 
-    InvalidValue if `is_valid` cannot be called, or `resolution` is not of the kind described below.
-
     A motion is divided into ``n = ceil(distance / resolution)`` segments of one length and free if all n + 1 ends of
     segments are: the states of OMPL's DiscreteMotionValidator, which takes the first of them for granted.  What lies
     between two states is not seen, so the resolution should be small beside the thinnest obstacle.  The ends come
@@ -50,6 +48,8 @@ class FunctionWorld:
     name : str, optional
         What the function tests, with all that its answers depend on, for example ``"cell 7, tool v2"``.  Only with a
         name can a roadmap of this world be saved with what is known: a function cannot be compared.
+
+    InvalidValue if `is_valid` cannot be called, or `resolution` is not of that kind.
     """
 
     proof: ClassVar[str] = "resolution"

@@ -8,12 +8,11 @@ import pytest
 from evenroad.research.bench.store import read_rows
 from evenroad.research.bench.task import Outcome
 from evenroad.research.report import runs as module
-from evenroad.research.report.analysis import analyse, needed_of
+from evenroad.research.report.analysis import analyse, load_expected, needed_of, verdicts_of
 from evenroad.research.report.cells import cells_of
 from evenroad.research.report.comparisons import comparisons_of
-from evenroad.research.report.fair import difficulty_of, dimension_of, generator_of, pooled
+from evenroad.research.report.fair import parts_of, pooled
 from evenroad.research.report.runs import combined, first_rows, natural_key, sums_by_unit
-from evenroad.research.report.verdicts import load_expected, verdicts_of
 from evenroad.research.statistics.rates import bonett_price, fisher_exact, holm, mcnemar_exact, wilson
 from tests.research.report.stores import made_up, runs_from, solved, task, write_store
 
@@ -323,7 +322,7 @@ def test_pools_are_by_generator_dimension_and_difficulty_of_the_name(tmp_path):
     ],
 )
 def test_names_of_fair_problems_are_taken_apart(problem, parts):
-    assert (generator_of(problem), dimension_of(problem), difficulty_of(problem)) == parts
+    assert parts_of(problem) == parts
 
 
 def test_a_store_without_a_fair_suite_has_none(runs):

@@ -20,7 +20,7 @@ from tests.research.report.stores import made_up, runs_from
 
 def test_every_sampler_has_a_look_of_its_own():
     assert list(LOOKS) == list(SAMPLERS)
-    assert len({(look.colour, look.line) for look in LOOKS.values()}) == len(LOOKS)
+    assert len({(look["color"], look["linestyle"]) for look in LOOKS.values()}) == len(LOOKS)
 
 
 def test_curves_name_every_sampler_once_and_show_its_success_in_three_panels(tmp_path):

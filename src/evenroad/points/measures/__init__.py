@@ -3,6 +3,8 @@
 ``MEASURES`` holds the L2 discrepancies by name: ``MEASURES["hickernell"].rooted(points)``.
 """
 
+from evenroad.points.measures.covering import DispersionBounds as DispersionBounds
+from evenroad.points.measures.covering import dispersion_bounds as dispersion_bounds
 from evenroad.points.measures.dispersion import dispersion_l2 as dispersion_l2
 from evenroad.points.measures.dispersion import dispersion_linf as dispersion_linf
 from evenroad.points.measures.dispersion import dispersion_lower_bound as dispersion_lower_bound

@@ -71,18 +71,8 @@ def dispersion_lower_bound(
     """Return a lower bound of the dispersion in any dimension: the best place that a random search found.
 
     Random places and corners, then hill climbing from the best sixteenth of them with shrinking steps.  Every
-    place gives a true lower bound; how close it comes is not known.
-
-    Parameters
-    ----------
-    points : array_like or PointSet, shape (n, d)
-        Coordinates in [0, 1), n >= 1.
-    norm : {"l2", "linf"}
-        Another one is an UnknownName; every other bad argument an InvalidValue.
-    rng : int, SeedSequence or Generator
-        Draws the places.
-    starts, rounds : int
-        Places drawn at first, and rounds of climbing, >= 1.
+    place gives a true lower bound; how close it comes is not known.  `rng` draws the places: as many as `starts` at
+    first, with `rounds` of climbing.  A norm but l2 and linf is an UnknownName, all else that is bad an InvalidValue.
     """
     coordinates = _checked(points)
     require_known("norm", norm, NORMS)

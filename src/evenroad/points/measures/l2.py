@@ -11,7 +11,7 @@ Each formula is a function of the points, (d, n), and of a weight g of every coo
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numba import njit
@@ -42,6 +42,9 @@ class DistancePairs(NamedTuple):
     own_slope: Floats
 
 
+Pairs: TypeAlias = MaximumPairs | DistancePairs
+
+
 class ProductTerms(NamedTuple):
     """The parts of a squared discrepancy at given points.
 
@@ -52,7 +55,7 @@ class ProductTerms(NamedTuple):
     constant: float
     linear: Floats
     linear_slope: Floats
-    pairs: MaximumPairs | DistancePairs
+    pairs: Pairs
 
 
 def star(points: Floats, weights: Floats) -> ProductTerms:
@@ -138,9 +141,7 @@ def average_squared(points: Floats, weights: Floats) -> ProductTerms:
     return ProductTerms(3.0 ** -len(points), linear, 0.5 - points, pairs)
 
 
-def pair_sums(
-    columns: Floats, pairs: MaximumPairs | DistancePairs, want_gradient: bool
-) -> tuple[Floats, Floats]:
+def pair_sums(columns: Floats, pairs: Pairs, want_gradient: bool) -> tuple[Floats, Floats]:
     """Sum the pair products of every point with all points, itself included, (n,), and the derivative of the total.
 
     O(n^2 d) time, O(n d) memory.  The gradient, (d, n), is zero where it is not wanted, in about half the time.  Where

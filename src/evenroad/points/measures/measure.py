@@ -35,14 +35,10 @@ class Measure:
     least_points = 1
 
     def squared(self, points: object, weights: npt.ArrayLike | None = None) -> float:
-        """Return the squared discrepancy; bad points or weights, or weights of a measure without, are an InvalidValue.
+        """Return the squared discrepancy of points, (n, d) in [0, 1), n >= 1.
 
-        Parameters
-        ----------
-        points : array_like or PointSet, shape (n, d)
-            Coordinates in [0, 1), n >= 1.
-        weights : array_like, shape (d,), optional
-            Weights >= 0 of the parts of the coordinates' factors that are not constant: 0 ignores a coordinate.
+        `weights`, (d,) >= 0, are those of the parts of the coordinates' factors that are not constant: 0 ignores a
+        coordinate.  Bad points or weights, or weights of a measure without, are an InvalidValue.
         """
         return self._squared(*self._checked(points, weights), want_gradient=False)[0]
 
@@ -93,17 +89,13 @@ class Measure:
         if weights is None:
             return columns, np.ones(d)
         if not self.weighted:
-            raise InvalidValue(
-                f"{self.name} takes no weights: its factors have no constant part to leave alone"
-            )
+            raise InvalidValue(f"{self.name} takes no coordinate weights: its factors have no constant part")
         try:
             gamma = np.asarray(weights, dtype=np.float64)
         except (TypeError, ValueError):
             gamma = np.array(np.nan)
         if gamma.shape != (d,) or not np.isfinite(gamma).all() or (gamma < 0).any():
-            raise InvalidValue(
-                f"weights must be {d} finite numbers >= 0, a coordinate each, got {shown(weights)}"
-            )
+            raise InvalidValue(f"weights must be {d} finite numbers >= 0, got {shown(weights)}")
         return columns, gamma
 
     def __str__(self) -> str:

@@ -11,6 +11,7 @@ from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points.bank import TRAINED_FAMILIES, Trained
 from evenroad.points.pointset import PointSet
 from evenroad.points.randomise import Symmetry
+from evenroad.points.samplers.cover import Cover as Cover
 from evenroad.points.samplers.korobov import Even as Even
 from evenroad.points.samplers.korobov import Korobov as Korobov
 from evenroad.points.samplers.lattice import Lattice as Lattice
@@ -52,7 +53,7 @@ class KnownSampler(Sampler, Protocol):
 
 
 SAMPLERS: dict[str, Callable[..., KnownSampler]] = {
-    each.name: each for each in (Even, Korobov, Lattice, Halton, Sobol, Sukharev, Uniform)
+    each.name: each for each in (Even, Korobov, Lattice, Cover, Halton, Sobol, Sukharev, Uniform)
 } | {family: partial(Trained, family) for family in TRAINED_FAMILIES}
 """Name -> how to make the sampler from its options; without any it says what it is, and what keeps its sets even."""
 

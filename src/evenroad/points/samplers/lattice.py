@@ -35,24 +35,31 @@ class Lattice:
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
         """Return n lattice points, shape (n, d), d <= 12; see :class:`~evenroad.points.Sampler`."""
         n, d = require_count("n", n), require_count("d", d)
-        if d > MAX_D:
-            raise InvalidValue(f"d must be at most {MAX_D} for the lattice sampler, got {d}")
-        random = generator(rng)
-        rotation, shift = _random_rotation(d, random), random.random(d)
-        basis = _unit_density_basis(d)
-        half = 0.5 * (n + 1) ** (1 / d)
-        while True:
-            # A small margin: what the loop tries does not change the points, only how many it looks at.
-            half *= 1.03
-            offsets = _points_in_ball(basis, shift, radius=half * np.sqrt(d)) @ rotation
-            reach = np.abs(offsets).max(axis=1)
-            inside = np.flatnonzero(reach <= half)
-            if inside.size > n:
-                break
-        inside = inside[np.argsort(reach[inside], kind="stable")]
-        edge = 0.5 * (reach[inside[n - 1]] + reach[inside[n]])
-        points = np.clip(0.5 + 0.5 * offsets[inside[:n]] / edge, 0.0, np.nextafter(1.0, 0.0))
+        offsets, edge = around_cube(n, d, generator(rng))
+        points = np.clip(0.5 + 0.5 * offsets / edge, 0.0, np.nextafter(1.0, 0.0))
         return PointSet(points, Origin(family=self.name, method="A_d* turned and shifted", seed=seed_of(rng)))
+
+
+def around_cube(n: int, d: int, random: np.random.Generator) -> tuple[Floats, float]:
+    """Return the n points of A_d*, one a unit of volume, in a cube around a random centre, (n, d), and its half side.
+
+    Raises InvalidValue if d > 12.
+    """
+    if d > MAX_D:
+        raise InvalidValue(f"d must be at most {MAX_D} for points of A_d*, got {d}")
+    rotation, shift = _random_rotation(d, random), random.random(d)
+    basis = _unit_density_basis(d)
+    half = 0.5 * (n + 1) ** (1 / d)
+    while True:
+        # A small margin: what the loop tries does not change the points, only how many it looks at.
+        half *= 1.03
+        offsets = _points_in_ball(basis, shift, radius=half * np.sqrt(d)) @ rotation
+        reach = np.abs(offsets).max(axis=1)
+        inside = np.flatnonzero(reach <= half)
+        if inside.size > n:
+            break
+    inside = inside[np.argsort(reach[inside], kind="stable")]
+    return offsets[inside[:n]], float(0.5 * (reach[inside[n - 1]] + reach[inside[n]]))
 
 
 def _unit_density_basis(d: int) -> Floats:

@@ -67,12 +67,9 @@ class Sukharev:
 
 
 def _floor_root(n: int, d: int) -> int:
-    """Return the largest integer k with k**d <= n, without trusting the float root."""
-    low, high = 1, 1 << (n.bit_length() // d + 1)
-    while high - low > 1:
-        middle = (low + high) // 2
-        low, high = (middle, high) if middle**d <= n else (low, middle)
-    return low
+    """Return the largest integer k with k**d <= n < 2**31: the float root is off by far less than one half."""
+    nearest = round(n ** (1.0 / d))
+    return nearest - (nearest**d > n)
 
 
 @dataclass(frozen=True)
@@ -94,14 +91,10 @@ class _Sequence:
 
 @dataclass(frozen=True)
 class Halton(_Sequence):
-    """Halton's sequence in the first d prime bases (Halton 1960).
+    """Halton's sequence in the first d prime bases (Halton 1960), from the index `start` >= 0 on.
 
-    Parameters
-    ----------
-    scramble : bool
-        Random digit permutations (Owen 2017) drawn from `rng`; else the plain sequence, which ignores `rng`.
-    start : int
-        Index of the first point, >= 0.  Index 0 of the plain sequence is the origin of the cube.
+    With `scramble`, random digit permutations (Owen 2017) drawn from `rng`; else the plain sequence, which ignores
+    `rng`, and whose index 0 is the origin of the cube.
     """
 
     name = "halton"

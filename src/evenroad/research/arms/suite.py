@@ -11,6 +11,7 @@ from evenroad.research.arms.problems import ARM_ROBOTS, problem_name
 from evenroad.research.arms.roadmaps import BOX_SAMPLERS, KNOWING, why_no_roadmap
 from evenroad.research.arms.scenes import GENERATORS
 from evenroad.research.bench.task import Task
+from evenroad.robot_roadmap.pockets import links_of
 
 ARM_COUNTS = (64, 128, 256, 512, 1024, 2048, 4096)
 ARM_NEIGHBOURS = (4, 10, 20)
@@ -18,9 +19,6 @@ DEFAULT_COUNTS, DEFAULT_NEIGHBOURS, DEFAULT_DRAWS, DEFAULT_RUNS = (64, 256), (10
 QUICK_RUNS, QUICK_DRAWS = 10, 1
 
 METHODS = (*BOX_SAMPLERS, *KNOWING)
-LINKS = 100
-"""Milestones that start and goal are linked to, with every sampler; of up to 256 to all."""
-
 TODAY = "sobol scrambled"
 """The sampler with which points planned before there were roadmaps: ends joined as milestones are, in the scene."""
 
@@ -59,7 +57,7 @@ def arm_tasks(
         for run, n, k, sampler in product(range(draws), sorted(counts), neighbours, chosen):
             if sampler == TREES or why_no_roadmap(sampler, n, ARM_ROBOTS[robot]):
                 continue
-            ways = [(kept_rule(k, LINKS), KEPT)]
+            ways = [(kept_rule(k, links_of(n)), KEPT)]
             if sampler == TODAY:
                 ways.append((f"k={k} symmetrised", "connect"))
             tasks += [

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -103,20 +103,16 @@ def _lattice_exists(family: str, n: int, d: int) -> str:
     return f"the lattice sampler goes up to d = {MAX_D}" if d > MAX_D else ""
 
 
-def _grid_exists(family: str, n: int, d: int) -> str:
+def _exists(ask: Callable[[str, int, int], object], family: str, n: int, d: int) -> str:
     try:
-        draw(family, n, d)
-    except NotAvailable as error:
+        ask(family, n, d)
+    except (NotAvailable, UnknownName) as error:
         return str(error).removesuffix(" (or allow fewer)")
     return ""
 
 
-def _pool_exists(family: str, n: int, d: int) -> str:
-    try:
-        Bank().cell(family, n, d)
-    except (NotAvailable, UnknownName) as error:
-        return str(error)
-    return ""
+_grid_exists = partial(_exists, draw)
+_pool_exists = partial(_exists, Bank().cell)
 
 
 _BLOCKS = "plain: run i takes the points i N + 1 .. (i + 1) N"

@@ -23,6 +23,8 @@ PATIENCE = 15.0
 TABLES = (Path(__file__).parent / "store.sql").read_text(encoding="utf-8")
 
 
+Values = tuple[Any, ...]
+
 COLUMNS = (
     "key", "protocol", "suite", "problem", "instance", "sampler", "n", "rule", "search", "run", "seed", "status",
     "valid", "valid_at_solution", "edges_checked", "length", "seconds", "set_id", "error", "worker", "finished",
@@ -118,9 +120,7 @@ def read_names(connection: sqlite3.Connection, path: Path) -> dict[int, str]:
     return {number: text for number, text, _ in names}
 
 
-def checked_rows(
-    connection: sqlite3.Connection, path: Path, texts: dict[int, str]
-) -> Iterator[tuple[Any, ...]]:
+def checked_rows(connection: sqlite3.Connection, path: Path, texts: dict[int, str]) -> Iterator[Values]:
     """Yield the columns of every row of a store, texts as numbers, and then its checksum.
 
     Raises BrokenFile if a row is not as it was written: its checksum or its task's key is not that of its fields.

@@ -19,11 +19,10 @@ from evenroad.research.bench.runner import Report, run_tasks
 from evenroad.research.bench.samplers import SAMPLERS
 from evenroad.research.bench.store import open_store, read_rows
 from evenroad.research.bench.task import Task
-from evenroad.research.commands.interrupt import interrupt_between_steps
 from evenroad.research.problems import PROBLEMS
 from evenroad.research.report.analysis import failures_of
 from evenroad.research.suites import SUITES, Suite
-from evenroad.research.workers import Workers, in_process, processes
+from evenroad.research.workers import Workers, in_process, interrupt_between_steps, processes
 
 HEADINGS = {
     "halton paper-blocks": ("halton", "blocks"),
@@ -218,7 +217,8 @@ def _per_cent(solved: np.ndarray) -> str:
 
 def _print_failures(rows: Rows, failures: int) -> None:
     """Say what becomes of runs without an answer, and what the most frequent one said last."""
-    print(f"{failures} without answer (failed, timeout, lost) count as not solved; --retry runs them again")
+    kinds = "(failed, timeout, lost)"
+    print(f"{failures} without an answer {kinds} count as not solved; --retry runs them again")
     messages: Counter[str] = Counter()
     for failure in failures_of(rows):
         messages[failure.message or failure.status] += failure.runs

@@ -15,11 +15,11 @@ from evenroad._terminal import progress_shown
 from evenroad.errors import BrokenFile, InvalidValue, shown
 from evenroad.points import PointSet, load_points, save_points
 from evenroad.points.bank.anneal import SCHEDULE, Callback, require_points_for
-from evenroad.research.commands.interrupt import interrupt_between_steps
 from evenroad.research.measures import star_discrepancy
 from evenroad.research.training import anneal_many, order_many, train_many
 from evenroad.research.training.folder import claim_folder
 from evenroad.research.training.objective import parse_objective
+from evenroad.research.workers import interrupt_between_steps
 
 if TYPE_CHECKING:
     from evenroad.research.network import NetworkConfig

@@ -55,9 +55,9 @@ def instance_rng(stream: Stream, family: Family, d: int, difficulty: int, number
 
 
 def make_instance(
-    stream: Stream, family: Family, d: int, difficulty: int, size: float, instance: int
+    stream: Stream, family: Family, d: int, difficulty: int, size: float, number: int
 ) -> Problem:
-    """Return the problem of number `instance` >= 0; the same arguments give the same one, in every process.
+    """Return the problem of this number >= 0; the same arguments give the same one, in every process.
 
     `d` is the dimension of the point sets: any of :data:`BALLS` for balls and boxes, 2 for mazes, 3 for SE(2) and 6 for
     SE(3).  `size` is that of the obstacles, or the width of the doors in mazes, meant to give uniform points a success
@@ -71,7 +71,7 @@ def make_instance(
         Family.SE3: (partial(draw_clutter, 3), partial(places_far_apart, 3)),
     }
     draw, far_apart = ways[family]
-    rng = instance_rng(stream, family, d, difficulty, instance)
+    rng = instance_rng(stream, family, d, difficulty, number)
     world, start, goal = draw_query(partial(draw, size), far_apart, rng)
     return Problem(world, start, goal, set_dim=d)
 

@@ -131,11 +131,9 @@ def _body() -> tuple[OrientedBox, ...]:
     d, t = math.cos(about_x), math.sin(about_x)
     rotation = np.array([[c, -s * d, s * t], [s, c * d, -c * t], [0.0, t, d]])
     boxes = (OrientedBox.spanning(low, high) for low, high in (_ARM, _FOOT))
+    rows = rotation.ravel().tolist()
     return tuple(
-        OrientedBox(
-            (rotation @ box.centre).tolist(), box.half_extents, rotation.ravel().tolist(), name="body"
-        )
-        for box in boxes
+        OrientedBox((rotation @ box.centre).tolist(), box.half_extents, rows, name="body") for box in boxes
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -20,42 +20,32 @@ from evenroad.research.report.runs import Setting, sampler_place
 from evenroad.research.statistics.rates import Interval
 
 
-class Look(NamedTuple):
-    """How a sampler is drawn: the colour, marker and line that it has in every figure."""
-
-    colour: str
-    marker: str
-    line: str = "-"
-    width: float = 1.4
-    size: float = 5.0
-
-    def as_line(self) -> dict[str, Any]:
-        """Return the look as arguments of matplotlib's `plot` and `errorbar`."""
-        line = {"color": self.colour, "linestyle": self.line, "linewidth": self.width}
-        return line | {"marker": self.marker, "markersize": self.size}
+def _look(colour: str, marker: str, line: str = "-", width: float = 1.4, size: float = 5.0) -> dict[str, Any]:
+    """Return arguments of matplotlib's `plot` and `errorbar`."""
+    return dict(color=colour, linestyle=line, linewidth=width, marker=marker, markersize=size)
 
 
 DPI = 110
 
 # Protocols of one sequence share a colour and differ in the line; the default sampler is red and thick.
-LOOKS: dict[str, Look] = {
-    "uniform": Look("#555555", "o", width=2.0),
-    "halton paper-blocks": Look("#1b9e5a", "s", "--"),
-    "halton scrambled": Look("#1b9e5a", "s"),
-    "sobol paper-blocks": Look("#2f5fd0", "^", "--"),
-    "sobol scrambled": Look("#2f5fd0", "^"),
-    "lattice": Look("#e6a23c", "v"),
-    "sukharev": Look("#12a5b5", "X", ":"),
-    "mpmc": Look("#e05fa8", "D"),
-    "hickernell": Look("#8e5bd0", "p"),
-    "even": Look("#d1343b", "*", width=2.4, size=9.0),
+LOOKS: dict[str, dict[str, Any]] = {
+    "uniform": _look("#555555", "o", width=2.0),
+    "halton paper-blocks": _look("#1b9e5a", "s", "--"),
+    "halton scrambled": _look("#1b9e5a", "s"),
+    "sobol paper-blocks": _look("#2f5fd0", "^", "--"),
+    "sobol scrambled": _look("#2f5fd0", "^"),
+    "lattice": _look("#e6a23c", "v"),
+    "sukharev": _look("#12a5b5", "X", ":"),
+    "mpmc": _look("#e05fa8", "D"),
+    "hickernell": _look("#8e5bd0", "p"),
+    "even": _look("#d1343b", "*", width=2.4, size=9.0),
 }
-OTHER = Look("#000000", ".", ":")
+OTHER = _look("#000000", ".", ":")
 """For a sampler that this version does not know."""
 
 
-def look_of(sampler: str) -> Look:
-    """Return how a sampler is drawn."""
+def look_of(sampler: str) -> dict[str, Any]:
+    """Return how a sampler is drawn: the colour, marker and line that it has in every figure."""
     return LOOKS.get(sampler, OTHER)
 
 
@@ -158,7 +148,7 @@ def draw_point_sets(seed: int = 0) -> Figure:
             else:
                 points, _ = draw_set(sampler, n, 2, 0, generator(seed))
                 size = 300.0 / n + 2.5
-                axes.scatter(*points.points.T, s=size, color=look_of(sampler).colour, linewidths=0)
+                axes.scatter(*points.points.T, s=size, color=look_of(sampler)["color"], linewidths=0)
         row[0].set_ylabel(f"N = {n}", fontsize=11)
     for axes, sampler in zip(panels[0], SETS_DRAWN, strict=True):
         axes.set_title(sampler, fontsize=11)
@@ -175,7 +165,7 @@ def _draw_by_samples(axes: Axes, cells: Sequence[Cell], samplers: Sequence[str])
         curve = [cell for cell in cells if cell.sampler == sampler]
         if curve:
             shift = 2.0 ** (DODGE * (place - (len(samplers) - 1) / 2))
-            style = look_of(sampler).as_line() | {"elinewidth": 0.8, "capsize": 1.5, "label": sampler}
+            style = look_of(sampler) | {"elinewidth": 0.8, "capsize": 1.5, "label": sampler}
             shares, intervals = [cell.rate for cell in curve], [cell.interval for cell in curve]
             _draw_intervals(axes, [cell.n * shift for cell in curve], shares, intervals, style)
     counts = sorted({cell.n for cell in cells})
@@ -195,12 +185,12 @@ def _draw_gains(axes: Axes, found: Sequence[Pooled]) -> None:
         mine = [each for each in found if each.sampler == sampler]
         aside = (place - 0.5 * (len(samplers) - 1)) * GROUP_DODGE
         look = look_of(sampler)
-        style = look.as_line() | {"linestyle": "none", "elinewidth": 0.9, "label": sampler}
-        style["markerfacecolor"] = "white" if look.line == "--" else look.colour
+        style = look | {"linestyle": "none", "elinewidth": 0.9, "label": sampler}
+        style["markerfacecolor"] = "white" if look["linestyle"] == "--" else look["color"]
         places = [groups.index(each.group) + aside for each in mine]
         shares, intervals = [each.difference for each in mine], [each.interval for each in mine]
         _draw_intervals(axes, places, shares, intervals, style)
-    axes.axhline(0.0, color=look_of("uniform").colour, linewidth=1.2)
+    axes.axhline(0.0, color=look_of("uniform")["color"], linewidth=1.2)
     names = [group.replace(" symmetrised, ", "\n") for group in groups]
     axes.set_xticks(range(len(groups)), names, fontsize=8)
     axes.grid(axis="y", alpha=0.3)
@@ -228,7 +218,7 @@ def _draw_against(axes: Axes, cells: Sequence[Cell], costs: Sequence[float], lab
             if cell.sampler == sampler and cost > 0
         ]
         if known:
-            axes.plot(*np.array(known).T, **look_of(sampler).as_line())
+            axes.plot(*np.array(known).T, **look_of(sampler))
     axes.set_xlabel(label)
     axes.grid(alpha=0.3)
     if not axes.lines:

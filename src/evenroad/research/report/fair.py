@@ -34,29 +34,21 @@ def is_fair(setting: Setting) -> bool:
     return setting.problem.startswith(PREFIX)
 
 
-def generator_of(problem: str) -> str:
-    """Return the name of a problem's generator: ``balls`` of ``fair-balls-5d-50``."""
-    parts = problem.removeprefix(PREFIX).split("-")
-    return "-".join(part for part in parts if not re.fullmatch(r"\d+d?", part)) or problem
+def parts_of(problem: str) -> tuple[str, str, str]:
+    """Return generator, dimension and success of uniform points: balls, 5d and 50 % of ``fair-balls-5d-50``.
 
-
-def dimension_of(problem: str) -> str:
-    """Return the dimension in a problem's name, ``5d``; the generator if there is none."""
-    found = re.search(r"-(\d+d)(?=-|$)", problem)
-    return found.group(1) if found else generator_of(problem)
-
-
-def difficulty_of(problem: str) -> str:
-    """Return the success that uniform points are to have, from the end of a problem's name: ``50 %``, or ``-``."""
-    found = re.search(r"-(\d+)$", problem)
-    return f"{found.group(1)} %" if found else "-"
+    Where no dimension is in the name the generator stands for it, and ``-`` for the success.
+    """
+    found = re.fullmatch(rf"(?:{PREFIX})?(.+?)(?:-(\d+d))?(?:-(\d+))?", problem)
+    generator, dimension, success = found.groups() if found else (problem, None, None)
+    return generator, dimension or generator, f"{success} %" if success else "-"
 
 
 GROUPINGS: dict[str, Callable[[Setting, int], str]] = {
     "all": lambda setting, n: "all",
-    "generator": lambda setting, n: generator_of(setting.problem),
-    "dimension": lambda setting, n: dimension_of(setting.problem),
-    "difficulty": lambda setting, n: difficulty_of(setting.problem),
+    "generator": lambda setting, n: parts_of(setting.problem)[0],
+    "dimension": lambda setting, n: parts_of(setting.problem)[1],
+    "difficulty": lambda setting, n: parts_of(setting.problem)[2],
     "samples": lambda setting, n: str(n),
     BY_RULE: lambda setting, n: f"{setting.rule}, {setting.search}",
 }

@@ -74,9 +74,8 @@ def find_path(problem: Problem) -> PlanResult:
     """Return the first plan with a path, on scrambled Halton points; the last one if none has."""
     for n, k in TRIES:
         points = draw("halton", n, problem.world.space.cube_dim)
-        result = plan(
-            problem.world, problem.start, problem.goal, points, rule=KNearest(k), search="lazy", links=None
-        )
+        query = (problem.world, problem.start, problem.goal)
+        result = plan(*query, points, rule=KNearest(k), search="lazy", links=None)
         if result.solved:
             break
     return result
@@ -88,9 +87,8 @@ def draw_chain(problem: Problem, world: ChainWorld, title: str) -> Figure:
     axes = figure.add_subplot()
     x, y, dx, dy = world.walls
     walls = np.stack([np.stack([x, y], axis=1), np.stack([x + dx, y + dy], axis=1)], axis=1)
-    axes.add_collection(
-        LineCollection(list(walls), colors=style.OBSTACLE, linewidths=2.6, label="horn", zorder=4)
-    )
+    look: dict[str, Any] = dict(colors=style.OBSTACLE, linewidths=2.6, label="horn", zorder=4)
+    axes.add_collection(LineCollection(list(walls), **look))
     result = find_path(problem)
     if result.path is not None:
         shades = colormaps["Blues"](np.linspace(0.25, 0.75, CHAIN_POSES))
@@ -150,9 +148,8 @@ def _draw_body(axes: Axes3D, body: Iterable[OrientedBox], poses: Floats) -> None
 
 def _add_faces(axes: Axes3D, faces: Floats, colours: tuple[Any, Any], **look: float) -> None:
     """Draw faces in the colours of their areas and of their edges."""
-    axes.add_collection3d(
-        Poly3DCollection(faces, facecolors=colours[0], edgecolors=colours[1], clip_on=False, **look)
-    )
+    areas, edges = colours
+    axes.add_collection3d(Poly3DCollection(faces, facecolors=areas, edgecolors=edges, clip_on=False, **look))
 
 
 def _faces(corners: Floats) -> Floats:

@@ -8,7 +8,7 @@ from itertools import chain
 
 from evenroad.research.bench.samplers import SAMPLERS, why_not
 from evenroad.research.problems import PROBLEMS
-from evenroad.research.report.analysis import Analysis, Failure
+from evenroad.research.report.analysis import VERDICT_LEVEL, Analysis, ExpectedTable, Failure, Verdict
 from evenroad.research.report.cells import Cell
 from evenroad.research.report.comparisons import REFERENCES, SIGNIFICANT, Comparison
 from evenroad.research.report.fair import BY_RULE, REFERENCE, LazyChecks, Pooled
@@ -25,7 +25,6 @@ from evenroad.research.report.tables import (
     row,
     with_interval,
 )
-from evenroad.research.report.verdicts import LEVEL, ExpectedTable, Verdict
 from evenroad.research.statistics.resampling import UNKNOWN_INTERVAL
 from evenroad.research.statistics.units import FEW_UNITS, spread_over_sets
 
@@ -53,9 +52,8 @@ def success_table(analysis: Analysis, setting: Setting, name: str) -> Table:
             rows.append(row(sampler, 0, *entries, NOTHING))
     notes = [_interval_note(cells.values()), *pool_notes(cells.values())]
     if any(each[-1].text.endswith(UNKNOWN_INTERVAL) for each in rows):
-        notes.append(
-            f"{UNKNOWN_INTERVAL}: fewer than {FEW_UNITS} runs or sets at some N; too few for an interval."
-        )
+        few = f"fewer than {FEW_UNITS} runs or sets at some N; too few for an interval."
+        notes.append(f"{UNKNOWN_INTERVAL}: {few}")
     notes += [f"No set: {reason}." for reason in reasons.values()]
     if failed := sum(cell.failures for cell in cells.values()):
         notes.append(f"{failed} failed runs count as not solved.")
@@ -63,17 +61,15 @@ def success_table(analysis: Analysis, setting: Setting, name: str) -> Table:
     return Table(name, f"{setting}: success [%]", header, rows, notes=notes)
 
 
-def _success_entry(
-    cell: Cell | None, setting: Setting, sampler: str, n: int, reasons: dict[str, str]
-) -> Entry:
-    """Return what stands in the table; why a sampler has no set is kept in `reasons`."""
+def _success_entry(cell: Cell | None, setting: Setting, sampler: str, n: int, why: dict[str, str]) -> Entry:
+    """Return what stands in the table; why a sampler has no set is kept in `why`."""
     if cell is not None:
         failed = f" ({cell.failures} failed)" if cell.failures else ""
         return Entry(with_interval(cell.rate, cell.interval) + failed)
     if setting.problem in PROBLEMS and sampler in SAMPLERS:
         reason = why_not(sampler, n, PROBLEMS[setting.problem].set_dim)
         if reason:
-            reasons.setdefault(sampler, reason)
+            why.setdefault(sampler, reason)
             return Entry("no set", "faint")
     return Entry("not run", "faint")
 
@@ -82,10 +78,8 @@ def _interval_note(cells: Iterable[Cell]) -> str:
     samplers: dict[str, dict[str, None]] = {}
     for cell in cells:
         samplers.setdefault(cell.interval.kind, {})[cell.sampler] = None
-    kinds = "; ".join(
-        f"{kind} ({', '.join(names)})" if len(samplers) > 1 else kind for kind, names in samplers.items()
-    )
-    return f"95 % intervals: {kinds}."
+    several = [f"{kind} ({', '.join(names)})" for kind, names in samplers.items()]
+    return f"95 % intervals: {'; '.join(several if len(several) > 1 else samplers)}."
 
 
 def paired_tables(analysis: Analysis, setting: Setting, name: str) -> tuple[Table, ...]:
@@ -171,8 +165,8 @@ def expected_table(table: ExpectedTable, verdicts: Sequence[Verdict]) -> Table:
         labels=3,
         notes=(
             f"{table.source}. {table.about}",
-            f"{verdict_counts(verdicts)}. Fisher's exact test compares the counts of each cell, at {LEVEL:g} after"
-            " Holm's correction over all cells of this table with counts; ≠ marks the cells that differ."
+            f"{verdict_counts(verdicts)}. Fisher's exact test compares the counts of each cell, at {VERDICT_LEVEL:g}"
+            " after Holm's correction over all cells of this table with counts; ≠ marks the cells that differ."
             " SR: success rate in percent. V: mean number of milestones, ours counted as the source counts.",
             *_source_notes(verdicts),
             *_few_sets(verdicts),

@@ -143,23 +143,22 @@ _LATEX_MARKS = {
 }
 
 
+def _latex(text: str) -> str:
+    return text.translate(_LATEX_TEXT)
+
+
 def as_latex(table: Table) -> str:
     """Return a ``table`` environment: better is bold, worse is emphasised, what differs is underlined."""
     columns = "l" * table.labels + "r" * (len(table.header) - table.labels)
-    rows = [
-        [_LATEX_MARKS[mark].format(text.translate(_LATEX_TEXT)) for text, mark in row] for row in table.rows
-    ]
-    header, *body = (
-        " & ".join(cells) + r" \\"
-        for cells in ([name.translate(_LATEX_TEXT) for name in table.header], *rows)
-    )
+    marked = [[_LATEX_MARKS[mark].format(_latex(text)) for text, mark in row] for row in table.rows]
+    header, *body = (" & ".join(cells) + r" \\" for cells in (map(_latex, table.header), *marked))
     lines = [
         r"\begin{table}",
-        rf"\caption{{{table.title.translate(_LATEX_TEXT)}}}",
+        rf"\caption{{{_latex(table.title)}}}",
         rf"\label{{tab:{table.name}}}",
         rf"\begin{{tabular}}{{{columns}}}",
         *(r"\toprule", header, r"\midrule", *body, r"\bottomrule", r"\end{tabular}"),
-        *(rf"\par\footnotesize {note.translate(_LATEX_TEXT)}" for note in table.notes),
+        *(rf"\par\footnotesize {_latex(note)}" for note in table.notes),
         r"\end{table}",
     ]
     return "\n".join(lines) + "\n"

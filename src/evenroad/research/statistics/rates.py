@@ -150,9 +150,7 @@ def _ratio_and_error(sums: npt.ArrayLike, runs: npt.ArrayLike) -> tuple[float, f
     """Return the ratio, its standard error (NaN for one unit) and the number of units."""
     above, below = np.asarray(sums, dtype=np.float64), as_counts("runs", runs)
     if above.ndim != 1 or above.shape != below.shape or len(above) == 0 or np.any(below < 1):
-        raise InvalidValue(
-            f"sums and runs must be lists of one length, with runs >= 1, got {sums!r}, {runs!r}"
-        )
+        raise InvalidValue(f"sums and runs must be of one length, with runs >= 1, got {sums!r}, {runs!r}")
     units, total = len(above), float(below.sum())
     ratio = float(above.sum()) / total
     if units < 2:

@@ -26,16 +26,6 @@ class ChainSpace(FlatSpace):
     radians; any angle is taken, given back are angles in [-pi, pi).  Distances are those of OMPL's kinematic chain
     benchmark: how far the far ends of the links are apart in the plane, summed over the links.  Motions turn every
     joint the short way round at an even speed, which in this metric is neither the shortest motion nor an even one.
-
-    Parameters
-    ----------
-    joints : int
-        Number of links, >= 1.
-
-    Raises
-    ------
-    InvalidValue
-        If `joints` is not such a number.
     """
 
     joints: int

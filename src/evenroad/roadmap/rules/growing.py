@@ -153,14 +153,17 @@ class TheoryRadius(Rule):
 
 
 def default_rule(space: Space) -> KNearest:
-    """Return ``k=10 symmetrised`` below six dimensions, ``k=20 symmetrised`` from there on.
+    """Return ``k=10 symmetrised`` below six dimensions, ``k=20 symmetrised`` from there on; never fewer than 2 d.
+
+    The nearest points of a lattice lie opposite each other in pairs, so fewer than 2 d of them leave directions out.
 
     From six dimensions on, k matters more than the sampler.  Success in random worlds of balls and of boxes with
     Owen-Sobol points at k = 4 / 6 / 10 / 20: 53 / 67 / 75 / 78 % (d=5, N=256), 46 / 59 / 69 / 75 % (d=6, N=512),
     49 / 62 / 72 / 78 % (d=7, N=512), 46 / 56 / 64 / 71 % (d=10, N=512).  The step from 10 to 20 gives 3 to 4 points
     in d=5 and 6 to 7 from d=6 on, where it costs a lazy search few checks.
     """
-    return KNearest(20 if space.cube_dim >= 6 else 10)
+    d = space.cube_dim
+    return KNearest(max(20 if d >= 6 else 10, 2 * d))
 
 
 _NUMBER = r"([0-9.]+(?:e[+-]?[0-9]+)?)"

@@ -34,17 +34,10 @@ class Rule(Protocol):
     """Chooses candidate edges among configurations, before anything is checked; ``str()`` is its name."""
 
     def edges(self, q: Floats, space: Space | None = None, *, ends: int = 0) -> Ints32:
-        """Return the pairs i < j to try, shape (m, 2), in ascending order, each once.
+        """Return the pairs i < j of configurations `q`, (n, dim), to try, (m, 2), in ascending order, each once.
 
-        Parameters
-        ----------
-        q : ndarray, shape (n, dim)
-            Configurations: milestones, then `ends` starts and goals.
-        space : Space, optional
-            Whose metric counts; default: the Euclidean one.
-        ends : int
-            How many of the last rows are starts and goals.  Rules that depend on an order of insertion take
-            them as the first; for all others they come last among ties.
+        Distances are those of the space, by default Euclidean.  The last `ends` rows are starts and goals: rules that
+        depend on an order of insertion take them as the first; for all others they come last among ties.
         """
 
     def reach(self, milestones: int, space: Space) -> Reach:

@@ -7,6 +7,8 @@ from evenroad.roadmap.search.edge_states import EdgeStates as EdgeStates
 from evenroad.roadmap.search.edge_states import Known as Known
 from evenroad.roadmap.search.finders import FINDERS as FINDERS
 from evenroad.roadmap.search.finders import Finder as Finder
+from evenroad.roadmap.search.finders import confirm as confirm
+from evenroad.roadmap.search.finders import confirmed as confirmed
 from evenroad.roadmap.search.finders import find_any as find_any
 from evenroad.roadmap.search.finders import find_lazily as find_lazily
 from evenroad.roadmap.search.finders import march as march

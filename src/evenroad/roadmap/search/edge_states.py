@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats, Ints32
-from evenroad.roadmap.budget import BudgetSpent, Stopwatch, in_time
+from evenroad.roadmap.budget import BudgetSpent, Pace, Stopwatch, in_time
 from evenroad.world import World
+
+States: TypeAlias = npt.NDArray[np.int8]
 
 UNKNOWN, FREE, BLOCKED = np.int8(0), np.int8(1), np.int8(2)
 """What is known of an edge or a node."""
@@ -23,8 +26,8 @@ class Known:
     `confirmed`, (m,), says which free edges have passed the strict check of a world that has one.
     """
 
-    nodes: npt.NDArray[np.int8]
-    edges: npt.NDArray[np.int8]
+    nodes: States
+    edges: States
     confirmed: Bools
 
     @classmethod
@@ -57,11 +60,12 @@ class EdgeStates:
         self.configurations_checked = self.motions_checked = 0
         self.watch = Stopwatch() if watch is None else watch
         self.most_motions, self.deadline = most_motions, deadline
+        self._node_pace, self._edge_pace = Pace(), Pace()
 
     def ask_nodes(self, nodes: npt.NDArray[np.integer]) -> None:
         """Ask the world about those of the nodes that are not known yet; BudgetSpent if time does not allow all."""
         unknown = nodes[self.node_states[nodes] == UNKNOWN]
-        for rows in in_time(unknown, self.deadline):
+        for rows in in_time(unknown, self.deadline, self._node_pace):
             with self.watch("validity"):
                 free = self.world.valid(self.configurations[rows])
             self.node_states[rows] = np.where(free, FREE, BLOCKED)
@@ -73,7 +77,7 @@ class EdgeStates:
         wanted = len(unknown)
         if self.most_motions is not None:
             unknown = unknown[: self.most_motions - self.motions_checked]
-        for rows in in_time(unknown, self.deadline):
+        for rows in in_time(unknown, self.deadline, self._edge_pace):
             pairs = self.edges[rows]
             a, b = self.configurations[pairs[:, 0]], self.configurations[pairs[:, 1]]
             with self.watch("motions"):

@@ -1,4 +1,7 @@
-"""Finding a path while asking the world: everything first, only what matters, any path, or by a marching tree."""
+"""Finding a path while asking the world: everything first, only what matters, any path, or by a marching tree.
+
+And the last check of a path: no motion is handed out that its world does not confirm.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +10,13 @@ from collections.abc import Callable, Iterable
 from typing import Any, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
-from evenroad._arrays import Floats, Ints32
-from evenroad.roadmap.search.edge_states import BLOCKED, FREE, UNKNOWN, EdgeStates
+from evenroad._arrays import Bools, Floats, Ints32
+from evenroad.roadmap.search.edge_states import BLOCKED, FREE, UNKNOWN, EdgeStates, States
 from evenroad.roadmap.search.graph import Graph
 from evenroad.roadmap.search.shortest import NOT_FOUND, Ends, FixedPoint, Found, SearchProblem, best_path
+from evenroad.world import Rechecks, World
 
 Finder: TypeAlias = Callable[[Any, EdgeStates], Found]
 """A search: what it takes are `Ends`, or all of a `SearchProblem`."""
@@ -34,7 +37,8 @@ def search_problem(states: EdgeStates, costs: Floats, goals: int = 1, *, bound: 
 def _away(states: EdgeStates, nodes: Iterable[int]) -> Floats:
     """Return the distance of every node from the nearest of some, (nodes,)."""
     q, space = states.configurations, states.world.space
-    return np.min([space.distance(q, np.broadcast_to(q[node], q.shape)) for node in nodes], axis=0)
+    away = [space.distance(q, np.broadcast_to(q[node], q.shape)) for node in nodes]
+    return np.min(away, axis=0) if len(away) > 1 else away[0]
 
 
 def find_after_all(problem: SearchProblem, states: EdgeStates) -> Found:
@@ -62,9 +66,7 @@ FINDERS: dict[str, Finder] = {"full": find_after_all, "lazy": find_lazily}
 """The searches by name; both find the same path."""
 
 
-def _all_free(
-    numbers: Ints32, states: npt.NDArray[np.int8], ask: Callable[[npt.NDArray[np.integer]], None]
-) -> bool:
+def _all_free(numbers: Ints32, states: States, ask: Callable[[Ints32], None]) -> bool:
     """Ask about those nodes or edges of a path that are not known, until one is blocked; return whether none is."""
     for number in numbers[states[numbers] == UNKNOWN]:
         ask(number[np.newaxis])
@@ -77,54 +79,56 @@ def find_any(ends: Ends, states: EdgeStates) -> Found:
     """Return some path of free edges if there is one, asking about no more edges than the full search.
 
     Two trees grow, from the start and from the goals: both ask about the edges that lead nearest to where the other
-    began, until they meet.  A search without an answer ends when one of the two can grow no more.  Edges between two
-    nodes of one tree are not asked about.
+    began, until they meet.  A search without an answer ends when one of the two can grow no more.
+    Edges between two nodes of one tree are not asked about.
     """
-    edges, to_goal, to_start = states.edges, _away(states, ends.goals), _away(states, [ends.start])
+    edges = states.edges
+    away = np.stack([_away(states, ends.goals), _away(states, [ends.start])])
     tree = np.zeros(len(states.configurations), dtype=np.int8)
     tree[ends.start], tree[ends.goals] = 1, 2
     parent_edge = np.full(len(tree), -1, dtype=np.int32)
-    most = _FIRST
+    asked, most = np.empty(0, dtype=np.int32), _FIRST
+    lazy_nodes = bool((states.node_states == UNKNOWN).any())
     while True:
-        givers, takers, offers, both = _ways_out(edges, states.edge_states, states.node_states, tree)
-        if not both:
-            return NOT_FOUND
-        if len(takers) > most:
-            from_start = tree[givers] == 1
-            best = _nearest(np.flatnonzero(from_start), to_goal[takers], most)
-            rows = np.concatenate([best, _nearest(np.flatnonzero(~from_start), to_start[takers], most)])
-            givers, takers, offers = givers[rows], takers[rows], offers[rows]
-        most += len(offers) // 4
-        states.ask_nodes(takers)
-        states.ask_edges(offers[states.node_states[takers] == FREE])
-        free = states.edge_states[offers] == FREE
-        givers, takers, offers = givers[free], takers[free], offers[free]
-        if (met := tree[takers] > 0).any():
-            nodes = givers[met][0], takers[met][0]
-            there, back = (_path_back(parent_edge, edges, int(node)) for node in nodes)
-            along = np.concatenate([there.edges, offers[met][:1], back.edges[::-1]])
+        grown = tree, parent_edge, away, asked, most
+        met, takers, asked = _grow(edges, states.edge_states, states.node_states, *grown)
+        if met >= 0:
+            a, b = sorted(edges[met].tolist(), key=lambda node: tree[node])
+            there, back = _path_back(parent_edge, edges, a), _path_back(parent_edge, edges, b)
+            along = np.concatenate([there.edges, np.array([met], dtype=np.int32), back.edges[::-1]])
             return Found(np.concatenate([there.nodes, back.nodes[::-1]]), along)
-        tree[takers], parent_edge[takers] = tree[givers], offers
+        if not len(asked):
+            return NOT_FOUND
+        most += len(asked) // 4
+        if lazy_nodes:
+            states.ask_nodes(takers)
+            states.ask_edges(asked[states.node_states[takers] == FREE])
+        else:
+            states.ask_edges(asked)
 
 
 _FIRST = 16
 """Edges that each tree of `find_any` asks about at first; later the more, the longer it takes."""
 
 
-def _nearest(rows: npt.NDArray[np.integer], away: Floats, most: int) -> npt.NDArray[np.integer]:
-    """Return at most so many of the rows, those of the least distances."""
-    return rows if len(rows) <= most else rows[np.argsort(away[rows], kind="stable")[:most]]
-
-
 @njit(cache=True, nogil=True)
-def _ways_out(edges, edge_states, node_states, tree):  # type: ignore[no-untyped-def]
-    """Return edges, not known to be blocked, that lead out of a tree or from the first one to the second.
+def _grow(edges, edge_states, node_states, tree, parent_edge, away, asked, most):  # type: ignore[no-untyped-def]
+    """Take into the trees where the edges that were asked about are free, and return where to go on.
 
-    From which nodes, to which, one for each of these, and the edges; and whether both trees have such edges.
+    An edge at which the trees meet, or -1; else nodes to go to and the edges, not known to be blocked, that lead there
+    from a tree, at most so many of a tree, nearest first; none when one of the two trees can grow no more.
     """
-    giver = np.empty(tree.shape[0], dtype=np.int32)
-    offer = np.full(tree.shape[0], -1, dtype=np.int32)
-    grows = np.zeros(3, dtype=np.bool_)
+    for e in asked:
+        a, b = edges[e, 0], edges[e, 1]
+        if edge_states[e] != FREE:
+            continue
+        if tree[a] > 0 and tree[b] > 0:
+            return e, asked[:0], asked[:0]
+        if tree[a] == 0:
+            a, b = b, a
+        tree[b], parent_edge[b] = tree[a], e
+    offer, count = np.full(tree.shape[0], -1, dtype=np.int32), np.zeros(3, dtype=np.int64)
+    nearest, grows = np.empty((3, most), dtype=np.int32), np.zeros(3, dtype=np.bool_)
     for e in range(edges.shape[0]):
         a, b = edges[e, 0], edges[e, 1]
         if tree[a] == tree[b] or edge_states[e] == BLOCKED:
@@ -133,11 +137,26 @@ def _ways_out(edges, edge_states, node_states, tree):  # type: ignore[no-untyped
             a, b = b, a
         if node_states[b] == BLOCKED:
             continue
-        grows[tree[a]] = grows[tree[b]] = True
-        if offer[b] < 0:
-            giver[b], offer[b] = a, e
-    takers = np.flatnonzero(offer >= 0)
-    return giver[takers], takers, offer[takers], grows[1] and grows[2]
+        side = tree[a]
+        grows[side] = grows[tree[b]] = True
+        if offer[b] >= 0:
+            continue
+        offer[b] = e
+        row, far, place = nearest[side], away[side - 1], min(count[side], most)
+        if place == most:
+            # Rows stay sorted, and lose their last.
+            place -= 1
+            if far[row[place]] <= far[b]:
+                continue
+        while place > 0 and far[row[place - 1]] > far[b]:
+            row[place] = row[place - 1]
+            place -= 1
+        row[place] = b
+        count[side] += 1
+    takers = np.concatenate((nearest[1, : min(count[1], most)], nearest[2, : min(count[2], most)]))
+    if not (grows[1] and grows[2]):
+        takers = takers[:0]
+    return np.int32(-1), takers, offer[takers]
 
 
 def march(problem: SearchProblem, states: EdgeStates) -> Found:
@@ -209,3 +228,27 @@ def _path_back(parent_edge: Ints32, edges: Ints32, node: int) -> Found:
         along.append(edge)
         nodes.append(b if a == nodes[-1] else a)
     return Found(np.array(nodes[::-1], dtype=np.int32), np.array(along[::-1], dtype=np.int32))
+
+
+def confirmed(world: World, path: Floats, doubtful: Bools) -> Bools:
+    """Return which motions of a path, (p, dim), pass the world's strict check, (p - 1,); all where it has none.
+
+    Only the doubtful ones, (p - 1,), have to be checked: the others passed before.
+    """
+    passed = ~doubtful
+    if not isinstance(world, Rechecks):
+        return np.ones_like(passed)
+    # Runs of motions that follow one another are one call.
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], doubtful, [False]])))
+    for first, last in edges.reshape(-1, 2):
+        passed[first:last] = world.recheck(path[first : last + 1])
+    return passed
+
+
+def confirm(states: EdgeStates, found: Found) -> bool:
+    """Return whether the world confirms all motions of a path; those that fail are blocked from now on."""
+    nodes, along, _ = found
+    passed = confirmed(states.world, states.configurations[nodes], ~states.confirmed[along])
+    states.confirmed[along] = passed
+    states.edge_states[along[~passed]] = BLOCKED
+    return bool(passed.all())

@@ -11,11 +11,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
 from evenroad._arrays import Floats, Ints, Ints32
-from evenroad.roadmap.search.edge_states import BLOCKED, FREE
+from evenroad.roadmap.search.edge_states import BLOCKED, FREE, States
 from evenroad.roadmap.search.graph import Graph
 
 
@@ -90,9 +89,7 @@ class SearchProblem(Ends):
     bounds: Ints
 
 
-def best_path(
-    problem: SearchProblem, edge_states: npt.NDArray[np.int8], node_states: npt.NDArray[np.int8]
-) -> Found:
+def best_path(problem: SearchProblem, edge_states: States, node_states: States) -> Found:
     """Return the one shortest path from start to the nearest goal over nodes and edges that are not `BLOCKED`.
 
     The goals are one virtual node: each has an edge of length 0 to it, and the path to it is the answer.  Among

@@ -50,6 +50,8 @@ def blocked_lanes(scratch: Singles, ints: Ints, table: Singles, enough: int, hul
     `enough` is 1 to stop at the first lane that is blocked, 16 to find all; at `hulls` is what decides pairs by hulls.
     """
     blocked = _meeting_obstacles(scratch, ints, table, enough)
+    if ints[at.SURFACES] != 0 and not (blocked == ALL or (blocked != 0 and enough == 1)):
+        blocked |= call_at(ints[at.SURFACE_CHECK], (scratch, ints, table, blocked, enough))
     if blocked == ALL or (blocked != 0 and enough == 1):
         return blocked
     return _meeting_themselves(scratch, ints, table, blocked, enough, hulls)

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.layout import DESK, LANES, MOST_WAITING
+from evenroad.robot.kernel.scene_surfaces import SceneSurfaces
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -33,16 +34,19 @@ class LaneWorld:
         Largest distance between neighbouring states of a motion.
     at : tuple of two int, optional
         Addresses of the two arrays, where they are known.
+    surfaces : SceneSurfaces, optional
+        The clouds and meshes of the scene.
     """
 
     tables: npt.NDArray[np.int64]
     by_joint: Floats
     resolution: float
     at: tuple[int, int] | None = None
+    surfaces: SceneSurfaces | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return how a copy is made, here or in another process: it finds out for itself where its arrays are."""
-        return LaneWorld, (self.tables, self.by_joint, self.resolution)
+        return LaneWorld, (self.tables, self.by_joint, self.resolution, None, self.surfaces)
 
     def arguments(self, more: int) -> tuple[Floats, tuple[int, float, int, int, int, int]]:
         """Return `more` doubles of memory, and what a program ends with: what ``checks_of`` takes, and their address.
@@ -66,7 +70,18 @@ class LaneWorld:
         doubles = DESK + 2 * LANES + places + header[at.SCRATCH] // 2 + len(self.tables)
         checks = _address_of_checks(header[at.HULL_PAIRS] > 0)
         tables, by_joint = self.at or (address(self.tables), address(self.by_joint))
+        if self._with_surfaces is not None:
+            tables = address(self._with_surfaces)
         return checks, tables, by_joint, doubles
+
+    @cached_property
+    def _with_surfaces(self) -> Ints | None:
+        """The tables with the addresses of clouds and meshes, where there are any."""
+        if self.surfaces is None:
+            return None
+        from evenroad.robot.kernel.surface_contact import surface_check_address
+
+        return self.surfaces.added_to(self.tables, surface_check_address())
 
 
 class _Memory(threading.local):

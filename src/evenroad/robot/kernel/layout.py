@@ -39,7 +39,11 @@ HULL_PAIRS = 27
 NODE_INTS, NODE_FLOATS, HULL_MARGINS = range(28, 31)
 """Header: where nodes of trees of hulls begin, and the margins of pairs that are decided by hulls."""
 
-HEADER = 31
+SURFACES, SURFACE_CHECK = range(31, 33)
+"""Header, where a program is called: addresses of the desk of surfaces (points and meshes), 0 where there are none, and
+of the check against them."""
+
+HEADER = 33
 """Length of the header."""
 
 FRAME_INT_ROW = 3

@@ -23,8 +23,8 @@ SIZE, ROTATION, TRANSLATION, ROW = 1, 4, 13, 16
 
 
 def obstacle_rows(scene: Scene) -> Floats:
-    """Return the obstacles of a scene, (n, 16): kind; full extents of a box, or radius and length without caps, and
-    zeros [m]; rotation to the root link's frame, row by row; centre in that frame [m].
+    """Return the obstacles of a scene but clouds and meshes, (n, 16): kind; full extents of a box, or radius and length
+    without caps, and zeros [m]; rotation to the root link's frame, row by row; centre in that frame [m].
     """
     return np.frombuffer(b"".join([obstacle.row for obstacle in scene.obstacles])).reshape(-1, ROW)
 

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from numba import njit
 
 from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel.addresses import call_at
 from evenroad.robot.kernel.hull_contact import bodies_meet
 from evenroad.robot.kernel.layout import inner, quick
 from evenroad.robot.kernel.motion import enter, span
@@ -21,7 +22,7 @@ from evenroad.world.bisection import next_between
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
-SEPARATE, MEETS_OBSTACLE, MEETS_ITSELF = range(3)
+SEPARATE, MEETS_OBSTACLE, MEETS_SURFACE, MEETS_ITSELF = range(4)
 """What `first_contact` finds."""
 
 
@@ -37,15 +38,20 @@ def first_contact(
 ) -> tuple[int, int, int]:
     """Return what comes nearer than its margin first: which of the kinds above, a capsule, its counterpart.
 
-    The counterpart is an obstacle, or for MEETS_ITSELF the pair's number (and then the capsule is -1).  There is a
-    margin for each capsule against obstacles, and one for each pair of capsules [m].  The last two, (frames + 1, 12)
-    and (capsules, 6), are room for places: rotation and origin of a frame, centre and half segment of a capsule.
+    The counterpart is an obstacle (for MEETS_SURFACE, one of all the scene's), or for MEETS_ITSELF the pair's number
+    (and then the capsule is -1).  There is a margin for each capsule against obstacles, and one for each pair of
+    capsules [m].  The last two, (frames + 1, 12) and (capsules, 6), are room for places: rotation and origin of a
+    frame, centre and half segment of a capsule.
     """
     _place_frames(q, ints, floats, frames)
     _place_capsules(ints, floats, frames, capsules)
     capsule, obstacle = _meets_obstacle(ints, floats, margins, capsules)
     if capsule >= 0:
         return MEETS_OBSTACLE, capsule, obstacle
+    if ints[at.SURFACES] != 0:
+        both = call_at(ints[at.SURFACE_CHECK], (capsules, margins, ints, floats, 0))
+        if both >= 0:
+            return MEETS_SURFACE, both >> 32, both & 0xFFFFFFFF
     pair = _meets_itself(ints, floats, pair_margins, frames, capsules)
     if pair >= 0:
         return MEETS_ITSELF, -1, pair

@@ -29,10 +29,12 @@ CUT_WORTH_WHILE = 1e-3
 """Motions that shorten the path by less than this share are not looked at; the second where corners are cut."""
 
 MOST_CUTS = 64
-"""So many cuts of corners are tried at most."""
+"""So many cuts of corners are tried at most, where nothing else is said."""
 
 
-def shorten_path(world: LaneWorld, path: Floats, pairs: int, count: int) -> tuple[Floats, int]:
+def shorten_path(
+    world: LaneWorld, path: Floats, pairs: int, count: int, most_cuts: int = MOST_CUTS
+) -> tuple[Floats, int]:
     """Return a path that is no longer, without waypoints where it is not finite, and how many motions were looked at.
 
     Parameters
@@ -44,13 +46,15 @@ def shorten_path(world: LaneWorld, path: Floats, pairs: int, count: int) -> tupl
     pairs, count
         Address of a float64 array, (count, 2): shares of the path's length, from 0 to 1, between which places a
         straight motion is tried.
+    most_cuts : int
+        So many cuts of corners are tried at most.
     """
     size, dim = path.shape
-    rows = size + count + MOST_CUTS + 4
+    rows = size + count + most_cuts + 4
     room, arguments = world.arguments(COUNTS + rows * (dim + 1) + 3 * dim)
     points = room[-rows * dim :].reshape(rows, dim)
     room[:COUNTS], points[:size] = 0.0, path
-    left = shorten_points(rows, size, dim, pairs, count, *arguments)
+    left = shorten_points(rows, size, dim, pairs, count, most_cuts, *arguments)
     return points[:left].copy(), int(room[:COUNTS].view(np.int64)[MOTIONS])
 
 
@@ -61,6 +65,7 @@ def shorten_points(
     dim: int,
     shares: int,
     count: int,
+    most_cuts: int,
     check: int,
     resolution: float,
     tables: int,
@@ -90,7 +95,7 @@ def shorten_points(
         size = _joined(points, places, size, low, high, WORTH_WHILE, ends, way, checks)
     cuts, i, gained = 0, 1, places[size - 1]
     # Corners, one after the other and again while that gains anything: the shorter side, half of it, a quarter.
-    while cuts < MOST_CUTS and i < size - 1:
+    while cuts < most_cuts and i < size - 1:
         reach = min(places[i] - places[i - 1], places[i + 1] - places[i])
         length = places[size - 1]
         for _ in range(3):

@@ -15,7 +15,7 @@ from evenroad._arrays import Bools, Floats, set_fields
 from evenroad._checks import require_extra
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.mesh import TriangleMesh
-from evenroad.geometry.shapes import Mesh, Shape, along_z
+from evenroad.geometry.shapes import Mesh, PointCloud, Shape, along_z
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot.known_robots import joint_space
 from evenroad.robot.load import find_robot, read_robot
@@ -143,6 +143,8 @@ def coal_shape(coal: Any, shape: Shape) -> Any:
     A mesh stays what it is: where it is not convex, what coal builds with ``buildConvexRepresentation`` lets
     collisions pass.
     """
+    if isinstance(shape, PointCloud):
+        raise InvalidValue(f"coal has no clouds of points, got a {shape}")
     if isinstance(shape, Mesh):
         return tree_of(coal, shape.triangles)
     kinds = {"box": coal.Box, "sphere": coal.Sphere, "cylinder": coal.Cylinder, "capsule": coal.Capsule}

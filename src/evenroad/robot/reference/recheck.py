@@ -12,6 +12,7 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._rng import generator
 from evenroad.errors import NotAvailable
+from evenroad.geometry.shapes import PointCloud
 from evenroad.robot.pairs import HELD_TOUCHING, TOUCHING
 from evenroad.robot.reference.coal_world import CoalWorld, original_shapes
 from evenroad.robot.robot import Robot, RobotModel
@@ -73,13 +74,16 @@ def recheck(
 
     Capsules contain the shapes that they were fitted to, so what is free for them is free here.  Where it is not, two
     links touch whose capsules say nothing about them (`unseen`), or the capsules were given by the user and leave out
-    a piece of a shape, or something is wrong with one of the two checkers: the path is not to be driven.
+    a piece of a shape, or something is wrong with one of the two checkers: the path is not to be driven.  Clouds are
+    left out, since coal knows none.
 
     `source` is the file that `robot` was loaded from; each motion of the path, (p, dim) [rad or m], is divided as
     ArmWorld of this `resolution` divides it, ten times as finely.  `unseen` are pairs of links that are tested beside
     the robot's own, as of `unseen_pairs`; left out are those whose shapes touch whatever the joints do.  Raises
     BrokenFile or InvalidValue if the URDF or a mesh is missing, broken or empty by now.
     """
+    clouds = [obstacle.name for obstacle in scene.obstacles if isinstance(obstacle.body, PointCloud)]
+    scene = scene.without(*clouds)
     every = replace(robot, pairs=(*robot.pairs, *unseen))
     try:
         shapes = original_shapes(source, robot)

@@ -244,9 +244,8 @@ class DiskWorld:
         reason = "its centre lies in an obstacle or outside the map"
         if distance > 0.0:
             x, y = self.nearest_obstacle(centre)[0]
-            reason = (
-                f"the obstacle at ({x:.6g}, {y:.6g}) is {distance:.6g} away, the disk needs {self.radius:.6g}"
-            )
+            needs = f"the disk needs {self.radius:.6g}"
+            reason = f"the obstacle at ({x:.6g}, {y:.6g}) is {distance:.6g} away, {needs}"
         free = self.nearest_free(centre)
         if free is None:
             return f"{reason}; no place of the map is free"

@@ -206,9 +206,8 @@ def _decoded(stream: IO[bytes], file: Path) -> Image.Image:
         raise BrokenFile(f"{file} is not a PNG or PGM image{_reason(error)}") from error
     columns, rows = image.size
     if columns * rows > LARGEST_IMAGE:
-        raise BrokenFile(
-            f"the image {file} is too large: {columns} x {rows} pixels, at most {LARGEST_IMAGE} are read"
-        )
+        size = f"{columns} x {rows} pixels, at most {LARGEST_IMAGE} are read"
+        raise BrokenFile(f"the image {file} is too large: {size}")
     try:
         image.load()
         return _in_known_mode(image)

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints
-from evenroad.research.worlds.rigid.oriented_box import BoxTable
+from evenroad.research.worlds.rigid.oriented_box import BoxTable, SolidTables
 from evenroad.space.so3 import SMALL_ANGLE
 from evenroad.world.bisection import next_between
 
@@ -22,79 +22,67 @@ faces' axes separate boxes with such edges as well, but for gaps of 1e-7 of thei
 
 
 @njit(cache=True, nogil=True)
-def contacts(poses: Floats, body: BoxTable, reach: float, obstacles: BoxTable, planar: bool) -> Ints:
-    """Return for each pose, (n, 7), the first obstacle that the body meets, or -1; its points reach so far."""
+def contacts(poses: Floats, solids: SolidTables) -> Ints:
+    """Return for each pose, (n, 7), the first obstacle that the body meets, or -1."""
     found = np.empty(len(poses), dtype=np.int64)
-    near = np.empty(len(obstacles.centre), dtype=np.int64)
-    work = np.empty((4, 3, 3))
+    near = np.empty(len(solids.obstacles.centre), dtype=np.int64)
+    work, farthest = np.empty((4, 3, 3)), solids.reaches.max()
     for row in range(len(poses)):
-        count = _obstacles_near(poses[row], poses[row], reach, obstacles, near)
-        found[row] = _first_contact(poses[row], body, obstacles, near[:count], planar, work)
+        count = _obstacles_near(poses[row], poses[row], farthest, solids.obstacles, near)
+        found[row] = _first_contact(poses[row], solids.body, solids, near[:count], work)
     return found
 
 
 @njit(cache=True, nogil=True)
-def motions_are_free(
-    a: Floats,
-    b: Floats,
-    step: float,
-    rotation_step: float,
-    body: BoxTable,
-    reach: float,
-    obstacles: BoxTable,
-    planar: bool,
-) -> Bools:
+def motions_are_free(a: Floats, b: Floats, step: float, rotation_step: float, solids: SolidTables) -> Bools:
     """Return which motions between poses, (m, 7), are free at both ends and at states between, in bisection order.
 
     Neighbouring states are at most `step` and, as quaternions, `rotation_step` radians apart.
     """
     free = np.empty(len(a), dtype=np.bool_)
-    near = np.empty(len(obstacles.centre), dtype=np.int64)
-    state, work = np.empty(7), np.empty((4, 3, 3))
+    near = np.empty(len(solids.obstacles.centre), dtype=np.int64)
+    state, work, farthest = np.empty(7), np.empty((4, 3, 3)), solids.reaches.max()
     for row in range(len(a)):
         # What is far from the whole motion is far from all of its states.
-        count = _obstacles_near(a[row], b[row], reach, obstacles, near)
+        count = _obstacles_near(a[row], b[row], farthest, solids.obstacles, near)
         free[row] = count == 0 or (
-            _first_contact(a[row], body, obstacles, near[:count], planar, work) < 0
-            and _first_contact(b[row], body, obstacles, near[:count], planar, work) < 0
-            and _motion_is_free(
-                a[row], b[row], step, rotation_step, body, obstacles, near[:count], planar, state, work
-            )
+            _first_contact(a[row], solids.body, solids, near[:count], work) < 0
+            and _first_contact(b[row], solids.body, solids, near[:count], work) < 0
+            and _motion_is_free(a[row], b[row], step, rotation_step, solids, near[:count], state, work)
         )
     return free
 
 
 @njit(cache=True, nogil=True)
-def _motion_is_free(a, b, step, rotation_step, body, obstacles, near, planar, state, work):  # type: ignore[no-untyped-def]
+def _motion_is_free(a, b, step, rotation_step, solids, near, state, work):  # type: ignore[no-untyped-def]
     length, angle = _length(a, b), _angle(a, b)
     segments = max(math.ceil(length / step), math.ceil(angle / rotation_step))
     level, multiple, number = next_between(1, -1, segments)
     while number > 0:
         # Two weights, not one fraction: a motion and its reverse then have the same states.
         _put_between(a, b, (segments - number) / segments, number / segments, angle, state)
-        if _first_contact(state, body, obstacles, near, planar, work) >= 0:
+        if _first_contact(state, solids.body, solids, near, work) >= 0:
             return False
         level, multiple, number = next_between(level, multiple, segments)
     return True
 
 
 @njit(cache=True, nogil=True)
-def motions_are_proved(
-    a: Floats, b: Floats, tolerance: float, body: BoxTable, reaches: Floats, obstacles: BoxTable, planar: bool
-) -> Bools:
+def motions_are_proved(a: Floats, b: Floats, tolerance: float, solids: SolidTables) -> Bools:
     """Return which motions between poses, (m, 7), are proved free, with no gap between states.
 
     If boxes enlarged on all sides by what half an interval moves their points meet nothing at its middle, the boxes
     meet nothing in the whole interval; else both halves are looked at, until an interval moves points by less than
-    `tolerance`.  ``reaches`` are the largest distances of each box's points from the origin of the body.
+    `tolerance`.
     """
+    body, reaches = solids.body, solids.reaches
     proved = np.empty(len(a), dtype=np.bool_)
-    near = np.empty(len(obstacles.centre), dtype=np.int64)
+    near = np.empty(len(solids.obstacles.centre), dtype=np.int64)
     state, work = np.empty(7), np.empty((4, 3, 3))
     enlarged = BoxTable(body.centre, body.half.copy(), body.axes, body.low, body.high)
     farthest = reaches.max()
     for row in range(len(a)):
-        count = _obstacles_near(a[row], b[row], farthest, obstacles, near)
+        count = _obstacles_near(a[row], b[row], farthest, solids.obstacles, near)
         if count == 0:
             proved[row] = True
             continue
@@ -111,14 +99,11 @@ def motions_are_proved(
                 moved = (0.5 + _ROUNDING) * share * (length + 2.0 * angle * reaches[box])
                 for k in range(3):
                     enlarged.half[box, k] = body.half[box, k] + moved
-            if _first_contact(state, enlarged, obstacles, near[:count], planar, work) < 0:
+            if _first_contact(state, enlarged, solids, near[:count], work) < 0:
                 number += 1
                 while level > 0 and number % 2 == 0:
                     level, number = level - 1, number // 2
-            elif (
-                share * most < tolerance
-                or _first_contact(state, body, obstacles, near[:count], planar, work) >= 0
-            ):
+            elif share * most < tolerance or _first_contact(state, body, solids, near[:count], work) >= 0:
                 proved[row] = False
                 break
             else:
@@ -169,14 +154,12 @@ def _obstacles_near(a, b, reach, obstacles, near):  # type: ignore[no-untyped-de
 
 
 @njit(cache=True, nogil=True)
-def _first_contact(
-    pose: Floats, body: BoxTable, obstacles: BoxTable, near: Ints, planar: bool, work: Floats
-) -> int:
-    """Return the first obstacle among `near` that a box of the body meets at a pose, (7,), or -1.
+def _first_contact(pose: Floats, body: BoxTable, solids: SolidTables, near: Ints, work: Floats) -> int:
+    """Return the first obstacle among `near` that a box of the `body`, perhaps enlarged, meets at a pose, (7,), or -1.
 
-    Boxes are closed: touching is meeting.  `planar` says that all boxes stand along z, where the axes across pairs
-    of edges give nothing new.  `work`, (4, 3, 3), is overwritten.
+    Boxes are closed: touching is meeting.  `work`, (4, 3, 3), is overwritten.
     """
+    obstacles, planar = solids.obstacles, solids.planar
     rotation, axes, products, vectors = work[0], work[1], work[2], work[3]
     centre, reach = vectors[0], vectors[1]
     _put_rotation(pose, rotation)

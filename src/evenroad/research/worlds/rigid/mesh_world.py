@@ -48,23 +48,9 @@ class MeshWorld(TestedAtStates):
     :class:`FunctionWorld` does; some ten thousand states a second.  Where body and obstacles are boxes,
     :class:`SolidWorld` is tens of times faster.
 
-    Parameters
-    ----------
-    space : ``SE3(..)``, or a Box of 3 axes
-        Poses of the body's frame; in a Box the body does not rotate.
-    body : TriangleMesh
-        In the body's frame.
-    obstacles : sequence of TriangleMesh
-        In the frame of the space, at least one.
-    resolution : float, or a pair of floats for SE3
-        Largest distance between neighbouring states, or largest distance and largest rotation (``arccos |q . q'|``).
-
-    Raises
-    ------
-    NotAvailable
-        If coal is not installed (the extra ``mesh``).
-    InvalidValue
-        If the space is of another kind, there is no mesh, or `resolution` does not fit.
+    `space`, ``SE3(..)`` or a Box of 3 axes, `body` and `obstacles`, at least one, are as for :class:`SolidWorld`;
+    `resolution` is the largest distance between neighbouring states, for SE3 also the largest rotation.  NotAvailable
+    if coal is not installed (the extra ``mesh``), InvalidValue for anything else.
     """
 
     space: RigidSpace

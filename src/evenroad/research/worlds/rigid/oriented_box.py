@@ -29,24 +29,10 @@ _FACES_OF_A_BOX = np.array(
 class OrientedBox:
     """All points ``centre + rotation x`` with ``|x_i| <= half_extents_i``.
 
-    A half extent of zero is allowed: in space the box is then a rectangle, a piece of a surface.
-
-    Parameters
-    ----------
-    centre : sequence of 2 or 3 floats
-        Its middle; as many numbers as the plane or space has dimensions.
-    half_extents : sequence of as many floats
-        Half of its lengths along its own axes, >= 0.
-    rotation : sequence of 4 or 9 floats, optional
-        From the box's own axes, the rows of the matrix one after the other, as ``rotation_from_heading`` and
-        ``rotation_from_quaternion`` of :mod:`evenroad.geometry` make them; default: not rotated.
-    name : str
-        What explanations call it.
-
-    Raises
-    ------
-    InvalidValue
-        If the numbers are not such.
+    `centre` are 2 or 3 numbers, `half_extents` as many, >= 0; one of zero makes a box in space a rectangle, a piece
+    of a surface.  `rotation` is from the box's own axes, the rows of the matrix one after the other, as
+    ``rotation_from_heading`` and ``rotation_from_quaternion`` of :mod:`evenroad.geometry` make them; by default the box
+    is not rotated.  `name` is what explanations call it.  InvalidValue for other numbers.
     """
 
     centre: Sequence[float]
@@ -129,6 +115,18 @@ class BoxTable(NamedTuple):
     axes: Floats
     low: Floats
     high: Floats
+
+
+class SolidTables(NamedTuple):
+    """A body among obstacles; `reaches`, (n,), bound how far points of each of its boxes are from its frame's origin.
+
+    `planar` says that all boxes stand along z, where the axes across pairs of edges give nothing new.
+    """
+
+    body: BoxTable
+    obstacles: BoxTable
+    reaches: Floats
+    planar: bool
 
 
 def box_table(boxes: Sequence[OrientedBox]) -> BoxTable:

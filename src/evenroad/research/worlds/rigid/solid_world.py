@@ -15,7 +15,7 @@ from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue
 from evenroad.geometry.mesh import TriangleMesh
 from evenroad.research.worlds.rigid.kernel import contacts, motions_are_free, motions_are_proved
-from evenroad.research.worlds.rigid.oriented_box import BoxTable, OrientedBox, box_table, reaches_of
+from evenroad.research.worlds.rigid.oriented_box import OrientedBox, SolidTables, box_table, reaches_of
 from evenroad.space import SO3, Box, Circle, Product, Space
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.bisection import require_few_segments
@@ -99,22 +99,11 @@ class SolidWorld:
     all n + 1 ends of segments are; they are tested in bisection order, the ends first.  What lies between two states is
     not seen; `recheck` proves the motions of a path that is handed out, with no gap.
 
-    Parameters
-    ----------
-    space : ``SE2(..)``, ``SE3(..)``, or a Box of 2 or 3 axes
-        Poses of the body's frame; in a Box the body does not rotate.
-    body : sequence of OrientedBox
-        In the body's frame; at least one.
-    obstacles : sequence of OrientedBox
-        In the frame of the space.  All boxes are of the plane for SE2 and a Box of 2 axes, else of space.
-    resolution : float, or a pair of floats for SE2 and SE3
-        `step` and `rotation_step`: the largest distance and rotation between neighbouring states, > 0.  Rotations are
-        measured as the space does: headings in radians, quaternions by ``arccos |q . q'|``.
-
-    Raises
-    ------
-    InvalidValue
-        If the space is of another kind, boxes are missing or of another dimension, or `resolution` does not fit.
+    `space` are the poses of the body's frame, ``SE2(..)``, ``SE3(..)``, or a Box of 2 or 3 axes, in which the body does
+    not rotate; all boxes are of its plane or space, those of the `body`, at least one, in the body's frame.
+    `resolution` is `step`, and for SE2 and SE3 `rotation_step`: the largest distance and rotation between neighbouring
+    states, > 0, measured as the space does: headings in radians, quaternions by ``arccos |q . q'|``.  InvalidValue for
+    anything else.
     """
 
     proof: ClassVar[str] = "certified"
@@ -124,9 +113,7 @@ class SolidWorld:
     body: Sequence[OrientedBox]
     obstacles: Sequence[OrientedBox]
     resolution: float | Sequence[float]
-    _body: BoxTable = field(init=False, repr=False)
-    _obstacles: BoxTable = field(init=False, repr=False)
-    _reaches: Floats = field(init=False, repr=False)
+    _solids: SolidTables = field(init=False, repr=False)
     _steps: tuple[float, float] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -136,7 +123,8 @@ class SolidWorld:
             raise InvalidValue("body must be one box or more, got none")
         resolution, steps = _as_steps(self.resolution, self.space)
         set_fields(self, body=body, obstacles=obstacles, resolution=resolution, _steps=steps)
-        set_fields(self, _body=box_table(body), _obstacles=box_table(obstacles), _reaches=reaches_of(body))
+        tables = SolidTables(box_table(body), box_table(obstacles), reaches_of(body), dim == 2)
+        set_fields(self, _solids=tables)
 
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of space, body, obstacles and resolution: equal for worlds of the same verdicts."""
@@ -156,8 +144,7 @@ class SolidWorld:
         free = self.space.contains(first) & self.space.contains(second)
         inside = np.flatnonzero(free)
         start, end = as_pose_pair(first[inside], second[inside], self.space)
-        bodies = (self._body, self._reach, self._obstacles, self._planar)
-        free[inside] = motions_are_free(start, end, *self._steps, *bodies)
+        free[inside] = motions_are_free(start, end, *self._steps, self._solids)
         return free
 
     def recheck(self, path: Floats) -> Bools:
@@ -171,8 +158,7 @@ class SolidWorld:
         proved = inside[:-1] & inside[1:]
         rows = np.flatnonzero(proved)
         start, end = as_pose_pair(waypoints[rows], waypoints[rows + 1], self.space)
-        bodies = (self._body, self._reaches, self._obstacles, self._planar)
-        proved[rows] = motions_are_proved(start, end, _TOLERANCE * self._steps[0], *bodies)
+        proved[rows] = motions_are_proved(start, end, _TOLERANCE * self._steps[0], self._solids)
         return proved
 
     def explain(self, q: Floats) -> str:
@@ -182,16 +168,8 @@ class SolidWorld:
             return OUTSIDE
         return contact_with(self.obstacles, int(self._contacts(pose)[0]))
 
-    @property
-    def _reach(self) -> float:
-        return float(self._reaches.max())
-
-    @property
-    def _planar(self) -> bool:
-        return body_dimension(self.space) == 2
-
     def _contacts(self, q: Floats) -> Ints:
-        return contacts(as_poses(q, self.space), self._body, self._reach, self._obstacles, self._planar)
+        return contacts(as_poses(q, self.space), self._solids)
 
 
 def _as_boxes(name: str, boxes: Sequence[OrientedBox], dim: int) -> tuple[OrientedBox, ...]:

@@ -1,0 +1,150 @@
+"""Sets that are even on the manifold itself, beside those that are even in the cube: dispersion, and planning.
+
+    python -m benchmarks.poses --csv docs/data/poses.csv
+
+SO(3): the largest angle of a rotation from the nearest of the set, and the smallest between two of the set, in degrees;
+the first by 200 000 random rotations, so a little too small, for all alike.  "hopf" is the product grid of HEALPix and
+the circle (Yershova, Jain, LaValle and Mitchell 2010), of 72 and 576 rotations.
+
+SE(3): success in the fair suite's worlds of the reporting stream, every sampler in the same worlds, k nearest as in the
+suite; "+-" is the standard error of the difference from scrambled Sobol, paired by world.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+from pathlib import Path
+
+import numpy as np
+
+from evenroad._arrays import Floats
+from evenroad.points import PointSet, draw
+from evenroad.points.samplers.poses import Poses, Rotations
+from evenroad.research.problems.fair import ROTATION_WEIGHT, SIZES, Family, Stream, make_instance
+from evenroad.roadmap import Budget, KNearest, plan
+from evenroad.space import SO3
+
+SAMPLERS = ("poses", "even", "sobol", "hickernell", "uniform")
+RULES = (4, 6, 10, 20)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--worlds", type=int, default=150)
+    parser.add_argument("--draws", type=int, default=3, help="sets a world")
+    parser.add_argument("-n", type=int, nargs="*", default=[256, 512])
+    parser.add_argument("--csv", type=Path)
+    options = parser.parse_args()
+    rows = [row for n in (72, 576) for row in rotations(n)]
+    rows += [row for n in options.n for row in planning(n, options.worlds, options.draws)]
+    if options.csv:
+        with open(options.csv, "w", newline="") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(["what", "n", "k", "sampler", "value", "difference", "error"])
+            writer.writerows(rows)
+
+
+def rotations(n: int) -> list[tuple[object, ...]]:
+    """Print and return dispersion and separation of sets of n rotations [degrees]; the median of five draws."""
+    probes = np.random.default_rng(0).standard_normal((200_000, 4)).astype(np.float32)
+    probes /= np.linalg.norm(probes, axis=1, keepdims=True)
+    rows: list[tuple[object, ...]] = []
+    for sampler in ("rotations", "hopf", "even", "sobol", "uniform"):
+        values = []
+        for seed in range(1 if sampler == "hopf" else 5):
+            if sampler == "hopf":
+                q = hopf_grid(n)
+            else:
+                points = (
+                    Rotations().draw(n, rng=seed) if sampler == "rotations" else draw(sampler, n, 3, rng=seed)
+                )
+                q = SO3().from_cube(points.points)
+            cosines = [np.abs(some @ q.T.astype(np.float32)).max(1).min() for some in np.split(probes, 100)]
+            among = np.abs(q @ q.T) - 2.0 * np.eye(n)
+            values.append(np.degrees(2.0 * np.arccos(np.minimum([min(cosines), among.max()], 1.0))))
+        hole, gap = np.median(values, axis=0)
+        print(
+            f"SO(3) n={n} {sampler:10} largest hole {hole:5.1f}, smallest distance {gap:5.1f} degrees",
+            flush=True,
+        )
+        rows += [
+            ("hole", n, "", sampler, f"{hole:.2f}", "", ""),
+            ("gap", n, "", sampler, f"{gap:.2f}", "", ""),
+        ]
+    return rows
+
+
+def hopf_grid(n: int) -> Floats:
+    """Return 12 s^2 directions of HEALPix (Gorski et al. 2005) times 6 s turns about them, n = 72 s^3."""
+    s = round((n / 72) ** (1 / 3))
+    directions = []
+    for p in range(12 * s * s):
+        half = (p + 1) / 2
+        if p < 2 * s * (s - 1):
+            ring = int(np.sqrt(half - np.sqrt(int(half)))) + 1
+            z, phi = 1 - ring**2 / (3 * s * s), np.pi / (2 * ring) * (p + 1 - 2 * ring * (ring - 1) - 0.5)
+        elif p < 2 * s * (5 * s + 1):
+            inner = p - 2 * s * (s - 1)
+            ring = inner // (4 * s) + s
+            z = (2 * s - ring) * 2 / (3 * s)
+            phi = np.pi / (2 * s) * (inner % (4 * s) + 1 - 0.5 * (1 + (ring + s) % 2))
+        else:
+            z, phi = -directions[12 * s * s - 1 - p][0], -directions[12 * s * s - 1 - p][1]
+        directions.append((z, phi))
+    grid = []
+    for z, phi in directions:
+        theta = np.arccos(z)
+        for turn in 2 * np.pi * (np.arange(6 * s) + 0.5) / (6 * s):
+            c, v = np.cos(theta / 2), np.sin(theta / 2)
+            grid.append(
+                [
+                    c * np.cos(turn / 2),
+                    c * np.sin(turn / 2),
+                    v * np.cos(phi + turn / 2),
+                    v * np.sin(phi + turn / 2),
+                ]
+            )
+    return np.array(grid)
+
+
+def planning(n: int, worlds: int, draws: int) -> list[tuple[object, ...]]:
+    """Print and return the success in SE(3), of difficulty 50."""
+    solved = {(sampler, k): np.zeros(worlds) for sampler in SAMPLERS for k in RULES}
+    for number in range(worlds):
+        problem = make_instance(Stream.REPORTING, Family.SE3, 6, 50, SIZES[Family.SE3, 6][1], number)
+        for sampler in SAMPLERS:
+            for run in range(draws):
+                points = _draw(sampler, n, draws * number + run)
+                for k in RULES:
+                    options = dict(rule=KNearest(k), success_only=True, shorten=False, links=None)
+                    result = plan(
+                        problem.world,
+                        problem.start,
+                        problem.goal,
+                        points,
+                        budget=Budget(seconds=None),
+                        **options,
+                    )
+                    solved[sampler, k][number] += result.solved / draws
+    rows: list[tuple[object, ...]] = []
+    for k in RULES:
+        for sampler in SAMPLERS:
+            mine, gain = solved[sampler, k], solved[sampler, k] - solved["sobol", k]
+            error = gain.std(ddof=1) / np.sqrt(worlds)
+            text = f"{100 * mine.mean():5.1f} %, {100 * gain.mean():+5.1f} +- {100 * error:.1f} on Sobol"
+            print(f"SE(3) n={n} k={k:2} {sampler:10} {text}", flush=True)
+            rows.append(
+                ("success", n, k, sampler, f"{mine.mean():.4f}", f"{gain.mean():.4f}", f"{error:.4f}")
+            )
+    return rows
+
+
+def _draw(sampler: str, n: int, seed: int) -> PointSet:
+    if sampler == "poses":
+        return Poses(turn=ROTATION_WEIGHT[3]).draw(n, 6, rng=seed)
+    return draw(sampler, n, 6, rng=seed)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,175 @@
+"""``evenroad certify``: what a point set with a connection rule, or an arm's roadmap, guarantees in every world."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import tyro
+
+from evenroad._checks import as_row, require_positive
+from evenroad._terminal import print_table
+from evenroad.errors import InvalidValue, shown
+from evenroad.points.npz import read_points
+from evenroad.roadmap import Certificate, KNearest, Radius, Rule, certify, default_rule
+from evenroad.space import Box
+
+FACTORS = (3.0, 2.0, 1.5, 1.2)
+"""Times the best path, for which the clearance is said that they take."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Certify:
+    """Say what shortest paths along a roadmap guarantee in every world: from the largest hole between its points.
+
+    A path has clearance C if every place nearer to it than C is free.  Give a point set, which stands for a roadmap in
+    a box, or --roadmap.  Exit code 1 where nothing is guaranteed for the clearance asked for.
+    """
+
+    set: tyro.conf.Positional[tuple[Path, ...]] = ()
+    """A .npy array of shape (n, d), or a .npz point set."""
+    roadmap: Path | None = None
+    """An arm's roadmap instead, made by ``evenroad roadmap``; clearances are in metres then."""
+    k: Annotated[int | None, tyro.conf.arg(aliases=["-k"])] = None
+    """Each milestone is joined to its k nearest, symmetrised (default 10; 20 from six dimensions on)."""
+    connect_radius: float | None = None
+    """Milestones are joined up to this distance instead."""
+    sides: str | None = None
+    """Sides of the box, d numbers with commas between them.  Default: 1 each."""
+    goals: int = 1
+    """How many goals a query has at most."""
+    clearance: float | None = None
+    """Of the paths that are spoken of, > 0, in units of the box, or metres."""
+    length: float | None = None
+    """And how long they are, > 0; not with --roadmap."""
+    json: bool = False
+    """Print JSON instead of a table."""
+
+    def run(self) -> int:
+        """Certify and print; return 0 if something is guaranteed, else 1."""
+        for name in ("clearance", "length"):
+            if getattr(self, name) is not None:
+                require_positive(f"--{name}", getattr(self, name))
+        if len(self.set) + (self.roadmap is not None) != 1:
+            raise InvalidValue("give one point set or --roadmap FILE, not both and no more")
+        if self.length is not None and self.clearance is None:
+            raise InvalidValue("--length goes with --clearance")
+        return self._of_points(self.set[0]) if self.roadmap is None else self._of_arm(self.roadmap)
+
+    def _of_points(self, file: Path) -> int:
+        points = read_points(file)
+        sides = (1.0,) * points.d if self.sides is None else _sides(self.sides, points.d)
+        rule = self._rule(points.d)
+        certificate = certify(points, rule, Box([0.0] * points.d, sides), goals=self.goals)
+        record = {"file": str(file), "n": points.n, "d": points.d, "hash": points.hash, "rule": str(rule)}
+        title = f"{file}: n={points.n}, d={points.d}, {points.origin}, {rule}"
+        return self._show(title, record | {"sides": list(sides)}, certificate, 1.0, 0.0, "")
+
+    def _of_arm(self, file: Path) -> int:
+        for name in ("k", "connect_radius", "sides", "length"):
+            if getattr(self, name) is not None:
+                raise InvalidValue(
+                    f"--{name.replace('_', '-')} goes with a point set; the roadmap knows its own"
+                )
+        # Here, so that sets do not wait for robots to load.
+        from evenroad.robot_roadmap.certify import certify_robot_roadmap
+        from evenroad.robot_roadmap.file import load_robot_roadmap
+
+        roadmap = load_robot_roadmap(file)
+        certificate, per_metre, allowance = certify_robot_roadmap(roadmap)
+        n = len(roadmap.milestones)
+        record = {"file": str(file), "n": n, "d": len(roadmap.weights), "robot": roadmap.robot.name}
+        record |= {"joints_per_metre": per_metre, "allowance": allowance}
+        title = f"{file}: {n} milestones of {roadmap.robot.name!r} in its cell {roadmap.cell.name!r}"
+        return self._show(title, record, certificate, per_metre, allowance, " m")
+
+    def _rule(self, d: int) -> Rule:
+        if self.connect_radius is None:
+            return default_rule(Box([0.0] * d, [1.0] * d)) if self.k is None else KNearest(self.k)
+        if self.k is not None:
+            raise InvalidValue("give -k or --connect-radius, not both")
+        return Radius(self.connect_radius)
+
+    def _show(
+        self,
+        title: str,
+        record: dict[str, Any],
+        certificate: Certificate,
+        scale: float,
+        allowance: float,
+        unit: str,
+    ) -> int:
+        def outside(inner: float) -> float:
+            return inner / scale + allowance
+
+        least = outside(certificate.dispersion) if certificate.complete else math.inf
+        record |= {
+            "dispersion": certificate.dispersion,
+            "dispersion_at_least": certificate.at_least,
+            "between": _finite(certificate.between),
+            "ends": _finite(certificate.ends),
+            "complete": certificate.complete,
+            "complete_from_clearance": _finite(least),
+            "clearance_for_factor": {
+                f"{factor:g}": _finite(outside(certificate.clearance_for(factor))) for factor in FACTORS
+            },
+        }
+        rows = [
+            ("largest hole", f"{certificate.dispersion:.6g} at most, {certificate.at_least:.6g} at least"),
+            (
+                "motions tried",
+                f"all free ones up to {certificate.between:.6g}, from start and goal {certificate.ends:.6g}",
+            ),
+            ("a path exists", f"if one of clearance {least:.6g}{unit} does; if none is found, none does"),
+        ]
+        if not certificate.complete:
+            needed = f"all motions up to {2 * certificate.dispersion:.6g} have to be tried"
+            rows[2] = (
+                rows[2][0],
+                f"nothing is guaranteed: {needed}; take a larger k or radius, or more points",
+            )
+        for factor in FACTORS:
+            clearance = outside(certificate.clearance_for(factor))
+            if math.isfinite(clearance):
+                rows.append(
+                    (f"{factor:g} x the best", f"at most, of those with clearance {clearance:.6g}{unit}")
+                )
+        held = certificate.complete
+        if self.clearance is not None:
+            inner = max(self.clearance - allowance, 0.0) * scale
+            factor = certificate.factor(inner) if inner > 0.0 else math.inf
+            held = held and inner >= certificate.dispersion
+            record |= {"clearance": self.clearance, "guaranteed": held, "factor": _finite(factor)}
+            text = (
+                f"at most {factor:.6g} times the best one"
+                if math.isfinite(factor)
+                else "no bound on its length"
+            )
+            text = f"a path is found, {text}" if held else "nothing is guaranteed"
+            if self.length is not None:
+                longest = certificate.longest(self.length, inner)
+                record |= {"length": self.length, "longest": _finite(longest)}
+                text += f"; at most {longest:.6g} long where the best is {self.length:g}" if held else ""
+            rows.append((f"with {self.clearance:g}{unit}", text))
+        if self.json:
+            print(json.dumps(record, indent=2, allow_nan=False))
+        else:
+            print_table(rows, (), title)
+        return 0 if held else 1
+
+
+def _sides(text: str, d: int) -> tuple[float, ...]:
+    try:
+        sides = as_row("--sides", [float(word) for word in text.split(",")], d)
+    except ValueError:
+        sides = ()
+    if not sides or min(sides) <= 0.0:
+        raise InvalidValue(f"--sides must be {d} numbers > 0 with commas between them, got {shown(text)}")
+    return sides
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None

@@ -1,0 +1,144 @@
+"""Reading clouds of points: .ply, .pcd, .xyz and .npy files."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._arrays import Floats
+from evenroad._npz import reading
+from evenroad.errors import BrokenFile, UnknownName
+
+_PLY_TYPES = {
+    "char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2", "ushort": "u2",
+    "uint16": "u2", "int": "i4", "int32": "i4", "uint": "u4", "uint32": "u4", "float": "f4", "float32": "f4",
+    "double": "f8", "float64": "f8",
+}  # fmt: skip
+_PLY_ORDERS = {"ascii": "=", "binary_little_endian": "<", "binary_big_endian": ">"}
+_PCD_TYPES = {"F": "f", "I": "i", "U": "u"}
+_LONGEST_HEADER = 1 << 16
+
+
+def load_cloud(path: str | os.PathLike[str]) -> Floats:
+    """Read the points of a cloud from a file, (n, 3), by its suffix; whatever else the file knows of them is left out.
+
+    ``.ply`` (ascii or binary, its element ``vertex``), ``.pcd`` (ascii or binary), ``.xyz`` (text: three numbers or
+    more a line, ``#`` begins a comment), ``.npy`` (an array of three columns or more, or of fields x, y, z).  Rows of
+    NaN are left out of .pcd files: there they stand for pixels without a depth.
+
+    Raises
+    ------
+    BrokenFile
+        If the file is missing, damaged or cut off, has no points, or one that is not finite; or is a .pcd with
+        compressed data.
+    UnknownName
+        If the suffix is another.
+    """
+    file = Path(path)
+    readers = {".ply": _read_ply, ".pcd": _read_pcd, ".xyz": _read_xyz, ".npy": _read_npy}
+    if file.suffix.lower() not in readers:
+        raise UnknownName.among(f"format of the cloud {file}:", file.suffix, readers)
+    with reading(file, "cloud of points"):
+        points = np.asarray(readers[file.suffix.lower()](file), dtype=np.float64)
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise BrokenFile(f"the cloud {file} must have three numbers a point, got an array of {points.shape}")
+    if len(points) == 0:
+        raise BrokenFile(f"the cloud {file} is empty: without points nothing would ever collide")
+    lost = np.count_nonzero(~np.isfinite(points).all(axis=1))
+    if lost:
+        raise BrokenFile(f"the cloud {file} must have finite points, {lost} of {len(points)} are not")
+    return points
+
+
+def _read_npy(file: Path) -> npt.NDArray[np.generic]:
+    array = np.load(file, allow_pickle=False)
+    if array.dtype.names:
+        return _columns(array)
+    return array[:, :3] if array.ndim == 2 and array.shape[1] > 3 else array
+
+
+def _read_xyz(file: Path) -> Floats:
+    lines = (line.split("#")[0].replace(",", " ").split() for line in file.read_text().splitlines())
+    rows = [[float(word) for word in words[:3]] for words in lines if words]
+    return np.array(rows) if rows else np.empty((0, 3))
+
+
+def _read_ply(file: Path) -> Floats:
+    header, data = _header(file.read_bytes(), b"end_header")
+    if not header or header[0] != ["ply"]:
+        raise ValueError("it does not begin with 'ply'")
+    kind = next(words[1] for words in header if words[0] == "format")
+    order = _PLY_ORDERS[kind]
+    before, count, fields, element = 0, 0, [], ""
+    for words in header:
+        if words[0] == "element":
+            if element == "vertex":
+                break
+            element, count = words[1], int(words[2])
+            before += count if element != "vertex" else 0
+        elif words[0] == "property" and element == "vertex":
+            fields.append((words[2], order + _PLY_TYPES[words[1]]))
+    if element != "vertex" or before > 0:
+        raise ValueError("its first element is not 'vertex'")
+    return _rows(data, count, fields, kind == "ascii")
+
+
+def _read_pcd(file: Path) -> Floats:
+    header, data = _header(file.read_bytes(), b"DATA")
+    said = {words[0]: words[1:] for words in header}
+    kind = said["DATA"][0]
+    if kind == "binary_compressed":
+        raise BrokenFile(
+            f"the cloud {file} is compressed, which is not read: pcl_convert_pcd_ascii_binary IN OUT 1 makes it binary"
+        )
+    if kind not in ("ascii", "binary"):
+        raise ValueError(f"its data are {kind!r}, not ascii or binary")
+    counts = map(int, said.get("COUNT", ["1"] * len(said["FIELDS"])))
+    rows = zip(said["FIELDS"], said["TYPE"], said["SIZE"], counts, strict=True)
+    fields = []
+    for i, (name, letter, size, many) in enumerate(rows):
+        # Names may repeat: '_' is what PCL calls gaps.
+        for k in range(many):
+            own = name if many == 1 and name != "_" else f"{name} {i} {k}"
+            fields.append((own, "<" + _PCD_TYPES[letter] + size))
+    points = _rows(data, int(said["POINTS"][0]), fields, kind == "ascii")
+    return points[~np.isnan(points).all(axis=1)]
+
+
+def _header(content: bytes, last: bytes) -> tuple[list[list[str]], bytes]:
+    """Return the words of a file's header, line by line up to that which begins with `last`, and what follows."""
+    lines, place = [], 0
+    while place < min(len(content), _LONGEST_HEADER):
+        end = content.find(b"\n", place)
+        line = content[place : end if end >= 0 else None]
+        place = len(content) if end < 0 else end + 1
+        words = line.decode("ascii").split()
+        if words and words[0] not in ("comment", "obj_info") and not words[0].startswith("#"):
+            lines.append(words)
+        if line.startswith(last):
+            return lines, content[place:]
+    raise ValueError(f"its header has no {last.decode()!r}")
+
+
+def _rows(data: bytes, count: int, fields: list[tuple[str, str]], ascii_rows: bool) -> Floats:
+    """Return x, y and z of so many rows, (n, 3)."""
+    kind = np.dtype(fields)
+    if ascii_rows:
+        words = data.split()
+        if len(words) < count * len(fields):
+            raise ValueError(f"it is cut off: {count} points were announced")
+        table = np.array(words[: count * len(fields)], dtype=np.float64).reshape(count, len(fields))
+        names = [name for name, _ in fields]
+        return np.stack([table[:, names.index(name)] for name in "xyz"], axis=1)
+    if count < 0 or len(data) < count * kind.itemsize:
+        raise ValueError(
+            f"it is cut off: {count} points were announced, {len(data) // kind.itemsize} are there"
+        )
+    return _columns(np.frombuffer(data, dtype=kind, count=count))
+
+
+def _columns(table: npt.NDArray[np.void]) -> Floats:
+    return np.stack([table[name].astype(np.float64) for name in "xyz"], axis=1).reshape(-1, 3)

@@ -1,0 +1,138 @@
+"""A bound that the dispersion surely does not exceed, in any dimension, over any box: by branch and bound.
+
+A cell of the box, with centre c and half sides h, is within sqrt(sum_k (|c_k - x_k| + h_k)^2) of a point x, that of its
+corner farthest from x; the least of these over all x bounds the distance of every place of the cell from its nearest
+point.  Cells whose bound exceeds the largest distance that any centre has shown, by more than some share, are halved.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from evenroad._checks import require_positive
+from evenroad.errors import InvalidValue
+from evenroad.points.pointset import as_unit_points
+
+SHARES = (1.0, 0.5, 0.25, 0.12, 0.06, 0.03, 0.01, 1e-3, 1e-6)
+"""By how much the bound may exceed the dispersion, one pass after the other; each starts from what the last one showed.
+
+With the last of them the bound is the dispersion for all that it is used for.
+"""
+
+WORK = 3e9
+"""Default limit on coordinates looked at: some seconds."""
+
+ROUNDING = 1e-12
+"""Share of the bound, and of the box, by which it is made larger: halving and adding lose a thousandth of it."""
+
+
+class DispersionBounds(NamedTuple):
+    """The dispersion is at least `lower`, the distance of some place from all points, and at most `upper`."""
+
+    lower: float
+    upper: float
+
+
+def dispersion_bounds(
+    points: object, *, sides: object = None, wrapping: object = None, work: float = WORK
+) -> DispersionBounds:
+    """Return certified bounds of the l2-dispersion of points, (n, d) in [0, 1), over the whole cube, or a box.
+
+    Parameters
+    ----------
+    points : array_like or PointSet, shape (n, d)
+        n >= 1.
+    sides : array_like, shape (d,), optional
+        The cube is stretched to a box with these sides, > 0 and finite; default: 1.
+    wrapping : array_like of bools, shape (d,), optional
+        Along which axes the two ends of the box are one place; default: none.
+    work : float
+        Coordinates that may be looked at, > 0.  The default takes some seconds at most; up to d = 7 and a thousand
+        points the bounds then agree to five digits in less than one, in d = 10 to about one per cent.
+
+    Raises
+    ------
+    InvalidValue
+        If there is no point, or an argument is not of that kind.
+    """
+    unit = as_unit_points(points)
+    n, d = unit.shape
+    if n == 0:
+        raise InvalidValue(f"dispersion needs at least one point, got an array of shape (0, {d})")
+    lengths = np.ones(d) if sides is None else np.array(sides, dtype=np.float64)
+    wraps = np.zeros(d, dtype=np.bool_) if wrapping is None else np.array(wrapping, dtype=np.bool_)
+    if lengths.shape != (d,) or not (np.isfinite(lengths) & (lengths > 0.0)).all():
+        raise InvalidValue(f"sides must be {d} finite numbers > 0, got {sides!r}")
+    if wraps.shape != (d,):
+        raise InvalidValue(f"wrapping must be {d} bools, got {wrapping!r}")
+    left = require_positive("work", work)
+    scaled = np.unique(unit, axis=0) * lengths
+    period = np.where(wraps, lengths, np.inf)
+    lower, upper = 0.0, float(np.linalg.norm(np.where(wraps, 0.5 * lengths, lengths)))
+    for share in SHARES:
+        lower, bound, used = _branch_and_bound(scaled, period, lengths, lower, share, left)
+        upper, left = min(upper, bound), left - used
+        if left <= 0.0 or upper == 0.0:
+            break
+    extent = float(np.linalg.norm(lengths))
+    return DispersionBounds(max(lower - ROUNDING * extent, 0.0), upper * (1.0 + ROUNDING) + ROUNDING * extent)
+
+
+@njit(cache=True, nogil=True)
+def _branch_and_bound(points, period, sides, lower, share, most):  # type: ignore[no-untyped-def]
+    """Return a lower and an upper bound of the dispersion, the latter at most 1 + share times the former, and the work.
+
+    Once more than `most` coordinates were looked at, cells are taken as they are.  A cell keeps the points that can be
+    nearest to one of its places; the lists of all waiting cells, deepest first, are one stack.
+    """
+    n, d = points.shape
+    centres, halves = np.empty((64, d)), np.empty((64, d))
+    first, last = np.zeros(64, np.int64), np.zeros(64, np.int64)
+    near = np.arange(4 * n)
+    away = np.empty(n)
+    centres[0], halves[0], last[0] = 0.5 * sides, 0.5 * sides, n
+    waiting, upper, work = 1, 0.0, 0.0
+    while waiting > 0:
+        waiting -= 1
+        centre, half = centres[waiting].copy(), halves[waiting].copy()
+        begin, end = first[waiting], last[waiting]
+        closest, bound = np.inf, np.inf
+        for entry in range(begin, end):
+            x = points[near[entry]]
+            to_centre, to_corner, to_cell = 0.0, 0.0, 0.0
+            for k in range(d):
+                gap = abs(x[k] - centre[k])
+                gap = min(gap, period[k] - gap)
+                to_centre += gap * gap
+                to_corner += (gap + half[k]) * (gap + half[k])
+                outside = max(gap - half[k], 0.0)
+                to_cell += outside * outside
+            closest, bound = min(closest, to_centre), min(bound, to_corner)
+            away[entry - begin] = to_cell
+        work += (end - begin) * d
+        lower = max(lower, np.sqrt(closest))
+        reach = np.sqrt(bound)
+        if reach <= lower * (1.0 + share) or work > most:
+            upper = max(upper, reach)
+            continue
+        kept = end
+        if len(near) < end + (end - begin):
+            near = np.concatenate((near, np.empty(len(near), near.dtype)))
+        for entry in range(begin, end):
+            if away[entry - begin] <= bound * (1.0 + 1e-9):
+                near[kept] = near[entry]
+                kept += 1
+        axis = np.argmax(half)
+        half[axis] *= 0.5
+        if waiting + 2 > len(centres):
+            centres, halves = np.concatenate((centres, centres)), np.concatenate((halves, halves))
+            first, last = np.concatenate((first, first)), np.concatenate((last, last))
+        for side in (-1.0, 1.0):
+            centres[waiting], halves[waiting] = centre, half
+            centres[waiting, axis] += side * half[axis]
+            first[waiting], last[waiting] = end, kept
+            waiting += 1
+    return lower, upper, work

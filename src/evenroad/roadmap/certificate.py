@@ -1,0 +1,99 @@
+"""What a roadmap guarantees for every world of its space, from a bound of the dispersion of its milestones alone.
+
+Let beta bound the distance of every place from the nearest milestone, and let all free motions between milestones up
+to R, and between an end and milestones up to E, be tried.  A path has clearance delta if all places nearer to it than
+delta are free.
+
+1.  R >= 2 beta, delta >= beta: there is a path along the roadmap.  The milestones nearest to the places of the path,
+    in turn, are a chain; where it steps from x to y, some place p of the path is within beta of both, so the motion
+    from x to y is at most 2 beta long and stays in the ball around p, which is free.  So, if the roadmap fails, no
+    path has clearance beta.
+2.  delta > beta: with l <= 2 sqrt(delta^2 - beta^2), l <= R - 2 beta, l <= E - beta, a path of length L leads to one
+    of at most L + 2 beta (ceil(L / l) - 1) along the roadmap, so of at most (1 + 2 beta / l) L.  Cut the path into
+    ceil(L / l) equal pieces and take a milestone within beta of each of the inner ends p_i: consecutive ones are at
+    most l + 2 beta apart, so tried, and a motion between two stays within beta of the chord from p_i to p_i+1.  A
+    place q there, beside the chord's near half, is at most sqrt(beta^2 + (l / 2)^2) <= delta from p_i: free.  Each of
+    the inner ends adds at most 2 beta.  (The proof is that of Tsao, Solovey and Pavone 2020, for an l of one's own.)
+    An end that only its nearest milestone is tried with adds beta more, as does that milestone.
+
+The same holds on a torus while no motion is longer than half a turn.  Nothing is asked of the space's shape but that
+it is a box: the faces are no obstacles, and a chord of two places of it stays inside.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from evenroad._checks import require_positive
+
+SAFE = 1.0 - 1e-12
+"""Share of a distance that is surely less than it, whoever rounds."""
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """What is guaranteed of shortest paths along a roadmap; all numbers are in the metric of the space.
+
+    Attributes
+    ----------
+    dispersion : float
+        beta: every place of the space is surely so near to a milestone.
+    at_least : float
+        Some place is surely that far from all of them: how sharp beta is.
+    between : float
+        All free motions between milestones that are no longer are tried; inf: all.
+    ends : float
+        The same for motions between start or goal and a milestone; that to the nearest one always is.
+    direct : bool
+        Whether the motion from start to goal is tried, too.
+    """
+
+    dispersion: float
+    at_least: float
+    between: float
+    ends: float
+    direct: bool
+
+    @property
+    def complete(self) -> bool:
+        """Whether every path of clearance `dispersion` leads to one along the roadmap; if that fails, there is none."""
+        return SAFE * self.between >= 2.0 * self.dispersion
+
+    def longest(self, length: float, clearance: float) -> float:
+        """Return how long the shortest path along the roadmap is at most, where one of such length and clearance is.
+
+        inf where nothing is guaranteed.  Both are finite and > 0, else InvalidValue.
+        """
+        length, clearance = require_positive("length", length), require_positive("clearance", clearance)
+        step, hops = self._step(clearance), 2.0 * self.dispersion
+        if step <= 0.0:
+            return math.inf
+        bound = length + hops * (_pieces(length, step) + 1)
+        if (step := min(step, SAFE * self.ends - self.dispersion)) > 0.0:
+            bound = min(bound, length + hops * max(_pieces(length, step) - 1, 0 if self.direct else 1))
+        return bound
+
+    def factor(self, clearance: float) -> float:
+        """Return how many times longer than a long path of such clearance the roadmap's is at most; inf if unknown."""
+        step = self._step(require_positive("clearance", clearance))
+        return 1.0 + 2.0 * self.dispersion / step if step > 0.0 else math.inf
+
+    def clearance_for(self, factor: float) -> float:
+        """Return the least clearance whose :meth:`factor` is at most `factor`, > 1; inf if there is none."""
+        factor = require_positive("factor", factor)
+        step = 2.0 * self.dispersion / (factor - 1.0) if factor > 1.0 else math.inf
+        if not step <= SAFE * self.between - 2.0 * self.dispersion:
+            return math.inf
+        return math.hypot(self.dispersion, 0.5 * step) / SAFE
+
+    def _step(self, clearance: float) -> float:
+        """Return the largest l of the proof, without what is asked of the ends; <= 0 if there is none."""
+        room = (SAFE * clearance) ** 2 - self.dispersion**2
+        if room <= 0.0:
+            return 0.0
+        return min(2.0 * math.sqrt(room), SAFE * self.between - 2.0 * self.dispersion)
+
+
+def _pieces(length: float, step: float) -> int:
+    return math.ceil(length / step)

@@ -1,0 +1,207 @@
+"""Certificates of point sets with a rule, of kept roadmaps, and of one query's graph."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from functools import lru_cache
+
+import numpy as np
+
+from evenroad._arrays import Bools, Floats, Ints32
+from evenroad._checks import require_count
+from evenroad.errors import InvalidValue, NotAvailable
+from evenroad.points.measures.covering import DispersionBounds, dispersion_bounds
+from evenroad.points.pointset import PointSet
+from evenroad.roadmap.certificate import SAFE, Certificate
+from evenroad.roadmap.kept import Roadmap
+from evenroad.roadmap.neighbours import BLOCK, flat_metric
+from evenroad.roadmap.query import LINKS, Query
+from evenroad.roadmap.rules import Complete, KNearest, Radius, Reach, Rule
+from evenroad.space import Space
+from evenroad.space.protocol import all_distances
+
+
+def certify(
+    points: PointSet, rule: Rule, space: Space, *, links: int | None = LINKS, goals: int = 1
+) -> Certificate:
+    """Return what ``plan(world, start, goal, points, rule=rule)`` guarantees in every world of the space.
+
+    Parameters
+    ----------
+    points : PointSet
+        Of the space's cube.
+    rule : KNearest, Radius or Complete
+        Others promise nothing before the world is known; :func:`evenroad.plan` with ``certify=True`` then does.
+    space : Space
+        With a flat metric.
+    links, goals
+        As for :func:`evenroad.plan`: milestones that ends are linked to, and how many goals there may be.
+
+    Raises
+    ------
+    InvalidValue
+        If the points do not have the dimension of the space's cube.
+    NotAvailable
+        If the metric is not flat, or the rule is another one.
+    """
+    bounds = bounds_in(points, space)
+    goals = require_count("goals", goals)
+    turn = _half_turn(space)
+    if isinstance(rule, Radius):
+        r = min(rule.r, turn)
+        return Certificate(bounds.upper, bounds.lower, r, r, True)
+    if isinstance(rule, Complete):
+        return Certificate(bounds.upper, bounds.lower, turn, turn, True)
+    if not isinstance(rule, KNearest):
+        raise NotAvailable(
+            f"the rule {rule} promises nothing before the world is known: certify k=K symmetrised, radius=R or"
+            " complete, or let plan(..., certify=True) certify one answer"
+        )
+    return _by_neighbours(points, rule.k, space, bounds, links, goals, turn)
+
+
+def certify_roadmap(roadmap: Roadmap, *, links: int | None = LINKS) -> Certificate:
+    """Return what the queries of a kept roadmap guarantee in every world; errors as :func:`certify`."""
+    bounds, turn = bounds_in(roadmap.points, roadmap.space), _half_turn(roadmap.space)
+    reach = roadmap.rule.reach(roadmap.points.n, roadmap.space)
+    n = roadmap.points.n
+    most = n if reach == Reach() else max(_links_among(n, links), reach.k or 0)
+    ends = max(reach.radius or 0.0, linked_within(roadmap.configurations, most, roadmap.space, bounds.upper))
+    between = _nearest_untried(roadmap.configurations, roadmap.edges, roadmap.space)
+    return Certificate(bounds.upper, bounds.lower, min(between, turn), min(ends, turn), True)
+
+
+def certify_graph(
+    points: PointSet, space: Space, configurations: Floats, edges: Ints32, ends: int
+) -> Certificate:
+    """Return what a graph guarantees for its own ends, the last rows of `configurations`, (n, dim).
+
+    `points` are those that the milestones among the rows are the valid ones of, at least.
+    """
+    bounds, turn = bounds_in(points, space), _half_turn(space)
+    n = len(configurations) - ends
+    inner = edges[:, 1] < n
+    between = _nearest_untried(configurations[:n], edges[inner], space)
+    tried = np.zeros((ends, len(configurations)), dtype=np.bool_)
+    tried[edges[~inner, 1] - n, edges[~inner, 0]] = True
+    away, tried, direct = (
+        all_distances(space, configurations[n:], configurations[:n]),
+        tried[:, :n],
+        tried[1:, n],
+    )
+    to_end = SAFE * float(np.min(away[~tried], initial=math.inf))
+    if n and to_end < bounds.upper and not tried[np.arange(ends), away.argmin(axis=1)].all():
+        # Another rule than those known here: an end may not even be joined to its nearest milestone.
+        between = 0.0
+    return Certificate(bounds.upper, bounds.lower, min(between, turn), min(to_end, turn), bool(direct.all()))
+
+
+def bounds_in(points: PointSet, space: Space) -> DispersionBounds:
+    """Return certified bounds of the dispersion of milestones over their space; errors as :func:`certify`."""
+    if points.d != space.cube_dim:
+        raise InvalidValue(f"the points have d={points.d}, the space has {space.cube_dim} dimensions")
+    sides, wrapping = _box_of(space)
+    return _bounds_once(points, tuple(sides), tuple(wrapping))
+
+
+@lru_cache(maxsize=64)
+def _bounds_once(points: PointSet, sides: tuple[float, ...], wrapping: tuple[bool, ...]) -> DispersionBounds:
+    return dispersion_bounds(points, sides=sides, wrapping=wrapping)
+
+
+def _box_of(space: Space) -> tuple[Floats, Bools]:
+    """Return the sides that the space's cube has in its metric, (d,), and which of them wrap; NotAvailable if none."""
+    metric, d = flat_metric(space), space.cube_dim
+    if metric is None or space.dim != d:
+        raise NotAvailable(
+            f"a certificate needs a space whose metric is flat, not {type(space).__name__}: there is no bound of the"
+            " dispersion for others"
+        )
+    origin = space.from_cube(np.zeros((1, d)))
+    # Half of a side is the longest way where it wraps.
+    sides = 2.0 * space.distance(np.repeat(origin, d, axis=0), space.from_cube(0.5 * np.eye(d)))
+    some = 0.5 * np.random.default_rng(0).random((32, d))
+    measured = space.distance(np.repeat(origin, len(some), axis=0), space.from_cube(some))
+    if not np.allclose(measured, np.linalg.norm(some * sides, axis=1), rtol=1e-9):
+        raise NotAvailable(f"a certificate needs a space that is a box, which {space!r} is not")
+    return sides, metric.wrapping
+
+
+def _half_turn(space: Space) -> float:
+    """Return the length from which on a motion may go the other way round; inf where nothing wraps."""
+    sides, wrapping = _box_of(space)
+    return 0.5 * SAFE * float(sides[wrapping].min(initial=math.inf))
+
+
+def _by_neighbours(
+    points: PointSet,
+    k: int,
+    space: Space,
+    bounds: DispersionBounds,
+    links: int | None,
+    goals: int,
+    turn: float,
+) -> Certificate:
+    """Return the certificate of the k nearest, symmetrised, among whatever milestones are valid, start and goals.
+
+    A milestone x has y among its k nearest if fewer than k others are as near: k - 2 - goals milestones, the start and
+    the goals.  So a pair is tried if it is nearer than the (k - goals)-th milestone is to one of the two.  For an end
+    beside x the others are k - 1 - goals milestones and the other ends: the same distance from x.
+    """
+    q = space.from_cube(points.points)
+    rank, n = k - goals, points.n
+    if rank < 1:
+        raise NotAvailable(f"k={k} promises nothing with {goals} goal(s): k has to be above {goals}")
+    if rank >= n:
+        return Certificate(bounds.upper, bounds.lower, turn, turn, False)
+    reach = _ranked(q, rank, space)
+    ends = max(SAFE * float(reach.min()), linked_within(q, _links_among(n, links), space, bounds.upper))
+    between = math.inf
+    for rows, away in _rows(q, space):
+        untried = away >= np.maximum(reach[rows, np.newaxis], reach)
+        between = min(between, float(np.min(away[untried], initial=math.inf)))
+    return Certificate(bounds.upper, bounds.lower, min(SAFE * between, turn), min(ends, turn), False)
+
+
+def _links_among(n: int, links: int | None) -> int:
+    return Query(np.zeros(1), np.zeros((1, 1)), links=links).links_among(n)
+
+
+def linked_within(q: Floats, most: int, space: Space, dispersion: float) -> float:
+    """Return a length up to which every end is linked to milestones, if to its `most` nearest."""
+    if not 0 < most < len(q):
+        return 0.0 if most == 0 else math.inf
+    # The ball around an end lies in one that is larger by the dispersion around its nearest milestone.
+    return SAFE * float(_ranked(q, most, space).min()) - dispersion
+
+
+def _ranked(q: Floats, rank: int, space: Space) -> Floats:
+    """Return the distance of each row of `q` from its `rank`-th nearest other one, (n,); inf where there are fewer."""
+    if rank >= len(q):
+        return np.full(len(q), math.inf)
+    return np.concatenate([np.partition(away, rank - 1, axis=1)[:, rank - 1] for _, away in _rows(q, space)])
+
+
+def _nearest_untried(q: Floats, edges: Ints32, space: Space) -> float:
+    """Return a length that is less than that of every pair of rows of `q` that is no edge, (m, 2); inf if all are."""
+    n = len(q)
+    tried = np.sort(edges[:, 0].astype(np.int64) * n + edges[:, 1])
+    tried = np.concatenate([tried, np.sort(edges[:, 1].astype(np.int64) * n + edges[:, 0])])
+    least = math.inf
+    for rows, away in _rows(q, space):
+        mine = tried[(tried >= rows.start * n) & (tried < rows.stop * n)] - rows.start * n
+        away.reshape(-1)[mine] = math.inf
+        least = min(least, float(away.min(initial=math.inf)))
+    return SAFE * least
+
+
+def _rows(q: Floats, space: Space) -> Iterator[tuple[slice, Floats]]:
+    """Yield ranges of rows with their distances from all rows, (rows, n), infinite from themselves."""
+    n = len(q)
+    step = max(1, 16 * BLOCK // max(n, 1))
+    for begin in range(0, n, step):
+        rows = slice(begin, min(begin + step, n))
+        away = all_distances(space, q[rows], q)
+        away[np.arange(len(away)), np.arange(rows.start, rows.stop)] = math.inf
+        yield rows, away

@@ -1,0 +1,140 @@
+"""SceneSurfaces: the clouds and meshes of a scene as compiled code reads them, by addresses found out where it runs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.geometry.mesh import closed_parts
+from evenroad.geometry.shapes import Mesh, PointCloud
+from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel.addresses import address
+from evenroad.robot.kernel.placed_capsules import PlacedCapsule
+from evenroad.robot.kernel.robot_tables import RobotTables
+from evenroad.robot.kernel.scene_tables import OBSTACLE_PADDING
+from evenroad.robot.kernel.surface_grid import grid_of_points, grid_of_triangles
+from evenroad.robot.kernel.surface_tree import surface_array
+from evenroad.robot.scene import Scene
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+Bools = npt.NDArray[np.bool_]
+
+DESK, SURFACE_ROW = 2, 3
+"""The desk: how many surfaces there are, where capsules' floats are; of each surface its array, the flags of the
+capsules that are tested against it, and the number of its obstacle."""
+
+CAPSULE_ROW = 3
+"""By how much the spheres over a capsule are larger than it, half its length, one over the square of that."""
+
+PIECE = 0.1
+"""Triangles are cut until no side is longer than this share of the robot's reach: a box around a large one says
+little."""
+
+
+@dataclass(frozen=True, eq=False)
+class SceneSurfaces:
+    """The clouds and meshes of a scene that the robot can reach.
+
+    Attributes
+    ----------
+    arrays : tuple of int64 arrays
+        The surfaces, as ``surface_tree`` makes them.
+    numbers : tuple of int
+        Of their obstacles in the scene.
+    tested : int64 array, shape (surfaces, capsules)
+        1 where a capsule is tested against a surface, else 0.
+    capsules : float32 array, shape (capsules, 3)
+        See `CAPSULE_ROW`.
+    """
+
+    arrays: tuple[Ints, ...]
+    numbers: tuple[int, ...]
+    tested: Ints
+    capsules: npt.NDArray[np.float32]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return how a copy is made: it finds out for itself where its arrays are."""
+        return SceneSurfaces, (self.arrays, self.numbers, self.tested, self.capsules)
+
+    @cached_property
+    def _desk(self) -> Ints:
+        rows = [len(self.arrays), address(self.capsules)]
+        for array, flags, number in zip(self.arrays, self.tested, self.numbers, strict=True):
+            rows += [address(array), address(flags), number]
+        return np.array(rows, dtype=np.int64)
+
+    def added_to(self, ints: Ints, check: int) -> Ints:
+        """Return tables of integers that name the surfaces, and the address of the check against them."""
+        added = ints.copy()
+        added[[at.SURFACES, at.SURFACE_CHECK]] = address(self._desk), check
+        # As the tables: code would be compiled anew for arrays that can be written to.
+        added.setflags(write=False)
+        return added
+
+
+def scene_surfaces(scene: Scene, robot: RobotTables, tested: Bools) -> SceneSurfaces | None:
+    """Return the clouds and meshes of a scene within a robot's reach [m], None where there are none.
+
+    `tested` says which capsules are tested against which obstacles, (capsules, obstacles).
+    """
+    found = {
+        number: array
+        for number, obstacle in enumerate(scene.obstacles)
+        if isinstance(obstacle.body, PointCloud | Mesh)
+        and tested[:, number].any()
+        and (array := surface_of(obstacle.body, robot.reach)) is not None
+    }
+    if not found:
+        return None
+    flags = np.ascontiguousarray(tested[:, list(found)].T, dtype=np.int64)
+    return SceneSurfaces(tuple(found.values()), tuple(found), flags, _capsule_rows(robot.capsules))
+
+
+def _capsule_rows(capsules: Sequence[PlacedCapsule]) -> npt.NDArray[np.float32]:
+    halves = np.linalg.norm([capsule.half for capsule in capsules], axis=1)
+    slack = [capsule.cover.radius - capsule.radius for capsule in capsules]
+    return np.stack([slack, halves, 1.0 / np.maximum(halves**2, at.LEAST_SQUARE)], axis=1).astype(np.float32)
+
+
+@lru_cache(maxsize=16)
+def surface_of(body: PointCloud | Mesh, reach: float) -> Ints | None:
+    """Return what a robot of this reach can touch of a body; kept, since the next scene often has it, too."""
+    if isinstance(body, PointCloud):
+        points = body.pose.apply(body.points)
+        points = points[np.linalg.norm(points, axis=1) <= reach + body.radius]
+        if len(points) == 0:
+            return None
+        padding = OBSTACLE_PADDING * (float(np.linalg.norm(points, axis=1).max()) + body.radius)
+        return surface_array(points[:, np.newaxis], body.radius + padding, grid_of_points(points))
+    mesh = body.triangles
+    corners = body.pose.apply(mesh.vertices)[mesh.triangles]
+    near = _within_reach(corners, reach)
+    solid, turned = closed_parts(mesh)
+    if len(near) == 0:
+        return None
+    padding = OBSTACLE_PADDING * float(np.linalg.norm(near, axis=2).max())
+    return surface_array(near, padding, grid_of_triangles(near, corners[solid], turned, reach))
+
+
+def _within_reach(corners: Floats, reach: float) -> Floats:
+    """Return the pieces of triangles, (n, 3, 3), that come within reach along each axis, see `PIECE`."""
+    pieces = []
+    while len(corners):
+        touched = (np.abs(corners).min(axis=1) <= reach) | (corners.min(axis=1) * corners.max(axis=1) <= 0.0)
+        corners = corners[touched.all(axis=1)]
+        lengths = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
+        large = lengths.max(axis=1, initial=0.0) > reach * PIECE
+        pieces.append(corners[~large])
+        longest = lengths[large].argmax(axis=1)
+        # Longest sides first.
+        turn = (longest[:, np.newaxis] + np.arange(3)) % 3
+        a, b, c = np.take_along_axis(corners[large], turn[:, :, np.newaxis], axis=1).transpose(1, 0, 2)
+        middle = 0.5 * (a + b)
+        corners = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+    return np.concatenate(pieces) if pieces else np.empty((0, 3, 3))

@@ -1,0 +1,282 @@
+"""Which of sixteen placed configurations touch points or meshes; a capsule is here what it is, not spheres over it.
+
+A byte of a grid tells for most capsules, sixteen configurations at once, that nothing is near.  What is left is tested
+one configuration after the other, against sixteen nodes, points or triangles of the tree at once.  Compiled when a
+scene has a cloud or a mesh, and called by its address.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from llvmlite import ir
+from numba import cfunc, types
+from numba.extending import intrinsic
+
+from evenroad.robot.kernel import layout as at
+from evenroad.robot.kernel import surface_tree as tree
+from evenroad.robot.kernel.addresses import ANY_LENGTH, integers_at, singles_at
+from evenroad.robot.kernel.forward_kinematics import scratch_places
+from evenroad.robot.kernel.hull_contact import _room as room_for
+from evenroad.robot.kernel.lanes import (
+    LANES_TYPE,
+    ZERO,
+    absolute,
+    below_zero,
+    box_of_lanes,
+    column,
+    dot,
+    larger,
+    load_vector,
+    lowest_bit,
+    minus,
+    plus,
+    row,
+    smaller,
+    times,
+)
+from evenroad.robot.kernel.layout import HALF, LANES, PLACED, inlined, inner
+from evenroad.robot.kernel.mesh_contact import is_inside, near_nodes, near_triangles, nearest_place
+from evenroad.robot.kernel.scene_surfaces import CAPSULE_ROW, DESK, SURFACE_ROW
+
+ALL = (1 << LANES) - 1
+FEW = 2
+"""Of capsules that at most so many spheres cover the grid is not asked as a whole: it would cost as much."""
+_TOLD_APART = np.float32(254.5)
+_LEAST = np.float32(at.LEAST_SQUARE)
+
+Ints = npt.NDArray[np.int64]
+Singles = npt.NDArray[np.float32]
+
+
+@cache
+def surface_check_address() -> int:
+    """Return the address, good for this process, of the check against surfaces; compiled when first asked.
+
+    It takes the addresses of scratch memory with sixteen placed configurations, of integers and floats of the tables,
+    the mask of lanes that are known to be blocked, and `enough` as ``lane_check`` does; it returns the mask of those
+    that touch a surface, or are inside of a closed one.
+    """
+    kind = types.int64(*[types.int64] * 5)
+    return int(cfunc(kind, cache=True, error_model="numpy", _nrt=False)(_meeting_surfaces).address)
+
+
+def _meeting_surfaces(scratch: int, ints: int, table: int, blocked: int, enough: int) -> int:
+    return meeting_surfaces(
+        singles_at(scratch, (ANY_LENGTH,)),
+        integers_at(ints, (ANY_LENGTH,)),
+        singles_at(table, (ANY_LENGTH,)),
+        blocked,
+        enough,
+    )
+
+
+@inner
+def meeting_surfaces(scratch: Singles, ints: Ints, table: Singles, blocked: int, enough: int) -> int:
+    """Return the mask of lanes, of those that are not blocked, in which a capsule touches a surface or is inside."""
+    _, capsules = scratch_places(ints)
+    desk, meeting = integers_at(ints[at.SURFACES], (ANY_LENGTH,)), 0
+    surfaces, of_capsules = desk[0], singles_at(desk[1], (ANY_LENGTH,))
+    for number in range(surfaces):
+        place = desk[DESK + SURFACE_ROW * number]
+        tested = integers_at(desk[DESK + SURFACE_ROW * number + 1], (ANY_LENGTH,))
+        cloud = singles_at(place + tree.BYTES_OF_HEADER, (ANY_LENGTH,))
+        windings = integers_at(place, (tree.HEADER,))[tree.WINDINGS]
+        # From the outermost capsules inwards: those touch most often.
+        for i in range(ints[at.CAPSULES] - 1, ints[at.FIXED_CAPSULES] - 1, -1):
+            if tested[i] == 0:
+                continue
+            here = capsules + PLACED * i
+            slack, half, one_by_squared = row(of_capsules, CAPSULE_ROW * i, 3)
+            (covering,) = row(table, ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i + 6, 1)
+            reach = covering - slack + cloud[tree.RADIUS]
+            near, sure = _near_and_touching(
+                scratch, here, i, half, covering, slack, place, cloud, ints, table
+            )
+            near &= ~(blocked | meeting | sure)
+            meeting |= sure & ~blocked
+            if meeting != 0 and enough == 1:
+                return meeting
+            alone = near & (near - 1) == 0
+            close = near != 0 and (alone or _reaches(scratch, here, reach, place, cloud))
+            if not close and windings == 0:
+                continue
+            while near != 0:
+                lane = lowest_bit(near)
+                near &= near - 1
+                if (close and _touches(scratch, here + lane, one_by_squared, reach, place, cloud)) or (
+                    windings != 0 and is_inside(scratch, here + lane, place, cloud)
+                ):
+                    meeting |= 1 << lane
+                    if enough == 1:
+                        return meeting
+            if blocked | meeting == ALL:
+                return meeting
+    return meeting
+
+
+@inlined
+def _near_and_touching(
+    scratch: Singles,
+    here: int,
+    capsule: int,
+    half: Any,
+    covering: Any,
+    slack: Any,
+    place: int,
+    cloud: Singles,
+    ints: Ints,
+    table: Singles,
+) -> tuple[int, int]:
+    """Return the masks of lanes in which the grid leaves open whether a capsule touches, and in which it does for sure.
+
+    It is asked about a long capsule as a whole first, then about the spheres that cover it.
+    """
+    _, first, end = row(ints, ints[at.CAPSULE_INTS] + at.CAPSULE_INT_ROW * capsule, 3)
+    centre, along = load_vector(scratch, here), load_vector(scratch, here + HALF)
+    covering += cloud[tree.RADIUS]
+    reach = covering - slack
+    if end - first > FEW:
+        near, _ = _asked(centre, half + reach, reach, place, cloud)
+        if near == 0:
+            return 0, 0
+    near, sure = 0, 0
+    for sample in range(first, end):
+        (share,) = row(table, ints[at.SAMPLES] + sample, 1)
+        near_here, sure_here = _asked(plus(centre, times(along, share)), covering, reach, place, cloud)
+        near |= near_here
+        sure |= sure_here
+    return near, sure
+
+
+@inner
+def _asked(centre: Any, near: Any, touching: Any, place: int, cloud: Singles) -> tuple[int, int]:
+    """Return the masks of lanes in which a point may be within `near` of a place, and is within `touching` for sure.
+
+    Outside of the grid it is asked for the nearest place inside: what lies beyond that is farther by at least the third
+    side of a triangle with an obtuse angle.
+    """
+    header = integers_at(place, (tree.HEADER,))
+    x, y, z, one_by_cell, width, depth, height, step = row(cloud, tree.LOW, 8)
+    u, v, w = minus(centre, (x, y, z))
+    a, b, c = _cut(u, width), _cut(v, depth), _cut(w, height)
+    u, v, w = u - a, v - b, w - c
+    away = (
+        bytes_of_cells(
+            place + header[tree.GRID],
+            a * one_by_cell,
+            b * one_by_cell,
+            c * one_by_cell,
+            header[tree.CELLS_Y],
+            header[tree.CELLS_Z],
+        )
+        * step
+    )
+    outside = u * u + v * v + w * w
+    # Of the largest byte only a lower bound is known.
+    sure = below_zero(larger(away + cloud[tree.TOLD] - touching, away - step * _TOLD_APART))
+    sure &= below_zero(outside - _LEAST)
+    return below_zero(outside + away * away - near * near), sure
+
+
+@inlined
+def _cut(place: Any, most: Any) -> Any:
+    return larger(smaller(place, most), ZERO)
+
+
+@inner
+def _reaches(scratch: Singles, here: int, reach: Any, place: int, cloud: Singles) -> bool:
+    """Return whether the box around a capsule in all lanes meets that around a leaf."""
+    header = integers_at(place, (tree.HEADER,))
+    extents = plus(absolute(load_vector(scratch, here + HALF)), reach)
+    centre, half = box_of_lanes(load_vector(scratch, here), extents)
+    waiting = integers_at(room_for(32), (32,))
+    top = header[tree.LEVELS] - 1
+    level, node, fresh, inside = top, 0, True, 0
+    while True:
+        if fresh:
+            first = header[tree.FIRST_NODES + level] + tree.NODE_ROW * node
+            apart = absolute(minus(load_vector(cloud, first), centre))
+            x, y, z = minus(minus(apart, load_vector(cloud, first + HALF)), half)
+            inside = below_zero(larger(larger(x, y), z))
+        if inside == 0:
+            if level == top:
+                return False
+            level += 1
+            inside, node, fresh = waiting[2 * level], waiting[2 * level + 1], False
+            continue
+        if level == 0:
+            return True
+        waiting[2 * level], waiting[2 * level + 1] = inside & (inside - 1), node
+        node = LANES * node + lowest_bit(inside)
+        level -= 1
+        fresh = True
+
+
+@inner
+def _touches(
+    scratch: Singles, here: int, one_by_squared: Any, reach: Any, place: int, cloud: Singles
+) -> bool:
+    """Return whether a point or triangle is within `reach` of the segment of the capsule at a place, in one lane."""
+    header = integers_at(place, (tree.HEADER,))
+    x, y, z, i, j, k = column(scratch, here, 6)
+    centre, along, extents = (x, y, z), (i, j, k), (abs(i) + reach, abs(j) + reach, abs(k) + reach)
+    waiting = integers_at(room_for(32), (32,))
+    top = header[tree.LEVELS] - 1
+    level, node = top, 0
+    inside = near_nodes(header, cloud, level, node, centre, along, extents, one_by_squared, reach)
+    while True:
+        if inside == 0:
+            if level == top:
+                return False
+            level += 1
+            inside, node = waiting[2 * level], waiting[2 * level + 1]
+            continue
+        child = LANES * node + lowest_bit(inside)
+        inside &= inside - 1
+        if level == 0 and header[tree.IS_MESH] != 0:
+            if near_triangles(cloud, child, centre, along, one_by_squared, reach) != 0:
+                return True
+            continue
+        if level == 0:
+            apart = minus(load_vector(cloud, tree.LEAVES + tree.POINT_ROW * child), centre)
+            apart = minus(apart, times(along, nearest_place(apart, along, one_by_squared)))
+            if below_zero(dot(apart, apart) - reach * reach) != 0:
+                return True
+            continue
+        waiting[2 * level], waiting[2 * level + 1] = inside, node
+        level -= 1
+        node = child
+        inside = near_nodes(header, cloud, level, node, centre, along, extents, one_by_squared, reach)
+
+
+@intrinsic
+def bytes_of_cells(
+    typing_context: Any, address: Any, x: Any, y: Any, z: Any, cells_y: Any, cells_z: Any
+) -> Any:
+    """Return the bytes of sixteen cells, whose numbers along three axes are given, all >= 0, and rounded down here."""
+
+    def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
+        word, byte = ir.IntType(32), ir.IntType(8)
+        words = ir.VectorType(word, LANES)
+        cell_x, cell_y, cell_z = (builder.fptosi(arg, words) for arg in args[1:4])
+        rows, cells = (
+            builder.shuffle_vector(
+                builder.insert_element(ir.Constant(words, ir.Undefined), builder.trunc(arg, word), word(0)),
+                ir.Constant(words, ir.Undefined),
+                ir.Constant(words, [0] * LANES),
+            )
+            for arg in args[4:]
+        )
+        number = builder.add(builder.mul(builder.add(builder.mul(cell_x, rows), cell_y), cells), cell_z)
+        grid = builder.inttoptr(args[0], byte.as_pointer())
+        found = ir.Constant(ir.VectorType(byte, LANES), ir.Undefined)
+        for lane in range(LANES):
+            place = builder.zext(builder.extract_element(number, word(lane)), ir.IntType(64))
+            found = builder.insert_element(found, builder.load(builder.gep(grid, [place])), word(lane))
+        return builder.uitofp(found, ir.VectorType(ir.FloatType(), LANES))
+
+    return LANES_TYPE(types.int64, LANES_TYPE, LANES_TYPE, LANES_TYPE, types.int64, types.int64), lower

@@ -1,0 +1,254 @@
+"""Grids over a surface: which cells it is in, how far every cell is from those, and where the inside is."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+Bools = npt.NDArray[np.bool_]
+
+CELLS, LEAST_CELL = 400_000, 4e-3
+"""About so many cells of a grid, none smaller than this [m]."""
+
+FARTHEST_STEPS, STEPS = 64, 4
+"""Distances beyond so many cells are not told apart; a byte counts parts of a cell."""
+
+MOST_WINDINGS = 100
+"""Around a place a surface winds at most so often, as far as we count."""
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """A grid around a surface.
+
+    Attributes
+    ----------
+    low, cell : float64 array, shape (3,), and float
+        Lower corner, and side of a cell [m].
+    taken : bool array, shape (x, y, z)
+        Cells that the surface is in, or next to, by at most `beyond` sides of a cell; or that it has inside.
+    beyond : int
+        0 for points, 1 for triangles.
+    windings : int8 array, shape (x, y, z), or None
+        How often a closed surface winds around the middle of each cell: not 0 inside.
+    turned : bool
+        Whether the sides of triangles tell inside from outside; else windings are counted by twos.
+    """
+
+    low: Floats
+    cell: float
+    taken: Bools
+    beyond: int = 0
+    windings: npt.NDArray[np.int8] | None = None
+    turned: bool = False
+
+    @property
+    def distances(self) -> npt.NDArray[np.uint8]:
+        """How far all of each cell is from those that are taken, in parts of a cell, rounded down; 255 or more."""
+        return _distances(self.taken)
+
+    @property
+    def told(self) -> float:
+        """By how much a place of a cell is farther from the surface at most than its distance says [m]."""
+        return self.cell * (1.0 / STEPS + (2.0 + self.beyond) * math.sqrt(3.0)) * (1.0 + 1e-5)
+
+
+def grid_of_points(points: Floats) -> Grid:
+    """Return the grid of points, (n, 3)."""
+    low, cell, counts = _frame(points.min(axis=0), points.max(axis=0))
+    taken = np.zeros(counts, dtype=np.bool_)
+    places = np.minimum(((points - low) * (1.0 / cell)).astype(np.int64), np.array(counts) - 1)
+    taken[tuple(places.T)] = True
+    return Grid(low, cell, taken)
+
+
+def grid_of_triangles(triangles: Floats, solid: Floats, turned: bool, reach: float) -> Grid:
+    """Return the grid of triangles, (n, 3, 3), as far as they are within `reach` of the origin along each axis.
+
+    `solid` are those of closed surfaces, (m, 3, 3), however far; `turned` says whether their sides tell inside from
+    outside.  Where they do not, it is inside where a line from outside crosses an odd number of them.
+    """
+    low, high = (np.clip(each, -reach, reach) for each in _bounds(triangles))
+    low, cell, counts = _frame(low, high)
+    taken = np.zeros(counts, dtype=np.bool_)
+    _take(triangles, low, cell, taken)
+    if len(solid) == 0:
+        return Grid(low, cell, taken, 1)
+    windings = np.zeros(counts, dtype=np.int8)
+    _wind(solid, turned, low, cell, windings)
+    return Grid(low, cell, taken | (windings != 0), 1, windings, turned)
+
+
+def _bounds(triangles: Floats) -> tuple[Floats, Floats]:
+    return triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))
+
+
+def _frame(low: Floats, high: Floats) -> tuple[Floats, float, tuple[int, int, int]]:
+    """Return lower corner, side of a cell and numbers of cells of a grid that reaches half a cell beyond, or more."""
+    cell = max(float(np.prod(np.maximum(high - low, LEAST_CELL)) / CELLS) ** (1 / 3), LEAST_CELL)
+    x, y, z = np.ceil((high - low) / cell + 1.0).astype(np.int64).tolist()
+    return low - 0.5 * (np.array([x, y, z]) * cell - (high - low)), cell, (x, y, z)
+
+
+@njit(cache=True, nogil=True)
+def _take(triangles: Floats, low: Floats, cell: float, taken: Bools) -> None:
+    """Mark the cells that triangles are in: those of boxes around pieces of them, none larger than a cell."""
+    waiting = np.empty((200, 9))
+    shape = taken.shape
+    for i in range(len(triangles)):
+        for corner in range(3):
+            for axis in range(3):
+                waiting[0, 3 * corner + axis] = (triangles[i, corner, axis] - low[axis]) / cell
+        count = 1
+        while count > 0:
+            count -= 1
+            piece = waiting[count].copy()
+            outside, first, last = False, np.zeros(3, dtype=np.int64), np.zeros(3, dtype=np.int64)
+            size = 0.0
+            for axis in range(3):
+                least = min(piece[axis], piece[3 + axis], piece[6 + axis])
+                most = max(piece[axis], piece[3 + axis], piece[6 + axis])
+                outside |= most < 0.0 or least >= shape[axis]
+                first[axis], last[axis] = max(math.floor(least), 0), min(int(most), shape[axis] - 1)
+                size = max(size, most - least)
+            if outside:
+                continue
+            if size <= 1.0 or count > 190:
+                for x in range(first[0], last[0] + 1):
+                    for y in range(first[1], last[1] + 1):
+                        for z in range(first[2], last[2] + 1):
+                            taken[x, y, z] = True
+                continue
+            longest, most = 0, -1.0
+            for side in range(3):
+                squared = 0.0
+                for axis in range(3):
+                    squared += (piece[3 * side + axis] - piece[3 * ((side + 1) % 3) + axis]) ** 2
+                if squared > most:
+                    longest, most = side, squared
+            other = (longest + 1) % 3
+            for half in range(2):
+                waiting[count + half] = piece
+                end = longest if half == 0 else other
+                for axis in range(3):
+                    middle = 0.5 * (piece[3 * longest + axis] + piece[3 * other + axis])
+                    waiting[count + half, 3 * end + axis] = middle
+            count += 2
+
+
+@njit(cache=True, nogil=True)
+def _wind(triangles: Floats, turned: bool, low: Floats, cell: float, windings: npt.NDArray[np.int8]) -> None:
+    """Write how often closed triangles wind around the middles of cells: by where lines along x through them cross.
+
+    A side that two triangles share is computed from the same end for both: what one of them leaves, the other takes.
+    """
+    nx, ny, nz = windings.shape
+    crossings = np.zeros((ny, nz, nx + 1), dtype=np.int32)
+    for i in range(len(triangles)):
+        t = triangles[i]
+        first = np.empty(2, dtype=np.int64)
+        last = np.empty(2, dtype=np.int64)
+        for k in range(2):
+            least = min(t[0, k + 1], t[1, k + 1], t[2, k + 1])
+            most = max(t[0, k + 1], t[1, k + 1], t[2, k + 1])
+            first[k] = max(math.floor(min(max((least - low[k + 1]) / cell - 0.5, -1.0), 1e9)), 0)
+            last[k] = min(
+                math.ceil(min(max((most - low[k + 1]) / cell - 0.5, -1.0), 1e9)),
+                windings.shape[k + 1] - 1,
+            )
+        for y in range(first[0], last[0] + 1):
+            for z in range(first[1], last[1] + 1):
+                p, q = low[1] + (y + 0.5) * cell, low[2] + (z + 0.5) * cell
+                a, b, c = _side(t[1], t[2], p, q), _side(t[2], t[0], p, q), _side(t[0], t[1], p, q)
+                if not ((a > 0.0) == (b > 0.0) and (b > 0.0) == (c > 0.0)):
+                    continue
+                place = (a * t[0, 0] + b * t[1, 0] + c * t[2, 0]) / (a + b + c)
+                behind = math.ceil(min(max((place - low[0]) / cell - 0.5, 0.0), float(nx)))
+                crossings[y, z, behind] += 1 if a > 0.0 or not turned else -1
+    for y in range(ny):
+        for z in range(nz):
+            winding = 0
+            for x in range(nx):
+                winding += crossings[y, z, x]
+                shown = winding if turned else winding % 2
+                windings[x, y, z] = min(max(shown, -MOST_WINDINGS), MOST_WINDINGS)
+
+
+@njit(cache=True, nogil=True)
+def _side(a: Floats, b: Floats, p: float, q: float) -> float:
+    """Return twice the area, with its sign, of a triangle in y and z between a side and a place; 0 counts as tiny."""
+    exchanged = (a[1], a[2]) > (b[1], b[2])
+    if exchanged:
+        a, b = b, a
+    area = (b[1] - a[1]) * (q - a[2]) - (b[2] - a[2]) * (p - a[1])
+    area = 1e-300 if area == 0.0 else area
+    return -area if exchanged else area
+
+
+@njit(cache=True, nogil=True)
+def _distances(taken: Bools) -> npt.NDArray[np.uint8]:
+    """Do the work of `Grid.distances`.
+
+    Between cells d apart along an axis there are d - 1: so distances, axis by axis, from cells that are taken or next
+    to one (after P. Felzenszwalb and D. Huttenlocher, Distance Transforms of Sampled Functions, 2012, but each line is
+    searched up to the farthest that is told apart, many lines at once).
+    """
+    nx, ny, nz = taken.shape
+    far = FARTHEST_STEPS * FARTHEST_STEPS
+    squared = np.full((nx, ny, nz), far, dtype=np.int32)
+    for x in range(nx):
+        for y in range(ny):
+            for z in range(nz):
+                if taken[x, y, z]:
+                    squared[max(x - 1, 0) : x + 2, max(y - 1, 0) : y + 2, max(z - 1, 0) : z + 2] = 0
+    for x in range(nx):
+        for y in range(ny):
+            away = FARTHEST_STEPS
+            for z in range(nz):
+                away = 0 if squared[x, y, z] == 0 else min(away + 1, FARTHEST_STEPS)
+                squared[x, y, z] = away * away
+            away = FARTHEST_STEPS
+            for z in range(nz - 1, -1, -1):
+                away = 0 if squared[x, y, z] == 0 else min(away + 1, FARTHEST_STEPS)
+                squared[x, y, z] = min(squared[x, y, z], away * away)
+    least = np.empty_like(squared)
+    _spread(squared, least, nx, ny, nz)
+    _spread(least.reshape(1, nx, ny * nz), squared.reshape(1, nx, ny * nz), 1, nx, ny * nz)
+    steps = np.empty(far + 1, dtype=np.uint8)
+    for i in range(far + 1):
+        steps[i] = min(255, int(STEPS * math.sqrt(i)))
+    distances = np.empty((nx, ny, nz), dtype=np.uint8)
+    for x in range(nx):
+        for y in range(ny):
+            for z in range(nz):
+                distances[x, y, z] = steps[squared[x, y, z]]
+    return distances
+
+
+@njit(cache=True, nogil=True)
+def _spread(squared: npt.NDArray[np.int32], least: npt.NDArray[np.int32], a: int, b: int, c: int) -> None:
+    """Write the squared distances that follow along the middle axis of three, of lengths a, b and c."""
+    for i in range(a):
+        for j in range(b):
+            best = least[i, j]
+            farthest = np.int32(0)
+            for m in range(c):
+                best[m] = squared[i, j, m]
+                farthest = max(farthest, best[m])
+            for away in range(1, FARTHEST_STEPS):
+                added = np.int32(away * away)
+                if added >= farthest:
+                    break
+                for side in range(2):
+                    k = j - away if side == 0 else j + away
+                    if k < 0 or k >= b:
+                        continue
+                    other = squared[i, k]
+                    for m in range(c):
+                        best[m] = min(best[m], other[m] + added)

@@ -1,0 +1,134 @@
+"""Asking a roadmap in a scene for a way: by one compiled program, or motion by motion where the lanes do not work."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from evenroad._arrays import Floats
+from evenroad._clock import now
+from evenroad.robot import ArmWorld
+from evenroad.robot.arm_world import RECHECK_TOLERANCE
+from evenroad.robot.kernel.addresses import address, matrix_at
+from evenroad.robot.kernel.layout import program
+from evenroad.robot.kernel.motion_states import COUNTS
+from evenroad.robot_roadmap import lazy_search as search
+from evenroad.robot_roadmap import search_memory as at
+from evenroad.robot_roadmap.known_graph import KnownGraph
+from evenroad.robot_roadmap.lazy_search import EDGE, FOUND, FULL, NODE, STRAIGHT
+from evenroad.robot_roadmap.search_memory import BLOCKED, PROVED, UNKNOWN
+
+ENDS_TAKEN, SPENT, PAUSED = range(FULL + 1, FULL + 4)
+"""What a search ends with besides what ``lazy_search.step`` does: start or goals not free, motions or time over, and
+what only compiled code ends with."""
+
+_SLICE = 1000
+"""Batches of sixteen checks between two looks at the clock: about 10 ms."""
+
+
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """What a search ended with: a path, (p, dim), and its goal or -1; milestones and motions that were asked about."""
+
+    ended: int
+    path: Floats
+    goal: int
+    milestones: int
+    motions: int
+
+
+def ask(
+    world: ArmWorld,
+    day: ArmWorld,
+    graph: KnownGraph,
+    start: Floats,
+    goals: Floats,
+    *,
+    links: int,
+    greed: float,
+    most_motions: int,
+    deadline: float,
+) -> Asked:
+    """Search for a way from a start, (dim,), to one of some goals, (g, dim), each tried to be linked to so many.
+
+    Of what the roadmap knows to be free of robot and cell, `day` is asked; of the rest the whole world.
+    """
+    room = 1
+    while True:
+        graph.prepare(start, goals, links, greed, room)
+        by = _by_lanes if world.backend == "lanes" and day.backend == "lanes" else _one_by_one
+        asked = by(world, day, graph, most_motions, deadline)
+        if asked.ended != FULL:
+            return asked
+        room *= 2
+
+
+def _by_lanes(world: ArmWorld, day: ArmWorld, graph: KnownGraph, most_motions: int, deadline: float) -> Asked:
+    # Imported late: where the vector type cannot even be defined, all else still works.
+    from evenroad.robot_roadmap import lane_search as lanes
+
+    path, report = graph.path, np.zeros(lanes.REPORT, dtype=np.int64)
+    day_checks, _, day_tables, day_by_joint, begin, end = day.lanes.arguments(0)[1]
+    _, arguments = world.lanes.arguments(COUNTS + (end - begin) // 8)
+    own = day_checks, day_tables, day_by_joint, arguments[-1] + 8 * COUNTS
+    given = address(graph.desk), address(path), len(path), address(report)
+    fresh = 1
+    while True:
+        ended = lanes.find_way(*given, fresh, most_motions, _SLICE, *own, *arguments)
+        fresh = 0
+        if ended != PAUSED:
+            break
+        if now() >= deadline:
+            ended = SPENT
+            break
+    rows, milestones, motions, goal = report.tolist()
+    return Asked(ended, path[:rows][::-1].copy(), goal if ended == FOUND else -1, milestones, motions)
+
+
+def _one_by_one(
+    world: ArmWorld, day: ArmWorld, graph: KnownGraph, most_motions: int, deadline: float
+) -> Asked:
+    desk, path, nothing = graph.desk, graph.path, np.empty((0, len(graph.asked[0])))
+    milestones = motions = 0
+    if not world.valid(graph.ends).all():
+        return Asked(ENDS_TAKEN, nothing, -1, 0, 0)
+    graph.ends[:] = world.space.interpolate(graph.ends, graph.ends, 0.0)
+    question, verdict = -1, UNKNOWN
+    while True:
+        question = _go_on(address(desk), question, verdict, address(path), len(path))
+        if question == FOUND:
+            rows = int(desk[at.BY])
+            return Asked(FOUND, path[:rows][::-1].copy(), int(desk[at.TO]) - 1, milestones, motions)
+        if question > STRAIGHT:
+            return Asked(question, nothing, -1, milestones, motions)
+        if motions >= most_motions or now() >= deadline:
+            return Asked(SPENT, nothing, -1, milestones, motions)
+        if question == NODE:
+            milestones += 1
+            free = day.valid(graph.asked[:1])[0]
+        else:
+            motions += 1
+            old = question == EDGE and desk[at.BY] < desk[at.BASE]
+            free = (day if old else world).motion_certified(
+                graph.asked[:1], graph.asked[1:], RECHECK_TOLERANCE
+            )[0]
+        verdict = PROVED if free else BLOCKED
+
+
+@program
+def _go_on(desk: int, answered: int, verdict: int, path: int, rows: int) -> int:
+    """Take the answer to a question, or begin where there was none, and return the next one.
+
+    Of a way that was found, its waypoints are written, and in place of a question its goal and how many they are.
+    """
+    s = at.search_at(desk)
+    if answered < 0:
+        search.begin(s)
+    else:
+        search.answer(s, answered, verdict)
+    question = search.step(s)
+    if question == FOUND:
+        s.desk[at.TO] = -s.entries[s.desk[at.PENDING], at.STATE]
+        s.desk[at.BY] = search.way_back(s, matrix_at(path, (rows, s.desk[at.DIM])))
+    return question

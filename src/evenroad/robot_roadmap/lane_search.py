@@ -1,0 +1,170 @@
+"""A query of a roadmap in one compiled program: the search asks, and the lanes answer, sixteen states at once."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.robot.kernel.addresses import integers_at, matrix_at
+from evenroad.robot.kernel.layout import LANES, program, quick
+from evenroad.robot.kernel.motion import enter
+from evenroad.robot.kernel.motion_checks import (
+    COARSE,
+    START,
+    Checks,
+    blocked,
+    checks_of,
+    motion_free,
+    motion_proved,
+)
+from evenroad.robot.kernel.motion_states import BATCHES
+from evenroad.robot_roadmap.lazy_search import (
+    EDGE,
+    FOUND,
+    FULL,
+    LINK,
+    NODE,
+    STRAIGHT,
+    answer,
+    begin,
+    question_of,
+    step,
+    verdict_of,
+    way_back,
+    write_asked,
+)
+from evenroad.robot_roadmap.search_memory import (
+    BASE,
+    BLOCKED,
+    BY,
+    DIM,
+    ENDS,
+    FREE,
+    PARENT,
+    PENDING,
+    PROVED,
+    STATE,
+    UNKNOWN,
+    Search,
+    search_at,
+)
+
+Ints = npt.NDArray[np.int64]
+
+ENDS_TAKEN, SPENT, PAUSED = range(FULL + 1, FULL + 4)
+"""What a call ends with besides what `step` does: start or goals not free, motions spent, its slice used up."""
+
+ROWS, MILESTONES, MOTIONS, GOAL, REPORT = range(5)
+"""Of the report: waypoints written, milestones and motions that were asked about, the goal that was reached."""
+
+TOLERANCE, MOST_BATCHES = 1e-6, 1024
+"""Limits of the proof of a motion [m]."""
+
+
+@program
+def find_way(
+    desk: int,
+    path: int,
+    rows: int,
+    report: int,
+    fresh: int,
+    most_motions: int,
+    slice_batches: int,
+    day_checks: int,
+    day_tables: int,
+    day_by_joint: int,
+    day_memory: int,
+    checks: int,
+    resolution: float,
+    tables: int,
+    by_joint: int,
+    memory: int,
+    room: int,
+) -> int:
+    """Search until there is a way that is proved free, and return how the call ended.
+
+    `desk` is that of `search_at`; `path`, (rows, dim), takes the way from the goal back to the start, `report` what was
+    counted.  `fresh` is 1 for a new query, 0 to go on.  The four that follow are of the day's obstacles alone.
+    """
+    full = checks_of(checks, resolution, tables, by_joint, memory, room)
+    day = checks_of(day_checks, resolution, day_tables, day_by_joint, day_memory, room)
+    s, counted = search_at(desk), integers_at(report, (REPORT,))
+    full.counts[BATCHES] = 0
+    if fresh != 0:
+        if not _ends_free(s, full):
+            return ENDS_TAKEN
+        begin(s)
+    while True:
+        question = step(s)
+        if question == FOUND:
+            if _is_proved(s, day, full):
+                counted[GOAL] = -s.entries[s.desk[PENDING], STATE] - 1
+                counted[ROWS] = way_back(s, matrix_at(path, (rows, s.desk[DIM])))
+                return FOUND
+            begin(s)
+        elif question > STRAIGHT:
+            return question
+        elif counted[MOTIONS] >= most_motions:
+            return SPENT
+        elif full.counts[BATCHES] >= slice_batches:
+            return PAUSED
+        else:
+            _settle(s, question, day, full, counted)
+
+
+@quick
+def _ends_free(s: Search, full: Checks) -> bool:
+    """Return whether start and goals are free; bring them into their ranges."""
+    ends, dim = s.desk[ENDS], s.desk[DIM]
+    for first in range(0, ends, LANES):
+        for lane in range(LANES):
+            # Lanes to spare repeat the last row.
+            q = s.ends[min(first + lane, ends - 1)]
+            if not enter(q, full.bounds, q):
+                return False
+            for k in range(dim):
+                full.states[k * LANES + lane] = q[k]
+        if blocked(full) != 0:
+            return False
+    return True
+
+
+@quick
+def _settle(s: Search, question: int, day: Checks, full: Checks, counted: Ints) -> None:
+    """Answer a question."""
+    a, b = s.asked[0], s.asked[1]
+    if question == NODE:
+        for k in range(len(a)):
+            for lane in range(LANES):
+                day.states[k * LANES + lane] = a[k]
+        counted[MILESTONES] += 1
+        free = blocked(day) == 0
+    else:
+        counted[MOTIONS] += 1
+        # Of motions between free ends sixteen states do before the proof.
+        known = START if question == LINK and s.nodes[s.desk[BY]] == UNKNOWN else COARSE
+        free = motion_free(a, b, known, day if _is_old(s, question) else full)
+    answer(s, question, FREE if free else BLOCKED)
+
+
+@quick
+def _is_old(s: Search, question: int) -> bool:
+    """Return whether a motion is known to be free of robot and cell."""
+    return question == EDGE and s.desk[BY] < s.desk[BASE]
+
+
+@quick
+def _is_proved(s: Search, day: Checks, full: Checks) -> bool:
+    """Return whether every motion of the way that was found is proved free; one that is not is blocked from now on."""
+    entry = s.desk[PENDING]
+    while entry >= 0:
+        question = question_of(s, entry)
+        if verdict_of(s, question) != PROVED:
+            write_asked(s, entry, question)
+            whole = day if _is_old(s, question) else full
+            proved = motion_proved(s.asked[0], s.asked[1], TOLERANCE, MOST_BATCHES, whole)
+            answer(s, question, PROVED if proved else BLOCKED)
+            if not proved:
+                return False
+        entry = s.entries[entry, PARENT]
+    return True

@@ -1,0 +1,170 @@
+"""Where the search of a roadmap keeps what it knows: a table of counts and addresses, and arrays that it tells of."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.robot.kernel.addresses import doubles_at, integers_at, matrix_at, singles_at, table_at
+from evenroad.robot.kernel.layout import quick
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+Singles = npt.NDArray[np.float32]
+
+UNKNOWN, BLOCKED, FREE, PROVED = range(4)
+"""Verdicts; FREE is a motion at its states, PROVED one throughout."""
+
+CAPACITY, HALVES, EDGES, DIM, ENDS, LINKS, STATES, ENTRIES = range(8)
+"""Desk: for how many milestones, half edges and edges there is room; how many coordinates, ends and links of each; room
+for states and entries."""
+
+NODES, HALVES_MADE, EDGES_MADE, BASE = range(8, 12)
+"""Desk: how many milestones, half edges and edges there are, and how many of the edges are known to be free of robot
+and cell."""
+
+PHASE, SIZE, MADE, WAITING, PENDING, TO, BY, AIM, AIMED_END = range(12, 21)
+"""Desk: what the search has got to: states, entries, those in the queue, the one at hand; of a question the milestone
+or end, and the edge or the milestone it is linked to; the milestone by which a goal is approached, or -1, and which."""
+
+ASK_STRAIGHT, ASK_GOALS, OPEN, SEARCH = range(4)
+"""Phases of a search."""
+
+KNOWN, GRAPH, RULES, QUERY = range(21, 25)
+"""Desk: addresses of milestones, of half edges, of the rules of the joints, and of what one query needs."""
+
+DESK = 25
+
+OTHER, NEXT, NUMBER, TURNS = range(4)
+"""Of a half edge: where it leads, the next one of the same milestone or -1, its edge and its turns, packed."""
+
+LOW, HIGH, LIFTS, ENDLESS, MIDDLE, GREED = range(6)
+"""Rows of the rules: limits; 1 for joints that are lifted by whole turns, or turn on for ever; the middle of the range
+of milestones; what the bound is multiplied by, 1 for the shortest way."""
+
+RULE_ROWS = 6
+
+OF, LIFTED, SIBLING, REACHED = range(4)
+"""Of a state: milestone, packed turns, the next state of the same milestone or -1, the entry it was reached by."""
+
+LEFT, LEAST = range(2)
+"""Of a state: how far it is to a goal by the bound, and the least cost along what is known to be free."""
+
+STATE, PARENT, VIA = range(3)
+"""Of an entry: a state, or a goal as minus its row; the entry before, or -1; and the edge, or -1 of a link."""
+
+
+class Search(NamedTuple):
+    """A roadmap in a scene, and a query in it, as compiled code reads them.
+
+    Attributes
+    ----------
+    desk : int64 array
+        Counts and addresses.
+    milestones, columns : float64 array, shape (capacity, dim), and float32 array, shape (dim capacity,)
+        The same by coordinate.
+    nodes, first : int64 arrays, shape (capacity,)
+        Verdicts of milestones, and their first half edges.
+    halves, lengths, edges : arrays
+        Half edges, (h, 4), their lengths, verdicts of edges.
+    rules : float64 array, shape (6, dim)
+    ends, asked : float64 arrays, shapes (e, dim) and (2, dim)
+        Start and goals; the two ends of the motion that is asked about.
+    away, turns, links, near : arrays, shape (e, capacity); the first in one piece
+        Of each end: how far milestones are, after which turns, verdicts of links, and the milestones to be tried.
+    straight, radius : arrays, shape (e,)
+        Verdicts of the motions straight to the goals, and how far the farthest milestone is that is to be tried.
+    heads : int64 array, shape (capacity,)
+        The first state of each milestone, or -1.
+    states, bounds, entries, costs, keys, items : arrays
+        What the search has got to, and its queue.
+    """
+
+    desk: Ints
+    milestones: Floats
+    columns: Singles
+    nodes: Ints
+    first: Ints
+    halves: Ints
+    lengths: Floats
+    edges: Ints
+    rules: Floats
+    ends: Floats
+    asked: Floats
+    away: Singles
+    turns: Ints
+    links: Ints
+    near: Ints
+    straight: Ints
+    radius: Floats
+    heads: Ints
+    states: Ints
+    bounds: Floats
+    entries: Ints
+    costs: Floats
+    keys: Floats
+    items: Ints
+
+
+def known_room(capacity: int, dim: int) -> int:
+    """Return how many doubles milestones need."""
+    return (dim + (dim + 1) // 2 + 2) * capacity
+
+
+def query_room(desk: Ints) -> int:
+    """Return how many doubles a query needs."""
+    ends, capacity, dim = int(desk[ENDS]), int(desk[CAPACITY]), int(desk[DIM])
+    return (
+        (ends + 2) * dim
+        + 2 * ends
+        + (4 * ends + 1) * capacity
+        + 6 * int(desk[STATES])
+        + 6 * int(desk[ENTRIES])
+    )
+
+
+@quick
+def search_at(desk: int) -> Search:
+    """Return what lies at the addresses of a desk."""
+    d = integers_at(desk, (DESK,))
+    capacity, dim, ends, states, entries = d[CAPACITY], d[DIM], d[ENDS], d[STATES], d[ENTRIES]
+    columns = d[KNOWN] + 8 * dim * capacity
+    nodes = columns + 8 * ((dim + 1) // 2) * capacity
+    lengths = d[GRAPH] + 8 * 4 * d[HALVES]
+    asked = d[QUERY] + 8 * ends * dim
+    links = asked + 8 * 2 * dim
+    row = 8 * ends * capacity
+    straight = links + 4 * row
+    heads = straight + 16 * ends
+    found = heads + 8 * capacity
+    bounds = found + 8 * 4 * states
+    made = bounds + 8 * 2 * states
+    costs = made + 8 * 3 * entries
+    return Search(
+        d,
+        matrix_at(d[KNOWN], (capacity, dim)),
+        singles_at(columns, (dim * capacity,)),
+        integers_at(nodes, (capacity,)),
+        integers_at(nodes + 8 * capacity, (capacity,)),
+        table_at(d[GRAPH], (d[HALVES], 4)),
+        doubles_at(lengths, (d[HALVES],)),
+        integers_at(lengths + 8 * d[HALVES], (d[EDGES],)),
+        matrix_at(d[RULES], (RULE_ROWS, dim)),
+        matrix_at(d[QUERY], (ends, dim)),
+        matrix_at(asked, (2, dim)),
+        singles_at(links + 3 * row, (ends * capacity,)),
+        table_at(links + row, (ends, capacity)),
+        table_at(links, (ends, capacity)),
+        table_at(links + 2 * row, (ends, capacity)),
+        integers_at(straight, (ends,)),
+        doubles_at(straight + 8 * ends, (ends,)),
+        integers_at(heads, (capacity,)),
+        table_at(found, (states, 4)),
+        matrix_at(bounds, (states, 2)),
+        table_at(made, (entries, 3)),
+        doubles_at(costs, (entries,)),
+        doubles_at(costs + 8 * entries, (entries,)),
+        integers_at(costs + 16 * entries, (entries,)),
+    )

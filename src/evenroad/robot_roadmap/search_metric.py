@@ -1,0 +1,99 @@
+"""Milestones after whole turns, and how far they are from each other and from the ends of a query; compiled."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.robot.kernel.layout import quick
+from evenroad.robot_roadmap.search_memory import (
+    CAPACITY,
+    DIM,
+    ENDLESS,
+    HIGH,
+    LIFTS,
+    LOW,
+    NODES,
+    Search,
+)
+from evenroad.robot_roadmap.turns import TURN
+
+Floats = npt.NDArray[np.float64]
+
+BITS = 4
+"""Turns of all joints are packed into one number, ``sum_k turn_k 16^k``."""
+
+_OFFSETS = sum(2 ** (BITS - 1) << (BITS * k) for k in range(14))
+
+
+@quick
+def measure(s: Search, end: int) -> None:
+    """Write how far each milestone is from an end, after the turns that bring it nearest."""
+    n, capacity = s.desk[NODES], s.desk[CAPACITY]
+    away = s.away[end * capacity : end * capacity + n]
+    for i in range(n):
+        away[i] = 0.0
+    lifted = False
+    for k in range(s.desk[DIM]):
+        column, here = s.columns[k * capacity : k * capacity + n], np.float32(s.ends[end, k])
+        if s.rules[LIFTS, k] > 0.0:
+            low, high = s.rules[LOW, k], s.rules[HIGH, k]
+            for i in range(n):
+                if not lifted:
+                    s.turns[end, i] = 0
+                value = s.milestones[i, k]
+                turn = np.rint((s.ends[end, k] - value) / TURN)
+                turn = min(max(turn, np.ceil((low - value) / TURN)), np.floor((high - value) / TURN))
+                apart = np.float32(value + TURN * turn - s.ends[end, k])
+                away[i] += apart * apart
+                s.turns[end, i] += np.int64(turn) << (BITS * k)
+            lifted = True
+        elif s.rules[ENDLESS, k] > 0.0:
+            for i in range(n):
+                apart = np.float32(_apart(s, k, s.milestones[i, k] - s.ends[end, k]))
+                away[i] += apart * apart
+        else:
+            for i in range(n):
+                apart = column[i] - here
+                away[i] += apart * apart
+    for i in range(n):
+        away[i] = np.sqrt(away[i])
+
+
+@quick
+def write(s: Search, node: int, packed: int, q: Floats) -> None:
+    """Write the configuration of a milestone after turns."""
+    for k in range(s.desk[DIM]):
+        q[k] = s.milestones[node, k]
+        if s.rules[LIFTS, k] > 0.0:
+            q[k] += TURN * _turn(packed, k)
+
+
+@quick
+def length_of_edge(s: Search, a: int, b: int, turns: int) -> float:
+    """Return how long the motion between two milestones is that leads past the second by packed turns."""
+    write(s, a, 0, s.asked[0])
+    write(s, b, turns, s.asked[1])
+    return distance(s, s.asked[0], s.asked[1])
+
+
+@quick
+def distance(s: Search, a: Floats, b: Floats) -> float:
+    """Return how far two configurations are apart in the metric of the space."""
+    squared = 0.0
+    for k in range(s.desk[DIM]):
+        squared += _apart(s, k, b[k] - a[k]) ** 2
+    return np.sqrt(squared)
+
+
+@quick
+def _apart(s: Search, k: int, apart: float) -> float:
+    """Return how far two values of a joint are apart the short way."""
+    return apart - TURN * np.rint(apart / TURN) if s.rules[ENDLESS, k] > 0.0 else apart
+
+
+@quick
+def _turn(packed: int, k: int) -> int:
+    """Return the turns of one joint from those of all, whose sum ``sum_k turn_k 16^k`` is their packed form."""
+    # Each is brought to 0 .. 15 first, so that a negative one does not borrow from the next.
+    return (((packed + _OFFSETS) >> (BITS * k)) & (2**BITS - 1)) - 2 ** (BITS - 1)

@@ -1,0 +1,124 @@
+"""Files of clouds: the same points from every format, and one line for what is wrong with one."""
+
+import numpy as np
+import pytest
+
+from evenroad.errors import BrokenFile, UnknownName
+from evenroad.geometry import load_cloud
+
+POINTS = np.array([[0.5, -1.25, 2.0], [3.0, 4.5, -5.75], [0.125, 0.0, 1.0]])
+
+
+def ply(kind, points=POINTS, extra=True, count=None):
+    """A file with a colour before and a face after what matters."""
+    order = {"binary_little_endian": "<", "binary_big_endian": ">", "ascii": "<"}[kind]
+    count = len(points) if count is None else count
+    head = f"ply\nformat {kind} 1.0\ncomment element vertex 7\nelement vertex {count}\n"
+    head += "property uchar red\nproperty float x\nproperty double y\nproperty float32 z\n"
+    head += (
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n" if extra else "end_header\n"
+    )
+    if kind == "ascii":
+        return (
+            head.encode()
+            + b"".join(b"255 %r %r %r\n" % tuple(map(float, row)) for row in points)
+            + b"3 0 1 2\n"
+        )
+    table = np.zeros(
+        len(points), [("r", "u1"), ("x", order + "f4"), ("y", order + "f8"), ("z", order + "f4")]
+    )
+    table["x"], table["y"], table["z"] = points.T
+    return head.encode() + table.tobytes() + b"\x03" + np.arange(3, dtype=order + "i4").tobytes()
+
+
+def pcd(kind, points=POINTS, count=None):
+    count = len(points) if count is None else count
+    head = "# .PCD v0.7\nVERSION 0.7\nFIELDS x y _ z rgb\nSIZE 4 4 1 4 4\nTYPE F F U F U\nCOUNT 1 1 3 1 1\n"
+    head += f"WIDTH {count}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {count}\nDATA {kind}\n"
+    if kind == "ascii":
+        return head.encode() + b"".join(b"%r %r 0 0 0 %r 7\n" % tuple(map(float, row)) for row in points)
+    table = np.zeros(len(points), [("x", "<f4"), ("y", "<f4"), ("_", "u1", 3), ("z", "<f4"), ("c", "<u4")])
+    table["x"], table["y"], table["z"] = points.T
+    return head.encode() + table.tobytes()
+
+
+FILES = {
+    "ascii.ply": ply("ascii"),
+    "little.ply": ply("binary_little_endian"),
+    "big.PLY": ply("binary_big_endian"),
+    "bare.ply": ply("binary_little_endian", extra=False),
+    "windows.ply": ply("ascii").replace(b"\n", b"\r\n"),
+    "ascii.pcd": pcd("ascii"),
+    "binary.pcd": pcd("binary"),
+    "holes.pcd": pcd("binary", np.insert(POINTS, 1, np.nan, axis=0)),
+    "commas.xyz": b"# a scan\n0.5,-1.25,2.0\n\n3 4.5 -5.75 0.9 # bright\n0.125 0 1\n",
+}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_every_format_gives_the_points(tmp_path, name):
+    file = tmp_path / name
+    file.write_bytes(FILES[name])
+    points = load_cloud(file)
+    assert points.dtype == np.float64
+    np.testing.assert_array_equal(points, POINTS)
+
+
+@pytest.mark.parametrize("columns", [3, 6])
+def test_arrays_may_have_more_columns(tmp_path, columns):
+    np.save(tmp_path / "scan.npy", np.pad(POINTS, ((0, 0), (0, columns - 3))).astype(np.float32))
+    np.testing.assert_array_equal(load_cloud(tmp_path / "scan.npy"), POINTS)
+
+
+def test_arrays_may_have_fields(tmp_path):
+    table = np.zeros(3, [("z", "f8"), ("x", "f4"), ("y", "f4")])
+    table["x"], table["y"], table["z"] = POINTS.T
+    np.save(tmp_path / "scan.npy", table)
+    np.testing.assert_array_equal(load_cloud(tmp_path / "scan.npy"), POINTS)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "says"),
+    [
+        ("empty.ply", b"", "no 'end_header'"),
+        ("mesh.ply", b"solid\nend_header\n", "begin with 'ply'"),
+        ("none.ply", ply("ascii", POINTS[:0]), "is empty"),
+        ("cut.ply", ply("binary_little_endian", count=50), "cut off: 50 points were announced"),
+        ("negative.ply", ply("binary_little_endian", count=-1), "cut off"),
+        ("cut.pcd", pcd("binary")[:-30], "cut off: 3 points were announced, 1 are there"),
+        ("words.pcd", pcd("ascii", count=9), "cut off"),
+        ("head.ply", ply("ascii")[:60], "no 'end_header'"),
+        ("kind.ply", ply("ascii").replace(b"ascii", b"text"), "not a readable cloud"),
+        ("flat.ply", ply("ascii").replace(b"float32 z", b"float32 height"), "not a readable cloud"),
+        ("faces.ply", ply("ascii").replace(b"vertex 3", b"edge 3"), "first element is not 'vertex'"),
+        ("packed.pcd", pcd("binary").replace(b"DATA binary", b"DATA binary_compressed"), "pcl_convert_pcd"),
+        ("odd.pcd", pcd("binary").replace(b"DATA binary", b"DATA zipped"), "not ascii or binary"),
+        ("holes.ply", ply("ascii", np.full((2, 3), np.nan)), "finite points, 2 of 2 are not"),
+        ("far.pcd", pcd("binary", np.full((2, 3), np.inf)), "finite points, 2 of 2 are not"),
+        ("dark.pcd", pcd("binary", np.full((2, 3), np.nan)), "is empty"),
+        ("words.xyz", b"1 2 three\n", "not a readable cloud"),
+        ("short.xyz", b"1 2\n3 4\n5 6\n", "three numbers a point, got an array of .3, 2."),
+        ("ragged.xyz", b"1 2 3\n3 4\n", "not a readable cloud"),
+        ("none.xyz", b"# nothing\n", "is empty"),
+        ("broken.npy", b"\x93NUMPY", "not a readable cloud"),
+    ],
+)
+def test_a_broken_file_is_refused_in_one_line(tmp_path, name, content, says):
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(BrokenFile, match=says) as caught:
+        load_cloud(tmp_path / name)
+    assert name in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_missing_file_and_an_unknown_format_are_refused(tmp_path):
+    with pytest.raises(BrokenFile, match=r"no such file: .*scan\.ply"):
+        load_cloud(tmp_path / "scan.ply")
+    with pytest.raises(UnknownName, match=r"'\.las'; known: \.npy, \.pcd, \.ply, \.xyz"):
+        load_cloud(tmp_path / "scan.las")
+
+
+def test_no_pickle_is_opened(tmp_path):
+    np.save(tmp_path / "scan.npy", np.array([{}], dtype=object), allow_pickle=True)
+    with pytest.raises(BrokenFile, match="not a readable cloud"):
+        load_cloud(tmp_path / "scan.npy")

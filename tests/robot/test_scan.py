@@ -1,0 +1,197 @@
+"""Scans in scene files, and what the robot sees of itself in them."""
+
+import numpy as np
+import pytest
+import yaml
+
+import evenroad as er
+from evenroad.arms import arm_query
+from evenroad.cli import main
+from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
+from evenroad.geometry import PointCloud, Pose
+from evenroad.robot import (
+    ArmWorld,
+    Obstacle,
+    Scene,
+    Seen,
+    capsule_ends,
+    load_robot,
+    load_scene,
+    scene_seen_by,
+    without_robot,
+)
+from evenroad.robot_roadmap.make import make_roadmap
+
+UPRIGHT = "0,-1.5707963,0,-1.5707963,0,0"
+
+
+def table(count=30_000, seed=0):
+    """A table as a camera sees it, (n, 3)."""
+    rng = np.random.default_rng(seed)
+    return np.c_[rng.uniform((-0.25, -0.6), (0.75, 0.6), (count, 2)), rng.normal(0.0, 5e-4, count) - 0.01]
+
+
+def skin(robot, q, seed=1):
+    """Points on the robot's bodies, (n, 3)."""
+    rng, points = np.random.default_rng(seed), []
+    for (a, b), capsule in zip(capsule_ends(robot, np.array(q)[None])[0], robot.capsules, strict=True):
+        way = rng.normal(size=(300, 3))
+        way *= capsule.radius / np.linalg.norm(way, axis=1)[:, None]
+        points.append(a + rng.random((300, 1)) * (b - a) + way)
+    return np.concatenate(points)
+
+
+@pytest.fixture(scope="module")
+def ur5():
+    return load_robot("ur5")
+
+
+def write_scene(folder, entry, **more):
+    file = folder / "scene.yaml"
+    file.write_text(yaml.safe_dump({"obstacles": {"scan": entry}} | more))
+    return file
+
+
+def test_a_scene_has_clouds_from_files_beside_it(tmp_path):
+    (tmp_path / "scans").mkdir()
+    np.save(tmp_path / "scans" / "a.npy", table(100))
+    entry = dict(
+        shape="cloud", file="scans/a.npy", radius=0.01, xyz=[0, 0, 0.1], rpy=[0, 0, 1], seen_at="home"
+    )
+    (scan,) = load_scene(write_scene(tmp_path, entry)).obstacles
+    np.testing.assert_array_equal(scan.body.points, table(100))
+    assert scan.body.radius == 0.01
+    assert scan.body.pose == Pose.from_rpy((0, 0, 0.1), (0, 0, 1))
+    assert scan.seen == Seen("home", 0.02)
+    assert "seen" not in entry
+    assert scan.shape == "cloud"
+
+
+@pytest.mark.parametrize(
+    ("entry", "error", "says"),
+    [
+        (dict(file="no.ply"), BrokenFile, "no such file: .*no.ply"),
+        (dict(file="scan.las"), UnknownName, "'.las'; known"),
+        (dict(file=7), InvalidValue, "file of obstacle 'scan' .* got 7"),
+        (dict(radius=0), InvalidValue, "radius of obstacle 'scan' .* > 0, got 0"),
+        (dict(radius=-0.1), InvalidValue, "radius .* got -0.1"),
+        (dict(radius="wide"), InvalidValue, "radius"),
+        (dict(margin=0.1), InvalidValue, "goes with seen_at"),
+        (dict(seen_at="home", margin=-1), InvalidValue, "margin of a scan .* got -1"),
+        (dict(seen_at=3), InvalidValue, "seen_at of obstacle 'scan' .* got 3"),
+        (dict(size=[1, 1, 1]), UnknownName, "'size'"),
+        (dict(cell="yes"), InvalidValue, "true or false"),
+    ],
+)
+def test_a_scan_that_is_not_sound_is_refused(tmp_path, capsys, entry, error, says):
+    np.save(tmp_path / "a.npy", table(10))
+    file = write_scene(tmp_path, dict(shape="cloud", file="a.npy", radius=0.01) | entry)
+    with pytest.raises(error, match=says):
+        load_scene(file)
+    assert main(["plan", str(file), "--robot", "ur5", "--start", UPRIGHT, "--goal", UPRIGHT]) == 2
+    assert capsys.readouterr().err.splitlines()[-1].startswith("evenroad: error: ")
+
+
+def test_without_a_radius_or_a_file_nothing_is_read(tmp_path):
+    for missing in ("file", "radius"):
+        entry = {"shape": "cloud", "file": "a.npy", "radius": 0.01}
+        del entry[missing]
+        with pytest.raises(EvenroadError, match=missing):
+            load_scene(write_scene(tmp_path, entry))
+
+
+def test_the_robots_own_points_go_and_the_others_stay(ur5):
+    q = np.array([0.3, -1.2, 0.9, -0.4, 0.2, 0.0])
+    own, others = skin(ur5, q), table()
+    others = others[np.linalg.norm(others, axis=1) > 0.3]
+    cloud = PointCloud(np.concatenate([own, others]) - (1.0, 2.0, 3.0), 0.005, pose=Pose((1.0, 2.0, 3.0)))
+    left = without_robot(cloud, ur5, q)
+    assert left is not None
+    assert len(left.points) == len(others)
+    np.testing.assert_allclose(left.pose.apply(left.points), others, atol=1e-12)
+    assert without_robot(PointCloud(own, 0.005), ur5, q, 0.0) is None
+    with pytest.raises(InvalidValue, match="margin"):
+        without_robot(cloud, ur5, q, -1.0)
+
+
+def test_where_it_was_seen_the_robot_is_free_with_the_margin_to_spare(ur5):
+    q = np.array([0.3, -1.2, 0.9, -0.4, 0.2, 0.0])
+    cloud = PointCloud(np.concatenate([skin(ur5, q), table()]), 0.005)
+    scan = Scene("s", (Obstacle("scan", cloud, seen=Seen("0.3,-1.2,0.9,-0.4,0.2,0", 0.02)),))
+    assert not ArmWorld(ur5, scan).valid(q[None])[0]
+    seen = scene_seen_by(ur5, scan)
+    assert ArmWorld(ur5, seen).valid(q[None])[0]
+    wider = Obstacle("scan", PointCloud(seen.obstacles[0].body.points, 0.005 + 0.0199))
+    assert ArmWorld(ur5, Scene("s", (wider,))).valid(q[None])[0]
+
+
+def test_a_cloud_of_the_robot_alone_leaves_nothing(ur5):
+    q = np.zeros(6)
+    scan = Obstacle("scan", PointCloud(skin(ur5, q), 0.01), seen=Seen("0,0,0,0,0,0"))
+    scene = Scene("s", (scan,), frozenset({("base_link", "scan")}))
+    assert scene_seen_by(ur5, scene) == Scene("s")
+
+
+@pytest.mark.parametrize(
+    ("seen_at", "error", "says"),
+    [("nowhere", UnknownName, "unknown state"), ("1,2", InvalidValue, "6 numbers")],
+)
+def test_where_a_robot_cannot_stand_it_has_seen_nothing(ur5, seen_at, error, says):
+    scan = Scene("s", (Obstacle("scan", PointCloud(table(10), 0.01), seen=Seen(seen_at)),))
+    with pytest.raises(error, match=says):
+        arm_query(ur5, scan, UPRIGHT, UPRIGHT)
+
+
+def test_the_command_plans_above_a_scanned_table(tmp_path, monkeypatch, ur5, capsys):
+    monkeypatch.chdir(tmp_path)
+    home = [0, -np.pi / 2, 0, -np.pi / 2, 0, 0]
+    np.save("scan.npy", np.concatenate([table(), skin(ur5, home)]).astype(np.float32))
+    entry = dict(shape="cloud", file="scan.npy", radius=0.006, seen_at=UPRIGHT)
+    goals = {"low": dict.fromkeys(ur5.group, 0.0) | {"shoulder_lift_joint": -0.7, "elbow_joint": 0.7}}
+    file = write_scene(tmp_path, entry, states=goals)
+    assert main(["plan", str(file), "--robot", "ur5", "--start", UPRIGHT, "--goal", "low", "--out", "a"]) == 0
+    assert "certified" in capsys.readouterr().out
+    assert (tmp_path / "a.png").stat().st_size > 10_000
+    # A roadmap of points does as well, and so does a start that it was not seen at: in its own points.
+    assert (
+        main(
+            [
+                "plan",
+                str(file),
+                "--robot",
+                "ur5",
+                "--start",
+                UPRIGHT,
+                "--goal",
+                "low",
+                "-n",
+                "64",
+                "--out",
+                "b",
+            ]
+        )
+        == 0
+    )
+    del entry["seen_at"]
+    file = write_scene(tmp_path, entry, states=goals)
+    assert main(["plan", str(file), "--robot", "ur5", "--start", UPRIGHT, "--goal", "low", "--out", "c"]) == 1
+    assert "touches 'scan'" in " ".join(capsys.readouterr().out.split())
+
+
+def test_a_roadmap_of_a_robot_serves_in_a_scan_but_its_cell_has_none(ur5):
+    home = [0, -np.pi / 2, 0, -np.pi / 2, 0, 0]
+    roadmap = make_roadmap(ur5, None, n=32, rng=0)
+    cloud = PointCloud(np.concatenate([table(), skin(ur5, home)]), 0.006)
+    scene = scene_seen_by(ur5, Scene("s", (Obstacle("scan", cloud, seen=Seen(UPRIGHT)),)))
+    result = roadmap.plan(scene, home, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0])
+    assert result.solved
+    assert ArmWorld(ur5, scene).recheck(result.path).all()
+    with pytest.raises(InvalidValue, match="a cell must consist of box.* got 'scan', a cloud of"):
+        make_roadmap(ur5, scene, n=8)
+
+
+def test_clouds_tell_scenes_apart(ur5):
+    scenes = [Scene("s", (Obstacle("scan", PointCloud(table(50), radius)),)) for radius in (0.01, 0.01, 0.02)]
+    first, again, other = (scene.fingerprint() for scene in scenes)
+    assert first == again != other
+    assert er.plan_arm(ur5, scenes[0].without("scan"), UPRIGHT, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0]).solved
