@@ -69,8 +69,7 @@ def recipes() -> list[Recipe]:
         Recipe("hickernell", d, n, _sets(d, n), "hickernell", _steps(d, n)) for d in order for n in COUNTS
     ]
     return annealed + [
-        Recipe("mpmc", d, n, 16 if d <= 3 and n <= 256 else 8, "hickernell", _network_steps(n, d), "network")
-        for d, n in MPMC_CELLS
+        Recipe("mpmc", d, n, 8, "hickernell", _network_steps(n, d), "network") for d, n in MPMC_CELLS
     ]
 
 
