@@ -234,10 +234,12 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=100, help="problems of each kind, at most 100")
     parser.add_argument("--arms", nargs="*", default=["ur5", "arm7"])
     parser.add_argument("--tuning", action="store_true", help="the problems that constants are chosen on")
+    parser.add_argument("--compilation", action="store_true", help="how long first use takes")
     parser.add_argument("--ompl", action="store_true", help="OMPL's RRT-Connect beside it")
     options = parser.parse_args()
     print(f"load average of the last minute: {os.getloadavg()[0]:.1f}")
-    measure_compilation()
+    if options.compilation:
+        measure_compilation()
     for name in options.arms:
         pool = Pool(arm(name))
         rows: dict[str, list[dict[str, float]]] = defaultdict(list)

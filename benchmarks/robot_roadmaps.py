@@ -1,7 +1,6 @@
 """How few milestones are enough: a roadmap made for one robot against points that know only the joint box.
 
     python -m benchmarks.robot_roadmaps --problems 40 --draws 2 --out docs/data/robot_roadmaps.csv
-    python -m benchmarks.robot_roadmaps --queries 40
     python -m benchmarks.robot_roadmaps --table docs/data/robot_roadmaps.csv --picture docs/robot_roadmaps.png
 
 Problems of four kinds, from the seeds kept for reporting; only those count whose straight motion is not free.  No
@@ -18,25 +17,20 @@ from __future__ import annotations
 
 import argparse
 import csv
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
-from benchmarks.arm_problems import KINDS, REPORTING, Pool, Problem, arm, problems, queries
+from benchmarks.arm_problems import KINDS, REPORTING, Pool, Problem, arm, problems
 from evenroad.points import draw
-from evenroad.roadmap import Budget, KNearest
-from evenroad.roadmap.find_path import find_path
+from evenroad.roadmap import KNearest
 from evenroad.roadmap.plan import plan
 from evenroad.robot import ArmWorld, Robot, Scene
 from evenroad.robot_roadmap.make import joined, make_roadmap
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap, SceneRoadmap
 
 K = 10
-LIMIT = Budget(seconds=1.0)
-"""Of a query that is timed."""
-
 SIZES = (64, 128, 256, 1024)
 METHODS = ("box, ends k", "box", "control", "roadmap")
 COLUMNS = ("method", "n", "draw", "kind", "seed", "solved", "configurations", "motions", "length")
@@ -170,49 +164,6 @@ def picture(path: Path, out: Path) -> None:
     figure.savefig(out, dpi=110)
 
 
-def times(name: str, count: int, kinds: list[str], n: int = 1024) -> None:
-    """Print milliseconds a query: along the roadmap in a new and in a kept scene, and with trees alone."""
-    robot, pool = arm(name), Pool(arm(name))
-    began = time.perf_counter()
-    made = make_roadmap(robot, table_of(next(problems(pool, REPORTING))), n)
-    print(f"roadmap of {n} made in {time.perf_counter() - began:.1f} s")
-    print(
-        "| kind | planner | median ms | 95 % ms | mean ms | trees needed | length / trees |\n|---|"
-        + "---|" * 6
-    )
-    for kind in kinds:
-        new, kept, alone, lengths, helped = [], [], [], [], []
-        for seed in REPORTING[:6]:
-            world, pairs = queries(pool, kind, seed, count)
-            known = SceneRoadmap(made, world.scene)
-            known.plan(*pairs[0])
-            find_path(world, *pairs[0])
-            for start, goal in pairs[1:]:
-                best = {"new": np.inf, "alone": np.inf}
-                for _ in range(3):
-                    began = time.perf_counter()
-                    SceneRoadmap(made, world.scene).plan(start, goal, budget=LIMIT)
-                    best["new"] = min(best["new"], time.perf_counter() - began)
-                    began = time.perf_counter()
-                    fresh = ArmWorld(world.robot, world.scene)
-                    trees = find_path(fresh, start, goal, budget=LIMIT)
-                    best["alone"] = min(best["alone"], time.perf_counter() - began)
-                # Once: the second time it would know the answer.
-                began = time.perf_counter()
-                result = known.plan(start, goal, budget=LIMIT)
-                kept.append(time.perf_counter() - began)
-                new.append(best["new"])
-                alone.append(best["alone"])
-                helped.append(result.planner != "robot roadmap")
-                if result.solved and trees.solved:
-                    lengths.append(result.cost / trees.cost)
-        for title, seconds in (("roadmap, new scene", new), ("roadmap, kept scene", kept), ("trees", alone)):
-            ms = 1e3 * np.array(seconds)
-            more = f"{100 * np.mean(helped):.0f} % | {np.mean(lengths):.3f}" if title != "trees" else " | "
-            figures = f"{np.median(ms):.2f} | {np.quantile(ms, 0.95):.2f} | {ms.mean():.2f}"
-            print(f"| {kind} | {title} | {figures} | {more} |", flush=True)
-
-
 def main() -> None:
     """Measure, or print what was measured."""
     parser = argparse.ArgumentParser(
@@ -221,16 +172,12 @@ def main() -> None:
     parser.add_argument("--robot", default="ur5")
     parser.add_argument("--problems", type=int, default=0, help="of each kind")
     parser.add_argument("--draws", type=int, default=2)
-    parser.add_argument("--queries", type=int, default=0, help="in each kept scene")
-    parser.add_argument("--kinds", nargs="+", default=list(KINDS), choices=KINDS, help="of the queries")
     parser.add_argument("--out", type=Path, default=Path("docs/data/robot_roadmaps.csv"))
     parser.add_argument("--table", type=Path)
     parser.add_argument("--picture", type=Path)
     options = parser.parse_args()
     if options.problems:
         write(options.out, options.robot, REPORTING[: options.problems], options.draws)
-    if options.queries:
-        times(options.robot, options.queries, options.kinds)
     if options.problems or options.table:
         table(options.table or options.out)
     if options.picture:

@@ -311,7 +311,7 @@ BAD = {
     ),
     "a planning scene with a mesh": (
         {"scene": "cup.yaml"},
-        "object 'cup' in cup.yaml must consist of box, sphere, cylinder: it has a mesh",
+        "a mesh of object 'cup' in cup.yaml must have vertices and triangles",
     ),
     "a MoveIt scene that is missing": ({"scene": "none.scene"}, "there is no scene file none.scene"),
     "a second goal that is unknown": ({"goal": ("right", "--goal", "up")}, "unknown state 'up'"),

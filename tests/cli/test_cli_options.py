@@ -110,7 +110,7 @@ def test_what_completes_words_knows_every_verb(run):
         ("points -n 16 -d 2", "missing from evenroad points: -o PATH, --out PATH; all options: evenroad"),
         ("measure", "missing from evenroad measure: FILE"),
         ("train -n 16 -d 2 -o a --method sgd", "invalid choice 'sgd' for argument '--method'. Expected"),
-        ("plot", "unknown verb 'plot'; known: bench, demo, export"),
+        ("plot", "unknown verb 'plot'; known: bench, certify, demo, export"),
     ],
 )
 def test_a_wrong_word_is_one_line_and_exit_code_2(run, words, says):

@@ -248,7 +248,7 @@ BAD = {
     "a connection radius of zero": ({"connect_radius": 0}, "connection radius"),
     "both rules": ({"connect_radius": 5, "k": 5}, "not both"),
     "a negative seed": ({"seed": -1}, "rng must be"),
-    "an unknown sampler": ({"sampler": "sobel"}, "known: auto, even, .*halton.*sobol"),
+    "an unknown sampler": ({"sampler": "sobel"}, "known: auto, cover, even, .*halton.*sobol"),
     "a family without this n": (
         {"sampler": "hickernell", "n": 100},
         "it has n = 16, 32, 64, 128, 256, 512, 1024, 2048",

@@ -15,6 +15,7 @@ from evenroad.geometry import (
     Sphere,
     TriangleMesh,
     fit_capsules,
+    height_map,
     rotation_from_rpy,
     shape_of,
 )
@@ -108,3 +109,39 @@ def test_a_capsule_without_its_pose_has_its_ends_in_the_outer_frame():
     np.testing.assert_allclose(moved.a, PLACE.apply((0, 0, -1)))
     np.testing.assert_allclose(moved.b, PLACE.apply((0, 0, 1)))
     assert without_pose(moved) is moved
+
+
+def test_a_height_map_is_the_surface_over_its_grid():
+    heights = np.arange(12.0).reshape(3, 4) ** 2
+    mesh = height_map(heights, 0.5, (-1.0, 2.0))
+    assert len(mesh.triangles) == 12
+    corners = mesh.vertices[mesh.triangles]
+    middle = corners.mean(axis=1)
+    # Every triangle is one half of a cell, seen from above it is turned to the eye.
+    sides = corners[:, 1:] - corners[:, :1]
+    np.testing.assert_allclose(np.cross(sides[:, 0], sides[:, 1])[:, 2], 0.25)
+    i, j = ((mesh.vertices[:, :2] + (1.0, -2.0)) / 0.5).round().astype(int).T
+    np.testing.assert_array_equal(mesh.vertices[:, 2], heights[i, j])
+    assert len(np.unique(middle[:, :2], axis=0)) == 12
+
+
+def test_there_is_no_surface_where_a_height_is_not_known():
+    heights = np.zeros((3, 4))
+    heights[0, 0] = np.nan
+    assert len(height_map(heights, 0.1).triangles) == 10
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ((np.zeros((1, 4)), 0.1), "2 or more along both"),
+        ((np.zeros(4), 0.1), "2 or more along both"),
+        ((np.full((2, 2), np.inf), 0.1), "none inf"),
+        ((np.full((2, 2), np.nan), 0.1), "one triangle or more"),
+        ((np.zeros((2, 2)), 0.0), "spacing must be"),
+        ((np.zeros((2, 2)), 0.1, (0.0,)), "low must be 2"),
+    ],
+)
+def test_heights_that_are_none_are_refused(arguments, says):
+    with pytest.raises(InvalidValue, match=says):
+        height_map(*arguments)

@@ -116,7 +116,12 @@ BROKEN = {
     "shapes without a number": ("a.scene", OLD.replace("\n2\n", "\ntwo\n"), BrokenFile, "number of shapes, got 'two'"),
     "no object": ("a.yaml", "world: 3", BrokenFile, "'world' in .* got 3"),
     "no id": ("a.yaml", _yaml("primitives: []"), BrokenFile, "must have an 'id'"),
-    "a mesh in YAML": ("a.yaml", _yaml("id: cup, meshes: [{resource: a.stl}]"), InvalidValue, "'cup' in .* mesh"),
+    "a mesh in YAML": (
+        "a.yaml",
+        _yaml("id: cup, meshes: [{resource: a.stl}]"),
+        InvalidValue,
+        "mesh of object 'cup' .* must have vertices",
+    ),
     "a cone in YAML": (
         "a.yaml", _yaml(f"id: hat, primitives: [{{type: 4, dimensions: [1, 1]}}], {POSE}"),
         UnknownName, "'hat' .*'cone'",
@@ -142,3 +147,35 @@ def test_two_objects_of_one_name_are_no_scene(tmp_path):
     body = NEW[NEW.index("*") :]
     with pytest.raises(InvalidValue, match=r"twice: \['shelf'\]"):
         load_scene(write(tmp_path, NEW.rstrip(".\n") + "\n" + body, "a.scene"))
+
+
+CUP = (
+    "id: cup, pose: {position: [1, 0, 0], orientation: [0, 0, 0, 1]}, meshes: [{vertices: [[0, 0, 0],"
+    " {x: 1, y: 0, z: 0}, [0, 1, 0]], triangles: [{vertex_indices: [0, 1, 2]}]}], mesh_poses: [{position:"
+    " [0, 2, 0], orientation: [0, 0, 0, 1]}]"
+)
+
+
+def test_a_planning_scene_has_meshes(tmp_path):
+    (tmp_path / "a.yaml").write_text(_yaml(CUP))
+    (cup,) = load_scene(tmp_path / "a.yaml").obstacles
+    assert (cup.name, cup.shape) == ("cup", "mesh")
+    assert cup.body.pose.xyz == (1, 2, 0)
+    np.testing.assert_array_equal(cup.body.triangles.vertices, [[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("[0, 1, 2]}", "[0, 1, 9]}", "name rows"),
+        ("triangles: [{vertex_indices: [0, 1, 2]}]", "triangles: []", "one triangle or more"),
+        ("[0, 1, 0]]", "[0, 1]]", "a vertex of a mesh of object 'cup'"),
+        ("mesh_poses: [{", "mesh_poses: [], more: [{", "a pose for each mesh, got 1 and 0"),
+    ],
+)
+def test_a_mesh_of_a_planning_scene_that_is_none_is_refused(tmp_path, old, new, says):
+    text = _yaml(CUP)
+    assert old in text
+    (tmp_path / "a.yaml").write_text(text.replace(old, new))
+    with pytest.raises(EvenroadError, match=says):
+        load_scene(tmp_path / "a.yaml")

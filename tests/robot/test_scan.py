@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
+import trimesh
 import yaml
 
 import evenroad as er
 from evenroad.arms import arm_query
 from evenroad.cli import main
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
-from evenroad.geometry import PointCloud, Pose
+from evenroad.geometry import Box, Mesh, PointCloud, Pose, TriangleMesh
 from evenroad.robot import (
     ArmWorld,
     Obstacle,
@@ -195,3 +196,67 @@ def test_clouds_tell_scenes_apart(ur5):
     first, again, other = (scene.fingerprint() for scene in scenes)
     assert first == again != other
     assert er.plan_arm(ur5, scenes[0].without("scan"), UPRIGHT, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0]).solved
+
+
+def shelf_file(folder, suffix):
+    """A board of 0.4 m as a mesh in millimetres."""
+    mesh = trimesh.creation.box((400, 600, 20))
+    (folder / f"board{suffix}").write_bytes(mesh.export(file_type=suffix[1:]) if suffix != ".obj" else b"")
+    if suffix == ".obj":
+        (folder / "board.obj").write_text(mesh.export(file_type="obj"))
+    return f"board{suffix}"
+
+
+@pytest.mark.parametrize("suffix", [".stl", ".obj", ".ply", ".dae"])
+def test_meshes_of_every_format_are_the_box_that_they_are(tmp_path, ur5, suffix):
+    entry = dict(
+        shape="mesh", file=shelf_file(tmp_path, suffix), scale=0.001, xyz=[0.6, 0, 0.3], rpy=[0, 0, 0.5]
+    )
+    scene = load_scene(write_scene(tmp_path, entry))
+    board = Obstacle("scan", Box((0.4, 0.6, 0.02), pose=Pose.from_rpy((0.6, 0, 0.3), (0, 0, 0.5))))
+    of_mesh, of_box = ArmWorld(ur5, scene), ArmWorld(ur5, Scene("s", (board,)))
+    q = of_box.space.from_cube(np.random.default_rng(2).random((2000, 6)))
+    # A box is met by the spheres that cover a capsule, a mesh by the capsule.
+    assert (of_mesh.valid(q) >= of_box.valid(q)).all()
+    assert 0.1 < of_mesh.valid(q).mean() < 0.95
+    assert (of_mesh.valid(q) != of_box.valid(q)).mean() < 0.02
+
+
+@pytest.mark.parametrize(
+    ("entry", "error", "says"),
+    [
+        (dict(file="no.stl"), BrokenFile, "mesh .*no.stl is missing"),
+        (dict(file="empty.obj"), BrokenFile, "empty.obj"),
+        (dict(scale=0), InvalidValue, "scale of mesh board.stl must not be 0"),
+        (dict(scale=[1, 2]), InvalidValue, "scale of obstacle 'scan'"),
+        (dict(file=None), InvalidValue, "file of obstacle 'scan' .* got None"),
+        (dict(radius=0.1), UnknownName, "'radius'"),
+        (dict(seen_at="home"), UnknownName, "'seen_at'"),
+    ],
+)
+def test_a_mesh_that_is_not_sound_is_refused(tmp_path, entry, error, says):
+    (tmp_path / "empty.obj").write_text("v 0 0 0\n")
+    whole = dict(shape="mesh", file=shelf_file(tmp_path, ".stl")) | entry
+    with pytest.raises(error, match=says) as caught:
+        load_scene(write_scene(tmp_path, whole))
+    assert "\n" not in str(caught.value)
+
+
+def test_the_command_plans_around_a_mesh_and_draws_it(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    entry = dict(shape="mesh", file=shelf_file(tmp_path, ".stl"), scale=0.001, xyz=[0.6, 0, 0.3])
+    file = write_scene(tmp_path, entry)
+    start, goal = (f"{pan},-0.6,0.6,-1.57,0,0" for pan in (-1.4, 1.4))
+    assert main(["plan", str(file), "--robot", "ur5", "--start", start, "--goal", goal, "--out", "a"]) == 0
+    assert "certified" in capsys.readouterr().out
+    assert (tmp_path / "a.png").stat().st_size > 10_000
+
+
+def test_meshes_are_equal_by_value_and_tell_scenes_apart():
+    meshes = [TriangleMesh(np.eye(3) * size, [[0, 1, 2]]) for size in (1.0, 1.0, 2.0)]
+    first, again, other = (Obstacle("m", Mesh(mesh)) for mesh in meshes)
+    assert first == again != other
+    assert hash(meshes[0]) == hash(meshes[1])
+    assert meshes[0] != "mesh"
+    prints = [Scene("s", (each,)).fingerprint() for each in (first, again, other)]
+    assert prints[0] == prints[1] != prints[2]

@@ -120,5 +120,5 @@ def test_a_line_that_is_none_is_refused():
         Straight(math.nan)
     with pytest.raises(InvalidValue, match="away must be a direction, got zeros"):
         Straight(0.1, away=(0, 0, 0))
-    with pytest.raises(InvalidValue, match="away must be 3 finite numbers, got 'down'"):
+    with pytest.raises(InvalidValue, match="away must be x, -x, .* or 3 finite numbers, got 'down'"):
         Straight(0.1, away="down")

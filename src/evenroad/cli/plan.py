@@ -43,7 +43,7 @@ class PlanOptions:
     connect_radius: float | None = None
     """Connect milestones up to this distance instead, in map units or radians."""
     sampler: str = "auto"
-    """even, hickernell, mpmc, korobov, lattice, halton, sobol, sukharev or uniform; auto is even."""
+    """even, hickernell, mpmc, korobov, lattice, cover, halton, sobol, sukharev or uniform; auto is even."""
     plain: bool = False
     """halton and sobol: the plain sequence instead of the scrambled one."""
     skip: int = 0

@@ -6,8 +6,6 @@ import math
 from dataclasses import asdict, replace
 from pathlib import Path
 
-import numpy as np
-
 from evenroad._arrays import Floats
 from evenroad._compiled import say_if_compiling
 from evenroad.arm_goals import find_cheapest
@@ -70,8 +68,6 @@ def plan_arm(plan: PlanArm) -> int:
     rule = chosen_rule(plan, default_rule(world.space).k)
     points = draw_points(plan, world.space.cube_dim) if wants_points(plan) else None
     load_compiled_code(world, start, goals, points, rule, SEARCH)
-    if known is not None:
-        known.connect(start, start[np.newaxis])
 
     def plan_once(world: World, start: Floats, goals: Floats, shorten: bool) -> PlanResult:
         if known is not None:
@@ -179,6 +175,8 @@ def _say_if_compiling(plan: PlanArm) -> None:
     if plan.goal_pose or plan.straight or plan.upright:
         say_if_compiling(f"{kernel}.reach", "solve", 5)
     said = say_if_compiling(f"{kernel}.batch", "check_configurations", 30 if points else 20)
+    if plan.roadmap is not None and lanes_failure() is None:
+        said = say_if_compiling("evenroad.robot_roadmap.lane_search", "find_way", 10) or said
     # Where the lanes do not work, the trees are never compiled.
     if not (said or points) and lanes_failure() is None:
         say_if_compiling(f"{kernel}.trees", "grow", 15)

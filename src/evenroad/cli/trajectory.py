@@ -18,13 +18,14 @@ _MOVEJ = ".movej.script"
 
 def require_trajectory_options(plan: PlanArm, inputs: Iterable[Path]) -> None:
     """Refuse, before anything is planned, what would fail or overwrite an input afterwards."""
-    from evenroad.trajectory import format_of
-
     if not plan.trajectory:
         for option in ("speed", "limits", "deviation", "step", "controller_joints"):
             if getattr(plan, option) != type(plan).__dataclass_fields__[option].default:
                 raise InvalidValue(f"--{option.replace('_', '-')} goes with --trajectory only")
         return
+    # Only now: a plan without times does not wait for SciPy's linear algebra.
+    from evenroad.trajectory import format_of
+
     require_positive("speed", plan.speed, at_most=1.0)
     require_positive("deviation", plan.deviation, or_zero=True)
     require_positive("step", plan.step)

@@ -11,9 +11,10 @@ from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from evenroad._arrays import Bools, Floats, Ints, set_fields
-from evenroad._checks import as_batch, require_positive
+from evenroad._checks import as_batch, as_row, require_positive
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 
 
@@ -99,6 +100,40 @@ def volume_of(mesh: TriangleMesh) -> float:
         return float(ConvexHull(corners.reshape(-1, 3)).volume)
     except QhullError:
         return 0.0
+
+
+def height_map(heights: npt.ArrayLike, spacing: float, low: Sequence[float] = (0.0, 0.0)) -> TriangleMesh:
+    """Return the surface over a grid of heights: two triangles between four neighbours.
+
+    Parameters
+    ----------
+    heights : array_like, shape (x, y), both >= 2
+        z over the places ``low + spacing * (i, j)`` [m]; where one is NaN there is no surface around it.
+    spacing : float
+        Between neighbours, > 0 [m].
+    low : sequence of 2 floats
+        x and y of the first [m].
+
+    Raises InvalidValue if they are not such numbers, or nothing is left.
+    """
+    z, step = np.asarray(heights, dtype=np.float64), require_positive("spacing", spacing)
+    if z.ndim != 2 or min(z.shape) < 2 or np.isinf(z).any():
+        raise InvalidValue(
+            f"heights must be an (x, y) array of 2 or more along both, none inf, got {z.shape}"
+        )
+    x, y = (
+        first + step * np.arange(count) for first, count in zip(as_row("low", low, 2), z.shape, strict=True)
+    )
+    number = np.arange(z.size).reshape(z.shape)
+    a, b, c, d = (
+        part.ravel() for part in (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:])
+    )
+    triangles = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+    known = ~np.isnan(z.ravel())
+    vertices = np.stack(
+        [*(each.ravel() for each in np.meshgrid(x, y, indexing="ij")), np.where(known, z.ravel(), 0.0)]
+    )
+    return TriangleMesh(vertices.T, triangles[known[triangles].all(axis=1)], "height map")
 
 
 def closed_parts(mesh: TriangleMesh) -> tuple[Bools, bool]:

@@ -101,12 +101,12 @@ class ArmWorld:
         space, longest, of_robot, by_joint, bounds, by_joint_at = prepared(self.robot)
         require_few_segments(self.resolution, longest / self.resolution)
         tested = tested_contacts(of_robot.capsules, self.robot.links, self.scene)
-        solid = [bool(obstacle.row) for obstacle in self.scene.obstacles]
-        surfaces = None
-        if not all(solid):
+        rows, surfaces = obstacle_rows(self.scene), None
+        if len(rows) < len(self.scene.obstacles):
             surfaces = scene_surfaces(self.scene, of_robot, tested)
+            solid = [bool(obstacle.row) for obstacle in self.scene.obstacles]
             tested = np.ascontiguousarray(tested[:, solid])
-        tables, lanes_at, too_far = arm_tables(of_robot, obstacle_rows(self.scene), tested)
+        tables, lanes_at, too_far = arm_tables(of_robot, rows, tested)
         if too_far >= 0:
             refuse([obstacle for obstacle in self.scene.obstacles if obstacle.row][too_far])
         lanes = LaneWorld(tables.lanes, by_joint, self.resolution, (lanes_at, by_joint_at), surfaces)

@@ -1,7 +1,8 @@
 """Reading MoveIt's scenes: text files ``.scene``, and planning scenes in YAML, as MotionBenchMaker has them.
 
-Only the objects of the world are read: boxes, spheres and cylinders, in a planning frame that must be the robot's root
-link.  Quaternions are (x, y, z, w) there.  An object of several shapes becomes obstacles ``NAME/0``, ``NAME/1``, ...
+Only the objects of the world are read: boxes, spheres and cylinders, in YAML meshes, too; in a planning frame that
+must be the robot's root link.  Quaternions are (x, y, z, w) there.  An object of several shapes becomes obstacles
+``NAME/0``, ``NAME/1``, ...
 """
 
 from __future__ import annotations
@@ -10,11 +11,14 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from evenroad._checks import require_known
 from evenroad._yaml import numbers
-from evenroad.errors import BrokenFile, EvenroadError, InvalidValue
+from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, shown
+from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.pose import IDENTITY, Pose
-from evenroad.geometry.shapes import shape_of
+from evenroad.geometry.shapes import Mesh, shape_of
 from evenroad.robot.scene import Obstacle, Scene
 
 Numbers = tuple[float, ...]
@@ -87,7 +91,7 @@ def _from_text(lines: list[str], path: Path) -> Iterator[Obstacle]:
 def read_planning_scene(document: Mapping[str, Any], path: Path) -> Scene:
     """Return the scene of a planning scene that was read from YAML: objects in ``world: collision_objects``.
 
-    Raises as :func:`read_scene_text`; InvalidValue also if an object has a mesh, which scenes do not take yet.
+    Raises as :func:`read_scene_text`; InvalidValue also if an object has a plane, or a mesh that is none.
     """
     world = document.get("world")
     if not isinstance(world, dict):
@@ -97,9 +101,9 @@ def read_planning_scene(document: Mapping[str, Any], path: Path) -> Scene:
         if not isinstance(each, dict) or "id" not in each:
             raise BrokenFile(f"every entry of collision_objects in {path} must have an 'id', got {each!r}")
         name = str(each["id"])
-        if each.get("meshes") or each.get("planes"):
+        if each.get("planes"):
             raise InvalidValue(
-                f"object {name!r} in {path} must consist of {', '.join(_SIZES)}: it has a mesh or plane"
+                f"object {name!r} in {path} must consist of {', '.join(_SIZES)} and meshes: it has a plane"
             )
         frame = _pose(each["pose"], name, path) if "pose" in each else IDENTITY
         primitives, poses = each.get("primitives") or [], each.get("primitive_poses") or []
@@ -116,7 +120,43 @@ def read_planning_scene(document: Mapping[str, Any], path: Path) -> Scene:
             # Height and radius in messages, radius and length everywhere else.
             shapes.append((kind, size[::-1] if kind == "cylinder" else size, frame @ _pose(pose, name, path)))
         obstacles += _obstacles(name, shapes, path)
+        meshes = [_mesh(entry, name, path) for entry in each.get("meshes") or []]
+        poses = each.get("mesh_poses") or []
+        if len(meshes) != len(poses):
+            raise BrokenFile(
+                f"object {name!r} in {path} must have a pose for each mesh, got {len(meshes)} and {len(poses)}"
+            )
+        for i, (mesh, pose) in enumerate(zip(meshes, poses, strict=True)):
+            body = Mesh(mesh, pose=frame @ _pose(pose, name, path))
+            alone = len(meshes) == 1 and not shapes
+            obstacles.append(Obstacle(name if alone else f"{name}/mesh{i}", body))
     return Scene(str(document.get("name") or path.stem), tuple(obstacles))
+
+
+def _mesh(entry: object, name: str, path: Path) -> TriangleMesh:
+    """Return a mesh of a message: vertices, and triangles by their ``vertex_indices``."""
+    where = f"a mesh of object {name!r} in {path}"
+    parts = entry if isinstance(entry, dict) else {}
+    if not {"vertices", "triangles"} <= parts.keys():
+        raise InvalidValue(f"{where} must have vertices and triangles, got {shown(entry)}")
+    rows = [
+        [each[key] for key in "xyz"] if isinstance(each, dict) and {*"xyz"} <= each.keys() else each
+        for each in parts.get("vertices") or []
+    ]
+    corners = [
+        each.get("vertex_indices") if isinstance(each, dict) else each
+        for each in parts.get("triangles") or []
+    ]
+    try:
+        return TriangleMesh(
+            np.array([numbers(row, 3, f"a vertex of {where}") for row in rows]).reshape(-1, 3),
+            np.array([numbers(row, 3, f"a triangle of {where}") for row in corners])
+            .reshape(-1, 3)
+            .astype(int),
+            name,
+        )
+    except InvalidValue as error:
+        raise InvalidValue(f"{where}: {error}") from None
 
 
 def _obstacles(name: str, shapes: list[tuple[str, Numbers, Pose]], path: Path) -> Iterator[Obstacle]:

@@ -79,7 +79,12 @@ def as_axis(name: str, axis: str | Sequence[float]) -> Vector:
         if letter in AXES:
             x, y, z = AXES[letter]
             return sign * x + 0.0, sign * y + 0.0, sign * z + 0.0
-        axis = as_numbers(name, axis, (3,))
+        try:
+            axis = as_numbers(name, axis, (3,))
+        except InvalidValue:
+            raise InvalidValue(
+                f"{name} must be x, -x, y, -y, z, -z or 3 finite numbers, got {shown(axis)}"
+            ) from None
     row = as_row(name, axis, 3)
     length = math.hypot(*row)
     if length == 0.0:

@@ -187,8 +187,7 @@ def _shortened(world: PlansWithTrees, path: Floats) -> tuple[Floats, int]:
 def _grown(
     world: PlansWithTrees, first: Floats, goals: Floats, samples: Floats | None, most: int, seconds: float
 ) -> Connection:
-    kernel, tree_steps = _tree_kernels()
-    grow = kernel.grow
+    kernel, grow = _tree_kernels()
     order = None
     if len(goals) > 1:
         # The nearest goals are tried first.
@@ -196,9 +195,8 @@ def _grown(
         order = np.argsort(distances, kind="stable")
         goals = goals[order]
     count, dim = len(goals) + 1, len(first)
-    capacity = -(-max(_CAPACITY, 2 * count + kernel.ROOM) // 16) * 16
-    steps = tree_steps.memory_for(dim)
-    memory, arguments = world.lanes.arguments(steps + kernel.room_for(count, capacity, dim))
+    capacity, steps, doubles = _sizes(count, dim, _CAPACITY)
+    memory, arguments = world.lanes.arguments(doubles)
     block, place = memory[steps:], arguments[-1] + 8 * steps
     begin, middle = kernel.STATE + 2, kernel.STATE + 2 + dim
     block[:begin], block[begin:middle] = 0.0, first
@@ -230,9 +228,18 @@ def _grown(
 # Imported late: where the vector type cannot even be defined, all else still works.
 @cache
 def _tree_kernels() -> tuple[Any, Any]:
+    from evenroad.robot.kernel import trees
+
+    return trees, trees.grow
+
+
+@cache
+def _sizes(count: int, dim: int, least: int) -> tuple[int, int, int]:
+    """Return the capacity of trees for so many ends, and how many doubles go before them, and with them."""
     from evenroad.robot.kernel import tree_steps, trees
 
-    return trees, tree_steps
+    capacity, steps = -(-max(least, 2 * count + trees.ROOM) // 16) * 16, tree_steps.memory_for(dim)
+    return capacity, steps, steps + trees.room_for(count, capacity, dim)
 
 
 @cache

@@ -16,7 +16,7 @@ from evenroad.roadmap import Budget, PlanResult, Status
 from evenroad.roadmap.answer import connected, gave_up, refusal
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.find_path import NO_POINTS, SECONDS, with_reasons
-from evenroad.roadmap.query import FEW, LINKS, Query, read_places
+from evenroad.roadmap.query import FEW, Query, read_places
 from evenroad.robot import ArmWorld, Robot, Scene, configuration, in_scene
 from evenroad.robot.trees import shorten
 from evenroad.robot_roadmap.ask import ENDS_TAKEN, Asked, ask
@@ -39,12 +39,16 @@ GREED = 3.0
 """What the bound of the search is multiplied by: a third of the checks of a shortest way, and once they are shortened
 its paths are no longer."""
 
+LINKS = 300
+"""Each end is tried to be linked to so many milestones where no trees follow: asked lazily, more links cost little but
+where ends are cut off, and there they are worth more than more milestones."""
+
 TRIED_LINKS, TRIED_MOTIONS = 30, 200
 """Where trees may follow, so many links of each end are tried, and so many motions: trees find ways out of narrow
 places with fewer checks than long links do."""
 
 PAIRS, CUTS = 32, 16
-"""What a path along the roadmap is shortened with: a third of the work on trees' paths, for thousandths of length."""
+"""What a path along the roadmap is shortened with: half of the work on trees' paths, for half a percent of length."""
 
 _LONG = 1e8
 """Seconds that stand for no limit."""

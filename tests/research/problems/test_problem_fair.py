@@ -75,8 +75,8 @@ def test_every_part_of_an_instance_s_address_counts():
     assert len({instance_rng(Stream.TUNING, *each).random() for each in addresses}) == len(addresses)
 
 
-def test_only_balls_and_boxes_have_problems_for_tuning():
-    tuning = [name for name in PROBLEMS if name.startswith("tune-")]
+def test_of_the_fair_problems_only_balls_and_boxes_are_for_tuning():
+    tuning = [name for name in FAIR_PROBLEMS if name.startswith("tune-")]
     assert "tune-balls-5d-50" in tuning
     assert all(name.startswith(("tune-balls-", "tune-boxes-")) for name in tuning)
     assert {"fair-maze-25", "fair-se2-50", "fair-se3-75"} <= set(PROBLEMS)

@@ -1,10 +1,12 @@
-"""Dispersion: the distance from the loneliest place of the cube to the nearest point."""
+"""Dispersion: the distance from the loneliest place of the cube to the nearest point.
+
+SciPy's trees are imported where they are used: with them comes its linear algebra, for which a plan does not wait.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from scipy.spatial import Voronoi, cKDTree
 
 from evenroad._arrays import Floats
 from evenroad._checks import require_count, require_known, require_positive
@@ -27,6 +29,8 @@ def dispersion_l2(points: object) -> float:
     `points`, (n, d), have coordinates in [0, 1), n >= 1, d <= 3.  Raises InvalidValue for no points or bad ones, and
     NotAvailable for d > 3.
     """
+    from scipy.spatial import Voronoi, cKDTree
+
     coordinates = _checked(points, "dispersion_l2")
     d = coordinates.shape[1]
     if d == 1:
@@ -74,6 +78,8 @@ def dispersion_lower_bound(
     place gives a true lower bound; how close it comes is not known.  `rng` draws the places: as many as `starts` at
     first, with `rounds` of climbing.  A norm but l2 and linf is an UnknownName, all else that is bad an InvalidValue.
     """
+    from scipy.spatial import cKDTree
+
     coordinates = _checked(points)
     require_known("norm", norm, NORMS)
     starts, rounds = require_count("starts", starts), require_count("rounds", rounds)

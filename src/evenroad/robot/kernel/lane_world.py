@@ -70,15 +70,14 @@ class LaneWorld:
         doubles = DESK + 2 * LANES + places + header[at.SCRATCH] // 2 + len(self.tables)
         checks = _address_of_checks(header[at.HULL_PAIRS] > 0)
         tables, by_joint = self.at or (address(self.tables), address(self.by_joint))
-        if self._with_surfaces is not None:
+        if self.surfaces is not None:
             tables = address(self._with_surfaces)
         return checks, tables, by_joint, doubles
 
     @cached_property
-    def _with_surfaces(self) -> Ints | None:
+    def _with_surfaces(self) -> Ints:
         """The tables with the addresses of clouds and meshes, where there are any."""
-        if self.surfaces is None:
-            return None
+        assert self.surfaces is not None
         from evenroad.robot.kernel.surface_contact import surface_check_address
 
         return self.surfaces.added_to(self.tables, surface_check_address())

@@ -48,13 +48,13 @@ def tested_contacts(capsules: Sequence[PlacedCapsule], links: Sequence[str], sce
     count = len(scene.obstacles)
     tested = bytearray(b"\1") * (len(capsules) * count)
     if scene.allowed:
-        names, bodied = [obstacle.name for obstacle in scene.obstacles], [each.link for each in capsules]
+        bodied = [each.link for each in capsules]
         for link, name in scene.allowed:
             if link not in links:
                 raise UnknownName.among("link", link, links)
-            if name not in names:
-                raise UnknownName.among("obstacle", name, names)
-            place = names.index(name)
+            place = next((k for k, each in enumerate(scene.obstacles) if each.name == name), -1)
+            if place < 0:
+                raise UnknownName.among("obstacle", name, [each.name for each in scene.obstacles])
             for other in bodied:
                 if other == link:
                     tested[place] = 0

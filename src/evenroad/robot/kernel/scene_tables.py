@@ -66,7 +66,6 @@ def arm_tables(robot: RobotTables, obstacles: Floats, tested: Bools) -> tuple[Ar
     ints, floats, lanes, added, kept, capsule, obstacle, place, too_far = _pack(
         robot.ints, robot.floats, robot.singles, robot.reach, obstacles, tested
     )
-    kept = kept[: ints[at.OBSTACLES]]
     for array in (ints, floats, lanes, kept):
         array.setflags(write=False)
     # Once for what is added, once more for what rounding may add to that.
@@ -143,7 +142,7 @@ def _pack(
             if tested[i, kept[row]]:
                 ints[first_int + count + i * blocks + row // at.LANES] |= 1 << (row % at.LANES)
     capsule, obstacle = _fixed_contact(ints, floats, kept, tested)
-    return ints, floats, lanes, added, kept, capsule, obstacle, lanes.ctypes.data, too_far
+    return ints, floats, lanes, added, kept[:count], capsule, obstacle, lanes.ctypes.data, too_far
 
 
 @quick

@@ -28,6 +28,9 @@ WORTH_WHILE = 3e-3
 CUT_WORTH_WHILE = 1e-3
 """Motions that shorten the path by less than this share are not looked at; the second where corners are cut."""
 
+_BESIDE = 1 << 32
+"""Two counts in one number: less to read after a call."""
+
 MOST_CUTS = 64
 """So many cuts of corners are tried at most, where nothing else is said."""
 
@@ -54,8 +57,8 @@ def shorten_path(
     room, arguments = world.arguments(COUNTS + rows * (dim + 1) + 3 * dim)
     points = room[-rows * dim :].reshape(rows, dim)
     room[:COUNTS], points[:size] = 0.0, path
-    left = shorten_points(rows, size, dim, pairs, count, most_cuts, *arguments)
-    return points[:left].copy(), int(room[:COUNTS].view(np.int64)[MOTIONS])
+    motions, left = divmod(shorten_points(rows, size, dim, pairs, count, most_cuts, *arguments), _BESIDE)
+    return points[:left].copy(), motions
 
 
 @program
@@ -73,7 +76,7 @@ def shorten_points(
     memory: int,
     room: int,
 ) -> int:
-    """Do the work of `shorten_path` on the last `rows` of the memory, and return how many are left.
+    """Do the work of `shorten_path` on the last `rows` of the memory; return how many are left, and 2^32 a motion.
 
     0 where the path is not finite.
     """
@@ -118,7 +121,7 @@ def shorten_points(
         if i >= size - 1 and places[size - 1] < gained * (1.0 - WORTH_WHILE):
             i, gained = 1, places[size - 1]
     size = _pass_by(points, size, checks)
-    return size
+    return size + _BESIDE * checks.counts[MOTIONS]
 
 
 @quick

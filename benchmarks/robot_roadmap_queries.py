@@ -1,0 +1,241 @@
+"""What queries of a robot's roadmap cost, what whole turns are worth, and whether remembered paths help elsewhere.
+
+    python -m benchmarks.robot_roadmap_queries --queries 100
+    python -m benchmarks.robot_roadmap_queries --counts 60
+    python -m benchmarks.robot_roadmap_queries --turns 40
+    python -m benchmarks.robot_roadmap_queries --remember 40
+
+Scenes and problems come from the seeds kept for reporting.  Times are of the processor, the best of three: three copies
+of a kept roadmap learn the same side by side, so that none answers a query that it knows.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+
+from benchmarks.arm_problems import KINDS, REPORTING, TUNING, Pool, Problem, arm, problems, queries
+from benchmarks.robot_roadmaps import table_of
+from evenroad.roadmap import Budget, PlanResult
+from evenroad.roadmap.find_path import find_path
+from evenroad.robot import ArmWorld, with_limits
+from evenroad.robot.trees import shorten
+from evenroad.robot_roadmap.make import make_roadmap
+from evenroad.robot_roadmap.robot_roadmap import CUTS, PAIRS, RobotRoadmap, SceneRoadmap
+
+COPIES = 3
+SCENES = 6
+FIRST = 9
+"""So many queries in a scene come before those that count."""
+
+LIMIT = Budget(seconds=1.0)
+TURN = 2.0 * np.pi
+
+
+class QuickWorld(ArmWorld):
+    """An arm's world whose paths are shortened as little as those of roadmaps."""
+
+    def shorten(self, path: np.ndarray) -> tuple[np.ndarray, int]:
+        """Return a path that is not longer, and how many motions were looked at."""
+        return shorten(self, path, pairs=PAIRS, cuts=CUTS)
+
+
+def timed(calls: list[Callable[[], PlanResult]]) -> tuple[float, PlanResult]:
+    """Return the least time of some calls that all do the same, and the first result."""
+    seconds, results = [], []
+    for call in calls:
+        began = time.thread_time()
+        results.append(call())
+        seconds.append(time.thread_time() - began)
+    return min(seconds), results[0]
+
+
+def costs(name: str, count: int, n: int, kinds: list[str]) -> None:
+    """Print milliseconds, motions and lengths of queries, along a kept roadmap and with trees."""
+    pool = Pool(arm(name))
+    began = time.process_time()
+    made = make_roadmap(pool.robot, table_of(next(problems(pool, REPORTING))), n)
+    print(f"roadmap of {n} made in {time.process_time() - began:.1f} s of the processor")
+    print("| kind | planner | median ms | 95 % ms | 95 % / trees | motions | trees needed | length / trees |")
+    print("|---|" + "---|" * 7)
+    for kind in kinds:
+        rows: dict[str, list[tuple[float, float, float, float]]] = {}
+        straight, unsolved = [], 0
+        for seed in REPORTING[:SCENES]:
+            world, pairs = queries(pool, kind, seed, count)
+            quick = QuickWorld(world.robot, world.scene)
+            copies = [SceneRoadmap(made, world.scene) for _ in range(COPIES)]
+            for number, (start, goal) in enumerate(pairs):
+                ends = partial(find_path, start=start, goal=goal, budget=LIMIT)
+                calls = {
+                    "trees": [partial(ends, world)] * COPIES,
+                    "trees, shortened as much": [partial(ends, quick)] * COPIES,
+                    "roadmap, kept scene": [partial(k.plan, start, goal, budget=LIMIT) for k in copies],
+                    "roadmap, new scene": [partial(made.plan, world.scene, start, goal, budget=LIMIT)]
+                    * COPIES,
+                }
+                answers = {title: timed(some) for title, some in calls.items()}
+                apart = np.linalg.norm(start - goal)
+                unsolved += not all(result.solved for _, result in answers.values())
+                if number < FIRST or apart < 1e-6 or not all(r.solved for _, r in answers.values()):
+                    continue
+                straight.append(apart)
+                for title, (seconds, result) in answers.items():
+                    motions = sum(result.counts.get(c, 0) for c in ("edges_checked", "shortcut_motions"))
+                    helped = result.planner.endswith("then trees")
+                    rows.setdefault(title, []).append((seconds, motions, helped, result.cost))
+        trees = np.array(rows["trees"])
+        for title, values in rows.items():
+            table = np.array(values)
+            ms = 1e3 * table[:, 0]
+            ratio, low, high = ratio_of_tails(table[:, 0], trees[:, 0])
+            length = np.mean(table[:, 3] / trees[:, 3])
+            figures = (
+                f"{np.median(ms):.3f} | {np.quantile(ms, 0.95):.3f} | {ratio:.2f} ({low:.2f} .. {high:.2f})"
+            )
+            print(
+                f"| {kind} | {title} | {figures} | {table[:, 1].mean():.0f} | {100 * table[:, 2].mean():.0f} % |"
+                f" {length:.3f} |",
+                flush=True,
+            )
+        print(
+            f"{kind}: {len(trees)} queries, {unsolved} unsolved; straight from start to goal is"
+            f" {np.mean(straight / trees[:, 3]):.3f} of the trees' length"
+        )
+
+
+def counts(name: str, count: int, n: int, kinds: list[str]) -> None:
+    """Print how many configurations and motions the first query in a scene asks about, without trees: medians."""
+    pool = Pool(arm(name))
+    made = make_roadmap(pool.robot, table_of(next(problems(pool, REPORTING))), n)
+    for kind in kinds:
+        results = [
+            made.in_scene(p.scene).plan(p.start, p.goal, shorten=False, trees=False)
+            for p in indirect(pool, REPORTING[:count], (kind,))
+        ]
+        asked = np.array([[r.counts["configurations_checked"], r.counts["edges_checked"]] for r in results])
+        share = 100 * np.mean([r.solved for r in results])
+        print(
+            f"{kind}: median of {np.median(asked[:, 0]):.0f} configurations and {np.median(asked[:, 1]):.0f} motions,"
+            f" {share:.0f} % of {len(results)} solved",
+            flush=True,
+        )
+
+
+def ratio_of_tails(a: np.ndarray, b: np.ndarray) -> tuple[float, float, float]:
+    """Return the ratio of the 95 % quantiles of two paired samples, and its 95 % interval by bootstrap."""
+    rng = np.random.default_rng(0)
+    ratios = []
+    for _ in range(2000):
+        rows = rng.integers(len(a), size=len(a))
+        ratios.append(np.quantile(a[rows], 0.95) / np.quantile(b[rows], 0.95))
+    low, high = np.quantile(ratios, [0.025, 0.975])
+    return float(np.quantile(a, 0.95) / np.quantile(b, 0.95)), float(low), float(high)
+
+
+def indirect(pool: Pool, seeds: range, kinds: tuple[str, ...] = KINDS) -> list[Problem]:
+    """Return the problems whose straight motion is not free."""
+    return [
+        problem
+        for problem in problems(pool, seeds, kinds)
+        if not ArmWorld(pool.robot, problem.scene).motion_valid(problem.start[None], problem.goal[None])[0]
+    ]
+
+
+def solved(made: RobotRoadmap, some: list[Problem]) -> np.ndarray:
+    """Return which problems the roadmap solves without trees, (p,), every path proved again."""
+    verdicts = []
+    for problem in some:
+        known = SceneRoadmap(made, problem.scene)
+        result = known.plan(problem.start, problem.goal, shorten=False, trees=False)
+        verdicts.append(result.solved and bool(known.world.recheck(result.path).all()))
+    return np.array(verdicts, dtype=float)
+
+
+def paired(title: str, some: list[Problem], a: np.ndarray, b: np.ndarray) -> None:
+    """Print the shares solved, by kind, of two methods, (draws, p) each, and their difference over problems."""
+    for kind in (*dict.fromkeys(problem.kind for problem in some), "all"):
+        of = np.array([kind in (problem.kind, "all") for problem in some])
+        apart = 100.0 * (a[:, of] - b[:, of]).mean(axis=0)
+        error = apart.std(ddof=1) / np.sqrt(len(apart))
+        print(
+            f"| {title} | {kind} | {100 * b[:, of].mean():.1f} | {100 * a[:, of].mean():.1f} |"
+            f" {apart.mean():+.1f} ± {error:.1f} |",
+            flush=True,
+        )
+
+
+def turns(name: str, count: int, n: int, draws: int) -> None:
+    """Print what edges that wrap are worth on a robot whose pan and wrists have two turns."""
+    pool = Pool(arm(name))
+    some, cell = indirect(pool, REPORTING[:count]), table_of(next(problems(pool, REPORTING)))
+    free = [j for j in pool.robot.group if j not in ("shoulder_lift_joint", "elbow_joint")]
+    wide = with_limits(pool.robot, dict.fromkeys(free, (-TURN, TURN)))
+    one, two = [], []
+    for draw in range(draws):
+        one.append(solved(make_roadmap(pool.robot, cell, n, k=10, rng=draw), some))
+        two.append(solved(make_roadmap(wide, cell, n, k=10, rng=draw), some))
+    print(f"N = {n}, {draws} draws, {len(some)} problems\n| | kind | one turn | whole turns | difference |")
+    print("|---|---|---|---|---|")
+    paired("whole turns", some, np.array(two), np.array(one))
+    lost = int(np.sum((np.array(one) == 1.0) & (np.array(two) == 0.0)))
+    print(f"solved in one turn and not with whole turns: {lost} of {int(np.sum(one))}")
+
+
+def remember(name: str, count: int, n: int, draws: int) -> None:
+    """Print what paths that trees found in some scenes are worth as milestones in others."""
+    pool, kinds = Pool(arm(name)), ("shelf", "box")
+    some, cell = indirect(pool, REPORTING[:count], kinds), table_of(next(problems(pool, REPORTING)))
+    plain, longer, larger = [], [], []
+    for draw in range(draws):
+        made = make_roadmap(pool.robot, cell, n, rng=draw)
+        paths = []
+        for kind in kinds:
+            for seed in TUNING[:6]:
+                world, pairs = queries(pool, kind, seed, 12)
+                known = made.in_scene(world.scene)
+                for start, goal in pairs:
+                    known.plan(start, goal)
+                paths += known.learned
+        grown = made.remember(*paths)
+        control = make_roadmap(pool.robot, cell, len(grown.milestones), rng=draw)
+        print(f"draw {draw}: {len(paths)} paths, {len(grown.milestones) - n} milestones more", flush=True)
+        plain.append(solved(made, some))
+        longer.append(solved(grown, some))
+        larger.append(solved(control, some))
+    print("| | kind | before | after | difference |\n|---|---|---|---|---|")
+    paired("remembered", some, np.array(longer), np.array(plain))
+    paired("as many made", some, np.array(larger), np.array(plain))
+    paired("remembered against as many made", some, np.array(longer), np.array(larger))
+
+
+def main() -> None:
+    """Measure."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--robot", default="ur5")
+    parser.add_argument("--queries", type=int, default=0, help="in each scene")
+    parser.add_argument("--counts", type=int, default=0, help="problems of each kind")
+    parser.add_argument("--turns", type=int, default=0, help="problems of each kind")
+    parser.add_argument("--remember", type=int, default=0, help="problems of each kind")
+    parser.add_argument("--draws", type=int, default=2)
+    parser.add_argument("-n", type=int, help="milestones; default: 1024 for queries, else 256")
+    parser.add_argument("--kinds", nargs="+", default=["table", "box", "shelf"], choices=KINDS)
+    options = parser.parse_args()
+    if options.queries:
+        costs(options.robot, options.queries, options.n or 1024, options.kinds)
+    if options.counts:
+        counts(options.robot, options.counts, options.n or 1024, options.kinds)
+    if options.turns:
+        turns(options.robot, options.turns, options.n or 256, options.draws)
+    if options.remember:
+        remember(options.robot, options.remember, options.n or 256, options.draws)
+
+
+if __name__ == "__main__":
+    main()
