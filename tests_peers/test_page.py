@@ -67,6 +67,18 @@ def test_the_slider_moves_the_arm_and_the_browser_shows_it(page, tmp_path):
     assert all(url.startswith(("http://127.0.0.1", "http://localhost", "data:", "blob:")) for url in asked)
 
 
+def test_the_trees_are_shown_on_demand(page):
+    shown = []
+    scene = page._server.scene
+    before, scene.add_line_segments = scene.add_line_segments, lambda name, *rest, **more: shown.append(name)
+    page.graph.value = True
+    page._show_graph()
+    page.graph.value = False
+    page._show_graph()
+    scene.add_line_segments = before
+    assert set(shown) == {"/graph"}
+
+
 def _changed(before, after):
     """Return the share of pixels that differ plainly between two screenshots, the panel at the right left out."""
     from io import BytesIO

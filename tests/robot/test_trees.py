@@ -17,7 +17,7 @@ from evenroad.robot.joint import Joint
 from evenroad.robot.robot import with_limits
 from evenroad.robot.scene import Obstacle, Scene
 from evenroad.robot.tree_sequences import ball_points, cube_points, reversed_halton
-from evenroad.robot.trees import connect, shorten
+from evenroad.robot.trees import connect, grown_trees, shorten
 from tests.robot.kernel_arms import STRAIGHT, box_scene, random_scene, random_tree, seven_joint_arm, ur5
 from tests.robot.oracle import clearance
 from tests.robot.plain_trees import grown
@@ -288,3 +288,16 @@ def test_threads_do_not_disturb_each_other(world, found):
         for connection, shorter in answers:
             np.testing.assert_array_equal(connection.path, found.path)
             np.testing.assert_array_equal(shorter, alone)
+
+
+def test_trees_that_are_shown_are_free_and_begin_at_the_ends():
+    world = box_world()
+    nodes, links = grown_trees(world, START, GOAL[np.newaxis])
+    if world.backend == "scalar":
+        assert len(nodes) == len(links) == 0
+        return
+    assert len(nodes) == connect(world, START, GOAL[np.newaxis]).nodes
+    assert len(links) == len(nodes) - 2
+    assert world.motion_valid(nodes[links[:, 0]], nodes[links[:, 1]]).all()
+    roots = nodes[np.setdiff1d(np.arange(len(nodes)), links[:, 0])]
+    np.testing.assert_allclose(np.sort(roots, axis=0), np.sort([START, GOAL], axis=0))

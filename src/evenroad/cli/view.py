@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 import tyro
 
 from evenroad._arrays import Floats
 from evenroad._files import require_writable_folder
-from evenroad.arms import ArmQuery, arm_query
+from evenroad.arms import ArmQuery, arm_query, plan_on_points
 from evenroad.cli.plan import RobotOptions
 from evenroad.errors import InvalidValue
 from evenroad.io import load_plan
+from evenroad.points import draw
 from evenroad.roadmap import Budget, PlanResult
 from evenroad.roadmap.find_path import find_path
-from evenroad.robot import find_robot
+from evenroad.robot import ArmWorld, find_robot
 from evenroad.robot.urdf_xml import RobotFile
 
 SECONDS = 0.5
@@ -38,6 +40,8 @@ class View(RobotOptions):
     """Of a scene: one number a joint with commas between them, name=value,..., or a named state."""
     goal: str | None = None
     """As start.  Default: the start."""
+    n: Annotated[int | None, tyro.conf.arg(aliases=["-n"])] = None
+    """Plan again on so many points, whose roadmap can be shown; default: with trees."""
     port: int = 8080
     """Where the page is; 0 takes any that is free."""
     gif: Path | None = None
@@ -61,7 +65,7 @@ class View(RobotOptions):
         from evenroad.viz.page import ArmPage
 
         def plan(start: Floats, goal: Floats) -> PlanResult:
-            return find_path(query.world, start, goal[np.newaxis], budget=Budget(seconds=SECONDS))
+            return self._planned(query.world, start, goal[np.newaxis])
 
         file = query.source
         if file is None and self.robot is not None:
@@ -81,7 +85,7 @@ class View(RobotOptions):
                 raise InvalidValue("give --robot, the arm that moves in this scene")
             goal = self.start if self.goal is None else self.goal
             query = arm_query(self.robot, self.world, self.start, goal, **options)
-            return query, find_path(query.world, query.start, query.goals, budget=Budget(seconds=SECONDS))
+            return query, self._planned(query.world, query.start, query.goals)
         result, asked = load_plan(self.world)
         robot = self.robot or asked.get("robot")
         if not isinstance(robot, str) or not isinstance(asked.get("scene"), str):
@@ -90,4 +94,20 @@ class View(RobotOptions):
             options[name] = options[name] or asked.get(name)
         options["group"] = options["group"] or ",".join(asked["joints"])
         query = arm_query(robot, asked["scene"], result.start, list(result.goals), **options)
+        if self.n is not None:
+            result = self._planned(query.world, query.start, query.goals)
         return query, result
+
+    def _planned(self, world: ArmWorld, start: Floats, goals: Floats) -> PlanResult:
+        budget = Budget(seconds=SECONDS)
+        if self.n is None:
+            return find_path(world, start, goals, budget=budget)
+        return plan_on_points(
+            world,
+            start,
+            goals,
+            draw("even", self.n, world.space.cube_dim),
+            rule=None,
+            shorten=True,
+            budget=budget,
+        )

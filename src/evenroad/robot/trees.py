@@ -9,6 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_count, require_positive
 from evenroad._clock import now
 from evenroad.errors import InvalidValue
@@ -18,8 +19,6 @@ from evenroad.robot.tree_sequences import ball_points, cube_points, share_pairs
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch
 from evenroad.world.protocol import Connection
-
-Floats = npt.NDArray[np.float64]
 
 MOST_MOTIONS = 1_000_000
 SECONDS = 5.0
@@ -106,7 +105,31 @@ def connect(
     if world.fixed_contact is not None or world.backend == "scalar":
         _require_finite(first, others)
         return Connection(np.empty((0, dim)), -1, 0, 0, 0)
-    return _grown(world, first, others, samples, most, limit)
+    return _grown(world, first, others, samples, most, limit)[0]
+
+
+def grown_trees(
+    world: PlansWithTrees, start: npt.ArrayLike, goals: npt.ArrayLike, *, seconds: float = SECONDS
+) -> tuple[Floats, Ints]:
+    """Return the nodes, (n, dim), of the two trees that `connect` grows, and their links, (m, 2): what viewers show.
+
+    Raises as :func:`connect`; without lanes there are none.
+    """
+    dim = world.space.dim
+    first, others = _ends(start, goals, dim)
+    if world.fixed_contact is not None or world.backend == "scalar":
+        _require_finite(first, others)
+        return np.empty((0, dim)), np.empty((0, 2), dtype=np.int64)
+    _, memory, sizes = _grown(world, first, others, None, MOST_MOTIONS, require_positive("seconds", seconds))
+    places, links, _ = _trees(*memory)
+    edges, before = [], 0
+    for tree, size in enumerate(sizes):
+        # A root has no parent: a negative number.
+        child = np.flatnonzero(links[0, tree, :size] >= 0)
+        edges.append(before + np.column_stack([child, links[0, tree, child]]))
+        before += size
+    nodes = [places[tree, :size] for tree, size in enumerate(sizes)]
+    return np.concatenate(nodes), np.concatenate(edges)
 
 
 def shorten(
@@ -186,7 +209,8 @@ def _shortened(world: PlansWithTrees, path: Floats) -> tuple[Floats, int]:
 
 def _grown(
     world: PlansWithTrees, first: Floats, goals: Floats, samples: Floats | None, most: int, seconds: float
-) -> Connection:
+) -> tuple[Connection, tuple[Floats, int, int, int], tuple[int, int]]:
+    """Return what two trees found, where they are in memory, see `_trees`, and their sizes."""
     kernel, grow = _tree_kernels()
     order = None
     if len(goals) > 1:
@@ -222,7 +246,8 @@ def _grown(
         columns = begin + count * dim + (2 * dim + 8) * capacity
         path = block[columns : columns + waypoints * dim].reshape(waypoints, dim).copy()
         goal = reached - 1 if order is None else int(order[reached - 1])
-    return Connection(path, goal, nodes + others, configurations, motions)
+    connection = Connection(path, goal, nodes + others, configurations, motions)
+    return connection, (block, begin + count * dim, capacity, dim), (nodes, others)
 
 
 # Imported late: where the vector type cannot even be defined, all else still works.

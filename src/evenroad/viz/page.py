@@ -16,6 +16,7 @@ from evenroad.geometry.shapes import PointCloud
 from evenroad.roadmap import PlanResult
 from evenroad.robot import ArmWorld, tip_links
 from evenroad.robot.kinematics import link_poses
+from evenroad.robot.trees import grown_trees
 from evenroad.robot.urdf_xml import RobotFile
 from evenroad.space.path import place_at
 from evenroad.viz import style
@@ -89,7 +90,7 @@ class ArmPage:
         self.status = gui.add_markdown("")
         self.slider = gui.add_slider("along the path [%]", 0.0, 100.0, 0.5, 0.0)
         self.play = gui.add_button("play")
-        self.graph = gui.add_checkbox("roadmap", False, visible=result.roadmap is not None)
+        self.graph = gui.add_checkbox("trees" if result.roadmap is None else "roadmap", False)
         self.hands = gui.add_checkbox("move start and goal by hand", True)
         self.slider.on_update(lambda _: self._show_place())
         self.play.on_click(lambda _: self._playing.set())
@@ -204,13 +205,19 @@ class ArmPage:
     def _show_graph(self) -> None:
         graph, scene = self.result.roadmap, self._server.scene
         scene.remove_by_name("/graph")
-        if not self.graph.value or graph is None or len(graph.edges) == 0:
+        if not self.graph.value:
             return
-        tips = self._tips(graph.configurations)
-        blue = ImageColor.getrgb(style.MILESTONE)[:3]
-        scene.add_line_segments(
-            "/graph", tips[graph.edges].astype(np.float32), blue, thickness=1.0, thickness_units="screen"
-        )
+        if graph is not None:
+            nodes, edges = graph.configurations, graph.edges.astype(np.int64)
+        else:
+            nodes, edges = grown_trees(
+                self.world, self.result.start, self.result.goal[np.newaxis], seconds=0.5
+            )
+        if len(edges):
+            tips, blue = self._tips(nodes), ImageColor.getrgb(style.MILESTONE)[:3]
+            scene.add_line_segments(
+                "/graph", tips[edges].astype(np.float32), blue, thickness=1.0, thickness_units="screen"
+            )
 
     def _show_hands(self) -> None:
         for hand in self._hands.values():
