@@ -55,9 +55,7 @@ class Cover:
                 best = dispersion, margin, points
         assert best is not None
         method = f"A_d* turned and shifted, margin {best[1]:g}"
-        return PointSet(
-            best[2], Origin(family=self.name, method=method, objective="dispersion", seed=seed_of(rng))
-        )
+        return PointSet(best[2], Origin(family=self.name, method=method, seed=seed_of(rng)))
 
 
 def covering_radius(d: int) -> float:
