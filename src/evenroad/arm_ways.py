@@ -137,9 +137,7 @@ def _between_lines(
     return _with_path(ends.world, result, whole[0], whole[1], deviation)
 
 
-def _line(
-    within: World, world: ArmWorld, chain: Chain, straight: Straight, q: Floats, length: float
-) -> Line:
+def _line(within: World, world: ArmWorld, chain: Chain, straight: Straight, q: Floats, length: float) -> Line:
     """Return a straight line, also refused where it tilts what is to be upright: that may be another link."""
     line = line_from(world, chain, straight, q, length)
     if line.why or not isinstance(within, UprightWorld):

@@ -114,7 +114,7 @@ def test_straight_and_upright_go_together():
 def test_lines_keep_another_link_upright_too():
     # The line of the tool tilts the forearm by .236 rad on its way, and by .03 at its end.
     robot, start = load_robot("ur5"), np.array([0.06, -2.17, 0.75, -0.26, 0.87, 0.06])
-    goal = start + [0.6, 0, 0, 0.2, 0.2, 0.2]
+    goal = start + np.array([0.6, 0, 0, 0.2, 0.2, 0.2])
     forearm = robot.links.index("forearm_link")
     axis = tuple(link_poses(robot, start[np.newaxis])[0, forearm, 2, :3].tolist())
 
