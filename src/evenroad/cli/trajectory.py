@@ -42,7 +42,9 @@ def require_files_apart(plan: PlanArm, results: Iterable[Path]) -> None:
     taken = {file.resolve() for file in results}
     for file in plan.trajectory:
         if file.resolve() in taken:
-            raise InvalidValue(f"--trajectory {file} is where the result itself goes: name one of them otherwise")
+            raise InvalidValue(
+                f"--trajectory {file} is where the result itself goes: name one of them otherwise"
+            )
 
 
 def trajectory_rows(
