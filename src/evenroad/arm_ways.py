@@ -100,7 +100,7 @@ def _between_lines(
         return plan(ends.world, ends.start, ends.goals, shorten)
     leaving = Line(ends.start[np.newaxis])
     if straight.retreat:
-        leaving = line_from(ends.world, chain, straight, ends.start, straight.retreat)
+        leaving = _line(within, ends.world, chain, straight, ends.start, straight.retreat)
         if leaving.why:
             return ends.refused(Status.NOT_CONNECTED, f"no straight way from the start: {leaving.why}")
     rows = np.flatnonzero(free[1:])
@@ -110,7 +110,7 @@ def _between_lines(
     for row in rows.tolist():
         line = Line(ends.goals[row : row + 1])
         if straight.approach:
-            line = line_from(ends.world, chain, straight, ends.goals[row], straight.approach)
+            line = _line(within, ends.world, chain, straight, ends.goals[row], straight.approach)
         if line.why:
             why = why or line.why
             continue
@@ -131,7 +131,21 @@ def _between_lines(
     whole = [np.concatenate([leaving.path[:-1], way, last.path[::-1][1:]]) for way in (result.path, raw)]
     off = {name: max(getattr(leaving, name), getattr(last, name)) for name in ("off_m", "off_rad")}
     deviation = result.deviation | {"line_m": off["off_m"], "line_rad": off["off_rad"]}
+    if isinstance(within, UprightWorld):
+        tilted = [within.largest_tilt(line.path) for line in (leaving, last)]
+        deviation |= {"tilt_rad": max(deviation.get("tilt_rad", 0.0), *tilted)}
     return _with_path(ends.world, result, whole[0], whole[1], deviation)
+
+
+def _line(within: World, world: ArmWorld, chain: Chain, straight: Straight, q: Floats, length: float) -> Line:
+    """Return a straight line, also refused where it tilts what is to be upright: that may be another link."""
+    line = line_from(world, chain, straight, q, length)
+    if line.why or not isinstance(within, UprightWorld):
+        return line
+    if (tilt := within.largest_tilt(line.path)) <= within.tolerance:
+        return line
+    why = f"along it {within.chain.tip!r} is tilted by {tilt:.4g} rad, more than {within.tolerance:.4g}"
+    return Line(line.path[:1], why)
 
 
 def _with_path(

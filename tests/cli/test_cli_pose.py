@@ -108,6 +108,19 @@ def test_straight_and_upright_are_asked_for_and_their_deviations_told(run, tmp_p
     assert max(map(len, out.splitlines())) <= 100
 
 
+def test_axes_may_be_negative(run, tmp_path):
+    words = ["plan", "box-reach.yaml", "--robot", "ur5", "--no-picture", *DOWN]
+    words += ["--straight", "0.05", "--upright", "5", "--out", "a"]
+    paths = []
+    for axes in (("--away", "-z", "--upright-axis", "-z"), ("--away=-z", "--upright-axis=-z")):
+        code, _, err = run(*words, *axes)
+        assert (code, err) == (0, "")
+        paths.append((tmp_path / "a.csv").read_text())
+    assert paths[0] == paths[1]
+    code, _, err = run(*words, "--upright-axis", "z")
+    assert (code, err) == (1, "")
+
+
 @pytest.mark.parametrize(
     ("options", "said"),
     [

@@ -53,6 +53,8 @@ def test_a_fifth_of_the_speed_takes_five_times_as_long(run):
         (["--trajectory", "t.script", "--step", "0.01"], "0.008"),
         (["--trajectory", "t.csv", "--controller-joints", "a,b"], "unknown joint"),
         (["--trajectory", "none/t.csv"], "none"),
+        (["--trajectory", "box-reach.csv"], "box-reach.csv is where the result itself goes"),
+        (["--trajectory", "t.json", "--out", "t"], "t.json is where the result itself goes"),
     ],
 )
 def test_bad_input_is_one_line_and_nothing_is_written(run, tmp_path, words, said):

@@ -98,7 +98,7 @@ def test_arrays_may_have_fields(tmp_path):
         ("dark.pcd", pcd("binary", np.full((2, 3), np.nan)), "is empty"),
         ("words.xyz", b"1 2 three\n", "not a readable cloud"),
         ("short.xyz", b"1 2\n3 4\n5 6\n", "three numbers a point, got an array of .3, 2."),
-        ("ragged.xyz", b"1 2 3\n3 4\n", "not a readable cloud"),
+        ("ragged.xyz", b"1 2 3\n3 4\n", "not every line has three numbers"),
         ("none.xyz", b"# nothing\n", "is empty"),
         ("broken.npy", b"\x93NUMPY", "not a readable cloud"),
     ],
@@ -116,6 +116,12 @@ def test_a_missing_file_and_an_unknown_format_are_refused(tmp_path):
         load_cloud(tmp_path / "scan.ply")
     with pytest.raises(UnknownName, match=r"'\.las'; known: \.npy, \.pcd, \.ply, \.xyz"):
         load_cloud(tmp_path / "scan.las")
+
+
+def test_complex_numbers_are_no_points(tmp_path):
+    np.save(tmp_path / "scan.npy", POINTS.astype(complex))
+    with pytest.raises(BrokenFile, match="complex"):
+        load_cloud(tmp_path / "scan.npy")
 
 
 def test_no_pickle_is_opened(tmp_path):

@@ -138,6 +138,25 @@ def test_files_that_hold_no_mesh_are_refused(tmp_path):
         load_mesh(tmp_path / "text.obj", scale=0.0)
 
 
+def test_a_ply_that_is_cut_off_is_refused_and_not_read_in_part(tmp_path):
+    pytest.importorskip("trimesh")
+    vertices = "".join("{:g} {:g} {:g}\n".format(*vertex) for vertex in CUBE.vertices)
+    faces = "".join("3 {} {} {}\n".format(*face) for face in CUBE.triangles)
+    header = (
+        f"ply\nformat ascii 1.0\nelement vertex {len(CUBE.vertices)}\nproperty float x\nproperty float y\n"
+        f"property float z\nelement face {len(CUBE.triangles)}\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+    whole = header + vertices + faces
+    (tmp_path / "cube.ply").write_text(whole)
+    assert len(load_mesh(tmp_path / "cube.ply").triangles) == 12
+    (tmp_path / "cube.ply").write_text(whole.rstrip())
+    assert len(load_mesh(tmp_path / "cube.ply").triangles) == 12
+    for lost in (3, 8, 9, 30, 60):
+        (tmp_path / "cube.ply").write_text(whole[:-lost])
+        with pytest.raises(BrokenFile, match="cut off|cannot read"):
+            load_mesh(tmp_path / "cube.ply")
+
+
 @pytest.mark.parametrize(("module", "file"), [("trimesh", "one.stl"), ("collada", "one.dae")])
 def test_without_what_reads_a_file_the_extra_is_named(tmp_path, monkeypatch, module, file):
     pytest.importorskip(module)

@@ -70,6 +70,14 @@ def test_a_line_out_of_reach_says_how_far_it_goes():
     assert 0.05 < float(line.why.split()[1]) < 1.0
 
 
+@pytest.mark.parametrize("length", [3.0, 1e6, 1e300])
+def test_a_line_longer_than_the_arm_reaches_is_refused_before_it_is_laid_out(length):
+    q = np.array(BENT["ur5"])
+    line = line_from(ArmWorld(UR5, EMPTY), chain_of(UR5, "tool0"), Straight(length), q, length)
+    assert line.path.tolist() == [q.tolist()]
+    assert "'tool0' moves no farther than 2.4" in line.why
+
+
 def test_a_line_that_is_missed_by_more_than_its_tolerance_is_refused():
     straight = Straight(0.05, line_tolerance=1e-9)
     line = line_from(ArmWorld(UR5, EMPTY), chain_of(UR5, "tool0"), straight, np.array(BENT["ur5"]), 0.05)

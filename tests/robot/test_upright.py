@@ -111,6 +111,29 @@ def test_straight_and_upright_go_together():
     assert tilt_along(ARM7, result.path, "flange") <= 0.1
 
 
+def test_lines_keep_another_link_upright_too():
+    # The line of the tool tilts the forearm by .236 rad on its way, and by .03 at its end.
+    robot, start = load_robot("ur5"), np.array([0.06, -2.17, 0.75, -0.26, 0.87, 0.06])
+    goal = start + np.array([0.6, 0, 0, 0.2, 0.2, 0.2])
+    forearm = robot.links.index("forearm_link")
+    axis = tuple(link_poses(robot, start[np.newaxis])[0, forearm, 2, :3].tolist())
+
+    def plan(tolerance):
+        line = Straight(retreat=0.4, away=(1.6, -1.3, -0.6), tip="tool0")
+        upright = Upright(tolerance, axis, tip="forearm_link")
+        return er.plan_arm(robot, Scene("empty"), start, goal, straight=line, upright=upright)
+
+    refused = plan(0.1)
+    assert refused.status is er.Status.NOT_CONNECTED
+    assert "from the start: along it 'forearm_link' is tilted by 0.23" in refused.message
+    allowed = plan(0.3)
+    assert allowed.solved
+    dense = np.concatenate([np.linspace(a, b, 50) for a, b in pairwise(allowed.path)])
+    up = link_poses(robot, dense)[:, forearm, 2, :3] @ np.array(axis)
+    assert allowed.deviation["tilt_rad"] == pytest.approx(np.arccos(up.min()), rel=1e-3)
+    assert allowed.deviation["tilt_rad"] > 0.23
+
+
 def test_a_tolerance_that_is_none_is_refused():
     with pytest.raises(InvalidValue, match="tolerance of upright must be a finite number > 0, got 0"):
         Upright(0.0)

@@ -25,6 +25,7 @@ HELP = {"-h", "--help"}
 MARKS = (conf.FlagCreatePairsOff, conf.DisallowNone, conf.PositionalMetavarFromFieldName)
 NUMBERS = {int: "a whole number", float: "a number"}
 RULES = ConstructorRegistry()
+AXES = ("-x", "-y", "-z")
 
 
 def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
@@ -39,7 +40,7 @@ def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
     texts = [" ".join(text.split()) for text in (kind.__doc__ or "").split("\n\n")]
     # Tyro wraps no text about a verb, and would join lines that begin with a letter.
     about = "\n\n".join(fill(text, table_width(), subsequent_indent="  ") for text in texts)
-    options, unknown = _parsed(kind, program, words, about)
+    options, unknown = _parsed(kind, program, _with_axes(words), about)
     if unknown:
         raise InvalidValue(f"{program} has no use for the word {shown(unknown[0])}")
     for field in fields(kind):
@@ -64,6 +65,17 @@ def option_names(kind: type) -> set[str]:
 def given_options(words: Sequence[str]) -> set[str]:
     """Return the long names among the words of a command line."""
     return {word.partition("=")[0].replace("_", "-") for word in words if word.startswith("--")}
+
+
+def _with_axes(words: Sequence[str]) -> list[str]:
+    """Return words in which an axis, as in ``--away -z``, is no option: the two become ``--away=-z``."""
+    joined: list[str] = []
+    for word in words:
+        if word in AXES and joined and joined[-1].startswith("--") and "=" not in joined[-1]:
+            joined[-1] += f"={word}"
+        else:
+            joined.append(word)
+    return joined
 
 
 def _parsed(kind: Any, prog: str, words: Sequence[str], about: str = "") -> Any:

@@ -24,7 +24,7 @@ from evenroad.cli.plan_parts import (
 )
 from evenroad.cli.roadmap import kept_roadmap
 from evenroad.cli.robot import bodiless_rows
-from evenroad.cli.trajectory import require_trajectory_options, trajectory_rows
+from evenroad.cli.trajectory import require_files_apart, require_trajectory_options, trajectory_rows
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
 from evenroad.roadmap import PlanResult, default_rule
@@ -64,6 +64,7 @@ def plan_arm(plan: PlanArm) -> int:
     inputs = (find_scene(plan.world), *of_robot, plan.srdf, plan.bodies, plan.roadmap)
     require_trajectory_options(plan, [path for path in inputs if path is not None])
     files = output_files(plan, [path for path in inputs if path is not None], ("json", "csv"), "file")
+    require_files_apart(plan, files.values())
     world, start, goals = query.world, query.start, query.goals
     rule = chosen_rule(plan, default_rule(world.space).k)
     points = draw_points(plan, world.space.cube_dim) if wants_points(plan) else None

@@ -37,6 +37,16 @@ def require_trajectory_options(plan: PlanArm, inputs: Iterable[Path]) -> None:
         require_writable_folder(file)
 
 
+def require_files_apart(plan: PlanArm, results: Iterable[Path]) -> None:
+    """Refuse a trajectory in a file that results go to, which would take its place."""
+    taken = {file.resolve() for file in results}
+    for file in plan.trajectory:
+        if file.resolve() in taken:
+            raise InvalidValue(
+                f"--trajectory {file} is where the result itself goes: name one of them otherwise"
+            )
+
+
 def trajectory_rows(
     plan: PlanArm, world: ArmWorld, result: PlanResult
 ) -> tuple[list[tuple[str, str]], dict[str, Any] | None]:

@@ -57,12 +57,16 @@ def _read_npy(file: Path) -> npt.NDArray[np.generic]:
     array = np.load(file, allow_pickle=False)
     if array.dtype.names:
         return _columns(array)
+    if np.iscomplexobj(array):
+        raise ValueError("its numbers are complex")
     return array[:, :3] if array.ndim == 2 and array.shape[1] > 3 else array
 
 
 def _read_xyz(file: Path) -> Floats:
     lines = (line.split("#")[0].replace(",", " ").split() for line in file.read_text().splitlines())
     rows = [[float(word) for word in words[:3]] for words in lines if words]
+    if len({len(row) for row in rows}) > 1:
+        raise ValueError("not every line has three numbers")
     return np.array(rows) if rows else np.empty((0, 3))
 
 

@@ -200,10 +200,26 @@ def load_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> TriangleMe
     except Exception as error:
         raise BrokenFile(f"cannot read the mesh {file}: {error}") from error
     if len(triangles) == 0:
-        raise BrokenFile(f"the mesh {file} is empty: a body without triangles would never collide")
+        raise BrokenFile(f"the mesh {file} is empty or cut off: a body without triangles would never collide")
+    if file.suffix.lower() == ".ply" and _is_cut_off(file.read_bytes(), len(triangles)):
+        raise BrokenFile(f"the mesh {file} is cut off: its header announces more than there is")
     if not (math.isfinite(unit) and unit > 0.0):
         raise BrokenFile(f"the mesh {file} must have a unit of a finite length > 0, got {unit:g} m")
     try:
         return TriangleMesh(factor * unit * vertices, triangles, file.name)
     except InvalidValue as error:
         raise BrokenFile(f"the mesh {file} is broken: {error}") from error
+
+
+def _is_cut_off(ply: bytes, triangles: int) -> bool:
+    """Return whether a .ply in ascii, of which so many triangles were read, lacks rows that its header announces.
+
+    trimesh takes what there is of these; of binary ones it knows the length.
+    """
+    header, _, rows = ply.partition(b"end_header")
+    words = [line.split() for line in header.splitlines()]
+    if [b"format", b"ascii"] not in [row[:2] for row in words]:
+        return False
+    counts = {row[1]: int(row[2]) for row in words if row[:1] == [b"element"]}
+    there = sum(bool(row.strip()) for row in rows.splitlines())
+    return there < sum(counts.values()) or triangles < counts.get(b"face", 0)

@@ -147,14 +147,12 @@ def _mesh(entry: object, name: str, path: Path) -> TriangleMesh:
         each.get("vertex_indices") if isinstance(each, dict) else each
         for each in parts.get("triangles") or []
     ]
+    vertices = np.array([numbers(row, 3, f"a vertex of {where}") for row in rows]).reshape(-1, 3)
+    triangles = np.array([numbers(row, 3, f"a triangle of {where}") for row in corners]).reshape(-1, 3)
+    if (broken := triangles != np.rint(triangles)).any():
+        raise InvalidValue(f"{where} must have whole vertex_indices, got {triangles[broken][0]:g}")
     try:
-        return TriangleMesh(
-            np.array([numbers(row, 3, f"a vertex of {where}") for row in rows]).reshape(-1, 3),
-            np.array([numbers(row, 3, f"a triangle of {where}") for row in corners])
-            .reshape(-1, 3)
-            .astype(int),
-            name,
-        )
+        return TriangleMesh(vertices, triangles.astype(int), name)
     except InvalidValue as error:
         raise InvalidValue(f"{where}: {error}") from None
 

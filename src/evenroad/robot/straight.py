@@ -76,6 +76,12 @@ class Line:
 
 def line_from(world: ArmWorld, chain: Chain, straight: Straight, q: Floats, length: float) -> Line:
     """Return the line on which the tip leaves a configuration, (dim,), which is free, by `length` [m]."""
+    farthest = 2.0 * chain.reach()[1]
+    if length > farthest:
+        # Said before such a line is laid out: of a kilometre there would be no memory for it.
+        return Line(
+            q[np.newaxis], f"it is {length:g} m long, {chain.tip!r} moves no farther than {farthest:.3g} m"
+        )
     tip = chain.places(q[np.newaxis])[0]
     turn, here = tip[:9].reshape(3, 3), tip[9:]
     away = np.array([0.0, 0.0, 1.0]) if straight.away == "up" else turn @ np.array(straight.away)

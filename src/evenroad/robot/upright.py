@@ -204,7 +204,11 @@ class UprightWorld:
         path = np.concatenate([waypoints[:1], *(way[1:] for way in ways if way is not None)])
         if shorten:
             path = self._shortened(path)
-        return path, float(self.tilts(between(self.world, path, 2 * FINE)).max())
+        return path, self.largest_tilt(path)
+
+    def largest_tilt(self, path: Floats) -> float:
+        """Return the largest tilt [rad] along a path, (p, dim), on a grid twice as fine as that of motions."""
+        return float(self.tilts(between(self.world, path, 2 * FINE)).max())
 
     def _shortened(self, path: Floats) -> Floats:
         space = self.world.space
