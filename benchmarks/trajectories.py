@@ -81,9 +81,9 @@ def toppra_ms(path: Path, limits: Limits) -> float:
 
 
 def measure(name: str, world: ArmWorld, start: Path, goal: Path) -> dict[str, Any] | None:
-    """Return a row of one problem; None where there is no path."""
+    """Return a row of one problem; None where there is no path, or none to drive."""
     result = find_path(world, start, goal[np.newaxis], budget=Budget(seconds=5.0))
-    if not result.solved or result.path is None or result.milestone_path is None:
+    if not (result.solved and result.cost) or result.path is None or result.milestone_path is None:
         return None
     raw, path, limits = result.milestone_path, result.path, limits_of(world.robot)
     try:
