@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats
@@ -36,7 +37,8 @@ def arm_trajectory(
     world : ArmWorld
         The arm among its obstacles.
     path : array_like, shape (p, dim)
-        As :attr:`PlanResult.path`.
+        As :attr:`PlanResult.path`.  Joints that turn for ever go the short way round, as they do there, and so may
+        leave the range of one turn.
     limits : Limits, optional
         Default: those of the robot, see :func:`limits_of`.
     speed : float
@@ -59,6 +61,7 @@ def arm_trajectory(
     places = as_batch("path", path, world.space.dim)
     if len(places) < 2:
         raise InvalidValue("path must lead somewhere: it needs two different waypoints or more")
+    places = _turned_on(world, places)
     asked = kept_ways(world, places, straight, upright)
     trajectory = make_trajectory(
         places,
@@ -79,6 +82,15 @@ def arm_trajectory(
         return places
 
     return with_radii(trajectory, asked, tip_at)
+
+
+def _turned_on(world: ArmWorld, path: Floats) -> Floats:
+    """Return a path, (p, dim), whose joints that turn for ever have the turns with which no step is the long way."""
+    if not world.space.flat.wraps:
+        return path
+    steps = np.diff(path, axis=0)
+    turns = np.rint((world.space.flat.difference(path[:-1], path[1:]) - steps) / (2.0 * np.pi))
+    return path + 2.0 * np.pi * np.cumsum(np.vstack([np.zeros(world.space.dim), turns]), axis=0)
 
 
 def controller_joints(robot: Robot) -> tuple[str, ...]:
