@@ -143,6 +143,7 @@ def test_waypoints_that_repeat_are_one():
         ([[0, 0], [1, 1]], {"deviation": -1.0}, "deviation"),
         ([[0, 0], [1, 1]], {"step": 0.0}, "step"),
         ([[0, 0], [1, 1]], {"names": ["a"]}, "names"),
+        ([[0, 0], [1, 1]], {"step": 1e-9}, "longer steps"),
     ],
 )
 def test_bad_input_is_named(path, options, said):

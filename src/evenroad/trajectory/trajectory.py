@@ -28,6 +28,9 @@ DEVIATION = 0.05
 _FINER = 8
 """Limits are checked at so many places a step."""
 
+_MOST_STATES = 1_000_000
+"""More than two hours at 125 Hz: a slip of the keyboard, and gigabytes."""
+
 _HALVINGS = 6
 """So often is a corner that touches cut half as much; then the robot stops there."""
 
@@ -153,7 +156,7 @@ def make_trajectory(
     Raises
     ------
     InvalidValue
-        If the path has one place only, or an argument is out of its range.
+        If the path has one place only, an argument is out of its range, or there would be a million states.
     NotAvailable
         If what would be driven is not free, or leaves limits or deviation: the path itself is not free, as a rule.
     """
@@ -210,6 +213,11 @@ def _on_steps(law: TimeLaw, limits: Limits, window: float, step: float) -> TimeL
     shares = _shares(law.at(within.ravel()), limits)
     law = stretched(law, max(1.0, shares["velocity"], math.sqrt(shares["acceleration"])))
     steps = max(math.ceil((law.duration + window) / step - 1e-9), math.floor(window / step) + 1)
+    if steps > _MOST_STATES:
+        raise InvalidValue(
+            f"the trajectory would take {law.duration + window:.4g} s in steps of {step:g} s, more than"
+            f" {_MOST_STATES} of them: take longer steps, or move faster"
+        )
     while True:
         law = stretched(law, (steps * step - window) / law.duration)
         fine = np.linspace(0.0, law.duration + window, _FINER * steps + 1)
