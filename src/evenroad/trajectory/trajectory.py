@@ -28,6 +28,9 @@ DEVIATION = 0.05
 _FINER = 8
 """Limits are checked at so many places a step."""
 
+_SAME = 1e-9
+"""Waypoints nearer than this in every joint are one [rad or m]."""
+
 _MOST_STATES = 1_000_000
 """More than two hours at 125 Hz: a slip of the keyboard, and gigabytes."""
 
@@ -163,7 +166,7 @@ def make_trajectory(
     deviation = require_positive("deviation", deviation, or_zero=True)
     step = require_positive("step", step)
     waypoints = as_batch("path", path, len(limits.velocity))
-    waypoints = waypoints[np.concatenate([[True], np.any(np.diff(waypoints, axis=0) != 0.0, axis=1)])]
+    waypoints = _apart(waypoints)
     if len(waypoints) < 2:
         raise InvalidValue("path must lead somewhere: it needs two different waypoints or more")
     joints = tuple(names) if names is not None else tuple(f"joint_{i + 1}" for i in range(waypoints.shape[1]))
@@ -205,6 +208,17 @@ def make_trajectory(
         controller=tuple(controller),
         proof=proof,
     )
+
+
+def _apart(path: Floats) -> Floats:
+    """Return a path without waypoints that are where the one before is, up to rounding; its ends stay as they are."""
+    kept: list[Floats] = []
+    for place in path:
+        if not kept or np.max(np.abs(place - kept[-1])) > _SAME:
+            kept.append(place)
+    if len(kept) > 1:
+        kept[-1] = path[-1]
+    return np.array(kept).reshape(-1, path.shape[1])
 
 
 def _on_steps(law: TimeLaw, limits: Limits, window: float, step: float) -> TimeLaw:
