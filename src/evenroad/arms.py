@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Unpack
 
@@ -37,6 +37,7 @@ from evenroad.robot.goals import Goals, goals_of
 from evenroad.robot.load import RobotOptions
 from evenroad.robot.pose_goal import PoseGoal
 from evenroad.robot.reference.recheck import MeshCheck, has_meshes, recheck, unseen_pairs
+from evenroad.robot.robot import with_group
 from evenroad.robot.states import clipped
 from evenroad.robot.straight import Straight
 from evenroad.robot.upright import Upright
@@ -228,22 +229,29 @@ def finished(
     if name and len(query.goals) > 1:
         to = f"to goal {result.goal_index}"
         result = replace(result, message=result.message.replace(to, f"{to} ({name})", 1))
-    world, source, model = query.world, query.source, query.model
     if certified:
-        result = require_certified(world, result)
-    if not result.solved or result.path is None or source is None or model is None:
+        result = require_certified(query.world, result)
+    if not result.solved or result.path is None:
         return result, None
-    unseen = unseen_pairs(model)
-    if not (has_meshes(model) or unseen):
-        return result, None
-    meshes = recheck(source, world.robot, world.scene, result.path, world.resolution, unseen)
-    if meshes.verdict != "in collision":
+    meshes = mesh_check(query, result.path)
+    if meshes is None or meshes.verdict != "in collision":
         return result, meshes
     message = (
         "the path is free for the robot's capsules, but not for the shapes that they stand for: in collision"
         f" {meshes.message}"
     )
     return replace(result, status=Status.MESH_COLLISION, message=message), meshes
+
+
+def mesh_check(query: ArmQuery, path: Floats) -> MeshCheck | None:
+    """Return what the meshes of the robot's file say of a path, (p, dim); None where there is nothing to ask."""
+    world, source, model = query.world, query.source, query.model
+    if source is None or model is None:
+        return None
+    unseen = unseen_pairs(model)
+    if not (has_meshes(model) or unseen):
+        return None
+    return recheck(source, world.robot, world.scene, path, world.resolution, unseen)
 
 
 def arm_query(
@@ -256,9 +264,13 @@ def arm_query(
     degrees: bool = False,
     tip: str = "",
     frame: str = "",
+    held: Mapping[str, float] | None = None,
     **options: Unpack[RobotOptions],
 ) -> ArmQuery:
-    """Read robot, scene and configurations, and put them together; parameters and errors as :func:`plan_arm`."""
+    """Read robot, scene and configurations, and put them together; parameters and errors as :func:`plan_arm`.
+
+    Joints outside of the group are held at `held`, else where the named states of start and goal have them.
+    """
     scene = scene if isinstance(scene, Scene) else load_scene(scene)
     source, model = None, None
     if isinstance(robot, Robot):
@@ -270,6 +282,8 @@ def arm_query(
     goals = _places(goal)
     texts = [place for place in (start, *goals) if isinstance(place, str)]
     robot = at_states(in_scene(robot, scene), texts, scene)
+    if held:
+        robot = with_group(robot, robot.group, {**robot.held, **held})
     scene = scene_seen_by(robot, scene)
     first = _configuration(robot, scene, "start", start, degrees)
     world = ArmWorld(robot, scene, resolution=resolution)

@@ -71,6 +71,9 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
             raise ValueError("start, goals and path must have the same joints")
         if not all(np.isfinite(each).all() for each in (start, goals, *([] if way is None else [way]))):
             raise ValueError("configurations must be finite")
+        index = record["goal_index"]
+        if index is not None and (type(index) is not int or not 0 <= index < len(goals)):
+            raise ValueError(f"goal_index must be the number of a goal, got {index!r}")
         result = PlanResult(
             status=Status(record["status"]),
             message=str(record["message"]),
@@ -79,7 +82,7 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
             path=way,
             origin=Origin(family="none", method="read from a file"),
             rule=str(record["rule"]),
-            goal_index=record["goal_index"],
+            goal_index=index,
             proof=record["proof"],
             cost=record["cost"],
             planner=str(record["planner"]),

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from evenroad.arms import arm_query
+from evenroad.robot.reference.recheck import MeshCheck
 from evenroad.trajectory import limits_of, load_trajectory
 
 REACH = ("plan", "box-reach.yaml", "--robot", "ur5", "--start", "home", "--goal", "inside", "--no-picture")
@@ -53,8 +54,10 @@ def test_a_fifth_of_the_speed_takes_five_times_as_long(run):
         (["--trajectory", "t.script", "--step", "0.01"], "0.008"),
         (["--trajectory", "t.csv", "--controller-joints", "a,b"], "unknown joint"),
         (["--trajectory", "none/t.csv"], "none"),
-        (["--trajectory", "box-reach.csv"], "box-reach.csv is where the result itself goes"),
-        (["--trajectory", "t.json", "--out", "t"], "t.json is where the result itself goes"),
+        (["--trajectory", "box-reach.csv"], "another result"),
+        (["--trajectory", "t.json", "--out", "t"], "another result"),
+        (["--trajectory", "box-reach.json"], "another result"),
+        (["--trajectory", "t.json", "--trajectory", "./t.json"], "another result"),
     ],
 )
 def test_bad_input_is_one_line_and_nothing_is_written(run, tmp_path, words, said):
@@ -63,3 +66,27 @@ def test_bad_input_is_one_line_and_nothing_is_written(run, tmp_path, words, said
     assert said in err
     assert err.count("\n") == 1
     assert not [path for path in tmp_path.iterdir() if path.name.startswith(("t.", "box"))]
+
+
+def test_the_meshes_are_asked_about_what_is_driven(run, tmp_path, monkeypatch):
+    asked = []
+
+    def in_collision(query, path):
+        asked.append(path)
+        return MeshCheck("in collision", 1, "a touches b")
+
+    monkeypatch.setattr("evenroad.cli.trajectory.mesh_check", in_collision)
+    code, _, err = run(*REACH, "--trajectory", "t.json")
+    assert code == 2
+    assert "in collision a touches b; a smaller --deviation may help" in err
+    assert len(asked[0]) > 100
+    assert not (tmp_path / "t.json").exists()
+
+
+def test_an_arm_that_is_there_already_has_nothing_to_drive(run, tmp_path):
+    (tmp_path / "t.json").write_text("of an earlier run")
+    stay = ("plan", "box-reach.yaml", "--robot", "ur5", "--start", "home", "--goal", "home", "--no-picture")
+    code, out, err = run(*stay, "--trajectory", "t.json")
+    assert (code, err) == (0, "")
+    assert "the start is the goal" in out
+    assert not (tmp_path / "t.json").exists()

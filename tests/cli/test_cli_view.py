@@ -1,7 +1,11 @@
 import json
 
+import numpy as np
 import pytest
 from PIL import Image
+
+from evenroad.cli.view import View
+from evenroad.robot import held_values
 
 REACH = ("plan", "box-reach.yaml", "--robot", "ur5", "--start", "home", "--goal", "inside", "--no-picture")
 
@@ -42,3 +46,36 @@ def test_bad_input_is_one_line(run, tmp_path, words, said):
     assert code == 2
     assert said in err
     assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"goal_index": 9}, "goal_index"),
+        ({"query": {"joints": None}}, "damaged plan"),
+        ({"query": {"held": {"a": "b"}}}, "damaged plan"),
+        ({"query": {"srdf": 5}}, "damaged plan"),
+    ],
+)
+def test_a_damaged_plan_is_one_line(run, tmp_path, change, said):
+    run(*REACH)
+    file = tmp_path / "box-reach.json"
+    record = json.loads(file.read_text())
+    record |= change | {"query": record["query"] | change.get("query", {})}
+    file.write_text(json.dumps(record))
+    code, _, err = run("view", "box-reach.json", "--gif", "out.gif")
+    assert code == 2
+    assert said in err
+    assert err.count("\n") == 1
+
+
+def test_joints_that_were_held_are_where_the_plan_held_them(run, tmp_path):
+    joints = "shoulder_pan_joint,elbow_joint,wrist_1_joint"
+    code, _, err = run(
+        *("plan", "box-reach.yaml", "--robot", "ur5", "--group", joints, "--start", "home", "--no-picture"),
+        *("--goal", "0.2,0.1,-1.5"),
+    )
+    assert code == 0, err
+    query, _ = View(world=tmp_path / "box-reach.json")._query()
+    held = held_values(query.world.robot)
+    assert held["shoulder_lift_joint"] == pytest.approx(-np.pi / 2)

@@ -1,5 +1,6 @@
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import yaml
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.trajectory import Limits, load_trajectory, make_trajectory, save_trajectory
 from evenroad.trajectory.files import save_trajectories
+from evenroad.trajectory.send import send_trajectory
 
 NAMES = ("a", "b", "c", "d", "e")
 
@@ -116,6 +118,9 @@ def test_an_unknown_format_is_named(trajectory, tmp_path, name):
         ({"limits": {"velocity": [0.1] * 5, "acceleration": [1.0] * 5}}, "faster"),
         ({"limits": 3}, "damaged"),
         ({"waypoints": [[0.0] * 4] * 3}, "waypoints"),
+        ({"radii": [0.1] * 9}, "radii"),
+        ({"held": {"tool": float("nan")}}, "held"),
+        ({"held": {NAMES[0]: 0.0}}, "named once"),
     ],
 )
 def test_a_damaged_file_is_named(trajectory, tmp_path, change, said):
@@ -144,3 +149,21 @@ def test_a_file_whose_times_go_back_is_refused(trajectory, tmp_path):
     file.write_text(json.dumps(record))
     with pytest.raises(BrokenFile, match="grow"):
         load_trajectory(file)
+
+
+def test_a_file_whose_steps_differ_is_refused(trajectory, tmp_path):
+    # Sent one a cycle, its last states would be driven far faster than they say.
+    file = tmp_path / "t.json"
+    save_trajectory(file, trajectory)
+    record = json.loads(file.read_text())
+    record["times"][-1] += 10.0
+    file.write_text(json.dumps(record))
+    with pytest.raises(BrokenFile, match="equal steps"):
+        load_trajectory(file)
+
+
+def test_sending_asks_how_fast_the_states_are_not_what_they_say():
+    made = make_trajectory([[0.0] * 6, [1.0] * 6], Limits((2.0,) * 6, (4.0,) * 6))
+    quiet = replace(made, velocities=np.zeros_like(made.velocities))
+    with pytest.raises(InvalidValue, match="faster than"):
+        send_trajectory(quiet, "127.0.0.1", model="UR5", fastest=0.5)

@@ -132,17 +132,23 @@ def test_waypoints_that_repeat_are_one():
     once = make_trajectory([[0, 0], [1, 0], [1, 1]], limits)
     twice = make_trajectory([[0, 0], [0, 0], [1, 0], [1, 0], [1, 1]], limits)
     np.testing.assert_array_equal(once.positions, twice.positions)
+    # As sums leave them: without length a piece would take for ever.
+    nearly = make_trajectory([[0, 0], [1e-13, 0], [1, 0], [1, 1], [1, 1 + 1e-12]], limits)
+    np.testing.assert_allclose(nearly.positions, once.positions, atol=1e-9)
+    assert nearly.positions[-1, 1] == pytest.approx(1 + 1e-12, abs=1e-15)
 
 
 @pytest.mark.parametrize(
     ("path", "options", "said"),
     [
         ([[0, 0], [0, 0]], {}, "somewhere"),
+        ([[0, 0], [1e-12, 1e-12]], {}, "somewhere"),
         ([[0, 0, 0]], {}, r"shape \(n, 2\)"),
         ([[0, 0], [np.nan, 1]], {}, "finite"),
         ([[0, 0], [1, 1]], {"deviation": -1.0}, "deviation"),
         ([[0, 0], [1, 1]], {"step": 0.0}, "step"),
         ([[0, 0], [1, 1]], {"names": ["a"]}, "names"),
+        ([[0, 0], [1, 1]], {"step": 1e-9}, "longer steps"),
     ],
 )
 def test_bad_input_is_named(path, options, said):

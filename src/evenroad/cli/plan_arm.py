@@ -24,7 +24,7 @@ from evenroad.cli.plan_parts import (
 )
 from evenroad.cli.roadmap import kept_roadmap
 from evenroad.cli.robot import bodiless_rows
-from evenroad.cli.trajectory import require_files_apart, require_trajectory_options, trajectory_rows
+from evenroad.cli.trajectory import require_trajectory_options, trajectory_rows
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
 from evenroad.roadmap import PlanResult, default_rule
@@ -62,9 +62,8 @@ def plan_arm(plan: PlanArm) -> int:
     query = query if known is None else replace(query, world=known.world)
     of_robot = () if plan.robot is None else find_robot(plan.robot)
     inputs = (find_scene(plan.world), *of_robot, plan.srdf, plan.bodies, plan.roadmap)
-    require_trajectory_options(plan, [path for path in inputs if path is not None])
     files = output_files(plan, [path for path in inputs if path is not None], ("json", "csv"), "file")
-    require_files_apart(plan, files.values())
+    require_trajectory_options(plan, [path for path in inputs if path is not None], files.values())
     world, start, goals = query.world, query.start, query.goals
     rule = chosen_rule(plan, default_rule(world.space).k)
     points = draw_points(plan, world.space.cube_dim) if wants_points(plan) else None
@@ -82,7 +81,7 @@ def plan_arm(plan: PlanArm) -> int:
     else:
         result = plan_ways(query.ends, *ways, plan_once, shorten=not plan.raw)
     result, meshes = finished(query, result, certified=plan.certified)
-    more_rows, trajectory = trajectory_rows(plan, world, result)
+    more_rows, trajectory = trajectory_rows(plan, query, result, ways)
     robot, model = world.robot, query.model
     asked = {
         "scene": str(plan.world),

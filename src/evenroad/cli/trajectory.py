@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from evenroad._checks import require_positive
 from evenroad._files import require_writable_folder
+from evenroad.arms import ArmQuery, mesh_check
 from evenroad.cli.plan import PlanArm
-from evenroad.errors import InvalidValue
+from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.roadmap import PlanResult
-from evenroad.robot import ArmWorld
+from evenroad.robot.straight import Straight
+from evenroad.robot.upright import Upright
 
 _MOVEJ = ".movej.script"
 
 
-def require_trajectory_options(plan: PlanArm, inputs: Iterable[Path]) -> None:
-    """Refuse, before anything is planned, what would fail or overwrite an input afterwards."""
+def require_trajectory_options(plan: PlanArm, inputs: Iterable[Path], outputs: Iterable[Path]) -> None:
+    """Refuse, before anything is planned, what would fail, or overwrite an input or another result, afterwards."""
     if not plan.trajectory:
         for option in ("speed", "limits", "deviation", "step", "controller_joints"):
             if getattr(plan, option) != type(plan).__dataclass_fields__[option].default:
@@ -30,37 +35,36 @@ def require_trajectory_options(plan: PlanArm, inputs: Iterable[Path]) -> None:
     require_positive("deviation", plan.deviation, or_zero=True)
     require_positive("step", plan.step)
     taken = {source.resolve() for source in inputs} | ({plan.limits.resolve()} if plan.limits else set())
+    results = {output.resolve() for output in outputs}
     for file in plan.trajectory:
         format_of(file)
         if file.resolve() in taken:
             raise InvalidValue(f"--trajectory {file} would overwrite an input")
+        if file.resolve() in results:
+            raise InvalidValue(
+                f"--trajectory {file} is a file of another result of this plan; name another one"
+            )
+        results.add(file.resolve())
         require_writable_folder(file)
 
 
-def require_files_apart(plan: PlanArm, results: Iterable[Path]) -> None:
-    """Refuse a trajectory in a file that results go to, which would take its place."""
-    taken = {file.resolve() for file in results}
-    for file in plan.trajectory:
-        if file.resolve() in taken:
-            raise InvalidValue(
-                f"--trajectory {file} is where the result itself goes: name one of them otherwise"
-            )
-
-
 def trajectory_rows(
-    plan: PlanArm, world: ArmWorld, result: PlanResult
+    plan: PlanArm, query: ArmQuery, result: PlanResult, ways: tuple[Straight | None, Upright | None]
 ) -> tuple[list[tuple[str, str]], dict[str, Any] | None]:
     """Write the trajectory of a solved plan; return rows for the table, and what the record says of it."""
     if not plan.trajectory:
         return [], None
-    if not result.solved or result.path is None:
+    stays = result.path is not None and bool(np.all(result.path == result.path[0]))
+    if not result.solved or result.path is None or stays:
         # One of an earlier run must not pass for this one's.
         for file in plan.trajectory:
             file.unlink(missing_ok=True)
-        return [], None
+        return [("trajectory", "none: the start is the goal")] if stays else [], None
     from evenroad.trajectory import arm_trajectory, limits_of
     from evenroad.trajectory.files import save_trajectories
 
+    world, tip = query.world, query.ends.tip
+    straight, upright = (None if way is None else replace(way, tip=way.tip or tip) for way in ways)
     joints = plan.controller_joints
     order = None if joints is None else [*map(str.strip, joints.split(","))]
     trajectory = arm_trajectory(
@@ -71,7 +75,15 @@ def trajectory_rows(
         deviation=plan.deviation,
         step=plan.step,
         rounded_by_controller=any(file.name.lower().endswith(_MOVEJ) for file in plan.trajectory),
+        straight=straight,  # type: ignore[arg-type]
+        upright=upright,  # type: ignore[arg-type]
     )
+    meshes = mesh_check(query, trajectory.positions)
+    if meshes is not None and meshes.verdict == "in collision":
+        raise NotAvailable(
+            "the trajectory is free for the robot's capsules, but not for the shapes that they stand for:"
+            f" in collision {meshes.message}; a smaller --deviation may help"
+        )
     save_trajectories(plan.trajectory, trajectory, order)
     used = ", ".join(f"{100 * share:.0f} % of {kind}" for kind, share in trajectory.highest.items())
     stops = f", {trajectory.stops} stops" if trajectory.stops else ""

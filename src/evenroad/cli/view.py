@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 import tyro
@@ -13,7 +13,7 @@ from evenroad._arrays import Floats
 from evenroad._files import require_writable_folder
 from evenroad.arms import ArmQuery, arm_query, plan_on_points
 from evenroad.cli.plan import RobotOptions
-from evenroad.errors import InvalidValue
+from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.io import load_plan
 from evenroad.points import draw
 from evenroad.roadmap import Budget, PlanResult
@@ -90,10 +90,12 @@ class View(RobotOptions):
         robot = self.robot or asked.get("robot")
         if not isinstance(robot, str) or not isinstance(asked.get("scene"), str):
             raise InvalidValue(f"{self.world} is not the plan of an arm: it names no robot and scene")
+        _require_sound(self.world, asked)
         for name in ("srdf", "bodies"):
             options[name] = options[name] or asked.get(name)
         options["group"] = options["group"] or ",".join(asked["joints"])
-        query = arm_query(robot, asked["scene"], result.start, list(result.goals), **options)
+        held = asked["held"]
+        query = arm_query(robot, asked["scene"], result.start, list(result.goals), held=held, **options)
         if self.n is not None:
             result = self._planned(query.world, query.start, query.goals)
         return query, result
@@ -111,3 +113,12 @@ class View(RobotOptions):
             shorten=True,
             budget=budget,
         )
+
+
+def _require_sound(file: Path, asked: dict[str, Any]) -> None:
+    """Raise BrokenFile where a plan does not say what robot it is of as `evenroad plan` does."""
+    joints, held = asked.get("joints"), asked.get("held")
+    sound = isinstance(joints, list) and all(isinstance(name, str) for name in joints)
+    sound &= isinstance(held, dict) and all(isinstance(value, int | float) for value in held.values())
+    if not sound or not all(isinstance(asked.get(name), str | None) for name in ("srdf", "bodies")):
+        raise BrokenFile(f"{file} is a damaged plan: of its robot's joints, held joints or files")

@@ -74,6 +74,14 @@ class Line:
     off_rad: float = 0.0
 
 
+def line_at(chain: Chain, straight: Straight, q: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return rotation, (3, 3), and place of the tip at a configuration, (dim,), and the direction of its line."""
+    tip = chain.places(q[np.newaxis])[0]
+    turn = tip[:9].reshape(3, 3)
+    up = straight.away == "up"
+    return turn, tip[9:], np.array([0.0, 0.0, 1.0]) if up else turn @ np.array(straight.away)
+
+
 def line_from(world: ArmWorld, chain: Chain, straight: Straight, q: Floats, length: float) -> Line:
     """Return the line on which the tip leaves a configuration, (dim,), which is free, by `length` [m]."""
     farthest = 2.0 * chain.reach()[1]
@@ -82,12 +90,10 @@ def line_from(world: ArmWorld, chain: Chain, straight: Straight, q: Floats, leng
         return Line(
             q[np.newaxis], f"it is {length:g} m long, {chain.tip!r} moves no farther than {farthest:.3g} m"
         )
-    tip = chain.places(q[np.newaxis])[0]
-    turn, here = tip[:9].reshape(3, 3), tip[9:]
-    away = np.array([0.0, 0.0, 1.0]) if straight.away == "up" else turn @ np.array(straight.away)
+    turn, here, away = line_at(chain, straight, q)
     count = max(1, int(np.ceil(length / STEP)))
     shares = length * np.arange(count + 1) / count
-    tasks = np.tile(task(Pose(tuple(here.tolist()), tuple(tip[:9].tolist()))), (count + 1, 1))
+    tasks = np.tile(task(Pose(tuple(here.tolist()), tuple(turn.ravel().tolist()))), (count + 1, 1))
     tasks[:, 9:12] = here + shares[:, np.newaxis] * away
     way, done = followed_from(chain, tasks, q, _LONGEST, world.space.flat.wrapping)
     where = f"of the straight line of {length:g} m"
@@ -110,13 +116,21 @@ def _off(
     world: ArmWorld, chain: Chain, way: Floats, here: Floats, away: Floats, turn: Floats
 ) -> tuple[float, float]:
     """Return by how much the tip misses a line and its rotation on a fine grid [m, rad]."""
-    tips = chain.places(between(world, way, FINE))
+    off_m, off_rad, _ = misses(chain, between(world, way, FINE), here, away, turn)
+    return float(off_m.max()), float(off_rad.max())
+
+
+def misses(
+    chain: Chain, q: Floats, here: Floats, away: Floats, turn: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """Return by how much the tip misses a line and its rotation, and how far along it is, (n,) each, at (n, dim)."""
+    tips = chain.places(q)
     gap = tips[:, 9:] - here
-    gap -= np.outer(gap @ away, away)
+    along = gap @ away
     turns = np.einsum("nij,kj->nik", tips[:, :9].reshape(-1, 3, 3), turn)
     sine = 0.5 * np.linalg.norm(turns - turns.transpose(0, 2, 1), axis=(1, 2)) / np.sqrt(2.0)
     cosine = 0.5 * (np.trace(turns, axis1=1, axis2=2) - 1.0)
-    return float(np.linalg.norm(gap, axis=1).max()), float(np.arctan2(sine, cosine).max())
+    return np.linalg.norm(gap - np.outer(along, away), axis=1), np.arctan2(sine, cosine), along
 
 
 def between(world: ArmWorld, way: Floats, count: int) -> Floats:

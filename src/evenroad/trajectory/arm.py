@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats
+from evenroad._checks import as_batch
+from evenroad.errors import InvalidValue
 from evenroad.robot import ArmWorld, Robot, held_values, tip_links
 from evenroad.robot.kinematics import link_poses
+from evenroad.robot.straight import Straight
+from evenroad.robot.upright import Upright
+from evenroad.trajectory.kept import kept_ways
 from evenroad.trajectory.limits import Limits, limits_of
 from evenroad.trajectory.trajectory import DEVIATION, STEP, Trajectory, make_trajectory
 from evenroad.trajectory.urscript import with_radii
@@ -21,6 +27,8 @@ def arm_trajectory(
     deviation: float = DEVIATION,
     step: float = STEP,
     rounded_by_controller: bool = False,
+    straight: Straight | None = None,
+    upright: Upright | None = None,
 ) -> Trajectory:
     """Return the trajectory of an arm along a path, checked in its world as it is driven.
 
@@ -29,7 +37,8 @@ def arm_trajectory(
     world : ArmWorld
         The arm among its obstacles.
     path : array_like, shape (p, dim)
-        As :attr:`PlanResult.path`.
+        As :attr:`PlanResult.path`.  Joints that turn for ever go the short way round, as they do there, and so may
+        leave the range of one turn.
     limits : Limits, optional
         Default: those of the robot, see :func:`limits_of`.
     speed : float
@@ -38,6 +47,8 @@ def arm_trajectory(
         As :func:`make_trajectory`.
     rounded_by_controller : bool
         Find out, too, how far the controller may round off the corners, for ``.movej.script``.
+    straight, upright : optional
+        As the path was planned with: what is driven keeps them, too, within the same tolerances.
 
     Raises
     ------
@@ -47,10 +58,15 @@ def arm_trajectory(
     robot = world.robot
     within = (limits_of(robot) if limits is None else limits).at_speed(speed)
     controller = controller_joints(robot)
+    places = as_batch("path", path, world.space.dim)
+    if len(places) < 2:
+        raise InvalidValue("path must lead somewhere: it needs two different waypoints or more")
+    places = _turned_on(world, places)
+    asked = kept_ways(world, places, straight, upright)
     trajectory = make_trajectory(
-        path,
+        places,
         within,
-        world=world,
+        world=asked,
         names=robot.group,
         held={name: value for name, value in held_values(robot).items() if name in controller},
         controller=controller,
@@ -65,7 +81,16 @@ def arm_trajectory(
         places: Floats = link_poses(robot, q)[:, tip, :3, 3]
         return places
 
-    return with_radii(trajectory, world, tip_at)
+    return with_radii(trajectory, asked, tip_at)
+
+
+def _turned_on(world: ArmWorld, path: Floats) -> Floats:
+    """Return a path, (p, dim), whose joints that turn for ever have the turns with which no step is the long way."""
+    if not world.space.flat.wraps:
+        return path
+    steps = np.diff(path, axis=0)
+    turns = np.rint((world.space.flat.difference(path[:-1], path[1:]) - steps) / (2.0 * np.pi))
+    return path + 2.0 * np.pi * np.cumsum(np.vstack([np.zeros(world.space.dim), turns]), axis=0)
 
 
 def controller_joints(robot: Robot) -> tuple[str, ...]:

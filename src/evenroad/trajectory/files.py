@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import tempfile
 from collections.abc import Callable, Iterable, Sequence
@@ -107,8 +108,15 @@ def _from_record(record: dict[str, Any]) -> Trajectory:
         raise ValueError(f"times, joint_names, limits and states must belong together, {shape}")
     if not all(np.isfinite(table).all() for table in (times, waypoints, *tables)):
         raise ValueError("states must be finite numbers")
-    if times[0] != 0.0 or np.any(np.diff(times) <= 0.0):
-        raise ValueError("times must begin with 0 and grow")
+    if times[0] != 0.0 or times[1] <= 0.0 or not np.allclose(np.diff(times), times[1], rtol=1e-6, atol=0.0):
+        raise ValueError("times must begin with 0 and grow by equal steps")
+    if len(radii) not in (0, len(waypoints) - 2) or not all(0.0 <= radius < math.inf for radius in radii):
+        raise ValueError("radii must be one number >= 0 for each waypoint within the path, or none")
+    held = {str(name): float(value) for name, value in record["held"].items()}
+    if not all(map(math.isfinite, held.values())):
+        raise ValueError("places of held joints must be finite numbers")
+    if len(set(names) | set(held)) < len(names) + len(held):
+        raise ValueError("every joint must be named once")
     moved, room = np.abs(np.diff(tables[0], axis=0)), np.diff(times)[:, None] * np.array(limits.velocity)
     if np.any(moved > 1.001 * room + 1e-9) or np.any(np.abs(tables[1]) > 1.001 * np.array(limits.velocity)):
         raise ValueError("it moves faster than its own limits say")
@@ -123,7 +131,7 @@ def _from_record(record: dict[str, Any]) -> Trajectory:
         deviation=float(record["deviation"]),
         stops=int(record["stops"]),
         highest={str(kind): float(share) for kind, share in record["highest"].items()},
-        held={str(name): float(value) for name, value in record["held"].items()},
+        held=held,
         controller=tuple(map(str, record["controller"])),
         proof=str(record["proof"]),
         radii=radii,

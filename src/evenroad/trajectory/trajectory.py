@@ -28,6 +28,12 @@ DEVIATION = 0.05
 _FINER = 8
 """Limits are checked at so many places a step."""
 
+_SAME = 1e-9
+"""Waypoints nearer than this in every joint are one [rad or m]."""
+
+_MOST_STATES = 1_000_000
+"""More than two hours at 125 Hz: a slip of the keyboard, and gigabytes."""
+
 _HALVINGS = 6
 """So often is a corner that touches cut half as much; then the robot stops there."""
 
@@ -153,14 +159,14 @@ def make_trajectory(
     Raises
     ------
     InvalidValue
-        If the path has one place only, or an argument is out of its range.
+        If the path has one place only, an argument is out of its range, or there would be a million states.
     NotAvailable
         If what would be driven is not free, or leaves limits or deviation: the path itself is not free, as a rule.
     """
     deviation = require_positive("deviation", deviation, or_zero=True)
     step = require_positive("step", step)
     waypoints = as_batch("path", path, len(limits.velocity))
-    waypoints = waypoints[np.concatenate([[True], np.any(np.diff(waypoints, axis=0) != 0.0, axis=1)])]
+    waypoints = _apart(waypoints)
     if len(waypoints) < 2:
         raise InvalidValue("path must lead somewhere: it needs two different waypoints or more")
     joints = tuple(names) if names is not None else tuple(f"joint_{i + 1}" for i in range(waypoints.shape[1]))
@@ -204,12 +210,28 @@ def make_trajectory(
     )
 
 
+def _apart(path: Floats) -> Floats:
+    """Return a path without waypoints that are where the one before is, up to rounding; its ends stay as they are."""
+    kept: list[Floats] = []
+    for place in path:
+        if not kept or np.max(np.abs(place - kept[-1])) > _SAME:
+            kept.append(place)
+    if len(kept) > 1:
+        kept[-1] = path[-1]
+    return np.array(kept).reshape(-1, path.shape[1])
+
+
 def _on_steps(law: TimeLaw, limits: Limits, window: float, step: float) -> TimeLaw:
     """Return a law that keeps its limits between the places of its grid, too, and ends on a whole step."""
     within = law.times[:-1, None] + np.diff(law.times)[:, None] * np.linspace(0.0, 1.0 - 1e-9, _FINER)
     shares = _shares(law.at(within.ravel()), limits)
     law = stretched(law, max(1.0, shares["velocity"], math.sqrt(shares["acceleration"])))
     steps = max(math.ceil((law.duration + window) / step - 1e-9), math.floor(window / step) + 1)
+    if steps > _MOST_STATES:
+        raise InvalidValue(
+            f"the trajectory would take {law.duration + window:.4g} s in steps of {step:g} s, more than"
+            f" {_MOST_STATES} of them: take longer steps, or move faster"
+        )
     while True:
         law = stretched(law, (steps * step - window) / law.duration)
         fine = np.linspace(0.0, law.duration + window, _FINER * steps + 1)

@@ -1,0 +1,92 @@
+"""The ways that a tip was told to take, kept by what is driven, too: a corner that is rounded off may leave them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from evenroad._arrays import Bools, Floats
+from evenroad.robot import ArmWorld
+from evenroad.robot.chain import Chain, chain_of, default_tip
+from evenroad.robot.straight import STEP, Straight, between, line_at, misses
+from evenroad.robot.upright import FINE, Upright, UprightWorld, upright_world
+from evenroad.space import Space
+
+
+@dataclass(frozen=True, eq=False)
+class KeptWays:
+    """An arm's world whose strict check asks, too, whether a path keeps upright, and its ends straight.
+
+    Attributes
+    ----------
+    world : ArmWorld
+    path : ndarray, shape (p, dim)
+        As planned: the lines begin at its ends.
+    straight : Straight or None
+    upright : UprightWorld or None
+    """
+
+    world: ArmWorld
+    path: Floats
+    straight: Straight | None
+    upright: UprightWorld | None
+
+    @property
+    def space(self) -> Space:
+        """That of the arm."""
+        return self.world.space
+
+    @property
+    def proof(self) -> str:
+        """As the world's: that nothing touches is proved, tilts and lines are measured."""
+        return self.world.proof
+
+    def valid(self, q: Floats) -> Bools:
+        """As the world's."""
+        return self.world.valid(q)
+
+    def motion_valid(self, a: Floats, b: Floats) -> Bools:
+        """As the world's."""
+        return self.world.motion_valid(a, b)
+
+    def recheck(self, path: Floats) -> Bools:
+        """Return which motions of a path, (p, dim), are proved free and keep their ways on a fine grid: (p - 1,)."""
+        good = self.world.recheck(path)
+        if self.upright is not None:
+            tilted = self.upright.tilts(between(self.world, path, FINE)) > self.upright.tolerance
+            good &= ~(tilted[1:].reshape(-1, FINE).any(axis=1) | tilted[0])
+        if self.straight is not None:
+            chain = chain_of(self.world.robot, self.straight.tip or default_tip(self.world.robot))
+            for end, length in ((0, self.straight.retreat), (-1, self.straight.approach)):
+                # What begins elsewhere is a part of a path without its line.
+                if length and np.allclose(path[end], self.path[end], rtol=0.0, atol=1e-9):
+                    way = path if end == 0 else path[::-1]
+                    off = self._off_line(chain, self.straight, way, length)
+                    good &= ~(off if end == 0 else off[::-1])
+        return good
+
+    def _off_line(self, chain: Chain, straight: Straight, way: Floats, length: float) -> Bools:
+        """Return which motions of a path that begins with a line miss it: (p - 1,).
+
+        The corner at its end may be rounded off within half a step of the line.
+        """
+        turn, here, away = line_at(chain, straight, way[0])
+        off_m, off_rad, along = misses(chain, between(self.world, way, FINE)[1:], here, away, turn)
+        over = np.flatnonzero(along >= length - 0.5 * STEP)
+        missed = (off_m > straight.line_tolerance) | (off_rad > straight.angle_tolerance)
+        missed[over[0] if len(over) else len(missed) :] = False
+        return np.asarray(missed.reshape(-1, FINE).any(axis=1))
+
+
+def kept_ways(
+    world: ArmWorld, path: Floats, straight: Straight | None, upright: Upright | None
+) -> KeptWays | ArmWorld:
+    """Return the world in which a path, (p, dim), keeps the ways it was planned for, if any."""
+    if straight is None and upright is None:
+        return world
+    within = None
+    if upright is not None:
+        chain = chain_of(world.robot, upright.tip or default_tip(world.robot))
+        within = upright_world(world, chain, upright, path[0])
+    return KeptWays(world, path, straight, within)

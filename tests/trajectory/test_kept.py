@@ -1,0 +1,87 @@
+import numpy as np
+import pytest
+
+import evenroad as er
+from evenroad.arms import arm_query
+from evenroad.errors import InvalidValue, NotAvailable
+from evenroad.robot.scene import Scene
+from evenroad.robot.straight import Straight
+from evenroad.robot.upright import Upright
+from evenroad.trajectory import arm_trajectory
+from evenroad.trajectory.kept import kept_ways
+
+DOWN = np.array([0.0, -1.2, 1.2, -1.57, -1.57, 0.0])
+"""Of a UR5 whose tool points down."""
+
+STRAIGHT = Straight(0.1)
+
+TURNING = """<robot name="turning">
+<link name="base"/>
+<link name="arm"><collision><origin xyz="0.3 0 0" rpy="0 1.5708 0"/>
+<geometry><cylinder radius="0.03" length="0.5"/></geometry></collision></link>
+<joint name="a" type="continuous"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>
+<limit effort="1" velocity="1"/></joint>
+</robot>"""
+"""An arm that turns for ever."""
+
+
+def free_world():
+    return arm_query("ur5", Scene("nothing", ()), DOWN, DOWN).world
+
+
+@pytest.mark.parametrize(("tilt", "kept"), [(0.04, True), (0.2, False)])
+def test_what_is_driven_keeps_upright_as_the_path_was_asked_to(tilt, kept):
+    world, goal = free_world(), DOWN + np.array([0.5, 0.0, 0.0, tilt, 0.0, 0.0])
+    assert arm_trajectory(world, [DOWN, goal]).duration > 0.0
+    if kept:
+        assert arm_trajectory(world, [DOWN, goal], upright=Upright(0.05)).proof == "certified"
+        return
+    with pytest.raises(NotAvailable, match="not proved"):
+        arm_trajectory(world, [DOWN, goal], upright=Upright(0.05))
+
+
+@pytest.fixture(scope="module")
+def straight_path():
+    result = er.plan_arm("ur5", "box-reach", "home", "inside", straight=STRAIGHT)
+    assert result.solved
+    return arm_query("ur5", "box-reach", "home", "inside").world, result.path
+
+
+def test_what_is_driven_comes_straight(straight_path):
+    world, path = straight_path
+    assert arm_trajectory(world, path, straight=STRAIGHT, rounded_by_controller=True).stops == 0
+
+
+def test_a_way_that_is_not_straight_is_told(straight_path):
+    world, path = straight_path
+    asked = kept_ways(world, path, STRAIGHT, None)
+    assert asked.recheck(path).all()
+    bent = path.copy()
+    bent[-5, 0] += 0.01
+    np.testing.assert_array_equal(np.flatnonzero(~asked.recheck(bent)), len(path) - 6 + np.arange(2))
+    # Backwards the line leaves the start.
+    back = kept_ways(world, path[::-1], Straight(0.0, 0.1), None)
+    np.testing.assert_array_equal(np.flatnonzero(~back.recheck(bent[::-1])), [3, 4])
+
+
+def test_a_path_without_places_is_named():
+    with pytest.raises(InvalidValue, match="two different waypoints"):
+        arm_trajectory(free_world(), np.zeros((0, 6)), upright=Upright(0.1))
+
+
+@pytest.mark.parametrize("blocked", [False, True])
+def test_a_joint_that_turns_for_ever_goes_the_short_way_as_its_path_does(tmp_path, blocked):
+    file = tmp_path / "turning.urdf"
+    file.write_text(TURNING)
+    scene = tmp_path / "post.yaml"
+    at = 0.5 if blocked else 5.0
+    scene.write_text(f"obstacles: {{post: {{shape: box, size: [0.1, 0.1, 0.5], xyz: [{at}, 0, 0]}}}}\n")
+    result = er.plan_arm(file, scene, [2.6], [-2.6])
+    world = arm_query(file, scene, [2.6], [-2.6]).world
+    made = arm_trajectory(world, result.path)
+    way = 2.0 * (np.pi - 2.6)
+    assert made.positions[-1, 0] - made.positions[0, 0] == pytest.approx(way)
+    np.testing.assert_allclose(made.waypoints[[0, -1], 0], [2.6, 2.6 + way])
+    again = arm_trajectory(world, [[2.6], [-2.6], [-1.1], [-2.6], [2.6]])
+    assert np.abs(np.diff(again.waypoints, axis=0)).max() < 1.7
+    assert again.positions[-1, 0] == pytest.approx(2.6)
