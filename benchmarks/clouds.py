@@ -100,7 +100,7 @@ def compare(worlds: dict[str, ArmWorld], repeats: int, count: int) -> None:
         "proofs of short free ones": lambda world: world.motion_certified(a[clear], near[clear], 1e-3),
     }
     sizes = {"configurations": len(q), "motions": len(a), "short motions": len(a)}
-    print(f"{'a second':<26}" + "".join(f"{name:>21}" for name in worlds))
+    print(f"{'a second':<26}" + "".join(f"{name:>24}" for name in worlds))
     for task, work in tasks.items():
         for world in worlds.values():
             work(world)
@@ -118,7 +118,7 @@ def compare(worlds: dict[str, ArmWorld], repeats: int, count: int) -> None:
         for k in range(1, len(worlds)):
             error = ratios[:, k].std(ddof=1) / np.sqrt(repeats)
             cells.append(f"{np.median(rates[:, k]):.3g} {np.median(ratios[:, k]):.2f} +-{error:.3f}")
-        print(f"{task:<26}" + "".join(f"{cell:>21}" for cell in cells))
+        print(f"{task:<26}" + "".join(f"{cell:>24}" for cell in cells))
 
 
 def beyond(world: ArmWorld, solid: bool | None, count: int) -> Floats:
