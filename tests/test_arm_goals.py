@@ -66,6 +66,8 @@ def test_a_start_in_collision_and_motions_that_do_not_suffice_are_answers():
     goals = np.array([inside, inside])
     few = find_cheapest(world, start, goals, budget=Budget(motions=2, seconds=9), shorten=True, improve=False)
     assert few.status is er.Status.BUDGET_SPENT
+    # One search has spent it all: there is no other, with a budget of its own.
+    assert few.counts["edges_checked"] == world.connect(start, goals[:1], most_motions=2).motions
     folded = start.copy()
     folded[2] = 3.0
     bad = find_cheapest(world, folded, goals, budget=Budget(seconds=9), shorten=True, improve=False)

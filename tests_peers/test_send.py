@@ -49,9 +49,12 @@ def test_a_dry_run_moves_nothing(trajectory, arm):
 def test_the_arm_is_driven_through_every_state_and_stopped(trajectory, arm):
     there = arm()
     sent = send_trajectory(trajectory, HOST, model="ur5", fastest=1.0, go=True)
-    assert sent.states == len(trajectory.times)
+    count = len(trajectory.times)
+    assert sent.states == count + 25
     commands, places = there.told()
-    np.testing.assert_allclose(places, trajectory.positions, atol=1e-12)
+    np.testing.assert_allclose(places[:count], trajectory.positions, atol=1e-12)
+    # It waits at the goal for twice the time that servoj looks ahead.
+    np.testing.assert_array_equal(places[count:], np.repeat(places[-1:], 25, axis=0))
     after = commands[len(commands) - commands[::-1].index(SERVO) :]
     assert STOP_SERVO in after
     assert STOP_SCRIPT in after

@@ -7,11 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from evenroad._arrays import Floats, Ints
-from evenroad._clock import now
 from evenroad.roadmap import Budget, PlanResult
-from evenroad.roadmap.answer import connected, refusal
+from evenroad.roadmap.answer import connected, gave_up, refusal
 from evenroad.roadmap.attempt import Attempt
-from evenroad.roadmap.find_path import NO_POINTS, find_path
+from evenroad.roadmap.find_path import NO_POINTS, find_path, with_reasons
 from evenroad.roadmap.query import Query, read_places
 from evenroad.space.path import path_length
 from evenroad.world import Connection, ConnectsItself, World
@@ -61,9 +60,9 @@ def find_cheapest(
             if not (nearer and search.reach(np.array(nearer))):
                 break
     if search.best is not None:
-        return connected(attempt, replace(search.best, motions=search.motions))
+        return connected(attempt, replace(search.grown, path=search.best.path, goal=search.best.goal))
     if (rest := attempt.left()) is None:
-        rest = budget
+        return with_reasons(world, gave_up(attempt, search.grown))
     return find_path(world, start, query.goals, budget=rest, shorten=shorten)
 
 
@@ -73,19 +72,24 @@ class _Search:
     def __init__(self, attempt: Attempt, world: ConnectsItself, goals: Floats) -> None:
         self.attempt, self.world, self.goals = attempt, world, goals
         self.best: Connection | None = None
-        self.cost, self.last, self.motions = np.inf, -1, 0
+        self.cost, self.last = np.inf, -1
+        self.grown = Connection(goals[:0], -1, 0, 0, 0)
 
     def reach(self, rows: Ints) -> bool:
         """Try some goals for a short while; return whether one was reached, and keep its path if it is the best."""
         attempt, world = self.attempt, self.world
-        seconds = attempt.deadline - now()
-        most = MOTIONS if attempt.query.budget.motions is None else min(MOTIONS, attempt.query.budget.motions)
-        if seconds <= 0.0:
+        if (left := attempt.left()) is None:
             return False
-        found = world.connect(
-            attempt.query.start, self.goals[rows], most_motions=most, seconds=min(seconds, 1e8)
+        most = MOTIONS if left.motions is None else min(MOTIONS, left.motions)
+        seconds = 1e8 if left.seconds is None else min(left.seconds, 1e8)
+        found = world.connect(attempt.query.start, self.goals[rows], most_motions=most, seconds=seconds)
+        self.grown = replace(
+            found,
+            nodes=self.grown.nodes + found.nodes,
+            configurations=self.grown.configurations + found.configurations,
+            motions=self.grown.motions + found.motions,
         )
-        self.motions += found.motions
+        attempt.motions_checked += found.motions
         if found.goal < 0:
             return False
         path = world.shorten(found.path)[0] if attempt.query.shorten else found.path

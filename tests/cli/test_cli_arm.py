@@ -137,7 +137,7 @@ def test_what_is_compiled_is_said_once(run, monkeypatch, capsys):
 
     monkeypatch.setattr(_compiled, "is_kept", lambda function: False)
     assert main([str(word) for word in arm_arguments(out="a")] + ["--no-picture"]) == 0
-    assert capsys.readouterr().err == "evenroad: compiling for this machine, once: about 20 s\n"
+    assert capsys.readouterr().err == "evenroad: compiling for this machine, once: about 10 s\n"
     monkeypatch.setattr(_compiled, "is_kept", lambda function: True)
     assert main([str(word) for word in arm_arguments(out="a")] + ["--no-picture"]) == 0
     assert capsys.readouterr().err == ""

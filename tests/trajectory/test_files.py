@@ -66,7 +66,11 @@ def test_urscript_drives_through_every_state_by_the_clock(trajectory, tmp_path):
     save_trajectory(tmp_path / "t.script", trajectory, (*NAMES, "tool"))
     script = (tmp_path / "t.script").read_text()
     places, options = interpret(script)
-    np.testing.assert_allclose(places[:, :5], trajectory.positions[1:], atol=1e-8)
+    count = len(trajectory.positions) - 1
+    np.testing.assert_allclose(places[:count, :5], trajectory.positions[1:], atol=1e-8)
+    # Then it waits at the goal for twice the time that servoj looks ahead.
+    assert len(places) - count == 25
+    np.testing.assert_array_equal(places[count:], places[[count - 1]].repeat(25, axis=0))
     assert {option["t"] for option in options} == {"0.008"}
     start = re.search(r"start = \[(.*?)\]", script).group(1).split(",")
     np.testing.assert_allclose(np.array(start, dtype=float)[:5], trajectory.positions[0], atol=1e-8)

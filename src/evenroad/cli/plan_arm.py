@@ -174,9 +174,9 @@ def _say_if_compiling(plan: PlanArm) -> None:
     kernel, points = "evenroad.robot.kernel", wants_points(plan)
     if plan.goal_pose or plan.straight or plan.upright:
         say_if_compiling(f"{kernel}.reach", "solve", 5)
-    said = say_if_compiling(f"{kernel}.batch", "check_configurations", 30 if points else 20)
+    said = say_if_compiling(f"{kernel}.batch", "check_configurations", 10)
     if plan.roadmap is not None and lanes_failure() is None:
         said = say_if_compiling("evenroad.robot_roadmap.lane_search", "find_way", 10) or said
     # Where the lanes do not work, the trees are never compiled.
     if not (said or points) and lanes_failure() is None:
-        say_if_compiling(f"{kernel}.trees", "grow", 15)
+        say_if_compiling(f"{kernel}.trees", "grow", 5)

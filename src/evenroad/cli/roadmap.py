@@ -57,7 +57,7 @@ class MakeRoadmap(RobotOptions):
         require_writable_folder(out)
         model = load_model(self.robot, **self.options())
         cell = Scene("nothing") if self.cell is None else load_scene(self.cell)
-        say_if_compiling("evenroad.robot.kernel.batch", "check_configurations", 30)
+        say_if_compiling("evenroad.robot.kernel.batch", "check_configurations", 10)
         began = time.perf_counter()
         with progress_shown("roadmap") as shown:
             roadmap = make_roadmap(

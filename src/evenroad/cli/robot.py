@@ -48,7 +48,7 @@ class Robot(RobotOptions):
         if self.write_srdf is not None:
             require_writable_folder(self.write_srdf)
         model = load_model(self.robot, **self.options())
-        say_if_compiling("evenroad.robot.kernel.batch", "check_configurations", 30)
+        say_if_compiling("evenroad.robot.kernel.batch", "check_configurations", 10)
         scene = Scene("empty space", ()) if self.scene is None else load_scene(self.scene)
         world = ArmWorld(in_scene(model.robot, scene), scene)
         if self.write_srdf is not None:

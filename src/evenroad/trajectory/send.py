@@ -14,7 +14,7 @@ from evenroad._arrays import Floats
 from evenroad._checks import require_extra, require_positive
 from evenroad.errors import EvenroadError, InvalidValue, NotAvailable
 from evenroad.trajectory.trajectory import Trajectory
-from evenroad.trajectory.urscript import CYCLES, columns_of_ur
+from evenroad.trajectory.urscript import CYCLES, LOOKAHEAD, columns_of_ur, held_cycles
 
 AT_START = 0.01
 """With a joint farther from the start than this nothing moves [rad]."""
@@ -30,7 +30,7 @@ _PATIENCE = 8.0
 """Seconds without a word after which the connection is taken for lost."""
 
 _ERRORS = {kind.__name__: kind for kind in (InvalidValue, NotAvailable)}
-_LOOKAHEAD, _GAIN = 0.1, 300.0
+_GAIN = 300.0
 _STOP = 2.0
 """At the end, and when something is wrong [rad/s^2]."""
 
@@ -209,9 +209,11 @@ def _driven(
     """Send the states; stop the arm whatever happens."""
     worst, i = 0.0, 0
     try:
-        for i, q in enumerate(positions):
+        # The last one again, until the arm has caught up with it.
+        states = np.concatenate([positions, np.repeat(positions[-1:], held_cycles(cycle), axis=0)])
+        for i, q in enumerate(states):
             began = control.initPeriod()
-            sent = control.servoJ(q.tolist(), 0.0, 0.0, cycle, _LOOKAHEAD, _GAIN)
+            sent = control.servoJ(q.tolist(), 0.0, 0.0, cycle, LOOKAHEAD, _GAIN)
             if not sent or not state.isConnected():
                 raise RuntimeError("no answer")
             if state.getSafetyMode() not in (_NORMAL, _REDUCED):
@@ -221,7 +223,7 @@ def _driven(
             if worst > ASTRAY:
                 name = names[int(np.argmax(off))]
                 raise NotAvailable(f"stopped after {i * cycle:.3f} s: {name} is {worst:.3f} rad astray")
-            pipe.send(("sent", i + 1, len(positions)))
+            pipe.send(("sent", i + 1, len(states)))
             control.waitPeriod(began)
     except RuntimeError as error:
         raise NotAvailable(
@@ -233,4 +235,4 @@ def _driven(
             control.servoStop(_STOP)
         with suppress(Exception):
             control.stopScript()
-    return Sent(len(positions), worst)
+    return Sent(len(states), worst)

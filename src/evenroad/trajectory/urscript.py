@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
@@ -14,6 +15,9 @@ from evenroad.world import World
 
 CYCLES = (0.008, 0.002)
 """Of the controllers [s]: CB3 (125 Hz) and e-Series (500 Hz)."""
+
+LOOKAHEAD = 0.1
+"""Over so long the controller smooths what ``servoj`` is told [s]."""
 
 _JOINTS = 6
 _AT_START = 0.01
@@ -29,7 +33,7 @@ _CHORDS = 16
 
 
 def servoj_script(trajectory: Trajectory, order: Sequence[str] | None = None) -> str:
-    """Return a program that drives through the states one a cycle, by ``servoj``, and stops at the last one.
+    """Return a program that drives through the states one a cycle, by ``servoj``, and waits at the last one.
 
     Raises InvalidValue unless there are six joints and the states are 8 ms (CB3) or 2 ms (e-Series) apart.
     """
@@ -39,8 +43,14 @@ def servoj_script(trajectory: Trajectory, order: Sequence[str] | None = None) ->
         raise InvalidValue(
             f"URScript needs states 0.008 s apart (CB3) or 0.002 s (e-Series), these are {cycle:.6g} s apart"
         )
-    moves = [f"servoj({_row(q)}, t={cycle:g}, lookahead_time=0.1, gain=300)" for q in positions[1:]]
+    states = np.concatenate([positions[1:], np.repeat(positions[-1:], held_cycles(cycle), axis=0)])
+    moves = [f"servoj({_row(q)}, t={cycle:g}, lookahead_time={LOOKAHEAD:g}, gain=300)" for q in states]
     return _program("evenroad_servoj", positions[0], [*moves, "stopj(2.0)"])
+
+
+def held_cycles(cycle: float) -> int:
+    """Return for how many cycles the last state is sent again: an arm runs behind by about the time it looks ahead."""
+    return math.ceil(2.0 * LOOKAHEAD / cycle)
 
 
 def movej_script(trajectory: Trajectory, order: Sequence[str] | None = None) -> str:

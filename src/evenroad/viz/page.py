@@ -73,12 +73,10 @@ class ArmPage:
         self.world, self.result, self._plan = world, result, plan
         self._server = viser.ViserServer(host=host, port=port, label="evenroad", verbose=False)
         self._busy, self._playing = threading.Lock(), threading.Event()
+        self._wanted: dict[str, tuple[Floats, Floats]] = {}
         self._tip = tip_links(world.robot)[-1]
         scene, gui = self._server.scene, self._server.gui
         scene.set_up_direction("+z")
-        scene.add_grid(
-            "/floor", width=4.0, height=4.0, cell_size=0.25, plane="xy", plane_color=(250, 250, 250)
-        )
         self._ends = {"start": result.start.copy(), "goal": result.goal.copy()}
         surfaces = link_surfaces(world.robot, file)
         self._arms = {
@@ -169,9 +167,11 @@ class ArmPage:
         hand = self._server.scene.add_transform_controls(f"/hand of {end}", scale=0.2)
 
         def moved(event: Any) -> None:
-            # While one plan is made others are waited for no longer than it takes.
-            if not self._busy.locked():
-                self.move_end(end, np.array(event.target.position), np.array(event.target.wxyz))
+            # While a plan is made a hand moves on: only where it is then counts.
+            self._wanted[end] = np.array(event.target.position), np.array(event.target.wxyz)
+            while self._wanted and not self._busy.locked():
+                which, place = self._wanted.popitem()
+                self.move_end(which, *place)
 
         hand.on_update(moved)
         return hand

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 import tyro
@@ -98,29 +98,16 @@ class Train:
             self.out.mkdir()
         require_writable_folder(self.out / "set-0000.npz")
 
+    def _told(self, callback: Callback) -> dict[str, Any]:
+        """Return what every method is told alike."""
+        return {"rng": self.seed, "workers": self.jobs, "folder": self.out, "callback": callback}
+
     def _anneal(self, callback: Callback) -> tuple[PointSet, ...]:
-        return anneal_many(
-            self.n,
-            self.d,
-            self.objective,
-            self.sets,
-            steps=self.steps,
-            rng=self.seed,
-            workers=self.jobs,
-            folder=self.out,
-            callback=callback,
-        )
+        told = self._told(callback)
+        return anneal_many(self.n, self.d, self.objective, self.sets, steps=self.steps, **told)
 
     def _order(self, callback: Callback) -> tuple[PointSet, ...]:
-        return order_many(
-            self.n,
-            self.sets,
-            steps=self.steps,
-            rng=self.seed,
-            workers=self.jobs,
-            folder=self.out,
-            callback=callback,
-        )
+        return order_many(self.n, self.sets, steps=self.steps, **self._told(callback))
 
     def _config(self) -> NetworkConfig:
         from evenroad.research.network import NetworkConfig
@@ -128,9 +115,7 @@ class Train:
         return NetworkConfig(self.n, self.d, self.objective, steps=self.steps)
 
     def _network(self, callback: Callback) -> tuple[PointSet, ...]:
-        sets = train_many(
-            self._config(), self.sets, rng=self.seed, workers=self.jobs, folder=self.out, callback=callback
-        )
+        sets = train_many(self._config(), self.sets, **self._told(callback))
         if not self.refine:
             return sets
         claim_folder(self.out, {"steps": self.refine, "schedule": SCHEDULE}, "refined.json")

@@ -37,6 +37,19 @@ def call_at(typing_context: Any, address: Any, arguments: Any) -> Any:
     return types.int64(types.int64, arguments), lower
 
 
+@intrinsic
+def room_for(typing_context: Any, count: Any) -> Any:
+    """Return the address of so many doubles, a literal, that last as long as the calling function."""
+
+    def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
+        kind = ir.ArrayType(ir.DoubleType(), sig.args[0].literal_value)
+        # Not to be a part of its callers, which are fast and seldom come here.
+        builder.function.attributes.add("noinline")
+        return builder.ptrtoint(cgutils.alloca_once(builder, kind), ir.IntType(64))
+
+    return (types.int64(count), lower) if isinstance(count, types.IntegerLiteral) else None
+
+
 def _array(number: types.Type, dimensions: int) -> Callable[..., Any]:
     """Return an intrinsic that takes the memory at an address for an array of a shape, a tuple of integers."""
     kind = types.Array(number, dimensions, "C")

@@ -12,13 +12,10 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from llvmlite import ir
 from numba import cfunc, types
-from numba.core import cgutils
-from numba.extending import intrinsic
 
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.addresses import ANY_LENGTH, doubles_at, integers_at, singles_at
+from evenroad.robot.kernel.addresses import ANY_LENGTH, doubles_at, integers_at, room_for, singles_at
 from evenroad.robot.kernel.layout import quick
 
 Floats = npt.NDArray[np.float64]
@@ -32,26 +29,13 @@ _SAME = 1e-9
 """Lengths that differ by less are one [m]."""
 
 
-@intrinsic
-def _room(typing_context: Any, count: Any) -> Any:
-    """Return the address of so many doubles, a literal, that last as long as the calling function."""
-
-    def lower(context: Any, builder: Any, sig: Any, args: Any) -> ir.Value:
-        kind = ir.ArrayType(ir.DoubleType(), sig.args[0].literal_value)
-        # Not to be a part of its callers, which are fast and seldom come here.
-        builder.function.attributes.add("noinline")
-        return builder.ptrtoint(cgutils.alloca_once(builder, kind), ir.IntType(64))
-
-    return (types.int64(count), lower) if isinstance(count, types.IntegerLiteral) else None
-
-
 @quick
 def bodies_meet(places: Any, lane: int, lanes: int, margin: float, pair: int, ints: Ints, table: Any) -> bool:
     """Return whether hulls of a pair of bodies come within a margin where a lane, of so many, of frames has them."""
     row = ints[at.BODY_PAIR_INTS] + at.BODY_PAIR_INT_ROW * pair
     a = ints[at.BODY_INTS] + at.BODY_INT_ROW * ints[row]
     b = ints[at.BODY_INTS] + at.BODY_INT_ROW * ints[row + 1]
-    pose = doubles_at(_room(12), (12,))
+    pose = doubles_at(room_for(12), (12,))
     _write_relative(places, 12 * lanes * ints[a] + lane, 12 * lanes * ints[b] + lane, lanes, pose)
     return hulls_meet(ints[a + 3], ints[b + 3], pose, margin, ints, table) != APART
 
@@ -93,7 +77,7 @@ def hulls_meet(first: int, second: int, pose: Floats, margin: float, ints: Ints,
     `first` and `second` are the roots of their trees, numbers of nodes; `pose` is that of the second body in the
     frame of the first, (12,): rotation row by row, translation.
     """
-    waiting, way = integers_at(_room(_DEEPEST), (_DEEPEST,)), doubles_at(_room(3), (3,))
+    waiting, way = integers_at(room_for(_DEEPEST), (_DEEPEST,)), doubles_at(room_for(3), (3,))
     waiting[0], count = first << 32 | second, 1
     while count > 0:
         count -= 1
@@ -144,7 +128,7 @@ def _hulls_near(
     `way` is a direction from the second to the first, not of length 0, that the search begins with.
     """
     p, p_end, q, q_end = ints[row + 2], ints[row + 3], ints[other_row + 2], ints[other_row + 3]
-    simplex, v = doubles_at(_room(12), (12,)), doubles_at(_room(3), (3,))
+    simplex, v = doubles_at(room_for(12), (12,)), doubles_at(room_for(3), (3,))
     corner, other, size = p, q, 0
     length = math.sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2])
     x, y, z = way[0] / length, way[1] / length, way[2] / length
@@ -195,7 +179,7 @@ def _nearest(simplex: Floats, size: int, v: Floats) -> int:
     """
     if size == 4 and _is_inside(simplex):
         return 0
-    weights, place = doubles_at(_room(4), (4,)), doubles_at(_room(3), (3,))
+    weights, place = doubles_at(room_for(4), (4,)), doubles_at(room_for(3), (3,))
     kept, least = 0, np.inf
     for face in range(1, min(1 << size, 15)):
         if not _projects_into(simplex, face, weights):

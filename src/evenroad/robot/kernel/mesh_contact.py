@@ -9,8 +9,7 @@ import numpy.typing as npt
 
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel import surface_tree as tree
-from evenroad.robot.kernel.addresses import ANY_LENGTH, bytes_at, integers_at
-from evenroad.robot.kernel.hull_contact import _room as room_for
+from evenroad.robot.kernel.addresses import ANY_LENGTH, bytes_at, integers_at, room_for
 from evenroad.robot.kernel.lanes import (
     ONE,
     ZERO,

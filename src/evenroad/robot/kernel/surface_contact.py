@@ -18,9 +18,8 @@ from numba.extending import intrinsic
 
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel import surface_tree as tree
-from evenroad.robot.kernel.addresses import ANY_LENGTH, integers_at, singles_at
+from evenroad.robot.kernel.addresses import ANY_LENGTH, integers_at, room_for, singles_at
 from evenroad.robot.kernel.forward_kinematics import scratch_places
-from evenroad.robot.kernel.hull_contact import _room as room_for
 from evenroad.robot.kernel.lanes import (
     LANES_TYPE,
     ZERO,
