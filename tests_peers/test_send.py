@@ -110,7 +110,7 @@ def test_the_command_says_what_it_did(trajectory, arm, tmp_path, capsys):
 
 
 def test_ctrl_c_stops_the_arm(arm, tmp_path):
-    slow = make_trajectory([START, np.add(START, 0.5)], Limits((0.05,) * 6, (1.0,) * 6))
+    slow = make_trajectory([START, np.add(START, 0.5)], Limits((0.02,) * 6, (1.0,) * 6))
     save_trajectory(tmp_path / "t.json", slow)
     there = arm()
     command = [sys.executable, "-m", "evenroad", "send", str(tmp_path / "t.json"), "--host", HOST]
@@ -121,6 +121,7 @@ def test_ctrl_c_stops_the_arm(arm, tmp_path):
         if len(there.told()[1]) > 20:
             break
         time.sleep(0.1)
+    assert process.poll() is None
     process.send_signal(signal.SIGINT)
     _, said = process.communicate(timeout=30)
     assert process.returncode == 130
