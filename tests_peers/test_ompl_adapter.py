@@ -67,9 +67,7 @@ def test_a_space_comes_back_with_ompls_metric(space):
     theirs, back = ompl_space(space), space_of(ompl_space(space))
     a, b = _random(space, 100, 1), _random(space, 100, 2)
     information = _free(space)
-    pairs = zip(
-        ompl_path(information, a).getStates(), ompl_path(information, b).getStates(), strict=True
-    )
+    pairs = zip(ompl_path(information, a).getStates(), ompl_path(information, b).getStates(), strict=True)
     distances = [theirs.distance(*pair) for pair in pairs]
     np.testing.assert_allclose(back.distance(a, b), distances, atol=1e-7)
     assert back.dim == space.dim
@@ -189,9 +187,7 @@ def test_prm_on_our_points_solves_what_our_roadmap_does(level, n):
     world = maze.world()
     for seed in range(4):
         points = er.draw("halton", n, 2, rng=seed)
-        ours = er.plan(
-            world, maze.start, maze.goal, points, rule=KEarlier(10), links=None, shorten=False
-        )
+        ours = er.plan(world, maze.start, maze.goal, points, rule=KEarlier(10), links=None, shorten=False)
         theirs = plan_on_points(space_information(world), maze.start, maze.goal, points)
         assert ours.solved == (theirs is not None)
         if theirs is not None:
@@ -202,7 +198,9 @@ def test_prm_on_our_points_solves_what_our_roadmap_does(level, n):
 def test_prm_star_takes_our_points_too():
     maze = load_maze(1)
     information = space_information(maze.world())
-    path = plan_on_points(information, maze.start, maze.goal, er.draw("even", 256, 2), og.PRMstar(information))
+    path = plan_on_points(
+        information, maze.start, maze.goal, er.draw("even", 256, 2), og.PRMstar(information)
+    )
     assert path is not None
 
 
@@ -225,9 +223,7 @@ def test_rigid_bodies_plan_both_ways(seed):
     assert path is not None
     assert world.motion_valid(path[:-1], path[1:]).all()
     information = ob.SpaceInformation(ompl_space(space))
-    information.setStateValidityChecker(
-        lambda s: bool(free(np.array([[s.getX(), s.getY(), s.getYaw()]]))[0])
-    )
+    information.setStateValidityChecker(lambda s: bool(free(np.array([[s.getX(), s.getY(), s.getYaw()]]))[0]))
     information.setStateValidityCheckingResolution(0.005)
     result = er.plan(OmplWorld(information), start, goal, er.draw("even", 256, 3))
     assert result.solved

@@ -47,8 +47,9 @@ def ompl_space(space: Space) -> Any:
         For another space, or a joint that wraps after anything but one turn.
     """
     if isinstance(space, Product):
-        kinds = [type(part) for part in space.parts]
-        named = {(Box, Circle): (2, ob.SE2StateSpace), (Box, SO3): (3, ob.SE3StateSpace)}.get(tuple(kinds))
+        named = {(Box, Circle): (2, ob.SE2StateSpace), (Box, SO3): (3, ob.SE3StateSpace)}.get(
+            tuple(type(part) for part in space.parts)  # type: ignore[arg-type]
+        )
         if named is not None and space.parts[0].dim == named[0]:
             pose = named[1]()
             pose.setBounds(_bounds(space.parts[0].low, space.parts[0].high))  # type: ignore[attr-defined]
@@ -66,14 +67,18 @@ def ompl_space(space: Space) -> Any:
     if isinstance(space, Box | JointSpace):
         wrapping = space.flat.wrapping
         if not np.allclose(space.flat.period[wrapping], 2.0 * math.pi, rtol=1e-12):
-            raise InvalidValue("OMPL's circles have one turn of 2 pi: a joint of this space wraps after another")
+            raise InvalidValue(
+                "OMPL's circles have one turn of 2 pi: a joint of this space wraps after another"
+            )
         low, high = np.array(space.low), np.array(space.high)
         runs = [(wraps, [*run]) for wraps, run in groupby(range(space.dim), lambda k: bool(wrapping[k]))]
         parts = []
         for wraps, run in runs:
             parts += [ob.SO2StateSpace() for _ in run] if wraps else [_real(low[run], high[run])]
         return parts[0] if len(parts) == 1 else _compound(parts, [1.0] * len(parts))
-    raise InvalidValue(f"OMPL has no counterpart of {type(space).__name__}: build one of Box, Circle, SO3 and Product")
+    raise InvalidValue(
+        f"OMPL has no counterpart of {type(space).__name__}: build one of Box, Circle, SO3 and Product"
+    )
 
 
 def space_of(space: Any) -> Space:
@@ -124,12 +129,12 @@ def give_points(information: Any, points: PointSet | npt.ArrayLike) -> GivenStat
         places = as_batch("points", points, world.space.dim)
     sampler = GivenStates(information, places[world.valid(places)])
     information.setValidStateSamplerAllocator(lambda _: sampler)
+    # OMPL takes that for unfinished.
+    information.setup()
     return sampler
 
 
-def solve(
-    planner: Any, start: npt.ArrayLike, goals: npt.ArrayLike, seconds: float = 10.0
-) -> Floats | None:
+def solve(planner: Any, start: npt.ArrayLike, goals: npt.ArrayLike, seconds: float = 10.0) -> Floats | None:
     """Ask a planner of OMPL's for a path, (p, dim), from the start, (dim,), to a goal, (dim,) or (g, dim); or None.
 
     Parameters
@@ -258,7 +263,7 @@ class OmplWorld:
         return free
 
 
-class GivenStates(ob.ValidStateSampler):  # type: ignore[misc]
+class GivenStates(ob.ValidStateSampler):  # type: ignore[name-defined]
     """Hands out free configurations, (n, dim), in their order, and then nothing; `used_up` says so."""
 
     def __init__(self, information: Any, places: Floats) -> None:
@@ -284,7 +289,7 @@ class GivenStates(ob.ValidStateSampler):  # type: ignore[misc]
         return False
 
 
-class _Information(ob.SpaceInformation):  # type: ignore[misc]
+class _Information(ob.SpaceInformation):  # type: ignore[name-defined]
     """A SpaceInformation that knows the world it was made of."""
 
     def __init__(self, world: World) -> None:
@@ -297,7 +302,7 @@ class _Information(ob.SpaceInformation):  # type: ignore[misc]
         self.setup()
 
 
-class _Motions(ob.MotionValidator):  # type: ignore[misc]
+class _Motions(ob.MotionValidator):  # type: ignore[name-defined]
     """Motions as a world judges them."""
 
     def __init__(self, information: Any, world: World, read: Callable[[Any], list[float]]) -> None:
