@@ -144,7 +144,7 @@ def test_what_is_not_there_is_named(tmp_path):
         KlamptWorld(model)
     with pytest.raises(UnknownName, match="'thumb'"):
         KlamptWorld(model, links=("thumb",))
-    with pytest.raises(UnknownName, match="robot of Klamp't's world '3'; known: arm, 0"):
+    with pytest.raises(UnknownName, match="robot of Klamp't's world '3'; known: 0, arm"):
         KlamptWorld(model, 3)
     with pytest.raises(InvalidValue, match="low < high"):
         KlamptWorld(model, links=("base",))
