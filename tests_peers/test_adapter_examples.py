@@ -29,3 +29,16 @@ def test_with_klampt(tmp_path):
     said = _run("10_with_klampt.py", tmp_path)
     assert "even points: no path" not in said
     assert "a RobotTrajectory of" in said
+
+
+def _blocks(name):
+    """The Python of a page, block by block."""
+    pieces = (EXAMPLES.parent / "docs" / name).read_text().split("```python\n")[1:]
+    return [piece.split("```")[0] for piece in pieces]
+
+
+@pytest.mark.parametrize("block", _blocks("adapters.md"))
+def test_the_page_runs(block, tmp_path):
+    pytest.importorskip("klampt" if "klampt" in block else "ompl")
+    done = subprocess.run([sys.executable, "-c", block], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
