@@ -27,16 +27,14 @@ MAY_IMPORT = {
     "viz": BASE | {"points", "space", "world", "geometry", "robot", "roadmap"},
     "robot": BASE | {"space", "geometry", "world"},
     "robot_roadmap": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
-    "arms": BASE | {"points", "space", "geometry", "world", "robot", "roadmap", "arm_ways", "arm_goals"},
-    "arm_ways": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
-    "arm_goals": BASE | {"space", "world", "roadmap"},
+    "arms": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
     "trajectory": BASE | {"space", "world", "robot"},
     "adapters": BASE | {"points", "space", "world", "robot", "trajectory"},
     "research": BASE
     | {"points", "space", "world", "geometry", "robot", "roadmap", "robot_roadmap", "io", "viz"},
     "cli": BASE
     | {"points", "space", "world", "geometry", "robot", "roadmap", "robot_roadmap"}
-    | {"arms", "arm_ways", "arm_goals", "research", "io", "viz", "trajectory"},
+    | {"arms", "research", "io", "viz", "trajectory"},
     **dict.fromkeys(BASE, BASE),
 }
 """Part -> the parts it may import: the arrows of docs/design.md."""

@@ -8,9 +8,16 @@ from pathlib import Path
 
 from evenroad._arrays import Floats
 from evenroad._compiled import say_if_compiling
-from evenroad.arm_goals import find_cheapest
-from evenroad.arm_ways import plan_ways
-from evenroad.arms import SEARCH, Goal, arm_query, finished, plan_on_points, unreached
+from evenroad.arms import (
+    SEARCH,
+    Goal,
+    arm_query,
+    find_cheapest,
+    finished,
+    plan_on_points,
+    plan_ways,
+    unreached,
+)
 from evenroad.cli.plan import PlanArm
 from evenroad.cli.plan_parts import (
     chosen_budget,
