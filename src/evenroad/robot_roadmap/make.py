@@ -11,10 +11,9 @@ from evenroad._arrays import Floats, Ints, Ints32
 from evenroad._checks import require_count, require_positive
 from evenroad._rng import RngLike, generator
 from evenroad.errors import InvalidValue
-from evenroad.geometry.shapes import PRIMITIVES
 from evenroad.points import draw
 from evenroad.roadmap.neighbours import nearest
-from evenroad.robot import ArmWorld, Robot, Scene, in_scene
+from evenroad.robot import ArmWorld, Robot, Scene, in_scene, scene_seen_by
 from evenroad.robot_roadmap.chance import chance_of_freedom
 from evenroad.robot_roadmap.pockets import ends_in_pockets
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
@@ -70,7 +69,7 @@ def make_roadmap(
     robot : Robot
         With its tool, if it has one.
     cell : Scene, optional
-        What never moves around it: mount, fence, walls; and the ranges to plan in.  Default: nothing.
+        What never moves around it: mount, fence, walls, a scan; and the ranges to plan in.  Default: nothing.
     n : int
         Milestones, 1 to 32768; fewer where hardly any configuration is free.
     k : int
@@ -95,13 +94,8 @@ def make_roadmap(
     if n > MOST:
         raise InvalidValue(f"n must be at most {MOST}, got {n}")
     cell = Scene("nothing") if cell is None else cell
-    for obstacle in cell.obstacles:
-        if obstacle.shape not in PRIMITIVES:
-            raise InvalidValue(
-                f"a cell must consist of {', '.join(PRIMITIVES)}, which a roadmap's file holds, got"
-                f" {obstacle.name!r}, a {obstacle.body}: leave it to the scene of the day"
-            )
     robot = in_scene(robot, cell)
+    cell = scene_seen_by(robot, cell)
     if robot.holds:
         raise InvalidValue(
             f"a roadmap is made of a robot with empty hands, not one that holds {robot.holds[0]!r}"

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints, Ints32
 from evenroad._clock import now
+from evenroad.geometry.shapes import Shape
 from evenroad.roadmap import Budget, PlanResult, Status
 from evenroad.roadmap.answer import connected, gave_up, refusal
 from evenroad.roadmap.attempt import Attempt
@@ -19,10 +20,11 @@ from evenroad.roadmap.find_path import NO_POINTS, SECONDS, with_reasons
 from evenroad.roadmap.query import Query, read_places
 from evenroad.robot import ArmWorld, Robot, Scene, configuration, in_scene
 from evenroad.robot.trees import shorten
-from evenroad.robot_roadmap.ask import ENDS_TAKEN, Asked, ask
+from evenroad.robot_roadmap.ask import ENDS_TAKEN, Asked, Checks, ask
 from evenroad.robot_roadmap.cell import day_and_all, left_to_check, require_same_robot
 from evenroad.robot_roadmap.known_graph import KnownGraph
 from evenroad.robot_roadmap.learned import with_paths
+from evenroad.robot_roadmap.own_shapes import OwnShapesWorld
 from evenroad.robot_roadmap.pockets import links_of
 from evenroad.robot_roadmap.turns import OneTurn, one_turn, whole_turns
 from evenroad.space.path import path_length
@@ -119,9 +121,9 @@ class RobotRoadmap:
         milestones, edges, turns = grown
         return replace(self, milestones=milestones, edges=edges, turns=turns)
 
-    def in_scene(self, scene: Scene) -> SceneRoadmap:
+    def in_scene(self, scene: Scene, shapes: Sequence[Shape] | None = None) -> SceneRoadmap:
         """Return the roadmap in the day's scene, for many queries in it: what one finds out serves the next."""
-        return SceneRoadmap(self, scene)
+        return SceneRoadmap(self, scene, shapes=shapes)
 
     def plan(
         self, scene: Scene, start: Place, goal: Place | Sequence[Place], *, budget: Budget | None = None
@@ -140,6 +142,9 @@ class SceneRoadmap:
         What stands around the robot today.  The roadmap's cell is always there, named again or not.
     robot : Robot, optional
         The roadmap's robot with other limits or named states.  Default: as it is in the scene.
+    shapes : sequence of Shape, optional
+        The robot's own, as of :func:`evenroad.robot.reference.coal_world.original_shapes`, which decide where its
+        capsules touch (extra ``mesh``).  Default: capsules alone.
 
     Attributes
     ----------
@@ -156,7 +161,13 @@ class SceneRoadmap:
         If the scene names something that is not there.
     """
 
-    def __init__(self, roadmap: RobotRoadmap, scene: Scene, robot: Robot | None = None) -> None:
+    def __init__(
+        self,
+        roadmap: RobotRoadmap,
+        scene: Scene,
+        robot: Robot | None = None,
+        shapes: Sequence[Shape] | None = None,
+    ) -> None:
         day, everything = day_and_all(roadmap.cell, scene)
         robot = in_scene(roadmap.robot if robot is None else robot, everything)
         require_same_robot(roadmap.robot, roadmap.cell, robot.empty_handed())
@@ -165,6 +176,9 @@ class SceneRoadmap:
         self.world = ArmWorld(robot, everything, resolution=resolution)
         # What the roadmap knows to be free of the robot and its cell is asked about the other obstacles alone.
         self._day = ArmWorld(*left_to_check(robot, roadmap.cell, day, everything), resolution=resolution)
+        self._asked: tuple[Checks, Checks] = self.world, self._day
+        if shapes is not None:
+            self._asked = OwnShapesWorld(self.world, shapes), OwnShapesWorld(self._day, shapes)
         self._graph = roadmap.graph.within(np.array(self.world.space.low), np.array(self.world.space.high))
         self.learned: list[Floats] = []
         # Compiled, or loaded, before a clock runs; nothing is checked but the ends.
@@ -193,8 +207,7 @@ class SceneRoadmap:
         self, start: Floats, goals: Floats, most: int, deadline: float, links: int, greed: float = GREED
     ) -> Asked:
         return ask(
-            self.world,
-            self._day,
+            *self._asked,
             self._graph,
             start,
             goals,
@@ -250,7 +263,7 @@ class SceneRoadmap:
         if asked.goal >= 0:
             return self._solved(asked, first, goals, shorten, began)
         query = Query(first, goals, shorten=shorten, budget=budget)
-        attempt = Attempt(self.world, query, NO_POINTS, "none", PLANNER)
+        attempt = Attempt(self._asked[0], query, NO_POINTS, "none", PLANNER)
         attempt.deadline, attempt.motions_checked = deadline, asked.motions
         attempt.watch.seconds["search"] = now() - began
         if (refused := refusal(attempt)) is not None:
@@ -268,7 +281,7 @@ class SceneRoadmap:
         if not trees:
             text = f"the roadmap of {self._size} milestones does not lead from start to goal today"
             failed = replace(failed, status=Status.NOT_CONNECTED, message=text)
-        return with_reasons(self.world, failed)
+        return with_reasons(self._asked[0], failed)
 
     def _by_trees(self, attempt: Attempt, asked: Asked) -> Connection:
         """Return what trees find, and learn it."""
@@ -305,7 +318,7 @@ class SceneRoadmap:
             goal_index=asked.goal,
             path=path,
             milestone_path=asked.path,
-            proof=world.proof,
+            proof=world.proof if self._asked[0] is world or world.recheck(path).all() else "resolution",
             cost=length,
             milestone_cost=raw_length,
             counts=counts,
