@@ -54,6 +54,7 @@ class OnlyCoal:
 
     def __init__(self, world: ArmWorld, shapes: list[Shape]) -> None:
         self._world = CoalWorld(world.robot, world.scene, shapes, world.resolution)
+        self.shorten = world.shorten
         self.space, self.valid = self._world.space, self._world.valid
         self.motions = 0
 
@@ -128,13 +129,21 @@ def along(known: SceneRoadmap, counted: Callable[[], int]) -> Query:
     return ask
 
 
-def by_coal(made: RobotRoadmap, world: ArmWorld, shapes: list[Shape]) -> dict[str, tuple[Query, Query]]:
-    """Return trees and the roadmap for both checkers."""
+CHECKERS = {"coal": OnlyCoal, "capsules-coal": CapsulesFirst}
+
+
+def by_coal(
+    made: RobotRoadmap, world: ArmWorld, shapes: list[Shape], titles: list[str], learn: bool
+) -> dict[str, tuple[Query, Query]]:
+    """Return trees and the roadmap for some checkers."""
     pairs = {}
-    for title, kind in (("coal", OnlyCoal), ("capsules, then coal", CapsulesFirst)):
+    for title in titles:
+        kind = CHECKERS[title]
         known = SceneRoadmap(made, world.scene)
         whole, day = kind(known.world, shapes), kind(known._day, shapes)
         known._asked = whole, day  # type: ignore[assignment]
+        if not learn:
+            known._graph.learn = lambda path: None  # type: ignore[method-assign]
 
         def counted(whole: object = whole, day: object = day) -> int:
             return getattr(whole, "motions", 0) + getattr(day, "motions", 0)
@@ -158,45 +167,64 @@ def by_triangles(made: RobotRoadmap, world: ArmWorld) -> dict[str, tuple[Query, 
 
 def main() -> None:
     """Measure."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--triangles", action="store_true")
     parser.add_argument("--queries", type=int, default=40, help="in each scene")
     parser.add_argument("--scenes", type=int, default=3, help="of each kind")
     parser.add_argument("-n", type=int, default=1024, help="milestones")
+    parser.add_argument("--forget", action="store_true", help="paths do not become milestones of the scene")
+    parser.add_argument("--checkers", nargs="+", default=[*CHECKERS], choices=CHECKERS)
     parser.add_argument("--kinds", nargs="+", default=["table", "box", "shelf"])
     options = parser.parse_args()
     pool = Pool(arm("ur5"))
     made = make_roadmap(pool.robot, table_of(next(problems(pool, REPORTING))), options.n)
     shapes = meshes_of(pool.robot)
-    print("| kind | checker | trees ms | roadmap ms | ratio of medians | of means | of 95 % | motions | length |")
+    print(
+        "| kind | checker | trees ms | roadmap ms | ratio of medians | of means | of 95 % | motions | length |"
+    )
     print("|---|---|" + "---|" * 7)
     for kind in options.kinds:
-        rows: dict[str, list[tuple[Row, Row]]] = {}
+        rows: dict[str, list[tuple[Row, Row, bool]]] = {}
         lost: dict[str, int] = {}
         for seed in REPORTING[: options.scenes]:
             world, pairs = queries(pool, kind, seed, options.queries)
             scene = with_triangles(world.scene, 3 if options.triangles else 0)
-            world = ArmWorld(world.robot, replace(scene, obstacles=(world.scene.obstacles[0], *scene.obstacles[1:])))
-            calls = by_triangles(made, world) if options.triangles else by_coal(made, world, shapes)
+            world = ArmWorld(
+                world.robot, replace(scene, obstacles=(world.scene.obstacles[0], *scene.obstacles[1:]))
+            )
+            calls = (
+                by_triangles(made, world)
+                if options.triangles
+                else by_coal(made, world, shapes, options.checkers, not options.forget)
+            )
             for number, (start, goal) in enumerate(pairs):
                 for title, (trees, roadmap) in calls.items():
                     one, other = trees(start, goal), roadmap(start, goal)
                     if one is None or other is None:
                         lost[title] = lost.get(title, 0) + 1
                     elif number >= FIRST:
-                        rows.setdefault(title, []).append((one, other))
+                        straight = bool(
+                            np.isclose(other[2], path_length(np.array([start, goal]), world.space))
+                        )
+                        rows.setdefault(title, []).append((one, other, straight))
         for title, values in rows.items():
-            table = np.array(values)
-            trees_s, roadmap_s = table[:, 0, 0], table[:, 1, 0]
-            print(
-                f"| {kind} | {title} | {1e3 * np.median(trees_s):.3g} | {1e3 * np.median(roadmap_s):.3g} |"
-                f" {_interval(np.median, roadmap_s, trees_s)} | {_interval(np.mean, roadmap_s, trees_s)} |"
-                f" {'{:.2f} ({:.2f} .. {:.2f})'.format(*ratio_of_tails(roadmap_s, trees_s))} |"
-                f" {table[:, 0, 1].mean():.0f}, {table[:, 1, 1].mean():.0f} |"
-                f" {np.mean(table[:, 1, 2] / table[:, 0, 2]):.3f} |",
-                flush=True,
-            )
-            print(f"{kind}, {title}: {len(values)} queries, {lost.get(title, 0)} not solved by one", flush=True)
+            table = np.array([[one, other] for one, other, _ in values])
+            straight = np.array([each for _, _, each in values])
+            for what, some in (("all", table), ("not straight", table[~straight])):
+                print(f"| {kind} | {title} | {what}, {len(some)} | {_figures(some)} |", flush=True)
+            print(f"{kind}, {title}: {lost.get(title, 0)} not solved by one", flush=True)
+
+
+def _figures(table: np.ndarray) -> str:
+    """Return the cells of a row of the table."""
+    trees, roadmap = table[:, 0, 0], table[:, 1, 0]
+    cells = [f"{1e3 * np.median(trees):.3g} | {1e3 * np.median(roadmap):.3g}"]
+    cells += [_interval(of, roadmap, trees) for of in (np.median, np.mean)]
+    cells += ["{:.2f} ({:.2f} .. {:.2f})".format(*ratio_of_tails(roadmap, trees))]
+    cells += [f"{table[:, 0, 1].mean():.0f}, {table[:, 1, 1].mean():.0f}"]
+    return " | ".join([*cells, f"{np.mean(table[:, 1, 2] / table[:, 0, 2]):.3f}"])
 
 
 def _interval(of: Callable[[np.ndarray], float], a: np.ndarray, b: np.ndarray) -> str:

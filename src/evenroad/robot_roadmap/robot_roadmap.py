@@ -261,6 +261,9 @@ class SceneRoadmap:
         limits = min(most, TRIED_MOTIONS) if trees else most, began + SHARE * min(deadline - began, _LONG)
         asked = self._ask(first, goals, *limits, links)
         if asked.goal >= 0:
+            if self._asked[0] is not self.world:
+                # Where checks are dear, shorter links from now on are worth the longer search.
+                self._graph.learn(asked.path)
             return self._solved(asked, first, goals, shorten, began)
         query = Query(first, goals, shorten=shorten, budget=budget)
         attempt = Attempt(self._asked[0], query, NO_POINTS, "none", PLANNER)
