@@ -40,7 +40,6 @@ lint: $(VENV)/.dev
 	$(BIN)/mypy
 
 test: lint
-	$(BIN)/python tools/forget_stale_kernels.py
 	$(BIN)/pytest -n 2
 
 test-peers: $(VENV)/.peers
@@ -48,7 +47,6 @@ test-peers: $(VENV)/.peers
 
 bench: $(VENV)/.peers
 	@mkdir -p out/bench
-	$(BIN)/python tools/forget_stale_kernels.py
 	$(BIN)/python -m benchmarks --out out/bench
 	$(BIN)/evenroad bench paper --runs 400 --store out/bench/paper.db
 	$(BIN)/evenroad bench fair --runs 400 --store out/bench/fair.db
