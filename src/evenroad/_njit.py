@@ -22,6 +22,7 @@ from subprocess import Popen
 from typing import Any
 
 import numba
+import numpy
 from llvmlite import binding
 from numba.core import event
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile
@@ -207,6 +208,22 @@ def machine() -> str:
     settings = (numba.config.CPU_NAME, numba.config.CPU_FEATURES, numba.config.OPT)
     text = repr((names, settings, numba.__version__, binding.llvm_version_info))
     return hashlib.sha256(text.encode()).hexdigest()[:8]
+
+
+def surroundings() -> dict[str, str]:
+    """Return what code is compiled by and for, and in which folder it is kept."""
+    versions = (
+        ("Python", platform.python_version()),
+        ("numpy", numpy.__version__),
+        ("numba", numba.__version__),
+    )
+    folder = KernelCache(_files_of.__wrapped__).cache_path
+    beside = os.path.basename(folder) == "__pycache__"
+    return {
+        "runs on": ", ".join(" ".join(each) for each in versions),
+        "processor": f"{binding.get_host_cpu_name()} ({machine()})",
+        "compiled code": f"{_ROOT}/**/__pycache__" if beside else os.path.dirname(folder),
+    }
 
 
 @cache
