@@ -1,5 +1,7 @@
 """How Sphinx builds the pages: ``make docs``.  It needs no network, and the pages need none."""
 
+import contextlib
+import inspect
 import re
 import sys
 from pathlib import Path
@@ -37,6 +39,7 @@ default_role = "literal"
 autodoc_typehints_format = "short"
 autodoc_member_order = "bysource"
 autodoc_preserve_defaults = True
+toc_object_entries_show_parents = "hide"
 python_maximum_signature_line_length = 88
 napoleon_google_docstring = False
 napoleon_use_rtype = False
@@ -93,7 +96,36 @@ def _link_names(app, doctree, document):
 
 def _lead_to_pages(app, document, source):
     """Let links to an example lead to its page, where a reader of the files alone gets the script."""
-    source[0] = re.sub(r"\]\(\.\./examples/(\w+)\.py\)", r"](/generated/examples/\1.md)", source[0])
+    source[0] = re.sub(r"\]\((?:\.\./)+examples/(\w+)\.py\)", r"](/generated/examples/\1.md)", source[0])
+
+
+def _as_written(app, what, name, thing, options, signature, returned):
+    """Show the types of a signature as its source has them, not what they stand for."""
+    if what not in ("function", "method", "class", "exception") or getattr(thing, "_is_protocol", False):
+        return None
+    with contextlib.suppress(TypeError, ValueError):
+        written = inspect.signature(thing)
+        kept = [_shown(each) for each in written.parameters.values() if each.name not in ("self", "cls")]
+        arguments = str(inspect.Signature(kept))
+        answer = written.return_annotation
+        return arguments, answer if isinstance(answer, str) and what in ("function", "method") else None
+    return None
+
+
+class _Text(str):
+    """A text that is shown without its quotation marks."""
+
+    __repr__ = str.__str__
+
+
+def _shown(parameter):
+    kind = parameter.annotation
+    if isinstance(kind, str):
+        parameter = parameter.replace(annotation=_Text(kind.replace("npt.ArrayLike", "array_like")))
+    if repr(parameter.default).startswith("<"):
+        shown = parameter.empty if parameter.default is parameter.empty else _Text("...")
+        parameter = parameter.replace(default=shown)
+    return parameter
 
 
 def _end_sections(app, what, name, thing, options, lines):
@@ -111,6 +143,7 @@ def _end_sections(app, what, name, thing, options, lines):
 def setup(app):
     """Write the pages that are made from the sources, before Sphinx looks for pages."""
     docs_pages.write_pages(Path(__file__).parent / "generated")
+    app.connect("autodoc-process-signature", _as_written)
     app.connect("autodoc-process-docstring", _end_sections, priority=100)
     app.connect("source-read", _lead_to_pages)
     app.connect("doctree-read", _leave_words)

@@ -113,34 +113,41 @@ def is_internal(target: str, around: str) -> bool:
 
 def _reference() -> Iterator[tuple[str, str]]:
     seen: set[int] = set()
-    rows = []
+    first = [_heading("Reference", "=")]
+    first.append("What is at hand after ``import evenroad as er``; each topic's page has the rest.\n")
     for page, (title, homes) in REFERENCE.items():
-        parts = [_heading(title, "=")]
+        parts, rows = [_heading(title, "=")], []
         for home in homes:
             module = importlib.import_module(home)
             things = {name: getattr(module, name) for name in public_names(module)}
-            new = {name: each for name, each in things.items() if id(each) not in seen and not inspect.ismodule(each)}
+            new = {name: each for name, each in things.items() if id(each) not in seen}
             seen |= {id(each) for each in new.values()}
             if new:
                 parts.append(_heading(f"``{home}``", "-") + _lead(module))
-                parts += [_entry(documented_name(f"{home}.{name}"), each) for name, each in new.items()]
+            for name, each in new.items():
+                shown = documented_name(f"{home}.{name}")
+                parts.append(_entry(shown, each))
+                if shown.count(".") == 1:
+                    rows.append(f"   * - :py:obj:`{name} <{shown}>`\n     - {_first_line(each)}\n")
         yield f"reference/{page}.rst", "\n".join(parts)
-    for name in evenroad.__all__:
-        if not name.startswith("_"):
-            role = "doc" if name == "qmc" else "py:obj"
-            target = "reference/qmc" if name == "qmc" else f"evenroad.{name}"
-            rows.append(f"   * - :{role}:`{name} <{target}>`\n     - {_first_line(getattr(evenroad, name))}")
-    table = ".. list-table::\n   :widths: 30 70\n   :class: names\n\n" + "\n".join(rows)
+        if page == "qmc":
+            rows = [f"   * - :doc:`qmc <reference/qmc>`\n     - {_first_line(evenroad.qmc)}\n"]
+        if rows:
+            first.append(_heading(f":doc:`reference/{page}`", "-"))
+            first.append(".. list-table::\n   :widths: 30 70\n\n" + "".join(rows))
     pages = "\n".join(f"   reference/{page}" for page in REFERENCE)
-    lead = "All of it is at hand after ``import evenroad as er``; what is asked for less often is on the other pages."
-    toc = f".. toctree::\n   :maxdepth: 1\n\n{pages}\n   commands\n"
-    yield "reference.rst", f"{_heading('Reference', '=')}{lead}\n\n{table}\n\n{_heading('By topic', '-')}{toc}"
+    first.append(f".. toctree::\n   :maxdepth: 1\n   :hidden:\n\n{pages}\n   commands\n")
+    yield "reference.rst", "\n".join(first)
 
 
 def _entry(name: str, thing: Any) -> str:
     if inspect.isclass(thing):
         return f".. autoclass:: {name}\n   :members:\n"
-    return f".. autofunction:: {name}\n" if callable(thing) else f".. py:data:: {name}\n\n   {_said_of(name, thing)}\n"
+    return (
+        f".. autofunction:: {name}\n"
+        if callable(thing)
+        else f".. py:data:: {name}\n\n   {_said_of(name, thing)}\n"
+    )
 
 
 def _said_of(name: str, thing: Any) -> str:
@@ -161,7 +168,8 @@ def _said_of(name: str, thing: Any) -> str:
 
 def _first_line(thing: Any) -> str:
     text = (inspect.getdoc(thing) or "").split("\n\n")[0].replace("\n", " ")
-    return re.split(r"(?<=[a-z)`])[.:;] ", text)[0].rstrip(".:") + "."
+    sentence = re.split(r"(?<=[a-z)`])[.;] ", text)[0]
+    return re.split(r"(?<=[a-z]{3}): ", sentence)[0].rstrip(".:") + "."
 
 
 def _lead(module: ModuleType) -> str:
@@ -177,11 +185,16 @@ def _commands() -> str:
     for verb, (_, about) in VERBS.items():
         for words in [[verb], [verb, "--robot", "ur5"]] if verb == "plan" else [[verb]]:
             printed = io.StringIO()
-            with mock.patch.dict(os.environ, {"COLUMNS": "100", "TERM": "dumb"}), contextlib.redirect_stdout(printed):
-                with contextlib.suppress(SystemExit):
-                    main([*words, "--help"])
+            with (
+                mock.patch.dict(os.environ, {"COLUMNS": "100", "TERM": "dumb"}),
+                contextlib.redirect_stdout(printed),
+                contextlib.suppress(SystemExit),
+            ):
+                main([*words, "--help"])
             title = " ".join(["evenroad", *words[:2]])
-            parts.append(f"## `{title}`\n\n{about[0].upper()}{about[1:]}.\n\n```text\n{printed.getvalue().rstrip()}\n```\n")
+            parts.append(
+                f"## `{title}`\n\n{about[0].upper()}{about[1:]}.\n\n```text\n{printed.getvalue().rstrip()}\n```\n"
+            )
     return "\n".join(parts)
 
 
@@ -196,7 +209,9 @@ def _examples() -> Iterator[tuple[str, str]]:
         code = text.split('"""', 2)[2].strip()
         title = script.stem[3:].replace("_", " ").capitalize()
         parts = [f"# {title}\n\n{about}\n"]
-        parts += [f"![{about}](/examples/{each.name})\n" for each in sorted(SHOWN.glob(f"{script.stem}.[gp]*"))]
+        if (SHOWN / f"{script.stem}.png").exists():
+            parts.append(f"![{about}](/examples/{script.stem}.png)\n")
+        parts += [f"![{about}](/{name})\n" for name in re.findall(r"\w+\.gif", text)]
         parts.append(f"`python examples/{script.name}`:\n\n```python\n{code}\n```\n")
         printed = SHOWN / f"{script.stem}.txt"
         if printed.exists():
