@@ -31,6 +31,8 @@ RUN = [
 
 @pytest.mark.parametrize("page", RUN, ids=_named)
 def test_the_code_of_the_page_runs(page):
+    for module in run_pages.NEEDS.get(page.name, ()):
+        pytest.importorskip(module)
     running = "nothing yet"
     try:
         for block, text in run_pages.run_page(page):

@@ -63,6 +63,9 @@ PREPARED = {
 }
 """Page -> Python that is run before its first block."""
 
+NEEDS = {"adapters.md": ("ompl", "klampt")}
+"""Page -> modules of extras that its code needs."""
+
 ARM_FILES = ("robots.md", "arm.md", "robot-roadmaps.md")
 """Pages that speak of ``my_arm.urdf``, ``cell.yaml`` and ``today.yaml``: files that stand for the reader's own."""
 
