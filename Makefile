@@ -4,12 +4,13 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check install -q -c constraints.txt
 
-.PHONY: help demo test test-peers lint bench bank mazes release-check clean
+.PHONY: help demo test test-peers lint docs bench bank mazes release-check clean
 help:
 	@echo "make demo   environment + plan through the shipped level-3 maze -> out/demo.png, out/demo.json"
 	@echo "make test   environment + lint + all tests"
 	@echo "make test-peers  tests against OMPL, coal, pinocchio, Klamp't and Planner Arena (installs their wheels)"
 	@echo "make lint   ruff and mypy"
+	@echo "make docs   the pages as a site -> out/docs/index.html"
 	@echo "make bench  the slow tables and timings -> out/bench/"
 	@echo "make bank   rebuild (or finish) the shipped point sets"
 	@echo "make mazes  redraw the shipped mazes"
@@ -45,6 +46,10 @@ test: lint
 
 test-peers: $(VENV)/.peers
 	$(BIN)/pytest tests_peers
+
+docs: $(VENV)/.dev
+	$(BIN)/python -m sphinx -q -W --keep-going -d out/doctrees docs out/docs
+	@echo "out/docs/index.html"
 
 bench: $(VENV)/.peers
 	@mkdir -p out/bench

@@ -29,6 +29,7 @@ MAY_IMPORT = {
     "robot_roadmap": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
     "arms": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
     "trajectory": BASE | {"space", "world", "robot"},
+    "adapters": BASE | {"points", "space", "world", "robot", "trajectory"},
     "research": BASE
     | {"points", "space", "world", "geometry", "robot", "roadmap", "robot_roadmap", "io", "viz"},
     "cli": BASE
@@ -124,6 +125,10 @@ def test_no_modules_import_each_other_in_a_circle():
     del names["evenroad"]
     imports = {name: sorted(set(_imported_modules(path, names)) - {name}) for name, path in names.items()}
     assert _circles(imports) == []
+
+
+def test_nobody_imports_the_adapters():
+    assert [part for part, others in MAY_IMPORT.items() if "adapters" in others] == []
 
 
 def test_only_the_command_imports_the_studies():
