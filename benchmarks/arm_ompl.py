@@ -125,18 +125,15 @@ def run(robot: str, problems: int, seconds: float, path: Path) -> None:
 
 def draw(store: Path, table: Path, robot: str, picture: Path) -> None:
     """Draw what success costs: the rows of a store, and OMPL's planners of a table that `run` wrote."""
-    from evenroad.research.arms.execute import kept_rule
     from evenroad.research.bench.store import read_rows
     from evenroad.research.report.arms import cost_curve, draw_costs
-    from evenroad.robot_roadmap.pockets import links_of
 
     with table.open() as file:
         lines = [line for line in csv.DictReader(file) if line["robot"] == robot]
     many = 1 + max(int(line["problem"]) for line in lines)
     rows = read_rows(store)
     rows = rows.where(rows.instance < many)
-    largest = int(rows.n.max())
-    figure = draw_costs(rows, robot, kept_rule(10, links_of(largest)))
+    figure = draw_costs(rows, robot, "10")
     panels = figure.axes[:2]
     for planner, colour in PLANNERS.items():
         mine = [line for line in lines if line["planner"] == planner]
