@@ -166,7 +166,7 @@ def title_of(line: Line) -> str:
 
 
 def table_rows(lines: Sequence[Line]) -> dict[tuple[str, str], list[tuple[str, ...]]]:
-    """Return for each robot and k the rows of a table: N, sampler, success by generator, gain, p."""
+    """Return for each robot and k the rows of a table: N, sampler, problems x draws, success by generator, gain, p."""
     tables: dict[tuple[str, str], dict[tuple[object, ...], dict[str, Line]]] = {}
     for line in lines:
         key = (line.n, title_of(line), line.rule)
@@ -182,12 +182,13 @@ def robots_and_k(lines: Sequence[Line]) -> list[tuple[str, str]]:
     return list(dict.fromkeys((line.robot, line.k) for line in lines if line.search == KEPT))
 
 
-TABLE_HEADER = ("N", "points", *GENERATORS, ALL, "roadmap - this", "p (Holm)")
+TABLE_HEADER = ("N", "points", "runs", *GENERATORS, ALL, "roadmap - this", "p (Holm)")
 
 
 def _texts(by: dict[str, Line]) -> tuple[str, ...]:
     whole = by[ALL]
-    shares = tuple(f"{100 * by[name].success:.0f}" if name in by else "–" for name in (*GENERATORS, ALL))
+    runs = f"{whole.problems} x {whole.runs / whole.problems:.3g}"
+    shares = (runs, *(f"{100 * by[name].success:.0f}" if name in by else "–" for name in (*GENERATORS, ALL)))
     if np.isnan(whole.gain):
         return (*shares, "", "")
     p = whole.p_corrected
