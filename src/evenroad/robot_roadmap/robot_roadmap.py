@@ -81,6 +81,10 @@ class RobotRoadmap:
         What a unit of each joint counts in the roadmap's metric.
     gamma : float
         The power of the chance of being free that milestones are as dense as.
+    ends : int
+        How many ends in pockets they learned from, at most.
+    tuned : str
+        What came of tuning the two; empty without.
     """
 
     robot: Robot
@@ -91,6 +95,8 @@ class RobotRoadmap:
     turns: Ints
     weights: Floats
     gamma: float
+    ends: int = 0
+    tuned: str = ""
 
     @cached_property
     def world(self) -> ArmWorld:
