@@ -19,12 +19,17 @@ from evenroad._checks import as_row, require_count, require_positive
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import Origin, PointSet
+from evenroad.points.samplers.korobov import Korobov
+from evenroad.points.samplers.plain import Sobol
 
 STEPS = 150
 """Of Adam: ten times as many make the typical distance one per cent longer."""
 
 POOL = 4
 """Sets that are annealed of each kind; all others are one of them, shifted and turned."""
+
+ANNEALED = 1024
+"""Most poses that are annealed, at a cost that grows as n^2; more are scrambled Sobol points."""
 
 FAR = 0.02
 """Pairs whose squared distance is more than 50 times the smallest one are left out: they push hardly at all."""
@@ -40,16 +45,21 @@ class Poses:
         Of the box of places, > 0; default: 1 each.
     turn : float
         What a radian of the space's rotations counts in units of the sides, > 0: of a quaternion's angle in SE3.
+    alike : float
+        Share of the poses, 0 .. 1, that have one rotation in common, drawn at random, and a lattice of places.  They
+        lie so near to each other that few neighbours connect them, and the others lead to them.
     """
 
     sides: tuple[float, ...] | None = None
     turn: float = 0.3
+    alike: float = 1 / 3
 
     name = "poses"
-    about = "even in SE(2) or SE(3), by energy on the manifold"
+    about = "even in SE(2) or SE(3), a third of them with one rotation"
 
     def __post_init__(self) -> None:
         require_positive("turn", self.turn)
+        require_positive("alike", self.alike, or_zero=True, at_most=1.0)
         if self.sides is not None:
             sides = as_row("sides", self.sides)
             if min(sides) <= 0.0:
@@ -66,15 +76,21 @@ class Poses:
         if len(sides) != places:
             raise InvalidValue(f"sides must be {places} numbers for d={d}, got {self.sides!r}")
         random = generator(rng)
-        x, q = _moved(
-            *_annealed(n, sides, 4 if d == 6 else 2, d == 6, self.turn, int(random.integers(POOL))), random
-        )
-        turned = (
-            _cube_of_quaternions(q)
-            if d == 6
-            else (np.arctan2(q[:, 1:], q[:, :1]) / (2.0 * np.pi) + 0.5) % 1.0
-        )
-        return _as_points(np.hstack([x, turned]), self.name, rng)
+        alike = round(self.alike * n)
+        cube = np.empty((n, d))
+        if alike:
+            cube[:alike, :places] = Korobov().draw(alike, places, rng=random).points
+            cube[:alike, places:] = _turned(random.standard_normal((1, d - places + 1)))
+        if n - alike > ANNEALED:
+            cube[alike:] = Sobol().draw(n - alike, d, rng=random).points
+        elif n - alike:
+            pooled = _annealed(
+                n - alike, sides, 4 if d == 6 else 2, d == 6, self.turn, int(random.integers(POOL))
+            )
+            x, q = _moved(*pooled, random)
+            cube[alike:] = np.hstack([x, _turned(q)])
+        # In no order: some rules join each point to earlier ones.
+        return _as_points(random.permutation(cube), self.name, rng)
 
 
 @dataclass(frozen=True)
@@ -107,6 +123,13 @@ def spread_directions(n: int, dim: int, *, antipodal: bool = False, rng: RngLike
 def _as_points(cube: Floats, family: str, rng: RngLike) -> PointSet:
     points = np.clip(cube, 0.0, np.nextafter(1.0, 0.0))
     return PointSet(points, Origin(family=family, method="annealed", objective="riesz", seed=seed_of(rng)))
+
+
+def _turned(q: Floats) -> Floats:
+    """Return the cube's coordinates of headings (cos, sin), (n, 2) -> (n, 1), or of quaternions, (n, 4) -> (n, 3)."""
+    if q.shape[1] == 4:
+        return _cube_of_quaternions(q / np.linalg.norm(q, axis=1, keepdims=True))
+    return (np.arctan2(q[:, 1:], q[:, :1]) / (2.0 * np.pi) + 0.5) % 1.0
 
 
 def _cube_of_quaternions(q: Floats) -> Floats:
