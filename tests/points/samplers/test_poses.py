@@ -133,6 +133,11 @@ def test_a_share_of_the_poses_has_one_rotation_and_a_lattice_of_places(d):
     assert not np.isin(rotations[counts.argmax()], other).any()
 
 
+def test_by_default_a_third_is_alike_in_space_and_none_in_the_plane():
+    assert Poses().draw(30, 6, rng=1) == Poses(alike=1 / 3).draw(30, 6, rng=1)
+    assert Poses().draw(30, 3, rng=1) == Poses(alike=0.0).draw(30, 3, rng=1)
+
+
 @pytest.mark.parametrize(("alike", "most"), [(0.0, 1), (1.0, 12)])
 def test_none_or_all_of_the_poses_may_be_alike(alike, most):
     rotations = Poses(alike=alike).draw(12, 6, rng=1).points[:, 3:]

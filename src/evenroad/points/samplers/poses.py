@@ -28,6 +28,9 @@ STEPS = 150
 POOL = 4
 """Sets that are annealed of each kind; all others are one of them, shifted and turned."""
 
+ALIKE = {3: 0.0, 6: 1 / 3}
+"""Share of poses with one rotation, by dimension, that planned best in random worlds of the tuning stream."""
+
 ANNEALED = 1024
 """Most poses that are annealed, at a cost that grows as n^2; more are scrambled Sobol points."""
 
@@ -45,21 +48,23 @@ class Poses:
         Of the box of places, > 0; default: 1 each.
     turn : float
         What a radian of the space's rotations counts in units of the sides, > 0: of a quaternion's angle in SE3.
-    alike : float
+    alike : float, optional
         Share of the poses, 0 .. 1, that have one rotation in common, drawn at random, and a lattice of places.  They
-        lie so near to each other that few neighbours connect them, and the others lead to them.
+        lie so near to each other that few neighbours connect them, and the others lead to them.  By default a third in
+        SE3 and none in SE2.
     """
 
     sides: tuple[float, ...] | None = None
     turn: float = 0.3
-    alike: float = 1 / 3
+    alike: float | None = None
 
     name = "poses"
-    about = "even in SE(2) or SE(3), a third of them with one rotation"
+    about = "even in SE(2); in SE(3) a third of them have one rotation"
 
     def __post_init__(self) -> None:
         require_positive("turn", self.turn)
-        require_positive("alike", self.alike, or_zero=True, at_most=1.0)
+        if self.alike is not None:
+            require_positive("alike", self.alike, or_zero=True, at_most=1.0)
         if self.sides is not None:
             sides = as_row("sides", self.sides)
             if min(sides) <= 0.0:
@@ -76,7 +81,8 @@ class Poses:
         if len(sides) != places:
             raise InvalidValue(f"sides must be {places} numbers for d={d}, got {self.sides!r}")
         random = generator(rng)
-        alike = round(self.alike * n)
+        share = ALIKE[d] if self.alike is None else self.alike
+        alike = round(share * n)
         cube = np.empty((n, d))
         if alike:
             cube[:alike, :places] = Korobov().draw(alike, places, rng=random).points
