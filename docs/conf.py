@@ -8,6 +8,7 @@ from pathlib import Path
 
 from docutils import nodes
 from sphinx import addnodes
+from sphinx.ext.napoleon import NumpyDocstring
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tools"))
 import docs_pages
@@ -29,19 +30,20 @@ html_css_files = ["site.css"]
 html_copy_source = html_show_sourcelink = html_show_copyright = False
 templates_path: list[str] = []
 highlight_language = "text"
-pygments_style, pygments_dark_style = "xcode", "github-dark"
 
 myst_heading_anchors = 4
 myst_enable_extensions = ["colon_fence"]
 suppress_warnings = ["myst.header"]
 
 default_role = "literal"
+smartquotes = False
 autodoc_typehints_format = "short"
 autodoc_member_order = "bysource"
 autodoc_preserve_defaults = True
 toc_object_entries_show_parents = "hide"
 python_maximum_signature_line_length = 88
 napoleon_google_docstring = False
+napoleon_use_ivar = True
 napoleon_use_rtype = False
 
 _OURS = re.compile(r"(?:er|evenroad)\.([A-Za-z_][\w.]*)(?:\(.*\))?")
@@ -101,8 +103,10 @@ def _lead_to_pages(app, document, source):
 
 def _as_written(app, what, name, thing, options, signature, returned):
     """Show the types of a signature as its source has them, not what they stand for."""
-    if what not in ("function", "method", "class", "exception") or getattr(thing, "_is_protocol", False):
+    if what not in ("function", "method", "class", "exception"):
         return None
+    if getattr(thing, "_is_protocol", False):
+        return "", None
     with contextlib.suppress(TypeError, ValueError):
         written = inspect.signature(thing)
         kept = [_shown(each) for each in written.parameters.values() if each.name not in ("self", "cls")]
@@ -138,6 +142,10 @@ def _end_sections(app, what, name, thing, options, lines):
             within = False
         out.append(line)
     lines[:] = out
+
+
+# "The radius: of ..." says no type before its colon, whatever Napoleon thinks of the texts of properties.
+NumpyDocstring._parse_attribute_docstring = lambda self: []
 
 
 def setup(app):
