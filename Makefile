@@ -4,7 +4,7 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check install -q -c constraints.txt
 
-.PHONY: help demo test test-peers lint docs bench bank mazes clean
+.PHONY: help demo test test-peers lint docs bench bank mazes release-check clean
 help:
 	@echo "make demo   environment + plan through the shipped level-3 maze -> out/demo.png, out/demo.json"
 	@echo "make test   environment + lint + all tests"
@@ -14,6 +14,7 @@ help:
 	@echo "make bench  the slow tables and timings -> out/bench/"
 	@echo "make bank   rebuild (or finish) the shipped point sets"
 	@echo "make mazes  redraw the shipped mazes"
+	@echo "make release-check  build the wheels and try them in an empty environment, as a new user would"
 	@echo "make clean  remove the environment and out/"
 
 # A stamp a file that pip finished: a stopped install is taken up again, a finished one costs nothing.
@@ -41,7 +42,6 @@ lint: $(VENV)/.dev
 	$(BIN)/mypy
 
 test: lint
-	$(BIN)/python tools/forget_stale_kernels.py
 	$(BIN)/pytest -n 2
 
 test-peers: $(VENV)/.peers
@@ -53,7 +53,6 @@ docs: $(VENV)/.dev
 
 bench: $(VENV)/.peers
 	@mkdir -p out/bench
-	$(BIN)/python tools/forget_stale_kernels.py
 	$(BIN)/python -m benchmarks --out out/bench
 	$(BIN)/evenroad bench paper --runs 400 --store out/bench/paper.db
 	$(BIN)/evenroad bench fair --runs 400 --store out/bench/fair.db
@@ -65,6 +64,9 @@ bank: $(VENV)/.dev
 
 mazes: $(VENV)/.core
 	$(BIN)/python tools/draw_mazes.py
+
+release-check: $(VENV)/.core
+	$(BIN)/python tools/release_check.py
 
 clean:
 	rm -rf $(VENV) out

@@ -91,6 +91,9 @@ class PlanDisk(PlanOptions):
     """May pass through unknown cells of a ROS map."""
     csv: bool = False
     """Also write the path as OUT.csv."""
+    certify: bool = False
+    """Say what the roadmap guarantees: from which clearance on it has a path wherever there is one, and how long it is
+    at most.  With points; the sampler cover guarantees most."""
 
 
 @dataclass(frozen=True, kw_only=True)
