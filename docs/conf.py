@@ -5,6 +5,7 @@ import inspect
 import re
 import sys
 from pathlib import Path
+from types import ModuleType
 
 from docutils import nodes
 from sphinx import addnodes
@@ -37,6 +38,7 @@ suppress_warnings = ["myst.header"]
 
 default_role = "literal"
 smartquotes = False
+autodoc_mock_imports = docs_pages.NOT_NEEDED
 autodoc_typehints_format = "short"
 autodoc_member_order = "bysource"
 autodoc_preserve_defaults = True
@@ -55,11 +57,16 @@ def _names(env):
 
 def _find(env, target):
     """Return the documented name of an object that is spoken of by another: its home, or its last word alone."""
-    names = _names(env)
+    names = {name: entry for name, entry in _names(env).items() if not entry.aliased}
     known = docs_pages.documented_name(target)
     if known in names:
         return known
-    found = [name for name in names if name.endswith(f".{target}")]
+    found = [name for name in names if name.endswith(f".{target}")] or [
+        # The fields of a class stand in its list.
+        name
+        for name in names
+        if name.endswith(f".{target.rpartition('.')[0]}") and "." in target
+    ]
     return found[0] if len(found) == 1 else None
 
 
@@ -81,7 +88,11 @@ def _resolve(app, env, node, content):
 def _leave_words(app, doctree):
     """Leave the words of ``array_like, shape (n, dim)`` what they are: only names with a capital are looked up."""
     for node in list(doctree.findall(addnodes.pending_xref)):
-        word = node.get("reftarget", "").rpartition(".")[2]
+        target = node.get("reftarget", "")
+        word, around = target.rpartition(".")[2], sys.modules.get(node.get("py:module"))
+        if isinstance(around, ModuleType) and isinstance(meant := getattr(around, target, None), type):
+            node["reftarget"] = docs_pages.documented_name(f"{meant.__module__}.{meant.__qualname__}")
+            node["refspecific"] = False
         if node.get("refdomain") == "py" and node.get("reftype") == "class" and not word[:1].isupper():
             node.replace_self(node.children)
 
@@ -97,7 +108,8 @@ def _link_names(app, doctree, document):
 
 
 def _lead_to_pages(app, document, source):
-    """Let links to an example lead to its page, where a reader of the files alone gets the script."""
+    """Let links to an example lead to its page; folders of files, which are no pages, are only named."""
+    source[0] = re.sub(r"\[([^\]]+)\]\((?:\.\./)+examples/?\w*\)", r"`\1`", source[0])
     source[0] = re.sub(r"\]\((?:\.\./)+examples/(\w+)\.py\)", r"](/generated/examples/\1.md)", source[0])
 
 

@@ -63,6 +63,9 @@ PREPARED = {
 }
 """Page -> Python that is run before its first block."""
 
+NEEDS = {"adapters.md": ("ompl", "klampt")}
+"""Page -> packages of extras that its code imports; where they are missing, `make test-peers` runs it."""
+
 ARM_FILES = ("robots.md", "arm.md", "robot-roadmaps.md")
 """Pages that speak of ``my_arm.urdf``, ``cell.yaml`` and ``today.yaml``: files that stand for the reader's own."""
 
@@ -78,6 +81,7 @@ TASTE = "--only maze-1 --runs 1 --jobs 1 --store"
 INSTEAD = {
     "make *": Instead(None, "a Makefile's target: that there is such a one is tested"),
     "pip install *": Instead(None, "needs a network: the release check tries it"),
+    "python examples/ros2/*": Instead(None, "nodes of ROS 2: tests_peers feeds them messages"),
     "python -m benchmarks*": Instead(None, "minutes to hours: that there is such a one is tested"),
     "evenroad bench paper --runs 400 *": Instead(f"evenroad bench paper {TASTE} paper.db", "18 minutes"),
     "evenroad bench fair --runs 400 *": Instead(
