@@ -18,7 +18,7 @@ def _run(name, folder):
 
 def test_with_ompl(tmp_path):
     pytest.importorskip("ompl")
-    said = _run("adapters/with_ompl.py", tmp_path)
+    said = _run("09_with_ompl.py", tmp_path)
     assert "RRT-Connect: no path" not in said
     prm = next(line for line in said.splitlines() if line.startswith("OMPL's PRM")).split(":")
     assert prm[1].split(";")[0].strip() == prm[2].strip(), "the same roadmap, so the same length"
@@ -27,7 +27,7 @@ def test_with_ompl(tmp_path):
 
 def test_with_klampt(tmp_path):
     pytest.importorskip("klampt")
-    said = _run("adapters/with_klampt.py", tmp_path)
+    said = _run("10_with_klampt.py", tmp_path)
     assert "even points: no path" not in said
     assert "a RobotTrajectory of" in said
 

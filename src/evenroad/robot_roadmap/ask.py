@@ -60,16 +60,18 @@ def ask(
     *,
     links: int,
     greed: float,
+    only_known: bool = False,
     most_motions: int,
     deadline: float,
 ) -> Asked:
     """Search for a way from a start, (dim,), to one of some goals, (g, dim), each tried to be linked to so many.
 
-    Of what the roadmap knows to be free of robot and cell, `day` is asked; of the rest the whole world.
+    Of what the roadmap knows to be free of robot and cell, `day` is asked; of the rest the whole world.  With
+    `only_known` the query is the last one, and nothing is gone along but what is known to be free by now.
     """
     room = 1
     while True:
-        graph.prepare(start, goals, links, greed, room)
+        graph.prepare(start, goals, links, greed, room, only_known=only_known)
         if (
             isinstance(world, ArmWorld)
             and isinstance(day, ArmWorld)

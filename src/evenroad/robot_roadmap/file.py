@@ -21,6 +21,7 @@ from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
 from evenroad.robot_roadmap.turns import TURN
 
 FORMAT = 2
+_SETTINGS = ("resolution", "gamma", "ends", "tuned")
 _ARRAYS = ("milestones", "edges", "turns", "weights")
 _SURFACES = ("points", "triangles")
 """Of the cell's clouds and meshes, one after the other."""
@@ -33,7 +34,7 @@ def save_robot_roadmap(path: Path, roadmap: RobotRoadmap) -> None:
 
     Raises BrokenFile if the file cannot be written; whatever was at `path` is then untouched.
     """
-    settings = {"resolution": roadmap.resolution, "gamma": roadmap.gamma}
+    settings = {name: getattr(roadmap, name) for name in _SETTINGS}
     arrays: Arrays = dict(
         format=np.array(FORMAT),
         version=np.array(__version__),
@@ -73,7 +74,7 @@ def load_robot_roadmap(path: Path, robot: Robot | None = None, cell: Scene | Non
             f"{path} has format {made_by[0]} of evenroad {made_by[1]}, this is format {FORMAT} of {__version__}:"
             " make the roadmap anew, since what it calls free was checked by that version"
         )
-    settings = read_json(path, "settings", arrays["settings"], ("resolution", "gamma"))
+    settings = read_json(path, "settings", arrays["settings"], _SETTINGS)
     try:
         made_robot, made_cell = robot_of(json.loads(str(arrays["robot"]))), _cell(path, arrays)
         fields: dict[str, Any] = {name: arrays[name] for name in _ARRAYS} | settings

@@ -20,13 +20,15 @@ from evenroad.roadmap.find_path import NO_POINTS, SECONDS, with_reasons
 from evenroad.roadmap.query import Query, read_places
 from evenroad.robot import ArmWorld, Robot, Scene, configuration, in_scene
 from evenroad.robot.trees import shorten
-from evenroad.robot_roadmap.ask import ENDS_TAKEN, Asked, Checks, ask
+from evenroad.robot_roadmap.ask import ENDS_TAKEN, SPENT, Asked, Checks, ask
 from evenroad.robot_roadmap.cell import day_and_all, left_to_check, require_same_robot
 from evenroad.robot_roadmap.known_graph import KnownGraph
+from evenroad.robot_roadmap.lazy_search import CUT_OFF, NONE
 from evenroad.robot_roadmap.learned import with_paths
 from evenroad.robot_roadmap.own_shapes import OwnShapesWorld
 from evenroad.robot_roadmap.pockets import links_of
 from evenroad.robot_roadmap.turns import OneTurn, one_turn, whole_turns
+from evenroad.robot_roadmap.ways_out import learn_ways_out
 from evenroad.space.path import path_length
 from evenroad.world.protocol import Connection
 
@@ -46,11 +48,11 @@ LINKS = 300
 """Each end is tried to be linked to so many milestones where nothing else is said; plans without trees go by
 `links_of`: asked lazily, more links cost little but where ends are cut off, and there they are worth much."""
 
-TRIED_LINKS, TRIED_MOTIONS = 30, 200
+TRIED_LINKS, TRIED_MOTIONS = 30, 60
 """Where trees may follow, so many links of each end are tried, and so many motions: trees find ways out of narrow
 places with fewer checks than long links do."""
 
-PAIRS, CUTS = 32, 16
+PAIRS, CUTS = 16, 32
 """What a path along the roadmap is shortened with: half of the work on trees' paths, for half a percent of length."""
 
 _LONG = 1e8
@@ -81,6 +83,10 @@ class RobotRoadmap:
         What a unit of each joint counts in the roadmap's metric.
     gamma : float
         The power of the chance of being free that milestones are as dense as.
+    ends : int
+        How many ends in pockets they learned from, at most.
+    tuned : str
+        What came of tuning the two; empty without.
     """
 
     robot: Robot
@@ -91,6 +97,8 @@ class RobotRoadmap:
     turns: Ints
     weights: Floats
     gamma: float
+    ends: int = 0
+    tuned: str = ""
 
     @cached_property
     def world(self) -> ArmWorld:
@@ -180,6 +188,7 @@ class SceneRoadmap:
         if shapes is not None:
             self._asked = OwnShapesWorld(self.world, shapes), OwnShapesWorld(self._day, shapes)
         self._graph = roadmap.graph.within(np.array(self.world.space.low), np.array(self.world.space.high))
+        self._wraps = bool(np.any(self.world.space.wrapping))
         self.learned: list[Floats] = []
         # Compiled, or loaded, before a clock runs; nothing is checked but the ends.
         self._ask(roadmap.milestones[0], roadmap.milestones[:1], 0, math.inf, 1)
@@ -204,7 +213,15 @@ class SceneRoadmap:
         return Connection(asked.path, asked.goal, self._size, asked.milestones, asked.motions)
 
     def _ask(
-        self, start: Floats, goals: Floats, most: int, deadline: float, links: int, greed: float = GREED
+        self,
+        start: Floats,
+        goals: Floats,
+        most: int,
+        deadline: float,
+        links: int,
+        greed: float = GREED,
+        *,
+        only_known: bool = False,
     ) -> Asked:
         return ask(
             *self._asked,
@@ -213,6 +230,7 @@ class SceneRoadmap:
             goals,
             links=links,
             greed=greed,
+            only_known=only_known,
             most_motions=most,
             deadline=deadline,
         )
@@ -260,6 +278,8 @@ class SceneRoadmap:
         links = TRIED_LINKS if trees else links_of(self._size)
         limits = min(most, TRIED_MOTIONS) if trees else most, began + SHARE * min(deadline - began, _LONG)
         asked = self._ask(first, goals, *limits, links)
+        if asked.ended in (NONE, CUT_OFF, SPENT) and trees and len(goals) == 1:
+            asked = self._by_ways_out(asked, first, goals, most, limits[1])
         if asked.goal >= 0:
             if self._asked[0] is not self.world:
                 # Where checks are dear, shorter links from now on are worth the longer search.
@@ -285,6 +305,23 @@ class SceneRoadmap:
             text = f"the roadmap of {self._size} milestones does not lead from start to goal today"
             failed = replace(failed, status=Status.NOT_CONNECTED, message=text)
         return with_reasons(self._asked[0], failed)
+
+    def _by_ways_out(self, asked: Asked, start: Floats, goals: Floats, most: int, deadline: float) -> Asked:
+        """Ask again along what is known to be free, with ways learned that lead there from the ends."""
+        out = learn_ways_out(
+            self.world,
+            self._graph,
+            self.roadmap.weights,
+            (start, goals[0]),
+            most - asked.motions,
+            deadline,
+        )
+        self.learned += out.ways
+        before = asked.milestones + out.configurations, asked.motions + out.motions
+        if out.complete:
+            asked = self._ask(start, goals, TRIED_MOTIONS, deadline, TRIED_LINKS, only_known=True)
+            before = before[0] + asked.milestones, before[1] + asked.motions
+        return replace(asked, milestones=before[0], motions=before[1])
 
     def _by_trees(self, attempt: Attempt, asked: Asked) -> Connection:
         """Return what trees find, and learn it."""
@@ -329,11 +366,11 @@ class SceneRoadmap:
         )
 
     def _length(self, path: Floats) -> float:
-        if np.any(self.world.space.wrapping):
+        if self._wraps:
             return path_length(path, self.world.space)
-        # The same, in a third of the time.
-        way = path[1:] - path[:-1]
-        return float(np.sqrt(np.einsum("ij,ij->i", way, way)).sum())
+        # The same, in a tenth of the time.
+        places = path.tolist()
+        return sum(map(math.dist, places, places[1:]))
 
     def _place(self, place: Place) -> npt.ArrayLike:
         """Return a configuration of a text; of numbers themselves."""
