@@ -281,9 +281,6 @@ class SceneRoadmap:
         if asked.ended in (NONE, CUT_OFF, SPENT) and trees and len(goals) == 1:
             asked = self._by_ways_out(asked, first, goals, most, limits[1])
         if asked.goal >= 0:
-            if self._asked[0] is not self.world:
-                # Where checks are dear, shorter links from now on are worth the longer search.
-                self._graph.learn(asked.path)
             return self._solved(asked, first, goals, shorten, began)
         query = Query(first, goals, shorten=shorten, budget=budget)
         attempt = Attempt(self._asked[0], query, NO_POINTS, "none", PLANNER)
