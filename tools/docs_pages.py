@@ -21,6 +21,8 @@ from types import ModuleType
 from typing import Any
 from unittest import mock
 
+from sphinx.ext.autodoc.mock import mock as stand_ins
+
 import evenroad
 from evenroad.cli import main
 from evenroad.cli.verbs import VERBS
@@ -57,9 +59,19 @@ REFERENCE = {
     "trajectories": ("Trajectories", ("evenroad.trajectory",)),
     "pictures": ("Pictures", ("evenroad.viz.plan", "evenroad.viz.arm")),
     "mazes": ("Mazes", ("evenroad.research.mazes",)),
+    "adapters": ("Adapters", ("evenroad.adapters.ompl", "evenroad.adapters.klampt")),
     "errors": ("Errors", ("evenroad.errors",)),
 }
 """Page -> its title, and the modules whose public names it holds."""
+
+NOT_NEEDED = ["ompl", "klampt"]
+"""Packages of extras that modules of the reference import, and that need not be there."""
+
+
+def home_of(name: str) -> ModuleType:
+    """Return a module of the reference, whether what it adapts is installed or not."""
+    with stand_ins(NOT_NEEDED):
+        return importlib.import_module(name)
 
 
 def write_pages(folder: Path) -> None:
@@ -99,7 +111,7 @@ def documented_name(name: str) -> str:
         if last in evenroad.__all__ and getattr(evenroad, last) is thing:
             return f"evenroad.{last}"
         for home in (home for _, homes in REFERENCE.values() for home in homes):
-            if getattr(importlib.import_module(home), last, None) is thing:
+            if getattr(home_of(home), last, None) is thing:
                 return f"{home}.{last}"
     return name
 
@@ -118,7 +130,7 @@ def _reference() -> Iterator[tuple[str, str]]:
     for page, (title, homes) in REFERENCE.items():
         parts, rows = [_heading(title, "=")], []
         for home in homes:
-            module = importlib.import_module(home)
+            module = home_of(home)
             things = {name: getattr(module, name) for name in public_names(module)}
             new = {name: each for name, each in things.items() if id(each) not in seen}
             seen |= {id(each) for each in new.values()}
@@ -203,12 +215,13 @@ def _changes() -> str:
 
 
 def _examples() -> Iterator[tuple[str, str]]:
+    gallery = (ROOT / "docs" / "examples.md").read_text()
+    titles = {name: title for title, name in re.findall(r"\[([^\]]+)\]\(\.\./examples/(\w+)\.py\)", gallery)}
     for script in sorted((ROOT / "examples").glob("*.py")):
         text = script.read_text()
         about = ast.get_docstring(ast.parse(text))
         code = text.split('"""', 2)[2].strip()
-        title = script.stem[3:].replace("_", " ").capitalize()
-        parts = [f"# {title}\n\n{about}\n"]
+        parts = [f"# {titles.get(script.stem, script.stem)}\n\n{about}\n"]
         if (SHOWN / f"{script.stem}.png").exists():
             parts.append(f"![{about}](/examples/{script.stem}.png)\n")
         parts += [f"![{about}](/{name})\n" for name in re.findall(r"\w+\.gif", text)]
