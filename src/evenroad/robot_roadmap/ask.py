@@ -48,6 +48,7 @@ def ask(
     links: int,
     greed: float,
     only_known: bool = False,
+    unturned: bool = False,
     most_motions: int,
     deadline: float,
 ) -> Asked:
@@ -55,10 +56,11 @@ def ask(
 
     Of what the roadmap knows to be free of robot and cell, `day` is asked; of the rest the whole world.  With
     `only_known` the query is the last one, and nothing is gone along but what is known to be free by now.
+    With `unturned` ends are linked to milestones as these are, not turned to be near.
     """
     room = 1
     while True:
-        graph.prepare(start, goals, links, greed, room, only_known=only_known)
+        graph.prepare(start, goals, links, greed, room, only_known=only_known, unturned=unturned)
         by = _by_lanes if world.backend == "lanes" and day.backend == "lanes" else _one_by_one
         asked = by(world, day, graph, most_motions, deadline)
         if asked.ended != FULL:
