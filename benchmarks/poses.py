@@ -9,9 +9,9 @@ the circle (Yershova, Jain, LaValle and Mitchell 2010), of 72 and 576 rotations;
 successive orthogonal images (2008) with the same directions, as we read it.
 
 SE(3): success in the fair suite's worlds of the reporting stream, every sampler in the same worlds, k nearest as in the
-suite; "+-" is the standard error of the difference from scrambled Sobol, paired by world.  "poses" are what a planner
-takes, "unlike" the same with no rotation in common, "even" the lattice in the cube that is mapped to poses.  `--tune`
-compares shares of poses with one rotation, in worlds of the tuning stream, which chose the share.
+suite; "+-" is the standard error of the difference from scrambled Sobol, paired by world.  "sliced" is what a planner
+takes, "even" the lattice in the cube that is mapped to poses.  `--tune` compares shares of poses in the slice, in
+worlds of the tuning stream, which chose the share.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ from scipy.spatial.transform import Rotation
 from benchmarks.nested_k import smallest_k
 from evenroad._arrays import Floats
 from evenroad.points import draw
-from evenroad.points.samplers.poses import Poses, Rotations
+from evenroad.points.samplers.poses import Poses, Rotations, Sliced
 from evenroad.research.problems.fair import ROTATION_WEIGHT, SIZES, Family, Stream, make_instance
 from evenroad.space import SO3
 
-SAMPLERS = ("poses", "unlike", "even", "sobol", "hickernell", "uniform")
-SHARES = {"unlike": 0.0, "a fifth": 0.2, "a third": 1 / 3, "half": 0.5, "all": 1.0}
+SAMPLERS = ("sliced", "poses", "even", "sobol", "hickernell", "uniform")
+SHARES = {"a sixth": 1 / 6, "a third": 1 / 3, "half": 0.5, "all": 1.0}
 RULES = (4, 6, 10, 20)
 
 
@@ -165,8 +165,10 @@ def planning(
 
 
 def _cube(sampler: str, n: int, seed: int) -> Floats:
-    if sampler == "poses" or sampler in SHARES:
-        return Poses(turn=ROTATION_WEIGHT[3], alike=SHARES.get(sampler)).draw(n, 6, rng=seed).points
+    if sampler == "poses":
+        return Poses(turn=ROTATION_WEIGHT[3]).draw(n, 6, rng=seed).points
+    if sampler == "sliced" or sampler in SHARES:
+        return Sliced(SHARES.get(sampler, 1 / 3)).draw(n, rng=seed).points
     return draw(sampler, n, 6, rng=seed).points
 
 

@@ -15,7 +15,7 @@ from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import PointSet
 from evenroad.points.samplers import make_sampler
-from evenroad.points.samplers.poses import Poses
+from evenroad.points.samplers.poses import Sliced
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.search import FINDERS, Finder, find_any
 from evenroad.space import SO3, Box, Product, Space
@@ -114,17 +114,13 @@ def as_points(points: PointSet | int, space: Space) -> PointSet:
 
 
 def even_points(n: int, space: Space, *, rng: RngLike = 0) -> PointSet:
-    """Return n points of the space's cube: `even`, but in SE(3) `poses` made for its box and its weights."""
-    place, *others = space.parts if isinstance(space, Product) else (None,)
-    if (
-        isinstance(space, Product)
-        and isinstance(place, Box)
-        and place.dim == 3
-        and list(map(type, others)) == [SO3]
-    ):
-        sides = tuple(np.subtract(place.high, place.low).tolist())
-        return Poses(sides, turn=space.weights[1] / space.weights[0]).draw(n, space.cube_dim, rng=rng)
-    return make_sampler("even").draw(n, space.cube_dim, rng=rng)
+    """Return n points of the space's cube as a planner takes them: `even`, but in SE(3) `sliced`."""
+    in_space = isinstance(space, Product) and [(type(part), part.dim) for part in space.parts] == [
+        (Box, 3),
+        (SO3, 4),
+    ]
+    sampler = Sliced() if in_space else make_sampler("even")
+    return sampler.draw(n, space.cube_dim, rng=rng)
 
 
 def _finite(value: npt.ArrayLike) -> Floats:

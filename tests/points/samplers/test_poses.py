@@ -6,7 +6,7 @@ import pytest
 from evenroad.errors import InvalidValue
 from evenroad.points import draw
 from evenroad.points.samplers import poses
-from evenroad.points.samplers.poses import Poses, Rotations, spread_directions
+from evenroad.points.samplers.poses import Poses, Rotations, Sliced, spread_directions
 from evenroad.space import SE2, SE3, SO3
 
 
@@ -55,21 +55,14 @@ def test_poses_are_farther_apart_in_their_space_than_mapped_lattices(make, d):
     space = make([0.0] * dim, [1.0] * dim, weights=(1.0, 0.3), combine="l2")
     gaps = [
         smallest(space.all_distances(*[space.from_cube(points.points)] * 2))
-        for points in (Poses(turn=0.3, alike=0.0).draw(128, d, rng=5), draw("sobol", 128, d, rng=5))
+        for points in (Poses(turn=0.3).draw(128, d, rng=5), draw("sobol", 128, d, rng=5))
     ]
     assert gaps[0] > 1.3 * gaps[1]
 
 
 def test_the_shape_of_the_box_and_the_weight_of_a_turn_count():
-    flat = Poses(sides=(4.0, 1.0, 0.25), turn=0.3, alike=0.0).draw(64, 6, rng=1).points * [
-        4.0,
-        1.0,
-        0.25,
-        1,
-        1,
-        1,
-    ]
-    cube = Poses(turn=0.3, alike=0.0).draw(64, 6, rng=1).points * [4.0, 1.0, 0.25, 1, 1, 1]
+    flat = Poses(sides=(4.0, 1.0, 0.25), turn=0.3).draw(64, 6, rng=1).points * [4.0, 1.0, 0.25, 1, 1, 1]
+    cube = Poses(turn=0.3).draw(64, 6, rng=1).points * [4.0, 1.0, 0.25, 1, 1, 1]
     space = SE3([0.0] * 3, [4.0, 1.0, 0.25], weights=(1.0, 0.3), combine="l2")
 
     def gap(points):
@@ -80,7 +73,7 @@ def test_the_shape_of_the_box_and_the_weight_of_a_turn_count():
 
 
 @pytest.mark.parametrize("n", [1, 2, 7, 33])
-@pytest.mark.parametrize(("sampler", "d"), [(Poses(), 3), (Poses(), 6), (Rotations(), 3)])
+@pytest.mark.parametrize(("sampler", "d"), [(Poses(), 3), (Poses(), 6), (Rotations(), 3), (Sliced(), 6)])
 def test_there_is_a_set_of_any_n_and_the_same_seed_gives_it_again(sampler, d, n):
     points = sampler.draw(n, d, rng=6)
     assert points.points.shape == (n, d)
@@ -122,37 +115,36 @@ def test_bad_input_is_named(make, said):
         make()
 
 
-@pytest.mark.parametrize("d", [3, 6])
-def test_a_share_of_the_poses_has_one_rotation_and_a_lattice_of_places(d):
-    points, places = Poses(alike=0.25).draw(80, d, rng=7).points, {3: 2, 6: 3}[d]
-    rotations, counts = np.unique(points[:, places:], axis=0, return_counts=True)
+def test_a_share_of_sliced_poses_has_one_rotation_and_a_lattice_of_places():
+    points = Sliced(share=0.25).draw(80, rng=7).points
+    rotations, counts = np.unique(points[:, 3:], axis=0, return_counts=True)
     assert sorted(counts)[-2:] == [1, 20]
-    sheet = points[(points[:, places:] == rotations[counts.argmax()]).all(axis=1), :places]
-    np.testing.assert_allclose(np.diff(np.sort(sheet, axis=0), axis=0), 1 / 20, rtol=1e-9)
-    other = Poses(alike=0.25).draw(80, d, rng=8).points[:, places:]
-    assert not np.isin(rotations[counts.argmax()], other).any()
+    places = points[(points[:, 3:] == rotations[counts.argmax()]).all(axis=1), :3]
+    np.testing.assert_allclose(np.diff(np.sort(places, axis=0), axis=0), 1 / 20, rtol=1e-9)
+    other = Sliced(share=0.25).draw(80, rng=8).points[:, 3:]
+    assert not (other == rotations[counts.argmax()]).all(axis=1).any()
 
 
-def test_by_default_a_third_is_alike_in_space_and_none_in_the_plane():
-    assert Poses().draw(30, 6, rng=1) == Poses(alike=1 / 3).draw(30, 6, rng=1)
-    assert Poses().draw(30, 3, rng=1) == Poses(alike=0.0).draw(30, 3, rng=1)
+def test_the_rotations_of_slices_are_uniform():
+    quaternions = SO3().from_cube(
+        np.array([Sliced(share=1.0).draw(1, rng=i).points[0, 3:] for i in range(2000)])
+    )
+    second = np.einsum("ni,nj->ij", quaternions, quaternions) / 2000
+    np.testing.assert_allclose(second, np.eye(4) / 4, atol=0.03)
 
 
-@pytest.mark.parametrize(("alike", "most"), [(0.0, 1), (1.0, 12)])
-def test_none_or_all_of_the_poses_may_be_alike(alike, most):
-    rotations = Poses(alike=alike).draw(12, 6, rng=1).points[:, 3:]
+@pytest.mark.parametrize(("share", "most"), [(0.0, 1), (1.0, 12)])
+def test_none_or_all_of_the_poses_may_be_in_the_slice(share, most):
+    rotations = Sliced(share).draw(12, rng=1).points[:, 3:]
     assert np.unique(rotations, axis=0, return_counts=True)[1].max() == most
 
 
-def test_poses_beyond_those_that_are_annealed_are_made_at_once(monkeypatch):
-    monkeypatch.setattr(poses, "ANNEALED", 20)
-    monkeypatch.setattr(poses, "_annealed", None)
-    points = Poses(alike=0.5).draw(50, 6, rng=2)
-    assert points.n == 50
-    assert len(np.unique(points.points[:, 3:], axis=0)) == 26
+@pytest.mark.parametrize("share", [-0.1, 1.5, float("nan"), "half"])
+def test_a_share_that_is_none_is_refused(share):
+    with pytest.raises(InvalidValue, match="share"):
+        Sliced(share)
 
 
-@pytest.mark.parametrize("alike", [-0.1, 1.5, float("nan"), "half"])
-def test_a_share_that_is_none_is_refused(alike):
-    with pytest.raises(InvalidValue, match="alike"):
-        Poses(alike=alike)
+def test_slices_are_of_space_alone():
+    with pytest.raises(InvalidValue, match="d = 6"):
+        Sliced().draw(10, 3)

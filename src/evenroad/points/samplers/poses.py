@@ -2,7 +2,8 @@
 
 A pose is a place in a box and a direction, a unit vector: a heading, or a quaternion, of which q and -q are one.  What
 repels two poses is the sum of distance^(-2 d) with ``distance^2 = |places|^2 + turn^2 |directions|^2``, the first along
-the shortest way on a torus, so that no place is a border, the second a chord.
+the shortest way on a torus, so that no place is a border, the second a chord.  :class:`Sliced` poses are not even, and
+plan best.
 """
 
 from __future__ import annotations
@@ -12,10 +13,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numba import njit
 
 from evenroad._arrays import Floats, set_fields
 from evenroad._checks import as_row, require_count, require_positive
+from evenroad._njit import njit
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import Origin, PointSet
@@ -27,12 +28,6 @@ STEPS = 150
 
 POOL = 4
 """Sets that are annealed of each kind; all others are one of them, shifted and turned."""
-
-ALIKE = {3: 0.0, 6: 1 / 3}
-"""Share of poses with one rotation, by dimension, that planned best in random worlds of the tuning stream."""
-
-ANNEALED = 1024
-"""Most poses that are annealed, at a cost that grows as n^2; more are scrambled Sobol points."""
 
 FAR = 0.02
 """Pairs whose squared distance is more than 50 times the smallest one are left out: they push hardly at all."""
@@ -48,23 +43,16 @@ class Poses:
         Of the box of places, > 0; default: 1 each.
     turn : float
         What a radian of the space's rotations counts in units of the sides, > 0: of a quaternion's angle in SE3.
-    alike : float, optional
-        Share of the poses, 0 .. 1, that have one rotation in common, drawn at random, and a lattice of places.  They
-        lie so near to each other that few neighbours connect them, and the others lead to them.  By default a third in
-        SE3 and none in SE2.
     """
 
     sides: tuple[float, ...] | None = None
     turn: float = 0.3
-    alike: float | None = None
 
     name = "poses"
-    about = "even in SE(2); in SE(3) a third of them have one rotation"
+    about = "even in SE(2) or SE(3), by energy on the manifold"
 
     def __post_init__(self) -> None:
         require_positive("turn", self.turn)
-        if self.alike is not None:
-            require_positive("alike", self.alike, or_zero=True, at_most=1.0)
         if self.sides is not None:
             sides = as_row("sides", self.sides)
             if min(sides) <= 0.0:
@@ -81,22 +69,53 @@ class Poses:
         if len(sides) != places:
             raise InvalidValue(f"sides must be {places} numbers for d={d}, got {self.sides!r}")
         random = generator(rng)
-        share = ALIKE[d] if self.alike is None else self.alike
-        alike = round(share * n)
+        x, q = _moved(
+            *_annealed(n, sides, 4 if d == 6 else 2, d == 6, self.turn, int(random.integers(POOL))), random
+        )
+        turned = (
+            _cube_of_quaternions(q)
+            if d == 6
+            else (np.arctan2(q[:, 1:], q[:, :1]) / (2.0 * np.pi) + 0.5) % 1.0
+        )
+        return _as_points(np.hstack([x, turned]), self.name, rng)
+
+
+@dataclass(frozen=True)
+class Sliced:
+    """Poses in space for sparse roadmaps: scrambled Sobol points, of which a share lies in one slice, as cube of SE3.
+
+    The slice is one rotation, drawn at random, with a Korobov lattice of places.  It has three dimensions instead of
+    six, so its poses are so near to each other that few neighbours connect them, by short motions without a turn; the
+    others lead there.
+    """
+
+    share: float = 1 / 3
+    """Of the poses that are in the slice, 0 .. 1; random worlds of the tuning stream chose it."""
+
+    name = "sliced"
+    about = "poses in SE(3), a third of them with one rotation"
+
+    def __post_init__(self) -> None:
+        require_positive("share", self.share, or_zero=True, at_most=1.0)
+
+    def draw(self, n: int, d: int = 6, *, rng: RngLike = 0) -> PointSet:
+        """Return n points of the cube of SE3, d = 6."""
+        n, d = require_count("n", n), require_count("d", d)
+        if d != 6:
+            raise InvalidValue(f"sliced poses have d = 6 (SE3), got d={d}")
+        random = generator(rng)
+        sliced = round(self.share * n)
         cube = np.empty((n, d))
-        if alike:
-            cube[:alike, :places] = Korobov().draw(alike, places, rng=random).points
-            cube[:alike, places:] = _turned(random.standard_normal((1, d - places + 1)))
-        if n - alike > ANNEALED:
-            cube[alike:] = Sobol().draw(n - alike, d, rng=random).points
-        elif n - alike:
-            pooled = _annealed(
-                n - alike, sides, 4 if d == 6 else 2, d == 6, self.turn, int(random.integers(POOL))
-            )
-            x, q = _moved(*pooled, random)
-            cube[alike:] = np.hstack([x, _turned(q)])
+        rotation = random.standard_normal((1, 4))
+        cube[:sliced, 3:] = _cube_of_quaternions(rotation / np.linalg.norm(rotation))
+        if sliced:
+            cube[:sliced, :3] = Korobov().draw(sliced, 3, rng=random).points
+        if sliced < n:
+            cube[sliced:] = Sobol().draw(n - sliced, d, rng=random).points
         # In no order: some rules join each point to earlier ones.
-        return _as_points(random.permutation(cube), self.name, rng)
+        points = np.clip(random.permutation(cube), 0.0, np.nextafter(1.0, 0.0))
+        method = f"{sliced} of one rotation, the others Sobol"
+        return PointSet(points, Origin(family=self.name, method=method, seed=seed_of(rng)))
 
 
 @dataclass(frozen=True)
@@ -129,13 +148,6 @@ def spread_directions(n: int, dim: int, *, antipodal: bool = False, rng: RngLike
 def _as_points(cube: Floats, family: str, rng: RngLike) -> PointSet:
     points = np.clip(cube, 0.0, np.nextafter(1.0, 0.0))
     return PointSet(points, Origin(family=family, method="annealed", objective="riesz", seed=seed_of(rng)))
-
-
-def _turned(q: Floats) -> Floats:
-    """Return the cube's coordinates of headings (cos, sin), (n, 2) -> (n, 1), or of quaternions, (n, 4) -> (n, 3)."""
-    if q.shape[1] == 4:
-        return _cube_of_quaternions(q / np.linalg.norm(q, axis=1, keepdims=True))
-    return (np.arctan2(q[:, 1:], q[:, :1]) / (2.0 * np.pi) + 0.5) % 1.0
 
 
 def _cube_of_quaternions(q: Floats) -> Floats:

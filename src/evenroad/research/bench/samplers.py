@@ -135,6 +135,6 @@ SAMPLERS: dict[str, RunSampler] = {
     "sukharev": RunSampler("sukharev", _grid, _grid_exists),
     "mpmc": RunSampler("mpmc", _from_pool, _pool_exists),
     "hickernell": RunSampler("hickernell", _from_pool, _pool_exists),
-    "even": RunSampler("even", _even, _always, "in SE(3) poses, as a planner takes them"),
+    "even": RunSampler("even", _even, _always, "sliced in SE(3), as for a planner"),
 }
 """Name -> how the set of a run is drawn, in the order of tables."""
