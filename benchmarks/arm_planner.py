@@ -247,12 +247,11 @@ def main() -> None:
         peer: list[float] = []
         for problem in problems(pool, (TUNING if options.tuning else REPORTING)[: options.count]):
             if options.ompl:
-                from benchmarks.arm_ompl import rrt_connect
+                from benchmarks.arm_ompl import ompl_plan
 
-                solved, seconds = rrt_connect(
-                    ArmWorld(problem.robot, problem.scene), problem.start, problem.goal
-                )
-                peer += [1e3 * seconds] if solved else []
+                world = ArmWorld(problem.robot, problem.scene)
+                found = ompl_plan("RRT-Connect", world, problem.start, problem.goal)
+                peer += [found.ms] if found.solved else []
             row = measure(problem)
             if row is None:
                 unsolved.append(problem)

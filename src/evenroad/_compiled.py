@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import sys
+from collections.abc import Sequence
 from importlib import import_module
 from types import ModuleType
 from typing import Any
@@ -23,7 +25,6 @@ def provide_cache() -> None:
     beside = os.path.join(os.path.dirname(__file__), "__pycache__")
     if os.environ.get(VARIABLE) or _writable(beside) or _writable(user_cache("numba")):
         return
-    import atexit
     import logging
     import shutil
     import tempfile
@@ -76,6 +77,51 @@ def is_kept(function: Any) -> bool:
         return True
 
 
+def compile_beside(*heaps: Sequence[str]) -> None:
+    """Compile the programs of modules in processes of their own, one a heap, while this one goes on.
+
+    It waits for them where it needs them, and compiles what stays behind because there are fewer processors than heaps
+    or a process fails.  Nothing happens where the first module's program is kept or no interpreter can be started.
+    """
+    from evenroad._njit import HELPERS, compile_all, is_missing
+
+    free = processors() - 1
+    python = os.path.basename(sys.executable or "").startswith("python")
+    if free < 1 or not python or heaps[0][0] in HELPERS or not is_missing(heaps[0][0]):
+        return
+    import subprocess
+
+    root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    for heap in heaps[:free]:
+        work = f"from {compile_all.__module__} import compile_all; compile_all({[*heap]!r})"
+        code = f"import sys; sys.path.insert(0, {root!r}); {work}"
+        nowhere = subprocess.DEVNULL
+        try:
+            helper = subprocess.Popen(
+                [sys.executable, "-c", code], stdin=nowhere, stdout=nowhere, stderr=nowhere
+            )
+        except OSError:
+            return
+        atexit.register(_end, helper)
+        HELPERS.update(dict.fromkeys(heap, helper))
+
+
+def _end(helper: Any) -> None:
+    """End a process that nobody waits for any more; what it finished is kept."""
+    if helper.poll() is None:
+        helper.terminate()
+        helper.wait()
+
+
+def processors() -> int:
+    """Return how many processors this process may use; 1 for a worker of others, which use the rest."""
+    import multiprocessing
+
+    if multiprocessing.parent_process() is not None:
+        return 1
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 def defer_blas() -> None:
     """Keep numba from loading SciPy's linear algebra, a quarter of the start of a command, until code needs it.
 
@@ -100,5 +146,11 @@ def say_if_compiling(module: str, function: str, seconds: int) -> bool:
         return False
     if is_kept(compiled):
         return False
-    print(f"evenroad: compiling for this machine, once: about {seconds} s", file=sys.stderr, flush=True)
+    line = f"evenroad: compiling for this machine, once: about {seconds} s"
+    if sys.stderr.isatty():
+        from evenroad._njit import show_progress
+
+        show_progress(line)
+    else:
+        print(line, file=sys.stderr, flush=True)
     return True

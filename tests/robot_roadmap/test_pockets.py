@@ -38,7 +38,8 @@ def test_a_pocket_holds_the_tip_between_five_walls_and_is_open_to_the_side_of_th
     tips = pockets._tips(arm, pool)
     open_above = 0
     for tip in tips[:100, 0]:
-        walls, centre, turn, half = pockets._pocket(tip, around, rng)
+        pocket = pockets._pocket(tip, around, rng)
+        walls, centre, turn, half = pocket.walls(), pocket.centre, pocket.turn, pocket.half
         assert len(walls) == 5
         assert np.all(np.abs((tip - centre) @ turn) <= 0.5 * half + 1e-12)
         np.testing.assert_allclose(turn @ turn.T, np.eye(3), atol=1e-12)
@@ -52,6 +53,20 @@ def test_a_pocket_holds_the_tip_between_five_walls_and_is_open_to_the_side_of_th
         # No wall is where the way out is.
         assert not any(np.dot(np.array(wall.xyz) - centre, way_out) > 0.5 * half[0] for wall in walls)
     assert 15 <= open_above <= 45
+
+
+def test_what_is_passed_over_before_a_world_is_made_touches_a_wall(arm, pool):
+    around, rng = Surroundings.of(arm, pool), np.random.default_rng(4)
+    tips, (body, radii) = pockets._tips(arm, pool), pockets._body(arm, pool)
+    passed, touching = 0, 0
+    for q, tip, places in zip(pool[:300], tips[:300, 0], body, strict=False):
+        pocket = pockets._pocket(tip, around, rng)
+        free = ArmWorld(arm, Scene("pocket", pocket.walls())).valid(q[np.newaxis])[0]
+        touching += not free
+        if pocket.touched_by(places, radii):
+            passed += 1
+            assert not free
+    assert 0.8 * touching <= passed < 300
 
 
 def test_ends_see_what_straight_motions_reach_and_never_themselves(arm, pool, monkeypatch):

@@ -21,6 +21,7 @@ from evenroad.robot import Robot, Scene
 from evenroad.robot.load import RobotOptions
 from evenroad.robot.reference.recheck import MeshCheck
 from evenroad.robot.straight import Straight
+from evenroad.robot.trees import prepare
 from evenroad.robot.upright import Upright
 from evenroad.world import World
 
@@ -116,6 +117,8 @@ def plan_arm(
         raise InvalidValue(f"rule says how points are joined, so it goes with points=N, got {rule!r}")
     if points is not None and improve:
         raise InvalidValue("improve goes without points: a roadmap of exactly so many has one best path")
+    if points is None:
+        prepare()
     how = dict(resolution=resolution, degrees=degrees, tip=tip, frame=frame)
     query = arm_query(robot, scene, start, goal, **how, **options)  # type: ignore[arg-type]
     if (refused := unreached(query)) is not None:

@@ -43,7 +43,7 @@ VERBS = {
 }
 """Name of a verb -> where it is, loaded when it is asked for, and what it does."""
 
-DESCRIPTION = f"""usage: evenroad [-h] [--version] [--tyro-print-completion {{bash,zsh,fish}}] VERB ...
+DESCRIPTION = f"""usage: evenroad [-h] [--version [-v]] [--tyro-print-completion {{bash,zsh,fish}}] VERB ...
 
 evenroad {__version__}: point sets that make sampling-based motion planners need fewer samples.
 
@@ -71,7 +71,11 @@ def run(arguments: Sequence[str]) -> int:
 def _run(arguments: list[str]) -> int:
     verb, words = (arguments or ["--help"])[0], arguments[1:]
     if verb == "--version":
+        for word in words:
+            require_known("option of --version:", word, ("-v", "--verbose"))
         print(f"evenroad {__version__}")
+        if words:
+            _print_surroundings()
         return DONE
     if verb in ("-h", "--help"):
         print(DESCRIPTION, end="")
@@ -90,6 +94,16 @@ def _run(arguments: list[str]) -> int:
         return DONE
     code: int = asked.run()
     return code
+
+
+def _print_surroundings() -> None:
+    """Print what this runs on, and where it keeps what it can make again."""
+    from evenroad._files import cache_folder
+    from evenroad._njit import surroundings
+
+    rows = {**surroundings(), "sets and meshes": str(cache_folder())}
+    for name, value in rows.items():
+        print(f"{name:16} {value}")
 
 
 def _kind(verb: str, words: Sequence[str]) -> type:

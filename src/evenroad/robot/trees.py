@@ -12,6 +12,7 @@ import numpy.typing as npt
 from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_count, require_positive
 from evenroad._clock import now
+from evenroad._compiled import compile_beside, processors
 from evenroad.errors import InvalidValue
 from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.lane_world import LaneWorld
@@ -54,6 +55,13 @@ class PlansWithTrees(Protocol):
     def fixed_contact(self) -> tuple[str, str] | None: ...  # noqa: D102
 
     def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> npt.NDArray[np.bool_]: ...  # noqa: D102
+
+
+def prepare() -> None:
+    """Begin to compile what planning with trees takes, in processes beside this one, unless it is kept already."""
+    trees, shorten, check = (f"evenroad.robot.kernel.{name}" for name in ("trees", "shorten", "lane_check"))
+    # What is left to this process takes as long.
+    compile_beside(*([[trees, shorten]] if processors() < 3 else [[trees], [check, shorten]]))
 
 
 def connect(

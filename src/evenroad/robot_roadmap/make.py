@@ -178,7 +178,21 @@ def _free_pool(world: ArmWorld, one: OneTurn, count: int, rng: np.random.Generat
 def _free_edges(
     world: ArmWorld, one: OneTurn, milestones: Floats, weights: Floats, k: int
 ) -> tuple[Ints32, Ints]:
-    """Return motions that are proved free, (m, 2), and their turns, (m, dim)."""
+    """Return motions that are proved free, (m, 2), and their turns, (m, dim).
+
+    Where joints turn more than once, motions to the nearest that leads over no end of a range are among them, too: what
+    leads to the goal within one turn is not to be lost.
+    """
+    found = _joined_to_nearest(world, one, milestones, weights, k)
+    if one.lifts.any():
+        within = replace(one, wraps=one.wraps & ~one.lifts)
+        more = _joined_to_nearest(world, within, milestones, weights, k)
+        found = np.unique(np.concatenate([found, more]), axis=0)
+    return found[:, :2].astype(np.int32), found[:, 2:].astype(np.int8)
+
+
+def _joined_to_nearest(world: ArmWorld, one: OneTurn, milestones: Floats, weights: Floats, k: int) -> Ints:
+    """Return two milestones and the turns of the motions to the `k` nearest that are proved free, (m, 2 + dim)."""
     metric = JointSpace(one.low.tolist(), one.high.tolist(), one.wraps.tolist(), weights.tolist())
     near = nearest(milestones, min(max(TRIED, k), max(len(milestones) - 1, 1)), metric)
     own = np.repeat(np.arange(len(milestones)), near.shape[1])
@@ -188,4 +202,4 @@ def _free_edges(
     reached = free[which.reshape(near.shape)]
     kept = reached & (np.cumsum(reached, axis=1) <= k)
     chosen = np.unique(which.reshape(near.shape)[kept])
-    return pairs[chosen].astype(np.int32), turns[chosen].astype(np.int8)
+    return np.concatenate([pairs[chosen], turns[chosen]], axis=1)

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from evenroad._arrays import Floats
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad.research.arms.execute import KEPT, TREES
 from evenroad.research.arms.results import (
     REFERENCE,
@@ -114,13 +114,24 @@ def draw_costs(rows: Rows, robot: str, rule: str) -> Figure:
 
 
 def _cost_curves(panels: Sequence[Axes], rows: Rows, label: str, colour: str, style: str) -> None:
-    if not len(rows):
-        return
-    # Of trees the configurations are those inside of motions.
-    checks = rows.edges_checked + np.where(rows.search.is_in([TREES]), 0, rows.valid)
-    for panel, cost in zip(panels, (checks, 1e3 * rows.seconds), strict=True):
-        taken: Floats = np.sort(np.asarray(cost, dtype=np.float64)[rows.solved])
-        share = 100.0 * np.arange(1, len(taken) + 1) / len(rows)
+    if len(rows):
+        # Of trees the configurations are those inside of motions.
+        checks = rows.edges_checked + np.where(rows.search.is_in([TREES]), 0, rows.valid)
+        cost_curve(panels, (checks, 1e3 * rows.seconds), rows.solved, label, colour, style)
+
+
+def cost_curve(
+    panels: Sequence[Axes],
+    costs: Sequence[Floats | Ints],
+    solved: Bools,
+    label: str,
+    colour: str,
+    style: str,
+) -> None:
+    """Draw which share of all runs is solved within so much of each cost, a panel for each."""
+    for panel, cost in zip(panels, costs, strict=True):
+        taken: Floats = np.sort(np.asarray(cost, dtype=np.float64)[solved])
+        share = 100.0 * np.arange(1, len(taken) + 1) / len(solved)
         panel.step(np.maximum(taken, 1e-3), share, where="post", color=colour, linestyle=style, label=label)
 
 
