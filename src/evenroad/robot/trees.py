@@ -12,7 +12,7 @@ import numpy.typing as npt
 from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_count, require_positive
 from evenroad._clock import now
-from evenroad._compiled import compile_beside, processors
+from evenroad._compiled import compile_beside
 from evenroad.errors import InvalidValue
 from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.lane_world import LaneWorld
@@ -59,9 +59,9 @@ class PlansWithTrees(Protocol):
 
 def prepare() -> None:
     """Begin to compile what planning with trees takes, in processes beside this one, unless it is kept already."""
-    trees, shorten, check = (f"evenroad.robot.kernel.{name}" for name in ("trees", "shorten", "lane_check"))
-    # What is left to this process takes as long.
-    compile_beside(*([[trees, shorten]] if processors() < 3 else [[trees], [check, shorten]]))
+    # The last needed, and the longest, first: this process begins at the other end.
+    kernels = ("trees", "lane_check", "shorten", "motion_checks")
+    compile_beside(*(f"evenroad.robot.kernel.{kernel}" for kernel in kernels))
 
 
 def connect(

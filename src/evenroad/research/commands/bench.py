@@ -152,7 +152,7 @@ def print_arms(rows: Rows) -> None:
     """Print the success of each robot, k, N and sampler, and what the roadmap gains on it."""
     for (robot, k), texts in table_rows(arm_lines(rows)).items():
         neighbours = "" if k == "-" else f" · k = {k}"
-        print_table(texts, TABLE_HEADER, f"Success [%] · {robot}{neighbours}", right=range(2, 9), gap=1)
+        print_table(texts, TABLE_HEADER, f"Success [%] · {robot}{neighbours}", right=range(2, 10), gap=1)
         print()
 
 
