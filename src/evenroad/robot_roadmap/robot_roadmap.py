@@ -234,7 +234,9 @@ class SceneRoadmap:
         deadline: float,
         links: int,
         greed: float = GREED,
-        **how: bool,
+        *,
+        only_known: bool = False,
+        unturned: bool = False,
     ) -> Asked:
         return ask(
             *self._asked,
@@ -245,7 +247,8 @@ class SceneRoadmap:
             greed=greed,
             most_motions=most,
             deadline=deadline,
-            **how,
+            only_known=only_known,
+            unturned=unturned,
         )
 
     @property
@@ -322,14 +325,8 @@ class SceneRoadmap:
 
     def _by_ways_out(self, asked: Asked, start: Floats, goals: Floats, most: int, deadline: float) -> Asked:
         """Ask again along what is known to be free, with ways learned that lead there from the ends."""
-        out = learn_ways_out(
-            self.world,
-            self._graph,
-            self.roadmap.weights,
-            (start, goals[0]),
-            most - asked.motions,
-            deadline,
-        )
+        left = most - asked.motions
+        out = learn_ways_out(self.world, self._graph, self.roadmap.weights, (start, goals[0]), left, deadline)
         self.learned += out.ways
         before = asked.milestones + out.configurations, asked.motions + out.motions
         if out.complete:
