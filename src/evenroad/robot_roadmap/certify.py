@@ -78,7 +78,10 @@ def _nearest_left_out(roadmap: RobotRoadmap) -> float:
     """Return a length that is less than that of every motion between milestones that is proved free but no edge."""
     q, n, one = roadmap.milestones, len(roadmap.milestones), roadmap.one_turn
     first, second = np.triu_indices(n, k=1)
-    tried = np.isin(first * n + second, roadmap.edges[:, 0].astype(np.int64) * n + roadmap.edges[:, 1])
+    # Of two motions between the same milestones the short one counts.
+    a, b = roadmap.edges.T.astype(np.int64)
+    short = (roadmap.turns == shifts(one, q[a], q[b])).all(axis=1)
+    tried = np.isin(first * n + second, (a * n + b)[short])
     first, second = first[~tried], second[~tried]
     turns = shifts(one, q[first], q[second])
     length = np.linalg.norm(roadmap.weights * (q[second] + TURN * turns - q[first]), axis=1)

@@ -75,5 +75,5 @@ def _sorted(a: Ints, b: Ints, by: Ints) -> tuple[Ints32, Ints]:
     pairs = np.sort(np.stack([a, b], axis=1), axis=1)
     by = np.where(swapped, -by, by)
     fits = (pairs[:, 0] != pairs[:, 1]) & (np.abs(by) <= 1).all(axis=1)
-    _, once = np.unique(pairs[fits], axis=0, return_index=True)
-    return pairs[fits][once].astype(np.int32), by[fits][once].astype(np.int8)
+    once = np.unique(np.concatenate([pairs, by], axis=1)[fits], axis=0)
+    return once[:, :2].astype(np.int32), once[:, 2:].astype(np.int8)
