@@ -97,6 +97,13 @@ def _leave_words(app, doctree):
             node.replace_self(node.children)
 
 
+def _call_fields_attributes(app, doctree):
+    """Say what everyone says: Sphinx calls them variables."""
+    for name in doctree.findall(nodes.field_name):
+        if name.astext() == "Variables":
+            name.children = [nodes.Text("Attributes")]
+
+
 def _link_names(app, doctree, document):
     """Turn ``er.plan(...)`` in the text of a page into a link to what is documented of it."""
     for literal in list(doctree.findall(nodes.literal)):
@@ -153,7 +160,15 @@ def _end_sections(app, what, name, thing, options, lines):
             out.append("")
             within = False
         out.append(line)
-    lines[:] = out
+    lines[:] = _SEVERAL.sub(_one_by_one, "\n".join([*out, ""])).split("\n")
+
+
+_SEVERAL = re.compile(r"^((?:\w+, )+\w+)( : .*\n(?:[ ].*\n)+)", re.MULTILINE)
+
+
+def _one_by_one(match):
+    """Give each of several attributes that are described in one line an entry of its own."""
+    return "".join(name + match[2] for name in match[1].split(", "))
 
 
 # "The radius: of ..." says no type before its colon, whatever Napoleon thinks of the texts of properties.
@@ -167,5 +182,6 @@ def setup(app):
     app.connect("autodoc-process-docstring", _end_sections, priority=100)
     app.connect("source-read", _lead_to_pages)
     app.connect("doctree-read", _leave_words)
+    app.connect("doctree-read", _call_fields_attributes)
     app.connect("missing-reference", _resolve)
     app.connect("doctree-resolved", _link_names)
