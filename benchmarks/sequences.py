@@ -317,11 +317,12 @@ def picture(out: Path) -> None:
         place.set(
             xscale="log",
             ylim=(0.75, 2.0),
-            title=f"discrepancy over scrambled Sobol's, d = {d}",
+            title=f"D_H over Sobol's, d = {d}",
             xlabel="points",
         )
         place.grid(alpha=0.3)
-    axes[0, 0].legend()
+        place.set_xticks(ticks := (16, 64, 256, 1024), [str(tick) for tick in ticks])
+    axes[0, 1].legend(loc="upper left", fontsize=8)
     for place, d in zip(axes[1], (2, 3, 5), strict=True):
         for name in ("growing", "sequence", "halton", "kronecker", "even", "uniform"):
             mine = [r for r in success if r["d"] == str(d) and r["method"] == name and r["n"] != "all"]
@@ -330,11 +331,11 @@ def picture(out: Path) -> None:
             n, y, e = (np.array([float(row[key]) for row in mine]) for key in ("n", "minus_sobol", "error"))
             place.errorbar(n, y, e, color=colours[name], label=name, marker=".", capsize=2)
         place.axhline(0.0, color="black", linewidth=0.8)
-        place.set(
-            xscale="log", ylim=(-11, 8), title=f"success minus Sobol's [points], d = {d}", xlabel="points"
-        )
+        place.set(xscale="log", ylim=(-11, 8), title=f"success minus Sobol's [%], d = {d}", xlabel="points")
         place.grid(alpha=0.3)
-    axes[1, 0].legend()
+        place.set_xticks(COUNTS, [str(n) for n in COUNTS])
+        place.minorticks_off()
+    axes[1, 1].legend(loc="lower left", fontsize=8)
     for place, name in zip(axes[2], ("growing", "sequence", "sobol"), strict=True):
         points = draw(name, 362, 2, rng=1).points
         for first, last, colour in ((0, 128, "#d1343b"), (128, 256, "#2f5fd0"), (256, 362, "#9aa5b1")):
