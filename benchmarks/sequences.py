@@ -335,7 +335,7 @@ def picture(out: Path) -> None:
         place.grid(alpha=0.3)
         place.set_xticks(COUNTS, [str(n) for n in COUNTS])
         place.minorticks_off()
-    axes[1, 1].legend(loc="lower left", fontsize=8)
+    axes[1, 2].legend(loc="upper left", fontsize=8, ncols=2)
     for place, name in zip(axes[2], ("growing", "sequence", "sobol"), strict=True):
         points = draw(name, 362, 2, rng=1).points
         for first, last, colour in ((0, 128, "#d1343b"), (128, 256, "#2f5fd0"), (256, 362, "#9aa5b1")):
