@@ -128,7 +128,7 @@ def test_tables_fit_100_columns(tmp_path):
 def test_costs_are_drawn_of_the_smallest_a_middle_and_the_largest_roadmap(tmp_path):
     outcomes = [
         (_task("roadmap", i, 0, n), i < solved)
-        for n, solved in ((64, 1), (128, 2), (256, 3))
+        for n, solved in ((64, 1), (128, 2), (256, 3), (512, 4))
         for i in range(4)
     ]
     figure = draw_costs(_rows(tmp_path / "a.db", outcomes), "scara", "10")
