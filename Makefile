@@ -4,15 +4,17 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check install -q -c constraints.txt
 
-.PHONY: help demo test test-peers lint bench bank mazes clean
+.PHONY: help demo test test-peers lint docs bench bank mazes release-check clean
 help:
 	@echo "make demo   environment + plan through the shipped level-3 maze -> out/demo.png, out/demo.json"
 	@echo "make test   environment + lint + all tests"
 	@echo "make test-peers  tests against OMPL, coal, pinocchio, Klamp't and Planner Arena (installs their wheels)"
 	@echo "make lint   ruff and mypy"
+	@echo "make docs   the pages as a site -> out/docs/index.html"
 	@echo "make bench  the slow tables and timings -> out/bench/"
 	@echo "make bank   rebuild (or finish) the shipped point sets"
 	@echo "make mazes  redraw the shipped mazes"
+	@echo "make release-check  build the wheels and try them in an empty environment, as a new user would"
 	@echo "make clean  remove the environment and out/"
 
 # A stamp a file that pip finished: a stopped install is taken up again, a finished one costs nothing.
@@ -40,15 +42,17 @@ lint: $(VENV)/.dev
 	$(BIN)/mypy
 
 test: lint
-	$(BIN)/python tools/forget_stale_kernels.py
 	$(BIN)/pytest -n 2
 
 test-peers: $(VENV)/.peers
 	$(BIN)/pytest tests_peers
 
+docs: $(VENV)/.dev
+	$(BIN)/python -m sphinx -q -W --keep-going -d out/doctrees docs out/docs
+	@echo "out/docs/index.html"
+
 bench: $(VENV)/.peers
 	@mkdir -p out/bench
-	$(BIN)/python tools/forget_stale_kernels.py
 	$(BIN)/python -m benchmarks --out out/bench
 	$(BIN)/evenroad bench paper --runs 400 --store out/bench/paper.db
 	$(BIN)/evenroad bench fair --runs 400 --store out/bench/fair.db
@@ -60,6 +64,9 @@ bank: $(VENV)/.dev
 
 mazes: $(VENV)/.core
 	$(BIN)/python tools/draw_mazes.py
+
+release-check: $(VENV)/.core
+	$(BIN)/python tools/release_check.py
 
 clean:
 	rm -rf $(VENV) out

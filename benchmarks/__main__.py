@@ -5,7 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-HELPERS = {"__init__", "__main__", "arm_ompl", "arm_problems", "nested_k", "ompl_peer", "robot_truth"}
+HELPERS = {"__init__", "__main__", "arm_problems", "nested_k", "ompl_peer", "robot_truth"}
 DECISIONS = {"decide_even", "fair_calibrate"}
 """They chose what is in the package; run by name when that is to be chosen again."""
 

@@ -46,7 +46,8 @@ FIRST_PLAN = """
 import time
 begin = time.perf_counter()
 from benchmarks.arm_planner import first_problem
-from evenroad.robot.trees import connect, shorten
+from evenroad.robot.trees import connect, prepare, shorten
+prepare()
 world, start, goals = first_problem()
 world.valid(goals), world.motion_valid(goals, goals)
 before = time.perf_counter()
@@ -247,12 +248,11 @@ def main() -> None:
         peer: list[float] = []
         for problem in problems(pool, (TUNING if options.tuning else REPORTING)[: options.count]):
             if options.ompl:
-                from benchmarks.arm_ompl import rrt_connect
+                from benchmarks.arm_ompl import ompl_plan
 
-                solved, seconds = rrt_connect(
-                    ArmWorld(problem.robot, problem.scene), problem.start, problem.goal
-                )
-                peer += [1e3 * seconds] if solved else []
+                world = ArmWorld(problem.robot, problem.scene)
+                found = ompl_plan("RRT-Connect", world, problem.start, problem.goal)
+                peer += [found.ms] if found.solved else []
             row = measure(problem)
             if row is None:
                 unsolved.append(problem)

@@ -1,13 +1,17 @@
 """Sets that are even on the manifold itself, beside those that are even in the cube: dispersion, and planning.
 
     python -m benchmarks.poses --csv docs/data/poses.csv
+    python -m benchmarks.poses --tune --worlds 400 -n 512
 
 SO(3): the largest angle of a rotation from the nearest of the set, and the smallest between two of the set, in degrees;
 the first by 200 000 random rotations, so a little too small, for all alike.  "hopf" is the product grid of HEALPix and
-the circle (Yershova, Jain, LaValle and Mitchell 2010), of 72 and 576 rotations.
+the circle (Yershova, Jain, LaValle and Mitchell 2010), of 72 and 576 rotations; "images" the one of Mitchell's
+successive orthogonal images (2008) with the same directions, as we read it.
 
 SE(3): success in the fair suite's worlds of the reporting stream, every sampler in the same worlds, k nearest as in the
-suite; "+-" is the standard error of the difference from scrambled Sobol, paired by world.
+suite; "+-" is the standard error of the difference from scrambled Sobol, paired by world.  "sliced" is what a planner
+takes, "even" the lattice in the cube that is mapped to poses.  `--tune` compares shares of poses in the slice, in
+worlds of the tuning stream, which chose the share.
 """
 
 from __future__ import annotations
@@ -17,27 +21,34 @@ import csv
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
+from benchmarks.nested_k import smallest_k
 from evenroad._arrays import Floats
-from evenroad.points import PointSet, draw
-from evenroad.points.samplers.poses import Poses, Rotations
+from evenroad.points import draw
+from evenroad.points.samplers.poses import Poses, Rotations, Sliced
 from evenroad.research.problems.fair import ROTATION_WEIGHT, SIZES, Family, Stream, make_instance
-from evenroad.roadmap import Budget, KNearest, plan
 from evenroad.space import SO3
 
-SAMPLERS = ("poses", "even", "sobol", "hickernell", "uniform")
+SAMPLERS = ("sliced", "poses", "even", "sobol", "hickernell", "uniform")
+SHARES = {"a sixth": 1 / 6, "a third": 1 / 3, "half": 0.5, "all": 1.0}
 RULES = (4, 6, 10, 20)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--worlds", type=int, default=150)
-    parser.add_argument("--draws", type=int, default=3, help="sets a world")
+    parser.add_argument("--worlds", type=int, default=200)
+    parser.add_argument("--draws", type=int, default=2, help="sets a world")
     parser.add_argument("-n", type=int, nargs="*", default=[256, 512])
+    parser.add_argument("--tune", action="store_true")
     parser.add_argument("--csv", type=Path)
     options = parser.parse_args()
-    rows = [row for n in (72, 576) for row in rotations(n)]
-    rows += [row for n in options.n for row in planning(n, options.worlds, options.draws)]
+    if options.tune:
+        samplers, stream = (*SHARES, "even", "sobol"), Stream.TUNING
+    else:
+        samplers, stream = SAMPLERS, Stream.REPORTING
+    rows = [] if options.tune else [row for n in (72, 576) for row in rotations(n)]
+    rows += [row for n in options.n for row in planning(n, options.worlds, options.draws, samplers, stream)]
     if options.csv:
         with open(options.csv, "w", newline="") as file:
             writer = csv.writer(file, lineterminator="\n")
@@ -50,11 +61,12 @@ def rotations(n: int) -> list[tuple[object, ...]]:
     probes = np.random.default_rng(0).standard_normal((200_000, 4)).astype(np.float32)
     probes /= np.linalg.norm(probes, axis=1, keepdims=True)
     rows: list[tuple[object, ...]] = []
-    for sampler in ("rotations", "hopf", "even", "sobol", "uniform"):
+    grids = {"hopf": hopf_grid, "images": orthogonal_images}
+    for sampler in ("rotations", *grids, "even", "sobol", "uniform"):
         values = []
-        for seed in range(1 if sampler == "hopf" else 5):
-            if sampler == "hopf":
-                q = hopf_grid(n)
+        for seed in range(1 if sampler in grids else 5):
+            if sampler in grids:
+                q = grids[sampler](n)
             else:
                 points = (
                     Rotations().draw(n, rng=seed) if sampler == "rotations" else draw(sampler, n, 3, rng=seed)
@@ -75,10 +87,9 @@ def rotations(n: int) -> list[tuple[object, ...]]:
     return rows
 
 
-def hopf_grid(n: int) -> Floats:
-    """Return 12 s^2 directions of HEALPix (Gorski et al. 2005) times 6 s turns about them, n = 72 s^3."""
-    s = round((n / 72) ** (1 / 3))
-    directions = []
+def healpix(s: int) -> list[tuple[float, float]]:
+    """Return height and heading of 12 s^2 directions (Gorski et al. 2005)."""
+    directions: list[tuple[float, float]] = []
     for p in range(12 * s * s):
         half = (p + 1) / 2
         if p < 2 * s * (s - 1):
@@ -92,8 +103,14 @@ def hopf_grid(n: int) -> Floats:
         else:
             z, phi = -directions[12 * s * s - 1 - p][0], -directions[12 * s * s - 1 - p][1]
         directions.append((z, phi))
+    return directions
+
+
+def hopf_grid(n: int) -> Floats:
+    """Return 12 s^2 directions times 6 s turns about them, n = 72 s^3, as quaternions, (n, 4)."""
+    s = round((n / 72) ** (1 / 3))
     grid = []
-    for z, phi in directions:
+    for z, phi in healpix(s):
         theta = np.arccos(z)
         for turn in 2 * np.pi * (np.arange(6 * s) + 0.5) / (6 * s):
             c, v = np.cos(theta / 2), np.sin(theta / 2)
@@ -108,28 +125,35 @@ def hopf_grid(n: int) -> Floats:
     return np.array(grid)
 
 
-def planning(n: int, worlds: int, draws: int) -> list[tuple[object, ...]]:
+def orthogonal_images(n: int) -> Floats:
+    """Return as many: the first column is a direction, the others a circle's image under the reflection to there."""
+    s = round((n / 72) ** (1 / 3))
+    matrices = []
+    for z, phi in healpix(s):
+        flat = np.sqrt(1 - z * z)
+        normal = np.array([z, flat * np.cos(phi), flat * np.sin(phi)]) - [1.0, 0.0, 0.0]
+        reflection = np.eye(3) - 2 * np.outer(normal, normal) / (normal @ normal)
+        for turn in 2 * np.pi * (np.arange(6 * s) + 0.5) / (6 * s):
+            c, v = np.cos(turn), np.sin(turn)
+            matrices.append(reflection @ [[1.0, 0.0, 0.0], [0.0, c, v], [0.0, v, -c]])
+    return np.asarray(Rotation.from_matrix(matrices).as_quat())
+
+
+def planning(
+    n: int, worlds: int, draws: int, samplers: tuple[str, ...], stream: Stream
+) -> list[tuple[object, ...]]:
     """Print and return the success in SE(3), of difficulty 50."""
-    solved = {(sampler, k): np.zeros(worlds) for sampler in SAMPLERS for k in RULES}
+    solved = {(sampler, k): np.zeros(worlds) for sampler in samplers for k in RULES}
     for number in range(worlds):
-        problem = make_instance(Stream.REPORTING, Family.SE3, 6, 50, SIZES[Family.SE3, 6][1], number)
-        for sampler in SAMPLERS:
+        problem = make_instance(stream, Family.SE3, 6, 50, SIZES[Family.SE3, 6][1], number)
+        for sampler in samplers:
             for run in range(draws):
-                points = _draw(sampler, n, draws * number + run)
+                least = smallest_k(problem, _cube(sampler, n, draws * number + run), RULES[-1])
                 for k in RULES:
-                    options = dict(rule=KNearest(k), success_only=True, shorten=False, links=None)
-                    result = plan(
-                        problem.world,
-                        problem.start,
-                        problem.goal,
-                        points,
-                        budget=Budget(seconds=None),
-                        **options,
-                    )
-                    solved[sampler, k][number] += result.solved / draws
+                    solved[sampler, k][number] += (least <= k) / draws
     rows: list[tuple[object, ...]] = []
     for k in RULES:
-        for sampler in SAMPLERS:
+        for sampler in samplers:
             mine, gain = solved[sampler, k], solved[sampler, k] - solved["sobol", k]
             error = gain.std(ddof=1) / np.sqrt(worlds)
             text = f"{100 * mine.mean():5.1f} %, {100 * gain.mean():+5.1f} +- {100 * error:.1f} on Sobol"
@@ -140,10 +164,12 @@ def planning(n: int, worlds: int, draws: int) -> list[tuple[object, ...]]:
     return rows
 
 
-def _draw(sampler: str, n: int, seed: int) -> PointSet:
+def _cube(sampler: str, n: int, seed: int) -> Floats:
     if sampler == "poses":
-        return Poses(turn=ROTATION_WEIGHT[3]).draw(n, 6, rng=seed)
-    return draw(sampler, n, 6, rng=seed)
+        return Poses(turn=ROTATION_WEIGHT[3]).draw(n, 6, rng=seed).points
+    if sampler == "sliced" or sampler in SHARES:
+        return Sliced(SHARES.get(sampler, 1 / 3)).draw(n, rng=seed).points
+    return draw(sampler, n, 6, rng=seed).points
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ ROOT = Path(evenroad.__file__).parent
 
 BASE = {
     *("errors", "_checks", "_rng", "_files", "_npz", "_yaml"),
-    *("_arrays", "_clock", "_terminal", "_compiled", "_fingerprint"),
+    *("_arrays", "_clock", "_terminal", "_compiled", "_fingerprint", "_njit"),
 }
 MAY_IMPORT = {
     "points": BASE,
@@ -27,15 +27,14 @@ MAY_IMPORT = {
     "viz": BASE | {"points", "space", "world", "geometry", "robot", "roadmap"},
     "robot": BASE | {"space", "geometry", "world"},
     "robot_roadmap": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
-    "arms": BASE | {"points", "space", "geometry", "world", "robot", "roadmap", "arm_ways", "arm_goals"},
-    "arm_ways": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
-    "arm_goals": BASE | {"space", "world", "roadmap"},
+    "arms": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
     "trajectory": BASE | {"space", "world", "robot"},
+    "adapters": BASE | {"points", "space", "world", "robot", "trajectory"},
     "research": BASE
     | {"points", "space", "world", "geometry", "robot", "roadmap", "robot_roadmap", "io", "viz"},
     "cli": BASE
     | {"points", "space", "world", "geometry", "robot", "roadmap", "robot_roadmap"}
-    | {"arms", "arm_ways", "arm_goals", "research", "io", "viz", "trajectory"},
+    | {"arms", "research", "io", "viz", "trajectory"},
     **dict.fromkeys(BASE, BASE),
 }
 """Part -> the parts it may import: the arrows of docs/design.md."""
@@ -128,6 +127,10 @@ def test_no_modules_import_each_other_in_a_circle():
     assert _circles(imports) == []
 
 
+def test_nobody_imports_the_adapters():
+    assert [part for part, others in MAY_IMPORT.items() if "adapters" in others] == []
+
+
 def test_only_the_command_imports_the_studies():
     importers = {part for part, others in MAY_IMPORT.items() if "research" in others}
     assert importers == {"cli"}
@@ -143,8 +146,16 @@ def test_no_module_is_longer_than_400_lines():
     assert too_long == []
 
 
+def test_all_compiled_code_is_kept_by_one_rule():
+    direct = ("from numba import njit", "from numba import cfunc", "@numba.njit", "@numba.cfunc")
+    around = [path for path in MODULES if any(each in path.read_text() for each in direct)]
+    assert around == [], (
+        "take njit and cfunc from evenroad._njit, which notices edits of what a function calls"
+    )
+
+
 def test_importing_evenroad_loads_nothing_heavy():
-    heavy = {"numba", "scipy", "matplotlib", "torch", "PIL"}
+    heavy = {"numpy", "numba", "scipy", "matplotlib", "torch", "PIL"}
     code = f"import sys, evenroad; print(sorted({heavy!r} & set(sys.modules)))"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert loaded.stdout.strip() == "[]"

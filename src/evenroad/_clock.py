@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import time
 from typing import Any
 
@@ -22,7 +23,9 @@ class _Compiling(event.Listener):
     def on_end(self, event: Any) -> None:
         self._depth -= 1
         if self._depth == 0:
-            self.seconds += time.perf_counter() - self._since
+            took = time.perf_counter() - self._since
+            self.seconds += took
+            logging.getLogger("evenroad").info("compiled for this machine, once: %.1f s", took)
 
 
 _COMPILING = _Compiling()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import sys
 from importlib import import_module
@@ -23,7 +24,6 @@ def provide_cache() -> None:
     beside = os.path.join(os.path.dirname(__file__), "__pycache__")
     if os.environ.get(VARIABLE) or _writable(beside) or _writable(user_cache("numba")):
         return
-    import atexit
     import logging
     import shutil
     import tempfile
@@ -76,6 +76,63 @@ def is_kept(function: Any) -> bool:
         return True
 
 
+MOST_HELPERS = 3
+
+
+def compile_beside(*modules: str) -> None:
+    """Compile the programs of modules in processes beside this one, as far as there are processors.
+
+    Each process takes what nobody has begun, this one what it needs next; it waits for what another has begun.  Nothing
+    happens where the first module's programs are kept or no interpreter can be started.
+    """
+    from evenroad._njit import HELPERS, compile_all, is_missing, share
+
+    free = min(processors() - 1, MOST_HELPERS)
+    python = os.path.basename(sys.executable or "").startswith("python")
+    if free < 1 or not python or HELPERS or not is_missing(modules[0]):
+        return
+    import shutil
+    import subprocess
+    import tempfile
+
+    try:
+        folder = tempfile.mkdtemp(prefix="evenroad-compiling-")
+    except OSError:
+        return
+    share(folder)
+    root, nowhere = os.path.dirname(os.path.dirname(os.path.abspath(__file__))), subprocess.DEVNULL
+    work = f"from {compile_all.__module__} import compile_all; compile_all({[*modules]!r}, {folder!r})"
+    # Compiling makes very many objects and little garbage.
+    command = [sys.executable, "-c", f"import gc, sys; gc.disable(); sys.path.insert(0, {root!r}); {work}"]
+    owner = os.getpid()
+
+    def end() -> None:
+        if os.getpid() == owner:
+            for helper in HELPERS:
+                if helper.poll() is None:
+                    # Nobody waits for it any more; what it has finished is kept.
+                    helper.terminate()
+                    helper.wait()
+            shutil.rmtree(folder, ignore_errors=True)
+
+    atexit.register(end)
+    for _ in range(free):
+        try:
+            helper = subprocess.Popen(command, stdin=nowhere, stdout=nowhere, stderr=nowhere)
+        except OSError:
+            return
+        HELPERS.append(helper)
+
+
+def processors() -> int:
+    """Return how many processors this process may use; 1 for a worker of others, which use the rest."""
+    import multiprocessing
+
+    if multiprocessing.parent_process() is not None:
+        return 1
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 def defer_blas() -> None:
     """Keep numba from loading SciPy's linear algebra, a quarter of the start of a command, until code needs it.
 
@@ -100,5 +157,11 @@ def say_if_compiling(module: str, function: str, seconds: int) -> bool:
         return False
     if is_kept(compiled):
         return False
-    print(f"evenroad: compiling for this machine, once: about {seconds} s", file=sys.stderr, flush=True)
+    line = f"evenroad: compiling for this machine, once: about {seconds} s"
+    if sys.stderr.isatty():
+        from evenroad._njit import show_progress
+
+        show_progress(line)
+    else:
+        print(line, file=sys.stderr, flush=True)
     return True

@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
+import evenroad as er
 from evenroad.cli.plan_parts import draw_points
 from evenroad.cli.verbs import VERBS
 from evenroad.points import draw
 from evenroad.research.mazes import load_maze
+from evenroad.roadmap import KNearest
 
 MAZE = load_maze(1)
 
@@ -406,3 +408,27 @@ def test_the_installed_command_works_in_a_process_of_its_own(tmp_path):
     )
     assert (done.returncode, done.stderr) == (0, "")
     assert (tmp_path / "a.png").exists()
+
+
+def test_a_plan_on_points_says_what_they_guarantee_where_it_is_asked(run, room, tmp_path):
+    asked = plan_arguments(room, (3, 3), (3, 27), 1.0, sampler="cover", k=20, out="answer")
+    plain = run(*asked, "-n", 256)
+    code, out, err = run(*asked, "-n", 256, "--certify")
+    record = json.loads((tmp_path / "answer.json").read_text())
+    world = er.load_map(room).world(1.0)
+    certificate = er.plan(
+        world, (3, 3), (3, 27), draw("cover", 256, 2), rule=KNearest(20), certify=True
+    ).certificate
+    assert (code, err, plain[0]) == (0, "", 0)
+    assert "guaranteed" not in plain[1]
+    assert "a path exists" not in plain[1]
+    assert f"if one of clearance {certificate.dispersion:.6g} does" in out
+    assert record["certificate"]["complete"]
+    assert record["certificate"]["dispersion"] == certificate.dispersion
+    assert record["certificate"]["clearance_for_factor"]["2"] == certificate.clearance_for(2.0)
+
+
+def test_only_a_roadmap_guarantees_anything(run, room):
+    code, out, err = run(*plan_arguments(room, (3, 3), (3, 27), 1.0), "--certify")
+    assert (code, out) == (2, "")
+    assert "--certify speaks of a roadmap: say of how many points with -n" in err

@@ -196,6 +196,14 @@ def test_the_network_trains_from_the_command_line(run, tmp_path):
     assert load_points(tmp_path / "sets" / "refined-0001.npz").origin.method.endswith("+annealed")
 
 
+def test_the_network_is_judged_by_the_exact_star_discrepancy_on_request(run, tmp_path):
+    line = ("train", "-n", 12, "-d", 2, "--method", "mpmc", "--objective", "star", "--judge", "star")
+    code, out, _ = run(*line, "--sets", 1, "--steps", 50, "--jobs", 1, "-o", "sets")
+    best = star_discrepancy(load_points(tmp_path / "sets" / "set-0000.npz"))
+    assert (code, out.strip()) == (0, f"sets: 1 sets, star discrepancy: mean {best:.6g}, best {best:.6g}")
+    assert json.loads((tmp_path / "sets" / "request.json").read_text())["network"]["start"] == "kronecker"
+
+
 def test_orders_are_searched_from_the_command_line(run, tmp_path):
     line = ("train", "-n", 12, "-d", 2, "--method", "order", "--objective", "star", "--sets", 2, "--jobs", 1)
     code, out, _ = run(*line, "--steps", 200, "-o", "sets")
@@ -240,6 +248,10 @@ MPMC = ("train", "-n", 12, "-d", 2, "--method", "mpmc", "--sets", 2, "--jobs", 1
         (("--method", "order"), "in d = 2 for --objective star, not in d = 2 for 'hickernell'"),
         (("--method", "order", "--objective", "star", "-d", 3), "not in d = 3"),
         (("--method", "order", "--objective", "star", "--refine", 3), "--refine does not go"),
+        (("--judge", "star"), "--judge does not go with the method 'anneal'"),
+        (("--method", "order", "--objective", "star", "--start", "sobol"), "--start does not go"),
+        (("--method", "mpmc", "--start", "grid"), "unknown start 'grid'.*kronecker"),
+        (("--method", "mpmc", "--judge", "star", "-d", 3), "not in d = 3"),
         (("--method", "mpmc", "--refine", -1), "refine must be"),
         (("--method", "mpmc", "--jobs", 0), "jobs must be"),
         (("--method", "mpmc", "-n", 1), "n must be"),

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from evenroad.points import draw
+from evenroad.points.samplers.poses import Sliced
 from evenroad.research.worlds import Corridor
 from evenroad.roadmap import KEarlier, KNearest, Radius, Roadmap, fmt, plan, plan_anytime
-from evenroad.space import SE2, SE3, JointSpace
+from evenroad.roadmap.query import even_points
+from evenroad.space import SE2, SE3, SO3, JointSpace, Product
 from evenroad.world import FunctionWorld
 from tests.counting import Counting
 
@@ -68,3 +70,18 @@ def test_the_default_k_grows_with_the_dimension(planner, d, k):
     world = Corridor(d, 0.4)
     result = planner(world, world.start, world.goal, draw("sobol", 16, d))
     assert result.rule == f"k={k} symmetrised"
+
+
+def test_a_number_of_points_means_sliced_poses_in_space_and_the_even_lattice_elsewhere():
+    space = SE3((0.0, 0.0, 0.0), (2.0, 1.0, 1.0), weights=(2.0, 0.6))
+    assert even_points(40, space, rng=3) == Sliced().draw(40, rng=3)
+    for other in (JOINTS, SE2((0.0, 0.0), (1.0, 1.0)), Product([SO3(), SO3()])):
+        assert even_points(40, other, rng=3) == draw("even", 40, other.cube_dim, rng=3)
+
+
+def test_a_plan_in_space_with_a_number_of_points_takes_sliced_poses():
+    world, start, goal, _ = CASES["SE3"]
+    points = Sliced().draw(100)
+    asked, given = plan(world, start, goal, 100), plan(world, start, goal, points)
+    np.testing.assert_array_equal(asked.path, given.path)
+    assert asked.counts == given.counts

@@ -102,41 +102,8 @@ class Certify:
         allowance: float,
         unit: str,
     ) -> int:
-        def outside(inner: float) -> float:
-            return inner / scale + allowance
-
-        least = outside(certificate.dispersion) if certificate.complete else math.inf
-        record |= {
-            "dispersion": certificate.dispersion,
-            "dispersion_at_least": certificate.at_least,
-            "between": _finite(certificate.between),
-            "ends": _finite(certificate.ends),
-            "complete": certificate.complete,
-            "complete_from_clearance": _finite(least),
-            "clearance_for_factor": {
-                f"{factor:g}": _finite(outside(certificate.clearance_for(factor))) for factor in FACTORS
-            },
-        }
-        rows = [
-            ("largest hole", f"{certificate.dispersion:.6g} at most, {certificate.at_least:.6g} at least"),
-            (
-                "motions tried",
-                f"all free ones up to {certificate.between:.6g}, from start and goal {certificate.ends:.6g}",
-            ),
-            ("a path exists", f"if one of clearance {least:.6g}{unit} does; if none is found, none does"),
-        ]
-        if not certificate.complete:
-            needed = f"all motions up to {2 * certificate.dispersion:.6g} have to be tried"
-            rows[2] = (
-                rows[2][0],
-                f"nothing is guaranteed: {needed}; take a larger k or radius, or more points",
-            )
-        for factor in FACTORS:
-            clearance = outside(certificate.clearance_for(factor))
-            if math.isfinite(clearance):
-                rows.append(
-                    (f"{factor:g} x the best", f"at most, of those with clearance {clearance:.6g}{unit}")
-                )
+        record |= guarantees(certificate, scale, allowance)
+        rows = guarantee_rows(certificate, scale, allowance, unit)
         held = certificate.complete
         if self.clearance is not None:
             inner = max(self.clearance - allowance, 0.0) * scale
@@ -159,6 +126,43 @@ class Certify:
         else:
             print_table(rows, (), title)
         return 0 if held else 1
+
+
+def guarantees(certificate: Certificate, scale: float = 1.0, allowance: float = 0.0) -> dict[str, Any]:
+    """Return a certificate as plain JSON values; a clearance c outside is (c - allowance) scale in its metric."""
+    least = certificate.dispersion / scale + allowance if certificate.complete else math.inf
+    clearances = {factor: certificate.clearance_for(factor) / scale + allowance for factor in FACTORS}
+    return {
+        "dispersion": certificate.dispersion,
+        "dispersion_at_least": certificate.at_least,
+        "between": _finite(certificate.between),
+        "ends": _finite(certificate.ends),
+        "complete": certificate.complete,
+        "complete_from_clearance": _finite(least),
+        "clearance_for_factor": {f"{factor:g}": _finite(value) for factor, value in clearances.items()},
+    }
+
+
+def guarantee_rows(
+    certificate: Certificate, scale: float = 1.0, allowance: float = 0.0, unit: str = ""
+) -> list[tuple[str, str]]:
+    """Return a certificate as rows of a table; as :func:`guarantees`."""
+    said = guarantees(certificate, scale, allowance)
+    needed = f"all motions up to {2 * certificate.dispersion:.6g} have to be tried"
+    path = f"nothing is guaranteed: {needed}; take a larger k or radius, or more points"
+    if (least := said["complete_from_clearance"]) is not None:
+        path = f"if one of clearance {least:.6g}{unit} does; if none is found, none does"
+    tried = f"all free ones up to {certificate.between:.6g}, from start and goal {certificate.ends:.6g}"
+    return [
+        ("largest hole", f"{certificate.dispersion:.6g} at most, {certificate.at_least:.6g} at least"),
+        ("motions tried", tried),
+        ("a path exists", path),
+        *(
+            (f"{factor} x the best", f"at most, of those with clearance {clearance:.6g}{unit}")
+            for factor, clearance in said["clearance_for_factor"].items()
+            if clearance is not None
+        ),
+    ]
 
 
 def _sides(text: str, d: int) -> tuple[float, ...]:

@@ -43,7 +43,8 @@ class PlanOptions:
     connect_radius: float | None = None
     """Connect milestones up to this distance instead, in map units or radians."""
     sampler: str = "auto"
-    """even, hickernell, mpmc, korobov, lattice, cover, halton, sobol, sukharev or uniform; auto is even."""
+    """auto (even), even, growing, sequence, hickernell, mpmc, korobov, lattice, cover, halton, sobol, sukharev or
+    uniform."""
     plain: bool = False
     """halton and sobol: the plain sequence instead of the scrambled one."""
     skip: int = 0
@@ -91,6 +92,9 @@ class PlanDisk(PlanOptions):
     """May pass through unknown cells of a ROS map."""
     csv: bool = False
     """Also write the path as OUT.csv."""
+    certify: bool = False
+    """Say what the roadmap guarantees: from which clearance on it has a path wherever there is one, and how long it is
+    at most.  With points; the sampler cover guarantees most."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,9 +8,16 @@ from pathlib import Path
 
 from evenroad._arrays import Floats
 from evenroad._compiled import say_if_compiling
-from evenroad.arm_goals import find_cheapest
-from evenroad.arm_ways import plan_ways
-from evenroad.arms import SEARCH, Goal, arm_query, finished, plan_on_points, unreached
+from evenroad.arms import (
+    SEARCH,
+    Goal,
+    arm_query,
+    find_cheapest,
+    finished,
+    plan_on_points,
+    plan_ways,
+    unreached,
+)
 from evenroad.cli.plan import PlanArm
 from evenroad.cli.plan_parts import (
     chosen_budget,
@@ -32,6 +39,7 @@ from evenroad.robot import find_robot, find_scene, held_values, load_scene
 from evenroad.robot.kernel.selftest import lanes_failure
 from evenroad.robot.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
 from evenroad.robot.straight import Straight
+from evenroad.robot.trees import prepare
 from evenroad.robot.upright import Upright
 from evenroad.robot_roadmap.cell import day_and_all
 from evenroad.robot_roadmap.robot_roadmap import SceneRoadmap
@@ -46,6 +54,8 @@ def plan_arm(plan: PlanArm) -> int:
     budget = chosen_budget(plan)
     kept = None if plan.roadmap is None else kept_roadmap(plan)
     ways = _ways(plan)
+    if not wants_points(plan) and kept is None:
+        prepare()
     _say_if_compiling(plan)
     robot = kept.robot if kept is not None and plan.robot is None else plan.robot
     assert robot is not None

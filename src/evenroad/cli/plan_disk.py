@@ -11,6 +11,7 @@ import numpy as np
 from evenroad import roadmap
 from evenroad._compiled import say_if_compiling
 from evenroad._rng import generator
+from evenroad.cli.certify import guarantee_rows, guarantees
 from evenroad.cli.plan import PlanDisk
 from evenroad.cli.plan_parts import (
     chosen_budget,
@@ -35,6 +36,8 @@ def plan_disk(plan: PlanDisk) -> int:
     rule = chosen_rule(plan, default_k=10)
     generator(plan.seed)
     budget = chosen_budget(plan)
+    if plan.certify and not wants_points(plan):
+        raise InvalidValue("--certify speaks of a roadmap: say of how many points with -n")
     start = _position("start", plan.start)
     goals = [_position("goal", goal) for goal in plan.goal]
     if plan.world.suffix in (".yaml", ".yml"):
@@ -56,7 +59,10 @@ def plan_disk(plan: PlanDisk) -> int:
         )
         points = draw_points(plan, 2)
         load_compiled_code(world, start, goals, points, rule)
-        result = roadmap.plan(world, start, goals, points, rule=rule, shorten=not plan.raw, budget=budget)
+        shorten, certify = not plan.raw, plan.certify
+        result = roadmap.plan(
+            world, start, goals, points, rule=rule, shorten=shorten, budget=budget, certify=certify
+        )
         if result.status is Status.NOT_CONNECTED and not any(
             world.may_connect(result.start, goal) for goal in result.goals
         ):
@@ -81,7 +87,11 @@ def plan_disk(plan: PlanDisk) -> int:
 
         save_plan_picture(file, result, world)
 
-    return finish(files, result, plan_record(result, query), ("x", "y"), draw)
+    record, more = plan_record(result, query), []
+    if result.certificate is not None:
+        record["certificate"] = guarantees(result.certificate)
+        more = guarantee_rows(result.certificate)
+    return finish(files, result, record, ("x", "y"), draw, more)
 
 
 def _position(name: str, words: tuple[str, ...]) -> tuple[float, float]:

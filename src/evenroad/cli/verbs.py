@@ -8,9 +8,8 @@ from importlib import import_module
 from textwrap import fill
 
 from evenroad import __version__
-from evenroad._checks import require_known
 from evenroad._terminal import leave_output, table_width
-from evenroad.errors import EvenroadError
+from evenroad.errors import EvenroadError, UnknownName
 
 DONE = 0
 BAD_INPUT = 2
@@ -43,7 +42,7 @@ VERBS = {
 }
 """Name of a verb -> where it is, loaded when it is asked for, and what it does."""
 
-DESCRIPTION = f"""usage: evenroad [-h] [--version] [--tyro-print-completion {{bash,zsh,fish}}] VERB ...
+DESCRIPTION = f"""usage: evenroad [-h] [--version [-v]] [--tyro-print-completion {{bash,zsh,fish}}] VERB ...
 
 evenroad {__version__}: point sets that make sampling-based motion planners need fewer samples.
 
@@ -71,14 +70,19 @@ def run(arguments: Sequence[str]) -> int:
 def _run(arguments: list[str]) -> int:
     verb, words = (arguments or ["--help"])[0], arguments[1:]
     if verb == "--version":
+        for word in {*words} - {"-v", "--verbose"}:
+            raise UnknownName.among("option of --version:", word, ("-v", "--verbose"))
         print(f"evenroad {__version__}")
+        if words:
+            _print_surroundings()
         return DONE
     if verb in ("-h", "--help"):
         print(DESCRIPTION, end="")
         for name, (_, about) in VERBS.items():
             print(fill(f"  {name:8} {about}", table_width(), subsequent_indent=" " * 11))
         return DONE
-    # Here, since neither version nor help wait for tyro.
+    # Here, since neither version nor help wait for numpy and tyro.
+    from evenroad._checks import require_known
     from evenroad.cli.options import print_completion, read_options
 
     try:
@@ -90,6 +94,16 @@ def _run(arguments: list[str]) -> int:
         return DONE
     code: int = asked.run()
     return code
+
+
+def _print_surroundings() -> None:
+    """Print what this runs on, and where it keeps what it can make again."""
+    from evenroad._files import cache_folder
+    from evenroad._njit import surroundings
+
+    rows = {**surroundings(), "sets and meshes": str(cache_folder())}
+    for name, value in rows.items():
+        print(f"{name:16} {value}")
 
 
 def _kind(verb: str, words: Sequence[str]) -> type:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from scipy.spatial import cKDTree
 
 from evenroad._arrays import Floats
 from evenroad._checks import require_count, require_positive
+from evenroad._njit import njit
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.points.pointset import as_unit_points
 

@@ -94,10 +94,11 @@ def gave_up(attempt: Attempt, connection: Connection) -> PlanResult:
 def proved_apart(attempt: Attempt) -> PlanResult | None:
     """Return the result where the world can prove that no path leads from the start to any goal; else None."""
     world, query = attempt.world, attempt.query
-    if not isinstance(world, Separates) or any(
-        world.may_connect(query.start, goal) for goal in query.goals[attempt.goals]
-    ):
+    if not isinstance(world, Separates):
         return None
+    with attempt.watch("proof"):
+        if any(world.may_connect(query.start, goal) for goal in query.goals[attempt.goals]):
+            return None
     return _result(attempt, Status.NOT_CONNECTED, PROVED)
 
 

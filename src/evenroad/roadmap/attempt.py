@@ -29,6 +29,8 @@ from evenroad.roadmap.search import (
 )
 from evenroad.world import Connection, ConnectsAnew, ConnectsItself, World
 
+NO_LIMIT = 2**31 - 1
+"""Motions that nobody asks for."""
 _LONG = 1e8
 """Seconds that stand for no limit."""
 
@@ -132,7 +134,7 @@ class Attempt:
                 return Searched(states, found)
             return Searched(states, found, length_along(edge_costs(space, q, edges[found.edges], cost)))
 
-    def connect(self, world: ConnectsItself, variant: int = 0, most: int = 2**31 - 1) -> Connection:
+    def connect(self, world: ConnectsItself, variant: int = 0, most: int = NO_LIMIT) -> Connection:
         """Let the world join the start to one of the free goals, within what is left of the budget.
 
         A variant >= 1 has it do so in another way; only a world that is `ConnectsAnew` can.  It gives up after `most`

@@ -18,17 +18,19 @@ from evenroad._clock import now
 from evenroad.points.pointset import Origin
 from evenroad.roadmap.answer import connected, gave_up, proved_apart, refusal
 from evenroad.roadmap.anytime import plan_anytime
-from evenroad.roadmap.attempt import Attempt
+from evenroad.roadmap.attempt import NO_LIMIT, Attempt
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.query import Query, as_points, read_places
 from evenroad.roadmap.result import PlanResult, Stage, Status
-from evenroad.world import ConnectsAnew, ConnectsItself, Explains, World
+from evenroad.world import ConnectsAnew, ConnectsItself, Explains, Separates, World
 
 SECONDS = 5.0
 """Wall time of a budget that is not given."""
 NO_POINTS = Origin(family="none", method="no points")
 NO_BETTER = 1e-9
 """A path is not improved on that exceeds the shortest possible by no more than this share."""
+BEFORE_PROOF = 200_000
+"""After so many motions a world is asked whether there can be a path at all: more than hard queries take."""
 LEAST_MOTIONS, LONGER = 1000, 4
 """A round gives up after so many motions, or after so many times those of the first path, whichever is more."""
 
@@ -68,12 +70,18 @@ def find_path(
         attempt.planner = world.planner
         if (refused := refusal(attempt)) is not None:
             return refused
-        connection = attempt.connect(world)
+        most = BEFORE_PROOF if isinstance(world, Separates) else NO_LIMIT
+        connection = attempt.connect(world, most=most)
+        if connection.goal < 0:
+            if (apart := proved_apart(attempt)) is not None:
+                return apart
+            if connection.motions >= most and attempt.left() is not None:
+                # The same search again, and further.
+                attempt.motions_checked -= connection.motions
+                connection = attempt.connect(world)
         if connection.goal >= 0:
             result = connected(attempt, connection)
             return _improved(attempt, result) if improve else result
-        if (apart := proved_apart(attempt)) is not None:
-            return apart
         if (left := attempt.left()) is None:
             return with_reasons(world, gave_up(attempt, connection))
         budget = left

@@ -7,7 +7,8 @@ index.  Axes may wrap: a gap is then the shorter of the two ways round.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from evenroad._njit import njit
 
 LEAF_SIZE = 12
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints32
+from evenroad._njit import njit
 from evenroad.roadmap.kdtree import k_nearest, pairs_within
 from evenroad.space import Space
 from evenroad.space.flat import FlatMetric

@@ -11,12 +11,14 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints32
 from evenroad._checks import require_count, require_known
+from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import PointSet
 from evenroad.points.samplers import make_sampler
+from evenroad.points.samplers.poses import Sliced
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.search import FINDERS, Finder, find_any
-from evenroad.space import Space
+from evenroad.space import SO3, Box, Product, Space
 
 LINKS = 100
 """Milestones that start and goals are linked to by default, besides those of the rule.
@@ -105,10 +107,20 @@ def as_points(points: PointSet | int, space: Space) -> PointSet:
                 "points must be a PointSet, such as draw('even', 512, 2), or how many points to draw,"
                 f" got {points!r}"
             )
-        points = make_sampler("even").draw(require_count("points", points), space.cube_dim)
+        points = even_points(require_count("points", points), space)
     if points.d != space.cube_dim:
         raise InvalidValue(f"the points have d={points.d}, the space has {space.cube_dim} dimensions")
     return points
+
+
+def even_points(n: int, space: Space, *, rng: RngLike = 0) -> PointSet:
+    """Return n points of the space's cube as a planner takes them: `even`, but in SE(3) `sliced`."""
+    in_space = isinstance(space, Product) and [(type(part), part.dim) for part in space.parts] == [
+        (Box, 3),
+        (SO3, 4),
+    ]
+    sampler = Sliced() if in_space else make_sampler("even")
+    return sampler.draw(n, space.cube_dim, rng=rng)
 
 
 def _finite(value: npt.ArrayLike) -> Floats:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -22,6 +22,7 @@ from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
 from evenroad.robot.kernel.selftest import lanes_failure
 from evenroad.robot.kernel.surface_scalar import fixed_contact, scalar_check_address
 from evenroad.robot.known_robots import prepared
+from evenroad.robot.locked import locked_by
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
 from evenroad.robot.tree_sequences import shifted_cube_points
@@ -244,6 +245,14 @@ class ArmWorld:
         """As `connect`, with trees that another even sequence drives for each variant >= 1."""
         sequence = shifted_cube_points(self._space.dim, variant)
         return connect(self, start, goals, most_motions=most_motions, seconds=seconds, sequence=sequence)
+
+    def may_connect(self, a: Floats, b: Floats) -> bool:
+        """Return False where the first joints alone prove that no path joins two free places, (dim,) each.
+
+        True says nothing.  Takes a tenth of a second.  See :mod:`evenroad.robot.locked`.
+        """
+        ends = as_batch("a and b", np.array([a, b]), self._space.dim)
+        return not locked_by(lambda robot: replace(self, robot=robot).valid, self.robot, *ends)
 
     def shorten(self, path: Floats) -> tuple[Floats, int]:
         """Return a path that is not longer and whose new motions are proved free, and how many were looked at.

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_count, require_positive
 from evenroad._clock import now
+from evenroad._compiled import compile_beside
 from evenroad.errors import InvalidValue
 from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.lane_world import LaneWorld
@@ -54,6 +55,13 @@ class PlansWithTrees(Protocol):
     def fixed_contact(self) -> tuple[str, str] | None: ...  # noqa: D102
 
     def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> npt.NDArray[np.bool_]: ...  # noqa: D102
+
+
+def prepare() -> None:
+    """Begin to compile what planning with trees takes, in processes beside this one, unless it is kept already."""
+    # The last needed, and the longest, first: this process begins at the other end.
+    kernels = ("trees", "lane_check", "shorten", "motion_checks", "hull_contact")
+    compile_beside(*(f"evenroad.robot.kernel.{kernel}" for kernel in kernels))
 
 
 def connect(

@@ -14,11 +14,14 @@ import numpy as np
 
 from evenroad._arrays import Floats, Ints
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene
-from evenroad.robot.kinematics import link_poses
+from evenroad.robot.kinematics import capsule_ends, link_poses
 from evenroad.robot_roadmap.chance import Surroundings
 
 HALF_EXTENTS = ((0.12, 0.25), (0.1, 0.22), (0.1, 0.22))
 """Ranges of a pocket's depth, width and height, halved, as shares of the reach."""
+
+_LEAST, _MOST = np.transpose(HALF_EXTENTS)
+_SIDES = np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [0.0, 0.0, 1.0]])
 
 WALL = 0.01
 """Half of the thickness of a wall, as a share of the reach."""
@@ -42,6 +45,9 @@ STEP = 0.2
 
 TRIES = 40
 """Pockets for each end that is wanted, at most."""
+
+ALONG = 3
+"""Places along a capsule's axis that tell most pockets that it touches."""
 
 STILL = 1e-3
 """A tip that does not move so far moves not at all [m]."""
@@ -79,20 +85,27 @@ def ends_in_pockets(
 
     `scaled` is the pool in the metric that tells which configurations are near.
     """
+    if not count:
+        return no_ends()
     around = Surroundings.of(robot, pool)
-    tips = _tips(robot, pool)
+    tips = tips_of(robot, pool)
+    body, radii = body_of(robot, pool)
     own_of: list[int] = []
     found: list[Ints] = []
     for _ in range(TRIES * count if tips.shape[1] else 0):
         if len(found) == count:
             break
         own, tip = int(rng.integers(len(pool))), int(rng.integers(tips.shape[1]))
-        walls, centre, turn, half = _pocket(tips[own, tip], around, rng)
-        scene = replace(cell, name="pocket", obstacles=(*cell.obstacles, *walls))
+        pocket = pocket_around(tips[own, tip], around, rng)
+        if pocket.touched_by(body[own], radii):
+            continue
+        scene = replace(cell, name="pocket", obstacles=(*cell.obstacles, *pocket.walls()))
         world = ArmWorld(robot, scene, resolution=STEP)
         if not world.valid(pool[own : own + 1])[0]:
             continue
-        others = np.flatnonzero((np.abs((tips[:, tip] - centre) @ turn) < INSIDE * half).all(axis=1))
+        others = np.flatnonzero(
+            (np.abs((tips[:, tip] - pocket.centre) @ pocket.turn) < INSIDE * pocket.half).all(axis=1)
+        )
         others = rng.permutation(others[world.valid(pool[others])])[: IN_ONE - 1]
         for end in np.unique(np.append(others, own))[: count - len(found)]:
             own_of.append(int(end))
@@ -113,7 +126,7 @@ def _seen(world: ArmWorld, pool: Floats, scaled: Floats, end: int) -> Ints:
     return near[free].astype(np.int64)
 
 
-def _tips(robot: Robot, pool: Floats) -> Floats:
+def tips_of(robot: Robot, pool: Floats) -> Floats:
     """Return the places of the links that carry no other and move, (n, tips, 3) [m]."""
     carrying = {joint.parent for joint in robot.joints}
     places = np.concatenate(
@@ -123,30 +136,53 @@ def _tips(robot: Robot, pool: Floats) -> Floats:
     return places[:, [i for i in ends if np.ptp(places[:, i], axis=0).max() > STILL]]
 
 
-def _pocket(
-    tip: Floats, around: Surroundings, rng: np.random.Generator
-) -> tuple[tuple[Obstacle, ...], Floats, Floats, Floats]:
-    """Return walls around a tip, and the pocket's centre, (3,), axes, (3, 3), and half extents, (3,); open to -x."""
+def body_of(robot: Robot, pool: Floats) -> tuple[Floats, Floats]:
+    """Return places along the axes of all capsules, (n, places, 3), and their radii, (places,) [m]."""
+    ends = np.concatenate([capsule_ends(robot, q) for q in np.array_split(pool, -(-len(pool) // 10_000))])
+    share = np.linspace(0.0, 1.0, ALONG)[:, np.newaxis]
+    places = ends[:, :, np.newaxis, 0] * (1.0 - share) + ends[:, :, np.newaxis, 1] * share
+    return places.reshape(len(pool), -1, 3), np.repeat([each.radius for each in robot.capsules], ALONG)
+
+
+class Pocket(NamedTuple):
+    """A box without its side to -x: centre, (3,), axes, (3, 3), half extents, (3,), of its walls too, (5, 3) each."""
+
+    centre: Floats
+    turn: Floats
+    half: Floats
+    places: Floats
+    sizes: Floats
+
+    def touched_by(self, body: Floats, radii: Floats) -> bool:
+        """Say whether a wall is nearer to one of some places, (n, 3), than its radius: what costs no world."""
+        apart = np.abs(((body - self.centre) @ self.turn)[:, np.newaxis] - self.places) - self.sizes
+        apart = np.maximum(apart, 0.0, out=apart)
+        return bool((np.einsum("ijk,ijk->ij", apart, apart).min(axis=1) < radii * radii).any())
+
+    def walls(self) -> tuple[Obstacle, ...]:
+        """Return the walls as obstacles."""
+        axes = tuple(self.turn.ravel().tolist())
+        return tuple(
+            Obstacle.of(
+                f"wall {i} of a pocket",
+                "box",
+                (2.0 * size).tolist(),
+                (self.centre + self.turn @ place).tolist(),
+                axes,
+            )
+            for i, (place, size) in enumerate(zip(self.places, self.sizes, strict=True))
+        )
+
+
+def pocket_around(tip: Floats, around: Surroundings, rng: np.random.Generator) -> Pocket:
+    """Return a pocket around a tip."""
     x, y, _ = tip - around.base
     angle = np.arctan2(y, x) + rng.uniform(-TURNED, TURNED)
     cosine, sine = np.cos(angle), np.sin(angle)
     turn = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
     if rng.random() < UPWARDS:
         turn = turn @ np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
-    half = around.reach * rng.uniform(*np.transpose(HALF_EXTENTS))
-    thick = WALL * around.reach
+    half = around.reach * rng.uniform(_LEAST, _MOST)
     centre = tip - turn @ (half * rng.uniform(-0.5, 0.5, 3))
-    parts = [(np.array([half[0], 0.0, 0.0]), np.array([thick, half[1], half[2]]))]
-    for axis in (1, 2):
-        for side in (-1.0, 1.0):
-            place, size = np.zeros(3), half.copy()
-            place[axis], size[axis] = side * half[axis], thick
-            parts.append((place, size))
-    axes = tuple(turn.ravel().tolist())
-    walls = tuple(
-        Obstacle.of(
-            f"wall {i}", "box", tuple((2.0 * size).tolist()), tuple((centre + turn @ place).tolist()), axes
-        )
-        for i, (place, size) in enumerate(parts)
-    )
-    return walls, centre, turn, half
+    sizes = np.where(_SIDES == 0.0, half, WALL * around.reach)
+    return Pocket(centre, turn, half, _SIDES * half, sizes)

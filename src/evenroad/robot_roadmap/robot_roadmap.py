@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints, Ints32
 from evenroad._clock import now
+from evenroad.geometry.shapes import Shape
 from evenroad.roadmap import Budget, PlanResult, Status
 from evenroad.roadmap.answer import connected, gave_up, refusal
 from evenroad.roadmap.attempt import Attempt
@@ -19,11 +20,12 @@ from evenroad.roadmap.find_path import NO_POINTS, SECONDS, with_reasons
 from evenroad.roadmap.query import Query, read_places
 from evenroad.robot import ArmWorld, Robot, Scene, configuration, in_scene
 from evenroad.robot.trees import shorten
-from evenroad.robot_roadmap.ask import ENDS_TAKEN, SPENT, Asked, ask
+from evenroad.robot_roadmap.ask import ENDS_TAKEN, SPENT, Asked, Checks, ask
 from evenroad.robot_roadmap.cell import day_and_all, left_to_check, require_same_robot
 from evenroad.robot_roadmap.known_graph import KnownGraph
 from evenroad.robot_roadmap.lazy_search import CUT_OFF, NONE
 from evenroad.robot_roadmap.learned import with_paths
+from evenroad.robot_roadmap.own_shapes import OwnShapesWorld
 from evenroad.robot_roadmap.pockets import links_of
 from evenroad.robot_roadmap.turns import OneTurn, one_turn, whole_turns
 from evenroad.robot_roadmap.ways_out import learn_ways_out
@@ -84,6 +86,10 @@ class RobotRoadmap:
         What a unit of each joint counts in the roadmap's metric.
     gamma : float
         The power of the chance of being free that milestones are as dense as.
+    ends : int
+        How many ends in pockets they learned from, at most.
+    tuned : str
+        What came of tuning the two; empty without.
     """
 
     robot: Robot
@@ -94,6 +100,8 @@ class RobotRoadmap:
     turns: Ints
     weights: Floats
     gamma: float
+    ends: int = 0
+    tuned: str = ""
 
     @cached_property
     def world(self) -> ArmWorld:
@@ -129,9 +137,9 @@ class RobotRoadmap:
         milestones, edges, turns = grown
         return replace(self, milestones=milestones, edges=edges, turns=turns)
 
-    def in_scene(self, scene: Scene) -> SceneRoadmap:
+    def in_scene(self, scene: Scene, shapes: Sequence[Shape] | None = None) -> SceneRoadmap:
         """Return the roadmap in the day's scene, for many queries in it: what one finds out serves the next."""
-        return SceneRoadmap(self, scene)
+        return SceneRoadmap(self, scene, shapes=shapes)
 
     def plan(
         self, scene: Scene, start: Place, goal: Place | Sequence[Place], *, budget: Budget | None = None
@@ -150,6 +158,9 @@ class SceneRoadmap:
         What stands around the robot today.  The roadmap's cell is always there, named again or not.
     robot : Robot, optional
         The roadmap's robot with other limits or named states.  Default: as it is in the scene.
+    shapes : sequence of Shape, optional
+        The robot's own, as of :func:`evenroad.robot.reference.coal_world.original_shapes`, which decide where its
+        capsules touch (extra ``mesh``).  Default: capsules alone.
 
     Attributes
     ----------
@@ -166,7 +177,13 @@ class SceneRoadmap:
         If the scene names something that is not there.
     """
 
-    def __init__(self, roadmap: RobotRoadmap, scene: Scene, robot: Robot | None = None) -> None:
+    def __init__(
+        self,
+        roadmap: RobotRoadmap,
+        scene: Scene,
+        robot: Robot | None = None,
+        shapes: Sequence[Shape] | None = None,
+    ) -> None:
         day, everything = day_and_all(roadmap.cell, scene)
         robot = in_scene(roadmap.robot if robot is None else robot, everything)
         require_same_robot(roadmap.robot, roadmap.cell, robot.empty_handed())
@@ -178,6 +195,9 @@ class SceneRoadmap:
         # One and the same where it can be: what is known of it need not be looked up by all of its values.
         bare = roadmap.bare if robot is roadmap.robot else bare
         self._day = ArmWorld(bare, left, resolution=resolution)
+        self._asked: tuple[Checks, Checks] = self.world, self._day
+        if shapes is not None:
+            self._asked = OwnShapesWorld(self.world, shapes), OwnShapesWorld(self._day, shapes)
         self._graph = roadmap.graph.within(np.array(self.world.space.low), np.array(self.world.space.high))
         self._wraps = bool(np.any(self.world.space.wrapping))
         self.learned: list[Floats] = []
@@ -214,11 +234,12 @@ class SceneRoadmap:
         deadline: float,
         links: int,
         greed: float = GREED,
-        **how: bool,
+        *,
+        only_known: bool = False,
+        unturned: bool = False,
     ) -> Asked:
         return ask(
-            self.world,
-            self._day,
+            *self._asked,
             self._graph,
             start,
             goals,
@@ -226,7 +247,8 @@ class SceneRoadmap:
             greed=greed,
             most_motions=most,
             deadline=deadline,
-            **how,
+            only_known=only_known,
+            unturned=unturned,
         )
 
     @property
@@ -281,7 +303,7 @@ class SceneRoadmap:
         if asked.goal >= 0:
             return self._solved(asked, first, goals, shorten, began)
         query = Query(first, goals, shorten=shorten, budget=budget)
-        attempt = Attempt(self.world, query, NO_POINTS, "none", PLANNER)
+        attempt = Attempt(self._asked[0], query, NO_POINTS, "none", PLANNER)
         attempt.deadline, attempt.motions_checked = deadline, asked.motions
         attempt.watch.seconds["search"] = now() - began
         if (refused := refusal(attempt)) is not None:
@@ -299,18 +321,12 @@ class SceneRoadmap:
         if not trees:
             text = f"the roadmap of {self._size} milestones does not lead from start to goal today"
             failed = replace(failed, status=Status.NOT_CONNECTED, message=text)
-        return with_reasons(self.world, failed)
+        return with_reasons(self._asked[0], failed)
 
     def _by_ways_out(self, asked: Asked, start: Floats, goals: Floats, most: int, deadline: float) -> Asked:
         """Ask again along what is known to be free, with ways learned that lead there from the ends."""
-        out = learn_ways_out(
-            self.world,
-            self._graph,
-            self.roadmap.weights,
-            (start, goals[0]),
-            most - asked.motions,
-            deadline,
-        )
+        left = most - asked.motions
+        out = learn_ways_out(self.world, self._graph, self.roadmap.weights, (start, goals[0]), left, deadline)
         self.learned += out.ways
         before = asked.milestones + out.configurations, asked.motions + out.motions
         if out.complete:
@@ -353,7 +369,7 @@ class SceneRoadmap:
             goal_index=asked.goal,
             path=path,
             milestone_path=asked.path,
-            proof=world.proof,
+            proof=world.proof if self._asked[0] is world or world.recheck(path).all() else "resolution",
             cost=length,
             milestone_cost=raw_length,
             counts=counts,

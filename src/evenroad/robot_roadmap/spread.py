@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from evenroad._arrays import Floats, Ints
+from evenroad._njit import njit
 from evenroad.robot.kinematics import KinematicTree, capsule_ends
 
 STEP = 1e-4

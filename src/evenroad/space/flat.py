@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numba import njit
 
 from evenroad._arrays import Bools, Floats, set_fields
+from evenroad._njit import njit
 from evenroad.errors import InvalidValue
 
 

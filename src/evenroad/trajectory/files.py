@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import yaml
 
+from evenroad._arrays import Floats
 from evenroad._checks import require_extra
 from evenroad._files import atomic_write
 from evenroad.errors import BrokenFile, UnknownName
@@ -186,22 +187,40 @@ def _yaml(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
     return text.encode()
 
 
+def joint_trajectory(
+    trajectory: Trajectory, make: Callable[..., Any], order: Sequence[str] | None = None
+) -> Any:
+    """Return a trajectory as ROS 2's ``trajectory_msgs/JointTrajectory``.
+
+    Parameters
+    ----------
+    trajectory, order
+        As :func:`save_trajectory`.
+    make : callable
+        Makes a message: ``make("std_msgs/msg/Header", stamp=..., frame_id=...)``; rows of numbers are arrays, (dim,).
+    """
+    names, tables = trajectory.columns(order)
+
+    def point(time: float, *rows: Floats) -> Any:
+        fields = dict(zip(_TABLES, rows, strict=True))
+        since = dict(zip(("sec", "nanosec"), _stamp(time), strict=True))
+        duration = make("builtin_interfaces/msg/Duration", **since)
+        return make(
+            "trajectory_msgs/msg/JointTrajectoryPoint", **fields, effort=np.zeros(0), time_from_start=duration
+        )
+
+    header = make(
+        "std_msgs/msg/Header", stamp=make("builtin_interfaces/msg/Time", sec=0, nanosec=0), frame_id=""
+    )
+    points = [point(time, *rows) for time, *rows in zip(trajectory.times, *tables, strict=True)]
+    return make(_MESSAGE, header=header, joint_names=list(names), points=points)
+
+
 def _mcap(trajectory: Trajectory, order: Sequence[str] | None) -> bytes:
     rosbags = require_extra("rosbags.rosbag2", "ros", "a bag of ROS 2")
     stores = require_extra("rosbags.typesys", "ros", "a bag of ROS 2")
     store = stores.get_typestore(stores.Stores.ROS2_HUMBLE)
-    kinds = store.types
-    names, tables = trajectory.columns(order)
-    time, header = kinds["builtin_interfaces/msg/Time"], kinds["std_msgs/msg/Header"]
-    duration, point = (
-        kinds["builtin_interfaces/msg/Duration"],
-        kinds["trajectory_msgs/msg/JointTrajectoryPoint"],
-    )
-    points = [
-        point(*rows, effort=np.zeros(0), time_from_start=duration(*_stamp(at)))
-        for at, *rows in zip(trajectory.times, *tables, strict=True)
-    ]
-    message = kinds[_MESSAGE](header(time(0, 0), ""), list(names), points)
+    message = joint_trajectory(trajectory, lambda kind, **fields: store.types[kind](**fields), order)
     with tempfile.TemporaryDirectory() as folder:
         bag = Path(folder) / "bag"
         with rosbags.Writer(bag, version=9, storage_plugin=rosbags.StoragePlugin.MCAP) as writer:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from evenroad._arrays import Floats, Ints
+from evenroad._njit import njit
 from evenroad.trajectory.blends import RoundedPath
 from evenroad.trajectory.limits import Limits
 

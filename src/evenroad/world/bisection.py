@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numba import njit
 
 from evenroad._arrays import Bools, Ints
+from evenroad._njit import njit
 from evenroad.errors import InvalidValue
 
 MOST_SEGMENTS = 2**30

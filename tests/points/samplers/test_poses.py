@@ -6,7 +6,7 @@ import pytest
 from evenroad.errors import InvalidValue
 from evenroad.points import draw
 from evenroad.points.samplers import poses
-from evenroad.points.samplers.poses import Poses, Rotations, spread_directions
+from evenroad.points.samplers.poses import Poses, Rotations, Sliced, spread_directions
 from evenroad.space import SE2, SE3, SO3
 
 
@@ -73,7 +73,7 @@ def test_the_shape_of_the_box_and_the_weight_of_a_turn_count():
 
 
 @pytest.mark.parametrize("n", [1, 2, 7, 33])
-@pytest.mark.parametrize(("sampler", "d"), [(Poses(), 3), (Poses(), 6), (Rotations(), 3)])
+@pytest.mark.parametrize(("sampler", "d"), [(Poses(), 3), (Poses(), 6), (Rotations(), 3), (Sliced(), 6)])
 def test_there_is_a_set_of_any_n_and_the_same_seed_gives_it_again(sampler, d, n):
     points = sampler.draw(n, d, rng=6)
     assert points.points.shape == (n, d)
@@ -113,3 +113,38 @@ def test_slopes_are_those_of_the_energy():
 def test_bad_input_is_named(make, said):
     with pytest.raises(InvalidValue, match=said):
         make()
+
+
+def test_a_share_of_sliced_poses_has_one_rotation_and_a_lattice_of_places():
+    points = Sliced(share=0.25).draw(80, rng=7).points
+    rotations, counts = np.unique(points[:, 3:], axis=0, return_counts=True)
+    assert sorted(counts)[-2:] == [1, 20]
+    places = points[(points[:, 3:] == rotations[counts.argmax()]).all(axis=1), :3]
+    np.testing.assert_allclose(np.diff(np.sort(places, axis=0), axis=0), 1 / 20, rtol=1e-9)
+    other = Sliced(share=0.25).draw(80, rng=8).points[:, 3:]
+    assert not (other == rotations[counts.argmax()]).all(axis=1).any()
+
+
+def test_the_rotations_of_slices_are_uniform():
+    quaternions = SO3().from_cube(
+        np.array([Sliced(share=1.0).draw(1, rng=i).points[0, 3:] for i in range(2000)])
+    )
+    second = np.einsum("ni,nj->ij", quaternions, quaternions) / 2000
+    np.testing.assert_allclose(second, np.eye(4) / 4, atol=0.03)
+
+
+@pytest.mark.parametrize(("share", "most"), [(0.0, 1), (1.0, 12)])
+def test_none_or_all_of_the_poses_may_be_in_the_slice(share, most):
+    rotations = Sliced(share).draw(12, rng=1).points[:, 3:]
+    assert np.unique(rotations, axis=0, return_counts=True)[1].max() == most
+
+
+@pytest.mark.parametrize("share", [-0.1, 1.5, float("nan"), "half"])
+def test_a_share_that_is_none_is_refused(share):
+    with pytest.raises(InvalidValue, match="share"):
+        Sliced(share)
+
+
+def test_slices_are_of_space_alone():
+    with pytest.raises(InvalidValue, match="d = 6"):
+        Sliced().draw(10, 3)

@@ -138,9 +138,9 @@ def test_rules_share_a_set_and_its_validity(problems, monkeypatch):
     drawn = []
     uniform = SAMPLERS["uniform"]
 
-    def draw(family, n, d, run, rng):
+    def draw(family, n, d, run, rng, space):
         drawn.append(run)
-        return uniform.draw(family, n, d, run, rng)
+        return uniform.draw(family, n, d, run, rng, space)
 
     monkeypatch.setitem(SAMPLERS, "uniform", uniform._replace(draw=draw))
     for run in (100, 101):

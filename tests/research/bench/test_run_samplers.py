@@ -8,6 +8,8 @@ from evenroad.points import draw
 from evenroad.points.bank import Bank
 from evenroad.points.samplers import Halton, Sobol
 from evenroad.research.bench.samplers import SAMPLERS, draw_set, why_not
+from evenroad.roadmap.query import even_points
+from evenroad.space import SE3
 
 
 def _draw(name, n, d, run=0, seed=0):
@@ -92,3 +94,10 @@ def test_the_lattice_ends_at_twelve_dimensions():
 def test_an_unknown_sampler_gets_the_list():
     with pytest.raises(UnknownName, match="known: even, halton paper-blocks"):
         why_not("nonsense", 10, 2)
+
+
+def test_even_is_drawn_for_the_space_as_a_planner_draws_it():
+    space = SE3((0.0, 0.0, 0.0), (1.0, 1.0, 1.0), weights=(1.0, 0.3))
+    poses, _ = draw_set("even", 30, 6, 0, np.random.default_rng(2), space)
+    assert poses == even_points(30, space, rng=np.random.default_rng(2).spawn(2)[0])
+    assert poses != _draw("even", 30, 6, seed=2)[0]

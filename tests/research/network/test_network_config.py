@@ -34,6 +34,19 @@ def test_names_that_nobody_knows_are_refused():
         NetworkConfig(16, 2, objective="2 *nonsense")
     with pytest.raises(UnknownName, match="start.*'grid'.*sobol"):
         NetworkConfig(16, 2, start="grid")
+    with pytest.raises(UnknownName, match="judge.*'me'.*star"):
+        NetworkConfig(16, 2, judge="me")
+
+
+def test_the_start_is_chosen_by_the_objective_unless_it_is_asked_for():
+    assert NetworkConfig(16, 2, "star").start == "kronecker"
+    assert NetworkConfig(16, 2, "star", start="sobol").start == "sobol"
+    assert {NetworkConfig(16, 3, "star").start, NetworkConfig(16, 2).start} == {"sobol"}
+
+
+def test_the_exact_star_discrepancy_judges_in_the_plane_alone():
+    with pytest.raises(InvalidValue, match="in d = 2 alone, not in d = 3"):
+        NetworkConfig(16, 3, judge="star")
 
 
 def test_two_spellings_of_an_objective_are_the_same_config():

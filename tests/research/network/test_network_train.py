@@ -5,7 +5,9 @@ from evenroad.errors import InvalidValue
 from evenroad.points import draw, load_points
 from evenroad.points.bank import Bank
 from evenroad.points.measures import MEASURES
+from evenroad.research.measures import star_discrepancy
 from evenroad.research.network import NetworkConfig, train
+from evenroad.research.network.train import kronecker
 from evenroad.research.training import train_many
 from evenroad.research.training.objective import Objective, parse_objective
 
@@ -46,6 +48,32 @@ def test_the_points_are_the_best_of_all_steps():
     assert np.diff(values).max() <= 0
     assert len(values) == 60
     assert not made.points.flags.writeable
+
+
+def test_the_exact_star_discrepancy_may_judge_which_points_are_the_best():
+    by_loss, by_star = (
+        train(NetworkConfig(20, 2, "star", steps=300, judge=j)) for j in ("objective", "star")
+    )
+    assert by_star.value == star_discrepancy(by_star.points) < star_discrepancy(by_loss.points)
+
+
+@pytest.mark.parametrize(("n", "published"), [(60, 0.0273), (100, 0.0188), (140, 0.0137)])
+def test_a_second_of_the_network_is_below_the_published_sets_of_mpmc(n, published):
+    assert train(NetworkConfig(n, 2, "star", steps=1000, judge="star")).value < published
+
+
+@pytest.mark.parametrize("d", [1, 2, 3, 7])
+def test_kronecker_points_are_multiples_of_one_step_modulo_1(d):
+    shift = np.random.default_rng(d).random(d)
+    points = kronecker(50, shift)
+    assert points.shape == (50, d)
+    assert points[0] == pytest.approx([shift[0] / 50, *shift[1:]])
+    steps = np.diff(points, axis=0) % 1.0
+    assert steps == pytest.approx(np.broadcast_to(steps[0], steps.shape))
+    if d > 1:
+        g = 1.0 / steps[0, 1]
+        assert g**d == pytest.approx(g + 1.0)
+        assert steps[0, 1:] == pytest.approx(g ** -np.arange(1.0, d))
 
 
 def test_the_same_seed_gives_the_same_bits_and_another_one_others():

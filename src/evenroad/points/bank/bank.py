@@ -5,7 +5,8 @@
     data/index.json                    {"hickernell": {"2": {"512": {cell record}}}}
     data/hickernell/d02-n0512.npy
 
-The index alone says what is in the bank: a file without a record is a build that has not finished.
+The index alone says what is in the bank: a file without a record is a build that has not finished.  The wheel of
+evenroad has the files of up to 256 points; those of more, which benchmarks draw, come with the wheel of evenroad-sets.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from functools import lru_cache
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +27,8 @@ from evenroad.points.pointset import PointSet
 
 DATA = Path(__file__).parent / "data"
 INDEX = "index.json"
+LARGE_SETS = "evenroad_sets"
+"""The package with the files that the wheel leaves out."""
 SEED = 20261121
 """Set i of every cell is annealed with ``SeedSequence(SEED, spawn_key=(i,))``."""
 
@@ -72,8 +76,8 @@ class Bank:
     def cell(self, family: str, n: int, d: int) -> Cell:
         """Return the pool of one family at one n and d.
 
-        UnknownName if the bank has no such family, NotAvailable, with what there is, if the family has no such pool;
-        BrokenFile if the index is damaged.
+        UnknownName if the bank has no such family, NotAvailable, with what there is, if the family has no such pool or
+        its package is not installed; BrokenFile if the index is damaged.
         """
         index = _index(self.folder)
         require_known("family in the bank:", family, index)
@@ -86,12 +90,32 @@ class Bank:
         try:
             made_by = {name: record[name] for name in ("method", "objective", "version", "steps")}
             measures = {name: tuple(values) for name, values in record["measures"].items()}
-            path = self.folder / family / cell_name(n, d)
+            path = _file(self.folder, family, n, d)
             return Cell(path, n, d, hashes=tuple(record["hashes"]), measures=measures, **made_by)
         except (KeyError, TypeError, AttributeError) as error:
             raise BrokenFile(
                 f"the index of the bank {self.folder}: {family} n={n} d={d} is no record ({shown(error)})"
             ) from error
+
+
+def _file(folder: Path, family: str, n: int, d: int) -> Path:
+    """Return where the sets of a cell are: in the bank's folder, or for the one that ships in the package beside it."""
+    path = folder / family / cell_name(n, d)
+    if folder != DATA or path.exists():
+        return path
+    beside = find_spec(LARGE_SETS)
+    for place in [] if beside is None else beside.submodule_search_locations or []:
+        if (large := Path(place, "data", family, path.name)).exists():
+            return large
+    raise NotAvailable(
+        f"the {family} sets of n={n} in d={d} are in the package evenroad-sets, which is not installed:"
+        " pip install evenroad-sets"
+    )
+
+
+def has_large_sets() -> bool:
+    """Return whether the sets that the wheel leaves out are here, in a checkout or by their package."""
+    return any(DATA.glob(f"*/{cell_name(1024, 2)}")) or find_spec(LARGE_SETS) is not None
 
 
 def cell_name(n: int, d: int) -> str:

@@ -10,9 +10,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from evenroad._checks import require_positive
+from evenroad._njit import njit
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import as_unit_points
 

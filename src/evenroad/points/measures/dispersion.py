@@ -6,10 +6,10 @@ SciPy's trees are imported where they are used: with them comes its linear algeb
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from evenroad._arrays import Floats
 from evenroad._checks import require_count, require_known, require_positive
+from evenroad._njit import njit
 from evenroad._rng import RngLike, generator
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.points.pointset import as_unit_points

@@ -14,9 +14,9 @@ import math
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
-from numba import njit
 
 from evenroad._arrays import Floats
+from evenroad._njit import njit
 
 TILE = 512
 """Points in a tile: small enough for the first cache, large enough to keep the vector units busy."""

@@ -6,6 +6,7 @@ a general set needs O(n^2 d).  That makes a search over all multipliers a matter
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
@@ -36,12 +37,8 @@ BLOCK = 2**14
 TIE = 1e-9
 """Energies closer than this, relatively, are equal: rounding does not choose between mirrored lattices."""
 
-
-BALANCED_FROM = 6
-"""Dimension from which on `even` minds that axes count differently; below, ten neighbours are 2 d and span all."""
-
-BOXES, STRETCH, LOSS = 16, 0.7, 0.04
-"""Of :func:`balanced_generator`."""
+TURNED_FROM = 6
+"""Dimension from which on `even` permutes the axes of each set; below, ten neighbours are 2 d and span all."""
 
 
 @dataclass(frozen=True)
@@ -56,6 +53,7 @@ class Korobov:
     about = "best Korobov lattice, randomly shifted"
     any_n = True
     symmetries = ALL_SYMMETRIES
+    turned_from = math.inf
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
         """Return n lattice points, shape (n, d), in the order of i; see :class:`~evenroad.points.Sampler`.
@@ -63,9 +61,9 @@ class Korobov:
         Raises InvalidValue also if n > 2**26.
         """
         n, d = require_count("n", n), require_count("d", d)
-        multiplier, random = self.multiplier(n, d), generator(rng)
+        multiplier, random = korobov_generator(n, d), generator(rng)
         shift, axes, how = random.random(d), np.arange(d), "shifted"
-        if self.turns_axes(d):
+        if d >= self.turned_from:
             axes, how = random.permutation(d), "axes permuted, shifted"
         powers = np.array([pow(multiplier, int(k), n) for k in axes], dtype=np.int64)
         lattice = np.arange(n)[:, None] * powers % n / n
@@ -74,35 +72,19 @@ class Korobov:
         method = f"rank-1 lattice a={multiplier}, {how}"
         return PointSet(points, Origin(family=self.name, method=method, objective="riesz", seed=seed_of(rng)))
 
-    def multiplier(self, n: int, d: int) -> int:
-        """Return a."""
-        return korobov_generator(n, d)
-
-    def turns_axes(self, d: int) -> bool:
-        """Return whether each set has its axes in another order."""
-        return False
-
 
 @dataclass(frozen=True)
 class Even(Korobov):
     """Our default: a Korobov lattice in every dimension; ``benchmarks/decide_even.py`` has the evidence.
 
-    From six dimensions on axes hardly ever count alike: those of SE(3), of an arm's joints.  The lattice that is best
-    in the cube then has few short vectors, all of which may lie in the rotations, and with k < 2 d neighbours the
-    roadmap falls apart into sheets.  So there the multiplier is :func:`balanced_generator`, and each set has its axes
-    in another order, since no one order is good everywhere.
+    From six dimensions on axes hardly ever count alike: those of an arm's joints, those of rotations.  The few short
+    vectors of the lattice may then lie in axes that count little, and with k < 2 d neighbours the roadmap falls apart
+    into sheets.  No one order of the axes is good everywhere, so there each set has another.
     """
 
     name = "even"
     about = "our default: a randomly shifted Korobov lattice"
-
-    def multiplier(self, n: int, d: int) -> int:
-        """Return a."""
-        return balanced_generator(n, d) if self.turns_axes(d) else korobov_generator(n, d)
-
-    def turns_axes(self, d: int) -> bool:
-        """Return whether each set has its axes in another order."""
-        return d >= BALANCED_FROM
+    turned_from = TURNED_FROM
 
 
 def korobov_generator(n: int, d: int) -> int:
@@ -123,55 +105,10 @@ def korobov_generator(n: int, d: int) -> int:
 def _searched(n: int, d: int) -> int:
     if n <= 2 or d == 1:
         return 1
-    return int(_least_energies(_candidates(n, d), n, d, TIE)[0])
-
-
-def balanced_generator(n: int, d: int) -> int:
-    """Return a multiplier whose lattice stays well spread where the axes are stretched, and nearly the best where not.
-
-    Among those whose typical distance, the energy to the power -1 / (2 d), is at most 4 % below the best one, it has
-    the largest geometric mean of the typical distances in :data:`BOXES` boxes, whose log sides are normal with a
-    deviation of :data:`STRETCH`.  A stretched axis is nearly a projection along it; lattices that are good in all of
-    them are asked for by Dick et al. (2025) and Sakai and Goda (2026), in other norms.  Errors as
-    :func:`korobov_generator`.
-    """
-    korobov_generator(n, d)
-    return _balanced(n, d)
-
-
-@lru_cache(maxsize=1024)
-def _balanced(n: int, d: int) -> int:
-    if n <= 2 or d == 1:
-        return 1
-    good = _least_energies(_candidates(n, d), n, d, 2 * d * np.log1p(LOSS))
-    good = good[: max(WORK // (BOXES * (n // 2) * d), 1)]
-    sides = np.exp(STRETCH * np.random.default_rng(BOXES).standard_normal((BOXES, d)))
-    log_sums = np.zeros(len(good))
-    half, vectors = n // 2, _vectors(good, n, d)
-    step = max(1, BLOCK // len(good))
-    for each in sides:
-        sums = np.full(len(good), -np.inf)
-        for first in range(1, half + 1, step):
-            sums = np.logaddexp(sums, _log_energies(vectors, n, first, min(half, first + step - 1), each))
-        log_sums += sums
-    return int(good[np.argmin(log_sums)])
-
-
-def _candidates(n: int, d: int) -> Ints:
-    """Return the multipliers that are tried, the smallest of those that give the same lattice, ascending."""
     tried = islice(_multipliers(n), max(FEWEST_TRIED, WORK // (n // 2 * d)))
     pairs = ((a, pow(a, -1, n)) for a in tried)
-    return np.array(sorted({min(a, n - a, b, n - b) for a, b in pairs}), dtype=np.int64)
-
-
-def _vectors(multipliers: Ints, n: int, d: int) -> Floats:
-    """Return the first point of each lattice, in units of 1/n, (m, d)."""
-    vectors = np.empty((len(multipliers), d))
-    power = np.ones_like(multipliers)
-    for k in range(d):
-        vectors[:, k] = power
-        power = power * multipliers % n
-    return vectors
+    candidates = np.array(sorted({min(a, n - a, b, n - b) for a, b in pairs}), dtype=np.int64)
+    return _least_energy(candidates, n, d)
 
 
 def _multipliers(n: int) -> Iterator[int]:
@@ -189,14 +126,19 @@ def _multipliers(n: int) -> Iterator[int]:
             yield a
 
 
-def _least_energies(candidates: Ints, n: int, d: int, slack: float) -> Ints:
-    """Return the candidates whose log energy exceeds the least by at most `slack`, least first; equal ones ascending.
+def _least_energy(candidates: Ints, n: int, d: int) -> int:
+    """Return the smallest of the candidates whose energy is the least.
 
     A race: all partial sums grow together, point by point, and a candidate is out as soon as its sum exceeds the
     whole energy of one that looks good.  The first coordinate of point j is j / n, so the short distances, which
     decide, come early.
     """
-    vectors, half = _vectors(candidates, n, d), n // 2
+    vectors = np.empty((len(candidates), d))
+    power = np.ones_like(candidates)
+    for k in range(d):
+        vectors[:, k] = power
+        power = power * candidates % n
+    half = n // 2
     log_sums = np.full(len(candidates), -np.inf)
     limit = np.inf
     first, looks = 1, 0
@@ -207,21 +149,14 @@ def _least_energies(candidates: Ints, n: int, d: int, slack: float) -> Ints:
         if looks & (looks - 1) == 0:
             # A whole energy costs as much as many looks: ever more rarely, after 1, 2, 4, 8, ... looks.
             promising = vectors[[np.argmin(log_sums)]]
-            limit = min(limit, _log_energies(promising, n, 1, half)[0] + slack)
+            limit = min(limit, _log_energies(promising, n, 1, half)[0] + TIE)
         in_race = log_sums <= limit
         candidates, vectors, log_sums = candidates[in_race], vectors[in_race], log_sums[in_race]
-    candidates, log_sums = (
-        candidates[log_sums <= log_sums.min() + slack],
-        log_sums[log_sums <= log_sums.min() + slack],
-    )
-    # Up to a tie, so that rounding does not order mirrored lattices.
-    return candidates[np.argsort(np.floor((log_sums - log_sums.min()) / TIE), kind="stable")]
+    return int(candidates[log_sums <= log_sums.min() + TIE][0])
 
 
-def _log_energies(vectors: Floats, n: int, first: int, last: int, sides: Floats | None = None) -> Floats:
+def _log_energies(vectors: Floats, n: int, first: int, last: int) -> Floats:
     """Return the log of the sum of distance^(-2d) over the points first .. last <= n/2 of every lattice.
-
-    The torus has sides of one length, or as given, (d,).
 
     Point n - j is the mirror image of j, so half of the points are enough; n/2 is its own and counts half.
     Distances are in units of 1/n: squared they are integers, and exact.  Powers are taken relative to the
@@ -236,8 +171,6 @@ def _log_energies(vectors: Floats, n: int, first: int, last: int, sides: Floats 
         np.multiply(vectors[:, k, np.newaxis], j, out=gap)
         np.rint(np.multiply(gap, 1.0 / n, out=multiple), out=multiple)
         gap -= np.multiply(multiple, n, out=multiple)
-        if sides is not None:
-            gap *= sides[k]
         squared += np.multiply(gap, gap, out=gap)
     shortest = squared.min(axis=1)
     terms = _integer_power(shortest[:, np.newaxis] / squared, d)

@@ -89,7 +89,9 @@ def _milestones(
     """Return what all rules and searches share: a set's valid configurations, its id, and the seconds of validity."""
     of_set, of_missing = np.random.SeedSequence(seed, spawn_key=(run,)).spawn(2)
     here = _problem(problem, instance)
-    points, set_id = draw_set(sampler, n, here.set_dim, run, np.random.default_rng(of_set))
+    space = here.world.space
+    whole = space if here.set_dim == space.cube_dim else None
+    points, set_id = draw_set(sampler, n, here.set_dim, run, np.random.default_rng(of_set), whole)
     configurations = here.configurations(points, np.random.default_rng(of_missing))
     began = time.perf_counter()
     valid = configurations[here.world.valid(configurations)]

@@ -44,6 +44,11 @@ class Train:
     """Steps of the optimiser."""
     refine: int = 0
     """mpmc: anneal the network's sets for so many more steps, and write them as OUT/refined-0000.npz, ..."""
+    start: str | None = None
+    """mpmc: what the network moves: sobol, kronecker, halton, korobov or uniform (default: sobol, but kronecker for
+    --objective star in d = 2)."""
+    judge: Literal["objective", "star"] = "objective"
+    """mpmc: what decides which points of a training are its best; star: their exact star discrepancy, d = 2."""
     seed: int = 0
     """Set i depends on this seed and i alone, whatever the number of processes."""
     jobs: int | None = None
@@ -66,7 +71,7 @@ class Train:
             sets = make(callback)
         objective = parse_objective(self.objective)
         name, value = str(objective), objective.value
-        if self.method == "order":
+        if self.method == "order" or self.judge == "star":
             name, value = "star discrepancy", star_discrepancy
         values = np.array([value(each) for each in sets])
         print(f"{self.out}: {len(sets)} sets, {name}: mean {values.mean():.6g}, best {values.min():.6g}")
@@ -78,8 +83,10 @@ class Train:
         for name, at_least in least.items():
             require_count(name, getattr(self, name), at_least)
         require_points_for(parse_objective(self.objective), self.n)
-        if self.refine and self.method != "mpmc":
-            raise InvalidValue(f"--refine does not go with the method {self.method!r}")
+        of_network = {"refine": self.refine, "start": self.start, "judge": self.judge != "objective"}
+        for name, given in of_network.items():
+            if given and self.method != "mpmc":
+                raise InvalidValue(f"--{name} does not go with the method {self.method!r}")
         if self.method == "order" and (self.d, self.objective) != (2, "star"):
             raise InvalidValue(
                 f"the method 'order' makes sets in d = 2 for --objective star,"
@@ -112,7 +119,8 @@ class Train:
     def _config(self) -> NetworkConfig:
         from evenroad.research.network import NetworkConfig
 
-        return NetworkConfig(self.n, self.d, self.objective, steps=self.steps)
+        steps, start, judge = self.steps, self.start, self.judge
+        return NetworkConfig(self.n, self.d, self.objective, steps=steps, start=start, judge=judge)
 
     def _network(self, callback: Callback) -> tuple[PointSet, ...]:
         sets = train_many(self._config(), self.sets, **self._told(callback))

@@ -7,11 +7,15 @@ from dataclasses import dataclass
 
 from evenroad._arrays import set_fields
 from evenroad._checks import require_count, require_known, require_positive
+from evenroad.errors import InvalidValue
 from evenroad.points.bank.anneal import require_points_for
 from evenroad.research.training.objective import parse_objective
 
-STARTS = ("sobol", "halton", "korobov", "uniform")
-"""Samplers that the network may start from."""
+STARTS = ("sobol", "kronecker", "halton", "korobov", "uniform")
+"""What the network may start from: samplers, and multiples of irrational numbers modulo 1."""
+
+JUDGES = ("objective", "star")
+"""What may decide which points of a training are the best."""
 
 
 @dataclass(frozen=True)
@@ -24,8 +28,9 @@ class NetworkConfig:
         Number of points, >= 2, and dimension, >= 1.
     objective : str
         An expression (:mod:`evenroad.research.training.objective`) that is made small.
-    start : str
-        The sampler that the network starts from, one of ``STARTS``: it learns by how much to move each point.
+    start : str or None
+        What the network starts from, one of ``STARTS``: it learns by how much to move each point.  None: ``kronecker``
+        for the star discrepancy in the plane, else ``sobol``.
     width : int or None
         How many numbers describe a point inside; None: 32, from d = 8 on 64.
     layers, k : int
@@ -35,23 +40,28 @@ class NetworkConfig:
     noise : float or None
         The starts drift, by Gaussian noise that cools with the rate, as this share of an annealing's noise.
         None: 0 in the plane and .5 in d = 10.
+    judge : str
+        What decides which step made the best points: the ``objective``, or in the plane their exact ``star``
+        discrepancy.
 
     Raises
     ------
     InvalidValue, UnknownName
-        For a value out of range, or an objective that does not parse; for a name in it or a start that is not known.
+        For a value out of range, or an objective that does not parse; for a name in it, a start or a judge that is
+        not known.
     """
 
     n: int
     d: int
     objective: str = "hickernell"
-    start: str = "sobol"
+    start: str | None = None
     width: int | None = None
     layers: int = 3
     k: int = 8
     steps: int = 10_000
     rate: float = 3e-3
     noise: float | None = None
+    judge: str = "objective"
 
     def __post_init__(self) -> None:
         # Plain ints and floats, since they go into JSON.  The instance norm of a set of one point would be zero.
@@ -59,8 +69,13 @@ class NetworkConfig:
             set_fields(self, **{name: require_count(name, getattr(self, name), at_least=least)})
         if self.width is not None:
             set_fields(self, width=require_count("width", self.width))
-        require_known("start", self.start, STARTS)
         objective = parse_objective(self.objective)
+        if self.start is None:
+            set_fields(self, start="kronecker" if self.d == 2 and str(objective) == "star" else "sobol")
+        require_known("start", self.start, STARTS)
+        require_known("judge", self.judge, JUDGES)
+        if self.judge == "star" and self.d != 2:
+            raise InvalidValue(f"the exact star discrepancy judges sets in d = 2 alone, not in d = {self.d}")
         require_points_for(objective, self.n)
         if self.noise is not None:
             set_fields(self, noise=require_positive("noise", self.noise, or_zero=True))

@@ -9,7 +9,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+
+from evenroad._njit import njit
 
 NORM_FLOOR = 1e-5
 """Added to a variance, so that its root can be divided by."""

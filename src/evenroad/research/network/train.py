@@ -18,6 +18,7 @@ from evenroad.errors import InvalidValue
 from evenroad.points.bank.anneal import LOWEST, Annealed, Callback, anneal, first_rate, noise_over_rate
 from evenroad.points.pointset import BELOW_ONE, Origin, PointSet
 from evenroad.points.samplers import draw
+from evenroad.research.measures import star_discrepancy
 from evenroad.research.network.config import NetworkConfig
 from evenroad.research.network.layers import adam_step, backward, forward
 from evenroad.research.training.objective import Objective, parse_objective
@@ -85,7 +86,7 @@ def nearest(points: Floats, k: int) -> Ints:
 
 
 def train(config: NetworkConfig, *, rng: RngLike = 0, callback: Callback | None = None) -> Annealed:
-    """Train a network to move the points of a start, and return the best points that it made.
+    """Train a network to move the points of a start, and return the best points that it made with what judged them.
 
     The method of Message-Passing Monte Carlo (Rusch, Kirk, Bronstein, Lemieux, Rus 2024) with three changes: every set
     has a network of its own; the network says by how much to move a start, not where a point is; and the start is a
@@ -107,7 +108,7 @@ def train(config: NetworkConfig, *, rng: RngLike = 0, callback: Callback | None 
     """
     draws = generator(rng)
     objective = parse_objective(config.objective)
-    starts = np.clip(draw(config.start, config.n, config.d, rng=draws).points, INSET, 1.0 - INSET)
+    starts = np.clip(_first_points(config, draws), INSET, 1.0 - INSET)
     network, neighbours = Network(config, draws), nearest(starts, config.k)
     spread = config.drift * noise_over_rate(objective, config.n, config.d) * first_rate(config.n, config.d)
     best_value, best_points = math.inf, starts
@@ -119,8 +120,9 @@ def train(config: NetworkConfig, *, rng: RngLike = 0, callback: Callback | None 
             raise InvalidValue(
                 f"the objective '{objective}' is {value} at step {step}: the training has diverged"
             )
-        if value < best_value:
-            best_value, best_points = value, points
+        judged = star_discrepancy(points) if config.judge == "star" else value
+        if judged < best_value:
+            best_value, best_points = judged, points
         network.learn(columns.T * points * (1.0 - points), config.rate * cooling)
         if spread:
             drift = spread * cooling * draws.standard_normal(starts.shape)
@@ -129,6 +131,26 @@ def train(config: NetworkConfig, *, rng: RngLike = 0, callback: Callback | None 
             callback(step, config.steps, best_value)
     best_points.setflags(write=False)
     return Annealed(best_points, best_value)
+
+
+def _first_points(config: NetworkConfig, draws: np.random.Generator) -> Floats:
+    if config.start == "kronecker":
+        return kronecker(config.n, draws.random(config.d))
+    assert config.start is not None  # the config has chosen
+    return draw(config.start, config.n, config.d, rng=draws).points
+
+
+def kronecker(n: int, shift: Floats) -> Floats:
+    """Return the points ((i + s_0) / n, i g^-1 + s_1, ..., i g^-(d-1) + s_(d-1)) modulo 1, (n, d), s the `shift`.
+
+    g^d = g + 1, in the plane the golden ratio (Roberts 2018).
+    """
+    d = shift.size
+    g = 2.0
+    for _ in range(60):
+        g = (1.0 + g) ** (1.0 / d)
+    i = np.arange(n)[:, np.newaxis]
+    return np.hstack([(i + shift[0]) / n, (i * g ** -np.arange(1.0, d) + shift[1:]) % 1.0])
 
 
 def moved(starts: Floats, moves: Floats) -> Floats:

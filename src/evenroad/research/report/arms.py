@@ -8,14 +8,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from evenroad._arrays import Floats
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad.research.arms.execute import KEPT, TREES
 from evenroad.research.arms.results import (
     REFERENCE,
     TABLE_HEADER,
     Line,
     is_of_arms,
-    robots_first_k,
+    robots_and_k,
     table_rows,
     title_of,
 )
@@ -93,46 +93,58 @@ def draw_success(lines: Sequence[Line], robot: str, k: str) -> Figure:
     return figure
 
 
-def draw_costs(rows: Rows, robot: str, rule: str) -> Figure:
+def draw_costs(rows: Rows, robot: str, k: str) -> Figure:
     """Draw the share of problems that are solved within so many checks, and so many milliseconds."""
     mine = np.array([is_of_arms(name) and f"arm-{robot}-" in f"{name}" for name in rows.problem.names])
     rows = rows.where(mine[rows.problem.codes])
     counts = np.unique(rows.n[rows.sampler.is_in([REFERENCE])])
+    kept = rows.rule.is_in([name for name in rows.rule.names if name.startswith(f"k={k} ends=")])
     figure = Figure(figsize=(10.0, 3.6), layout="constrained")
     panels = figure.subplots(1, 2, sharey=True)
     for sampler in CURVES:
         for n, style in zip(counts[[0, -1]].tolist(), ("--", "-"), strict=True):
-            here = rows.sampler.is_in([sampler]) & rows.rule.is_in([rule]) & (rows.n == n)
+            here = rows.sampler.is_in([sampler]) & kept & (rows.n == n)
             label = f"{'owen' if sampler.startswith('sobol') else sampler}, {n}"
             _cost_curves(panels, rows.where(here), label, STYLES[sampler][0], style)
     _cost_curves(panels, rows.where(rows.sampler.is_in([TREES])), TREES, "black", "-")
     panels[0].set(xscale="log", xlabel="motions and milestones checked", ylabel="solved [%]", ylim=(-3, 103))
     panels[1].set(xscale="log", xlabel="ms of one core, from the scene to the path")
     panels[1].legend(fontsize=8)
-    figure.suptitle(f"{robot}, all generators, {rule}", fontsize=10)
+    figure.suptitle(f"{robot}, all generators, k = {k}", fontsize=10)
     return figure
 
 
 def _cost_curves(panels: Sequence[Axes], rows: Rows, label: str, colour: str, style: str) -> None:
-    if not len(rows):
-        return
-    # Of trees the configurations are those inside of motions.
-    checks = rows.edges_checked + np.where(rows.search.is_in([TREES]), 0, rows.valid)
-    for panel, cost in zip(panels, (checks, 1e3 * rows.seconds), strict=True):
-        taken: Floats = np.sort(np.asarray(cost, dtype=np.float64)[rows.solved])
-        share = 100.0 * np.arange(1, len(taken) + 1) / len(rows)
+    if len(rows):
+        # Of trees the configurations are those inside of motions.
+        checks = rows.edges_checked + np.where(rows.search.is_in([TREES]), 0, rows.valid)
+        cost_curve(panels, (checks, 1e3 * rows.seconds), rows.solved, label, colour, style)
+
+
+def cost_curve(
+    panels: Sequence[Axes],
+    costs: Sequence[Floats | Ints],
+    solved: Bools,
+    label: str,
+    colour: str,
+    style: str,
+) -> None:
+    """Draw which share of all runs is solved within so much of each cost, a panel for each."""
+    for panel, cost in zip(panels, costs, strict=True):
+        taken: Floats = np.sort(np.asarray(cost, dtype=np.float64)[solved])
+        share = 100.0 * np.arange(1, len(taken) + 1) / len(solved)
         panel.step(np.maximum(taken, 1e-3), share, where="post", color=colour, linestyle=style, label=label)
 
 
 def arm_pictures(rows: Rows, lines: Sequence[Line]) -> list[tuple[str, str, Figure]]:
     """Return name, title and figure of each picture."""
     pictures = []
-    for robot, k, rule in robots_first_k(lines):
+    for robot, k in robots_and_k(lines):
         title = f"{robot}, k = {k}"
         pictures.append(
             (f"arms-{robot}-k{k}", f"Success on the arms' problems: {title}", draw_success(lines, robot, k))
         )
         pictures.append(
-            (f"arms-{robot}-k{k}-costs", f"What success costs: {title}", draw_costs(rows, robot, rule))
+            (f"arms-{robot}-k{k}-costs", f"What success costs: {title}", draw_costs(rows, robot, k))
         )
     return pictures

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import require_count
+from evenroad._njit import njit
 from evenroad.errors import InvalidValue
 from evenroad.research.worlds.corridor import CompiledWorld, comes_first
 from evenroad.space.batch import as_batch, as_batch_pair

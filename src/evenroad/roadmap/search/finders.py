@@ -10,9 +10,9 @@ from collections.abc import Callable, Iterable
 from typing import Any, TypeAlias
 
 import numpy as np
-from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints32
+from evenroad._njit import njit
 from evenroad.roadmap.search.edge_states import BLOCKED, FREE, UNKNOWN, EdgeStates, States
 from evenroad.roadmap.search.graph import Graph
 from evenroad.roadmap.search.shortest import NOT_FOUND, Ends, FixedPoint, Found, SearchProblem, best_path

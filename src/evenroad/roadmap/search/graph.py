@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from evenroad._arrays import Ints, Ints32
+from evenroad._njit import njit
 
 
 class Rows(NamedTuple):

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from evenroad._arrays import Floats, Ints, Ints32
+from evenroad._njit import njit
 from evenroad.roadmap.search.edge_states import BLOCKED, FREE, States
 from evenroad.roadmap.search.graph import Graph
 

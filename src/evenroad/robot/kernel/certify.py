@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from evenroad._njit import njit
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.layout import inner
 from evenroad.robot.kernel.motion import enter, span

@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from numba import cfunc, types
+from numba import types
 
+from evenroad._njit import cfunc
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import ANY_LENGTH, doubles_at, integers_at, room_for, singles_at
 from evenroad.robot.kernel.layout import quick

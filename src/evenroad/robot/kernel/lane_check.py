@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from functools import cache
 
-from numba import cfunc, types
+from numba import types
 
+from evenroad._njit import cfunc
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import ANY_LENGTH, doubles_at, integers_at, singles_at
 from evenroad.robot.kernel.contact import blocked_lanes

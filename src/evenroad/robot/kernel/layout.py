@@ -2,15 +2,14 @@
 
 A compiled function takes some 0.1 microseconds an array to be called with: one or two arrays instead of twenty
 keep a call for one configuration cheap.  The constants below are compiled in; ``robot_tables.py`` and
-``scene_tables.py`` write what they say, the obstacles' rows last, and the kernels read it.  Numba looks for changes
-in a function's own file only: who changes a number here removes what is kept in ``__pycache__`` of this folder.
+``scene_tables.py`` write what they say, the obstacles' rows last, and the kernels read it.
 
 Header of the integers: how many of each thing, and where its rows begin in either array.
 """
 
 from __future__ import annotations
 
-from numba import njit
+from evenroad._njit import njit
 
 LANES = 16
 """How many configurations, or how many obstacles, are looked at together."""

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from evenroad._njit import njit
 from evenroad.robot.kernel.layout import quick
 
 Floats = npt.NDArray[np.float64]

@@ -10,8 +10,8 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from evenroad._njit import njit
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import call_at
 from evenroad.robot.kernel.hull_contact import bodies_meet

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from evenroad._njit import njit
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.layout import quick
 from evenroad.robot.kernel.obstacles import BOX, CYLINDER, ROTATION, SIZE, SPHERE, TRANSLATION

@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 from llvmlite import ir
-from numba import cfunc, types
+from numba import types
 from numba.extending import intrinsic
 
+from evenroad._njit import cfunc
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel import surface_tree as tree
 from evenroad.robot.kernel.addresses import ANY_LENGTH, integers_at, room_for, singles_at

@@ -10,8 +10,9 @@ from functools import cache
 
 import numpy as np
 import numpy.typing as npt
-from numba import cfunc, types
+from numba import types
 
+from evenroad._njit import cfunc
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel import surface_tree as tree
 from evenroad.robot.kernel.addresses import (

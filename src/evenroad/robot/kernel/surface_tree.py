@@ -10,8 +10,8 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from evenroad._njit import njit
 from evenroad.robot.kernel.layout import LANES
 from evenroad.robot.kernel.surface_grid import STEPS, Grid
 

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from evenroad._arrays import Bools, Floats
+from evenroad._njit import njit
 
 BLOCKED = 0
 """Every point of the closed cell is nearer than `radius` to an obstacle."""

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from evenroad._arrays import Bools, Ints, Ints32
+from evenroad._njit import njit
 from evenroad.world.gridmap.cells import BLOCKED, FREE, UNDECIDED, DiskTables
 from evenroad.world.gridmap.kernel import squared_gap
 

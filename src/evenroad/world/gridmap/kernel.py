@@ -11,9 +11,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from evenroad._arrays import Bools, Floats
+from evenroad._njit import njit
 from evenroad.world.gridmap.cells import BLOCKED, FREE, UNDECIDED, DiskTables
 
 

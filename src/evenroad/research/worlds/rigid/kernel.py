@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from evenroad._arrays import Bools, Floats, Ints
+from evenroad._njit import njit
 from evenroad.research.worlds.rigid.oriented_box import BoxTable, SolidTables
 from evenroad.space.so3 import SMALL_ANGLE
 from evenroad.world.bisection import next_between

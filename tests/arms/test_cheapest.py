@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import evenroad as er
-from evenroad.arm_goals import find_cheapest
+from evenroad.arms import find_cheapest
 from evenroad.roadmap import Budget, find_path
 from evenroad.robot import ArmWorld, in_scene, load_robot, load_scene
 from tests.robot.kernel_arms import random_scene

@@ -58,7 +58,9 @@ def test_meshes_have_the_last_word(tmp_path, monkeypatch):
     (tmp_path / "desk.yaml").write_text(
         "obstacles: {}\nstates:\n  home: {turn: 0, bend: 0, slide: 0}\n  away: {turn: 0.5, bend: 0.2, slide: 0.1}\n"
     )
-    monkeypatch.setattr(arms, "recheck", lambda *_: MeshCheck("in collision", 7, "at (0, 0, 0)"))
+    monkeypatch.setattr(
+        "evenroad.arms.query.recheck", lambda *_: MeshCheck("in collision", 7, "at (0, 0, 0)")
+    )
     result = er.plan_arm(tmp_path / "arm.urdf", tmp_path / "desk.yaml", "home", "away", 64)
     assert result.status == "mesh_collision"
     assert not result.solved

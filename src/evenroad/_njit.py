@@ -1,0 +1,299 @@
+"""numba's decorators for evenroad, whose compiled code is kept under names that say what it was made of and for.
+
+Numba names what it keeps after the function, and sees changes in the function's own file only.  Here the name has a
+digest of this file and all that it imports of evenroad, and one of numba and the processor: what is stale, or another
+machine's, is never found, and two processes that save at once do not take each other's place.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+import os
+import platform
+import re
+import sys
+import time
+from collections.abc import Callable
+from functools import cache
+from glob import escape, glob
+from importlib import import_module
+from subprocess import Popen
+from typing import Any, ClassVar
+
+import numba
+import numpy
+from llvmlite import binding
+from numba.core import event
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile
+from numba.core.ccallback import CFunc
+
+_ROOT = os.path.dirname(os.path.abspath(__file__))
+_IMPORT = re.compile(
+    rb"^(?:from (evenroad[\w.]*) import (\([^)]*\)|[^\n]*)|import (evenroad[\w.]*))", re.MULTILINE
+)
+_LOOK = 0.02
+"""Seconds between two looks for what another process compiles."""
+_BETWEEN_LINES = 0.2
+"""Seconds between two lines of progress."""
+
+HELPERS: list[Popen[bytes]] = []
+"""Processes that compile for this one; see ``_compiled.compile_beside``."""
+
+
+class _Claims:
+    """Who of several processes compiles what: whoever makes a file of its name first, in a folder of theirs."""
+
+    folder = ""
+    own: ClassVar[set[str]] = set()
+
+
+class _Taken(Exception):
+    """Another process is compiling this."""
+
+
+def share(folder: str) -> None:
+    """Share what is to be compiled with the other processes that are given this folder."""
+    _Claims.folder = folder
+
+
+def _claim(name: str) -> bool:
+    """Return whether it is this process that compiles a program."""
+    if not _Claims.folder or name in _Claims.own:
+        return True
+    try:
+        os.close(os.open(os.path.join(_Claims.folder, name), os.O_CREAT | os.O_EXCL))
+    except FileExistsError:
+        return False
+    except OSError:
+        # The folder is gone: the others have ended.
+        return True
+    _Claims.own.add(name)
+    return True
+
+
+def njit(*function: Callable[..., Any], **options: Any) -> Any:
+    """Return what ``numba.njit`` does, kept as this module says where `cache` is asked for."""
+    if not options.pop("cache", False):
+        return numba.njit(*function, **options)
+    compiler = numba.njit(**options)
+
+    def decorate(function: Callable[..., Any]) -> Any:
+        compiled = compiler(function)
+        if hasattr(compiled, "enable_caching"):
+            compiled._cache = KernelCache(function)
+        return compiled
+
+    return decorate(*function) if function else decorate
+
+
+def cfunc(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Return what ``numba.cfunc`` does, always kept."""
+    options.pop("cache", None)
+
+    def decorate(function: Callable[..., Any]) -> Any:
+        compiled: Any = CFunc(function, (signature.args, signature.return_type), locals={}, options=options)
+        compiled._cache = KernelCache(function)
+        compiled.compile()
+        return compiled
+
+    return decorate
+
+
+def compile_all(modules: list[str], folder: str) -> None:
+    """Compile the programs of modules that no other process compiles, as a helper: see `share`.
+
+    These are what Python calls with numbers alone, and what is called by its address.
+    """
+    share(folder)
+    for name in modules:
+        for made in list(vars(import_module(name)).values()):
+            try:
+                if getattr(made, "__module__", "") != name:
+                    continue
+                if isinstance(getattr(made, "_cache", None), KernelCache):
+                    parameters = inspect.signature(made.py_func).parameters.values()
+                    made.compile(tuple(_NUMBERS[each.annotation] for each in parameters))
+                elif getattr(made, "__name__", "").endswith("_address"):
+                    made()
+            except _Taken:
+                continue
+
+
+def is_missing(name: str) -> bool:
+    """Return whether a module has a program that is neither loaded nor kept; False where it cannot be had."""
+    try:
+        made = vars(import_module(name)).values()
+    except Exception:
+        # The vector type, which not every machine and version has; others plan then.
+        return False
+    own = [each for each in made if isinstance(getattr(each, "_cache", None), KernelCache)]
+    return any(not (each.signatures or each._cache.holds_any()) for each in own if each.__module__ == name)
+
+
+_NUMBERS = {"int": numba.int64, "float": numba.float64}
+
+
+class _Progress(event.Listener):
+    """A line on the terminal that counts seconds while code is compiled, and goes when there is no more for now."""
+
+    def __init__(self, line: str) -> None:
+        self.line, self._depth, self._shown = line, 0, 0.0
+        self._began = time.monotonic()
+
+    def on_start(self, event: Any) -> None:
+        self._depth += 1
+        self._show()
+
+    def on_end(self, event: Any) -> None:
+        self._depth -= 1
+        self._show()
+        if self._depth == 0:
+            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+            self._shown = 0.0
+
+    def _show(self) -> None:
+        if (now := time.monotonic()) - self._shown > _BETWEEN_LINES:
+            self._shown = now
+            print(f"\r{self.line}; {now - self._began:.0f} s", end="", file=sys.stderr, flush=True)
+
+
+def show_progress(line: str) -> None:
+    """Show a line on the terminal, and what it takes so far, whenever code is compiled from now on."""
+    global _progress
+    if _progress is None:
+        _progress = _Progress(line)
+        event.register("numba:compile", _progress)
+    _progress.line = line
+
+
+_progress: _Progress | None = None
+
+
+class _Files(IndexDataCacheFile):
+    """Names data by what it is for, not by number, and writes it before the index that tells of it."""
+
+    def save(self, key: Any, data: Any) -> None:
+        name = self._data_name(int(hashlib.sha256(repr(key).encode()).hexdigest()[:12], 16))
+        self._save_data(name, data)
+        self._save_index({**self._load_index(), key: name})
+
+
+class _Named(CompileResultCacheImpl):
+    """Says what files are called; numba says in which folder."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self._source = inspect.getfile(function)
+        super().__init__(function)
+
+    def get_filename_base(self, name: str, abiflags: str) -> str:
+        base: str = super().get_filename_base(name, abiflags)
+        line = self.locator.get_disambiguator()
+        self.any_source = (
+            f"{escape(name)}-*{escape(base.removeprefix(f'{name}-{line}'))}.{machine()}-*.nb[ci]"
+        )
+        return f"{base}.{machine()}-{_digest(self._source)}"
+
+
+class KernelCache(FunctionCache):
+    """What is kept of a function of evenroad's."""
+
+    _impl_class = _Named
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__(function)
+        impl = self._impl
+        self._cache_file = _Files(self._cache_path, impl.filename_base, impl.locator.get_source_stamp())
+
+    def holds_any(self) -> bool:
+        """Return whether code for any kind of arguments is kept."""
+        return bool(self._cache_file._load_index())
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Return compiled code that was kept, or that another process is just making; else None."""
+        found = super().load_overload(sig, target_context)
+        if found is not None or _claim(self._impl.filename_base):
+            return found
+        if not HELPERS:
+            raise _Taken
+        # Events, so that clocks stand still and progress is seen.
+        data = {"waiting": self._py_func.__module__}
+        with event.trigger_event("numba:compile", data=data):
+            while any(helper.poll() is None for helper in HELPERS) and not self.holds_any():
+                time.sleep(_LOOK)
+                with event.trigger_event("numba:compile", data=data):
+                    continue
+        return super().load_overload(sig, target_context)
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep compiled code, and remove what was kept of earlier sources."""
+        super().save_overload(sig, data)
+        own = self._impl.filename_base + "."
+        for path in glob(self._impl.any_source, root_dir=self._cache_path):
+            if not path.startswith(own):
+                try:
+                    os.unlink(os.path.join(self._cache_path, path))
+                except OSError:
+                    # Another process was quicker, or the file is not ours to remove.
+                    continue
+
+
+@cache
+def machine() -> str:
+    """Return a short text for all that code is compiled for and by: processor, system, numba and its compiler."""
+    features = binding.get_host_cpu_features().flatten()
+    names = (binding.get_host_cpu_name(), features, platform.system(), platform.machine())
+    settings = (numba.config.CPU_NAME, numba.config.CPU_FEATURES, numba.config.OPT)
+    text = repr((names, settings, numba.__version__, binding.llvm_version_info))
+    return hashlib.sha256(text.encode()).hexdigest()[:8]
+
+
+def surroundings() -> dict[str, str]:
+    """Return what code is compiled by and for, and in which folder it is kept."""
+    versions = (
+        ("Python", platform.python_version()),
+        ("numpy", numpy.__version__),
+        ("numba", numba.__version__),
+    )
+    folder = KernelCache(_files_of.__wrapped__).cache_path
+    beside = os.path.basename(folder) == "__pycache__"
+    return {
+        "runs on": ", ".join(" ".join(each) for each in versions),
+        "processor": f"{binding.get_host_cpu_name()} ({machine()})",
+        "compiled code": f"{_ROOT}/**/__pycache__" if beside else os.path.dirname(folder),
+    }
+
+
+@cache
+def _digest(source: str) -> str:
+    """Return a short text for a file and all that it imports of evenroad, directly or by way of others."""
+    found, waiting = {os.path.abspath(source)}, [os.path.abspath(source)]
+    while waiting:
+        new = _read(waiting.pop())[1] - found
+        found |= new
+        waiting += new
+    text = "".join(sorted(_read(path)[0] for path in found))
+    return hashlib.sha256(text.encode()).hexdigest()[:12]
+
+
+@cache
+def _read(path: str) -> tuple[str, frozenset[str]]:
+    """Return the digest of a file and the files of evenroad that it imports at its top level."""
+    try:
+        with open(path, "rb") as file:
+            text = file.read()
+    except OSError:
+        return "", frozenset()
+    names = set()
+    for package, several, module in _IMPORT.findall(text):
+        names.add(package or module)
+        names |= {package + b"." + word for word in re.findall(rb"\w+", several)}
+    files = {file for name in names for file in _files_of(name.decode())}
+    return hashlib.sha256(text).hexdigest(), frozenset(files)
+
+
+@cache
+def _files_of(name: str) -> tuple[str, ...]:
+    """Return the file of a module, or of a package that hands on names; nothing for what is no module."""
+    place = os.path.join(_ROOT, *name.split(".")[1:])
+    return tuple(file for file in (f"{place}.py", os.path.join(place, "__init__.py")) if os.path.isfile(file))

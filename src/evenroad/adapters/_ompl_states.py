@@ -1,0 +1,110 @@
+"""The numbers of a configuration in OMPL's states, which have a type for each kind of space."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from evenroad._checks import require_extra
+from evenroad.errors import InvalidValue
+
+ob = require_extra("ompl.base", "ompl", "evenroad.adapters.ompl")
+
+Numbers = Sequence[float]
+
+
+@dataclass(frozen=True)
+class StateFormat:
+    """How many numbers a state of one OMPL space has, and how they are read and written, in our order."""
+
+    dim: int
+    read: Callable[[Any], list[float]]
+    write: Callable[[Any, Numbers], None]
+
+
+def format_of(space: Any) -> StateFormat:
+    """Return how states of an OMPL space are read and written, or raise InvalidValue where we know no such space."""
+    make = _FORMATS.get(type(space).__name__)
+    if make is None:
+        known = ", ".join(sorted(_FORMATS))
+        raise InvalidValue(f"OMPL's {type(space).__name__} has no counterpart here; known: {known}")
+    return make(space)
+
+
+def _real_vector(space: Any) -> StateFormat:
+    dim = space.getDimension()
+
+    def write(state: Any, q: Numbers) -> None:
+        state[0:dim] = q
+
+    return StateFormat(dim, lambda state: list(state[0:dim]), write)
+
+
+def _circle(space: Any) -> StateFormat:
+    def write(state: Any, q: Numbers) -> None:
+        state.value = _turned(q[0])
+
+    return StateFormat(1, lambda state: [state.value], write)
+
+
+def _rotation(space: Any) -> StateFormat:
+    def write(state: Any, q: Numbers) -> None:
+        state.w, state.x, state.y, state.z = q
+
+    return StateFormat(4, lambda state: [state.w, state.x, state.y, state.z], write)
+
+
+def _plane_pose(space: Any) -> StateFormat:
+    def write(state: Any, q: Numbers) -> None:
+        state.setXY(q[0], q[1])
+        state.setYaw(_turned(q[2]))
+
+    return StateFormat(3, lambda state: [state.getX(), state.getY(), state.getYaw()], write)
+
+
+def _pose(space: Any) -> StateFormat:
+    rotation = _rotation(space)
+
+    def read(state: Any) -> list[float]:
+        return [state.getX(), state.getY(), state.getZ(), *rotation.read(state.rotation())]
+
+    def write(state: Any, q: Numbers) -> None:
+        state.setXYZ(*q[:3])
+        rotation.write(state.rotation(), q[3:])
+
+    return StateFormat(7, read, write)
+
+
+def _compound(space: Any) -> StateFormat:
+    parts = [format_of(space.getSubspace(i)) for i in range(space.getSubspaceCount())]
+
+    def read(state: Any) -> list[float]:
+        return [number for i, part in enumerate(parts) for number in part.read(state[i])]
+
+    def write(state: Any, q: Numbers) -> None:
+        at = 0
+        for i, part in enumerate(parts):
+            part.write(state[i], q[at : at + part.dim])
+            at += part.dim
+
+    return StateFormat(sum(part.dim for part in parts), read, write)
+
+
+_FORMATS: dict[str, Callable[[Any], StateFormat]] = {
+    "RealVectorStateSpace": _real_vector,
+    "SO2StateSpace": _circle,
+    "SO3StateSpace": _rotation,
+    "SE2StateSpace": _plane_pose,
+    "SE3StateSpace": _pose,
+    "CompoundStateSpace": _compound,
+}
+
+
+def _turned(angle: float) -> float:
+    """Return an angle in [-pi, pi), as OMPL has it; what is there already is not rounded."""
+    if -math.pi <= angle < math.pi:
+        return angle
+    turned = (angle + math.pi) % (2.0 * math.pi) - math.pi
+    return turned if turned < math.pi else -math.pi

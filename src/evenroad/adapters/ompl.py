@@ -1,0 +1,373 @@
+"""OMPL's planners on our worlds and points, and our planners on OMPL's spaces and checkers; extra ``ompl``.
+
+OMPL's metric of several parts is always a weighted sum, and its real vectors have no weights: neighbours may differ
+from ours, verdicts and motions do not.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from itertools import groupby
+from typing import Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import dijkstra
+
+from evenroad._arrays import Bools, Floats, set_fields
+from evenroad._checks import as_batch, require_extra, require_positive
+from evenroad.adapters._ompl_states import StateFormat, format_of
+from evenroad.errors import InvalidValue
+from evenroad.points import PointSet
+from evenroad.space import SO3, Box, Circle, JointSpace, Product, Rectangle, Space
+from evenroad.space.batch import as_batch_pair
+from evenroad.world import World
+
+ob = require_extra("ompl.base", "ompl", "evenroad.adapters.ompl")
+og = require_extra("ompl.geometric", "ompl", "evenroad.adapters.ompl")
+
+
+def ompl_space(space: Space) -> Any:
+    """Return OMPL's state space of one of ours.
+
+    ``SE2`` and ``SE3`` become OMPL's own; joints that wrap become circles, those between them real vectors, side by
+    side; a map's rectangle becomes the box around it, outside of which the map's world calls nothing free.
+
+    Parameters
+    ----------
+    space : Box, Circle, JointSpace, Rectangle, SO3 or Product
+        Weights of a Product are kept, those within a Box or JointSpace are not.
+
+    Raises
+    ------
+    InvalidValue
+        For another space, or a joint that wraps after anything but one turn.
+    """
+    if isinstance(space, Product):
+        named = {(Box, Circle): (2, ob.SE2StateSpace), (Box, SO3): (3, ob.SE3StateSpace)}.get(
+            tuple(type(part) for part in space.parts)  # type: ignore[arg-type]
+        )
+        if named is not None and space.parts[0].dim == named[0]:
+            pose = named[1]()
+            pose.setBounds(_bounds(space.parts[0].low, space.parts[0].high))  # type: ignore[attr-defined]
+            for i, weight in enumerate(space.weights):
+                pose.setSubspaceWeight(i, weight)
+            return pose
+        return _compound([ompl_space(part) for part in space.parts], space.weights)
+    if isinstance(space, SO3):
+        return ob.SO3StateSpace()
+    if isinstance(space, Rectangle):
+        corners = space.from_cube(np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]]))
+        return _real(corners.min(axis=0), corners.max(axis=0))
+    if isinstance(space, Circle):
+        return ob.SO2StateSpace()
+    if isinstance(space, Box | JointSpace):
+        wrapping = space.flat.wrapping
+        if not np.allclose(space.flat.period[wrapping], 2.0 * math.pi, rtol=1e-12):
+            raise InvalidValue(
+                "OMPL's circles have one turn of 2 pi: a joint of this space wraps after another"
+            )
+        low, high = np.array(space.low), np.array(space.high)
+        runs = [(wraps, [*run]) for wraps, run in groupby(range(space.dim), lambda k: bool(wrapping[k]))]
+        parts = []
+        for wraps, run in runs:
+            parts += [ob.SO2StateSpace() for _ in run] if wraps else [_real(low[run], high[run])]
+        return parts[0] if len(parts) == 1 else _compound(parts, [1.0] * len(parts))
+    raise InvalidValue(
+        f"OMPL has no counterpart of {type(space).__name__}: build one of Box, Circle, SO3 and Product"
+    )
+
+
+def space_of(space: Any) -> Space:
+    """Return our space of one of OMPL's: real vectors, SO2, SO3, SE2, SE3, or a compound of these.
+
+    The metric is OMPL's.  Raises InvalidValue for another, or for real vectors without bounds.
+    """
+    if type(space) is ob.SO2StateSpace:
+        return Circle()
+    if type(space) is ob.SO3StateSpace:
+        return SO3()
+    if type(space) is ob.RealVectorStateSpace:
+        bounds = space.getBounds()
+        return Box(tuple(bounds.low), tuple(bounds.high))
+    format_of(space)
+    parts = [space_of(space.getSubspace(i)) for i in range(space.getSubspaceCount())]
+    return Product(parts, tuple(space.getSubspaceWeights()), "sum")
+
+
+def space_information(world: World) -> Any:
+    """Return OMPL's SpaceInformation of our world, set up: its verdicts on states and on motions are the world's.
+
+    So a planner of OMPL's plans with whatever the world shows, for maps and arms without gaps between states.  OMPL
+    asks for one state at a time; points are asked about in one batch by :func:`plan_on_points` and `give_points`.
+    """
+    return _Information(world)
+
+
+def give_points(information: Any, points: PointSet | npt.ArrayLike) -> GivenStates:
+    """Make OMPL's PRM, PRM* and whoever takes valid states take ours, one after the other, and return their sampler.
+
+    Parameters
+    ----------
+    information : ompl.base.SpaceInformation
+        Of :func:`space_information`, or anyone's with a space that :func:`space_of` knows.
+    points : PointSet, or array_like, shape (n, dim)
+        Points of the cube, or configurations.  Those that are not free are left out, asked about in one batch.
+
+    Notes
+    -----
+    A set ends: then the sampler has nothing more, and ``used_up`` is True.  ``planner.solve(seconds)`` goes on until
+    its time is over, and PRM adds places of its own; :func:`plan_on_points` grows a PRM of the points alone.
+    """
+    world = information.world if isinstance(information, _Information) else OmplWorld(information)
+    if isinstance(points, PointSet):
+        places = world.space.from_cube(points.points)
+    else:
+        places = as_batch("points", points, world.space.dim)
+    sampler = GivenStates(information, places[world.valid(places)])
+    information.setValidStateSamplerAllocator(lambda _: sampler)
+    # OMPL takes that for unfinished.
+    information.setup()
+    return sampler
+
+
+def solve(planner: Any, start: npt.ArrayLike, goals: npt.ArrayLike, seconds: float = 10.0) -> Floats | None:
+    """Ask a planner of OMPL's for a path, (p, dim), from the start, (dim,), to a goal, (dim,) or (g, dim); or None.
+
+    Parameters
+    ----------
+    planner : ompl.base.Planner
+        As ``ompl.geometric.RRTConnect(space_information(world))``; its settings are kept.
+    start, goals : array_like
+        Configurations.
+    seconds : float
+        As long as OMPL may take, > 0.  A path that ends elsewhere than at a goal is none.
+    """
+    seconds = require_positive("seconds", seconds)
+    information = planner.getSpaceInformation()
+    write = format_of(information.getStateSpace()).write
+    dim = space_of(information.getStateSpace()).dim
+    problem = ob.ProblemDefinition(information)
+    [first, *last] = [information.allocState() for _ in range(1 + len(_ends(goals, dim)))]
+    targets = ob.GoalStates(information)
+    write(first, as_batch("start", np.reshape(start, (1, -1)), dim)[0].tolist())
+    for state, goal in zip(last, _ends(goals, dim).tolist(), strict=True):
+        write(state, goal)
+        targets.addState(state)
+    problem.addStartState(first)
+    problem.setGoal(targets)
+    planner.setProblemDefinition(problem)
+    planner.setup()
+    planner.solve(seconds)
+    return path_of(information, problem.getSolutionPath()) if problem.hasExactSolution() else None
+
+
+def plan_on_points(
+    information: Any,
+    start: npt.ArrayLike,
+    goals: npt.ArrayLike,
+    points: PointSet | npt.ArrayLike,
+    planner: Any = None,
+) -> Floats | None:
+    """Grow OMPL's PRM on start, goals and the points alone, and return its shortest path, (p, dim), or None.
+
+    OMPL joins each milestone to those before it, so the ends, which come first, are neighbours of many.
+
+    Parameters
+    ----------
+    information, points
+        As :func:`give_points`.
+    start, goals
+        As :func:`solve`.
+    planner : ompl.geometric.PRM or PRMstar, optional
+        New, of `information`; default ``PRM(information)`` with 10 neighbours.
+    """
+    space = space_of(information.getStateSpace())
+    own = information.world.space if isinstance(information, _Information) else space
+    ends = np.vstack([np.reshape(start, (1, -1)), _ends(goals, space.dim)])
+    rest = own.from_cube(points.points) if isinstance(points, PointSet) else points
+    sampler = give_points(information, np.vstack([ends, as_batch("points", rest, space.dim)]))
+    planner = og.PRM(information) if planner is None else planner
+    # OMPL's PRM wants a problem before it is set up, and asks nothing of it while it grows.
+    planner.setProblemDefinition(ob.ProblemDefinition(information))
+    planner.setup()
+    planner.growRoadmapPtc(ob.PlannerTerminationCondition(lambda: sampler.used_up))
+    data = ob.PlannerData(information)
+    planner.getPlannerData(data)
+    return _shortest(space, data, format_of(information.getStateSpace()), ends)
+
+
+def ompl_path(information: Any, path: npt.ArrayLike) -> Any:
+    """Return waypoints, (p, dim), as an ``ompl.geometric.PathGeometric``."""
+    space = information.getStateSpace()
+    write = format_of(space).write
+    result = og.PathGeometric(information)
+    for row in as_batch("path", path, space_of(space).dim).tolist():
+        state = information.allocState()
+        write(state, row)
+        result.append(state)
+    return result
+
+
+def path_of(information: Any, path: Any) -> Floats:
+    """Return the waypoints, (p, dim), of an ``ompl.geometric.PathGeometric``; SE(3) as x, y, z, qw, qx, qy, qz."""
+    read = format_of(information.getStateSpace()).read
+    return np.array([read(state) for state in path.getStates()])
+
+
+@dataclass(frozen=True, eq=False)
+class OmplWorld:
+    """What an OMPL SpaceInformation calls free, as a world for our planners; its space is that of :func:`space_of`.
+
+    A motion is free where OMPL's motion validator says so and both of its ends are; the validator of its own looks at
+    states, ``setStateValidityCheckingResolution`` apart.
+    """
+
+    proof: ClassVar[str] = "resolution"
+    """Nothing more is known of a validator of others."""
+
+    information: Any
+    space: Space = field(init=False)
+    _format: StateFormat = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        if not self.information.isSetup():
+            self.information.setup()
+        space = self.information.getStateSpace()
+        set_fields(self, space=space_of(space), _format=format_of(space))
+
+    def valid(self, q: Floats) -> Bools:
+        """Return which configurations, (n, dim), lie in the space and are free: (n,)."""
+        batch = as_batch("q", q, self.space.dim)
+        free, state = self.space.contains(batch), self.information.allocState()
+        for i in np.flatnonzero(free):
+            self._format.write(state, batch[i].tolist())
+            free[i] = self.information.isValid(state)
+        return free
+
+    def motion_valid(self, a: Floats, b: Floats) -> Bools:
+        """Return which motions, two (m, dim) arrays, are free: (m,)."""
+        first, second = as_batch_pair(a, b, self.space.dim)
+        free = self.valid(first)
+        free[free] = self.valid(second[free])
+        one, other = self.information.allocState(), self.information.allocState()
+        for i in np.flatnonzero(free):
+            # States are rounded: in a fixed order a motion and its reverse are judged alike.
+            low, high = sorted((first[i].tolist(), second[i].tolist()))
+            self._format.write(one, low)
+            self._format.write(other, high)
+            free[i] = self.information.checkMotion(one, other)
+        return free
+
+
+class GivenStates(ob.ValidStateSampler):  # type: ignore[name-defined]
+    """Hands out free configurations, (n, dim), in their order, and then nothing; `used_up` says so."""
+
+    def __init__(self, information: Any, places: Floats) -> None:
+        super().__init__(information)
+        self._places, self._next = places.tolist(), 0
+        self._write = format_of(information.getStateSpace()).write
+
+    @property
+    def used_up(self) -> bool:
+        """Whether all have been handed out."""
+        return self._next >= len(self._places)
+
+    def sample(self, state: Any) -> bool:
+        """Write the next one into a state of OMPL's, or return False."""
+        if self.used_up:
+            return False
+        self._write(state, self._places[self._next])
+        self._next += 1
+        return True
+
+    def sampleNear(self, state: Any, near: Any, distance: float) -> bool:
+        """Return False: a set of points has no place that was asked for."""
+        return False
+
+
+class _Information(ob.SpaceInformation):  # type: ignore[name-defined]
+    """A SpaceInformation that knows the world it was made of."""
+
+    def __init__(self, world: World) -> None:
+        space = ompl_space(world.space)
+        read = format_of(space).read
+        super().__init__(space)
+        self.world = world
+        self.setStateValidityChecker(lambda state: bool(world.valid(np.array([read(state)]))[0]))
+        self.setMotionValidator(_Motions(self, world, read))
+        self.setup()
+
+
+class _Motions(ob.MotionValidator):  # type: ignore[name-defined]
+    """Motions as a world judges them."""
+
+    def __init__(self, information: Any, world: World, read: Callable[[Any], list[float]]) -> None:
+        super().__init__(information)
+        self._world, self._read = world, read
+
+    def checkMotion(self, a: Any, b: Any, *_: Any) -> bool:
+        ends = np.array([self._read(a), self._read(b)])
+        return bool(self._world.motion_valid(ends[:1], ends[1:])[0])
+
+
+def _compound(parts: Sequence[Any], weights: Sequence[float]) -> Any:
+    space = ob.CompoundStateSpace()
+    for part, weight in zip(parts, weights, strict=True):
+        space.addSubspace(part, weight)
+    return space
+
+
+def _real(low: npt.ArrayLike, high: npt.ArrayLike) -> Any:
+    space = ob.RealVectorStateSpace(len(np.asarray(low)))
+    space.setBounds(_bounds(low, high))
+    return space
+
+
+def _bounds(low: npt.ArrayLike, high: npt.ArrayLike) -> Any:
+    rows = np.array([low, high], dtype=np.float64)
+    bounds = ob.RealVectorBounds(rows.shape[1])
+    for k, (least, most) in enumerate(rows.T.tolist()):
+        bounds.setLow(k, least)
+        bounds.setHigh(k, most)
+    return bounds
+
+
+def _ends(goals: npt.ArrayLike, dim: int) -> Floats:
+    """Return one goal or several as (g, dim)."""
+    rows = np.atleast_2d(np.asarray(goals, dtype=np.float64))
+    if len(rows) == 0:
+        raise InvalidValue("goals must be one configuration or more, got none")
+    return as_batch("goals", rows, dim)
+
+
+def _shortest(space: Space, data: Any, states: StateFormat, ends: Floats) -> Floats | None:
+    """Return the shortest path over OMPL's roadmap from the first of the ends to any other, or None.
+
+    OMPL's data leave milestones without edges out.
+    """
+    places = [tuple(states.read(data.getVertex(v).getState())) for v in range(data.numVertices())]
+    scratch = data.getSpaceInformation().allocState()
+    numbers = []
+    for row in ends.tolist():
+        states.write(scratch, row)
+        place = tuple(states.read(scratch))
+        numbers.append(places.index(place) if place in places else -1)
+    if numbers[0] < 0 or max(numbers[1:]) < 0:
+        return None
+    edges = np.array([(v, w) for v in range(len(places)) for w in data.getEdges(v)]).reshape(-1, 2)
+    where = np.array(places)
+    # A length of 0 would be no edge to SciPy.
+    lengths = np.maximum(space.distance(where[edges[:, 0]], where[edges[:, 1]]), 1e-300)
+    graph = coo_matrix((lengths, edges.T), shape=(len(places),) * 2).tocsr()
+    cost, before = dijkstra(graph, directed=False, indices=numbers[0], return_predecessors=True)
+    goal = min((number for number in numbers[1:] if number >= 0), key=lambda number: cost[number])
+    if not math.isfinite(cost[goal]):
+        return None
+    way = [goal]
+    while way[-1] != numbers[0]:
+        way.append(int(before[way[-1]]))
+    return where[way[::-1]]

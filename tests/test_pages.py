@@ -1,0 +1,154 @@
+"""What the README, the pages and the examples show is run here, word for word."""
+
+import importlib
+import os
+import re
+import runpy
+
+import pytest
+from tools import run_examples, run_pages
+from tools.run_pages import INSTEAD, ROOT
+
+PAGES = run_pages.pages()
+README = (ROOT / "README.md").read_text()
+
+
+@pytest.fixture(autouse=True)
+def _an_empty_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def _named(page):
+    return str(page.relative_to(ROOT))
+
+
+RUN = [
+    page
+    for page in PAGES
+    if any(each.language in ("python", "sh", "yaml") for each in run_pages.blocks(page))
+]
+
+
+@pytest.mark.parametrize("page", RUN, ids=_named)
+def test_the_code_of_the_page_runs(page):
+    for package in run_pages.NEEDS.get(page.name, ()):
+        pytest.importorskip(package)
+    running = "nothing yet"
+    try:
+        for block, text in run_pages.run_page(page):
+            running = f"{_named(page)}, the block of line {block.line}: {text}"
+    except BaseException as error:
+        error.add_note(running)
+        raise
+
+
+def test_every_block_says_what_it_is_in():
+    silent = [
+        f"{_named(page)}:{block.line}"
+        for page in PAGES
+        for block in run_pages.blocks(page)
+        if block.language not in ("python", "sh", "yaml", "text", "{toctree}") and not _is_output(block)
+    ]
+    assert silent == []
+
+
+def _is_output(block):
+    """Fenced without a language: what a terminal printed."""
+    return block.language == "" and "\n" in block.code and "evenroad " not in block.code.split("\n")[0]
+
+
+COMMANDS = [
+    command
+    for page in PAGES
+    for block in run_pages.blocks(page)
+    if block.language == "sh"
+    for command in run_pages.commands(block)
+]
+
+
+@pytest.mark.parametrize("pattern", INSTEAD)
+def test_a_command_that_is_run_otherwise_is_still_there(pattern):
+    known = [each for each in COMMANDS if run_pages.instead_of(each) is INSTEAD[pattern]]
+    if not known and pattern not in ("python -m benchmarks*",):
+        pytest.fail(f"no page has it any more: {pattern}")
+    if INSTEAD[pattern].command is None:
+        pytest.skip(f"slow, or not here: {INSTEAD[pattern].why}")
+
+
+def test_commands_that_are_not_ours_are_known():
+    unknown = [
+        each for each in COMMANDS if not each.startswith("evenroad ") and run_pages.instead_of(each) is None
+    ]
+    assert unknown == []
+
+
+def test_make_targets_and_benchmarks_that_a_page_names_exist():
+    targets = set(re.findall(r"^(\w[\w-]*):", (ROOT / "Makefile").read_text(), flags=re.MULTILINE))
+    for page in PAGES:
+        text = page.read_text()
+        assert {each.split()[1] for each in COMMANDS if each.startswith("make ")} <= targets
+        for name in re.findall(r"python\s+-m\s+benchmarks\.(\w+)", text):
+            assert (ROOT / "benchmarks" / f"{name}.py").exists(), f"{page.name} names benchmarks.{name}"
+        for name in re.findall(r"python\s+((?:tools|examples)/\w+\.py)", text):
+            assert (ROOT / name).exists(), f"{page.name} names {name}"
+
+
+def test_verbs_that_a_page_names_exist():
+    from evenroad.cli.verbs import VERBS
+
+    for page in PAGES:
+        for verb in re.findall(r"`evenroad\s+([a-z]+)", page.read_text()):
+            assert verb in VERBS, f"{page.name} names evenroad {verb}"
+
+
+def test_the_readme_is_short_and_its_python_five_lines_long():
+    assert len(README.splitlines()) <= 120
+    (code,) = [each.code for each in run_pages.blocks(ROOT / "README.md") if each.language == "python"]
+    assert len([line for line in code.splitlines() if line.strip()]) <= 5
+
+
+@pytest.mark.parametrize("path", run_examples.EXAMPLES, ids=lambda path: path.name)
+def test_the_example_runs_and_prints_what_its_page_shows(path, capsys):
+    for package in re.findall(r"extra `(\w+)`", path.read_text()):
+        pytest.importorskip(package)
+    runpy.run_path(str(path), run_name="__main__")
+    kept = (run_examples.SHOWN / f"{path.stem}.txt").read_text()
+    assert _words(capsys.readouterr().out) == _words(kept), "python tools/run_examples.py keeps it anew"
+    for picture in run_examples.SHOWN.glob(f"{path.stem}.png"):
+        assert picture.stat().st_size < 200_000
+
+
+def _words(text):
+    """The words, without the figures, which other processors round otherwise, and without how often each comes."""
+    return set(re.findall(r"[a-z]{3,}", text))
+
+
+def test_links_of_the_pages_lead_somewhere():
+    for page in PAGES:
+        for target in re.findall(r"\]\(([^)#:]+)\)", page.read_text()):
+            assert (page.parent / target).exists(), f"{_named(page)} links to {target}"
+
+
+def test_prose_of_the_pages_is_at_most_120_characters_wide():
+    too_wide = []
+    for path in [*PAGES, ROOT / "CHANGELOG.md"]:
+        in_code = False
+        for number, line in enumerate(path.read_text().splitlines(), start=1):
+            in_code ^= line.startswith("```")
+            # What a terminal printed is shown as it was, and tables cannot be wrapped.
+            if len(line) > 120 and not in_code and not line.startswith("|"):
+                too_wide.append(f"{_named(path)}:{number}")
+    assert too_wide == []
+
+
+def test_nothing_in_the_pages_names_a_machine():
+    for page in PAGES:
+        named = re.findall(r"/(?:home|root|work|tmp|Users)/\w+", page.read_text())
+        assert named == [], f"{_named(page)} names {named}"
+
+
+def test_the_scripts_can_be_imported_without_running():
+    for name in ("run_examples", "run_pages", "docs_pages", "draw_concepts"):
+        before = set(os.listdir())
+        importlib.import_module(f"tools.{name}")
+        assert set(os.listdir()) == before

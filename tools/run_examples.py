@@ -1,0 +1,85 @@
+"""Run the examples and the first pages, and keep what they print and draw for the documentation: docs/examples/.
+
+python tools/run_examples.py [NAME ...]        # a minute or two for all
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from importlib.util import find_spec
+from pathlib import Path
+
+from PIL import Image
+
+ROOT = Path(__file__).parents[1]
+EXAMPLES = sorted((ROOT / "examples").glob("[0-9]*.py"))
+SHOWN = ROOT / "docs" / "examples"
+START = {"start_map": ("map.md", "hall-plan.png"), "start_arm": ("arm.md", "desk.png")}
+"""Picture -> the page below docs/start that draws it, and under which name."""
+WIDTH = 1000
+COLOURS = 64
+
+
+def keep(picture: Path, name: str) -> None:
+    """Keep a picture of an example, small enough for a page; a moving one as it is, for the README, too."""
+    if picture.suffix == ".gif":
+        shutil.copy(picture, SHOWN.parent / picture.name)
+        return
+    image = Image.open(picture).convert("RGB")
+    if image.width > WIDTH:
+        image = image.resize((WIDTH, round(image.height * WIDTH / image.width)), Image.Resampling.LANCZOS)
+    image.quantize(COLOURS).save(SHOWN / f"{name}.png", optimize=True)
+
+
+def missing(script: Path) -> list[str]:
+    """Return the packages of extras that an example needs and that are not installed."""
+    return [name for name in re.findall(r"extra `(\w+)`", script.read_text()) if find_spec(name) is None]
+
+
+def run_example(script: Path) -> None:
+    """Run an example in a folder of its own, and keep what it prints and the last picture that it draws."""
+    with tempfile.TemporaryDirectory() as folder:
+        ran = subprocess.run([sys.executable, script], cwd=folder, capture_output=True, text=True, check=True)
+        (SHOWN / f"{script.stem}.txt").write_text(ran.stdout)
+        pictures = [*Path(folder).rglob("*.png"), *Path(folder).rglob("*.gif")]
+        for picture in sorted(pictures, key=lambda each: each.stat().st_mtime)[-1:]:
+            keep(picture, script.stem)
+
+
+def run_start(name: str) -> None:
+    """Run the code of a page, and keep the picture that it draws."""
+    import run_pages
+
+    page, picture = START[name]
+    before = os.getcwd()
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        for _ in run_pages.run_page(ROOT / "docs" / "start" / page):
+            pass
+        keep(Path(picture), name)
+        os.chdir(before)
+
+
+def main() -> None:
+    """Run those that are named, or all."""
+    SHOWN.mkdir(exist_ok=True)
+    wanted = sys.argv[1:]
+    for script in EXAMPLES:
+        if lacking := missing(script):
+            print(f"{script.stem}: left as it is, for want of {', '.join(lacking)}")
+        elif not wanted or script.stem in wanted:
+            print(script.stem, flush=True)
+            run_example(script)
+    for name in START:
+        if not wanted or name in wanted:
+            print(name, flush=True)
+            run_start(name)
+
+
+if __name__ == "__main__":
+    main()

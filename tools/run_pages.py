@@ -1,0 +1,208 @@
+"""Find the code in the pages, and run it: the tests and ``tools/run_examples.py`` read pages with this.
+
+A page is a story: what one block makes, a later one may use.  What a page takes for granted (a file, a name) is put
+there by `PREPARED`; commands that take long are run smaller, or not at all, as `INSTEAD` says, with the reason.
+"""
+
+from __future__ import annotations
+
+import re
+import shlex
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import yaml
+
+ROOT = Path(__file__).parents[1]
+DATA = ROOT / "src" / "evenroad" / "robot" / "data"
+
+MAPS = """
+import numpy as np, shutil
+from pathlib import Path
+from PIL import Image
+from evenroad.research.mazes import load_maze
+shutil.copy(load_maze(3).path, "maze.png")
+Image.fromarray(np.full((200, 200), 254, dtype=np.uint8)).save("office.pgm")
+Path("office.yaml").write_text(
+    "image: office.pgm\\nresolution: 0.05\\norigin: [0, 0, 0]\\n"
+    "negate: 0\\noccupied_thresh: 0.65\\nfree_thresh: 0.2\\n")
+"""
+SQUARE = """
+import numpy as np
+import evenroad, evenroad as er
+from evenroad import KNearest
+world = er.FunctionWorld(evenroad.space.Box((0, 0), (1, 1)), lambda q: abs(q[:, 0] - 0.5) > 0.1, 0.01)
+start, goal, points = (0.1, 0.1), (0.3, 0.9), er.draw("cover", 512, 2)
+"""
+ARM = """
+import evenroad as er
+from evenroad.robot import ArmWorld
+robot, cell = er.load_robot("ur5"), None
+scene = er.load_scene("box-reach")
+world, start, goal = ArmWorld(robot, scene), "home", "inside"
+pose = er.Pose.from_rpy((0.65, 0, 0.2), (0, 1.5708, 0))
+"""
+ROADMAP = """
+from pathlib import Path
+er.save_robot_roadmap(Path("my_arm.roadmap"), er.make_roadmap(robot, n=16, ends=0))
+"""
+CLOUD = """
+import numpy as np, trimesh
+from evenroad.geometry import Mesh, PointCloud
+from evenroad.robot import Obstacle, Seen
+points = np.random.default_rng(0).random((200, 3))
+trimesh.creation.box((100, 100, 100)).export("shelf.stl")
+"""
+TRAJECTORY = "from evenroad.trajectory import arm_trajectory, save_trajectory\n"
+PREPARED = {
+    "README.md": MAPS,
+    "guarantees.md": MAPS + SQUARE,
+    "pose-goals.md": ARM,
+    "arm-planning.md": ARM,
+    "robot-roadmaps.md": ARM + ROADMAP,
+    "trajectories.md": ARM + TRAJECTORY,
+    "clouds.md": CLOUD,
+}
+"""Page -> Python that is run before its first block."""
+
+NEEDS = {"adapters.md": ("ompl", "klampt")}
+"""Page -> packages of extras that its code imports; where they are missing, `make test-peers` runs it."""
+
+ARM_FILES = ("robots.md", "arm.md", "robot-roadmaps.md")
+"""Pages that speak of ``my_arm.urdf``, ``cell.yaml`` and ``today.yaml``: files that stand for the reader's own."""
+
+
+class Instead(NamedTuple):
+    """What is run in place of a command, if anything, and why."""
+
+    command: str | None
+    why: str
+
+
+TASTE = "--only maze-1 --runs 1 --jobs 1 --store"
+INSTEAD = {
+    "make *": Instead(None, "a Makefile's target: that there is such a one is tested"),
+    "pip install *": Instead(None, "needs a network: the release check tries it"),
+    "python examples/ros2/*": Instead(None, "nodes of ROS 2: tests_peers feeds them messages"),
+    "python -m benchmarks*": Instead(None, "minutes to hours: that there is such a one is tested"),
+    "evenroad bench paper --runs 400 *": Instead(f"evenroad bench paper {TASTE} paper.db", "18 minutes"),
+    "evenroad bench fair --runs 400 *": Instead(
+        "evenroad bench fair --only fair-balls-2d-50 --runs 1 --jobs 1 --store fair.db", "42 minutes"
+    ),
+    "evenroad bench paper --quick *": Instead(f"evenroad bench paper {TASTE} results.db", "half a minute"),
+    "evenroad bench arms --runs 300 *": Instead(f"evenroad bench paper {TASTE} results.db", "days"),
+    "evenroad train -n 100 -d 2 --method order *": Instead(
+        "evenroad train -n 12 -d 2 --method order --objective star --sets 1 --steps 20 -o sets", "minutes"
+    ),
+    "evenroad train -n 256 -d 3 --method mpmc *": Instead(
+        'evenroad train -n 16 -d 3 --method mpmc --objective "prefixes(hickernell)" --sets 1 --steps 2 -o prefix-sets',
+        "an hour",
+    ),
+    "evenroad roadmap my_arm.urdf --cell cell.yaml -n 1024 *": Instead(
+        None, "half a minute: tests/cli runs such"
+    ),
+    "evenroad view box-reach.json": Instead(None, "serves a page until it is stopped (extra [view])"),
+    "evenroad robot duo.urdf *": Instead(None, "a robot of two arms that does not ship"),
+    "evenroad robot arm.urdf.xacro *": Instead(None, "needs the extra [xacro] and a package of ROS"),
+    "evenroad plan docs/data/humanoid_table.yaml *": Instead(None, "a humanoid that does not ship"),
+}
+"""A command, or how it begins -> what is run in its place."""
+
+SMALLER = {"er.make_roadmap(robot, cell, n=1024)": "er.make_roadmap(robot, cell, n=16, ends=0)"}
+"""Python that takes long -> what is run in its place."""
+
+
+class Block(NamedTuple):
+    """Code of a page: its language, "" where the page does not say, and the line it begins at."""
+
+    language: str
+    line: int
+    code: str
+
+
+def pages() -> list[Path]:
+    """Return the README and all pages that are written by hand."""
+    folder = ROOT / "docs"
+    return [
+        ROOT / "README.md",
+        *(each for each in sorted(folder.rglob("*.md")) if "generated" not in each.parts),
+    ]
+
+
+def blocks(page: Path) -> list[Block]:
+    """Return the code of a page, fenced or indented by four spaces."""
+    found: list[Block] = []
+    fence, language, begun, lines, before = "", "", 0, [], ""
+    for number, line in enumerate(page.read_text().splitlines(), start=1):
+        if fence:
+            if line.strip() == fence:
+                found.append(Block(language, begun, "\n".join(lines)))
+                fence, lines = "", []
+            else:
+                lines.append(line)
+        elif match := re.match(r"(```+|:::+)\s*(.*)", line):
+            fence, language, begun = match[1], match[2].strip(), number
+        elif line.startswith("    ") and not before.strip():
+            found.append(Block("", number, line.strip()))
+        before = line
+    return found
+
+
+def commands(block: Block) -> Iterator[str]:
+    """Yield the commands of a shell block, with continued lines joined and without comments."""
+    for line in block.code.replace("\\\n", " ").splitlines():
+        if words := shlex.split(line, comments=True):
+            yield shlex.join(words)
+
+
+def instead_of(command: str) -> Instead | None:
+    """Return what is run in place of a command; None if it is itself."""
+    for pattern, instead in INSTEAD.items():
+        if command == pattern or (pattern.endswith("*") and command.startswith(pattern[:-1])):
+            return instead
+    return None
+
+
+def prepare(page: Path, names: dict[str, object]) -> None:
+    """Put into the current folder, and among the names, what a page takes for granted."""
+    exec(compile(PREPARED.get(page.name, ""), f"before {page.name}", "exec"), names)
+    if page.name in ARM_FILES:
+        for name in ("ur5.urdf", "ur5.srdf"):
+            shutil.copy(DATA / name, name.replace("ur5", "my_arm"))
+        scene = yaml.safe_load((DATA / "box-reach.yaml").read_text())
+        Path("today.yaml").write_text(yaml.safe_dump(scene))
+        Path("cell.yaml").write_text(
+            "obstacles:\n  fence: {shape: box, size: [0.1, 2, 1], xyz: [-1, 0, 0.5]}\n"
+        )
+
+
+def run_page(page: Path) -> Iterator[tuple[Block, str]]:
+    """Run a page's code in the current folder, block by block; yield each command or text that was run, before it is.
+
+    Raises what the code raises, and AssertionError where a command gives neither 0 nor 1.
+    """
+    from evenroad.cli import main
+
+    names: dict[str, object] = {"__name__": page.stem}
+    prepare(page, names)
+    for block in blocks(page):
+        if block.language == "python":
+            code = block.code
+            for long, short in SMALLER.items():
+                code = code.replace(long, short)
+            yield block, code
+            exec(compile("\n" * block.line + code, str(page), "exec"), names)
+        elif block.language == "yaml":
+            yield block, block.code
+            yaml.safe_load(block.code)
+        elif block.language == "sh":
+            for command in commands(block):
+                instead = instead_of(command)
+                run = command if instead is None else instead.command
+                if run is not None:
+                    yield block, run
+                    answer = main(shlex.split(run)[1:])
+                    # No path is an answer (1); a misspelt option would be 2.
+                    assert answer in (0, 1), f"exit code {answer} of {run}"
