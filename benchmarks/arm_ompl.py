@@ -5,7 +5,8 @@
 
 Both plan in the scene, from nothing, until `--seconds` of the processor are over.  What is counted is what they ask
 for: states, and motions with all states in between, by batches in compiled code; milliseconds are the processor's,
-with Python's callbacks.  The second command draws them beside the rows of `evenroad bench arms`.
+with Python's callbacks.  The second command draws them beside the rows of `evenroad bench arms`, and prints what is
+solved within which cost.
 """
 
 from __future__ import annotations
@@ -14,11 +15,13 @@ import argparse
 import csv
 import time
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+from matplotlib.lines import Line2D
 
 from evenroad.research.arms.problems import ARM_ROBOTS, draw_problem
 from evenroad.research.arms.scenes import GENERATORS
@@ -29,6 +32,9 @@ STEP = 1.5
 
 SLICE = 0.1
 """Of the time, on the clock that OMPL reads [s]."""
+
+CHECKS, MS = (30, 100, 300, 1000, 10_000), (0.3, 1.0, 10.0, 100.0)
+"""Costs that the table shows the success of."""
 
 PLANNERS = {"RRT-Connect": "tab:orange", "PRM": "tab:brown"}
 """OMPL's name -> colour."""
@@ -125,18 +131,15 @@ def run(robot: str, problems: int, seconds: float, path: Path) -> None:
 
 def draw(store: Path, table: Path, robot: str, picture: Path) -> None:
     """Draw what success costs: the rows of a store, and OMPL's planners of a table that `run` wrote."""
-    from evenroad.research.arms.execute import kept_rule
     from evenroad.research.bench.store import read_rows
     from evenroad.research.report.arms import cost_curve, draw_costs
-    from evenroad.robot_roadmap.pockets import links_of
 
     with table.open() as file:
         lines = [line for line in csv.DictReader(file) if line["robot"] == robot]
     many = 1 + max(int(line["problem"]) for line in lines)
     rows = read_rows(store)
     rows = rows.where(rows.instance < many)
-    largest = int(rows.n.max())
-    figure = draw_costs(rows, robot, kept_rule(10, links_of(largest)))
+    figure = draw_costs(rows, robot, "10")
     panels = figure.axes[:2]
     for planner, colour in PLANNERS.items():
         mine = [line for line in lines if line["planner"] == planner]
@@ -146,6 +149,17 @@ def draw(store: Path, table: Path, robot: str, picture: Path) -> None:
         cost_curve(panels, (checks, ms), solved, f"OMPL's {planner}", colour, "-.")
     panels[1].legend(fontsize=7)
     figure.savefig(picture, dpi=100)
+    names = [f"{limit:g} checks" for limit in CHECKS] + [f"{limit:g} ms" for limit in MS]
+    print(f"| solved [%] within | {' | '.join(names)} |\n|---|{'---|' * len(names)}")
+    for first, second in zip(panels[0].lines, panels[1].lines, strict=True):
+        shares = [*map(partial(_within, first), CHECKS), *map(partial(_within, second), MS)]
+        print(f"| {first.get_label()} | {' | '.join(f'{share:.0f}' for share in shares)} |")
+
+
+def _within(curve: Line2D, limit: float) -> float:
+    """Return how high a curve is at a cost."""
+    here = np.searchsorted(curve.get_xdata(), limit, side="right")
+    return float(curve.get_ydata()[here - 1]) if here else 0.0
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

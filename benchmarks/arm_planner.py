@@ -46,7 +46,8 @@ FIRST_PLAN = """
 import time
 begin = time.perf_counter()
 from benchmarks.arm_planner import first_problem
-from evenroad.robot.trees import connect, shorten
+from evenroad.robot.trees import connect, prepare, shorten
+prepare()
 world, start, goals = first_problem()
 world.valid(goals), world.motion_valid(goals, goals)
 before = time.perf_counter()

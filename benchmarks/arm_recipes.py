@@ -1,24 +1,36 @@
-"""Recipes of roadmaps on the problems that are kept for choosing, paired with the control.
+"""Recipes of roadmaps on the suite's problems, paired with the control.
 
     python -m benchmarks.arm_recipes --robot ur5-5 -n 256 --problems 60 --draws 2 --recipes 0:0 2:0 0:1500 2:1500
+    python -m benchmarks.arm_recipes --robot scara --stream report --recipes 2:1500 tune --against 2:1500
 
-A recipe is GAMMA:ENDS, as `evenroad.make_roadmap` takes them; the control are the first scrambled Sobol points that
-are free of robot and cell, in the same metric.  The differences have standard errors over problems.
+A recipe is GAMMA:ENDS, as `evenroad.make_roadmap` takes them, or `tune`, which chooses them; the control are the first
+scrambled Sobol points that are free of robot and cell, in the same metric.  Constants are chosen on the stream `tune`.
+The differences have standard errors over problems.  `room` is the share of the space that milestones are left where
+their density is in proportion to the chance of being free to the power of gamma times the number of joints:
+(sum of p)^2 / (n sum of p^2).
 """
 
 from __future__ import annotations
 
 import argparse
 import time
+from functools import partial
 
 import numpy as np
 
 from evenroad.research.arms.problems import ARM_ROBOTS, draw_problem, joins
 from evenroad.research.arms.roadmaps import cell_of, first_free
-from evenroad.research.arms.robots import arm_named
+from evenroad.research.arms.robots import ARMS, arm_named
 from evenroad.research.arms.scenes import GENERATORS
+from evenroad.robot import with_group
 from evenroad.robot_roadmap.make import joined, make_roadmap
 from evenroad.robot_roadmap.pockets import links_of
+from evenroad.robot_roadmap.recipe import Recipe, chosen, known_of
+
+TUNED = "tune"
+
+ARMS["arm7-5"] = lambda: with_group(arm_named("arm7"), arm_named("arm7").group[:5])
+ARMS["arm7-6"] = lambda: with_group(arm_named("arm7"), arm_named("arm7").group[:6])
 
 
 def main() -> None:
@@ -26,7 +38,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--robot", default="ur5-5", choices=ARM_ROBOTS)
+    parser.add_argument("--robot", default="ur5-5", choices=[*ARM_ROBOTS, "arm7-5", "arm7-6"])
     parser.add_argument("-n", type=int, default=256)
     parser.add_argument("-k", type=int, default=10)
     parser.add_argument(
@@ -34,37 +46,60 @@ def main() -> None:
     )
     parser.add_argument("--problems", type=int, default=60, help="of each generator")
     parser.add_argument("--draws", type=int, default=2)
+    parser.add_argument("--stream", default="tune", choices=["tune", "report"])
     parser.add_argument("--recipes", nargs="+", default=["0:0", "2:0", "0:1500", "2:1500"])
+    parser.add_argument("--against", default="control", help="the recipe that the others are compared with")
     options = parser.parse_args()
     arm = arm_named(options.robot)
-    cell, links = cell_of(arm), options.links or links_of(options.n)
+    cell, links, n = cell_of(arm), options.links or links_of(options.n), options.n
     found = [
-        draw_problem(options.robot, name, "tune", i) for name in GENERATORS for i in range(options.problems)
+        draw_problem(options.robot, name, options.stream, i)
+        for name in GENERATORS
+        for i in range(options.problems)
     ]
     kind = np.repeat(np.arange(len(GENERATORS)), options.problems)
     solved: dict[str, list[list[bool]]] = {}
+    room: dict[str, list[float]] = {}
+    make = partial(make_roadmap, arm, cell, n, k=options.k)
     for draw in range(options.draws):
-        for recipe in options.recipes:
-            gamma, ends = recipe.split(":")
-            began = time.process_time()
-            made = make_roadmap(
-                arm, cell, options.n, k=options.k, gamma=float(gamma), ends=int(ends), rng=1000 + draw
-            )
-            print(f"draw {draw}, {recipe}: made in {time.process_time() - began:.1f} s", flush=True)
-            solved.setdefault(recipe, []).append([joins(made, problem, links) for problem in found])
-        free = first_free(made.world, options.n, np.random.default_rng(2000 + draw))
-        control = joined(made, free, options.k)
+        rng = 1000 + draw
+        recipes = {name: _recipe(name) for name in options.recipes if name != TUNED}
+        bare = make(gamma=0.0, ends=0, rng=rng)
+        streams = np.random.default_rng(rng).spawn(3)
+        known = known_of(bare.world, bare.one_turn, n, list(recipes.values()), streams, lambda *_: None)
+        for name in options.recipes:
+            if name == TUNED:
+                began = time.process_time()
+                made = make(tune=True, rng=rng)
+                print(f"draw {draw}, in {time.process_time() - began:.1f} s: {made.tuned}", flush=True)
+            else:
+                recipe = recipes[name]
+                made = joined(bare, known.pool[chosen(known, recipe, n)], options.k)
+                density = known.chance ** (recipe.gamma * bare.world.space.dim)
+                room.setdefault(name, []).append(density.sum() ** 2 / (len(density) * (density**2).sum()))
+            solved.setdefault(name, []).append([joins(made, problem, links) for problem in found])
+        free = first_free(bare.world, n, np.random.default_rng(2000 + draw))
+        control = joined(bare, free, options.k)
         solved.setdefault("control", []).append([joins(control, problem, links) for problem in found])
     shares = {recipe: np.mean(values, axis=0) for recipe, values in solved.items()}
-    print(f"{options.robot}, N = {options.n}, {len(found)} problems, links {links}: " + " ".join(GENERATORS))
+    print(
+        f"{options.robot}, N = {n}, {len(found)} problems ({options.stream}), {options.draws} draws,"
+        f" links {links}: {' '.join(GENERATORS)} | all | - {options.against} | room"
+    )
     for recipe, share in shares.items():
-        apart = 100.0 * (share - shares["control"])
+        apart = 100.0 * (share - shares[options.against])
         cells = " ".join(f"{100.0 * share[kind == g].mean():4.0f}" for g in range(len(GENERATORS)))
         error = apart.std(ddof=1) / np.sqrt(len(apart))
+        of_room = f"{np.mean(room[recipe]):.2f}" if recipe in room else "-"
         print(
-            f"{recipe:10} {cells} | {100.0 * share.mean():5.1f} | {apart.mean():+5.1f} ± {error:.1f}",
+            f"{recipe:10} {cells} | {100.0 * share.mean():5.1f} | {apart.mean():+5.1f} ± {error:.1f} | {of_room}",
             flush=True,
         )
+
+
+def _recipe(name: str) -> Recipe:
+    gamma, ends = name.split(":")
+    return Recipe(float(gamma), int(ends))
 
 
 if __name__ == "__main__":

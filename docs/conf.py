@@ -5,9 +5,11 @@ import inspect
 import re
 import sys
 from pathlib import Path
+from types import ModuleType
 
 from docutils import nodes
 from sphinx import addnodes
+from sphinx.ext.napoleon import NumpyDocstring
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tools"))
 import docs_pages
@@ -29,19 +31,21 @@ html_css_files = ["site.css"]
 html_copy_source = html_show_sourcelink = html_show_copyright = False
 templates_path: list[str] = []
 highlight_language = "text"
-pygments_style, pygments_dark_style = "xcode", "github-dark"
 
 myst_heading_anchors = 4
 myst_enable_extensions = ["colon_fence"]
 suppress_warnings = ["myst.header"]
 
 default_role = "literal"
+smartquotes = False
+autodoc_mock_imports = docs_pages.NOT_NEEDED
 autodoc_typehints_format = "short"
 autodoc_member_order = "bysource"
 autodoc_preserve_defaults = True
 toc_object_entries_show_parents = "hide"
 python_maximum_signature_line_length = 88
 napoleon_google_docstring = False
+napoleon_use_ivar = True
 napoleon_use_rtype = False
 
 _OURS = re.compile(r"(?:er|evenroad)\.([A-Za-z_][\w.]*)(?:\(.*\))?")
@@ -53,11 +57,16 @@ def _names(env):
 
 def _find(env, target):
     """Return the documented name of an object that is spoken of by another: its home, or its last word alone."""
-    names = _names(env)
+    names = {name: entry for name, entry in _names(env).items() if not entry.aliased}
     known = docs_pages.documented_name(target)
     if known in names:
         return known
-    found = [name for name in names if name.endswith(f".{target}")]
+    found = [name for name in names if name.endswith(f".{target}")] or [
+        # The fields of a class stand in its list.
+        name
+        for name in names
+        if name.endswith(f".{target.rpartition('.')[0]}") and "." in target
+    ]
     return found[0] if len(found) == 1 else None
 
 
@@ -79,9 +88,20 @@ def _resolve(app, env, node, content):
 def _leave_words(app, doctree):
     """Leave the words of ``array_like, shape (n, dim)`` what they are: only names with a capital are looked up."""
     for node in list(doctree.findall(addnodes.pending_xref)):
-        word = node.get("reftarget", "").rpartition(".")[2]
+        target = node.get("reftarget", "")
+        word, around = target.rpartition(".")[2], sys.modules.get(node.get("py:module"))
+        if isinstance(around, ModuleType) and isinstance(meant := getattr(around, target, None), type):
+            node["reftarget"] = docs_pages.documented_name(f"{meant.__module__}.{meant.__qualname__}")
+            node["refspecific"] = False
         if node.get("refdomain") == "py" and node.get("reftype") == "class" and not word[:1].isupper():
             node.replace_self(node.children)
+
+
+def _call_fields_attributes(app, doctree):
+    """Say what everyone says: Sphinx calls them variables."""
+    for name in doctree.findall(nodes.field_name):
+        if name.astext() == "Variables":
+            name.children = [nodes.Text("Attributes")]
 
 
 def _link_names(app, doctree, document):
@@ -95,14 +115,17 @@ def _link_names(app, doctree, document):
 
 
 def _lead_to_pages(app, document, source):
-    """Let links to an example lead to its page, where a reader of the files alone gets the script."""
+    """Let links to an example lead to its page; folders of files, which are no pages, are only named."""
+    source[0] = re.sub(r"\[([^\]]+)\]\((?:\.\./)+examples/?\w*\)", r"`\1`", source[0])
     source[0] = re.sub(r"\]\((?:\.\./)+examples/(\w+)\.py\)", r"](/generated/examples/\1.md)", source[0])
 
 
 def _as_written(app, what, name, thing, options, signature, returned):
     """Show the types of a signature as its source has them, not what they stand for."""
-    if what not in ("function", "method", "class", "exception") or getattr(thing, "_is_protocol", False):
+    if what not in ("function", "method", "class", "exception"):
         return None
+    if getattr(thing, "_is_protocol", False):
+        return "", None
     with contextlib.suppress(TypeError, ValueError):
         written = inspect.signature(thing)
         kept = [_shown(each) for each in written.parameters.values() if each.name not in ("self", "cls")]
@@ -137,7 +160,19 @@ def _end_sections(app, what, name, thing, options, lines):
             out.append("")
             within = False
         out.append(line)
-    lines[:] = out
+    lines[:] = _SEVERAL.sub(_one_by_one, "\n".join([*out, ""])).split("\n")
+
+
+_SEVERAL = re.compile(r"^((?:\w+, )+\w+)( : .*\n(?:[ ].*\n)+)", re.MULTILINE)
+
+
+def _one_by_one(match):
+    """Give each of several attributes that are described in one line an entry of its own."""
+    return "".join(name + match[2] for name in match[1].split(", "))
+
+
+# "The radius: of ..." says no type before its colon, whatever Napoleon thinks of the texts of properties.
+NumpyDocstring._parse_attribute_docstring = lambda self: []
 
 
 def setup(app):
@@ -147,5 +182,6 @@ def setup(app):
     app.connect("autodoc-process-docstring", _end_sections, priority=100)
     app.connect("source-read", _lead_to_pages)
     app.connect("doctree-read", _leave_words)
+    app.connect("doctree-read", _call_fields_attributes)
     app.connect("missing-reference", _resolve)
     app.connect("doctree-resolved", _link_names)

@@ -1,8 +1,10 @@
 """Compiled code is kept under names that say what it was made of and for."""
 
+import atexit
 import importlib
 import subprocess
 import sys
+import tempfile
 import textwrap
 
 import pytest
@@ -136,28 +138,57 @@ def test_two_that_save_at_once_for_other_arguments_do_not_take_each_others_place
     assert (load().twice(21), load().twice(1.5)) == (42, 3.0)
 
 
-def test_a_program_is_taken_from_the_process_that_compiles_it(program, monkeypatch):
+@pytest.fixture
+def shared(tmp_path, monkeypatch):
+    """A folder in which processes say what they compile; this one shares it, without helpers so far."""
+    folder = tmp_path / "shared"
+    folder.mkdir()
+    monkeypatch.setattr(_njit, "HELPERS", [])
+    monkeypatch.setattr(_njit._Claims, "folder", str(folder))
+    monkeypatch.setattr(_njit._Claims, "own", set())
+    return folder
+
+
+def helper_for(name, folder, shared):
+    code = f"from evenroad._njit import compile_all; compile_all([{name!r}], {str(shared)!r})"
+    return subprocess.Popen([sys.executable, "-c", code], cwd=folder)
+
+
+def test_a_program_is_taken_from_the_process_that_compiles_it(program, shared):
     folder, name, load = program
-    code = f"import time; time.sleep(0.2); from evenroad._njit import compile_all; compile_all([{name!r}])"
-    helper = subprocess.Popen([sys.executable, "-c", code], cwd=folder)
-    monkeypatch.setitem(_njit.HELPERS, name, helper)
+    helper = helper_for(name, folder, shared)
+    _njit.HELPERS.append(helper)
+    while not list(shared.iterdir()):
+        assert helper.poll() is None
     module = load()
     assert module.twice(21) == 42
     assert helper.wait() == 0
     assert sum(module.twice.stats.cache_hits.values()) == 1
 
 
-def test_a_program_is_compiled_here_where_the_other_process_fails(program, monkeypatch):
-    _, name, load = program
-    helper = subprocess.Popen([sys.executable, "-c", "raise SystemExit(1)"])
-    monkeypatch.setitem(_njit.HELPERS, name, helper)
-    assert load().twice(21) == 42
-    assert helper.wait() == 1
+def test_a_helper_leaves_what_this_process_has_begun(program, shared):
+    folder, name, load = program
+    module = load()
+    assert _njit._claim(module.twice._cache._impl.filename_base)
+    assert helper_for(name, folder, shared).wait() == 0
+    assert kept(folder) == []
+    assert module.twice(21) == 42
+    assert len(kept(folder)) == 2
+
+
+def test_a_program_is_compiled_here_where_the_other_process_fails(program, shared):
+    _, _, load = program
+    module = load()
+    (shared / module.twice._cache._impl.filename_base).write_text("")
+    _njit.HELPERS.append(subprocess.Popen([sys.executable, "-c", "raise SystemExit(1)"]))
+    assert module.twice(21) == 42
+    assert _njit.HELPERS[0].wait() == 1
 
 
 @pytest.mark.parametrize("reason", ["one processor", "kept", "no interpreter"])
 def test_no_process_is_started_without_reason(program, monkeypatch, reason):
     _, name, load = program
+    monkeypatch.setattr(_njit, "HELPERS", [])
     if reason == "kept":
         load().twice(21)
         load()
@@ -165,19 +196,20 @@ def test_no_process_is_started_without_reason(program, monkeypatch, reason):
     if reason == "no interpreter":
         monkeypatch.setattr(sys, "executable", "/usr/bin/blender")
     monkeypatch.setattr(subprocess, "Popen", None)
-    _compiled.compile_beside([name])
-    assert name not in _njit.HELPERS
+    _compiled.compile_beside(name)
+    assert _njit.HELPERS == []
 
 
-def test_processes_beside_this_one_compile_and_are_waited_for(program, monkeypatch):
+def test_processes_beside_this_one_compile(program, shared, monkeypatch):
     folder, name, load = program
     monkeypatch.setenv("PYTHONPATH", str(folder))
-    monkeypatch.setattr(_compiled, "processors", lambda: 2)
-    monkeypatch.setattr(_njit, "HELPERS", {})
-    _compiled.compile_beside([name], ["evenroad.no_module"])
-    assert list(_njit.HELPERS) == [name]
+    monkeypatch.setattr(_compiled, "processors", lambda: 3)
+    monkeypatch.setattr(tempfile, "tempdir", str(folder))
+    monkeypatch.setattr(atexit, "register", lambda end: None)
+    _compiled.compile_beside(name)
+    assert [helper.wait() for helper in _njit.HELPERS] == [0, 0]
     assert load().twice(21) == 42
-    assert _njit.HELPERS[name].wait() == 0
+    assert len(kept(folder)) == 2
 
 
 def test_progress_is_one_line_that_goes_when_code_is_compiled(program):

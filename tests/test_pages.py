@@ -31,6 +31,8 @@ RUN = [
 
 @pytest.mark.parametrize("page", RUN, ids=_named)
 def test_the_code_of_the_page_runs(page):
+    for package in run_pages.NEEDS.get(page.name, ()):
+        pytest.importorskip(package)
     running = "nothing yet"
     try:
         for block, text in run_pages.run_page(page):
@@ -67,7 +69,7 @@ COMMANDS = [
 @pytest.mark.parametrize("pattern", INSTEAD)
 def test_a_command_that_is_run_otherwise_is_still_there(pattern):
     known = [each for each in COMMANDS if run_pages.instead_of(each) is INSTEAD[pattern]]
-    if not known and pattern not in ("pip install *", "python -m benchmarks*"):
+    if not known and pattern not in ("python -m benchmarks*",):
         pytest.fail(f"no page has it any more: {pattern}")
     if INSTEAD[pattern].command is None:
         pytest.skip(f"slow, or not here: {INSTEAD[pattern].why}")
@@ -107,6 +109,8 @@ def test_the_readme_is_short_and_its_python_five_lines_long():
 
 @pytest.mark.parametrize("path", run_examples.EXAMPLES, ids=lambda path: path.name)
 def test_the_example_runs_and_prints_what_its_page_shows(path, capsys):
+    for package in re.findall(r"extra `(\w+)`", path.read_text()):
+        pytest.importorskip(package)
     runpy.run_path(str(path), run_name="__main__")
     kept = (run_examples.SHOWN / f"{path.stem}.txt").read_text()
     assert _words(capsys.readouterr().out) == _words(kept), "python tools/run_examples.py keeps it anew"

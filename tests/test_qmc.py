@@ -7,8 +7,10 @@ from scipy.stats import qmc as scipy_qmc
 
 from evenroad import qmc
 from evenroad.errors import Exhausted, InvalidValue, NotAvailable
+from evenroad.points import draw
 from evenroad.points.measures import MEASURES
 from evenroad.research.measures import riesz_rooted, separation
+from tests.points.samplers.conftest import hardly_moved as hardly_moved
 
 SEED = 170382760648021597650530316304495310428
 
@@ -169,6 +171,102 @@ class EngineContract:
         assert quadrature.integral == pytest.approx(0.5**self.d, rel=0.15)
         normal = scipy_qmc.MultivariateNormalQMC(np.zeros(self.d), engine=self.engine())
         assert normal.random(self.n).shape == (self.n, self.d)
+
+
+class SequenceContract:
+    """Subclass it as ``class TestMine(SequenceContract): engine_class = Mine``."""
+
+    engine_class: type[qmc.SequenceEngine]
+    d = 2
+
+    def engine(self, **options):
+        return self.engine_class(**{"d": self.d, "rng": SEED, **options})
+
+    def test_it_is_an_engine_of_scipy_whose_points_lie_in_the_cube(self):
+        engine = self.engine()
+        assert isinstance(engine, scipy_qmc.QMCEngine)
+        assert (engine.d, engine.num_generated) == (self.d, 0)
+        sample = engine.random(100)
+        assert sample.shape == (100, self.d)
+        assert ((sample >= 0) & (sample < 1)).all()
+
+    def test_it_goes_on_where_it_was_and_its_points_are_those_of_the_sampler(self):
+        whole = draw(self.engine_class.family, 601, self.d, rng=SEED).points
+        engine = self.engine()
+        parts = [engine.random(n) for n in (0, 1, 99, 300, np.int64(201))]
+        np.testing.assert_array_equal(np.concatenate(parts), whole)
+        assert engine.num_generated == 601
+
+    @pytest.mark.parametrize("make_rng", [
+        lambda: 5, lambda: np.random.default_rng(5), lambda: np.random.SeedSequence(5), lambda: None,
+    ], ids=["int", "generator", "seed sequence", "entropy"])  # fmt: skip
+    def test_reset_goes_back_to_the_first_point_and_fast_forward_skips(self, make_rng):
+        engine = self.engine(rng=make_rng())
+        first = engine.random(40)
+        assert engine.reset() is engine
+        assert engine.num_generated == 0
+        assert engine.fast_forward(13) is engine
+        assert engine.num_generated == 13
+        np.testing.assert_array_equal(engine.random(27), first[13:])
+
+    def test_a_passed_generator_is_spawned_so_that_engines_differ_and_the_stream_stays(self):
+        given, untouched = np.random.default_rng(6), np.random.default_rng(6)
+        first, second = (self.engine(rng=given).random(9) for _ in range(2))
+        assert (first != second).any()
+        assert given.random() == untouched.random()
+
+    def test_the_old_name_of_the_seed_works_but_not_beside_the_new_one(self):
+        np.testing.assert_array_equal(self.engine(rng=None, seed=3).random(9), self.engine(rng=3).random(9))
+        with pytest.raises(InvalidValue, match="not both"):
+            self.engine(rng=3, seed=3)
+
+    def test_its_end_is_said_and_nothing_is_handed_out_past_it(self):
+        engine = self.engine()
+        engine.fast_forward(2**30 - 2)
+        for ask in (engine.random, engine.fast_forward):
+            with pytest.raises(Exhausted, match="asked for 3 more points, but the sequence ends 2 points on"):
+                ask(3)
+        assert engine.num_generated == 2**30 - 2
+
+    @pytest.mark.parametrize("bad", [0, -1, 1.5, "2", None, True])
+    def test_a_dimension_that_is_no_positive_integer_is_refused(self, bad):
+        with pytest.raises(InvalidValue, match="d must be an integer >= 1"):
+            self.engine(d=bad)
+
+    @pytest.mark.parametrize("bad", [-1, 1.5, "2", None])
+    def test_a_number_of_points_that_is_no_count_is_refused(self, bad):
+        engine = self.engine()
+        for ask in (engine.random, engine.fast_forward):
+            with pytest.raises(InvalidValue, match="n must be an integer >= 0"):
+                ask(bad)
+        assert engine.num_generated == 0
+
+    @pytest.mark.parametrize("bad", [-1, "7", 0.5, True])
+    def test_a_seed_of_another_kind_is_refused(self, bad):
+        with pytest.raises(InvalidValue, match="rng must be"):
+            self.engine(rng=bad)
+
+    def test_scipys_own_tools_take_it(self):
+        quadrature = qmc_quad(
+            lambda x: np.prod(x, axis=0),
+            [0] * self.d,
+            [1] * self.d,
+            n_points=64,
+            n_estimates=4,
+            qrng=self.engine(),
+        )
+        assert quadrature.integral == pytest.approx(0.5**self.d, rel=0.15)
+        assert self.engine(optimization="random-cd").random(16).shape == (16, self.d)
+
+
+class TestGrowing(SequenceContract):
+    engine_class = qmc.Growing
+    d = 5
+
+
+@pytest.mark.usefixtures("hardly_moved")
+class TestSequence(SequenceContract):
+    engine_class = qmc.Sequence
 
 
 class TestHickernell(EngineContract):

@@ -21,6 +21,8 @@ from types import ModuleType
 from typing import Any
 from unittest import mock
 
+from sphinx.ext.autodoc.mock import mock as stand_ins
+
 import evenroad
 from evenroad.cli import main
 from evenroad.cli.verbs import VERBS
@@ -57,9 +59,33 @@ REFERENCE = {
     "trajectories": ("Trajectories", ("evenroad.trajectory",)),
     "pictures": ("Pictures", ("evenroad.viz.plan", "evenroad.viz.arm")),
     "mazes": ("Mazes", ("evenroad.research.mazes",)),
+    "adapters": ("Adapters", ("evenroad.adapters.ompl", "evenroad.adapters.klampt")),
     "errors": ("Errors", ("evenroad.errors",)),
 }
 """Page -> its title, and the modules whose public names it holds."""
+
+FOR_THE_COMMAND = {
+    "evenroad.arms": {
+        "Ends",
+        "RESOLUTION",
+        "SEARCH",
+        "find_cheapest",
+        "finished",
+        "mesh_check",
+        "plan_on_points",
+    }
+    | {"plan_ways", "unreached"}
+}
+"""Module -> names that it offers to evenroad's own command and benchmarks, not to users."""
+
+NOT_NEEDED = ["ompl", "klampt"]
+"""Packages of extras that modules of the reference import, and that need not be there."""
+
+
+def home_of(name: str) -> ModuleType:
+    """Return a module of the reference, whether what it adapts is installed or not."""
+    with stand_ins(NOT_NEEDED):
+        return importlib.import_module(name)
 
 
 def write_pages(folder: Path) -> None:
@@ -77,8 +103,9 @@ def write_pages(folder: Path) -> None:
 
 def public_names(module: ModuleType) -> list[str]:
     """Return what a module offers: its ``__all__``, names that it hands on (``X as X``), and what it defines itself."""
+    hidden = FOR_THE_COMMAND.get(module.__name__, set())
     if hasattr(module, "__all__"):
-        return list(module.__all__)
+        return [name for name in module.__all__ if name not in hidden]
     names = []
     for node in ast.parse(inspect.getsource(module)).body:
         match node:
@@ -88,7 +115,7 @@ def public_names(module: ModuleType) -> list[str]:
                 names.append(name)
             case ast.Assign(targets=[ast.Name(id=name)]) | ast.AnnAssign(target=ast.Name(id=name)):
                 names += [name] if isinstance(getattr(module, name), dict) else []
-    return [name for name in dict.fromkeys(names) if not name.startswith("_")]
+    return [name for name in dict.fromkeys(names) if not name.startswith("_") and name not in hidden]
 
 
 def documented_name(name: str) -> str:
@@ -99,7 +126,7 @@ def documented_name(name: str) -> str:
         if last in evenroad.__all__ and getattr(evenroad, last) is thing:
             return f"evenroad.{last}"
         for home in (home for _, homes in REFERENCE.values() for home in homes):
-            if getattr(importlib.import_module(home), last, None) is thing:
+            if getattr(home_of(home), last, None) is thing:
                 return f"{home}.{last}"
     return name
 
@@ -115,10 +142,13 @@ def _reference() -> Iterator[tuple[str, str]]:
     seen: set[int] = set()
     first = [_heading("Reference", "=")]
     first.append("What is at hand after ``import evenroad as er``; each topic's page has the rest.\n")
+    first.append(
+        "``Floats`` are float64 arrays, ``RngLike`` an int, a SeedSequence or a Generator of NumPy.\n"
+    )
     for page, (title, homes) in REFERENCE.items():
         parts, rows = [_heading(title, "=")], []
         for home in homes:
-            module = importlib.import_module(home)
+            module = home_of(home)
             things = {name: getattr(module, name) for name in public_names(module)}
             new = {name: each for name, each in things.items() if id(each) not in seen}
             seen |= {id(each) for each in new.values()}
@@ -145,7 +175,7 @@ def _entry(name: str, thing: Any) -> str:
         return f".. autoclass:: {name}\n   :members:\n"
     return (
         f".. autofunction:: {name}\n"
-        if callable(thing)
+        if inspect.isroutine(thing)
         else f".. py:data:: {name}\n\n   {_said_of(name, thing)}\n"
     )
 
@@ -203,12 +233,13 @@ def _changes() -> str:
 
 
 def _examples() -> Iterator[tuple[str, str]]:
+    gallery = (ROOT / "docs" / "examples.md").read_text()
+    titles = {name: title for title, name in re.findall(r"\[([^\]]+)\]\(\.\./examples/(\w+)\.py\)", gallery)}
     for script in sorted((ROOT / "examples").glob("*.py")):
         text = script.read_text()
         about = ast.get_docstring(ast.parse(text))
         code = text.split('"""', 2)[2].strip()
-        title = script.stem[3:].replace("_", " ").capitalize()
-        parts = [f"# {title}\n\n{about}\n"]
+        parts = [f"# {titles.get(script.stem, script.stem)}\n\n{about}\n"]
         if (SHOWN / f"{script.stem}.png").exists():
             parts.append(f"![{about}](/examples/{script.stem}.png)\n")
         parts += [f"![{about}](/{name})\n" for name in re.findall(r"\w+\.gif", text)]

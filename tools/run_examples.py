@@ -6,10 +6,12 @@ python tools/run_examples.py [NAME ...]        # a minute or two for all
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
+from importlib.util import find_spec
 from pathlib import Path
 
 from PIL import Image
@@ -32,6 +34,11 @@ def keep(picture: Path, name: str) -> None:
     if image.width > WIDTH:
         image = image.resize((WIDTH, round(image.height * WIDTH / image.width)), Image.Resampling.LANCZOS)
     image.quantize(COLOURS).save(SHOWN / f"{name}.png", optimize=True)
+
+
+def missing(script: Path) -> list[str]:
+    """Return the packages of extras that an example needs and that are not installed."""
+    return [name for name in re.findall(r"extra `(\w+)`", script.read_text()) if find_spec(name) is None]
 
 
 def run_example(script: Path) -> None:
@@ -63,7 +70,9 @@ def main() -> None:
     SHOWN.mkdir(exist_ok=True)
     wanted = sys.argv[1:]
     for script in EXAMPLES:
-        if not wanted or script.stem in wanted:
+        if lacking := missing(script):
+            print(f"{script.stem}: left as it is, for want of {', '.join(lacking)}")
+        elif not wanted or script.stem in wanted:
             print(script.stem, flush=True)
             run_example(script)
     for name in START:

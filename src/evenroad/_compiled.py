@@ -5,7 +5,6 @@ from __future__ import annotations
 import atexit
 import os
 import sys
-from collections.abc import Sequence
 from importlib import import_module
 from types import ModuleType
 from typing import Any
@@ -77,40 +76,52 @@ def is_kept(function: Any) -> bool:
         return True
 
 
-def compile_beside(*heaps: Sequence[str]) -> None:
-    """Compile the programs of modules in processes of their own, one a heap, while this one goes on.
+MOST_HELPERS = 3
 
-    It waits for them where it needs them, and compiles what stays behind because there are fewer processors than heaps
-    or a process fails.  Nothing happens where the first module's program is kept or no interpreter can be started.
+
+def compile_beside(*modules: str) -> None:
+    """Compile the programs of modules in processes beside this one, as far as there are processors.
+
+    Each process takes what nobody has begun, this one what it needs next; it waits for what another has begun.  Nothing
+    happens where the first module's programs are kept or no interpreter can be started.
     """
-    from evenroad._njit import HELPERS, compile_all, is_missing
+    from evenroad._njit import HELPERS, compile_all, is_missing, share
 
-    free = processors() - 1
+    free = min(processors() - 1, MOST_HELPERS)
     python = os.path.basename(sys.executable or "").startswith("python")
-    if free < 1 or not python or heaps[0][0] in HELPERS or not is_missing(heaps[0][0]):
+    if free < 1 or not python or HELPERS or not is_missing(modules[0]):
         return
+    import shutil
     import subprocess
+    import tempfile
 
-    root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-    for heap in heaps[:free]:
-        work = f"from {compile_all.__module__} import compile_all; compile_all({[*heap]!r})"
-        code = f"import sys; sys.path.insert(0, {root!r}); {work}"
-        nowhere = subprocess.DEVNULL
+    try:
+        folder = tempfile.mkdtemp(prefix="evenroad-compiling-")
+    except OSError:
+        return
+    share(folder)
+    root, nowhere = os.path.dirname(os.path.dirname(os.path.abspath(__file__))), subprocess.DEVNULL
+    work = f"from {compile_all.__module__} import compile_all; compile_all({[*modules]!r}, {folder!r})"
+    # Compiling makes very many objects and little garbage.
+    command = [sys.executable, "-c", f"import gc, sys; gc.disable(); sys.path.insert(0, {root!r}); {work}"]
+    owner = os.getpid()
+
+    def end() -> None:
+        if os.getpid() == owner:
+            for helper in HELPERS:
+                if helper.poll() is None:
+                    # Nobody waits for it any more; what it has finished is kept.
+                    helper.terminate()
+                    helper.wait()
+            shutil.rmtree(folder, ignore_errors=True)
+
+    atexit.register(end)
+    for _ in range(free):
         try:
-            helper = subprocess.Popen(
-                [sys.executable, "-c", code], stdin=nowhere, stdout=nowhere, stderr=nowhere
-            )
+            helper = subprocess.Popen(command, stdin=nowhere, stdout=nowhere, stderr=nowhere)
         except OSError:
             return
-        atexit.register(_end, helper)
-        HELPERS.update(dict.fromkeys(heap, helper))
-
-
-def _end(helper: Any) -> None:
-    """End a process that nobody waits for any more; what it finished is kept."""
-    if helper.poll() is None:
-        helper.terminate()
-        helper.wait()
+        HELPERS.append(helper)
 
 
 def processors() -> int:

@@ -19,7 +19,7 @@ from functools import cache
 from glob import escape, glob
 from importlib import import_module
 from subprocess import Popen
-from typing import Any
+from typing import Any, ClassVar
 
 import numba
 import numpy
@@ -37,8 +37,39 @@ _LOOK = 0.02
 _BETWEEN_LINES = 0.2
 """Seconds between two lines of progress."""
 
-HELPERS: dict[str, Popen[bytes]] = {}
-"""Module -> the process that compiles its programs for this one; see ``_compiled.compile_beside``."""
+HELPERS: list[Popen[bytes]] = []
+"""Processes that compile for this one; see ``_compiled.compile_beside``."""
+
+
+class _Claims:
+    """Who of several processes compiles what: whoever makes a file of its name first, in a folder of theirs."""
+
+    folder = ""
+    own: ClassVar[set[str]] = set()
+
+
+class _Taken(Exception):
+    """Another process is compiling this."""
+
+
+def share(folder: str) -> None:
+    """Share what is to be compiled with the other processes that are given this folder."""
+    _Claims.folder = folder
+
+
+def _claim(name: str) -> bool:
+    """Return whether it is this process that compiles a program."""
+    if not _Claims.folder or name in _Claims.own:
+        return True
+    try:
+        os.close(os.open(os.path.join(_Claims.folder, name), os.O_CREAT | os.O_EXCL))
+    except FileExistsError:
+        return False
+    except OSError:
+        # The folder is gone: the others have ended.
+        return True
+    _Claims.own.add(name)
+    return True
 
 
 def njit(*function: Callable[..., Any], **options: Any) -> Any:
@@ -69,18 +100,24 @@ def cfunc(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]
     return decorate
 
 
-def compile_all(modules: list[str]) -> None:
-    """Compile the programs of modules: what Python calls with numbers alone, and what is called by its address."""
+def compile_all(modules: list[str], folder: str) -> None:
+    """Compile the programs of modules that no other process compiles, as a helper: see `share`.
+
+    These are what Python calls with numbers alone, and what is called by its address.
+    """
+    share(folder)
     for name in modules:
-        module = import_module(name)
-        for made in list(vars(module).values()):
-            if getattr(made, "__module__", "") != name:
+        for made in list(vars(import_module(name)).values()):
+            try:
+                if getattr(made, "__module__", "") != name:
+                    continue
+                if isinstance(getattr(made, "_cache", None), KernelCache):
+                    parameters = inspect.signature(made.py_func).parameters.values()
+                    made.compile(tuple(_NUMBERS[each.annotation] for each in parameters))
+                elif getattr(made, "__name__", "").endswith("_address"):
+                    made()
+            except _Taken:
                 continue
-            if isinstance(getattr(made, "_cache", None), KernelCache):
-                parameters = inspect.signature(made.py_func).parameters.values()
-                made.compile(tuple(_NUMBERS[each.annotation] for each in parameters))
-            elif getattr(made, "__name__", "").endswith("_address"):
-                made()
 
 
 def is_missing(name: str) -> bool:
@@ -175,13 +212,14 @@ class KernelCache(FunctionCache):
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return compiled code that was kept, or that another process is just making; else None."""
         found = super().load_overload(sig, target_context)
-        helper = HELPERS.get(self._py_func.__module__)
-        if found is not None or helper is None:
+        if found is not None or _claim(self._impl.filename_base):
             return found
+        if not HELPERS:
+            raise _Taken
         # Events, so that clocks stand still and progress is seen.
         data = {"waiting": self._py_func.__module__}
         with event.trigger_event("numba:compile", data=data):
-            while helper.poll() is None and not self.holds_any():
+            while any(helper.poll() is None for helper in HELPERS) and not self.holds_any():
                 time.sleep(_LOOK)
                 with event.trigger_event("numba:compile", data=data):
                     continue

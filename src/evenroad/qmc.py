@@ -1,6 +1,8 @@
-"""Our families as engines of ``scipy.stats.qmc``: finite sets that are handed out point by point.
+"""Our samplers as engines of ``scipy.stats.qmc``: sequences that go on, and finite sets handed out point by point.
 
->>> from evenroad.qmc import Korobov
+>>> from evenroad.qmc import Growing, Korobov
+>>> Growing(d=3, rng=1).random(10).shape
+(10, 3)
 >>> Korobov(d=3, n=64, rng=1).random(10).shape
 (10, 3)
 """
@@ -19,6 +21,63 @@ from evenroad.errors import Exhausted, InvalidValue
 from evenroad.points.pointset import PointSet
 from evenroad.points.randomise import randomise
 from evenroad.points.samplers import make_sampler
+from evenroad.points.samplers.growing import LONGEST
+
+
+def _started(given: RngLike | None, old: RngLike | None) -> np.random.Generator:
+    """Return the generator of an engine; `old` is what its old name, `seed`, says."""
+    if given is not None and old is not None:
+        raise InvalidValue("give rng or seed, its old name, but not both")
+    rng = given if given is not None else old
+    return np.random.default_rng() if rng is None else generator(rng)
+
+
+class SequenceEngine(QMCEngine):
+    """An engine over a sequence; a subclass names the ``family``, a name of ``SAMPLERS`` that takes ``start``.
+
+    ``random(n)`` hands out the next n points: those of ``draw(family, n, d, rng=rng, start=num_generated)``, so two
+    calls give what one of as many points gives.  It goes on to the end of the family, 2**30 points, and raises
+    Exhausted there.  `d` >= 1 is the dimension; the other parameters are those of :class:`FamilyEngine`.
+    """
+
+    family: ClassVar[str]
+
+    def __init__(
+        self,
+        d: int,
+        *,
+        optimization: Literal["random-cd", "lloyd"] | None = None,
+        rng: RngLike | None = None,
+        seed: RngLike | None = None,
+    ) -> None:
+        d = require_count("d", d)
+        given = rng if rng is not None else seed
+        random = _started(rng, seed)
+        super().__init__(d=d, optimization=optimization, rng=random)
+        self._init_quad = {"d": d, "optimization": optimization}
+        # What `draw` takes is the same for every call; an int goes through, so that the points are those of `draw`.
+        is_seed = given is not None and not isinstance(given, np.random.Generator)
+        self._drawn_with: RngLike = given if is_seed else int(self.rng.integers(2**62))  # type: ignore[assignment]
+
+    def fast_forward(self, n: object) -> SequenceEngine:
+        """Skip the next n points; raises as :meth:`random` does."""
+        self.num_generated += self._count(n)
+        return self
+
+    def _random(self, n: object = 1, *, workers: object = 1) -> Floats:
+        """Return the next n points, (n, d), which SciPy's ``random`` counts; raises Exhausted past the end."""
+        count = self._count(n)
+        if count == 0:
+            return np.empty((0, self.d))
+        sampler = make_sampler(self.family, start=self.num_generated)
+        return sampler.draw(count, self.d, rng=self._drawn_with).points.copy()
+
+    def _count(self, n: object) -> int:
+        count = require_count("n", n, at_least=0)
+        if self.num_generated + count > LONGEST:
+            left = LONGEST - self.num_generated
+            raise Exhausted(f"asked for {count} more points, but the sequence ends {left} points on")
+        return count
 
 
 class FamilyEngine(QMCEngine):
@@ -27,7 +86,7 @@ class FamilyEngine(QMCEngine):
     The set, ``points``, is drawn from the family and then randomised by every move that keeps its quality
     (:func:`evenroad.points.randomise.randomise`).  ``random`` hands its points out in their order and raises
     Exhausted when fewer are left than asked for.  A set is even as a whole, but its first points alone are
-    not, those of a lattice least of all: choose as n what you will use.
+    not, those of a lattice least of all: choose as n what you will use, or a :class:`Growing` sequence.
 
     `d` and `n`, >= 1, are dimension and size of the set; NotAvailable is raised if the family has none.  SciPy's
     `optimization` of what ``random`` returns does not keep what the set was made for.  An `rng` of None takes fresh
@@ -47,11 +106,8 @@ class FamilyEngine(QMCEngine):
         seed: RngLike | None = None,
         **options: Any,
     ) -> None:
-        if rng is not None and seed is not None:
-            raise InvalidValue("give rng or seed, its old name, but not both")
-        given = rng if rng is not None else seed
         d, self.n = require_count("d", d), require_count("n", n)
-        random = np.random.default_rng() if given is None else generator(given)
+        random = _started(rng, seed)
         super().__init__(d=d, optimization=optimization, rng=random)
         # What qmc_quad builds its further engines from.
         self._init_quad = {"d": d, "n": n, "optimization": optimization, **options}
@@ -75,6 +131,18 @@ class FamilyEngine(QMCEngine):
             text = f"asked for {count} more points, but {left} of the {self.n} are left: a set has an end; "
             raise Exhausted(text + "make an engine with a larger n, or reset() to start again")
         return self.num_generated + count
+
+
+class Growing(SequenceEngine):
+    """The lattice that grows: every beginning is well spread.  Any d, 2**30 points."""
+
+    family = "growing"
+
+
+class Sequence(SequenceEngine):
+    """Scrambled Sobol points, the first 2048 moved: every beginning is of low discrepancy."""
+
+    family = "sequence"
 
 
 class Even(FamilyEngine):

@@ -137,6 +137,30 @@ def test_a_folder_of_the_users_choice_is_used_in_silence(read_only, tmp_path):
     assert list(kept.rglob("*.nbi"))
 
 
+def test_two_first_runs_at_once_both_work_and_leave_what_the_third_loads(tmp_path):
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+    both = [
+        subprocess.Popen([sys.executable, "-c", LOAD_COMPILED], env=environment, stdout=subprocess.PIPE)
+        for _ in range(2)
+    ]
+    assert [run.communicate()[0] for run in both] == [b"(1, 1, 2)\n"] * 2
+    files = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.nb?")}
+    assert len(files) == 2
+    assert python("-c", LOAD_COMPILED, NUMBA_CACHE_DIR=str(tmp_path)).stdout == "(1, 1, 2)\n"
+    assert files == {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.nb?")}
+
+
+def test_a_version_says_what_it_runs_on_and_where_compiled_code_is(tmp_path):
+    done = python("-m", "evenroad", "--version", "-v", NUMBA_CACHE_DIR=str(tmp_path))
+    rows = dict(line.split(maxsplit=1) for line in done.stdout.splitlines()[1:3])
+    assert done.stdout.startswith(f"evenroad {evenroad.__version__}\n")
+    assert "numba" in rows["runs"]
+    assert str(tmp_path) in done.stdout
+    refused = python("-m", "evenroad", "--version", "-x")
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert refused.stderr == "evenroad: error: unknown option of --version: '-x'; known: --verbose, -v\n"
+
+
 def test_a_long_input_is_cut_in_the_error_line_and_what_is_allowed_stays(run):
     code, _, err = run("plan", "a.png", "--robot-radius", 1, "--start", "x" * 5000, "--goal", 1, 1)
     assert code == 2

@@ -22,6 +22,7 @@ from evenroad.robot import (
     without_robot,
 )
 from evenroad.robot_roadmap.make import make_roadmap
+from tests.robot.surface_oracle import all_clearance
 
 UPRIGHT = "0,-1.5707963,0,-1.5707963,0,0"
 
@@ -179,7 +180,7 @@ def test_the_command_plans_above_a_scanned_table(tmp_path, monkeypatch, ur5, cap
     assert "touches 'scan'" in " ".join(capsys.readouterr().out.split())
 
 
-def test_a_roadmap_of_a_robot_serves_in_a_scan_but_its_cell_has_none(ur5):
+def test_a_roadmap_of_a_robot_serves_in_a_scan(ur5):
     home = [0, -np.pi / 2, 0, -np.pi / 2, 0, 0]
     roadmap = make_roadmap(ur5, None, n=32, rng=0)
     cloud = PointCloud(np.concatenate([table(), skin(ur5, home)]), 0.006)
@@ -187,8 +188,19 @@ def test_a_roadmap_of_a_robot_serves_in_a_scan_but_its_cell_has_none(ur5):
     result = roadmap.plan(scene, home, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0])
     assert result.solved
     assert ArmWorld(ur5, scene).recheck(result.path).all()
-    with pytest.raises(InvalidValue, match="a cell must consist of box.* got 'scan', a cloud of"):
-        make_roadmap(ur5, scene, n=8)
+
+
+def test_a_cell_that_was_scanned_is_made_without_the_robot_in_it(ur5):
+    home = [0, -np.pi / 2, 0, -np.pi / 2, 0, 0]
+    cloud = PointCloud(np.concatenate([table(), skin(ur5, home)]), 0.006)
+    cell = Scene("s", (Obstacle("scan", cloud, seen=Seen(UPRIGHT)),))
+    roadmap = make_roadmap(ur5, cell, n=32, ends=20, rng=0)
+    without = scene_seen_by(ur5, cell)
+    assert roadmap.cell == without
+    assert all_clearance(ur5, without, roadmap.milestones).min() > 0.0
+    result = roadmap.plan(Scene("nothing else"), home, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0])
+    assert result.solved
+    assert ArmWorld(ur5, without).recheck(result.path).all()
 
 
 def test_clouds_tell_scenes_apart(ur5):

@@ -35,10 +35,10 @@ def pool(arm):
 
 def test_a_pocket_holds_the_tip_between_five_walls_and_is_open_to_the_side_of_the_robot_or_above(arm, pool):
     around, rng = Surroundings.of(arm, pool), np.random.default_rng(0)
-    tips = pockets._tips(arm, pool)
+    tips = pockets.tips_of(arm, pool)
     open_above = 0
     for tip in tips[:100, 0]:
-        pocket = pockets._pocket(tip, around, rng)
+        pocket = pockets.pocket_around(tip, around, rng)
         walls, centre, turn, half = pocket.walls(), pocket.centre, pocket.turn, pocket.half
         assert len(walls) == 5
         assert np.all(np.abs((tip - centre) @ turn) <= 0.5 * half + 1e-12)
@@ -57,10 +57,10 @@ def test_a_pocket_holds_the_tip_between_five_walls_and_is_open_to_the_side_of_th
 
 def test_what_is_passed_over_before_a_world_is_made_touches_a_wall(arm, pool):
     around, rng = Surroundings.of(arm, pool), np.random.default_rng(4)
-    tips, (body, radii) = pockets._tips(arm, pool), pockets._body(arm, pool)
+    tips, (body, radii) = pockets.tips_of(arm, pool), pockets.body_of(arm, pool)
     passed, touching = 0, 0
     for q, tip, places in zip(pool[:300], tips[:300, 0], body, strict=False):
-        pocket = pockets._pocket(tip, around, rng)
+        pocket = pockets.pocket_around(tip, around, rng)
         free = ArmWorld(arm, Scene("pocket", pocket.walls())).valid(q[np.newaxis])[0]
         touching += not free
         if pocket.touched_by(places, radii):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import evenroad as er
+from evenroad.geometry import Mesh, PointCloud, Pose, TriangleMesh
 from evenroad.geometry.shapes import Capsule
 from evenroad.robot import ArmWorld, Joint, Mimic, Obstacle, Scene, with_group, with_limits
 from evenroad.robot_roadmap import chance
@@ -15,6 +16,7 @@ from evenroad.robot_roadmap.robot_roadmap import SceneRoadmap
 from evenroad.robot_roadmap.spread import displacement_weights, spread_order
 from evenroad.robot_roadmap.turns import lifted_motions_free, whole_turns
 from tests.robot.kernel_arms import STRAIGHT, Z, box_scene, ur5
+from tests.robot.surface_oracle import mesh_clearance, point_clearance
 
 TABLE = Scene(
     "cell",
@@ -38,6 +40,39 @@ def test_milestones_and_motions_are_free_of_robot_and_cell(roadmap):
     back = np.where(b > world.space.high, -1, np.where(b < world.space.low, 1, 0)) * 2.0 * np.pi
     assert world.motion_certified(a + back, b + back, 1e-6).all()
     assert np.bincount(roadmap.edges.ravel(), minlength=40).min() >= 4
+
+
+def test_clouds_and_meshes_of_a_cell_are_kept_in_its_file(tmp_path):
+    """What its file says is free of them is so in double precision, and the day's scene has them."""
+    corners = [(0, 0, 0), (0.3, 0, 0), (0, 0.3, 0), (0, 0, 0.5)]
+    wedge = TriangleMesh(corners, [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)], "wedge")
+    points = np.random.default_rng(0).uniform((-0.5, 0.4, 0.2), (0.1, 0.6, 0.6), (60, 3))
+    cell = TABLE.with_(
+        Obstacle("wedge", Mesh(wedge, pose=Pose.from_rpy((0.35, -0.3, 0.05), (0.2, 0.1, 0.4))), cell=True),
+        Obstacle("scan", PointCloud(points, 0.02, pose=Pose((0.0, 0.05, 0.0)))),
+    )
+    robot = ur5(joints=3)
+    made = make_roadmap(robot, cell, 40, k=4, ends=20)
+    assert mesh_clearance(robot, cell.without("scan", "table"), made.milestones, True).min() > 0.0
+    assert point_clearance(robot, cell, made.milestones).min() > 0.0
+    plain = make_roadmap(robot, TABLE, 40, k=4, ends=20)
+    assert not ArmWorld(robot, cell).valid(plain.milestones).all(), "they are in the way of something"
+    er.save_robot_roadmap(tmp_path / "a.roadmap", made)
+    again = er.load_robot_roadmap(tmp_path / "a.roadmap", robot, cell)
+    assert again.cell == cell
+    np.testing.assert_array_equal(again.edges, made.edges)
+    known = again.in_scene(Scene("today", (Obstacle.of("ball", "sphere", (0.05,), (0.5, 0.3, 0.4)),)))
+    assert [each.name for each in known.world.scene.obstacles] == ["table", "wedge", "scan", "ball"]
+    solved = 0
+    for start, goal in zip(made.milestones[:8], made.milestones[8:16], strict=True):
+        result = known.plan(start, goal)
+        if result.solved:
+            solved += 1
+            assert known.world.recheck(result.path).all()
+    assert solved >= 4
+    moved = cell.without("wedge").with_(Obstacle("wedge", Mesh(wedge), cell=True))
+    with pytest.raises(er.InvalidValue, match="'wedge' of scene 'cell' is a mesh"):
+        er.load_robot_roadmap(tmp_path / "a.roadmap", cell=moved)
 
 
 def test_the_same_arguments_give_the_same_roadmap(roadmap):

@@ -235,8 +235,8 @@ def test_a_search_without_room_begins_again_with_more(roadmap, monkeypatch):
     expected = SceneRoadmap(roadmap, box_scene()).connect(start, goal)
     prepare, rooms = known._graph.prepare, []
 
-    def little(*arguments):
-        prepare(*arguments)
+    def little(*arguments, **more):
+        prepare(*arguments, **more)
         rooms.append(arguments[-1])
         if arguments[-1] < 4:
             known._graph.desk[ENTRIES] = 60

@@ -43,7 +43,8 @@ class PlanOptions:
     connect_radius: float | None = None
     """Connect milestones up to this distance instead, in map units or radians."""
     sampler: str = "auto"
-    """even, hickernell, mpmc, korobov, lattice, cover, halton, sobol, sukharev or uniform; auto is even."""
+    """auto (even), even, growing, sequence, hickernell, mpmc, korobov, lattice, cover, halton, sobol, sukharev or
+    uniform."""
     plain: bool = False
     """halton and sobol: the plain sequence instead of the scrambled one."""
     skip: int = 0

@@ -26,7 +26,7 @@ class Points:
     d: Annotated[int, tyro.conf.arg(aliases=["-d"])]
     """How many dimensions."""
     family: str = "even"
-    """even, hickernell, mpmc, korobov, lattice, cover, halton, sobol, sukharev or uniform."""
+    """even, growing, sequence, hickernell, mpmc, korobov, lattice, cover, halton, sobol, sukharev or uniform."""
     seed: int = 0
     """Which set of the family's pool, and every other random choice."""
     no_train: bool = False

@@ -38,6 +38,9 @@ class MakeRoadmap(RobotOptions):
     """Each is joined to so many of the nearest ones that it can reach freely."""
     gamma: float = 2.0
     """Milestones are as dense as the chance of being free in random scenes to this power, >= 0."""
+    tune: bool = False
+    """Choose gamma, and whether ends in pockets count, by random problems for this arm in this cell: some times as
+    long."""
     resolution: float = 0.05
     """Largest step of a motion check, > 0, in radians."""
     seed: int = 0
@@ -66,6 +69,7 @@ class MakeRoadmap(RobotOptions):
                 self.n,
                 k=self.k,
                 gamma=self.gamma,
+                tune=self.tune,
                 resolution=self.resolution,
                 rng=self.seed,
                 progress=lambda what, share: shown(int(1000 * share), 1000),
@@ -79,6 +83,7 @@ class MakeRoadmap(RobotOptions):
             ("roadmap", f"{n} milestones and {m} motions, free of {robot.name!r} and its cell {cell.name!r}"),
             ("joints", ", ".join(robot.group)),
             *([("turn on", ", ".join(wraps))] if wraps else []),
+            *([("tuned", roadmap.tuned)] if roadmap.tuned else []),
             ("time", f"{seconds:.1f} s"),
             ("file", f"{out}, {out.stat().st_size / 1000:.0f} kB"),
         ]

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol, TypeGuard
 
 import numpy as np
 
-from evenroad._arrays import Floats
+from evenroad._arrays import Bools, Floats
 from evenroad._clock import now
 from evenroad.robot import ArmWorld
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
@@ -18,6 +19,7 @@ from evenroad.robot_roadmap import search_memory as at
 from evenroad.robot_roadmap.known_graph import KnownGraph
 from evenroad.robot_roadmap.lazy_search import EDGE, FOUND, FULL, NODE, STRAIGHT
 from evenroad.robot_roadmap.search_memory import BLOCKED, PROVED, UNKNOWN
+from evenroad.world import World
 
 ENDS_TAKEN, SPENT, PAUSED = range(FULL + 1, FULL + 4)
 """What a search ends with besides what ``lazy_search.step`` does: start or goals not free, motions or time over, and
@@ -25,6 +27,17 @@ what only compiled code ends with."""
 
 _SLICE = 1000
 """Batches of sixteen checks between two looks at the clock: about 10 ms."""
+
+
+class Checks(World, Protocol):
+    """A world that proves motions, and says who does: ``lanes`` are asked by compiled code."""
+
+    @property
+    def backend(self) -> str:
+        """Who checks."""
+
+    def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> Bools:
+        """Return which motions, (m, dim) each, are free: (m,)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,29 +52,39 @@ class Asked:
 
 
 def ask(
-    world: ArmWorld,
-    day: ArmWorld,
+    world: Checks,
+    day: Checks,
     graph: KnownGraph,
     start: Floats,
     goals: Floats,
     *,
     links: int,
     greed: float,
+    only_known: bool = False,
+    unturned: bool = False,
     most_motions: int,
     deadline: float,
 ) -> Asked:
     """Search for a way from a start, (dim,), to one of some goals, (g, dim), each tried to be linked to so many.
 
-    Of what the roadmap knows to be free of robot and cell, `day` is asked; of the rest the whole world.
+    Of what the roadmap knows to be free of robot and cell, `day` is asked; of the rest the whole world.  With
+    `only_known` the query is the last one, and nothing is gone along but what is known to be free by now.
+    With `unturned` ends are linked to milestones as these are, not turned to be near.
     """
     room = 1
     while True:
-        graph.prepare(start, goals, links, greed, room)
-        by = _by_lanes if world.backend == "lanes" and day.backend == "lanes" else _one_by_one
-        asked = by(world, day, graph, most_motions, deadline)
+        graph.prepare(start, goals, links, greed, room, only_known=only_known, unturned=unturned)
+        if _by_one_program(world) and _by_one_program(day):
+            asked = _by_lanes(world, day, graph, most_motions, deadline)
+        else:
+            asked = _one_by_one(world, day, graph, most_motions, deadline)
         if asked.ended != FULL:
             return asked
         room *= 2
+
+
+def _by_one_program(world: Checks) -> TypeGuard[ArmWorld]:
+    return isinstance(world, ArmWorld) and world.backend == "lanes"
 
 
 def _by_lanes(world: ArmWorld, day: ArmWorld, graph: KnownGraph, most_motions: int, deadline: float) -> Asked:
@@ -86,9 +109,7 @@ def _by_lanes(world: ArmWorld, day: ArmWorld, graph: KnownGraph, most_motions: i
     return Asked(ended, path[:rows][::-1].copy(), goal if ended == FOUND else -1, milestones, motions)
 
 
-def _one_by_one(
-    world: ArmWorld, day: ArmWorld, graph: KnownGraph, most_motions: int, deadline: float
-) -> Asked:
+def _one_by_one(world: Checks, day: Checks, graph: KnownGraph, most_motions: int, deadline: float) -> Asked:
     desk, path, nothing = graph.desk, graph.path, np.empty((0, len(graph.asked[0])))
     milestones = motions = 0
     if not world.valid(graph.ends).all():

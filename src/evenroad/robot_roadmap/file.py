@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from dataclasses import asdict
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -11,15 +13,19 @@ import numpy as np
 from evenroad import __version__
 from evenroad._npz import Arrays, Path, digest, read_json, read_npz, require_array, write_npz
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue
+from evenroad.geometry import Mesh, PointCloud, Pose, TriangleMesh
 from evenroad.robot import Obstacle, Robot, Scene
 from evenroad.robot.cache import robot_of
 from evenroad.robot_roadmap.cell import require_same_cell, require_same_robot
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
 from evenroad.robot_roadmap.turns import TURN
 
-FORMAT = 1
+FORMAT = 2
+_SETTINGS = ("resolution", "gamma", "ends", "tuned")
 _ARRAYS = ("milestones", "edges", "turns", "weights")
-_NAMES = {"format", "version", "robot", "cell", "settings", "digest", *_ARRAYS}
+_SURFACES = ("points", "triangles")
+"""Of the cell's clouds and meshes, one after the other."""
+_NAMES = {"format", "version", "robot", "cell", "settings", "digest", *_ARRAYS, *_SURFACES}
 _CELL = ("name", "obstacles", "allowed", "states", "limits")
 
 
@@ -28,13 +34,14 @@ def save_robot_roadmap(path: Path, roadmap: RobotRoadmap) -> None:
 
     Raises BrokenFile if the file cannot be written; whatever was at `path` is then untouched.
     """
-    settings = {"resolution": roadmap.resolution, "gamma": roadmap.gamma}
+    settings = {name: getattr(roadmap, name) for name in _SETTINGS}
     arrays: Arrays = dict(
         format=np.array(FORMAT),
         version=np.array(__version__),
         robot=np.array(json.dumps(asdict(roadmap.robot), default=np.ndarray.tolist)),
         cell=np.array(json.dumps(_cell_record(roadmap.cell))),
         settings=np.array(json.dumps(settings)),
+        **_surfaces(roadmap.cell),
         **{name: getattr(roadmap, name) for name in _ARRAYS},
     )
     write_npz(path, arrays | {"digest": np.array(digest(arrays))}, compressed=True)
@@ -67,9 +74,9 @@ def load_robot_roadmap(path: Path, robot: Robot | None = None, cell: Scene | Non
             f"{path} has format {made_by[0]} of evenroad {made_by[1]}, this is format {FORMAT} of {__version__}:"
             " make the roadmap anew, since what it calls free was checked by that version"
         )
-    settings = read_json(path, "settings", arrays["settings"], ("resolution", "gamma"))
+    settings = read_json(path, "settings", arrays["settings"], _SETTINGS)
     try:
-        made_robot, made_cell = robot_of(json.loads(str(arrays["robot"]))), _cell(path, arrays["cell"])
+        made_robot, made_cell = robot_of(json.loads(str(arrays["robot"]))), _cell(path, arrays)
         fields: dict[str, Any] = {name: arrays[name] for name in _ARRAYS} | settings
         made = RobotRoadmap(robot=made_robot, cell=made_cell, **fields)
         _check(path, made)
@@ -108,22 +115,64 @@ def _check(path: Path, made: RobotRoadmap) -> None:
 
 
 def _cell_record(cell: Scene) -> dict[str, Any]:
-    obstacles = [(o.name, o.shape, o.size, o.xyz, o.rotation, o.cell) for o in cell.obstacles]
     return dict(
         name=cell.name,
-        obstacles=obstacles,
+        obstacles=[
+            (o.name, o.shape, _size(o), o.xyz, o.rotation, o.cell, getattr(_surface(o), "name", ""))
+            for o in cell.obstacles
+        ],
         allowed=sorted(cell.allowed),
         states=cell.states,
         limits=cell.limits,
     )
 
 
-def _cell(path: Path, array: Any) -> Scene:
-    record = read_json(path, "cell", array, _CELL)
+def _surface(obstacle: Obstacle) -> TriangleMesh | None:
+    return obstacle.body.triangles if isinstance(obstacle.body, Mesh) else None
+
+
+def _size(obstacle: Obstacle) -> tuple[float, ...]:
+    """Return the dimensions of a body; of a cloud its radius and number of points, of a mesh two numbers of rows."""
+    if isinstance(obstacle.body, PointCloud):
+        return obstacle.body.radius, len(obstacle.body.points)
+    mesh = _surface(obstacle)
+    return obstacle.size if mesh is None else (len(mesh.vertices), len(mesh.triangles))
+
+
+def _surfaces(cell: Scene) -> Arrays:
+    points, triangles = [np.empty((0, 3))], [np.empty((0, 3), dtype=np.int64)]
+    for obstacle in cell.obstacles:
+        if isinstance(obstacle.body, PointCloud):
+            points.append(obstacle.body.points)
+        elif (mesh := _surface(obstacle)) is not None:
+            points.append(mesh.vertices)
+            triangles.append(mesh.triangles)
+    return {"points": np.concatenate(points), "triangles": np.concatenate(triangles)}
+
+
+def _cell(path: Path, arrays: Arrays) -> Scene:
+    record = read_json(path, "cell", arrays["cell"], _CELL)
+    points, triangles = iter(arrays["points"]), iter(arrays["triangles"])
+
+    def obstacle(
+        name: str, shape: str, size: list[float], xyz: Any, rotation: Any, cell: bool, surface: str
+    ) -> Obstacle:
+        pose = Pose(tuple(xyz), tuple(rotation))
+        if shape == PointCloud.kind:
+            return Obstacle(name, PointCloud(_rows(points, size[1]), size[0], pose=pose), cell)
+        if shape == Mesh.kind:
+            mesh = TriangleMesh(_rows(points, size[0]), _rows(triangles, size[1]), surface)
+            return Obstacle(name, Mesh(mesh, pose=pose), cell)
+        return Obstacle.of(name, shape, size, xyz, rotation, cell)
+
     return Scene(
         record["name"],
-        tuple(Obstacle.of(*fields) for fields in record["obstacles"]),
+        tuple(obstacle(*fields) for fields in record["obstacles"]),
         frozenset((link, name) for link, name in record["allowed"]),
         record["states"],
         {joint: (lower, upper) for joint, (lower, upper) in record["limits"].items()},
     )
+
+
+def _rows(rows: Iterator[Any], count: float) -> Any:
+    return np.array(list(islice(rows, int(count))))

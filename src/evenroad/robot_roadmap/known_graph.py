@@ -3,19 +3,34 @@
 from __future__ import annotations
 
 from copy import copy
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints, Ints32
-from evenroad.robot.kernel.addresses import address, matrix_at
+from evenroad.robot.kernel.addresses import address, doubles_at, integers_at, matrix_at
 from evenroad.robot.kernel.layout import program, quick
 from evenroad.robot_roadmap import search_memory as at
-from evenroad.robot_roadmap.search_memory import BLOCKED, FREE, PROVED, UNKNOWN, Search, search_at
-from evenroad.robot_roadmap.search_metric import BITS, length_of_edge
+from evenroad.robot_roadmap.search_memory import (
+    BLOCKED,
+    FREE,
+    PROVED,
+    UNKNOWN,
+    Search,
+    group_of,
+    join,
+    kept_in_order,
+    search_at,
+)
+from evenroad.robot_roadmap.search_metric import BITS, length_of_edge, measure, write, write_distances
 from evenroad.robot_roadmap.turns import TURN, OneTurn
 
 JOINED = 8
 """Nearest milestones that a learned one may be joined to; whether they can be is asked when a search comes by."""
+
+LEAST = 8
+"""A group of fewer milestones that free motions join leads nowhere."""
 
 ROOM = 256
 """Milestones to be learned that there is room for at first."""
@@ -42,7 +57,8 @@ class KnownGraph:
         self.rules[[at.LOW, at.HIGH]] = one.limits
         self.rules[at.LIFTS], self.rules[at.ENDLESS] = one.lifts, one.wraps & ~one.lifts
         self.rules[at.MIDDLE], self.rules[at.GREED] = 0.5 * (one.low + one.high), 1.0
-        self.desk[at.DIM] = dim
+        self.desk[at.DIM], self.desk[at.LIFTING] = dim, one.lifts.any()
+        self._query, self._shape = np.empty(0), (0, 0)
         self._make_room(n, count, len(edges))
         self.desk[[at.NODES, at.HALVES_MADE, at.EDGES_MADE, at.BASE]] = n, count, len(edges), len(edges)
         self.milestones[:n], self.columns[:, :n] = milestones, milestones.T
@@ -50,11 +66,12 @@ class KnownGraph:
         half, here = self.halves[:count], np.arange(count)
         half[:, at.OTHER] = np.concatenate([edges[:, 1], edges[:, 0]])[order]
         half[:, at.NUMBER] = np.tile(np.arange(len(edges)), 2)[order]
-        half[:, at.TURNS] = np.concatenate([turned, -turned])[order]
+        self.leads[:count] = np.concatenate([turned, -turned])[order]
         half[:, at.NEXT] = here + 1
         half[np.flatnonzero(np.append(own[1:] != own[:-1], True)[:count]), at.NEXT] = -1
         self.first[:] = -1
         self.first[own[::-1]] = here[::-1]
+        self.groups[:n] = np.arange(n)
         way = milestones[edges[:, 1]] + TURN * turns - milestones[edges[:, 0]]
         self.lengths[:count] = np.tile(np.linalg.norm(way, axis=1), 2)[order]
 
@@ -62,14 +79,16 @@ class KnownGraph:
         """Return a graph of which nothing is known, for narrower ranges, (dim,)."""
         fresh = copy(self)
         fresh.desk, fresh.rules = self.desk.copy(), self.rules.copy()
-        fresh._known, fresh._graph = self._known.copy(), self._graph.copy()
+        fresh._known, fresh.edges = self._known.copy(), np.zeros_like(self.edges)
+        # Half edges are shared until the first are learned.
+        fresh._shares, fresh._query, fresh._shape = True, np.empty(0), (0, 0)
         fresh._lay_out()
         fresh.rules[at.LOW] = np.maximum(self.rules[at.LOW], low)
         fresh.rules[at.HIGH] = np.minimum(self.rules[at.HIGH], high)
         n = int(self.desk[at.NODES])
         lifts, q = self.rules[at.LIFTS] > 0.0, self.milestones[:n]
-        fresh.nodes[:n] = np.where((~lifts & ((q < low) | (q > high))).any(axis=1), BLOCKED, UNKNOWN)
-        fresh.edges[:] = UNKNOWN
+        if np.any(~lifts & ((low > self.rules[at.LOW]) | (high < self.rules[at.HIGH]))):
+            fresh.nodes[:n] = np.where((~lifts & ((q < low) | (q > high))).any(axis=1), BLOCKED, UNKNOWN)
         return fresh
 
     def _make_room(self, nodes: int, halves: int, edges: int) -> None:
@@ -77,65 +96,148 @@ class KnownGraph:
         desk, dim, more = self.desk, int(self.desk[at.DIM]), ROOM * (JOINED + 2)
         desk[at.CAPACITY], desk[at.HALVES], desk[at.EDGES] = nodes + ROOM, halves + 2 * more, edges + more
         self._known = np.zeros(at.known_room(nodes + ROOM, dim))
-        self._graph = np.zeros(5 * (halves + 2 * more) + edges + more)
+        self._graph, self._shares = np.zeros(at.graph_room(halves + 2 * more)), False
+        self.edges = np.zeros(edges + more, dtype=np.uint8)
         self._lay_out()
 
     def _lay_out(self) -> None:
         """Write where things lie in the memory."""
         desk, dim, capacity = self.desk, int(self.desk[at.DIM]), int(self.desk[at.CAPACITY])
-        desk[at.KNOWN], desk[at.GRAPH], desk[at.RULES] = map(address, (self._known, self._graph, self.rules))
+        parts, graph = (self._known, self._graph, self.rules, self.edges), self._graph
+        desk[[at.KNOWN, at.GRAPH, at.RULES, at.VERDICTS]] = [address(part) for part in parts]
         self.milestones = self._known[: dim * capacity].reshape(capacity, dim)
         self.columns = self._known[dim * capacity :].view(np.float32)[: dim * capacity].reshape(dim, capacity)
-        self.nodes, self.first = self._known[-2 * capacity :].view(np.int64).reshape(2, capacity)
-        split = 4 * int(desk[at.HALVES])
-        self.halves = self._graph[:split].view(np.int64).reshape(-1, 4)
-        self.lengths = self._graph[split : split // 4 * 5]
-        self.edges = self._graph[split // 4 * 5 :].view(np.int64)
-        self._query, self._shape = np.empty(0), (0, 0)
+        known = self._known[-3 * capacity :].view(np.int64)
+        self.nodes, self.first, self.groups = known.reshape(3, capacity)
+        count = int(desk[at.HALVES])
+        split = at.HALF * count // 2
+        self.halves = graph[:split].view(np.int32).reshape(count, at.HALF)
+        self.leads = graph[split : split + count].view(np.int64)
+        self.lengths = graph[split + count :].view(np.float32)
 
     def _grow(self) -> None:
         """Take more memory, and copy what there is."""
-        old = self.milestones, self.nodes, self.first, self.halves, self.lengths, self.edges
+        old = self._arrays()
         self._make_room(len(self.nodes), len(self.halves), len(self.edges))
-        new = self.milestones, self.nodes, self.first, self.halves, self.lengths, self.edges
+        self._query, self._shape = np.empty(0), (0, 0)
+        new = self._arrays()
         for before, after in zip(old, new, strict=True):
             after[: len(before)] = before
         self.columns[:, : len(old[0])] = old[0].T
 
-    def prepare(self, start: Floats, goals: Floats, links: int, greed: float, room: int = 1) -> None:
+    def _arrays(self) -> tuple[npt.NDArray[Any], ...]:
+        known = self.milestones, self.nodes, self.first, self.groups
+        return *known, self.halves, self.leads, self.lengths, self.edges
+
+    def prepare(
+        self,
+        start: Floats,
+        goals: Floats,
+        links: int,
+        greed: float,
+        room: int = 1,
+        *,
+        only_known: bool = False,
+        unturned: bool = False,
+    ) -> None:
         """Write a query, of which nothing is known yet.
 
-        `greed` multiplies the bound of the search, 1 for the shortest way; `room` the usual memory.
+        `greed` multiplies the bound of the search, 1 for the shortest way; `room` the usual memory.  With
+        `only_known` it is the last query, whose links are known; where these are forgotten, it is a new one.  With
+        `unturned` ends are linked to milestones in their one turn.
         """
         desk, e, self.rules[at.GREED] = self.desk, 1 + len(goals), greed
         dim, capacity = int(desk[at.DIM]), int(desk[at.CAPACITY])
         desk[at.LINKS] = min(links, desk[at.NODES])
         if self._shape != (e, room):
-            self._shape = e, room
+            self._shape, only_known = (e, room), False
             desk[at.ENDS], desk[at.STATES] = e, 2 * room * capacity
-            desk[at.ENTRIES] = room * (desk[at.HALVES] + (1 + e) * capacity)
+            desk[at.ENTRIES] = room * (desk[at.HALVES] + (2 + e) * capacity)
             self._query = np.empty(at.query_room(desk))
             desk[at.QUERY] = address(self._query)
-            begin, end = (e + 2) * dim, (e + 2) * dim + 4 * e * capacity
+            # The last end is a place that is learned.
+            begin = (e + 3) * dim
+            behind = begin + 4 * (e + 1) * capacity
             self.ends = self._query[: e * dim].reshape(e, dim)
-            self.asked = self._query[e * dim : begin].reshape(2, dim)
-            self._links = self._query[begin : begin + 2 * e * capacity].view(np.int64)
-            self._straight = self._query[end : end + e].view(np.int64)
+            self.asked = self._query[(e + 1) * dim : begin].reshape(2, dim)
+            rows = self._query[begin : begin + 2 * (e + 1) * capacity].view(np.int64)
+            self._links = rows.reshape(2 * (e + 1), capacity)
+            self._links[:] = 0
+            self._straight = self._query[behind : behind + e].view(np.int64)
             self.path = np.empty((2 * room * capacity + 2, dim))
         self.ends[0], self.ends[1:] = start, goals
-        # Verdicts of the links, and behind them the turns of those that do not turn.
-        self._links[:] = 0
-        self._straight[:] = UNKNOWN
+        desk[at.ONLY_KNOWN], desk[at.UNTURNED] = only_known, unturned
+        if not only_known:
+            # Verdicts of the links, and behind them the turns of those that do not turn.
+            self._links[:, : desk[at.NODES]] = 0
+            self._straight[:], desk[at.MEASURED] = UNKNOWN, 0
+
+    def around(self, weights: Floats, onward: float, most: int) -> list[Floats | None]:
+        """Return which milestones, (m, dim), ways out of start and goal of the last search may lead to.
+
+        Of the largest group that free motions join, these have the shortest way by them from end to end, of
+        which the part beyond counts `onward`, in the metric of such weights, (dim,).  None for an end that is
+        linked to the group; none, m = 0, where the group is small.
+        """
+        found, counts = np.empty((2, most, len(weights))), np.empty(2, dtype=np.int64)
+        _around(address(self.desk), address(weights), onward, most, address(found), address(counts))
+        return [
+            None if count < 0 else rows[:count] for rows, count in zip(found, counts.tolist(), strict=True)
+        ]
 
     def learn(self, path: Floats) -> None:
         """Take the waypoints of a path, (p, dim), for milestones; its motions are proved free today."""
         path = np.ascontiguousarray(path)
+        if self._shares and len(path):
+            self._graph, self._shares = self._graph.copy(), False
+            self._lay_out()
         if not len(self._query):
             # Room that is worked in.
             self.prepare(self.milestones[0], self.milestones[:1], 1, 1.0)
         while not _learn(address(self.desk), address(path), len(path)):
             self._grow()
             self.prepare(path[0], path[:1], 1, 1.0)
+            # What is kept of a query is gone.
+            self._shape = (0, 0)
+
+
+@program
+def _around(desk: int, weights: int, onward: float, most: int, into: int, counts: int) -> int:
+    """Write what `KnownGraph.around` returns."""
+    s, found, main = search_at(desk), integers_at(counts, (2,)), 0
+    n, dim = s.desk[at.NODES], s.desk[at.DIM]
+    for i in range(n):
+        s.heads[i] = 0
+    for i in range(n):
+        if s.nodes[i] == FREE:
+            group = group_of(s, i)
+            s.heads[group] += 1
+            main = group if s.heads[group] > s.heads[main] else main
+    few = s.heads[main] < LEAST
+    for end in range(2):
+        found[end] = 0
+        for i in range(n):
+            if s.links[end, i] >= FREE and group_of(s, i) == main:
+                found[end] = -1
+    weight, way = doubles_at(weights, (dim,)), s.costs[:n]
+    for end in range(2):
+        if few or found[end] < 0:
+            continue
+        write_distances(s, end, weight, way)
+        write_distances(s, 1 - end, weight, s.keys[:n])
+        for i in range(n):
+            way[i] += onward * s.keys[i]
+        count = 0
+        for i in range(n):
+            if count == most and way[i] >= s.keys[most - 1]:
+                continue
+            if s.nodes[i] == FREE and group_of(s, i) == main:
+                count = kept_in_order(s.keys, s.items, count, most, way[i], i)
+        rows = matrix_at(into + 8 * end * most * dim, (most, dim))
+        for rank in range(count):
+            write(s, s.items[rank], s.turns[end, s.items[rank]], rows[rank])
+        found[end] = count
+    return main
 
 
 @program
@@ -164,45 +266,37 @@ def _add_milestone(s: Search, q: Floats) -> tuple[int, int]:
 
     A new one may be joined to its nearest ones, which nobody has asked about.
     """
-    d, dim, packed = s.desk, s.desk[at.DIM], 0
-    new, count = d[at.NODES], 0
+    d, dim, packed, count = s.desk, s.desk[at.DIM], 0, 0
+    new, guest = d[at.NODES], d[at.ENDS]
     for k in range(dim):
         turn = np.rint((q[k] - s.rules[at.MIDDLE, k]) / TURN) if s.rules[at.LIFTS, k] > 0.0 else 0.0
-        s.milestones[new, k] = q[k] - TURN * turn
+        s.ends[guest, k], s.milestones[new, k] = q[k], q[k] - TURN * turn
         s.columns[k * d[at.CAPACITY] + new] = s.milestones[new, k]
         packed += int(turn) << (BITS * k)
+    measure(s, guest, 0)
     for i in range(new):
-        if s.nodes[i] == BLOCKED:
+        away = s.away[guest * d[at.CAPACITY] + i]
+        if (count == JOINED and away >= s.keys[JOINED - 1]) or s.nodes[i] == BLOCKED:
             continue
-        squared, most = 0.0, 0.0
-        for k in range(dim):
-            apart = s.milestones[i, k] - s.milestones[new, k]
-            most = max(most, abs(apart))
-            if s.rules[at.LIFTS, k] > 0.0 or s.rules[at.ENDLESS, k] > 0.0:
-                apart -= TURN * np.rint(apart / TURN)
-            squared += apart * apart
-        if most == 0.0:
+        if away == 0.0 and _same(s, i, new):
             s.nodes[i] = FREE
             return i, packed
-        if count == JOINED and squared >= s.keys[count - 1]:
-            continue
-        # Kept in order.
-        count = min(count + 1, JOINED)
-        place = count - 1
-        while place > 0 and s.keys[place - 1] > squared:
-            s.keys[place], s.items[place] = s.keys[place - 1], s.items[place - 1]
-            place -= 1
-        s.keys[place], s.items[place] = squared, i
-    s.nodes[new], s.first[new] = FREE, -1
+        count = kept_in_order(s.keys, s.items, count, JOINED, away, i)
+    s.nodes[new], s.first[new], s.groups[new] = FREE, -1, new
     d[at.NODES] = new + 1
     for rank in range(count):
-        i, turns = s.items[rank], 0
-        for k in range(dim):
-            if s.rules[at.LIFTS, k] > 0.0:
-                apart = s.milestones[new, k] - s.milestones[i, k]
-                turns += int(np.rint(apart / TURN)) << (BITS * k)
-        _add_edge(s, new, i, turns, UNKNOWN)
+        i = s.items[rank]
+        _add_edge(s, new, i, s.turns[guest, i] - packed, UNKNOWN)
     return new, packed
+
+
+@quick
+def _same(s: Search, a: int, b: int) -> bool:
+    """Return whether two milestones are one place."""
+    same = True
+    for k in range(s.desk[at.DIM]):
+        same &= s.milestones[a, k] == s.milestones[b, k]
+    return same
 
 
 @quick
@@ -211,10 +305,12 @@ def _add_edge(s: Search, a: int, b: int, turns: int, verdict: int) -> None:
     d, edge, length = s.desk, s.desk[at.EDGES_MADE], length_of_edge(s, a, b, turns)
     d[at.EDGES_MADE] += 1
     s.edges[edge] = verdict
+    if verdict == PROVED:
+        join(s, a, b)
     for side in range(2):
         half, here = d[at.HALVES_MADE], a if side == 0 else b
         d[at.HALVES_MADE] += 1
         s.halves[half, at.OTHER], s.halves[half, at.NUMBER] = a + b - here, edge
-        s.halves[half, at.TURNS] = turns if side == 0 else -turns
+        s.leads[half] = turns if side == 0 else -turns
         s.halves[half, at.NEXT], s.first[here] = s.first[here], half
         s.lengths[half] = length

@@ -27,19 +27,23 @@ from evenroad.robot_roadmap.search_memory import (
     LEAST,
     LEFT,
     LIFTED,
+    LIFTING,
     LIFTS,
     LINKS,
     LOW,
     MADE,
+    MEASURED,
     NEXT,
     NODES,
     NUMBER,
     OF,
+    ONLY_KNOWN,
     OPEN,
     OTHER,
     PARENT,
     PENDING,
     PHASE,
+    PROVED,
     REACHED,
     SEARCH,
     SIBLING,
@@ -47,11 +51,12 @@ from evenroad.robot_roadmap.search_memory import (
     STATE,
     STATES,
     TO,
-    TURNS,
     UNKNOWN,
     VIA,
     WAITING,
     Search,
+    join,
+    kept_in_order,
 )
 from evenroad.robot_roadmap.search_metric import distance, measure, write
 
@@ -73,7 +78,8 @@ def begin(s: Search) -> None:
     """Measure how far milestones are from the ends, and choose those that each is tried to be linked to."""
     d, capacity = s.desk, s.desk[CAPACITY]
     for end in range(d[ENDS]):
-        measure(s, end)
+        measure(s, end, d[MEASURED])
+    d[MEASURED] = d[NODES]
     for end in range(d[ENDS]):
         count, last, s.radius[end] = 0, np.inf, 0.0
         for i in range(d[NODES]):
@@ -82,17 +88,16 @@ def begin(s: Search) -> None:
                 beyond = s.away[capacity + i]
                 for other in range(2, d[ENDS]):
                     beyond = min(beyond, s.away[other * capacity + i])
-            key = s.away[end * capacity + i] + np.float32(ONWARD) * beyond
-            if (count == d[LINKS] and key >= last) or s.nodes[i] == BLOCKED or s.links[end, i] == BLOCKED:
+            away = s.away[end * capacity + i]
+            if away == 0.0 and s.nodes[i] == FREE:
+                # An end that is a milestone needs no other.
+                count, s.near[end, 0], s.links[end, i] = 1, i, PROVED
+                break
+            key = away + np.float32(ONWARD) * beyond
+            if key >= last or s.nodes[i] == BLOCKED or s.links[end, i] == BLOCKED:
                 continue
-            # Kept in order.
-            count = min(count + 1, d[LINKS])
-            place = count - 1
-            while place > 0 and s.keys[place - 1] > key:
-                s.keys[place], s.near[end, place] = s.keys[place - 1], s.near[end, place - 1]
-                place -= 1
-            s.keys[place], s.near[end, place] = key, i
-            last = s.keys[count - 1]
+            count = kept_in_order(s.keys, s.near[end], count, d[LINKS], key, i)
+            last = s.keys[count - 1] if count == d[LINKS] else np.inf
         for rank in range(count):
             s.radius[end] = max(s.radius[end], s.away[end * capacity + s.near[end, rank]])
         for rank in range(count, d[LINKS]):
@@ -200,7 +205,7 @@ def _open(s: Search) -> None:
             _push(s, -end, -1, -1, distance(s, s.ends[0], s.ends[end]), 0.0)
     for rank in range(d[LINKS]):
         i = s.near[0, rank]
-        if i >= 0 and s.links[0, i] != BLOCKED:
+        if i >= 0 and (s.links[0, i] >= FREE or (s.links[0, i] == UNKNOWN and d[ONLY_KNOWN] == 0)):
             state = _state(s, i, s.turns[0, i])
             if state >= 0:
                 _push(s, state, -1, -1, s.away[i], s.bounds[state, LEFT])
@@ -260,6 +265,13 @@ def answer(s: Search, question: int, verdict: int) -> None:
         s.nodes[to] = verdict
     elif question == EDGE:
         s.edges[by] = verdict
+        if verdict == FREE:
+            entry = s.desk[PENDING]
+            join(
+                s,
+                s.states[s.entries[entry, STATE], OF],
+                s.states[s.entries[s.entries[entry, PARENT], STATE], OF],
+            )
     else:
         s.links[to, by] = verdict
         if verdict >= FREE:
@@ -288,15 +300,17 @@ def _expand(s: Search, state: int, entry: int) -> bool:
         return False
     for end in range(1, d[ENDS]):
         link, away = s.links[end, node], s.away[end * d[CAPACITY] + node]
-        wanted = d[AIM] < 0 and away <= s.radius[end]
+        wanted = d[AIM] < 0 and away <= s.radius[end] and d[ONLY_KNOWN] == 0
         if s.turns[end, node] == packed and (link >= FREE or (link == UNKNOWN and wanted)):
             _push(s, -end, entry, -1, cost + away, 0.0)
     half = s.first[node]
     while half >= 0:
         there, edge, reached = s.halves[half, OTHER], s.halves[half, NUMBER], cost + s.lengths[half]
-        turned = packed + s.halves[half, TURNS]
+        turned = packed + s.leads[half] if d[LIFTING] != 0 else packed
         half = s.halves[half, NEXT]
         if s.edges[edge] == BLOCKED or s.nodes[there] == BLOCKED:
+            continue
+        if d[ONLY_KNOWN] != 0 and s.edges[edge] == UNKNOWN:
             continue
         if d[SIZE] >= d[STATES] or d[MADE] >= d[ENTRIES]:
             return False
@@ -322,17 +336,22 @@ def _state(s: Search, node: int, packed: int) -> int:
     s.states[state, OF], s.states[state, LIFTED] = node, packed
     s.states[state, SIBLING], s.states[state, REACHED] = s.heads[node], -1
     s.heads[node] = state
-    write(s, node, packed, s.asked[1])
     least, inside = np.inf, True
-    for k in range(d[DIM]):
-        if s.rules[LIFTS, k] > 0.0:
-            inside &= s.rules[LOW, k] <= s.asked[1, k] <= s.rules[HIGH, k]
+    if d[LIFTING] != 0 or d[AIM] >= 0:
+        write(s, node, packed, s.asked[1])
+        for k in range(d[DIM]):
+            if s.rules[LIFTS, k] > 0.0:
+                inside &= s.rules[LOW, k] <= s.asked[1, k] <= s.rules[HIGH, k]
     if d[AIM] >= 0:
         write(s, d[AIM], s.turns[d[AIMED_END], d[AIM]], s.asked[0])
         least = distance(s, s.asked[1], s.asked[0]) + s.away[d[AIMED_END] * d[CAPACITY] + d[AIM]]
     else:
         for end in range(1, d[ENDS]):
-            least = min(least, distance(s, s.asked[1], s.ends[end]))
+            if d[LIFTING] != 0 and packed != s.turns[end, node]:
+                least = min(least, distance(s, s.asked[1], s.ends[end]))
+            else:
+                # Where the goal's link would be, as it was measured.
+                least = min(least, s.away[end * d[CAPACITY] + node])
     s.bounds[state, LEFT], s.bounds[state, LEAST] = s.rules[GREED, 0] * least, np.inf
     if not inside:
         s.bounds[state, LEFT] = np.inf

@@ -11,40 +11,19 @@ from evenroad._arrays import Floats, Ints, Ints32
 from evenroad._checks import require_count, require_positive
 from evenroad._rng import RngLike, generator
 from evenroad.errors import InvalidValue
-from evenroad.geometry.shapes import PRIMITIVES
-from evenroad.points import draw
 from evenroad.roadmap.neighbours import nearest
-from evenroad.robot import ArmWorld, Robot, Scene, in_scene
-from evenroad.robot_roadmap.chance import chance_of_freedom
-from evenroad.robot_roadmap.pockets import ends_in_pockets
+from evenroad.robot import ArmWorld, Robot, Scene, in_scene, scene_seen_by
+from evenroad.robot_roadmap.recipe import ENDS, GAMMA, Recipe, chosen, known_of
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
-from evenroad.robot_roadmap.spread import displacement_weights, spread_order
-from evenroad.robot_roadmap.turns import TURN, OneTurn, lifted_motions_free, one_turn, shifts, whole_turns
+from evenroad.robot_roadmap.tuning import CANDIDATES, EASY, tune_recipe
+from evenroad.robot_roadmap.turns import OneTurn, lifted_motions_free, one_turn, shifts, whole_turns
 from evenroad.space import JointSpace
-
-CANDIDATES = 16
-"""Free configurations that one milestone is chosen from."""
-
-MOST_DRAWN = 1 << 20
-"""Where fewer than the wanted ones are free among so many, the robot is said to be hardly ever free."""
 
 MOST = 1 << 15
 """Milestones: their order takes time with the square of their number."""
 
 TRIED = 60
 """Nearest milestones that each is tried to be joined to."""
-
-GAMMA = 2.0
-"""Power of the chance of being free that milestones are as dense as, before the ends count."""
-
-ENDS = 1500
-"""Ends in pockets at random that milestones learn from."""
-
-SCENES = 400
-"""Random scenes by which the chance of being free is measured."""
-
-FIRST = 1500
-"""Configurations that the weights of the metric are measured on."""
 
 
 def make_roadmap(
@@ -55,6 +34,7 @@ def make_roadmap(
     k: int = 16,
     gamma: float = GAMMA,
     ends: int = ENDS,
+    tune: bool = False,
     resolution: float = 0.05,
     rng: RngLike = 0,
     progress: Callable[[str, float], None] = lambda what, share: None,
@@ -70,7 +50,7 @@ def make_roadmap(
     robot : Robot
         With its tool, if it has one.
     cell : Scene, optional
-        What never moves around it: mount, fence, walls; and the ranges to plan in.  Default: nothing.
+        What never moves around it: mount, fence, walls, a scan; and the ranges to plan in.  Default: nothing.
     n : int
         Milestones, 1 to 32768; fewer where hardly any configuration is free.
     k : int
@@ -79,6 +59,9 @@ def make_roadmap(
         The spacing is in proportion to the chance of being free to the power of -gamma, >= 0.
     ends : int
         How many ends in pockets are learned from, >= 0.
+    tune : bool
+        Whether `gamma` and `ends` give way to others that lead to more goals among random problems for this robot in
+        this cell: up to a minute more.  `RobotRoadmap.tuned` says what came of it.
     resolution : float
         Largest step of a motion check, > 0 [rad].
     rng : int, SeedSequence or Generator
@@ -95,13 +78,8 @@ def make_roadmap(
     if n > MOST:
         raise InvalidValue(f"n must be at most {MOST}, got {n}")
     cell = Scene("nothing") if cell is None else cell
-    for obstacle in cell.obstacles:
-        if obstacle.shape not in PRIMITIVES:
-            raise InvalidValue(
-                f"a cell must consist of {', '.join(PRIMITIVES)}, which a roadmap's file holds, got"
-                f" {obstacle.name!r}, a {obstacle.body}: leave it to the scene of the day"
-            )
     robot = in_scene(robot, cell)
+    cell = scene_seen_by(robot, cell)
     if robot.holds:
         raise InvalidValue(
             f"a roadmap is made of a robot with empty hands, not one that holds {robot.holds[0]!r}"
@@ -110,38 +88,33 @@ def make_roadmap(
     if world.fixed_contact is not None:
         first, second = world.fixed_contact
         raise InvalidValue(f"the robot is never free in its cell: {first!r} always touches {second!r}")
-    dim = world.space.dim
-    gamma = require_positive("gamma", gamma, or_zero=True)
-    pool_rng, scene_rng, pocket_rng = generator(rng).spawn(3)
+    recipe = Recipe(require_positive("gamma", gamma, or_zero=True), ends)
+    recipes = [recipe, *(each for each in CANDIDATES if tune and each != recipe)]
     one = one_turn(world.space, whole_turns(robot))
-    progress("drawing configurations", 0.0)
-    pool = _free_pool(world, one, CANDIDATES * n, pool_rng)
-    n = min(n, len(pool))
-    weights = displacement_weights(robot, pool[:FIRST])
-    preference = np.ones(len(pool))
-    if gamma > 0.0:
-        chance = chance_of_freedom(
-            robot, pool, SCENES, scene_rng, lambda share: progress("random scenes", share)
-        )
-        preference = np.maximum(chance, 1.0 / SCENES) ** gamma
-    scaled = weights * pool
-    seen = ends_in_pockets(
-        robot, cell, pool, scaled, ends, pocket_rng, lambda share: progress("pockets", share)
-    )
-    progress("choosing milestones", 0.0)
-    order = spread_order(scaled, weights * _periods(one), preference, n, seen.first, seen.which)
-    progress("joining milestones", 0.0)
+    *streams, of_problems = generator(rng).spawn(4)
+    known = known_of(world, one, n, recipes, streams, progress)
     nothing = RobotRoadmap(
         robot,
         cell,
         world.resolution,
-        pool[:0],
+        known.pool[:0],
         np.empty((0, 2), np.int32),
-        np.empty((0, dim), np.int8),
-        weights,
+        np.empty((0, world.space.dim), np.int8),
+        known.weights,
         gamma,
     )
-    return joined(nothing, pool[order], k)
+
+    def made(by: Recipe) -> RobotRoadmap:
+        bare = replace(nothing, gamma=by.gamma, ends=by.ends)
+        return joined(bare, known.pool[chosen(known, by, min(n, len(known.pool)))], k)
+
+    said = ""
+    if tune:
+        recipe, said = tune_recipe(
+            joined(nothing, known.pool[:EASY], k), recipes, made, of_problems, progress
+        )
+    progress("choosing and joining milestones", 0.0)
+    return replace(made(recipe), tuned=said)
 
 
 def joined(roadmap: RobotRoadmap, milestones: Floats, k: int) -> RobotRoadmap:
@@ -150,29 +123,6 @@ def joined(roadmap: RobotRoadmap, milestones: Floats, k: int) -> RobotRoadmap:
     for array in (milestones, edges, turns, roadmap.weights):
         array.setflags(write=False)
     return replace(roadmap, milestones=milestones, edges=edges, turns=turns)
-
-
-def _periods(one: OneTurn) -> Floats:
-    """Return after how much each joint repeats for the spacing: a joint with stops repeats after its range."""
-    return np.where(one.wraps, TURN, one.high - one.low)
-
-
-def _free_pool(world: ArmWorld, one: OneTurn, count: int, rng: np.random.Generator) -> Floats:
-    """Return the first free ones of a low-discrepancy sequence, (count, dim), or the fewer that MOST_DRAWN hold."""
-    drawn = 2 * count
-    while True:
-        cube = draw("sobol", drawn, world.space.dim, rng=rng.spawn(1)[0]).points
-        q = one.low + cube * (one.high - one.low)
-        free = q[world.valid(q)]
-        if len(free) >= count or drawn >= MOST_DRAWN:
-            break
-        drawn *= 2
-    if not len(free):
-        raise InvalidValue(
-            f"the robot is never free in its cell: of {drawn} configurations none; in the last one"
-            f" {world.explain(q[-1])}"
-        )
-    return free[:count]
 
 
 def _free_edges(

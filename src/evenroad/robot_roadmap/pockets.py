@@ -85,16 +85,18 @@ def ends_in_pockets(
 
     `scaled` is the pool in the metric that tells which configurations are near.
     """
+    if not count:
+        return no_ends()
     around = Surroundings.of(robot, pool)
-    tips = _tips(robot, pool)
-    body, radii = _body(robot, pool)
+    tips = tips_of(robot, pool)
+    body, radii = body_of(robot, pool)
     own_of: list[int] = []
     found: list[Ints] = []
     for _ in range(TRIES * count if tips.shape[1] else 0):
         if len(found) == count:
             break
         own, tip = int(rng.integers(len(pool))), int(rng.integers(tips.shape[1]))
-        pocket = _pocket(tips[own, tip], around, rng)
+        pocket = pocket_around(tips[own, tip], around, rng)
         if pocket.touched_by(body[own], radii):
             continue
         scene = replace(cell, name="pocket", obstacles=(*cell.obstacles, *pocket.walls()))
@@ -124,7 +126,7 @@ def _seen(world: ArmWorld, pool: Floats, scaled: Floats, end: int) -> Ints:
     return near[free].astype(np.int64)
 
 
-def _tips(robot: Robot, pool: Floats) -> Floats:
+def tips_of(robot: Robot, pool: Floats) -> Floats:
     """Return the places of the links that carry no other and move, (n, tips, 3) [m]."""
     carrying = {joint.parent for joint in robot.joints}
     places = np.concatenate(
@@ -134,7 +136,7 @@ def _tips(robot: Robot, pool: Floats) -> Floats:
     return places[:, [i for i in ends if np.ptp(places[:, i], axis=0).max() > STILL]]
 
 
-def _body(robot: Robot, pool: Floats) -> tuple[Floats, Floats]:
+def body_of(robot: Robot, pool: Floats) -> tuple[Floats, Floats]:
     """Return places along the axes of all capsules, (n, places, 3), and their radii, (places,) [m]."""
     ends = np.concatenate([capsule_ends(robot, q) for q in np.array_split(pool, -(-len(pool) // 10_000))])
     share = np.linspace(0.0, 1.0, ALONG)[:, np.newaxis]
@@ -142,7 +144,7 @@ def _body(robot: Robot, pool: Floats) -> tuple[Floats, Floats]:
     return places.reshape(len(pool), -1, 3), np.repeat([each.radius for each in robot.capsules], ALONG)
 
 
-class _Pocket(NamedTuple):
+class Pocket(NamedTuple):
     """A box without its side to -x: centre, (3,), axes, (3, 3), half extents, (3,), of its walls too, (5, 3) each."""
 
     centre: Floats
@@ -162,13 +164,17 @@ class _Pocket(NamedTuple):
         axes = tuple(self.turn.ravel().tolist())
         return tuple(
             Obstacle.of(
-                f"wall {i}", "box", (2.0 * size).tolist(), (self.centre + self.turn @ place).tolist(), axes
+                f"wall {i} of a pocket",
+                "box",
+                (2.0 * size).tolist(),
+                (self.centre + self.turn @ place).tolist(),
+                axes,
             )
             for i, (place, size) in enumerate(zip(self.places, self.sizes, strict=True))
         )
 
 
-def _pocket(tip: Floats, around: Surroundings, rng: np.random.Generator) -> _Pocket:
+def pocket_around(tip: Floats, around: Surroundings, rng: np.random.Generator) -> Pocket:
     """Return a pocket around a tip."""
     x, y, _ = tip - around.base
     angle = np.arctan2(y, x) + rng.uniform(-TURNED, TURNED)
@@ -179,4 +185,4 @@ def _pocket(tip: Floats, around: Surroundings, rng: np.random.Generator) -> _Poc
     half = around.reach * rng.uniform(_LEAST, _MOST)
     centre = tip - turn @ (half * rng.uniform(-0.5, 0.5, 3))
     sizes = np.where(_SIDES == 0.0, half, WALL * around.reach)
-    return _Pocket(centre, turn, half, _SIDES * half, sizes)
+    return Pocket(centre, turn, half, _SIDES * half, sizes)

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints, Ints32
 from evenroad._clock import now
+from evenroad.geometry.shapes import Shape
 from evenroad.roadmap import Budget, PlanResult, Status
 from evenroad.roadmap.answer import connected, gave_up, refusal
 from evenroad.roadmap.attempt import Attempt
@@ -19,12 +20,15 @@ from evenroad.roadmap.find_path import NO_POINTS, SECONDS, with_reasons
 from evenroad.roadmap.query import Query, read_places
 from evenroad.robot import ArmWorld, Robot, Scene, configuration, in_scene
 from evenroad.robot.trees import shorten
-from evenroad.robot_roadmap.ask import ENDS_TAKEN, Asked, ask
+from evenroad.robot_roadmap.ask import ENDS_TAKEN, SPENT, Asked, Checks, ask
 from evenroad.robot_roadmap.cell import day_and_all, left_to_check, require_same_robot
 from evenroad.robot_roadmap.known_graph import KnownGraph
+from evenroad.robot_roadmap.lazy_search import CUT_OFF, NONE
 from evenroad.robot_roadmap.learned import with_paths
+from evenroad.robot_roadmap.own_shapes import OwnShapesWorld
 from evenroad.robot_roadmap.pockets import links_of
 from evenroad.robot_roadmap.turns import OneTurn, one_turn, whole_turns
+from evenroad.robot_roadmap.ways_out import learn_ways_out
 from evenroad.space.path import path_length
 from evenroad.world.protocol import Connection
 
@@ -44,15 +48,18 @@ LINKS = 300
 """Each end is tried to be linked to so many milestones where nothing else is said; plans without trees go by
 `links_of`: asked lazily, more links cost little but where ends are cut off, and there they are worth much."""
 
-TRIED_LINKS, TRIED_MOTIONS = 30, 200
+TRIED_LINKS, TRIED_MOTIONS = 30, 60
 """Where trees may follow, so many links of each end are tried, and so many motions: trees find ways out of narrow
 places with fewer checks than long links do."""
 
-PAIRS, CUTS = 32, 16
+PAIRS, CUTS, BATCHES = 16, 32, 120
 """What a path along the roadmap is shortened with: half of the work on trees' paths, for half a percent of length."""
 
 _LONG = 1e8
 """Seconds that stand for no limit."""
+
+_ready: set[str] = set()
+"""Backends whose programs are compiled."""
 
 _BUDGET = Budget(seconds=SECONDS)
 
@@ -79,6 +86,10 @@ class RobotRoadmap:
         What a unit of each joint counts in the roadmap's metric.
     gamma : float
         The power of the chance of being free that milestones are as dense as.
+    ends : int
+        How many ends in pockets they learned from, at most.
+    tuned : str
+        What came of tuning the two; empty without.
     """
 
     robot: Robot
@@ -89,11 +100,18 @@ class RobotRoadmap:
     turns: Ints
     weights: Floats
     gamma: float
+    ends: int = 0
+    tuned: str = ""
 
     @cached_property
     def world(self) -> ArmWorld:
         """The robot in its cell alone."""
         return ArmWorld(self.robot, self.cell, resolution=self.resolution)
+
+    @cached_property
+    def bare(self) -> Robot:
+        """The robot without the pairs of its own that are tested: what the roadmap knows."""
+        return replace(self.robot, pairs=())
 
     @cached_property
     def one_turn(self) -> OneTurn:
@@ -119,9 +137,9 @@ class RobotRoadmap:
         milestones, edges, turns = grown
         return replace(self, milestones=milestones, edges=edges, turns=turns)
 
-    def in_scene(self, scene: Scene) -> SceneRoadmap:
+    def in_scene(self, scene: Scene, shapes: Sequence[Shape] | None = None) -> SceneRoadmap:
         """Return the roadmap in the day's scene, for many queries in it: what one finds out serves the next."""
-        return SceneRoadmap(self, scene)
+        return SceneRoadmap(self, scene, shapes=shapes)
 
     def plan(
         self, scene: Scene, start: Place, goal: Place | Sequence[Place], *, budget: Budget | None = None
@@ -140,6 +158,9 @@ class SceneRoadmap:
         What stands around the robot today.  The roadmap's cell is always there, named again or not.
     robot : Robot, optional
         The roadmap's robot with other limits or named states.  Default: as it is in the scene.
+    shapes : sequence of Shape, optional
+        The robot's own, as of :func:`evenroad.robot.reference.coal_world.original_shapes`, which decide where its
+        capsules touch (extra ``mesh``).  Default: capsules alone.
 
     Attributes
     ----------
@@ -156,7 +177,13 @@ class SceneRoadmap:
         If the scene names something that is not there.
     """
 
-    def __init__(self, roadmap: RobotRoadmap, scene: Scene, robot: Robot | None = None) -> None:
+    def __init__(
+        self,
+        roadmap: RobotRoadmap,
+        scene: Scene,
+        robot: Robot | None = None,
+        shapes: Sequence[Shape] | None = None,
+    ) -> None:
         day, everything = day_and_all(roadmap.cell, scene)
         robot = in_scene(roadmap.robot if robot is None else robot, everything)
         require_same_robot(roadmap.robot, roadmap.cell, robot.empty_handed())
@@ -164,12 +191,22 @@ class SceneRoadmap:
         self.roadmap = roadmap
         self.world = ArmWorld(robot, everything, resolution=resolution)
         # What the roadmap knows to be free of the robot and its cell is asked about the other obstacles alone.
-        self._day = ArmWorld(*left_to_check(robot, roadmap.cell, day, everything), resolution=resolution)
+        bare, left = left_to_check(robot, roadmap.cell, day, everything)
+        # One and the same where it can be: what is known of it need not be looked up by all of its values.
+        bare = roadmap.bare if robot is roadmap.robot else bare
+        self._day = ArmWorld(bare, left, resolution=resolution)
+        self._asked: tuple[Checks, Checks] = self.world, self._day
+        if shapes is not None:
+            self._asked = OwnShapesWorld(self.world, shapes), OwnShapesWorld(self._day, shapes)
         self._graph = roadmap.graph.within(np.array(self.world.space.low), np.array(self.world.space.high))
+        self._wraps = bool(np.any(self.world.space.wrapping))
         self.learned: list[Floats] = []
-        # Compiled, or loaded, before a clock runs; nothing is checked but the ends.
-        self._ask(roadmap.milestones[0], roadmap.milestones[:1], 0, math.inf, 1)
-        self._graph.learn(roadmap.milestones[:0])
+        if self.world.backend not in _ready:
+            # Compiled, or loaded, before a clock runs; nothing is checked but the ends.
+            self._ask(roadmap.milestones[0], roadmap.milestones[:1], 0, math.inf, 1)
+            self._graph.learn(roadmap.milestones[:0])
+            self._graph.around(roadmap.weights, 0.0, 1)
+            _ready.add(self.world.backend)
 
     def connect(
         self,
@@ -190,11 +227,19 @@ class SceneRoadmap:
         return Connection(asked.path, asked.goal, self._size, asked.milestones, asked.motions)
 
     def _ask(
-        self, start: Floats, goals: Floats, most: int, deadline: float, links: int, greed: float = GREED
+        self,
+        start: Floats,
+        goals: Floats,
+        most: int,
+        deadline: float,
+        links: int,
+        greed: float = GREED,
+        *,
+        only_known: bool = False,
+        unturned: bool = False,
     ) -> Asked:
         return ask(
-            self.world,
-            self._day,
+            *self._asked,
             self._graph,
             start,
             goals,
@@ -202,6 +247,8 @@ class SceneRoadmap:
             greed=greed,
             most_motions=most,
             deadline=deadline,
+            only_known=only_known,
+            unturned=unturned,
         )
 
     @property
@@ -228,7 +275,7 @@ class SceneRoadmap:
         shorten : bool
             Whether the path is made shorter.
         trees : bool
-            Whether trees are tried, after 200 motions along the roadmap; else more of its links and all motions are.
+            Whether trees are tried, after 60 motions along the roadmap; else more of its links and all motions are.
 
         Returns
         -------
@@ -247,10 +294,16 @@ class SceneRoadmap:
         links = TRIED_LINKS if trees else links_of(self._size)
         limits = min(most, TRIED_MOTIONS) if trees else most, began + SHARE * min(deadline - began, _LONG)
         asked = self._ask(first, goals, *limits, links)
+        if asked.ended in (NONE, CUT_OFF, SPENT) and trees and len(goals) == 1:
+            asked = self._by_ways_out(asked, first, goals, most, limits[1])
+        elif asked.ended in (NONE, CUT_OFF) and not trees and self.roadmap.one_turn.lifts.any():
+            # What leads to the goal within one turn is not to be lost.
+            before, asked = asked.motions, self._ask(first, goals, *limits, links, unturned=True)
+            asked = replace(asked, motions=asked.motions + before)
         if asked.goal >= 0:
             return self._solved(asked, first, goals, shorten, began)
         query = Query(first, goals, shorten=shorten, budget=budget)
-        attempt = Attempt(self.world, query, NO_POINTS, "none", PLANNER)
+        attempt = Attempt(self._asked[0], query, NO_POINTS, "none", PLANNER)
         attempt.deadline, attempt.motions_checked = deadline, asked.motions
         attempt.watch.seconds["search"] = now() - began
         if (refused := refusal(attempt)) is not None:
@@ -268,7 +321,18 @@ class SceneRoadmap:
         if not trees:
             text = f"the roadmap of {self._size} milestones does not lead from start to goal today"
             failed = replace(failed, status=Status.NOT_CONNECTED, message=text)
-        return with_reasons(self.world, failed)
+        return with_reasons(self._asked[0], failed)
+
+    def _by_ways_out(self, asked: Asked, start: Floats, goals: Floats, most: int, deadline: float) -> Asked:
+        """Ask again along what is known to be free, with ways learned that lead there from the ends."""
+        left = most - asked.motions
+        out = learn_ways_out(self.world, self._graph, self.roadmap.weights, (start, goals[0]), left, deadline)
+        self.learned += out.ways
+        before = asked.milestones + out.configurations, asked.motions + out.motions
+        if out.complete:
+            asked = self._ask(start, goals, TRIED_MOTIONS, deadline, TRIED_LINKS, only_known=True)
+            before = before[0] + asked.milestones, before[1] + asked.motions
+        return replace(asked, milestones=before[0], motions=before[1])
 
     def _by_trees(self, attempt: Attempt, asked: Asked) -> Connection:
         """Return what trees find, and learn it."""
@@ -291,7 +355,7 @@ class SceneRoadmap:
         )
         seconds = {"search": found - began}
         if shorter:
-            path, counts["shortcut_motions"] = shorten(world, path, pairs=PAIRS, cuts=CUTS)
+            path, counts["shortcut_motions"] = shorten(world, path, pairs=PAIRS, cuts=CUTS, batches=BATCHES)
             length, seconds["shortcut"] = self._length(path), now() - found
         to = f" to goal {asked.goal}" if len(goals) > 1 else ""
         return PlanResult(
@@ -305,7 +369,7 @@ class SceneRoadmap:
             goal_index=asked.goal,
             path=path,
             milestone_path=asked.path,
-            proof=world.proof,
+            proof=world.proof if self._asked[0] is world or world.recheck(path).all() else "resolution",
             cost=length,
             milestone_cost=raw_length,
             counts=counts,
@@ -313,11 +377,11 @@ class SceneRoadmap:
         )
 
     def _length(self, path: Floats) -> float:
-        if np.any(self.world.space.wrapping):
+        if self._wraps:
             return path_length(path, self.world.space)
-        # The same, in a third of the time.
-        way = path[1:] - path[:-1]
-        return float(np.sqrt(np.einsum("ij,ij->i", way, way)).sum())
+        # The same, in a tenth of the time.
+        places = path.tolist()
+        return sum(map(math.dist, places, places[1:]))
 
     def _place(self, place: Place) -> npt.ArrayLike:
         """Return a configuration of a text; of numbers themselves."""

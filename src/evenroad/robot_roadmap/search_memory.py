@@ -7,11 +7,21 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.robot.kernel.addresses import doubles_at, integers_at, matrix_at, singles_at, table_at
+from evenroad.robot.kernel.addresses import (
+    bytes_at,
+    doubles_at,
+    integers_at,
+    matrix_at,
+    singles_at,
+    small_table_at,
+    table_at,
+)
 from evenroad.robot.kernel.layout import quick
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
+Ints32 = npt.NDArray[np.int32]
+Bytes = npt.NDArray[np.uint8]
 Singles = npt.NDArray[np.float32]
 
 UNKNOWN, BLOCKED, FREE, PROVED = range(4)
@@ -35,10 +45,19 @@ ASK_STRAIGHT, ASK_GOALS, OPEN, SEARCH = range(4)
 KNOWN, GRAPH, RULES, QUERY = range(21, 25)
 """Desk: addresses of milestones, of half edges, of the rules of the joints, and of what one query needs."""
 
-DESK = 25
+ONLY_KNOWN, MEASURED = 25, 26
+"""Desk: 1 where only what is known to be free is gone along; from how many milestones the ends are measured."""
 
-OTHER, NEXT, NUMBER, TURNS = range(4)
-"""Of a half edge: where it leads, the next one of the same milestone or -1, its edge and its turns, packed."""
+VERDICTS, LIFTING = 27, 28
+"""Desk: address of the verdicts of edges; 1 where joints are lifted by whole turns."""
+
+UNTURNED = 29
+"""Desk: 1 where ends are linked to milestones as these are, 0 where these are turned to be near."""
+
+DESK = 30
+
+OTHER, NEXT, NUMBER, HALF = range(4)
+"""Of a half edge: where it leads, the next one of the same milestone or -1, its edge; how many things that is."""
 
 LOW, HIGH, LIFTS, ENDLESS, MIDDLE, GREED = range(6)
 """Rows of the rules: limits; 1 for joints that are lifted by whole turns, or turn on for ever; the middle of the range
@@ -65,16 +84,16 @@ class Search(NamedTuple):
         Counts and addresses.
     milestones, columns : float64 array, shape (capacity, dim), and float32 array, shape (dim capacity,)
         The same by coordinate.
-    nodes, first : int64 arrays, shape (capacity,)
-        Verdicts of milestones, and their first half edges.
-    halves, lengths, edges : arrays
-        Half edges, (h, 4), their lengths, verdicts of edges.
+    nodes, first, groups : int64 arrays, shape (capacity,)
+        Verdicts of milestones, their first half edges, and another one that free motions lead to, or itself.
+    halves, leads, lengths, edges : arrays
+        Half edges, (h, 3), their turns, packed, their lengths, verdicts of edges.
     rules : float64 array, shape (6, dim)
-    ends, asked : float64 arrays, shapes (e, dim) and (2, dim)
-        Start and goals; the two ends of the motion that is asked about.
-    away, turns, links, near : arrays, shape (e, capacity); the first in one piece
+    ends, asked : float64 arrays, shapes (e + 1, dim) and (2, dim)
+        Start, goals and a place that is learned; the two ends of the motion that is asked about.
+    away, turns, links, near : arrays, shape (e + 1, capacity); the first in one piece
         Of each end: how far milestones are, after which turns, verdicts of links, and the milestones to be tried.
-    straight, radius : arrays, shape (e,)
+    straight, radius : arrays, shape (e + 1,)
         Verdicts of the motions straight to the goals, and how far the farthest milestone is that is to be tried.
     heads : int64 array, shape (capacity,)
         The first state of each milestone, or -1.
@@ -87,9 +106,11 @@ class Search(NamedTuple):
     columns: Singles
     nodes: Ints
     first: Ints
-    halves: Ints
-    lengths: Floats
-    edges: Ints
+    groups: Ints
+    halves: Ints32
+    leads: Ints
+    lengths: Singles
+    edges: Bytes
     rules: Floats
     ends: Floats
     asked: Floats
@@ -102,7 +123,7 @@ class Search(NamedTuple):
     heads: Ints
     states: Ints
     bounds: Floats
-    entries: Ints
+    entries: Ints32
     costs: Floats
     keys: Floats
     items: Ints
@@ -110,12 +131,17 @@ class Search(NamedTuple):
 
 def known_room(capacity: int, dim: int) -> int:
     """Return how many doubles milestones need."""
-    return (dim + (dim + 1) // 2 + 2) * capacity
+    return (dim + (dim + 1) // 2 + 3) * capacity
+
+
+def graph_room(halves: int) -> int:
+    """Return how many doubles so many half edges need, an even number."""
+    return (HALF * halves) // 2 + halves + halves // 2
 
 
 def query_room(desk: Ints) -> int:
     """Return how many doubles a query needs."""
-    ends, capacity, dim = int(desk[ENDS]), int(desk[CAPACITY]), int(desk[DIM])
+    ends, capacity, dim = int(desk[ENDS]) + 1, int(desk[CAPACITY]), int(desk[DIM])
     return (
         (ends + 2) * dim
         + 2 * ends
@@ -129,10 +155,10 @@ def query_room(desk: Ints) -> int:
 def search_at(desk: int) -> Search:
     """Return what lies at the addresses of a desk."""
     d = integers_at(desk, (DESK,))
-    capacity, dim, ends, states, entries = d[CAPACITY], d[DIM], d[ENDS], d[STATES], d[ENTRIES]
+    capacity, dim, ends, states, entries = d[CAPACITY], d[DIM], d[ENDS] + 1, d[STATES], d[ENTRIES]
     columns = d[KNOWN] + 8 * dim * capacity
     nodes = columns + 8 * ((dim + 1) // 2) * capacity
-    lengths = d[GRAPH] + 8 * 4 * d[HALVES]
+    leads = d[GRAPH] + 4 * HALF * d[HALVES]
     asked = d[QUERY] + 8 * ends * dim
     links = asked + 8 * 2 * dim
     row = 8 * ends * capacity
@@ -148,9 +174,11 @@ def search_at(desk: int) -> Search:
         singles_at(columns, (dim * capacity,)),
         integers_at(nodes, (capacity,)),
         integers_at(nodes + 8 * capacity, (capacity,)),
-        table_at(d[GRAPH], (d[HALVES], 4)),
-        doubles_at(lengths, (d[HALVES],)),
-        integers_at(lengths + 8 * d[HALVES], (d[EDGES],)),
+        integers_at(nodes + 16 * capacity, (capacity,)),
+        small_table_at(d[GRAPH], (d[HALVES], HALF)),
+        integers_at(leads, (d[HALVES],)),
+        singles_at(leads + 8 * d[HALVES], (d[HALVES],)),
+        bytes_at(d[VERDICTS], (d[EDGES],)),
         matrix_at(d[RULES], (RULE_ROWS, dim)),
         matrix_at(d[QUERY], (ends, dim)),
         matrix_at(asked, (2, dim)),
@@ -163,8 +191,37 @@ def search_at(desk: int) -> Search:
         integers_at(heads, (capacity,)),
         table_at(found, (states, 4)),
         matrix_at(bounds, (states, 2)),
-        table_at(made, (entries, 3)),
+        small_table_at(made, (entries, 3)),
         doubles_at(costs, (entries,)),
         doubles_at(costs + 8 * entries, (entries,)),
         integers_at(costs + 16 * entries, (entries,)),
     )
+
+
+@quick
+def kept_in_order(keys: Floats, items: Ints, count: int, most: int, key: float, item: int) -> int:
+    """Put an item among the so many with the least keys, if it is one of these, and return how many there are now."""
+    if count == most and key >= keys[count - 1]:
+        return count
+    count = min(count + 1, most)
+    place = count - 1
+    while place > 0 and keys[place - 1] > key:
+        keys[place], items[place] = keys[place - 1], items[place - 1]
+        place -= 1
+    keys[place], items[place] = key, item
+    return count
+
+
+@quick
+def group_of(s: Search, node: int) -> int:
+    """Return by which milestone the group of a milestone is known: all that free motions join."""
+    while s.groups[node] != node:
+        s.groups[node] = s.groups[s.groups[node]]
+        node = s.groups[node]
+    return node
+
+
+@quick
+def join(s: Search, a: int, b: int) -> None:
+    """Make one group of those of two milestones."""
+    s.groups[group_of(s, a)] = group_of(s, b)

@@ -14,6 +14,7 @@ from evenroad.robot_roadmap.search_memory import (
     LIFTS,
     LOW,
     NODES,
+    UNTURNED,
     Search,
 )
 from evenroad.robot_roadmap.turns import TURN
@@ -27,37 +28,55 @@ _OFFSETS = sum(2 ** (BITS - 1) << (BITS * k) for k in range(14))
 
 
 @quick
-def measure(s: Search, end: int) -> None:
-    """Write how far each milestone is from an end, after the turns that bring it nearest."""
+def measure(s: Search, end: int, first: int) -> None:
+    """Write how far each milestone from the first one on is from an end, after the turns that bring it nearest."""
     n, capacity = s.desk[NODES], s.desk[CAPACITY]
-    away = s.away[end * capacity : end * capacity + n]
-    for i in range(n):
+    away, turns = s.away[end * capacity + first : end * capacity + n], s.turns[end, first:n]
+    for i in range(len(away)):
         away[i] = 0.0
     lifted = False
     for k in range(s.desk[DIM]):
-        column, here = s.columns[k * capacity : k * capacity + n], np.float32(s.ends[end, k])
+        column, here = s.columns[k * capacity + first : k * capacity + n], np.float32(s.ends[end, k])
         if s.rules[LIFTS, k] > 0.0:
             low, high = s.rules[LOW, k], s.rules[HIGH, k]
-            for i in range(n):
+            for i in range(len(away)):
                 if not lifted:
-                    s.turns[end, i] = 0
-                value = s.milestones[i, k]
-                turn = np.rint((s.ends[end, k] - value) / TURN)
+                    turns[i] = 0
+                value = s.milestones[first + i, k]
+                turn = np.rint((s.ends[end, k] - value) / TURN) if s.desk[UNTURNED] == 0 else 0.0
                 turn = min(max(turn, np.ceil((low - value) / TURN)), np.floor((high - value) / TURN))
                 apart = np.float32(value + TURN * turn - s.ends[end, k])
                 away[i] += apart * apart
-                s.turns[end, i] += np.int64(turn) << (BITS * k)
+                turns[i] += np.int64(turn) << (BITS * k)
             lifted = True
         elif s.rules[ENDLESS, k] > 0.0:
-            for i in range(n):
-                apart = np.float32(_apart(s, k, s.milestones[i, k] - s.ends[end, k]))
+            for i in range(len(away)):
+                apart = np.float32(apart_in(s, k, s.milestones[first + i, k] - s.ends[end, k]))
                 away[i] += apart * apart
         else:
-            for i in range(n):
+            for i in range(len(away)):
                 apart = column[i] - here
                 away[i] += apart * apart
-    for i in range(n):
+    for i in range(len(away)):
         away[i] = np.sqrt(away[i])
+
+
+@quick
+def write_distances(s: Search, end: int, weights: Floats, into: Floats) -> None:
+    """Write how far milestones are from an end in the metric of such weights, the short way round."""
+    for i in range(len(into)):
+        into[i] = 0.0
+    for k in range(s.desk[DIM]):
+        first, weight, here = k * s.desk[CAPACITY], weights[k], s.ends[end, k]
+        column = s.columns[first : first + len(into)]
+        turns = s.rules[LIFTS, k] > 0.0 or s.rules[ENDLESS, k] > 0.0
+        for i in range(len(into)):
+            apart = column[i] - here
+            if turns:
+                apart -= TURN * np.rint(apart / TURN)
+            into[i] += (weight * apart) ** 2
+    for i in range(len(into)):
+        into[i] = np.sqrt(into[i])
 
 
 @quick
@@ -82,12 +101,12 @@ def distance(s: Search, a: Floats, b: Floats) -> float:
     """Return how far two configurations are apart in the metric of the space."""
     squared = 0.0
     for k in range(s.desk[DIM]):
-        squared += _apart(s, k, b[k] - a[k]) ** 2
+        squared += apart_in(s, k, b[k] - a[k]) ** 2
     return np.sqrt(squared)
 
 
 @quick
-def _apart(s: Search, k: int, apart: float) -> float:
+def apart_in(s: Search, k: int, apart: float) -> float:
     """Return how far two values of a joint are apart the short way."""
     return apart - TURN * np.rint(apart / TURN) if s.rules[ENDLESS, k] > 0.0 else apart
 

@@ -12,6 +12,7 @@ from evenroad.research.bench.execute import run_task
 from evenroad.research.bench.runner import run_tasks
 from evenroad.research.bench.store import open_store, read_rows
 from evenroad.research.bench.task import Outcome, Task
+from evenroad.research.report.arms import draw_costs
 from evenroad.research.workers import in_process
 
 SMALL = dict(runs=2, only=["scara"], draws=1, counts=[16], samplers=["sobol scrambled", "roadmap", "trees"])
@@ -69,9 +70,17 @@ def test_a_rule_that_is_none_of_kept_roadmaps_is_a_failure_that_says_so():
 
 def _store(path, success):
     """Write rows of made-up outcomes: success of (sampler, instance, run)."""
+    return _rows(path, [(_task(*run), solved) for run, solved in success.items()])
+
+
+def _task(sampler, instance, run, n=64):
+    return Task("arm-scara-shelf", instance, sampler, n, "k=10 ends=100", "kept", run, 1)
+
+
+def _rows(path, outcomes):
+    """Write rows of (task, whether it is solved), and read them."""
     with open_store(path) as store:
-        for (sampler, instance, run), solved in success.items():
-            task = Task("arm-scara-shelf", instance, sampler, 64, "k=10 ends=100", "kept", run, 1)
+        for task, solved in outcomes:
             store.add("arms", task, Outcome("solved" if solved else "not_connected", seconds=0.001), "here")
     return read_rows(path)
 
@@ -113,3 +122,15 @@ def test_tables_fit_100_columns(tmp_path):
     widths = np.max([[len(text) for text in row] for row in rows], axis=0)
     assert widths.sum() + len(widths) <= 100
     assert [row[1] for row in rows][:3] == ["uniform", "owen", "halton"]
+    assert {row[2] for row in rows} == {"4 x 1"}
+
+
+def test_costs_are_drawn_of_the_smallest_and_the_largest_roadmap(tmp_path):
+    outcomes = [
+        (_task("roadmap", i, 0, n), i < solved)
+        for n, solved in ((64, 1), (128, 2), (256, 3))
+        for i in range(4)
+    ]
+    figure = draw_costs(_rows(tmp_path / "a.db", outcomes), "scara", "10")
+    curves = {line.get_label(): line.get_ydata().tolist() for line in figure.axes[0].lines}
+    assert curves == {"roadmap, 64": [25.0], "roadmap, 256": [25.0, 50.0, 75.0]}

@@ -64,6 +64,8 @@ def anneal(
     steps: int = 5000,
     rng: RngLike = 0,
     start: npt.ArrayLike | None = None,
+    rate: float | None = None,
+    noise: float | None = None,
     callback: Callback | None = None,
 ) -> Annealed:
     """Make the objective of n points in [0, 1)^d small, on one thread; the same seed gives the same bits.
@@ -85,6 +87,8 @@ def anneal(
         Draws the start and the noise.
     start : array_like, shape (n, d), optional
         Instead of random points; coordinates at a face of the cube are moved off it by 6e-8.
+    rate, noise : float, optional
+        First learning rate, and the noise's standard deviation over the rate, where they are not the usual ones.
     callback : callable, optional
         Called as ``callback(step, steps, best)`` after every step; what it raises stops the annealing.
     """
@@ -93,16 +97,17 @@ def anneal(
     draws = generator(rng)
     columns = _first_columns(n, d, start, draws)
     best_value, best_columns = math.inf, columns.copy()
-    first, second, noise = np.zeros((d, n)), np.zeros((d, n)), np.empty((d, n))
-    highest_rate, spread = first_rate(n, d), noise_over_rate(objective, n, d)
+    first, second, normal = np.zeros((d, n)), np.zeros((d, n)), np.empty((d, n))
+    highest_rate = first_rate(n, d) if rate is None else rate
+    spread = noise_over_rate(objective, n, d) if noise is None else noise
     for step in range(1, steps + 1):
         value, gradient = objective.of_columns(columns)
         if value < best_value:
             best_value = value
             best_columns[:] = columns
-        rate = learning_rate(step, steps, highest_rate)
-        draws.standard_normal(out=noise)
-        _adam_step(columns, first, second, gradient, noise, step, rate, spread * rate, objective.periodic)
+        now = learning_rate(step, steps, highest_rate)
+        draws.standard_normal(out=normal)
+        _adam_step(columns, first, second, gradient, normal, step, now, spread * now, objective.periodic)
         if callback is not None:
             callback(step, steps, best_value)
     last_value, _ = objective.of_columns(columns)

@@ -12,6 +12,7 @@ from evenroad.points.bank import TRAINED_FAMILIES, Trained
 from evenroad.points.pointset import PointSet
 from evenroad.points.randomise import Symmetry
 from evenroad.points.samplers.cover import Cover as Cover
+from evenroad.points.samplers.growing import Growing as Growing
 from evenroad.points.samplers.korobov import Even as Even
 from evenroad.points.samplers.korobov import Korobov as Korobov
 from evenroad.points.samplers.lattice import Lattice as Lattice
@@ -19,6 +20,7 @@ from evenroad.points.samplers.plain import Halton as Halton
 from evenroad.points.samplers.plain import Sobol as Sobol
 from evenroad.points.samplers.plain import Sukharev as Sukharev
 from evenroad.points.samplers.plain import Uniform as Uniform
+from evenroad.points.samplers.sequence import Sequence as Sequence
 
 
 class Sampler(Protocol):
@@ -53,7 +55,8 @@ class KnownSampler(Sampler, Protocol):
 
 
 SAMPLERS: dict[str, Callable[..., KnownSampler]] = {
-    each.name: each for each in (Even, Korobov, Lattice, Cover, Halton, Sobol, Sukharev, Uniform)
+    each.name: each
+    for each in (Even, Growing, Sequence, Korobov, Lattice, Cover, Halton, Sobol, Sukharev, Uniform)
 } | {family: partial(Trained, family) for family in TRAINED_FAMILIES}
 """Name -> how to make the sampler from its options; without any it says what it is, and what keeps its sets even."""
 

@@ -123,18 +123,17 @@ def _place(way: Way) -> tuple[object, ...]:
 
 def _sums(rows: Rows, unit: Ints, theirs: Ints, mine: Ints) -> tuple[Ints, Ints]:
     """Return the differences of solved runs by problem, and the pairs; a run without its like is left out."""
-    solved = rows.solved.astype(np.int64)
-    like = {(unit[i], rows.run[i], rows.seed[i]): solved[i] for i in theirs.tolist()}
-    pairs = [
-        (unit[i], like[key] - solved[i])
-        for i in mine
-        if (key := (unit[i], rows.run[i], rows.seed[i])) in like
-    ]
-    if not pairs:
+    if not len(theirs):
         return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
-    units, differences = np.array(pairs).T
-    _, which = np.unique(units, return_inverse=True)
-    return np.bincount(which, weights=differences).astype(np.int64), np.bincount(which)
+    solved = rows.solved.astype(np.int64)
+    _, seeds = np.unique(rows.seed, return_inverse=True)
+    key = (unit * (int(rows.run.max()) + 1) + rows.run) * (int(seeds.max()) + 1) + seeds
+    theirs = theirs[np.argsort(key[theirs])]
+    place = np.minimum(np.searchsorted(key[theirs], key[mine]), len(theirs) - 1)
+    paired = key[theirs[place]] == key[mine]
+    apart = solved[theirs[place[paired]]] - solved[mine[paired]]
+    _, which = np.unique(unit[mine[paired]], return_inverse=True)
+    return np.bincount(which, weights=apart).astype(np.int64), np.bincount(which)
 
 
 def _line(rows: Rows, way: Way, generator: str, here: Ints, paired: tuple[Ints, Ints]) -> Line:
@@ -167,7 +166,7 @@ def title_of(line: Line) -> str:
 
 
 def table_rows(lines: Sequence[Line]) -> dict[tuple[str, str], list[tuple[str, ...]]]:
-    """Return for each robot and k the rows of a table: N, sampler, success by generator, gain, p."""
+    """Return for each robot and k the rows of a table: N, sampler, problems x draws, success by generator, gain, p."""
     tables: dict[tuple[str, str], dict[tuple[object, ...], dict[str, Line]]] = {}
     for line in lines:
         key = (line.n, title_of(line), line.rule)
@@ -178,18 +177,18 @@ def table_rows(lines: Sequence[Line]) -> dict[tuple[str, str], list[tuple[str, .
     }
 
 
-def robots_first_k(lines: Sequence[Line]) -> list[tuple[str, str, str]]:
-    """Return each robot and k that has kept roadmaps, with the rule of the largest: what pictures are drawn for."""
-    rules = {(line.robot, line.k): line.rule for line in lines if line.search == KEPT}
-    return [(*key, rule) for key, rule in rules.items()]
+def robots_and_k(lines: Sequence[Line]) -> list[tuple[str, str]]:
+    """Return each robot and k that has kept roadmaps: what pictures are drawn for."""
+    return list(dict.fromkeys((line.robot, line.k) for line in lines if line.search == KEPT))
 
 
-TABLE_HEADER = ("N", "points", *GENERATORS, ALL, "roadmap - this", "p (Holm)")
+TABLE_HEADER = ("N", "points", "runs", *GENERATORS, ALL, "roadmap - this", "p (Holm)")
 
 
 def _texts(by: dict[str, Line]) -> tuple[str, ...]:
     whole = by[ALL]
-    shares = tuple(f"{100 * by[name].success:.0f}" if name in by else "–" for name in (*GENERATORS, ALL))
+    runs = f"{whole.problems} x {whole.runs / whole.problems:.3g}"
+    shares = (runs, *(f"{100 * by[name].success:.0f}" if name in by else "–" for name in (*GENERATORS, ALL)))
     if np.isnan(whole.gain):
         return (*shares, "", "")
     p = whole.p_corrected

@@ -15,7 +15,7 @@ from evenroad.research.arms.results import (
     TABLE_HEADER,
     Line,
     is_of_arms,
-    robots_first_k,
+    robots_and_k,
     table_rows,
     title_of,
 )
@@ -93,23 +93,24 @@ def draw_success(lines: Sequence[Line], robot: str, k: str) -> Figure:
     return figure
 
 
-def draw_costs(rows: Rows, robot: str, rule: str) -> Figure:
+def draw_costs(rows: Rows, robot: str, k: str) -> Figure:
     """Draw the share of problems that are solved within so many checks, and so many milliseconds."""
     mine = np.array([is_of_arms(name) and f"arm-{robot}-" in f"{name}" for name in rows.problem.names])
     rows = rows.where(mine[rows.problem.codes])
     counts = np.unique(rows.n[rows.sampler.is_in([REFERENCE])])
+    kept = rows.rule.is_in([name for name in rows.rule.names if name.startswith(f"k={k} ends=")])
     figure = Figure(figsize=(10.0, 3.6), layout="constrained")
     panels = figure.subplots(1, 2, sharey=True)
     for sampler in CURVES:
         for n, style in zip(counts[[0, -1]].tolist(), ("--", "-"), strict=True):
-            here = rows.sampler.is_in([sampler]) & rows.rule.is_in([rule]) & (rows.n == n)
+            here = rows.sampler.is_in([sampler]) & kept & (rows.n == n)
             label = f"{'owen' if sampler.startswith('sobol') else sampler}, {n}"
             _cost_curves(panels, rows.where(here), label, STYLES[sampler][0], style)
     _cost_curves(panels, rows.where(rows.sampler.is_in([TREES])), TREES, "black", "-")
     panels[0].set(xscale="log", xlabel="motions and milestones checked", ylabel="solved [%]", ylim=(-3, 103))
     panels[1].set(xscale="log", xlabel="ms of one core, from the scene to the path")
     panels[1].legend(fontsize=8)
-    figure.suptitle(f"{robot}, all generators, {rule}", fontsize=10)
+    figure.suptitle(f"{robot}, all generators, k = {k}", fontsize=10)
     return figure
 
 
@@ -138,12 +139,12 @@ def cost_curve(
 def arm_pictures(rows: Rows, lines: Sequence[Line]) -> list[tuple[str, str, Figure]]:
     """Return name, title and figure of each picture."""
     pictures = []
-    for robot, k, rule in robots_first_k(lines):
+    for robot, k in robots_and_k(lines):
         title = f"{robot}, k = {k}"
         pictures.append(
             (f"arms-{robot}-k{k}", f"Success on the arms' problems: {title}", draw_success(lines, robot, k))
         )
         pictures.append(
-            (f"arms-{robot}-k{k}-costs", f"What success costs: {title}", draw_costs(rows, robot, rule))
+            (f"arms-{robot}-k{k}-costs", f"What success costs: {title}", draw_costs(rows, robot, k))
         )
     return pictures

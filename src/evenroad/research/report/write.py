@@ -125,7 +125,7 @@ def csv_files(analysis: Analysis) -> dict[str, bytes]:
     if analysis.pooled:
         files["fair.csv"] = _fair(analysis)
     if analysis.arms:
-        files["arms.csv"] = _csv(" ".join(HEADER), csv_of(analysis.arms))
+        files["arms.csv"] = csv_text(" ".join(HEADER), csv_of(analysis.arms))
     return files
 
 
@@ -145,7 +145,7 @@ def _cells(analysis: Analysis) -> bytes:
         means = (cell.mean_valid, cell.sd_valid, *paper_v, cell.mean_edges, cell.mean_seconds)
         counted = (*_names(cell), cell.runs, cell.solved, cell.rate, *cell.interval, *units)
         rows.append((*counted, *means, cell.failures, needed.estimate, needed.low, needed.high))
-    return _csv(header, rows)
+    return csv_text(header, rows)
 
 
 def _comparisons(analysis: Analysis) -> bytes:
@@ -158,7 +158,7 @@ def _comparisons(analysis: Analysis) -> bytes:
         counts = (each.reference, each.pairs, each.only_cell, each.only_reference, each.difference)
         tested = (*each.interval, each.test, each.p, each.p_corrected)
         rows.append((*_names(each.cell), *counts, *tested))
-    return _csv(header, rows)
+    return csv_text(header, rows)
 
 
 def _expected(analysis: Analysis) -> bytes:
@@ -176,7 +176,7 @@ def _expected(analysis: Analysis) -> bytes:
             counts = (theirs.runs, theirs.solved, theirs.success / 100.0, *counted)
             v = (theirs.v_counts, theirs.v_add, theirs.v, each.our_v)
             rows.append((*names, *counts, each.p, each.p_corrected, each.word, *v))
-    return _csv(header, rows)
+    return csv_text(header, rows)
 
 
 def _fair(analysis: Analysis) -> bytes:
@@ -190,14 +190,15 @@ def _fair(analysis: Analysis) -> bytes:
             counts = (grouping, each.group, each.sampler, each.instances, each.pairs, each.sets)
             rates = (each.rate, each.reference_rate, each.difference, *each.interval)
             rows.append((*counts, *rates, each.p, each.p_corrected))
-    return _csv(header, rows)
+    return csv_text(header, rows)
 
 
 def _names(cell: Cell) -> tuple[object, ...]:
     return cell.setting.problem, cell.sampler, cell.n, cell.setting.rule, cell.setting.search
 
 
-def _csv(header: str, rows: Iterable[Sequence[object]]) -> bytes:
+def csv_text(header: str, rows: Iterable[Sequence[object]]) -> bytes:
+    """Return rows under a header, whose names are between spaces, as CSV."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(header.split())

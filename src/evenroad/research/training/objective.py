@@ -11,8 +11,8 @@ their logs a weight is a ratio of relative changes, whatever the units.  So wher
 beside other terms, all terms are taken in the log: ``hickernell+10*riesz`` is short for
 ``log(hickernell) + 10*log(riesz)``, that is log D + 10 log(E)/s with s = 2d, and its ``str`` says so.
 
-``prefixes(hickernell)`` is the mean of log D over all beginnings of the set, each of n points with weight 1/n: for sets
-that are used from their first point on.
+``prefixes(hickernell)`` is how far the beginnings of the set are above scrambled Sobol's: nearly the largest log of a
+ratio, over all beginnings, each of n points with weight 1/n.  It is for sets that are used from their first point on.
 """
 
 from __future__ import annotations
@@ -28,10 +28,11 @@ from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue, UnknownName, shown
 from evenroad.points.bank.anneal import require_points_for
 from evenroad.points.measures import MEASURES
+from evenroad.points.measures.prefixes import PREFIXED, worst_prefix
 from evenroad.points.pointset import as_unit_points
 from evenroad.points.randomise import ALL_SYMMETRIES, Symmetry
+from evenroad.points.samplers.sequence import usual_prefixes
 from evenroad.research.measures import log_riesz_of_columns
-from evenroad.research.training.prefixes import PREFIXED, of_prefixes
 
 ENERGIES = {"riesz": ALL_SYMMETRIES, "riesz_open": ALL_SYMMETRIES - {Symmetry.SHIFT}}
 """Riesz energies with s = 2d, rooted, on the torus and in the open cube; and what leaves each as it is."""
@@ -79,7 +80,8 @@ class Term:
     def of_columns(self, columns: Floats) -> tuple[float, Floats]:
         """Return the unweighted term and its gradient, (d, n), at points of shape (d, n)."""
         if self.prefixes:
-            return of_prefixes(self.name, columns)
+            usual = usual_prefixes(self.name, columns.shape[1], len(columns))
+            return worst_prefix(self.name, columns, usual)
         if self.name in ENERGIES:
             s = 2 * len(columns)
             value, gradient = log_riesz_of_columns(columns, s, self.name == "riesz", want_gradient=True)

@@ -1,0 +1,177 @@
+"""A lattice that grows: a sequence whose every beginning is well spread, for any n and d, with nothing stored.
+
+Point i is phi(i) z modulo 1, shifted, with phi van der Corput's radical inverse in base 2 and z whole numbers
+(Hickernell, Hong, L'Ecuyer and Lemieux 2000): the first 2^m points are a rank-1 lattice for every m, and each further
+one lies in a hole of it.  Digit by digit z is searched for all lengths at once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from evenroad._arrays import Floats, Ints
+from evenroad._checks import require_count
+from evenroad._rng import RngLike, generator, seed_of
+from evenroad.errors import InvalidValue
+from evenroad.points.pointset import Origin, PointSet
+from evenroad.points.randomise import ALL_SYMMETRIES
+
+DIGITS = 30
+LONGEST = 2**DIGITS
+"""Where the sequence ends."""
+
+SEARCHED, TOGETHER = 20, 11
+"""Digits of z that are searched, and those that are searched together; further ones are drawn once and for all."""
+
+KEPT, TRIED = 48, 32
+"""Vectors that are kept from one digit to the next, and ways to go on that are tried for each."""
+
+WORK = 2 * 10**7
+"""Coordinates that are looked at to choose one of the digits that are not searched together."""
+
+SPREAD, EVENNESS = 1.0, 0.3
+"""Weights of the energy and of the discrepancy, both as logs: the second keeps projections even."""
+
+PARTS = (0.25, 0.5, 0.75, 1.0)
+"""Beginnings of 2^(m-1) (1 + part) points are looked at for digit m."""
+
+TIE = 1e-9
+"""Scores closer than this are equal: rounding does not choose between mirrored lattices."""
+
+
+@dataclass(frozen=True)
+class Growing:
+    """Points `start` >= 0, `start` + 1, ... of the growing lattice, its axes in random order, under one random shift.
+
+    The sets of one seed begin with those of fewer points.
+    """
+
+    start: int = 0
+    name = "growing"
+    about = "a lattice that grows: every beginning is well spread"
+    any_n = True
+    symmetries = ALL_SYMMETRIES
+
+    def __post_init__(self) -> None:
+        require_count("start", self.start, at_least=0)
+
+    def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
+        """Return points start .. start + n - 1 of the sequence, shape (n, d); see :class:`~evenroad.points.Sampler`.
+
+        Raises InvalidValue also if start + n exceeds 2**30.
+        """
+        n, d = require_count("n", n), require_count("d", d)
+        if self.start + n > LONGEST:
+            raise InvalidValue(f"the growing lattice ends at index {LONGEST}, asked for {self.start + n}")
+        random = generator(rng)
+        order, shift = random.permutation(d), random.random(d)
+        vector = growing_vector(d, max(self.start + n - 1, 1).bit_length())[order]
+        lattice = reversed_digits(self.start, n)[:, np.newaxis] * vector % LONGEST / LONGEST
+        # Both summands are >= 0, so the remainder is exact and below 1.
+        points = (lattice + shift) % 1.0
+        origin = Origin(
+            family=self.name, method="embedded lattices, shifted", seed=seed_of(rng), start=self.start
+        )
+        return PointSet(points, origin)
+
+
+def reversed_digits(first: int, count: int) -> Ints:
+    """Return phi(i) 2^30 for i = first .. first + count - 1: the binary digits of i reversed."""
+    left, turned = np.arange(first, first + count), np.zeros(count, dtype=np.int64)
+    for place in range(DIGITS):
+        turned |= (left >> place & 1) << (DIGITS - 1 - place)
+    return turned
+
+
+def growing_vector(d: int, digits: int = DIGITS) -> Ints:
+    """Return z, (d,): at least so many of its binary digits are those of the sequence; the first component is 1.
+
+    The first 11 digits are found by a beam search over all beginnings of at most 2048 points together, the next 9 one
+    by one, the rest are random; points below 2^m depend on the first m digits alone.  The score of a vector is
+    :data:`SPREAD` log(E) / (2 d) + :data:`EVENNESS` log(W): the mean over those beginnings, with E the periodic Riesz
+    energy with exponent 2 d and W the wrap-around L2 discrepancy, which is the root of the mean square of Hickernell's
+    over all shifts.
+    """
+    vector = _searched(d, max(min(digits, SEARCHED), TOGETHER))
+    rest = np.random.default_rng(d).integers(0, 2 ** (DIGITS - SEARCHED), d) << SEARCHED
+    rest[0] = 0
+    return vector + rest if digits > SEARCHED else vector
+
+
+@lru_cache(maxsize=256)
+def _searched(d: int, digits: int) -> Ints:
+    if digits > TOGETHER:
+        found = _searched(d, digits - 1)[np.newaxis]
+        found, _ = _best(found, np.zeros(1), digits, max(WORK // (d << digits - 1), 2), 1)
+    else:
+        found, scores = np.ones((1, d), dtype=np.int64), np.zeros(1)
+        for digit in range(2, digits + 1):
+            found, scores = _best(found, scores, digit, TRIED, KEPT)
+    vector: Ints = found[0]
+    vector.setflags(write=False)
+    return vector
+
+
+def _best(found: Ints, scores: Floats, digit: int, tried: int, kept: int) -> tuple[Ints, Floats]:
+    """Return the best ways, (m, d), to go on with vectors of one digit less, best first, and their scores, (m,)."""
+    d = found.shape[1]
+    if 2 ** (d - 1) <= tried:
+        bits = np.arange(2 ** (d - 1))[:, np.newaxis] >> np.arange(d - 1) & 1
+        ways = np.broadcast_to(bits, (len(found), *bits.shape))
+    else:
+        ways = np.random.default_rng(digit).integers(0, 2, (len(found), tried, d - 1))
+    longer = np.repeat(found[:, np.newaxis], ways.shape[1], axis=1)
+    longer[:, :, 1:] += ways << digit - 1
+    longer, scores = longer.reshape(-1, d), np.repeat(scores, ways.shape[1])
+    # Mirrored axes, and axes in another order, make the same lattice.
+    same = np.sort(np.minimum(longer[:, 1:], 2**digit - longer[:, 1:]), axis=1)
+    _, different = np.unique(same, axis=0, return_index=True)
+    longer = longer[different]
+    scores = scores[different] + _scores(longer, digit)
+    best = np.argsort(np.floor(scores / TIE), kind="stable")[:kept]
+    return longer[best], scores[best]
+
+
+def _scores(vectors: Ints, digit: int) -> Floats:
+    """Return the score of each vector, (m,), over the beginnings of 2^(digit - 1) (1 + part) points."""
+    size, d = 2**digit, vectors.shape[1]
+    multiples, lengths = _differences(digit)
+    steps = np.arange(1, size // 2 + 1)
+    scores = np.empty(len(vectors))
+    block = max(1, 2**19 // (size * d))
+    for first in range(0, len(vectors), block):
+        some = vectors[first : first + block, :, np.newaxis]
+        gaps = steps * some % size / size
+        gaps = np.minimum(gaps, 1.0 - gaps)
+        squared = (gaps * gaps).sum(axis=1)
+        # Relative to the shortest, so that nothing overflows whatever d is.
+        shortest = squared.min(axis=1, keepdims=True)
+        energies = np.log((shortest / squared) ** d @ multiples.T) / (2 * d) - 0.5 * np.log(shortest)
+        kernel = (1.5 - gaps * (1.0 - gaps)).prod(axis=1)
+        uneven = (1.5**d + kernel @ multiples.T) / lengths - (4.0 / 3.0) ** d
+        logs = 0.5 * np.log(np.maximum(uneven, 1e-300))
+        scores[first : first + block] = (SPREAD * energies + EVENNESS * logs).mean(axis=1)
+    return scores
+
+
+@lru_cache(maxsize=2)
+def _differences(digit: int) -> tuple[Floats, Floats]:
+    """Return how often each difference 1 .. 2^(digit-1) occurs, a point, in each beginning, (parts, .), and its length.
+
+    Differences are those of phi, in units of 2^-digit and up to their sign.
+    """
+    size = 2**digit
+    places = reversed_digits(0, size) >> DIGITS - digit
+    lengths = [round(size / 2 * (1 + part)) for part in PARTS]
+    counts = []
+    for length in lengths:
+        held = np.zeros(size)
+        held[places[:length]] = 1.0
+        spectrum = np.fft.rfft(held)
+        pairs = np.rint(np.fft.irfft(spectrum * spectrum.conj(), size))[1 : size // 2 + 1]
+        pairs[:-1] *= 2.0
+        counts.append(pairs / length)
+    return np.array(counts), np.array(lengths, dtype=np.float64)

@@ -1,0 +1,115 @@
+"""What milestones are chosen by: recipes, and what is known of robot and cell that they share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from evenroad._arrays import Floats, Ints
+from evenroad.errors import InvalidValue
+from evenroad.points import draw
+from evenroad.robot import ArmWorld
+from evenroad.robot_roadmap.chance import chance_of_freedom
+from evenroad.robot_roadmap.pockets import Seen, ends_in_pockets
+from evenroad.robot_roadmap.spread import displacement_weights, spread_order
+from evenroad.robot_roadmap.turns import TURN, OneTurn
+
+CHOICE = 16
+"""Free configurations that one milestone is chosen from."""
+
+MOST_DRAWN = 1 << 20
+"""Where fewer than the wanted ones are free among so many, the robot is said to be hardly ever free."""
+
+GAMMA = 2.0
+"""Power of the chance of being free that milestones are as dense as, before the ends count."""
+
+ENDS = 1500
+"""Ends in pockets at random that milestones learn from."""
+
+SCENES = 400
+"""Random scenes by which the chance of being free is measured."""
+
+FIRST = 1500
+"""Configurations that the weights of the metric are measured on."""
+
+
+class Recipe(NamedTuple):
+    """The power of the chance of being free, >= 0, and how many ends in pockets are learned from."""
+
+    gamma: float = GAMMA
+    ends: int = ENDS
+
+
+class Known(NamedTuple):
+    """What milestones are chosen by: free configurations, (n, dim), the weights and periods of the metric, (dim,) each,
+    the chance of each to be free among random boxes, (n,), and which of them ends in pockets see.
+    """
+
+    pool: Floats
+    weights: Floats
+    periods: Floats
+    chance: Floats
+    seen: Seen
+
+
+def known_of(
+    world: ArmWorld,
+    one: OneTurn,
+    n: int,
+    recipes: Sequence[Recipe],
+    streams: Sequence[np.random.Generator],
+    progress: Callable[[str, float], None],
+) -> Known:
+    """Find out what recipes for n milestones need; the streams draw pool, scenes and pockets."""
+    pool_rng, scene_rng, pocket_rng = streams
+    progress("drawing configurations", 0.0)
+    pool = _free_pool(world, one, CHOICE * n, pool_rng)
+    weights = displacement_weights(world.robot, pool[:FIRST])
+    chance = np.ones(len(pool))
+    if any(recipe.gamma > 0.0 for recipe in recipes):
+        chance = chance_of_freedom(
+            world.robot, pool, SCENES, scene_rng, lambda share: progress("random scenes", share)
+        )
+    ends = max(recipe.ends for recipe in recipes)
+    seen = ends_in_pockets(
+        world.robot,
+        world.scene,
+        pool,
+        weights * pool,
+        ends,
+        pocket_rng,
+        lambda share: progress("pockets", share),
+    )
+    # A joint with stops repeats after its range.
+    periods = np.where(one.wraps, TURN, one.high - one.low)
+    return Known(pool, weights, periods, chance, seen)
+
+
+def chosen(known: Known, recipe: Recipe, n: int) -> Ints:
+    """Return which rows of the pool are the n milestones of a recipe, in order."""
+    preference = np.maximum(known.chance, 1.0 / SCENES) ** recipe.gamma
+    first = known.seen.first[: recipe.ends + 1]
+    weights = known.weights
+    return spread_order(
+        weights * known.pool, weights * known.periods, preference, n, first, known.seen.which[: first[-1]]
+    )
+
+
+def _free_pool(world: ArmWorld, one: OneTurn, count: int, rng: np.random.Generator) -> Floats:
+    """Return the first free ones of a low-discrepancy sequence, (count, dim), or the fewer that MOST_DRAWN hold."""
+    drawn = 2 * count
+    while True:
+        cube = draw("sobol", drawn, world.space.dim, rng=rng.spawn(1)[0]).points
+        q = one.low + cube * (one.high - one.low)
+        free = q[world.valid(q)]
+        if len(free) >= count or drawn >= MOST_DRAWN:
+            break
+        drawn *= 2
+    if not len(free):
+        raise InvalidValue(
+            f"the robot is never free in its cell: of {drawn} configurations none; in the last one"
+            f" {world.explain(q[-1])}"
+        )
+    return free[:count]

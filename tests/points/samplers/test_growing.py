@@ -1,0 +1,95 @@
+"""The growing lattice beside its formula, digit by digit, and beside other sequences."""
+
+import numpy as np
+import pytest
+
+from evenroad.errors import InvalidValue
+from evenroad.points import draw
+from evenroad.points.measures import MEASURES
+from evenroad.points.samplers import Growing, growing
+from evenroad.points.samplers.growing import growing_vector
+from evenroad.research.measures import riesz_rooted, separation
+from tests.points.samplers.sampler_contract import SamplerContract
+
+
+def slow_inverse(i):
+    """Return van der Corput's radical inverse in base 2 from the digits as text."""
+    return sum(int(digit) * 2.0 ** -(place + 1) for place, digit in enumerate(reversed(f"{i:b}")))
+
+
+class TestGrowing(SamplerContract):
+    sampler = Growing()
+    shapes = ((1, 1), (7, 1), (64, 2), (100, 3), (33, 14))
+
+    @pytest.mark.parametrize(("n", "d"), [(50, 1), (77, 2), (130, 5)])
+    def test_its_points_are_multiples_of_one_vector_in_the_order_of_van_der_corput(self, n, d):
+        points, vector = self.sampler.draw(n, d, rng=4).points, growing_vector(d)
+        lattice = np.array([[slow_inverse(i) * int(z) % 1.0 for z in vector] for i in range(n)])
+        # Whatever the order of the axes and the shift.
+        steps = np.sort((points[1:] - points[0]) % 1.0, axis=1)
+        np.testing.assert_allclose(steps, np.sort(lattice[1:] % 1.0, axis=1), atol=1e-12)
+
+    @pytest.mark.parametrize("m", [1, 4, 7])
+    def test_the_first_powers_of_two_are_a_lattice_and_each_axis_takes_equally_spaced_values(self, m):
+        points = self.sampler.draw(2**m, 3, rng=2).points
+        np.testing.assert_allclose(np.diff(np.sort(points, axis=0), axis=0), 2.0**-m, rtol=1e-9)
+        differences = (points[:, None] - points[None]).reshape(-1, 3) % 1.0
+        found = {tuple(row) for row in (np.rint(differences * 2**m).astype(int) % 2**m).tolist()}
+        assert len(found) == 2**m
+
+    @pytest.mark.parametrize("d", [2, 5, 10])
+    def test_sets_of_one_seed_begin_with_the_smaller_ones_and_go_on_from_any_index(self, d):
+        longest = self.sampler.draw(70_000, d, rng=3).points
+        for n in (1, 63, 64, 2048, 2049, 5000):
+            np.testing.assert_array_equal(self.sampler.draw(n, d, rng=3).points, longest[:n])
+        np.testing.assert_array_equal(Growing(start=60_001).draw(99, d, rng=3).points, longest[60_001:60_100])
+
+    def test_it_has_no_two_equal_points_far_out_and_says_where_it_ends(self):
+        far = Growing(start=2**30 - 4000).draw(4000, 2).points
+        assert len(np.unique(far, axis=0)) == 4000
+        with pytest.raises(InvalidValue, match=f"ends at index {2**30}, asked for {2**30 + 1}"):
+            Growing(start=2**30).draw(1, 2)
+
+    @pytest.mark.parametrize("start", [-1, 0.5, "3"])
+    def test_a_start_that_is_no_index_is_refused(self, start):
+        with pytest.raises(InvalidValue, match="start"):
+            Growing(start=start)
+
+
+@pytest.mark.parametrize("d", [2, 3, 5, 7])
+@pytest.mark.parametrize("n", [64, 100, 181, 256, 3000])
+def test_every_beginning_is_spread_far_better_than_sobols(n, d):
+    if n == 3000:
+        # Beyond what was searched together.
+        mine, others = (separation(draw(name, n, d, rng=1), periodic=True) for name in ("growing", "sobol"))
+        assert mine > 1.5 * others
+        return
+    sobol = np.mean([riesz_rooted(draw("sobol", n, d, rng=seed)) for seed in range(4)])
+    assert riesz_rooted(draw("growing", n, d, rng=1)) < 0.87 * sobol
+
+
+def test_the_shift_keeps_the_energy():
+    energies = [riesz_rooted(draw("growing", 90, 4, rng=seed)) for seed in range(4)]
+    np.testing.assert_allclose(energies, energies[0], rtol=1e-9)
+
+
+@pytest.mark.parametrize(("digit", "d"), [(3, 2), (5, 4), (6, 3)])
+def test_the_score_is_that_of_the_points_themselves(digit, d):
+    vector = growing_vector(d) % 2**digit
+    energies, unevenness = [], []
+    for part in growing.PARTS:
+        n = round(2 ** (digit - 1) * (1 + part))
+        points = np.array([[slow_inverse(i) * int(z) % 1.0 for z in vector] for i in range(n)])
+        # The rooted energy of the studies is in units of the mean spacing.
+        energies.append(np.log(riesz_rooted(points)) + np.log(n) / d)
+        unevenness.append(np.log(MEASURES["wrap_around"].rooted(points)))
+    expected = growing.SPREAD * np.mean(energies) + growing.EVENNESS * np.mean(unevenness)
+    assert growing._scores(vector[np.newaxis], digit)[0] == pytest.approx(expected, rel=1e-9)
+
+
+def test_the_vector_is_the_same_whatever_was_asked_before():
+    first = growing_vector(4, 16)
+    growing._searched.cache_clear()
+    np.testing.assert_array_equal(growing_vector(4, 16), first)
+    np.testing.assert_array_equal(growing_vector(4, 13) % 2**13, first % 2**13)
+    assert growing_vector(4)[0] == 1
