@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from evenroad.robot import with_limits
+from evenroad.robot import Scene, with_limits
 from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.robot_roadmap import SceneRoadmap
 from evenroad.robot_roadmap.search_memory import BLOCKED, FREE, NODES, PROVED
@@ -133,6 +133,12 @@ def test_what_leads_to_the_goal_within_one_turn_is_not_lost_where_joints_turn_tw
         tuple(pair) for pair, turns in zip(wide.edges.tolist(), wide.turns, strict=True) if not turns.any()
     }
     assert kept >= set(map(tuple, narrow.edges.tolist()))
+    # Ends are linked to milestones as these are, once those that were turned did not do.
+    start, goal = np.array([5.0, -1.5, 0.0]), np.array([[-5.0, -1.5, 0.0]])
+    known = SceneRoadmap(wide, Scene("nothing"))
+    for unturned in (False, True):
+        known._ask(start, goal, 0, np.inf, 24, unturned=unturned)
+        assert known._graph._links[3:5].any() == (not unturned)
     known = SceneRoadmap(narrow, box_scene())
     q = known.world.space.from_cube(np.random.default_rng(1).random((400, 3)))
     q = q[known.world.valid(q)]

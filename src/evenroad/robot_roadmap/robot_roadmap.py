@@ -196,8 +196,11 @@ class SceneRoadmap:
         bare = roadmap.bare if robot is roadmap.robot else bare
         self._day = ArmWorld(bare, left, resolution=resolution)
         self._asked: tuple[Checks, Checks] = self.world, self._day
+        self._own: SceneRoadmap | None = None
         if shapes is not None:
-            self._asked = OwnShapesWorld(self.world, shapes), OwnShapesWorld(self._day, shapes)
+            # With verdicts of its own: what blocks the capsules need not block the shapes.
+            self._own = SceneRoadmap(roadmap, scene, robot)
+            self._own._asked = OwnShapesWorld(self.world, shapes), OwnShapesWorld(self._day, shapes)
         self._graph = roadmap.graph.within(np.array(self.world.space.low), np.array(self.world.space.high))
         self._wraps = bool(np.any(self.world.space.wrapping))
         self.learned: list[Floats] = []
@@ -294,6 +297,8 @@ class SceneRoadmap:
         links = TRIED_LINKS if trees else links_of(self._size)
         limits = min(most, TRIED_MOTIONS) if trees else most, began + SHARE * min(deadline - began, _LONG)
         asked = self._ask(first, goals, *limits, links)
+        if asked.goal < 0 and self._own is not None:
+            return self._own.plan(first, goals, budget=budget, shorten=shorten, trees=trees)
         if asked.ended in (NONE, CUT_OFF, SPENT) and trees and len(goals) == 1:
             asked = self._by_ways_out(asked, first, goals, most, limits[1])
         elif asked.ended in (NONE, CUT_OFF) and not trees and self.roadmap.one_turn.lifts.any():
