@@ -3,7 +3,7 @@
     python -m benchmarks.sequences discrepancy           # ratios to scrambled Sobol points, d = 2, 3, 4, 5, 7, 10
     python -m benchmarks.sequences spread                # Riesz energy, separation and dispersion
     python -m benchmarks.sequences plan --worlds 200     # worlds of the reporting stream; --tuning: those that chose
-    python -m benchmarks.sequences anytime --worlds 50   # points that `plan_anytime` needs, beside Sobol's
+    python -m benchmarks.sequences anytime --worlds 150  # points that `plan_anytime` needs, beside Sobol's
     python -m benchmarks.sequences picture               # docs/sequences.png, from the csv files of the others
 
 `kronecker` is i (g^-1, .., g^-d) modulo 1 with g^(d+1) = g + 1, shifted; `greedy` the paper's way, an annealed set in
