@@ -4,6 +4,8 @@
     python -m benchmarks.robot_roadmap_queries --counts 60
     python -m benchmarks.robot_roadmap_queries --turns 40
     python -m benchmarks.robot_roadmap_queries --remember 40
+    python -m benchmarks.robot_roadmap_queries --floor 8
+    python -m benchmarks.robot_roadmap_queries --prices 40
 
 Scenes and problems come from the seeds kept for reporting.  Times are of the processor, the best of three: three copies
 of a kept roadmap learn the same side by side, so that none answers a query that it knows.
@@ -14,6 +16,7 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -24,13 +27,18 @@ from evenroad.roadmap import Budget, PlanResult
 from evenroad.roadmap.find_path import find_path
 from evenroad.robot import ArmWorld, with_limits
 from evenroad.robot.trees import shorten
+from evenroad.robot_roadmap.chance import chance_of_freedom
 from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.robot_roadmap import CUTS, PAIRS, RobotRoadmap, SceneRoadmap
+from evenroad.robot_roadmap.search_memory import NUMBER
 
 COPIES = 3
 SCENES = 6
 FIRST = 9
 """So many queries in a scene come before those that count."""
+
+SCENES_AT_RANDOM = 400
+"""By which the chance that an edge is free is measured."""
 
 LIMIT = Budget(seconds=1.0)
 TURN = 2.0 * np.pi
@@ -60,7 +68,7 @@ def costs(name: str, count: int, n: int, kinds: list[str]) -> None:
     began = time.process_time()
     made = make_roadmap(pool.robot, table_of(next(problems(pool, REPORTING))), n)
     print(f"roadmap of {n} made in {time.process_time() - began:.1f} s of the processor")
-    print("| kind | planner | median ms | 95 % ms | 95 % / trees | motions | trees needed | length / trees |")
+    print("| kind | planner | median ms | 95 % ms | 95 % / trees | motions | trees alone | length / trees |")
     print("|---|" + "---|" * 7)
     for kind in kinds:
         rows: dict[str, list[tuple[float, float, float, float]]] = {}
@@ -122,6 +130,66 @@ def counts(name: str, count: int, n: int, kinds: list[str]) -> None:
         print(
             f"{kind}: median of {np.median(asked[:, 0]):.0f} configurations and {np.median(asked[:, 1]):.0f} motions,"
             f" {share:.0f} % of {len(results)} solved",
+            flush=True,
+        )
+
+
+def floor(name: str, count: int, kinds: list[str]) -> None:
+    """Print how much shorter than those of trees paths become that are planned anew for half a second, by kind."""
+    pool = Pool(arm(name))
+    for kind in kinds:
+        best = []
+        for seed in REPORTING[:SCENES]:
+            world, pairs = queries(pool, kind, seed, FIRST + count)
+            for start, goal in pairs[FIRST:]:
+                first = find_path(world, start, goal, budget=LIMIT)
+                if first.solved and first.cost:
+                    long = find_path(world, start, goal, budget=Budget(seconds=0.5), improve=True)
+                    best.append((long.cost / first.cost, long.counts.get("rounds", 0)))
+        share, rounds = np.array(best).T
+        error = share.std(ddof=1) / np.sqrt(len(share))
+        print(
+            f"{kind}: {share.mean():.3f} ± {error:.3f} of the trees' length, {len(share)} queries, median of"
+            f" {np.median(rounds):.0f} rounds",
+            flush=True,
+        )
+
+
+def prices(name: str, count: int, n: int) -> None:
+    """Print what it is worth, on tuning seeds, that an edge is dearer the less often random boxes leave it free."""
+    pool = Pool(arm(name))
+    cell, some = table_of(next(problems(pool, TUNING))), indirect(pool, TUNING[:count])
+    made = make_roadmap(pool.robot, cell, n)
+    a, b = made.milestones[made.edges[:, 0]], made.milestones[made.edges[:, 1]] + TURN * made.turns
+    places = np.concatenate([a + share * (b - a) for share in (0.0, 0.25, 0.5, 0.75, 1.0)])
+    free = chance_of_freedom(
+        pool.robot, places, SCENES_AT_RANDOM, np.random.default_rng(0), lambda share: None
+    )
+    # Beta(1, 1) before the random scenes.
+    chance = (SCENES_AT_RANDOM * free.reshape(5, -1).min(axis=0) + 1.0) / (SCENES_AT_RANDOM + 2.0)
+
+    def asked(made: RobotRoadmap) -> np.ndarray:
+        rows = []
+        for p in some:
+            r = made.in_scene(p.scene).plan(p.start, p.goal, trees=False)
+            rows.append((r.counts["edges_checked"], r.cost if r.solved else np.nan, r.solved))
+        return np.array(rows, dtype=float)
+
+    before = asked(made)
+    print("| power | motions | difference | length, both solved | solved |\n|---|---|---|---|---|")
+    for power in (1.0, 2.0, 4.0):
+        priced = replace(made)
+        halves = 2 * len(made.edges)
+        priced.graph.lengths[:halves] /= chance[priced.graph.halves[:halves, NUMBER]] ** power
+        after = asked(priced)
+        apart, length = after[:, 0] - before[:, 0], after[:, 1] / before[:, 1] - 1.0
+        length = length[np.isfinite(length)]
+        errors = [x.std(ddof=1) / np.sqrt(len(x)) for x in (apart, length)]
+        print(
+            f"| {power:g} | {before[:, 0].mean():.0f} -> {after[:, 0].mean():.0f} |"
+            f" {apart.mean():+.1f} ± {errors[0]:.1f} |"
+            f" {100 * length.mean():+.1f} ± {100 * errors[1]:.1f} % |"
+            f" {100 * before[:, 2].mean():.1f} -> {100 * after[:, 2].mean():.1f} % of {len(some)} |",
             flush=True,
         )
 
@@ -223,6 +291,8 @@ def main() -> None:
     parser.add_argument("--counts", type=int, default=0, help="problems of each kind")
     parser.add_argument("--turns", type=int, default=0, help="problems of each kind")
     parser.add_argument("--remember", type=int, default=0, help="problems of each kind")
+    parser.add_argument("--floor", type=int, default=0, help="queries in each scene")
+    parser.add_argument("--prices", type=int, default=0, help="problems of each kind")
     parser.add_argument("--draws", type=int, default=2)
     parser.add_argument("-n", type=int, help="milestones; default: 1024 for queries, else 256")
     parser.add_argument("--kinds", nargs="+", default=["table", "box", "shelf"], choices=KINDS)
@@ -235,6 +305,10 @@ def main() -> None:
         turns(options.robot, options.turns, options.n or 256, options.draws)
     if options.remember:
         remember(options.robot, options.remember, options.n or 256, options.draws)
+    if options.floor:
+        floor(options.robot, options.floor, options.kinds)
+    if options.prices:
+        prices(options.robot, options.prices, options.n or 1024)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,8 @@
 """Exact star discrepancies in the plane beside the published best: ``python -m benchmarks.star_records``.
 
-Methods: a search over orders; the network (from Korobov lattices) and annealing on the L2 star discrepancy.  The best
-set counts, as it is and with its points placed anew in their order.  The published figures are those of MPMC (Rusch et
+Methods: a search over orders; the network on the L2 star discrepancy, from Kronecker points and with the exact star
+discrepancy as its judge; these starts as they are; annealing.  The best set counts, as it is and with its points placed
+anew in their order.  The published figures are those of MPMC (Rusch et
 al. 2024) and the best that Clement, Doerr, Klamroth and Paquete (2024) give.
 """
 
@@ -13,8 +14,10 @@ import time
 import numpy as np
 
 from evenroad._arrays import Floats, Ints
+from evenroad.points import PointSet
 from evenroad.research.measures import star_discrepancy
 from evenroad.research.network import NetworkConfig
+from evenroad.research.network.train import kronecker
 from evenroad.research.training import anneal_many, order_many, train_many
 from evenroad.research.training.order import place_order
 
@@ -42,7 +45,7 @@ def main() -> None:
     )
     parser.add_argument("-n", type=int, nargs="+", default=list(PUBLISHED))
     parser.add_argument("--sets", type=int, default=8)
-    parser.add_argument("--methods", nargs="+", default=["order", "network", "annealing"])
+    parser.add_argument("--methods", nargs="+", default=["order", "network", "start", "annealing"])
     parser.add_argument(
         "--steps", type=int, default=5000, help="of a set; orders of more than 300 points: a tenth"
     )
@@ -55,8 +58,11 @@ def main() -> None:
             if method == "order":
                 sets = order_many(n, options.sets, steps=steps, rng=SEED, workers=1)
             elif method == "network":
-                config = NetworkConfig(n, 2, "star", start="korobov", steps=steps)
+                config = NetworkConfig(n, 2, "star", steps=steps, judge="star")
                 sets = train_many(config, options.sets, rng=SEED, workers=1)
+            elif method == "start":
+                shifts = np.random.default_rng(SEED).random((options.sets, 2))
+                sets = tuple(PointSet(kronecker(n, shift)) for shift in shifts)
             else:
                 sets = anneal_many(n, 2, "star", options.sets, steps=steps, rng=SEED, workers=1)
             seconds = (time.process_time() - began) / options.sets

@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from tools import run_pages
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 
@@ -31,14 +32,10 @@ def test_with_klampt(tmp_path):
     assert "a RobotTrajectory of" in said
 
 
-def _blocks(name):
-    """The Python of a page, block by block."""
-    pieces = (EXAMPLES.parent / "docs" / name).read_text().split("```python\n")[1:]
-    return [piece.split("```")[0] for piece in pieces]
-
-
-@pytest.mark.parametrize("block", _blocks("adapters.md"))
-def test_the_page_runs(block, tmp_path):
-    pytest.importorskip("klampt" if "klampt" in block else "ompl")
-    done = subprocess.run([sys.executable, "-c", block], cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+def test_the_page_runs(tmp_path, monkeypatch):
+    """Without these wheels ``tests/test_pages.py`` leaves it out."""
+    for module in run_pages.NEEDS["adapters.md"]:
+        pytest.importorskip(module)
+    monkeypatch.chdir(tmp_path)
+    ran = [text for block, text in run_pages.run_page(run_pages.ROOT / "docs" / "adapters.md")]
+    assert sum("import" in text for text in ran) == 3

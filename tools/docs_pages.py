@@ -64,6 +64,20 @@ REFERENCE = {
 }
 """Page -> its title, and the modules whose public names it holds."""
 
+FOR_THE_COMMAND = {
+    "evenroad.arms": {
+        "Ends",
+        "RESOLUTION",
+        "SEARCH",
+        "find_cheapest",
+        "finished",
+        "mesh_check",
+        "plan_on_points",
+    }
+    | {"plan_ways", "unreached"}
+}
+"""Module -> names that it offers to evenroad's own command and benchmarks, not to users."""
+
 NOT_NEEDED = ["ompl", "klampt"]
 """Packages of extras that modules of the reference import, and that need not be there."""
 
@@ -89,8 +103,9 @@ def write_pages(folder: Path) -> None:
 
 def public_names(module: ModuleType) -> list[str]:
     """Return what a module offers: its ``__all__``, names that it hands on (``X as X``), and what it defines itself."""
+    hidden = FOR_THE_COMMAND.get(module.__name__, set())
     if hasattr(module, "__all__"):
-        return list(module.__all__)
+        return [name for name in module.__all__ if name not in hidden]
     names = []
     for node in ast.parse(inspect.getsource(module)).body:
         match node:
@@ -100,7 +115,7 @@ def public_names(module: ModuleType) -> list[str]:
                 names.append(name)
             case ast.Assign(targets=[ast.Name(id=name)]) | ast.AnnAssign(target=ast.Name(id=name)):
                 names += [name] if isinstance(getattr(module, name), dict) else []
-    return [name for name in dict.fromkeys(names) if not name.startswith("_")]
+    return [name for name in dict.fromkeys(names) if not name.startswith("_") and name not in hidden]
 
 
 def documented_name(name: str) -> str:
@@ -127,6 +142,9 @@ def _reference() -> Iterator[tuple[str, str]]:
     seen: set[int] = set()
     first = [_heading("Reference", "=")]
     first.append("What is at hand after ``import evenroad as er``; each topic's page has the rest.\n")
+    first.append(
+        "``Floats`` are float64 arrays, ``RngLike`` an int, a SeedSequence or a Generator of NumPy.\n"
+    )
     for page, (title, homes) in REFERENCE.items():
         parts, rows = [_heading(title, "=")], []
         for home in homes:
@@ -157,7 +175,7 @@ def _entry(name: str, thing: Any) -> str:
         return f".. autoclass:: {name}\n   :members:\n"
     return (
         f".. autofunction:: {name}\n"
-        if callable(thing)
+        if inspect.isroutine(thing)
         else f".. py:data:: {name}\n\n   {_said_of(name, thing)}\n"
     )
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from evenroad.robot import Scene, with_limits
 from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.robot_roadmap import SceneRoadmap
 from evenroad.robot_roadmap.search_memory import BLOCKED, FREE, NODES, PROVED
@@ -118,3 +119,34 @@ def test_what_one_scene_learns_is_not_known_in_another(roadmap):
     np.testing.assert_array_equal(roadmap.graph.halves, before)
     assert first._graph.desk[NODES] == len(roadmap.milestones) + 2
     assert second._graph.desk[NODES] == len(roadmap.milestones)
+
+
+def test_what_leads_to_the_goal_within_one_turn_is_not_lost_where_joints_turn_twice():
+    robot = ur5(joints=3)
+    one_turn = with_limits(robot, dict.fromkeys((robot.group[0], robot.group[2]), (-np.pi, np.pi)))
+    narrow = make_roadmap(one_turn, None, 24, k=3, gamma=0.0, ends=0)
+    wide = make_roadmap(
+        with_limits(one_turn, {robot.group[0]: (-TURN, TURN)}), None, 24, k=3, gamma=0.0, ends=0
+    )
+    np.testing.assert_array_equal(narrow.milestones, wide.milestones)
+    kept = {
+        tuple(pair) for pair, turns in zip(wide.edges.tolist(), wide.turns, strict=True) if not turns.any()
+    }
+    assert kept >= set(map(tuple, narrow.edges.tolist()))
+    # Ends are linked to milestones as these are, once those that were turned did not do.
+    start, goal = np.array([5.0, -1.5, 0.0]), np.array([[-5.0, -1.5, 0.0]])
+    known = SceneRoadmap(wide, Scene("nothing"))
+    for unturned in (False, True):
+        known._ask(start, goal, 0, np.inf, 24, unturned=unturned)
+        assert known._graph._links[3:5].any() == (not unturned)
+    known = SceneRoadmap(narrow, box_scene())
+    q = known.world.space.from_cube(np.random.default_rng(1).random((400, 3)))
+    q = q[known.world.valid(q)]
+    solved = 0
+    for start, goal in zip(q[::2], q[1::2], strict=False):
+        if known.plan(start, goal, shorten=False, trees=False).solved:
+            solved += 1
+            result = SceneRoadmap(wide, box_scene()).plan(start, goal, shorten=False, trees=False)
+            assert result.solved
+            assert known.world.recheck(result.path).all()
+    assert solved > 20

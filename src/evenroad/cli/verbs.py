@@ -8,9 +8,8 @@ from importlib import import_module
 from textwrap import fill
 
 from evenroad import __version__
-from evenroad._checks import require_known
 from evenroad._terminal import leave_output, table_width
-from evenroad.errors import EvenroadError
+from evenroad.errors import EvenroadError, UnknownName
 
 DONE = 0
 BAD_INPUT = 2
@@ -71,8 +70,8 @@ def run(arguments: Sequence[str]) -> int:
 def _run(arguments: list[str]) -> int:
     verb, words = (arguments or ["--help"])[0], arguments[1:]
     if verb == "--version":
-        for word in words:
-            require_known("option of --version:", word, ("-v", "--verbose"))
+        for word in {*words} - {"-v", "--verbose"}:
+            raise UnknownName.among("option of --version:", word, ("-v", "--verbose"))
         print(f"evenroad {__version__}")
         if words:
             _print_surroundings()
@@ -82,7 +81,8 @@ def _run(arguments: list[str]) -> int:
         for name, (_, about) in VERBS.items():
             print(fill(f"  {name:8} {about}", table_width(), subsequent_indent=" " * 11))
         return DONE
-    # Here, since neither version nor help wait for tyro.
+    # Here, since neither version nor help wait for numpy and tyro.
+    from evenroad._checks import require_known
     from evenroad.cli.options import print_completion, read_options
 
     try:

@@ -60,7 +60,7 @@ class PlansWithTrees(Protocol):
 def prepare() -> None:
     """Begin to compile what planning with trees takes, in processes beside this one, unless it is kept already."""
     # The last needed, and the longest, first: this process begins at the other end.
-    kernels = ("trees", "lane_check", "shorten", "motion_checks")
+    kernels = ("trees", "lane_check", "shorten", "motion_checks", "hull_contact")
     compile_beside(*(f"evenroad.robot.kernel.{kernel}" for kernel in kernels))
 
 
@@ -141,7 +141,12 @@ def grown_trees(
 
 
 def shorten(
-    world: PlansWithTrees, path: npt.ArrayLike, *, pairs: int = 1 << 30, cuts: int = 64
+    world: PlansWithTrees,
+    path: npt.ArrayLike,
+    *,
+    pairs: int = 1 << 30,
+    cuts: int = 64,
+    batches: int = 1 << 30,
 ) -> tuple[Floats, int]:
     """Return a path that is not longer, and how many motions were looked at.
 
@@ -156,6 +161,8 @@ def shorten(
         Waypoints; every motion is free in the world.
     pairs, cuts : int
         So many motions between places along the path are tried at most, by the lanes so many cuts of corners, too.
+    batches : int
+        After so many batches of sixteen checks the lanes try no more.
 
     Raises
     ------
@@ -173,7 +180,7 @@ def shorten(
     if world.backend == "scalar":
         return _shortened(world, as_batch("path", path, dim))
     places, count = _place(share_pairs)
-    short, motions = _shorten_path()(world.lanes, path, places, min(pairs, count), cuts)
+    short, motions = _shorten_path()(world.lanes, path, places, min(pairs, count), cuts, batches)
     if not len(short):
         as_batch("path", path, dim)
     return short, motions

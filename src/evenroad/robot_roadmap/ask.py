@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, TypeGuard
 
 import numpy as np
 
@@ -61,6 +61,7 @@ def ask(
     links: int,
     greed: float,
     only_known: bool = False,
+    unturned: bool = False,
     most_motions: int,
     deadline: float,
 ) -> Asked:
@@ -68,21 +69,22 @@ def ask(
 
     Of what the roadmap knows to be free of robot and cell, `day` is asked; of the rest the whole world.  With
     `only_known` the query is the last one, and nothing is gone along but what is known to be free by now.
+    With `unturned` ends are linked to milestones as these are, not turned to be near.
     """
     room = 1
     while True:
-        graph.prepare(start, goals, links, greed, room, only_known=only_known)
-        if (
-            isinstance(world, ArmWorld)
-            and isinstance(day, ArmWorld)
-            and world.backend == day.backend == "lanes"
-        ):
+        graph.prepare(start, goals, links, greed, room, only_known=only_known, unturned=unturned)
+        if _by_one_program(world) and _by_one_program(day):
             asked = _by_lanes(world, day, graph, most_motions, deadline)
         else:
             asked = _one_by_one(world, day, graph, most_motions, deadline)
         if asked.ended != FULL:
             return asked
         room *= 2
+
+
+def _by_one_program(world: Checks) -> TypeGuard[ArmWorld]:
+    return isinstance(world, ArmWorld) and world.backend == "lanes"
 
 
 def _by_lanes(world: ArmWorld, day: ArmWorld, graph: KnownGraph, most_motions: int, deadline: float) -> Asked:

@@ -115,6 +115,8 @@ def _differences(made: Robot, given: Robot) -> Iterator[str]:
         other = joints.get(joint.name)
         if other is None:
             yield f"it had a joint {joint.name!r}, which this one lacks"
+        elif other is joint:
+            continue
         elif replace(other, lower=joint.lower, upper=joint.upper, velocity=joint.velocity) != joint:
             yield f"joint {joint.name!r} has another place, axis or kind ({joint.kind}, now {other.kind})"
     if len(joints) != len(made.joints):

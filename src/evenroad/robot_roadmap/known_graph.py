@@ -12,8 +12,17 @@ from evenroad._arrays import Floats, Ints, Ints32
 from evenroad.robot.kernel.addresses import address, doubles_at, integers_at, matrix_at
 from evenroad.robot.kernel.layout import program, quick
 from evenroad.robot_roadmap import search_memory as at
-from evenroad.robot_roadmap.lazy_search import group_of, join, kept_in_order
-from evenroad.robot_roadmap.search_memory import BLOCKED, FREE, PROVED, UNKNOWN, Search, search_at
+from evenroad.robot_roadmap.search_memory import (
+    BLOCKED,
+    FREE,
+    PROVED,
+    UNKNOWN,
+    Search,
+    group_of,
+    join,
+    kept_in_order,
+    search_at,
+)
 from evenroad.robot_roadmap.search_metric import BITS, length_of_edge, measure, write, write_distances
 from evenroad.robot_roadmap.turns import TURN, OneTurn
 
@@ -78,7 +87,8 @@ class KnownGraph:
         fresh.rules[at.HIGH] = np.minimum(self.rules[at.HIGH], high)
         n = int(self.desk[at.NODES])
         lifts, q = self.rules[at.LIFTS] > 0.0, self.milestones[:n]
-        fresh.nodes[:n] = np.where((~lifts & ((q < low) | (q > high))).any(axis=1), BLOCKED, UNKNOWN)
+        if np.any(~lifts & ((low > self.rules[at.LOW]) | (high < self.rules[at.HIGH]))):
+            fresh.nodes[:n] = np.where((~lifts & ((q < low) | (q > high))).any(axis=1), BLOCKED, UNKNOWN)
         return fresh
 
     def _make_room(self, nodes: int, halves: int, edges: int) -> None:
@@ -128,11 +138,13 @@ class KnownGraph:
         room: int = 1,
         *,
         only_known: bool = False,
+        unturned: bool = False,
     ) -> None:
         """Write a query, of which nothing is known yet.
 
         `greed` multiplies the bound of the search, 1 for the shortest way; `room` the usual memory.  With
-        `only_known` it is the last query, whose links are known; where these are forgotten, it is a new one.
+        `only_known` it is the last query, whose links are known; where these are forgotten, it is a new one.  With
+        `unturned` ends are linked to milestones in their one turn.
         """
         desk, e, self.rules[at.GREED] = self.desk, 1 + len(goals), greed
         dim, capacity = int(desk[at.DIM]), int(desk[at.CAPACITY])
@@ -153,7 +165,8 @@ class KnownGraph:
             self._links[:] = 0
             self._straight = self._query[behind : behind + e].view(np.int64)
             self.path = np.empty((2 * room * capacity + 2, dim))
-        self.ends[0], self.ends[1:], desk[at.ONLY_KNOWN] = start, goals, only_known
+        self.ends[0], self.ends[1:] = start, goals
+        desk[at.ONLY_KNOWN], desk[at.UNTURNED] = only_known, unturned
         if not only_known:
             # Verdicts of the links, and behind them the turns of those that do not turn.
             self._links[:, : desk[at.NODES]] = 0

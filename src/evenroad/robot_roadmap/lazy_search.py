@@ -55,11 +55,12 @@ from evenroad.robot_roadmap.search_memory import (
     VIA,
     WAITING,
     Search,
+    join,
+    kept_in_order,
 )
 from evenroad.robot_roadmap.search_metric import distance, measure, write
 
 Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 NODE, EDGE, LINK, STRAIGHT, FOUND, NONE, CUT_OFF, FULL = range(8)
 """What `step` ends with: a milestone, a motion of the roadmap, a link of an end or the motion straight to a goal to be
@@ -103,20 +104,6 @@ def begin(s: Search) -> None:
             s.near[end, rank] = -1
     _clear(s)
     d[AIM], d[AIMED_END], d[PHASE] = -1, -1, ASK_STRAIGHT
-
-
-@quick
-def kept_in_order(keys: Floats, items: Ints, count: int, most: int, key: float, item: int) -> int:
-    """Put an item among the so many with the least keys, if it is one of these, and return how many there are now."""
-    if count == most and key >= keys[count - 1]:
-        return count
-    count = min(count + 1, most)
-    place = count - 1
-    while place > 0 and keys[place - 1] > key:
-        keys[place], items[place] = keys[place - 1], items[place - 1]
-        place -= 1
-    keys[place], items[place] = key, item
-    return count
 
 
 @quick
@@ -289,21 +276,6 @@ def answer(s: Search, question: int, verdict: int) -> None:
         s.links[to, by] = verdict
         if verdict >= FREE:
             s.nodes[by] = FREE
-
-
-@quick
-def group_of(s: Search, node: int) -> int:
-    """Return by which milestone the group of a milestone is known: all that free motions join."""
-    while s.groups[node] != node:
-        s.groups[node] = s.groups[s.groups[node]]
-        node = s.groups[node]
-    return node
-
-
-@quick
-def join(s: Search, a: int, b: int) -> None:
-    """Make one group of those of two milestones."""
-    s.groups[group_of(s, a)] = group_of(s, b)
 
 
 @quick

@@ -52,11 +52,14 @@ TRIED_LINKS, TRIED_MOTIONS = 30, 60
 """Where trees may follow, so many links of each end are tried, and so many motions: trees find ways out of narrow
 places with fewer checks than long links do."""
 
-PAIRS, CUTS = 16, 32
+PAIRS, CUTS, BATCHES = 16, 32, 120
 """What a path along the roadmap is shortened with: half of the work on trees' paths, for half a percent of length."""
 
 _LONG = 1e8
 """Seconds that stand for no limit."""
+
+_ready: set[str] = set()
+"""Backends whose programs are compiled."""
 
 _BUDGET = Budget(seconds=SECONDS)
 
@@ -104,6 +107,11 @@ class RobotRoadmap:
     def world(self) -> ArmWorld:
         """The robot in its cell alone."""
         return ArmWorld(self.robot, self.cell, resolution=self.resolution)
+
+    @cached_property
+    def bare(self) -> Robot:
+        """The robot without the pairs of its own that are tested: what the roadmap knows."""
+        return replace(self.robot, pairs=())
 
     @cached_property
     def one_turn(self) -> OneTurn:
@@ -183,16 +191,25 @@ class SceneRoadmap:
         self.roadmap = roadmap
         self.world = ArmWorld(robot, everything, resolution=resolution)
         # What the roadmap knows to be free of the robot and its cell is asked about the other obstacles alone.
-        self._day = ArmWorld(*left_to_check(robot, roadmap.cell, day, everything), resolution=resolution)
+        bare, left = left_to_check(robot, roadmap.cell, day, everything)
+        # One and the same where it can be: what is known of it need not be looked up by all of its values.
+        bare = roadmap.bare if robot is roadmap.robot else bare
+        self._day = ArmWorld(bare, left, resolution=resolution)
         self._asked: tuple[Checks, Checks] = self.world, self._day
+        self._own: SceneRoadmap | None = None
         if shapes is not None:
-            self._asked = OwnShapesWorld(self.world, shapes), OwnShapesWorld(self._day, shapes)
+            # With verdicts of its own: what blocks the capsules need not block the shapes.
+            self._own = SceneRoadmap(roadmap, scene, robot)
+            self._own._asked = OwnShapesWorld(self.world, shapes), OwnShapesWorld(self._day, shapes)
         self._graph = roadmap.graph.within(np.array(self.world.space.low), np.array(self.world.space.high))
         self._wraps = bool(np.any(self.world.space.wrapping))
         self.learned: list[Floats] = []
-        # Compiled, or loaded, before a clock runs; nothing is checked but the ends.
-        self._ask(roadmap.milestones[0], roadmap.milestones[:1], 0, math.inf, 1)
-        self._graph.learn(roadmap.milestones[:0])
+        if self.world.backend not in _ready:
+            # Compiled, or loaded, before a clock runs; nothing is checked but the ends.
+            self._ask(roadmap.milestones[0], roadmap.milestones[:1], 0, math.inf, 1)
+            self._graph.learn(roadmap.milestones[:0])
+            self._graph.around(roadmap.weights, 0.0, 1)
+            _ready.add(self.world.backend)
 
     def connect(
         self,
@@ -222,6 +239,7 @@ class SceneRoadmap:
         greed: float = GREED,
         *,
         only_known: bool = False,
+        unturned: bool = False,
     ) -> Asked:
         return ask(
             *self._asked,
@@ -230,9 +248,10 @@ class SceneRoadmap:
             goals,
             links=links,
             greed=greed,
-            only_known=only_known,
             most_motions=most,
             deadline=deadline,
+            only_known=only_known,
+            unturned=unturned,
         )
 
     @property
@@ -259,7 +278,7 @@ class SceneRoadmap:
         shorten : bool
             Whether the path is made shorter.
         trees : bool
-            Whether trees are tried, after 200 motions along the roadmap; else more of its links and all motions are.
+            Whether trees are tried, after 60 motions along the roadmap; else more of its links and all motions are.
 
         Returns
         -------
@@ -278,12 +297,15 @@ class SceneRoadmap:
         links = TRIED_LINKS if trees else links_of(self._size)
         limits = min(most, TRIED_MOTIONS) if trees else most, began + SHARE * min(deadline - began, _LONG)
         asked = self._ask(first, goals, *limits, links)
+        if asked.goal < 0 and self._own is not None:
+            return self._own.plan(first, goals, budget=budget, shorten=shorten, trees=trees)
         if asked.ended in (NONE, CUT_OFF, SPENT) and trees and len(goals) == 1:
             asked = self._by_ways_out(asked, first, goals, most, limits[1])
+        elif asked.ended in (NONE, CUT_OFF) and not trees and self.roadmap.one_turn.lifts.any():
+            # What leads to the goal within one turn is not to be lost.
+            before, asked = asked.motions, self._ask(first, goals, *limits, links, unturned=True)
+            asked = replace(asked, motions=asked.motions + before)
         if asked.goal >= 0:
-            if self._asked[0] is not self.world:
-                # Where checks are dear, shorter links from now on are worth the longer search.
-                self._graph.learn(asked.path)
             return self._solved(asked, first, goals, shorten, began)
         query = Query(first, goals, shorten=shorten, budget=budget)
         attempt = Attempt(self._asked[0], query, NO_POINTS, "none", PLANNER)
@@ -308,14 +330,8 @@ class SceneRoadmap:
 
     def _by_ways_out(self, asked: Asked, start: Floats, goals: Floats, most: int, deadline: float) -> Asked:
         """Ask again along what is known to be free, with ways learned that lead there from the ends."""
-        out = learn_ways_out(
-            self.world,
-            self._graph,
-            self.roadmap.weights,
-            (start, goals[0]),
-            most - asked.motions,
-            deadline,
-        )
+        left = most - asked.motions
+        out = learn_ways_out(self.world, self._graph, self.roadmap.weights, (start, goals[0]), left, deadline)
         self.learned += out.ways
         before = asked.milestones + out.configurations, asked.motions + out.motions
         if out.complete:
@@ -344,7 +360,7 @@ class SceneRoadmap:
         )
         seconds = {"search": found - began}
         if shorter:
-            path, counts["shortcut_motions"] = shorten(world, path, pairs=PAIRS, cuts=CUTS)
+            path, counts["shortcut_motions"] = shorten(world, path, pairs=PAIRS, cuts=CUTS, batches=BATCHES)
             length, seconds["shortcut"] = self._length(path), now() - found
         to = f" to goal {asked.goal}" if len(goals) > 1 else ""
         return PlanResult(

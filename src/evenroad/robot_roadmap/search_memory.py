@@ -51,7 +51,10 @@ ONLY_KNOWN, MEASURED = 25, 26
 VERDICTS, LIFTING = 27, 28
 """Desk: address of the verdicts of edges; 1 where joints are lifted by whole turns."""
 
-DESK = 29
+UNTURNED = 29
+"""Desk: 1 where ends are linked to milestones as these are, 0 where these are turned to be near."""
+
+DESK = 30
 
 OTHER, NEXT, NUMBER, HALF = range(4)
 """Of a half edge: where it leads, the next one of the same milestone or -1, its edge; how many things that is."""
@@ -193,3 +196,32 @@ def search_at(desk: int) -> Search:
         doubles_at(costs + 8 * entries, (entries,)),
         integers_at(costs + 16 * entries, (entries,)),
     )
+
+
+@quick
+def kept_in_order(keys: Floats, items: Ints, count: int, most: int, key: float, item: int) -> int:
+    """Put an item among the so many with the least keys, if it is one of these, and return how many there are now."""
+    if count == most and key >= keys[count - 1]:
+        return count
+    count = min(count + 1, most)
+    place = count - 1
+    while place > 0 and keys[place - 1] > key:
+        keys[place], items[place] = keys[place - 1], items[place - 1]
+        place -= 1
+    keys[place], items[place] = key, item
+    return count
+
+
+@quick
+def group_of(s: Search, node: int) -> int:
+    """Return by which milestone the group of a milestone is known: all that free motions join."""
+    while s.groups[node] != node:
+        s.groups[node] = s.groups[s.groups[node]]
+        node = s.groups[node]
+    return node
+
+
+@quick
+def join(s: Search, a: int, b: int) -> None:
+    """Make one group of those of two milestones."""
+    s.groups[group_of(s, a)] = group_of(s, b)

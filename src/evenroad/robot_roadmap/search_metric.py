@@ -14,6 +14,7 @@ from evenroad.robot_roadmap.search_memory import (
     LIFTS,
     LOW,
     NODES,
+    UNTURNED,
     Search,
 )
 from evenroad.robot_roadmap.turns import TURN
@@ -42,7 +43,7 @@ def measure(s: Search, end: int, first: int) -> None:
                 if not lifted:
                     turns[i] = 0
                 value = s.milestones[first + i, k]
-                turn = np.rint((s.ends[end, k] - value) / TURN)
+                turn = np.rint((s.ends[end, k] - value) / TURN) if s.desk[UNTURNED] == 0 else 0.0
                 turn = min(max(turn, np.ceil((low - value) / TURN)), np.floor((high - value) / TURN))
                 apart = np.float32(value + TURN * turn - s.ends[end, k])
                 away[i] += apart * apart

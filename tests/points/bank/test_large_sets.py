@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from evenroad.cli import main
 from evenroad.errors import BrokenFile, NotAvailable
 from evenroad.points import draw
 from evenroad.points.bank import Bank, bank
@@ -45,6 +46,20 @@ def test_a_large_set_names_the_package_that_has_it(as_installed, monkeypatch):
     assert as_installed.has("hickernell", 512, 2)
     with pytest.raises(NotAvailable, match="n=512 in d=2 are in the package evenroad-sets.*pip install"):
         as_installed.cell("hickernell", 512, 2)
+
+
+def test_it_is_known_whether_there_are_large_sets(as_installed, monkeypatch):
+    monkeypatch.setattr(bank, "find_spec", lambda name: None)
+    assert not bank.has_large_sets()
+    monkeypatch.undo()
+    assert bank.has_large_sets()
+
+
+def test_a_suite_says_that_it_leaves_cells_out(monkeypatch, tmp_path):
+    monkeypatch.setattr("evenroad.research.commands.bench.has_large_sets", lambda: False)
+    words = ["bench", "paper", "--only", "nonsense", "--store", str(tmp_path / "a.db")]
+    with pytest.warns(UserWarning, match="without the package evenroad-sets the suites leave out"):
+        assert main(words) == 2
 
 
 def test_a_large_set_is_taken_from_the_package(as_installed, large_sets):

@@ -2,5 +2,6 @@
 
 from evenroad.points.bank.bank import Bank as Bank
 from evenroad.points.bank.bank import Cell as Cell
+from evenroad.points.bank.bank import has_large_sets as has_large_sets
 from evenroad.points.bank.trained import TRAINED_FAMILIES as TRAINED_FAMILIES
 from evenroad.points.bank.trained import Trained as Trained

@@ -113,6 +113,11 @@ def _file(folder: Path, family: str, n: int, d: int) -> Path:
     )
 
 
+def has_large_sets() -> bool:
+    """Return whether the sets that the wheel leaves out are here, in a checkout or by their package."""
+    return any(DATA.glob(f"*/{cell_name(1024, 2)}")) or find_spec(LARGE_SETS) is not None
+
+
 def cell_name(n: int, d: int) -> str:
     """Return the file name of a cell inside its family's folder."""
     return f"d{d:02d}-n{n:04d}.npy"

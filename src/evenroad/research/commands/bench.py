@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +13,7 @@ import tyro
 
 from evenroad._terminal import print_table, progress_shown
 from evenroad.errors import InvalidValue, UnknownName
+from evenroad.points.bank import has_large_sets
 from evenroad.research.arms.results import TABLE_HEADER, arm_lines, table_rows
 from evenroad.research.bench.execute import DEFAULT_LIMIT, require_limit
 from evenroad.research.bench.rows import Rows
@@ -83,6 +85,11 @@ class Bench:
             raise InvalidValue("--jobs does not go with --scheduler, whose workers are counted there")
         if self.limit is not None and self.scheduler is not None:
             raise InvalidValue("--limit does not go with --scheduler, whose workers run tasks in threads")
+        if not has_large_sets():
+            warnings.warn(
+                "without the package evenroad-sets the suites leave out trained sets of more than 256 points",
+                stacklevel=2,
+            )
         suite = self._suite()
         report = self._run(suite)
         rows = read_rows(self.store, problems=sorted({task.problem for task in suite.tasks}))

@@ -16,6 +16,7 @@ from evenroad.robot.kernel.motion_checks import (
     motion_free,
     motion_proved,
 )
+from evenroad.robot.kernel.motion_states import BATCHES as BATCHES_DONE
 from evenroad.robot.kernel.motion_states import COUNTS, MOTIONS
 
 Floats = npt.NDArray[np.float64]
@@ -31,12 +32,17 @@ CUT_WORTH_WHILE = 1e-3
 _BESIDE = 1 << 32
 """Two counts in one number: less to read after a call."""
 
-MOST_CUTS = 64
-"""So many cuts of corners are tried at most, where nothing else is said."""
+MOST_CUTS, MOST_BATCHES = 64, 1 << 30
+"""So many cuts of corners are tried at most, and so many batches checked, where nothing else is said."""
 
 
 def shorten_path(
-    world: LaneWorld, path: Floats, pairs: int, count: int, most_cuts: int = MOST_CUTS
+    world: LaneWorld,
+    path: Floats,
+    pairs: int,
+    count: int,
+    most_cuts: int = MOST_CUTS,
+    most_batches: int = MOST_BATCHES,
 ) -> tuple[Floats, int]:
     """Return a path that is no longer, without waypoints where it is not finite, and how many motions were looked at.
 
@@ -51,13 +57,17 @@ def shorten_path(
         straight motion is tried.
     most_cuts : int
         So many cuts of corners are tried at most.
+    most_batches : int
+        After so many batches of sixteen checks nothing more is tried.
     """
     size, dim = path.shape
     rows = size + count + most_cuts + 4
     room, arguments = world.arguments(COUNTS + rows * (dim + 1) + 3 * dim)
     points = room[-rows * dim :].reshape(rows, dim)
     room[:COUNTS], points[:size] = 0.0, path
-    motions, left = divmod(shorten_points(rows, size, dim, pairs, count, most_cuts, *arguments), _BESIDE)
+    motions, left = divmod(
+        shorten_points(rows, size, dim, pairs, count, most_cuts, most_batches, *arguments), _BESIDE
+    )
     return points[:left].copy(), motions
 
 
@@ -69,6 +79,7 @@ def shorten_points(
     shares: int,
     count: int,
     most_cuts: int,
+    most_batches: int,
     check: int,
     resolution: float,
     tables: int,
@@ -93,12 +104,14 @@ def shorten_points(
     size = _pass_by(points, size, checks)
     _measure(points, places, size, way, checks)
     for row in range(count):
+        if checks.counts[BATCHES_DONE] >= most_batches:
+            break
         low = min(pairs[row, 0], pairs[row, 1]) * places[size - 1]
         high = max(pairs[row, 0], pairs[row, 1]) * places[size - 1]
         size = _joined(points, places, size, low, high, WORTH_WHILE, ends, way, checks)
     cuts, i, gained = 0, 1, places[size - 1]
     # Corners, one after the other and again while that gains anything: the shorter side, half of it, a quarter.
-    while cuts < most_cuts and i < size - 1:
+    while cuts < most_cuts and i < size - 1 and checks.counts[BATCHES_DONE] < most_batches:
         reach = min(places[i] - places[i - 1], places[i + 1] - places[i])
         length = places[size - 1]
         for _ in range(3):
@@ -120,7 +133,8 @@ def shorten_points(
         i += 1
         if i >= size - 1 and places[size - 1] < gained * (1.0 - WORTH_WHILE):
             i, gained = 1, places[size - 1]
-    size = _pass_by(points, size, checks)
+    if checks.counts[BATCHES_DONE] < most_batches:
+        size = _pass_by(points, size, checks)
     return size + _BESIDE * checks.counts[MOTIONS]
 
 
