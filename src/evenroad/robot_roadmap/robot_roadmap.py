@@ -89,7 +89,7 @@ class RobotRoadmap:
     ends : int
         How many ends in pockets they learned from, at most.
     tuned : str
-        What came of tuning the two; empty without.
+        What came of tuning gamma; empty without.
     """
 
     robot: Robot
