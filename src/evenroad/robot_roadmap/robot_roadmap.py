@@ -55,6 +55,9 @@ places with fewer checks than long links do."""
 PAIRS, CUTS, BATCHES = 16, 32, 120
 """What a path along the roadmap is shortened with: half of the work on trees' paths, for half a percent of length."""
 
+LONG_WAY, MORE = 10, 2
+"""So many times the work on a way of so many waypoints: one that ways out led round about."""
+
 _LONG = 1e8
 """Seconds that stand for no limit."""
 
@@ -355,7 +358,10 @@ class SceneRoadmap:
         )
         seconds = {"search": found - began}
         if shorter:
-            path, counts["shortcut_motions"] = shorten(world, path, pairs=PAIRS, cuts=CUTS, batches=BATCHES)
+            work = MORE if len(path) >= LONG_WAY else 1
+            path, counts["shortcut_motions"] = shorten(
+                world, path, pairs=work * PAIRS, cuts=work * CUTS, batches=work * BATCHES
+            )
             length, seconds["shortcut"] = self._length(path), now() - found
         to = f" to goal {asked.goal}" if len(goals) > 1 else ""
         return PlanResult(
