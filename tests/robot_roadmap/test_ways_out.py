@@ -123,7 +123,7 @@ def test_what_one_scene_learns_is_not_known_in_another(roadmap):
 
 def test_what_leads_to_the_goal_within_one_turn_is_not_lost_where_joints_turn_twice():
     robot = ur5(joints=3)
-    one_turn = with_limits(robot, dict.fromkeys((robot.group[0], robot.group[2]), (-np.pi, np.pi)))
+    one_turn = with_limits(robot, dict.fromkeys(robot.group, (-np.pi, np.pi)))
     narrow = make_roadmap(one_turn, None, 24, k=3, gamma=0.0, ends=0)
     wide = make_roadmap(
         with_limits(one_turn, {robot.group[0]: (-TURN, TURN)}), None, 24, k=3, gamma=0.0, ends=0

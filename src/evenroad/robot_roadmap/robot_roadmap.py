@@ -52,8 +52,9 @@ TRIED_LINKS, TRIED_MOTIONS = 30, 60
 """Where trees may follow, so many links of each end are tried, and so many motions: trees find ways out of narrow
 places with fewer checks than long links do."""
 
-PAIRS, CUTS, BATCHES = 16, 32, 120
-"""What a path along the roadmap is shortened with: half of the work on trees' paths, for half a percent of length."""
+PAIRS, CUTS, BATCHES, LONG_WAY = 16, 32, 120, 10
+"""What a path along the roadmap is shortened with, half of the work on trees' paths for half a percent of length, and
+twice that from so many waypoints on: those ways out led round about."""
 
 _LONG = 1e8
 """Seconds that stand for no limit."""
@@ -360,7 +361,10 @@ class SceneRoadmap:
         )
         seconds = {"search": found - began}
         if shorter:
-            path, counts["shortcut_motions"] = shorten(world, path, pairs=PAIRS, cuts=CUTS, batches=BATCHES)
+            work = 2 if len(path) >= LONG_WAY else 1
+            path, counts["shortcut_motions"] = shorten(
+                world, path, pairs=work * PAIRS, cuts=work * CUTS, batches=work * BATCHES
+            )
             length, seconds["shortcut"] = self._length(path), now() - found
         to = f" to goal {asked.goal}" if len(goals) > 1 else ""
         return PlanResult(
