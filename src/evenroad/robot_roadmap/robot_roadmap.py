@@ -62,8 +62,6 @@ _LONG = 1e8
 _ready: set[str] = set()
 """Backends whose programs are compiled."""
 
-_BUDGET = Budget(seconds=SECONDS)
-
 
 @dataclass(frozen=True, eq=False)
 class RobotRoadmap:
@@ -291,7 +289,7 @@ class SceneRoadmap:
         InvalidValue, UnknownName
             If start or goal is no configuration of the robot.
         """
-        budget = _BUDGET if budget is None else budget
+        budget = Budget(seconds=SECONDS) if budget is None else budget
         first, goals = read_places(self._place(start), self._places(goal), self.world.space)
         began, deadline = now(), budget.deadline()
         most = 2**31 - 1 if budget.motions is None else budget.motions
@@ -386,11 +384,9 @@ class SceneRoadmap:
         )
 
     def _length(self, path: Floats) -> float:
-        if self._wraps:
-            return path_length(path, self.world.space)
-        # The same, in a tenth of the time.
         places = path.tolist()
-        return sum(map(math.dist, places, places[1:]))
+        # Where nothing wraps the sum is the same, in a tenth of the time.
+        return path_length(path, self.world.space) if self._wraps else sum(map(math.dist, places, places[1:]))
 
     def _place(self, place: Place) -> npt.ArrayLike:
         """Return a configuration of a text; of numbers themselves."""
