@@ -23,6 +23,9 @@ from evenroad.roadmap.search import FREE, UNKNOWN, find_lazily
 from evenroad.world import World
 
 UNTIL = ("solved", "settled", "budget")
+GROWING = 5
+"""Largest dimension in which a lattice that grows was compared with Sobol's points (docs/sequences.md)."""
+
 SETTLED = 0.01
 """A path counts as settled when doubling the points has shortened it by no more than this share."""
 
@@ -52,7 +55,8 @@ def plan_anytime(
     world, start, goal, rule, edge_cost, shorten, links
         As in :func:`plan`.
     sampler : Sampler, optional
-        Whose sets of more points begin with those of fewer; default: scrambled Sobol points.
+        Whose sets of more points begin with those of fewer; default: ``growing``, which needs 6 % fewer checks of
+        motions than scrambled Sobol points, and these from six dimensions on, where it was not tried.
     first : int
         Points of the first stage.
     until : {"solved", "settled", "budget"}
@@ -73,8 +77,9 @@ def plan_anytime(
     budget = budget or Budget()
     places = read_places(start, goal, world.space)
     query = Query(*places, shorten=shorten, edge_cost=edge_cost, links=links, budget=budget)
-    # By name: the module of the sequences imports scipy.stats, half a second that only this default needs.
-    sampler = make_sampler("sobol") if sampler is None else sampler
+    if sampler is None:
+        # By name: the module of Sobol's points imports scipy.stats, half a second that nobody else needs.
+        sampler = make_sampler("growing" if world.space.cube_dim <= GROWING else "sobol")
     points = _draw(sampler, min(first, budget.samples), world, rng, None)
     attempt = Attempt(world, query, points.origin, str(rule), "prm anytime", grows=True)
     if (refused := refusal(attempt)) is not None:
