@@ -219,6 +219,67 @@ def test_the_map_planner_answers_with_a_free_path(store, make):
     assert why
 
 
+@pytest.fixture
+def node(monkeypatch):
+    """The map's node as it runs: its subscriptions by topic, what it says, and what it publishes."""
+    node = SimpleNamespace(takes={}, said=[], published=[])
+    log = SimpleNamespace(**dict.fromkeys(("info", "warning", "error"), node.said.append))
+    clock = SimpleNamespace(now=lambda: SimpleNamespace(to_msg=lambda: SimpleNamespace(sec=1, nanosec=2)))
+    wired = SimpleNamespace(
+        declare_parameter=lambda name, value: SimpleNamespace(value=value),
+        create_publisher=lambda *_: SimpleNamespace(publish=node.published.append),
+        create_subscription=lambda kind, topic, callback, quality: node.takes.update({topic: callback}),
+        get_logger=lambda: log,
+        get_clock=lambda: clock,
+    )
+    quality = SimpleNamespace(
+        DurabilityPolicy=SimpleNamespace(TRANSIENT_LOCAL=1), QoSProfile=lambda **_: None
+    )
+    kinds = SimpleNamespace(PoseStamped=0, PoseWithCovarianceStamped=0, OccupancyGrid=0, Path=0)
+    ros = SimpleNamespace(init=lambda: None, create_node=lambda _: wired, spin=lambda _: None)
+    for name, module in {
+        "rclpy": ros,
+        "rclpy.qos": quality,
+        "geometry_msgs.msg": kinds,
+        "nav_msgs.msg": kinds,
+    }.items():
+        monkeypatch.setitem(sys.modules, name, module)
+    for name in ("geometry_msgs", "nav_msgs"):
+        monkeypatch.setitem(sys.modules, name, SimpleNamespace(msg=kinds))
+    module = _module("map_planner")
+    monkeypatch.setattr(module, "answer", lambda make, *given: ("a path", "found"))
+    module.main()
+    node.answers = lambda answer: monkeypatch.setattr(module, "answer", answer)
+    return node
+
+
+def _in_frame(frame, pose=None):
+    return SimpleNamespace(header=SimpleNamespace(frame_id=frame), pose=SimpleNamespace(pose=pose))
+
+
+def test_the_map_node_plans_within_one_frame_only(node):
+    node.takes["map"](_in_frame("map"))
+    node.takes["goal_pose"](_in_frame("map"))
+    assert (node.said, node.published) == (["no start yet"], [])
+    node.takes["initialpose"](_in_frame("map"))
+    node.takes["goal_pose"](_in_frame("odom"))
+    assert node.said[1:] == ["map, start and goal are in different frames: map, odom"]
+    assert node.published == []
+    node.takes["goal_pose"](_in_frame("map"))
+    assert node.published == ["a path"]
+
+
+def test_the_map_node_outlives_what_it_refuses(node):
+    def refuse(*_):
+        raise InvalidValue("the map must lie flat")
+
+    node.answers(refuse)
+    node.takes["map"](_in_frame("map"))
+    node.takes["initialpose"](_in_frame("map"))
+    node.takes["goal_pose"](_in_frame("map"))
+    assert (node.said, node.published) == (["the map must lie flat"], [])
+
+
 def test_a_trajectory_is_written_byte_for_byte(store, make):
     path = np.array([[0.0, 0.0], [1.0, 0.5], [0.5, 1.0]])
     trajectory = make_trajectory(path, Limits((1.0, 1.0), (2.0, 2.0)), names=("a", "bc"), held={"d": 0.25})

@@ -34,6 +34,8 @@ def main() -> None:
     from nav_msgs.msg import OccupancyGrid, Path
     from rclpy.qos import DurabilityPolicy, QoSProfile
 
+    from evenroad.errors import EvenroadError
+
     rclpy.init()
     node = rclpy.create_node("evenroad_map_planner")
     radius = node.declare_parameter("robot_radius", 0.25).value
@@ -44,8 +46,19 @@ def main() -> None:
         if missing := {"map", "start"} - seen.keys():
             node.get_logger().warning(f"no {' and no '.join(sorted(missing))} yet")
             return
+        grid, start = seen["map"], seen["start"]
+        frames = {each.header.frame_id for each in (grid, start, goal)}
+        if len(frames) > 1:
+            node.get_logger().error(
+                f"map, start and goal are in different frames: {', '.join(sorted(frames))}"
+            )
+            return
         now = node.get_clock().now().to_msg()
-        path, why = answer(ros_message, seen["map"], seen["start"], goal.pose, radius, (now.sec, now.nanosec))
+        try:
+            path, why = answer(ros_message, grid, start.pose.pose, goal.pose, radius, (now.sec, now.nanosec))
+        except EvenroadError as error:
+            node.get_logger().error(str(error))
+            return
         node.get_logger().info(why)
         if path is not None:
             paths.publish(path)
@@ -53,7 +66,7 @@ def main() -> None:
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     node.create_subscription(OccupancyGrid, "map", lambda grid: seen.update(map=grid), latched)
     node.create_subscription(
-        PoseWithCovarianceStamped, "initialpose", lambda pose: seen.update(start=pose.pose.pose), 1
+        PoseWithCovarianceStamped, "initialpose", lambda pose: seen.update(start=pose), 1
     )
     node.create_subscription(PoseStamped, "goal_pose", plan, 1)
     rclpy.spin(node)
