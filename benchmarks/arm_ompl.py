@@ -147,7 +147,7 @@ def draw(store: Path, table: Path, robot: str, picture: Path) -> None:
         checks = np.array([int(line["configurations"]) + int(line["motions"]) for line in mine])
         ms = np.array([float(line["ms"]) for line in mine])
         cost_curve(panels, (checks, ms), solved, f"OMPL's {planner}", colour, "-.")
-    panels[1].legend(fontsize=7)
+    panels[1].legend(fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))
     figure.savefig(picture, dpi=100)
     names = [f"{limit:g} checks" for limit in CHECKS] + [f"{limit:g} ms" for limit in MS]
     print(f"| solved [%] within | {' | '.join(names)} |\n|---|{'---|' * len(names)}")

@@ -1,7 +1,10 @@
-"""One network for every N: trained over many N, measured on N that it never saw: ``python -m benchmarks.one_network``.
+"""One network for every N and every d, measured on those that it never saw: ``python -m benchmarks.one_network``.
 
-It moves the points ((i + 1/2) / n, i g + 1/2 modulo 1), g the golden ratio, in the plane; every tenth N is kept from
-the training.  Beside it, annealing in as much time as one pass of the network takes, and at its standard of 5000 steps.
+A node of its graph is one coordinate of one point, so that its weights do not know how many there are: it hears the
+same coordinate of the nearest points, and knows of itself its value, mean and mean square of the point's others, how
+far it is from its rank's place, the slope of the discrepancy there, n and d.  Starts: Kronecker points in the plane,
+else scrambled Sobol points, new ones in every step.  Beside one pass, in as much time: Adam on the coordinates from
+the same starts, without noise, and annealing; and annealing for 5000 steps.
 """
 
 from __future__ import annotations
@@ -9,70 +12,144 @@ from __future__ import annotations
 import argparse
 import math
 import time
+from collections.abc import Callable
 
 import numpy as np
 
 from evenroad._arrays import Floats, Ints
 from evenroad.points import draw
-from evenroad.points.bank.anneal import anneal
+from evenroad.points.bank.anneal import anneal, first_rate
 from evenroad.points.measures import MEASURES
+from evenroad.points.pointset import BELOW_ONE
 from evenroad.research.network import NetworkConfig
-from evenroad.research.network.train import INSET, Network, moved, nearest
-from evenroad.research.training.order import GOLDEN
+from evenroad.research.network.train import INSET, Network, kronecker, moved, nearest
 
-UNSEEN = (50, 100, 150, 200, 250)
 MEASURE = MEASURES["hickernell"]
+SEEN_D, D, UNSEEN_N = (2, 3, 5), (2, 3, 4, 5, 6, 10), (50, 200)
+SEEN_N = tuple(n for n in np.geomspace(16, 512, 26).round().astype(int).tolist() if n not in UNSEEN_N)
+FEATURES, K, REACH, SETS = 7, 8, 0.3, 8
+COLD = 0.3
+"""Adam's rate without noise over an annealing's first: of six from .003 to 1 the best for 10 to 40 steps at these n."""
 
 
-def golden(n: int, k: int) -> tuple[Floats, Ints]:
-    """Return the start of n points and its graph."""
-    i = np.arange(n)
-    starts = np.clip(np.column_stack([(i + 0.5) / n, (i * GOLDEN + 0.5) % 1.0]), INSET, 1.0 - INSET)
-    return starts, nearest(starts, k)
+def begin(n: int, d: int, draws: np.random.Generator) -> Floats:
+    """Return a start."""
+    points = kronecker(n, draws.random(2)) if d == 2 else draw("sobol", n, d, rng=draws).points
+    return np.clip(points, INSET, 1.0 - INSET)
+
+
+def slope_at(points: Floats) -> tuple[float, Floats]:
+    """Return the discrepancy and the slope of its logarithm, (n, d)."""
+    value, columns = MEASURE.of_columns(np.ascontiguousarray(points.T))
+    return value, columns.T / value
+
+
+def nodes(points: Floats, slope: Floats) -> Floats:
+    """Return what every coordinate of every point knows of itself, (d n, FEATURES), within about [0, 1]."""
+    n, d = points.shape
+    c = 2.0 * points - 1.0
+    total, squares, others = c.sum(axis=1, keepdims=True), (c * c).sum(axis=1, keepdims=True), max(d - 1, 1)
+    ranks = np.argsort(np.argsort(points, axis=0, kind="stable"), axis=0)
+    known = [
+        c,
+        (total - c) / others,
+        1.5 * (squares - c * c) / others - 0.5,
+        ranks + 0.5 - n * points,
+        slope / np.sqrt((slope * slope).mean()),
+        np.full_like(c, math.log2(n) / 3.0 - 2.3),
+        np.full_like(c, (d - 3) / 2.0),
+    ]
+    return 0.5 + 0.5 * np.stack([each.T.ravel() for each in known], axis=1)
+
+
+def one_pass(network: Network, starts: Floats) -> tuple[Floats, Floats]:
+    """Return the points, and by how much they follow what the network says, both (n, d)."""
+    n, d = starts.shape
+    neighbours = nearest(starts, K)
+    graph: Ints = np.concatenate([neighbours + n * k for k in range(d)])
+    said = network.moves(nodes(starts, slope_at(starts)[1]), graph)[:, 0].reshape(d, n).T
+    reach = REACH / math.sqrt(n)
+    # A small step as it is, a large one near a face in the logit, which cannot leave the cube.
+    gain = reach / (starts * (1.0 - starts) + reach)
+    points = moved(starts, said * gain)
+    return points, points * (1.0 - points) * gain
+
+
+def trained(steps: int, width: int, rate: float = 1e-3) -> Network:
+    """Return the network.  It has as many outputs as inputs; the first one is used."""
+    draws = np.random.default_rng(0)
+    network = Network(NetworkConfig(2, FEATURES, width=width), draws)
+    for step in range(steps):
+        n, d = int(draws.choice(SEEN_N)), int(draws.choice(SEEN_D))
+        points, follow = one_pass(network, begin(n, d, draws))
+        told = np.zeros((n * d, FEATURES))
+        told[:, 0] = (slope_at(points)[1] * follow).T.ravel()
+        network.learn(told, rate * 0.5 * (1.0 + math.cos(math.pi * step / steps)))
+    return network
+
+
+def descend(points: Floats, steps: int, share: float = COLD) -> Floats:
+    """Return the points after so many steps of Adam on their coordinates, without noise."""
+    n, d = points.shape
+    first, second = np.zeros_like(points), np.zeros_like(points)
+    for step in range(1, steps + 1):
+        slope = slope_at(points)[1]
+        first, second = 0.9 * first + 0.1 * slope, 0.999 * second + 0.001 * slope * slope
+        rate = share * first_rate(n, d) * 0.5 * (1.0 + math.cos(math.pi * (step - 1) / steps))
+        move = first / (1.0 - 0.9**step) / (np.sqrt(second / (1.0 - 0.999**step)) + 1e-15)
+        points = np.clip(points - rate * move, INSET, BELOW_ONE)
+    return points
+
+
+def seconds(work: Callable[[], object]) -> float:
+    """Return the least processor time of five."""
+    times = []
+    for _ in range(5):
+        began = time.process_time()
+        work()
+        times.append(time.process_time() - began)
+    return min(times)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--steps", type=int, default=30_000)
-    parser.add_argument("--width", type=int, default=64)
+    parser.add_argument("--steps", type=int, default=16_000)
+    parser.add_argument("--width", type=int, default=32)
     options = parser.parse_args()
-    config = NetworkConfig(2, 2, width=options.width, steps=options.steps)
-    draws = np.random.default_rng(0)
-    network = Network(config, draws)
-    seen = [golden(n, config.k) for n in range(32, 257) if n % 10]
     began = time.process_time()
-    for step in range(options.steps):
-        starts, neighbours = seen[draws.integers(len(seen))]
-        points = moved(starts, network.moves(starts, neighbours))
-        value, columns = MEASURE.of_columns(np.ascontiguousarray(points.T))
-        # Of the logarithm: sets of all sizes count alike.
-        slope = columns.T * points * (1.0 - points) / value
-        network.learn(slope, config.rate * 0.5 * (1.0 + math.cos(math.pi * step / options.steps)))
-    print(f"trained over {len(seen)} N in {time.process_time() - began:.0f} s of processor time")
-    print("   n  start    network  ms    annealed as long  annealed, 5000 steps  Sobol")
-    for n in UNSEEN:
-        starts, neighbours = golden(n, config.k)
-        times = []
-        for _ in range(5):
-            began = time.process_time()
-            starts, neighbours = golden(n, config.k)
-            points = moved(starts, network.moves(starts, neighbours))
-            times.append(time.process_time() - began)
-        few = 20
-        anneal(n, 2, MEASURE, steps=few)
-        began = time.process_time()
-        anneal(n, 2, MEASURE, steps=few)
-        steps = max(1, round(few * min(times) / (time.process_time() - began)))
-        short = np.mean([anneal(n, 2, MEASURE, steps=steps, rng=seed).value for seed in range(8)])
-        long = np.mean([anneal(n, 2, MEASURE, rng=seed).value for seed in range(8)])
-        sobol = np.mean([MEASURE.rooted(draw("sobol", n, 2, rng=seed)) for seed in range(8)])
-        print(
-            f"{n:4d}  {MEASURE.rooted(starts):.5f}  {MEASURE.rooted(points):.5f}  {1e3 * min(times):4.1f}"
-            f"  {short:.5f} ({steps} steps)  {long:.5f}               {sobol:.5f}",
-            flush=True,
-        )
+    network = trained(options.steps, options.width)
+    size = network.weights.nbytes / 1e3
+    print(f"trained in {time.process_time() - began:.0f} s of processor time; {size:.0f} kB of weights")
+    print(
+        "| d | n | start | network, one pass | ms | Adam as long | annealed as long | annealed, 5000 steps |"
+    )
+    print("|---|---|---|---|---|---|---|---|")
+    for d in D:
+        for n in UNSEEN_N:
+            starts = [begin(n, d, np.random.default_rng([n, d, seed])) for seed in range(SETS)]
+            taken = seconds(lambda start=starts[0]: one_pass(network, start))  # type: ignore[misc]
+            of_adam = seconds(lambda start=starts[0]: descend(start, 20)) / 20  # type: ignore[misc]
+            of_annealing = seconds(lambda n=n, d=d: anneal(n, d, MEASURE, steps=20)) / 20  # type: ignore[misc]
+            few, more = max(1, round(taken / of_adam)), max(1, round(taken / of_annealing))
+            rows = np.array([
+                [
+                    MEASURE.rooted(start),
+                    MEASURE.rooted(one_pass(network, start)[0]),
+                    MEASURE.rooted(descend(start, few)),
+                    anneal(n, d, MEASURE, steps=more, rng=seed).value,
+                ]
+                for seed, start in enumerate(starts)
+            ])  # fmt: skip
+            level = np.mean([anneal(n, d, MEASURE, rng=seed).value for seed in range(2)])
+            mean, error = rows.mean(axis=0) / level, rows.std(axis=0, ddof=1) / math.sqrt(SETS) / level
+            cells = [f"{m:.3f} ± {e:.3f}" for m, e in zip(mean, error, strict=True)]
+            print(
+                f"| {d} | {n} | {cells[0]} | {cells[1]} | {1e3 * taken:.1f} | {cells[2]} ({few}) | {cells[3]} ({more})"
+                f" | {level:.5f} |",
+                flush=True,
+            )
 
 
 if __name__ == "__main__":

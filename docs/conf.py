@@ -2,10 +2,10 @@
 
 import contextlib
 import inspect
+import pydoc
 import re
 import sys
 from pathlib import Path
-from types import ModuleType
 
 from docutils import nodes
 from sphinx import addnodes
@@ -85,12 +85,22 @@ def _resolve(app, env, node, content):
     return _link(app, node["refdoc"], name, content)
 
 
+def _source_of(node):
+    """Return the module whose source says what a name in a signature or its description means."""
+    while node is not None and not isinstance(node, addnodes.desc):
+        node = node.parent
+    if node is None or not node[0].get("module"):
+        return None
+    thing = pydoc.locate(f"{node[0]['module']}.{node[0]['fullname']}")
+    return sys.modules.get(getattr(thing, "__module__", None))
+
+
 def _leave_words(app, doctree):
     """Leave the words of ``array_like, shape (n, dim)`` what they are: only names with a capital are looked up."""
     for node in list(doctree.findall(addnodes.pending_xref)):
         target = node.get("reftarget", "")
-        word, around = target.rpartition(".")[2], sys.modules.get(node.get("py:module"))
-        if isinstance(around, ModuleType) and isinstance(meant := getattr(around, target, None), type):
+        word = target.rpartition(".")[2]
+        if isinstance(meant := getattr(_source_of(node), target, None), type):
             node["reftarget"] = docs_pages.documented_name(f"{meant.__module__}.{meant.__qualname__}")
             node["refspecific"] = False
         if node.get("refdomain") == "py" and node.get("reftype") == "class" and not word[:1].isupper():
@@ -115,7 +125,18 @@ def _link_names(app, doctree, document):
 
 
 def _lead_to_pages(app, document, source):
-    """Let links to an example lead to its page; folders of files, which are no pages, are only named."""
+    """Let links to an example lead to its page; folders of files, which are no pages, are only named.
+
+    A page of its own in docs/ that the first page does not list yet comes beside the examples.
+    """
+    if document == "index":
+        new = [path.stem for path in sorted(Path(app.srcdir).glob("*.md"))]
+        new = [
+            name
+            for name in new
+            if name != document and not re.search(rf"^(?:.* <)?{name}>?$", source[0], re.M)
+        ]
+        source[0] = source[0].replace("\nexamples\n", "\n" + "\n".join([*new, "examples"]) + "\n")
     source[0] = re.sub(r"\[([^\]]+)\]\((?:\.\./)+examples/?\w*\)", r"`\1`", source[0])
     source[0] = re.sub(r"\]\((?:\.\./)+examples/(\w+)\.py\)", r"](/generated/examples/\1.md)", source[0])
 

@@ -41,6 +41,7 @@ def main() -> None:
             "network": ({}, "#d1343b", "-"),
             "no drift of the starts": ({"noise": 0.0}, "#d1343b", ":"),
             "random starts": ({"start": "uniform", "noise": 0.0}, "#6b7680", "-"),
+            "Kronecker starts": ({"start": "kronecker", "noise": 0.0}, "#2a9d4a", "-"),
         }
         for name, (options, colour, style) in looks.items():
             config = NetworkConfig(N, d, steps=STEPS, **options)  # type: ignore[arg-type]
@@ -50,7 +51,7 @@ def main() -> None:
             lambda seed, report, d=d: anneal(N, d, measure, steps=STEPS, rng=seed, callback=report)  # type: ignore[misc]
         )
         axes.plot(np.arange(1, STEPS + 1), values / level, color="#2f5fd0", label="annealing")
-        axes.set(xscale="log", xlim=(10, STEPS), ylim=(0.95, 2.2), xlabel="steps", title=f"d = {d}, n = {N}")
+        axes.set(xscale="log", xlim=(10, STEPS), ylim=(0.9, 2.2), xlabel="steps", title=f"d = {d}, n = {N}")
         axes.axhline(1.0, color="black", linewidth=0.6)
         axes.grid(alpha=0.3)
     figure.axes[0].set_ylabel("best so far, over the annealed pool")

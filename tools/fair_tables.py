@@ -119,7 +119,9 @@ def beside_sobol(store: Path) -> list[str]:
 
 
 def paired(rows, here) -> str:  # type: ignore[no-untyped-def]
-    """Return a difference in points, with the standard error of its mean over worlds."""
+    """Return a difference in points, with the standard error of its mean over worlds; a dash if there is none."""
+    if not here.any():
+        return "–"
     world = np.stack([rows.problem.codes[here].astype(np.int64), rows.instance[here]])
     _, unit = np.unique(world, axis=1, return_inverse=True)
     sign = np.where(rows.sampler.is_in(["even"])[here], 1.0, -1.0)

@@ -45,7 +45,7 @@ def test_tuning_says_what_it_chose_and_the_file_keeps_it(folder, capsys, monkeyp
     said = er.load_robot_roadmap("tuned.roadmap").tuned
     assert said.startswith("gamma ")
     assert "random problems" in said
-    assert said.split(",")[0] in capsys.readouterr().out
+    assert said.split(":")[0] in capsys.readouterr().out
 
 
 def test_a_plan_along_it_is_that_of_python_and_proved(made):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from evenroad.points import draw
+from evenroad.points.samplers import Sobol
 from evenroad.points.samplers.poses import Sliced
 from evenroad.research.worlds import Corridor
 from evenroad.roadmap import KEarlier, KNearest, Radius, Roadmap, fmt, plan, plan_anytime
@@ -72,16 +73,31 @@ def test_the_default_k_grows_with_the_dimension(planner, d, k):
     assert result.rule == f"k={k} symmetrised"
 
 
-def test_a_number_of_points_means_sliced_poses_in_space_and_the_even_lattice_elsewhere():
-    space = SE3((0.0, 0.0, 0.0), (2.0, 1.0, 1.0), weights=(2.0, 0.6))
-    assert even_points(40, space, rng=3) == Sliced().draw(40, rng=3)
-    for other in (JOINTS, SE2((0.0, 0.0), (1.0, 1.0)), Product([SO3(), SO3()])):
-        assert even_points(40, other, rng=3) == draw("even", 40, other.cube_dim, rng=3)
+@pytest.mark.parametrize(
+    ("rule", "sampler"),
+    [
+        (KNearest(4), Sliced()),
+        (KEarlier(6), Sliced()),
+        (KNearest(7), Sobol()),
+        (Radius(0.5), Sobol()),
+        (None, Sobol()),
+    ],
+)
+def test_a_number_of_points_in_space_means_sliced_poses_for_few_neighbours_and_sobol_for_more(rule, sampler):
+    space = SE3((0.0, 0.0, 0.0), (2.0, 1.0, 1.0))
+    assert even_points(40, space, rule, rng=3) == sampler.draw(40, 6, rng=3)
 
 
-def test_a_plan_in_space_with_a_number_of_points_takes_sliced_poses():
+@pytest.mark.parametrize("space", [JOINTS, SE2((0.0, 0.0), (1.0, 1.0)), Product([SO3(), SO3()])])
+def test_elsewhere_a_number_of_points_means_the_even_lattice(space):
+    assert even_points(40, space, KNearest(4), rng=3) == draw("even", 40, space.cube_dim, rng=3)
+
+
+@pytest.mark.parametrize("rule", [KNearest(5), KNearest(15)])
+def test_a_plan_and_a_roadmap_in_space_take_what_their_rule_wants(rule):
     world, start, goal, _ = CASES["SE3"]
-    points = Sliced().draw(100)
-    asked, given = plan(world, start, goal, 100), plan(world, start, goal, points)
+    points = even_points(100, world.space, rule)
+    asked, given = plan(world, start, goal, 100, rule=rule), plan(world, start, goal, points, rule=rule)
     np.testing.assert_array_equal(asked.path, given.path)
     assert asked.counts == given.counts
+    assert Roadmap.build(world.space, 100, rule).points == points

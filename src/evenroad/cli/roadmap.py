@@ -39,8 +39,7 @@ class MakeRoadmap(RobotOptions):
     gamma: float = 2.0
     """Milestones are as dense as the chance of being free in random scenes to this power, >= 0."""
     tune: bool = False
-    """Choose gamma, and whether ends in pockets count, by random problems for this arm in this cell: some times as
-    long."""
+    """Choose gamma by random problems for this arm in this cell: some times as long."""
     resolution: float = 0.05
     """Largest step of a motion check, > 0, in radians."""
     seed: int = 0

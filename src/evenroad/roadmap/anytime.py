@@ -12,7 +12,7 @@ from evenroad._clock import now
 from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import PointSet
-from evenroad.points.samplers import Growing, Sampler
+from evenroad.points.samplers import Sampler, make_sampler
 from evenroad.roadmap.answer import answer, refusal
 from evenroad.roadmap.attempt import Attempt, Searched
 from evenroad.roadmap.budget import Budget
@@ -52,7 +52,7 @@ def plan_anytime(
     world, start, goal, rule, edge_cost, shorten, links
         As in :func:`plan`.
     sampler : Sampler, optional
-        Whose sets of more points begin with those of fewer; default: ``growing``.
+        Whose sets of more points begin with those of fewer; default: scrambled Sobol points.
     first : int
         Points of the first stage.
     until : {"solved", "settled", "budget"}
@@ -73,7 +73,8 @@ def plan_anytime(
     budget = budget or Budget()
     places = read_places(start, goal, world.space)
     query = Query(*places, shorten=shorten, edge_cost=edge_cost, links=links, budget=budget)
-    sampler = Growing() if sampler is None else sampler
+    # By name: the module of the sequences imports scipy.stats, half a second that only this default needs.
+    sampler = make_sampler("sobol") if sampler is None else sampler
     points = _draw(sampler, min(first, budget.samples), world, rng, None)
     attempt = Attempt(world, query, points.origin, str(rule), "prm anytime", grows=True)
     if (refused := refusal(attempt)) is not None:

@@ -66,7 +66,7 @@ class Roadmap:
         The graphs of the last 64 sets that came from a pool (the bank, or the user's cache) are kept for the process.
         Raises InvalidValue if the points do not have the dimension of the space's cube.
         """
-        points = as_points(points, space)
+        points = as_points(points, space, rule)
         rule = KNearest(max(20, 2 * space.cube_dim)) if rule is None else rule
         # The sets of a pool come again and again, others hardly ever; a user's own space may not be hashable.
         from_pool = points.origin.replica is not None and isinstance(space, Hashable)

@@ -129,7 +129,7 @@ def _on_points(
     certify: bool = False,
 ) -> PlanResult:
     """Map the points into the space, join them by the rule, and find a path along what the world calls free."""
-    points = as_points(points, world.space)
+    points = as_points(points, world.space, rule)
     rule = default_rule(world.space) if rule is None else rule
     attempt = Attempt(world, query, points.origin, str(rule), planner)
     if (refused := refusal(attempt)) is not None:

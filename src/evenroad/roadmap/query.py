@@ -17,6 +17,7 @@ from evenroad.points.pointset import PointSet
 from evenroad.points.samplers import make_sampler
 from evenroad.points.samplers.poses import Sliced
 from evenroad.roadmap.budget import Budget
+from evenroad.roadmap.rules import Rule
 from evenroad.roadmap.search import FINDERS, Finder, find_any
 from evenroad.space import SO3, Box, Product, Space
 
@@ -99,27 +100,31 @@ def read_places(start: npt.ArrayLike, goal: npt.ArrayLike, space: Space) -> tupl
     return first, goals.reshape(-1, dim)
 
 
-def as_points(points: PointSet | int, space: Space) -> PointSet:
-    """Return points of the space's cube: those given, or so many even ones; InvalidValue for anything else."""
+def as_points(points: PointSet | int, space: Space, rule: Rule | None = None) -> PointSet:
+    """Return points of the space's cube: those given, or so many for the rule; InvalidValue for anything else."""
     if not isinstance(points, PointSet):
         if isinstance(points, bool) or not isinstance(points, int | np.integer):
             raise InvalidValue(
                 "points must be a PointSet, such as draw('even', 512, 2), or how many points to draw,"
                 f" got {points!r}"
             )
-        points = even_points(require_count("points", points), space)
+        points = even_points(require_count("points", points), space, rule)
     if points.d != space.cube_dim:
         raise InvalidValue(f"the points have d={points.d}, the space has {space.cube_dim} dimensions")
     return points
 
 
-def even_points(n: int, space: Space, *, rng: RngLike = 0) -> PointSet:
-    """Return n points of the space's cube as a planner takes them: `even`, but in SE(3) `sliced`."""
-    in_space = isinstance(space, Product) and [(type(part), part.dim) for part in space.parts] == [
-        (Box, 3),
-        (SO3, 4),
-    ]
-    sampler = Sliced() if in_space else make_sampler("even")
+def even_points(n: int, space: Space, rule: Rule | None = None, *, rng: RngLike = 0) -> PointSet:
+    """Return n points of the space's cube, as planners take them: `even`, but others in SE(3).
+
+    Evenness is worth nothing there: they are `sliced` for a rule of at most d = 6 neighbours, else scrambled
+    Sobol points.
+    """
+    parts = space.parts if isinstance(space, Product) else ()
+    if [(type(part), part.dim) for part in parts] != [(Box, 3), (SO3, 4)]:
+        return make_sampler("even").draw(n, space.cube_dim, rng=rng)
+    k = None if rule is None else rule.reach(n, space).k
+    sampler = Sliced() if k is not None and k <= space.cube_dim else make_sampler("sobol")
     return sampler.draw(n, space.cube_dim, rng=rng)
 
 

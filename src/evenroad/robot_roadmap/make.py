@@ -15,7 +15,7 @@ from evenroad.roadmap.neighbours import nearest
 from evenroad.robot import ArmWorld, Robot, Scene, in_scene, scene_seen_by
 from evenroad.robot_roadmap.recipe import ENDS, GAMMA, Recipe, chosen, known_of
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
-from evenroad.robot_roadmap.tuning import CANDIDATES, EASY, tune_recipe
+from evenroad.robot_roadmap.tuning import EASY, GAMMAS, tune_recipe
 from evenroad.robot_roadmap.turns import OneTurn, lifted_motions_free, one_turn, shifts, whole_turns
 from evenroad.space import JointSpace
 
@@ -60,8 +60,8 @@ def make_roadmap(
     ends : int
         How many ends in pockets are learned from, >= 0.
     tune : bool
-        Whether `gamma` and `ends` give way to others that lead to more goals among random problems for this robot in
-        this cell: up to a minute more.  `RobotRoadmap.tuned` says what came of it.
+        Whether `gamma` gives way to another one that leads to more goals among random problems for this robot in this
+        cell: up to a minute more.  `RobotRoadmap.tuned` says what came of it.
     resolution : float
         Largest step of a motion check, > 0 [rad].
     rng : int, SeedSequence or Generator
@@ -89,7 +89,7 @@ def make_roadmap(
         first, second = world.fixed_contact
         raise InvalidValue(f"the robot is never free in its cell: {first!r} always touches {second!r}")
     recipe = Recipe(require_positive("gamma", gamma, or_zero=True), ends)
-    recipes = [recipe, *(each for each in CANDIDATES if tune and each != recipe)]
+    recipes = [recipe, *(recipe._replace(gamma=other) for other in GAMMAS if tune and other != gamma)]
     one = one_turn(world.space, whole_turns(robot))
     *streams, of_problems = generator(rng).spawn(4)
     known = known_of(world, one, n, recipes, streams, progress)

@@ -62,8 +62,6 @@ _LONG = 1e8
 _ready: set[str] = set()
 """Backends whose programs are compiled."""
 
-_BUDGET = Budget(seconds=SECONDS)
-
 
 @dataclass(frozen=True, eq=False)
 class RobotRoadmap:
@@ -90,7 +88,7 @@ class RobotRoadmap:
     ends : int
         How many ends in pockets they learned from, at most.
     tuned : str
-        What came of tuning the two; empty without.
+        What came of tuning gamma; empty without.
     """
 
     robot: Robot
@@ -197,8 +195,11 @@ class SceneRoadmap:
         bare = roadmap.bare if robot is roadmap.robot else bare
         self._day = ArmWorld(bare, left, resolution=resolution)
         self._asked: tuple[Checks, Checks] = self.world, self._day
+        self._own: SceneRoadmap | None = None
         if shapes is not None:
-            self._asked = OwnShapesWorld(self.world, shapes), OwnShapesWorld(self._day, shapes)
+            # With verdicts of its own: what blocks the capsules need not block the shapes.
+            self._own = SceneRoadmap(roadmap, scene, robot)
+            self._own._asked = OwnShapesWorld(self.world, shapes), OwnShapesWorld(self._day, shapes)
         self._graph = roadmap.graph.within(np.array(self.world.space.low), np.array(self.world.space.high))
         self._wraps = bool(np.any(self.world.space.wrapping))
         self.learned: list[Floats] = []
@@ -288,13 +289,15 @@ class SceneRoadmap:
         InvalidValue, UnknownName
             If start or goal is no configuration of the robot.
         """
-        budget = _BUDGET if budget is None else budget
+        budget = Budget(seconds=SECONDS) if budget is None else budget
         first, goals = read_places(self._place(start), self._places(goal), self.world.space)
         began, deadline = now(), budget.deadline()
         most = 2**31 - 1 if budget.motions is None else budget.motions
         links = TRIED_LINKS if trees else links_of(self._size)
         limits = min(most, TRIED_MOTIONS) if trees else most, began + SHARE * min(deadline - began, _LONG)
         asked = self._ask(first, goals, *limits, links)
+        if asked.goal < 0 and self._own is not None:
+            return self._own.plan(first, goals, budget=budget, shorten=shorten, trees=trees)
         if asked.ended in (NONE, CUT_OFF, SPENT) and trees and len(goals) == 1:
             asked = self._by_ways_out(asked, first, goals, most, limits[1])
         elif asked.ended in (NONE, CUT_OFF) and not trees and self.roadmap.one_turn.lifts.any():
@@ -381,11 +384,9 @@ class SceneRoadmap:
         )
 
     def _length(self, path: Floats) -> float:
-        if self._wraps:
-            return path_length(path, self.world.space)
-        # The same, in a tenth of the time.
         places = path.tolist()
-        return sum(map(math.dist, places, places[1:]))
+        # Where nothing wraps the sum is the same, in a tenth of the time.
+        return path_length(path, self.world.space) if self._wraps else sum(map(math.dist, places, places[1:]))
 
     def _place(self, place: Place) -> npt.ArrayLike:
         """Return a configuration of a text; of numbers themselves."""

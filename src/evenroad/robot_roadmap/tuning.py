@@ -14,11 +14,11 @@ from evenroad.robot import ArmWorld, Scene
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
 from evenroad.robot_roadmap.chance import Surroundings, random_scene
 from evenroad.robot_roadmap.pockets import body_of, links_of, pocket_around, tips_of
-from evenroad.robot_roadmap.recipe import ENDS, Recipe
+from evenroad.robot_roadmap.recipe import Recipe
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap, SceneRoadmap
 
-CANDIDATES = (*(Recipe(gamma, ENDS) for gamma in (0.0, 1.0, 2.0, 4.0, 8.0, 16.0)), Recipe(2.0, 0))
-"""Recipes that are tried."""
+GAMMAS = (0.0, 1.0, 2.0, 4.0, 8.0, 16.0)
+"""Powers of the chance of being free that are tried."""
 
 PROBLEMS = 200
 """Random problems that choose, and as many others that say by how much."""
@@ -124,11 +124,11 @@ def tune_recipe(
     if gain <= error:
         best = 0
     gain, error = _paired(solved[best][half:], solved[0][half:])
-    name = f"gamma {recipes[best].gamma:g}, {recipes[best].ends} ends"
     share = 100.0 * float(solved[best][half:].mean())
-    said = f"{name} of {len(recipes)} recipes: {share:.0f} % of {len(problems) - half} random problems"
+    said = f"gamma {recipes[best].gamma:g} of {len(recipes)} tried"
+    said += f": {share:.0f} % of {len(problems) - half} random problems"
     if best:
-        said += f", {100.0 * gain:+.1f} ± {100.0 * error:.1f} to gamma {recipes[0].gamma:g}, {recipes[0].ends} ends"
+        said += f", {100.0 * gain:+.1f} ± {100.0 * error:.1f} to gamma {recipes[0].gamma:g}"
     return recipes[best], said
 
 

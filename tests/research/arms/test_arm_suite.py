@@ -125,12 +125,16 @@ def test_tables_fit_100_columns(tmp_path):
     assert {row[2] for row in rows} == {"4 x 1"}
 
 
-def test_costs_are_drawn_of_the_smallest_and_the_largest_roadmap(tmp_path):
+def test_costs_are_drawn_of_the_smallest_a_middle_and_the_largest_roadmap(tmp_path):
     outcomes = [
         (_task("roadmap", i, 0, n), i < solved)
-        for n, solved in ((64, 1), (128, 2), (256, 3))
+        for n, solved in ((64, 1), (128, 2), (256, 3), (512, 4))
         for i in range(4)
     ]
     figure = draw_costs(_rows(tmp_path / "a.db", outcomes), "scara", "10")
     curves = {line.get_label(): line.get_ydata().tolist() for line in figure.axes[0].lines}
-    assert curves == {"roadmap, 64": [25.0], "roadmap, 256": [25.0, 50.0, 75.0]}
+    assert curves == {
+        "roadmap, 64": [25.0],
+        "roadmap, 256": [25.0, 50.0, 75.0],
+        "roadmap, 512": [25.0, 50.0, 75.0, 100.0],
+    }

@@ -138,9 +138,9 @@ def test_rules_share_a_set_and_its_validity(problems, monkeypatch):
     drawn = []
     uniform = SAMPLERS["uniform"]
 
-    def draw(family, n, d, run, rng, space):
+    def draw(family, n, d, run, rng, use):
         drawn.append(run)
-        return uniform.draw(family, n, d, run, rng, space)
+        return uniform.draw(family, n, d, run, rng, use)
 
     monkeypatch.setitem(SAMPLERS, "uniform", uniform._replace(draw=draw))
     for run in (100, 101):

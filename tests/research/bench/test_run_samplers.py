@@ -8,6 +8,7 @@ from evenroad.points import draw
 from evenroad.points.bank import Bank
 from evenroad.points.samplers import Halton, Sobol
 from evenroad.research.bench.samplers import SAMPLERS, draw_set, why_not
+from evenroad.roadmap import KNearest
 from evenroad.roadmap.query import even_points
 from evenroad.space import SE3
 
@@ -96,8 +97,9 @@ def test_an_unknown_sampler_gets_the_list():
         why_not("nonsense", 10, 2)
 
 
-def test_even_is_drawn_for_the_space_as_a_planner_draws_it():
+def test_even_is_drawn_for_the_space_and_the_rule_as_a_planner_draws_it():
     space = SE3((0.0, 0.0, 0.0), (1.0, 1.0, 1.0), weights=(1.0, 0.3))
-    poses, _ = draw_set("even", 30, 6, 0, np.random.default_rng(2), space)
-    assert poses == even_points(30, space, rng=np.random.default_rng(2).spawn(2)[0])
-    assert poses != _draw("even", 30, 6, seed=2)[0]
+    for rule in (KNearest(4), KNearest(20)):
+        given, _ = draw_set("even", 30, 6, 0, np.random.default_rng(2), (space, rule))
+        assert given == even_points(30, space, rule, rng=np.random.default_rng(2).spawn(2)[0])
+        assert given != _draw("even", 30, 6, seed=2)[0]

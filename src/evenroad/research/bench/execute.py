@@ -50,7 +50,13 @@ def _run(task: Task) -> Outcome:
     problem = _problem(task.problem, task.instance)
     _warm_up(task, problem)
     milestones, set_id, validity_seconds = _milestones(
-        task.problem, task.instance, task.sampler, task.n, task.run, task.seed
+        task.problem,
+        task.instance,
+        task.sampler,
+        task.n,
+        task.run,
+        task.seed,
+        task.rule if task.sampler == "even" else "",
     )
     began = time.perf_counter()
     ends_free = problem.world.valid(np.stack([problem.start, problem.goal]))
@@ -84,14 +90,17 @@ def _problem(name: str, instance: int) -> Problem:
 
 @lru_cache(maxsize=1)
 def _milestones(
-    problem: str, instance: int, sampler: str, n: int, run: int, seed: int
+    problem: str, instance: int, sampler: str, n: int, run: int, seed: int, rule: str
 ) -> tuple[Floats, str, float]:
-    """Return what all rules and searches share: a set's valid configurations, its id, and the seconds of validity."""
+    """Return what searches share: a set's valid configurations, its id, and the seconds of validity.
+
+    All rules do, too, but where the set depends on the `rule`; "" if it does not.
+    """
     of_set, of_missing = np.random.SeedSequence(seed, spawn_key=(run,)).spawn(2)
     here = _problem(problem, instance)
     space = here.world.space
-    whole = space if here.set_dim == space.cube_dim else None
-    points, set_id = draw_set(sampler, n, here.set_dim, run, np.random.default_rng(of_set), whole)
+    use = (space, rule_named(rule)) if rule and here.set_dim == space.cube_dim else None
+    points, set_id = draw_set(sampler, n, here.set_dim, run, np.random.default_rng(of_set), use)
     configurations = here.configurations(points, np.random.default_rng(of_missing))
     began = time.perf_counter()
     valid = configurations[here.world.valid(configurations)]

@@ -15,6 +15,7 @@ from evenroad.points.bank import Bank
 from evenroad.points.randomise import Symmetry, randomise
 from evenroad.points.samplers import Halton, Sobol
 from evenroad.points.samplers.lattice import MAX_D
+from evenroad.roadmap import Rule
 from evenroad.roadmap.query import even_points
 from evenroad.space import Space
 
@@ -24,18 +25,20 @@ orders of the coordinates."""
 STRETCH = 32
 """Runs of a block protocol whose points are generated together."""
 Drawn = tuple[PointSet, str]
+Use = tuple[Space, Rule]
+"""The space and the rule that a set is for: what `even` is depends on them."""
 
 
 class RunSampler(NamedTuple):
     """How the set of a run is drawn, from points of the sampler `family`.
 
-    `draw` goes from (family, n, d, run, rng, space) to the set and its `set_id`; `why_not` from (family, n, d) to why
+    `draw` goes from (family, n, d, run, rng, use) to the set and its `set_id`; `why_not` from (family, n, d) to why
     there is no such set, one sentence, "" if there is one; `protocol` is what lists say of the draw, beside what the
     sampler says of itself.
     """
 
     family: str
-    draw: Callable[[str, int, int, int, np.random.Generator, Space | None], Drawn]
+    draw: Callable[[str, int, int, int, np.random.Generator, Use | None], Drawn]
     why_not: Callable[[str, int, int], str]
     protocol: str = ""
 
@@ -45,20 +48,18 @@ class RunSampler(NamedTuple):
         return "; ".join(filter(None, (make_sampler(self.family).about, self.protocol)))
 
 
-def draw_set(
-    name: str, n: int, d: int, run: int, rng: np.random.Generator, space: Space | None = None
-) -> Drawn:
+def draw_set(name: str, n: int, d: int, run: int, rng: np.random.Generator, use: Use | None = None) -> Drawn:
     """Draw the set of one run, (n, d), and say which one of its pool it is, as `set_id` of an outcome.
 
-    `rng` is spawned; block protocols go by the number `run`, from 0, instead.  `space` is where the set is for, unless
-    it gives some of its coordinates only.  Raises NotAvailable if there is no such set: nothing is ever trained for a
+    `rng` is spawned; block protocols go by the number `run`, from 0, instead.  `use` is what the set is for, unless it
+    gives only some coordinates of a space.  Raises NotAvailable if there is no such set: nothing is ever trained for a
     benchmark.
     """
     reason = why_not(name, n, d)
     if reason:
         raise NotAvailable(reason)
     sampler = SAMPLERS[name]
-    return sampler.draw(sampler.family, n, d, run, rng, space)
+    return sampler.draw(sampler.family, n, d, run, rng, use)
 
 
 def why_not(name: str, n: int, d: int) -> str:
@@ -67,11 +68,11 @@ def why_not(name: str, n: int, d: int) -> str:
     return SAMPLERS[name].why_not(SAMPLERS[name].family, n, d)
 
 
-def _fresh(family: str, n: int, d: int, run: int, rng: np.random.Generator, space: Space | None) -> Drawn:
+def _fresh(family: str, n: int, d: int, run: int, rng: np.random.Generator, use: Use | None) -> Drawn:
     return draw(family, n, d, rng=rng), ""
 
 
-def _block(family: str, n: int, d: int, run: int, rng: np.random.Generator, space: Space | None) -> Drawn:
+def _block(family: str, n: int, d: int, run: int, rng: np.random.Generator, use: Use | None) -> Drawn:
     stretch = _stretch(family, n, d, run // STRETCH)
     first = run % STRETCH * n
     block = PointSet(stretch.points[first : first + n], stretch.origin)
@@ -85,11 +86,11 @@ def _stretch(family: str, n: int, d: int, number: int) -> PointSet:
     return sequence(scramble=False, start=number * STRETCH * n + 1).draw(STRETCH * n, d)
 
 
-def _grid(family: str, n: int, d: int, run: int, rng: np.random.Generator, space: Space | None) -> Drawn:
+def _grid(family: str, n: int, d: int, run: int, rng: np.random.Generator, use: Use | None) -> Drawn:
     return draw(family, n, d), "grid"
 
 
-def _from_pool(family: str, n: int, d: int, run: int, rng: np.random.Generator, space: Space | None) -> Drawn:
+def _from_pool(family: str, n: int, d: int, run: int, rng: np.random.Generator, use: Use | None) -> Drawn:
     choice, order = rng.spawn(2)
     points = draw(family, n, d, rng=choice)
     if d >= PERMUTED_FROM:
@@ -97,10 +98,10 @@ def _from_pool(family: str, n: int, d: int, run: int, rng: np.random.Generator, 
     return points, str(points.origin.replica)
 
 
-def _even(family: str, n: int, d: int, run: int, rng: np.random.Generator, space: Space | None) -> Drawn:
+def _even(family: str, n: int, d: int, run: int, rng: np.random.Generator, use: Use | None) -> Drawn:
     # Of two spawned generators the first, as from a pool: so rows of an `even` that was one keep their bits.
     choice = rng.spawn(2)[0]
-    return (draw(family, n, d, rng=choice) if space is None else even_points(n, space, rng=choice)), ""
+    return (draw(family, n, d, rng=choice) if use is None else even_points(n, *use, rng=choice)), ""
 
 
 def _always(family: str, n: int, d: int) -> str:
@@ -135,6 +136,6 @@ SAMPLERS: dict[str, RunSampler] = {
     "sukharev": RunSampler("sukharev", _grid, _grid_exists),
     "mpmc": RunSampler("mpmc", _from_pool, _pool_exists),
     "hickernell": RunSampler("hickernell", _from_pool, _pool_exists),
-    "even": RunSampler("even", _even, _always, "sliced in SE(3), as for a planner"),
+    "even": RunSampler("even", _even, _always, "in SE(3) what a planner takes"),
 }
 """Name -> how the set of a run is drawn, in the order of tables."""

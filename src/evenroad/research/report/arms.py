@@ -99,17 +99,17 @@ def draw_costs(rows: Rows, robot: str, k: str) -> Figure:
     rows = rows.where(mine[rows.problem.codes])
     counts = np.unique(rows.n[rows.sampler.is_in([REFERENCE])])
     kept = rows.rule.is_in([name for name in rows.rule.names if name.startswith(f"k={k} ends=")])
-    figure = Figure(figsize=(10.0, 3.6), layout="constrained")
+    figure = Figure(figsize=(11.5, 3.8), layout="constrained")
     panels = figure.subplots(1, 2, sharey=True)
     for sampler in CURVES:
-        for n, style in zip(counts[[0, -1]].tolist(), ("--", "-"), strict=True):
+        for n, style in zip(counts[[0, len(counts) // 2, -1]].tolist(), (":", "--", "-"), strict=True):
             here = rows.sampler.is_in([sampler]) & kept & (rows.n == n)
             label = f"{'owen' if sampler.startswith('sobol') else sampler}, {n}"
             _cost_curves(panels, rows.where(here), label, STYLES[sampler][0], style)
     _cost_curves(panels, rows.where(rows.sampler.is_in([TREES])), TREES, "black", "-")
     panels[0].set(xscale="log", xlabel="motions and milestones checked", ylabel="solved [%]", ylim=(-3, 103))
     panels[1].set(xscale="log", xlabel="ms of one core, from the scene to the path")
-    panels[1].legend(fontsize=8)
+    panels[1].legend(fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))
     figure.suptitle(f"{robot}, all generators, k = {k}", fontsize=10)
     return figure
 

@@ -79,7 +79,9 @@ def _network_steps(n: int, d: int) -> int:
         return 10_000 if n <= 512 else 6_000
     if n <= 256:
         return 10_000
-    return (6_000 if d == 10 else 8_000) if n == 512 else 4_000
+    if n == 512:
+        return 6_000 if d == 10 else 8_000
+    return 5_000 if d == 10 else 4_000
 
 
 def _sets(d: int, n: int) -> int:
