@@ -22,7 +22,7 @@ def provide_cache() -> None:
     can write to neither: read-only site-packages and no home, as in many containers.
     """
     beside = os.path.join(os.path.dirname(__file__), "__pycache__")
-    if os.environ.get(VARIABLE) or _writable(beside) or _writable(user_cache("numba")):
+    if os.environ.get(VARIABLE) or _writable(beside) or _takes_files(user_cache("numba")):
         return
     import logging
     import shutil
@@ -55,6 +55,18 @@ def user_cache(program: str) -> str:
     if sys.platform == "win32":
         return os.path.join(os.environ.get("LOCALAPPDATA", os.path.expanduser("~")), program, "Cache")
     return os.path.join(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"), program)
+
+
+def _takes_files(folder: str) -> bool:
+    """Return whether a file can be made in a folder, by doing so as numba does: rights do not tell of every disk."""
+    import tempfile
+
+    try:
+        os.makedirs(folder, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError:
+        return False
+    return True
 
 
 def _writable(folder: str) -> bool:

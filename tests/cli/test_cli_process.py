@@ -122,8 +122,10 @@ LOAD_COMPILED = (
 )
 
 
-def test_without_a_folder_for_compiled_code_it_works_and_says_so_in_one_line(read_only):
-    done = python("-c", LOAD_COMPILED, **read_only)
+@pytest.mark.parametrize("home", ["/dev/null/nobody", "/proc/nobody"])
+def test_without_a_folder_for_compiled_code_it_works_and_says_so_in_one_line(read_only, home):
+    """In /proc nobody can make a folder, whatever its rights say to root."""
+    done = python("-c", LOAD_COMPILED, **read_only | {"HOME": home})
     assert (done.returncode, done.stdout) == (0, "(1, 1, 2)\n")
     assert done.stderr.count("\n") == 1
     assert done.stderr.startswith("evenroad: no folder to keep compiled code in")
