@@ -2,16 +2,18 @@
 
     python -m benchmarks.poses --csv docs/data/poses.csv
     python -m benchmarks.poses --tune --worlds 400 -n 512
+    python -m benchmarks.poses --puzzles --draws 200 -n 1024 --csv docs/data/poses_puzzles.csv
 
 SO(3): the largest angle of a rotation from the nearest of the set, and the smallest between two of the set, in degrees;
 the first by 200 000 random rotations, so a little too small, for all alike.  "hopf" is the product grid of HEALPix and
 the circle (Yershova, Jain, LaValle and Mitchell 2010), of 72 and 576 rotations; "images" the one of Mitchell's
 successive orthogonal images (2008) with the same directions, as we read it.
 
-SE(3): success in the fair suite's worlds of the reporting stream, every sampler in the same worlds, k nearest as in the
-suite; "+-" is the standard error of the difference from scrambled Sobol, paired by world.  "sliced" is what a planner
-takes, "even" the lattice in the cube that is mapped to poses.  `--tune` compares shares of poses in the slice, in
-worlds of the tuning stream, which chose the share.
+SE(3): success in the fair suite's worlds of the reporting stream, every sampler in the same worlds, k nearest as in
+the suite; "+-" is the standard error of the difference from scrambled Sobol, paired by world.  "sliced" is what a
+planner takes, "even" the lattice in the cube that is mapped to poses.  `--puzzles` asks the two of the paper's suite,
+whose sets give the rotation, too: there differences are not paired, since all sets meet the same obstacles.  `--tune`
+compares shares of poses in the slice, in worlds of the tuning stream, which chose the share.
 """
 
 from __future__ import annotations
@@ -27,12 +29,14 @@ from benchmarks.nested_k import smallest_k
 from evenroad._arrays import Floats
 from evenroad.points import draw
 from evenroad.points.samplers.poses import Poses, Rotations, Sliced
+from evenroad.research.problems import source_named
 from evenroad.research.problems.fair import ROTATION_WEIGHT, SIZES, Family, Stream, make_instance
 from evenroad.space import SO3
 
 SAMPLERS = ("sliced", "poses", "even", "sobol", "hickernell", "uniform")
 SHARES = {"a sixth": 1 / 6, "a third": 1 / 3, "half": 0.5, "all": 1.0}
 RULES = (4, 6, 10, 20)
+PUZZLES = ("cubicles-6d", "twistycool-6d")
 
 
 def main() -> None:
@@ -41,14 +45,21 @@ def main() -> None:
     parser.add_argument("--draws", type=int, default=2, help="sets a world")
     parser.add_argument("-n", type=int, nargs="*", default=[256, 512])
     parser.add_argument("--tune", action="store_true")
+    parser.add_argument("--puzzles", action="store_true")
     parser.add_argument("--csv", type=Path)
     options = parser.parse_args()
     if options.tune:
         samplers, stream = (*SHARES, "even", "sobol"), Stream.TUNING
     else:
         samplers, stream = SAMPLERS, Stream.REPORTING
-    rows = [] if options.tune else [row for n in (72, 576) for row in rotations(n)]
-    rows += [row for n in options.n for row in planning(n, options.worlds, options.draws, samplers, stream)]
+    rows: list[tuple[object, ...]] = []
+    if options.puzzles:
+        rows = [row for name in PUZZLES for n in options.n for row in puzzle(name, n, options.draws)]
+    else:
+        rows = [] if options.tune else [row for n in (72, 576) for row in rotations(n)]
+        rows += [
+            row for n in options.n for row in planning(n, options.worlds, options.draws, samplers, stream)
+        ]
     if options.csv:
         with open(options.csv, "w", newline="") as file:
             writer = csv.writer(file, lineterminator="\n")
@@ -164,9 +175,32 @@ def planning(
     return rows
 
 
-def _cube(sampler: str, n: int, seed: int) -> Floats:
+def puzzle(name: str, n: int, draws: int) -> list[tuple[object, ...]]:
+    """Print and return the success in a puzzle, of so many sets of each sampler."""
+    problem = source_named(name).make(0)
+    places = problem.world.space.parts[0]
+    sides = tuple(high - low for low, high in zip(places.low, places.high, strict=True))
+    solved = {}
+    for sampler in SAMPLERS:
+        least = np.array(
+            [smallest_k(problem, _cube(sampler, n, run, sides), RULES[-1]) for run in range(draws)]
+        )
+        solved |= {(sampler, k): least <= k for k in RULES}
+    rows: list[tuple[object, ...]] = []
+    for k in RULES:
+        for sampler in SAMPLERS:
+            share, other = solved[sampler, k].mean(), solved["sobol", k].mean()
+            error = np.sqrt((share * (1 - share) + other * (1 - other)) / draws)
+            text = f"{100 * share:5.1f} %, {100 * (share - other):+5.1f} +- {100 * error:.1f} on Sobol"
+            print(f"{name} n={n} k={k:2} {sampler:10} {text}", flush=True)
+            rows.append((name, n, k, sampler, f"{share:.4f}", f"{share - other:.4f}", f"{error:.4f}"))
+    return rows
+
+
+def _cube(sampler: str, n: int, seed: int, sides: tuple[float, ...] = (1.0, 1.0, 1.0)) -> Floats:
     if sampler == "poses":
-        return Poses(turn=ROTATION_WEIGHT[3]).draw(n, 6, rng=seed).points
+        turn = ROTATION_WEIGHT[3] if max(sides) == 1.0 else 1.0
+        return Poses(sides=sides, turn=turn).draw(n, 6, rng=seed).points
     if sampler == "sliced" or sampler in SHARES:
         return Sliced(SHARES.get(sampler, 1 / 3)).draw(n, rng=seed).points
     return draw(sampler, n, 6, rng=seed).points

@@ -33,9 +33,9 @@ def test_names_files_and_values_give_the_path_that_the_command_gives(tmp_path, m
 def test_with_points_the_path_is_that_of_the_command_with_so_many(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     line = ["plan", "box-reach.yaml", "--robot", "ur5", "--start", "home", "--goal", "inside", "--no-picture"]
-    assert main([*line, "-n", "512", "--out", "a"]) == 0
+    assert main([*line, "-n", "1024", "--out", "a"]) == 0
     expected = json.loads((tmp_path / "a.json").read_text())["path"]
-    for points in (512, er.draw("even", 512, 6)):
+    for points in (1024, er.draw("even", 1024, 6)):
         result = er.plan_arm("ur5", "box-reach", "home", "inside", points)
         assert result.planner == "prm lazy"
         assert result.path.tolist() == expected

@@ -98,7 +98,7 @@ def test_more_time_gives_a_path_that_is_no_longer_and_the_cost_over_time(run, tm
     assert f"in {best['counts']['rounds']} rounds" in " ".join(out.split())
 
 
-@pytest.mark.parametrize("options", [(), ("-n", 512)])
+@pytest.mark.parametrize("options", [(), ("-n", 1024)])
 def test_a_certified_path_is_proved_by_a_check_of_its_own(run, tmp_path, options):
     assert run(*arm_arguments(out="a"), *options, "--certified", "--no-picture")[0] == 0
     assert (tmp_path / "a.csv").exists()

@@ -1,6 +1,7 @@
 """Certificates: their formulas by hand, their claims against brute force, and the printed bound that is false."""
 
 import math
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -230,3 +231,16 @@ def test_what_cannot_be_certified_is_refused():
         with pytest.raises(InvalidValue, match="certify speaks of shortest paths"):
             plan(world, [0.1, 0.1], [0.9, 0.9], 32, certify=True, **option)
     assert plan(world, [0.1, 0.1], [0.9, 0.9], PointSet(draw("even", 32, 2).points)).certificate is None
+
+
+def test_many_points_are_certified_in_little_memory():
+    points = draw("uniform", 3000, 2)
+    certify(points, Complete(), SQUARE)
+    tracemalloc.start()
+    try:
+        certify(points, KNearest(4), SQUARE)
+        _, most = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    # All distances between them would be 72 MB, and are asked for twice.
+    assert most < 6e7

@@ -49,7 +49,8 @@ def test_every_motion_of_a_path_passed_the_strict_check(name, shorten):
             assert result.proof == "resolution"
             for path in (result.path, result.milestone_path):
                 assert world.truly_free(path[:-1], path[1:]).all()
-            assert result.cost <= result.milestone_cost
+            # Where points lie on one line, the same length is summed up in fewer pieces.
+            assert result.cost <= result.milestone_cost * (1.0 + 1e-12)
     assert solved >= 3
 
 

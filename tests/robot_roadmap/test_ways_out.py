@@ -89,7 +89,7 @@ def test_ends_that_are_cut_off_get_ways_out_that_are_learned(roadmap, monkeypatc
             # Both ends lead on from now on: once more there is nothing to be learned.
             learned = len(known.learned)
             assert all(known.world.recheck(way).all() for way in known.learned[ways:])
-            monkeypatch.setattr("evenroad.robot_roadmap.robot_roadmap.TRIED_MOTIONS", 60)
+            monkeypatch.setattr("evenroad.robot_roadmap.robot_roadmap.TRIED_MOTIONS", 90)
             again = known.plan(start, goal)
             monkeypatch.setattr("evenroad.robot_roadmap.robot_roadmap.TRIED_MOTIONS", 1)
             assert again.planner == "robot roadmap"

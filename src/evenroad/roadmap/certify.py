@@ -180,7 +180,10 @@ def _ranked(q: Floats, rank: int, space: Space) -> Floats:
     """Return the distance of each row of `q` from its `rank`-th nearest other one, (n,); inf where there are fewer."""
     if rank >= len(q):
         return np.full(len(q), math.inf)
-    return np.concatenate([np.partition(away, rank - 1, axis=1)[:, rank - 1] for _, away in _rows(q, space)])
+    # Copies: a column would keep all of its block.
+    return np.concatenate(
+        [np.partition(away, rank - 1, axis=1)[:, rank - 1].copy() for _, away in _rows(q, space)]
+    )
 
 
 def _nearest_untried(q: Floats, edges: Ints32, space: Space) -> float:

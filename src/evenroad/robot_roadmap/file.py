@@ -99,6 +99,8 @@ def load_robot_roadmap(path: Path, robot: Robot | None = None, cell: Scene | Non
 def _check(path: Path, made: RobotRoadmap) -> None:
     """Raise BrokenFile unless milestones, edges and turns are what a roadmap of the robot can have."""
     dim, n, m = made.world.space.dim, len(made.milestones), len(made.edges)
+    if not n:
+        raise BrokenFile(f"{path}: it must have a milestone or more")
     require_array(path, "milestones", made.milestones, np.float64, (n, dim))
     require_array(path, "edges", made.edges, np.int32, (m, 2))
     require_array(path, "turns", made.turns, np.int8, (m, dim))

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar
+from functools import cached_property
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from evenroad._arrays import Bools, Floats, set_fields
-from evenroad.geometry.shapes import PointCloud, Shape
+from evenroad._arrays import Bools, Floats, Ints, set_fields
+from evenroad.geometry.shapes import Mesh, PointCloud, Shape
 from evenroad.robot import ArmWorld
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
 from evenroad.robot.reference.coal_world import CoalWorld
 from evenroad.robot.reference.recheck import FINER
 from evenroad.space import JointSpace
+
+RAY = np.array([0.35921, 0.48217, 0.79904])
+"""A direction along which no one draws."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,8 +26,9 @@ class OwnShapesWorld:
     """A robot that is free where its capsules are or, else, its own shapes are.
 
     What the capsules prove is free without a question to coal; other motions are checked at states a tenth of the
-    resolution apart.  `shapes` are as of :func:`evenroad.robot.reference.coal_world.original_shapes`.  Raises what
-    CoalWorld does.  Clouds block as they do for capsules alone: coal knows none.
+    resolution apart.  What is wholly inside of a mesh touches it.  `shapes` are as of
+    :func:`evenroad.robot.reference.coal_world.original_shapes`.  Raises what CoalWorld does.  Clouds block as they do
+    for capsules alone: coal knows none.
     """
 
     backend: ClassVar[str] = "coal"
@@ -41,7 +46,7 @@ class OwnShapesWorld:
         names = [each.name for each in scene.obstacles if isinstance(each.body, PointCloud)]
         others = [each.name for each in scene.obstacles if each.name not in names]
         clouds = ArmWorld(world.robot, scene.without(*others), resolution=resolution) if names else None
-        coal = CoalWorld(world.robot, scene.without(*names), self.shapes, resolution / FINER)
+        coal = SolidMeshes(world.robot, scene.without(*names), self.shapes, resolution / FINER)
         set_fields(self, _coal=coal, _clouds=clouds)
 
     @property
@@ -80,3 +85,73 @@ class OwnShapesWorld:
         if self._clouds is not None and not self._clouds.valid(q[np.newaxis])[0]:
             return self._clouds.explain(q)
         return self._coal.explain(q)
+
+
+class SolidMeshes(CoalWorld):
+    """As CoalWorld, but what is wholly inside of a mesh touches it: a link in an obstacle, or the other way round."""
+
+    def _contacts(self, poses: Floats) -> Iterator[tuple[str, str]]:
+        yield from super()._contacts(poses)
+        inner = self._inner
+        if not len(inner.mesh):
+            return
+        fixed = [obstacle.body.pose.matrix for obstacle in self.scene.obstacles]
+        placed = np.concatenate([poses, np.reshape(fixed, (-1, 4, 4))])
+        at, frame = placed[inner.body], placed[inner.mesh]
+        away = (at[:, :3, :3] @ inner.place[:, :, np.newaxis])[:, :, 0] + at[:, :3, 3] - frame[:, :3, 3]
+        place = (away[:, np.newaxis] @ frame[:, :3, :3])[:, 0]
+        for row in np.flatnonzero(((inner.low <= place) & (place <= inner.high)).all(axis=1)).tolist():
+            if is_inside(self._corners[int(inner.mesh[row])], place[row]):
+                shape, other = sorted((int(inner.mesh[row]), int(inner.body[row])))
+                yield self._shapes[shape].link, self.scene.obstacles[other - len(self._shapes)].name
+
+    @cached_property
+    def _corners(self) -> dict[int, Floats]:
+        """The corners of the triangles of each mesh, (t, 3, 3), by its number; obstacles come after shapes."""
+        bodies = [*self._shapes, *(obstacle.body for obstacle in self.scene.obstacles)]
+        meshes = {i: body.triangles for i, body in enumerate(bodies) if isinstance(body, Mesh)}
+        return {i: mesh.vertices[mesh.triangles] for i, mesh in meshes.items()}
+
+    @cached_property
+    def _inner(self) -> _Inner:
+        rows = []
+        for shape, number, is_obstacle in self._tests:
+            other = number + len(self._shapes)
+            for mesh, body in ((shape, other), (other, shape)) if is_obstacle else ():
+                if mesh in self._corners:
+                    # Surfaces that do not meet are inside of each other as a whole: one place tells.
+                    place = self._corners[body][0, 0] if body in self._corners else np.zeros(3)
+                    corners = self._corners[mesh].reshape(-1, 3)
+                    rows.append((mesh, body, place, corners.min(axis=0), corners.max(axis=0)))
+        numbers = np.array([row[:2] for row in rows], dtype=np.int64).reshape(-1, 2)
+        places = np.array([row[2:] for row in rows]).reshape(-1, 3, 3)
+        return _Inner(numbers[:, 0], numbers[:, 1], *np.moveaxis(places, 1, 0))
+
+
+class _Inner(NamedTuple):
+    """What may be inside of which mesh, (m,) each; a place of it, in its frame; the mesh's box in its own, (m, 3)."""
+
+    mesh: Ints
+    body: Ints
+    place: Floats
+    low: Floats
+    high: Floats
+
+
+def is_inside(corners: Floats, place: Floats) -> bool:
+    """Return whether a place, (3,), is inside of the surface of triangles, (t, 3, 3), as nearly as it is closed.
+
+    The solid angles of its triangles tell (van Oosterom and Strackee 1983), or the parity of a ray, which does not
+    mind triangles that are seen from the wrong side.
+    """
+    a, b, c = np.moveaxis(corners - place, 1, 0)
+    one, two, three = (np.linalg.norm(each, axis=1) for each in (a, b, c))
+    rest = one * two * three + (a * b).sum(axis=1) * three
+    rest += (b * c).sum(axis=1) * one + (c * a).sum(axis=1) * two
+    if abs(np.arctan2((a * np.cross(b, c)).sum(axis=1), rest).sum()) > np.pi:
+        return True
+    # The ray's coordinates in each triangle's cone: all of one sign where it goes through.
+    through = np.stack([np.cross(b, c) @ RAY, np.cross(c, a) @ RAY, np.cross(a, b) @ RAY])
+    ahead = through.sum(axis=0) * (a * np.cross(b, c)).sum(axis=1) > 0.0
+    hit = ((through > 0.0).all(axis=0) | (through < 0.0).all(axis=0)) & ahead
+    return bool(np.count_nonzero(hit) % 2)

@@ -48,11 +48,11 @@ LINKS = 300
 """Each end is tried to be linked to so many milestones where nothing else is said; plans without trees go by
 `links_of`: asked lazily, more links cost little but where ends are cut off, and there they are worth much."""
 
-TRIED_LINKS, TRIED_MOTIONS = 30, 60
+TRIED_LINKS, TRIED_MOTIONS = 40, 90
 """Where trees may follow, so many links of each end are tried, and so many motions: trees find ways out of narrow
 places with fewer checks than long links do."""
 
-PAIRS, CUTS, BATCHES, LONG_WAY = 16, 32, 120, 10
+PAIRS, CUTS, BATCHES, LONG_WAY = 16, 32, 100, 10
 """What a path along the roadmap is shortened with, half of the work on trees' paths for half a percent of length, and
 twice that from so many waypoints on: those ways out led round about."""
 
@@ -277,7 +277,7 @@ class SceneRoadmap:
         shorten : bool
             Whether the path is made shorter.
         trees : bool
-            Whether trees are tried, after 60 motions along the roadmap; else more of its links and all motions are.
+            Whether trees are tried, after 90 motions along the roadmap; else more of its links and all motions are.
 
         Returns
         -------

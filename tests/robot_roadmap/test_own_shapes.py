@@ -1,0 +1,83 @@
+"""The robot's own shapes as the judge: what is inside of a mesh is not free."""
+
+import numpy as np
+import pytest
+from scipy.spatial import ConvexHull
+
+from evenroad.geometry import Pose, TriangleMesh
+from evenroad.geometry.shapes import Capsule, Mesh
+from evenroad.robot import ArmWorld, Robot, Scene
+from evenroad.robot.joint import Joint
+from evenroad.robot.scene import Obstacle
+from evenroad.robot_roadmap.own_shapes import OwnShapesWorld, is_inside
+from tests.robot.kernel_arms import STRAIGHT, Z
+
+
+def block(half, away=0.0, sound=True):
+    """A surface around a block."""
+    corners = half * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    hull = ConvexHull(corners)
+    if not sound:
+        # Triangles that are seen from this side and that.
+        return TriangleMesh(corners + np.array([away, 0.0, 0.0]), hull.simplices, "block")
+    turned = np.cross(*(corners[hull.simplices[:, i]] - corners[hull.simplices[:, 0]] for i in (1, 2)))
+    inwards = (turned * hull.equations[:, :3]).sum(axis=1) < 0.0
+    triangles = np.where(inwards[:, np.newaxis], hull.simplices[:, ::-1], hull.simplices)
+    return TriangleMesh(corners + np.array([away, 0.0, 0.0]), triangles, "block")
+
+
+def world_with(*obstacles):
+    """A block on a turning arm, half a metre out, in a capsule that is larger."""
+    pytest.importorskip("coal")
+    joint = Joint("joint", "revolute", "base", "link", (0, 0, 0), STRAIGHT, Z, -3.0, 3.0)
+    capsule = Capsule((0.4, 0.0, 0.0), (0.6, 0.0, 0.0), 0.18, link="link")
+    robot = Robot("arm", ("base", "link"), (joint,), (capsule,), (), ("joint",))
+    shapes = [Mesh(block(0.1, 0.5), link="link")]
+    return OwnShapesWorld(ArmWorld(robot, Scene("scene", obstacles)), shapes)
+
+
+@pytest.mark.parametrize(
+    "obstacle",
+    [
+        Obstacle.of("ball", "sphere", (0.03,), (0.5, 0.0, 0.0)),
+        Obstacle.of("ball", "box", (0.03, 0.03, 0.03), (0.55, -0.05, 0.05)),
+        Obstacle("ball", Mesh(block(0.02), pose=Pose((0.45, 0.0, 0.0)))),
+        Obstacle("ball", Mesh(block(0.3), pose=Pose((0.5, 0.0, 0.0)))),
+    ],
+)
+def test_what_is_inside_of_a_mesh_is_not_free(obstacle):
+    world = world_with(obstacle)
+    inside, outside = np.zeros((1, 1)), np.full((1, 1), 1.5)
+    assert not world.valid(inside)[0]
+    assert not world.motion_valid(inside, inside + 0.001)[0]
+    assert "touches 'ball'" in world.explain(inside[0])
+    assert world.valid(outside)[0]
+
+
+def test_what_only_the_capsule_touches_is_free():
+    beside = Obstacle.of("ball", "sphere", (0.03,), (0.5, 0.14, 0.0))
+    within_the_box_of_a_turned_block = Obstacle.of("far", "sphere", (0.03,), (0.5, 0.0, 0.16))
+    world = world_with(beside, within_the_box_of_a_turned_block)
+    q = np.zeros((1, 1))
+    assert not world.capsules.valid(q)[0]
+    assert world.valid(q)[0]
+    assert world.explain(q[0]) == "it is free"
+
+
+@pytest.mark.parametrize("sound", [True, False])
+def test_inside_of_a_block_is_inside_of_its_surface(sound):
+    mesh = block(0.1, 0.5, sound)
+    corners = mesh.vertices[mesh.triangles]
+    places = np.random.default_rng(0).uniform([0.3, -0.2, -0.2], [0.7, 0.2, 0.2], (400, 3))
+    inside = (np.abs(places - [0.5, 0.0, 0.0]) < 0.1).all(axis=1)
+    assert 20 < inside.sum() < 380
+    found = np.array([is_inside(corners, place) for place in places])
+    assert found[inside].all()
+    # Triangles that are seen from the wrong side may make more of it, not less.
+    assert found[~inside].sum() <= (0 if sound else 0.2 * len(places))
+
+
+def test_one_of_two_surfaces_that_overlap_does_not_undo_the_other():
+    mesh = block(0.1)
+    corners = mesh.vertices[mesh.triangles]
+    assert is_inside(np.concatenate([corners, corners + 0.01]), np.zeros(3))
