@@ -59,6 +59,9 @@ twice that from so many waypoints on: those ways out led round about."""
 _LONG = 1e8
 """Seconds that stand for no limit."""
 
+_MOMENT = 1e-3
+"""Seconds."""
+
 _ready: set[str] = set()
 """Backends whose programs are compiled."""
 
@@ -297,7 +300,8 @@ class SceneRoadmap:
         limits = min(most, TRIED_MOTIONS) if trees else most, began + SHARE * min(deadline - began, _LONG)
         asked = self._ask(first, goals, *limits, links)
         if asked.goal < 0 and self._own is not None:
-            return self._own.plan(first, goals, budget=budget, shorten=shorten, trees=trees)
+            rest = _rest(budget, deadline, asked.motions)
+            return self._own.plan(first, goals, budget=rest, shorten=shorten, trees=trees)
         if asked.ended in (NONE, CUT_OFF, SPENT) and trees and len(goals) == 1:
             asked = self._by_ways_out(asked, first, goals, most, limits[1])
         elif asked.ended in (NONE, CUT_OFF) and not trees and self.roadmap.one_turn.lifts.any():
@@ -398,3 +402,11 @@ class SceneRoadmap:
         if isinstance(goal, list | tuple) and any(isinstance(each, str) for each in goal):
             return [self._place(each) for each in goal]  # type: ignore[return-value]
         return self._place(goal)  # type: ignore[arg-type]
+
+
+def _rest(budget: Budget, deadline: float, motions: int) -> Budget:
+    """Return what a budget leaves after so many motions; at least one motion, and a moment."""
+    seconds = None if budget.seconds is None else max(deadline - now(), _MOMENT)
+    return replace(
+        budget, seconds=seconds, motions=None if budget.motions is None else max(budget.motions - motions, 1)
+    )
