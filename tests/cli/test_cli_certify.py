@@ -67,6 +67,7 @@ def test_nothing_guaranteed_is_an_answer_with_exit_code_1(run, sets):
         (("two.npz", "-k", "3", "--connect-radius", "1"), "not both"),
         (("two.npz", "-k", "2", "--goals", "2"), "k has to be above 2"),
         (("two.npz", "--connect-radius", "-1"), "connection radius"),
+        (("--roadmap", "two.npz", "--goals", "0"), "--goals must be"),
         (("none.npz",), "no such file"),
         (("--roadmap", "two.npz"), "roadmap"),
         (("--roadmap", "two.npz", "-k", "3"), "-k goes with a point set"),
@@ -96,6 +97,8 @@ def test_an_arms_roadmap_is_certified_in_metres(run):
     way = np.minimum(np.abs(way), turn - np.abs(way)) * roadmap.weights
     assert np.linalg.norm(way, axis=2).min(1).max() <= certificate.dispersion
     assert 0.0 < allowance < 0.01
+    # An end is linked to all milestones that no joint's half turn keeps apart.
+    assert certificate.ends == pytest.approx(np.pi * roadmap.weights[one.wraps].min())
 
 
 def test_no_body_moves_farther_than_the_joints_allow():

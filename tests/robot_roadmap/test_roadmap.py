@@ -327,3 +327,22 @@ def test_a_path_that_is_not_free_of_robot_and_cell_is_not_remembered(roadmap):
         roadmap.remember(through[:1].repeat(2, axis=0), through)
     with pytest.raises(er.InvalidValue, match="path 0"):
         roadmap.remember(np.zeros((3, 2)))
+
+
+def test_shapes_are_asked_within_what_the_capsules_left_of_the_budget(roadmap):
+    known = roadmap.in_scene(box_scene())
+    budgets = []
+
+    class Shapes:
+        def plan(self, *ends, budget, **options):
+            budgets.append(budget)
+
+    known._own = Shapes()
+    space = known.world.space
+    q = space.from_cube(np.random.default_rng(0).random((200, space.dim)))
+    q = q[known.world.valid(q)]
+    for start, goal in zip(q[:-1], q[1:], strict=True):
+        known.plan(start, goal, budget=er.Budget(seconds=3.0, motions=50), trees=False)
+    assert budgets
+    assert all(budget.seconds < 3.0 and 1 <= budget.motions <= 50 for budget in budgets)
+    assert any(budget.motions < 50 for budget in budgets)

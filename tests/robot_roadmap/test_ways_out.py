@@ -150,3 +150,15 @@ def test_what_leads_to_the_goal_within_one_turn_is_not_lost_where_joints_turn_tw
             assert result.solved
             assert known.world.recheck(result.path).all()
     assert solved > 20
+
+
+def test_motions_of_many_turns_are_not_learned():
+    robot = with_limits(ur5(joints=3), {"shoulder_pan_joint": (-60.0, 60.0)})
+    graph = SceneRoadmap(make_roadmap(robot, None, 24, k=4, gamma=0.0, ends=0), Scene("nothing"))._graph
+    count = int(graph.desk[NODES])
+    # Sixteen turns look like none, and seven turns out is not followed.
+    for far in ([[-50.0, 0.1, 0.2], [50.0, 0.3, 0.4]], [[46.0, 0.1, 0.2], [47.0, 0.3, 0.4]]):
+        graph.learn(np.array(far))
+        assert graph.desk[NODES] == count
+    graph.learn(np.array([[-9.0, 0.1, 0.2], [9.0, 0.3, 0.4]]))
+    assert graph.desk[NODES] == count + 2

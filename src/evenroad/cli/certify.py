@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import tyro
 
-from evenroad._checks import as_row, require_positive
+from evenroad._checks import as_row, require_count, require_positive
 from evenroad._terminal import print_table
 from evenroad.errors import InvalidValue, shown
 from evenroad.points.npz import read_points
@@ -32,7 +32,7 @@ class Certify:
     set: tyro.conf.Positional[tuple[Path, ...]] = ()
     """A .npy array of shape (n, d), or a .npz point set."""
     roadmap: Path | None = None
-    """An arm's roadmap instead, made by ``evenroad roadmap``; clearances are in metres then."""
+    """An arm's roadmap instead, made by ``evenroad roadmap``, its ends linked to all of it; clearances in metres."""
     k: Annotated[int | None, tyro.conf.arg(aliases=["-k"])] = None
     """Each milestone is joined to its k nearest, symmetrised (default 10; 20 from six dimensions on)."""
     connect_radius: float | None = None
@@ -55,6 +55,7 @@ class Certify:
                 require_positive(f"--{name}", getattr(self, name))
         if len(self.set) + (self.roadmap is not None) != 1:
             raise InvalidValue("give one point set or --roadmap FILE, not both and no more")
+        require_count("--goals", self.goals)
         if self.length is not None and self.clearance is None:
             raise InvalidValue("--length goes with --clearance")
         return self._of_points(self.set[0]) if self.roadmap is None else self._of_arm(self.roadmap)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -60,6 +60,14 @@ class Budget:
     def deadline(self) -> float:
         """Return when the time is over, on the clock of ``evenroad._clock``, if it begins now."""
         return now() + (math.inf if self.seconds is None else self.seconds)
+
+    def rest(self, deadline: float, motions: int) -> Budget:
+        """Return what is left until a deadline and after so many motions: at least a millisecond and one motion."""
+        return replace(
+            self,
+            seconds=None if self.seconds is None else max(deadline - now(), 1e-3),
+            motions=None if self.motions is None else max(self.motions - motions, 1),
+        )
 
 
 class BudgetSpent(Exception):

@@ -8,13 +8,10 @@ import numpy as np
 
 from evenroad.points.measures import dispersion_bounds
 from evenroad.roadmap.certificate import SAFE, Certificate
-from evenroad.roadmap.certify import linked_within
-from evenroad.roadmap.query import FEW, LINKS
 from evenroad.robot import ArmWorld
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
 from evenroad.robot_roadmap.turns import TURN, lifted_motions_free, shifts
-from evenroad.space import JointSpace
 
 BATCH = 4096
 """Motions proved at once."""
@@ -43,17 +40,15 @@ class RobotCertificate(NamedTuple):
 def certify_robot_roadmap(roadmap: RobotRoadmap) -> RobotCertificate:
     """Return what a robot's roadmap guarantees for paths in any scene of its cell.
 
+    Of the shortest paths in its metric, with ends linked to all milestones.  So whether there is a path is what
+    ``SceneRoadmap.connect(..., links=n, greed=1.0)`` finds; ``plan`` goes greedily, by fewer links, and on with trees.
     The dispersion is that over all of the joints' ranges, also where the robot is never free: a bound all the same.
     """
     one, weights, q = roadmap.one_turn, roadmap.weights, roadmap.milestones
     unit = np.clip((q - one.low) / (one.high - one.low), 0.0, np.nextafter(1.0, 0.0))
     bounds = dispersion_bounds(unit, sides=weights * (one.high - one.low), wrapping=one.wraps)
     turn = 0.5 * SAFE * TURN * float(weights[one.wraps].min(initial=np.inf))
-    metric = JointSpace(one.low.tolist(), one.high.tolist(), one.wraps.tolist(), weights.tolist())
-    ends = np.inf if len(q) <= FEW else linked_within(q, LINKS, metric, bounds.upper)
-    certificate = Certificate(
-        bounds.upper, bounds.lower, min(_nearest_left_out(roadmap), turn), min(ends, turn), True
-    )
+    certificate = Certificate(bounds.upper, bounds.lower, min(_nearest_left_out(roadmap), turn), turn, True)
     return RobotCertificate(certificate, joints_per_metre(roadmap.world, weights), _allowance(roadmap.world))
 
 

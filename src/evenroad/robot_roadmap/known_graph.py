@@ -24,13 +24,16 @@ from evenroad.robot_roadmap.search_memory import (
     search_at,
 )
 from evenroad.robot_roadmap.search_metric import BITS, length_of_edge, measure, write, write_distances
-from evenroad.robot_roadmap.turns import TURN, OneTurn
+from evenroad.robot_roadmap.turns import MOST_TURNS, TURN, OneTurn
 
 JOINED = 8
 """Nearest milestones that a learned one may be joined to; whether they can be is asked when a search comes by."""
 
 LEAST = 8
 """A group of fewer milestones that free motions join leads nowhere."""
+
+AT_ONCE = 2 ** (BITS - 1) + 1 - MOST_TURNS
+"""A learned motion of more turns would lead from turns that are followed over all that the packed form knows."""
 
 ROOM = 256
 """Milestones to be learned that there is room for at first."""
@@ -186,8 +189,15 @@ class KnownGraph:
         ]
 
     def learn(self, path: Floats) -> None:
-        """Take the waypoints of a path, (p, dim), for milestones; its motions are proved free today."""
+        """Take the waypoints of a path, (p, dim), for milestones; its motions are proved free today.
+
+        Nothing is learned where joints turn so far that packed turns would be read as others.
+        """
         path = np.ascontiguousarray(path)
+        turns = np.rint((path - self.rules[at.MIDDLE]) / TURN)[:, self.rules[at.LIFTS] > 0.0]
+        steps = np.abs(np.diff(turns, axis=0))
+        if np.abs(turns).max(initial=0.0) > MOST_TURNS or steps.max(initial=0.0) > AT_ONCE:
+            return
         if self._shares and len(path):
             self._graph, self._shares = self._graph.copy(), False
             self._lay_out()

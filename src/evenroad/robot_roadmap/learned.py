@@ -7,6 +7,7 @@ import numpy as np
 from evenroad._arrays import Bools, Floats, Ints, Ints32
 from evenroad.errors import InvalidValue
 from evenroad.robot import ArmWorld
+from evenroad.robot.arm_world import RECHECK_TOLERANCE
 from evenroad.robot_roadmap.turns import TURN, OneTurn, lifted_motions_free, shifts
 from evenroad.space.batch import as_batch
 
@@ -26,7 +27,7 @@ def with_paths(
     a, b, by = [edges[:, 0].astype(np.int64)], [edges[:, 1].astype(np.int64)], [turns.astype(np.int64)]
     for number, path in enumerate(paths):
         way = as_batch(f"path {number}", path, world.space.dim)
-        free = world.motion_certified(way[:-1], way[1:], TOLERANCE)
+        free = world.motion_certified(way[:-1], way[1:], RECHECK_TOLERANCE)
         if not free.all():
             raise InvalidValue(
                 f"path {number} cannot be remembered: its motion {int(np.argmin(free))} is not free of robot and cell"
@@ -52,10 +53,6 @@ def with_paths(
         b.append(np.full(len(kept), row))
         by.append(way_round[kept])
     return milestones, *_sorted(np.concatenate(a), np.concatenate(b), np.concatenate(by))
-
-
-TOLERANCE = 1e-6
-"""How near to contact a motion may come and still be proved free [m]."""
 
 
 def _nearest(milestones: Floats, q: Floats, one: OneTurn) -> Ints:

@@ -186,14 +186,13 @@ class SceneRoadmap:
         day, everything = day_and_all(roadmap.cell, scene)
         robot = in_scene(roadmap.robot if robot is None else robot, everything)
         require_same_robot(roadmap.robot, roadmap.cell, robot.empty_handed())
-        resolution = roadmap.resolution
         self.roadmap = roadmap
-        self.world = ArmWorld(robot, everything, resolution=resolution)
+        self.world = ArmWorld(robot, everything, resolution=roadmap.resolution)
         # What the roadmap knows to be free of the robot and its cell is asked about the other obstacles alone.
         bare, left = left_to_check(robot, roadmap.cell, day, everything)
         # One and the same where it can be: what is known of it need not be looked up by all of its values.
         bare = roadmap.bare if robot is roadmap.robot else bare
-        self._day = ArmWorld(bare, left, resolution=resolution)
+        self._day = ArmWorld(bare, left, resolution=roadmap.resolution)
         self._asked: tuple[Checks, Checks] = self.world, self._day
         self._own: SceneRoadmap | None = None
         if shapes is not None:
@@ -297,6 +296,7 @@ class SceneRoadmap:
         limits = min(most, TRIED_MOTIONS) if trees else most, began + SHARE * min(deadline - began, _LONG)
         asked = self._ask(first, goals, *limits, links)
         if asked.goal < 0 and self._own is not None:
+            budget = budget.rest(deadline, asked.motions)
             return self._own.plan(first, goals, budget=budget, shorten=shorten, trees=trees)
         if asked.ended in (NONE, CUT_OFF, SPENT) and trees and len(goals) == 1:
             asked = self._by_ways_out(asked, first, goals, most, limits[1])

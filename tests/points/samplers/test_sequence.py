@@ -26,6 +26,15 @@ class TestSequence(SamplerContract):
         scrambled = [Sobol(start=512).draw(188, 3, rng=each).points for each in _scrambles(3, 3)]
         assert any((points == each).all() for each in scrambled)
 
+    def test_far_along_only_what_is_asked_for_is_drawn(self):
+        far = 2**30 - 40
+        points = Sequence(start=far).draw(40, 3, rng=3).points
+        assert any(
+            (points == Sobol(start=far).draw(40, 3, rng=each).points).all() for each in _scrambles(3, 3)
+        )
+        with pytest.raises(InvalidValue, match="ends at index"):
+            Sequence(start=far).draw(41, 3, rng=3)
+
     @pytest.mark.parametrize("start", [-1, 0.5, "3"])
     def test_a_start_that_is_no_index_is_refused(self, start):
         with pytest.raises(InvalidValue, match="start"):

@@ -59,15 +59,17 @@ class Sequence:
         """
         n, d = require_count("n", n), require_count("d", d)
         key, total = int(generator(rng).integers(2**62)), self.start + n
-        moved = _moved(key, d, next((end for end in (TOGETHER, *BLOCKS) if end >= total), max(BLOCKS)))
-        points = moved[:total]
-        if total > len(moved):
-            points = np.concatenate([moved, _sobol(key, d, total)[len(moved) :]])
+        length = next((end for end in (TOGETHER, *BLOCKS) if end >= total), max(BLOCKS))
+        points = _moved(key, d, length)[self.start : total] if self.start < length else np.empty((0, d))
+        if total > length:
+            first = max(self.start, length)
+            rest = Sobol(start=first).draw(total - first, d, rng=_scramble(key, d)).points
+            points = np.concatenate([points, rest])
         method, seed = "Sobol, scrambled and moved", seed_of(rng)
         origin = Origin(
             family=self.name, method=method, objective=f"prefixes({MEASURE})", seed=seed, start=self.start
         )
-        return PointSet(points[self.start :], origin)
+        return PointSet(points, origin)
 
 
 @lru_cache(maxsize=64)
