@@ -1,6 +1,7 @@
 """What a robot's roadmap is made of, what it is refused for, and its file."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -341,7 +342,7 @@ def test_shapes_are_asked_within_what_the_capsules_left_of_the_budget(roadmap):
     space = known.world.space
     q = space.from_cube(np.random.default_rng(0).random((200, space.dim)))
     q = q[known.world.valid(q)]
-    for start, goal in zip(q[:-1], q[1:], strict=True):
+    for start, goal in pairwise(q):
         known.plan(start, goal, budget=er.Budget(seconds=3.0, motions=50), trees=False)
     assert budgets
     assert all(budget.seconds < 3.0 and 1 <= budget.motions <= 50 for budget in budgets)
