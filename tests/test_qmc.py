@@ -15,7 +15,24 @@ from tests.points.samplers.conftest import hardly_moved as hardly_moved
 SEED = 170382760648021597650530316304495310428
 
 
-class EngineContract:
+class Refusals:
+    """What every engine refuses."""
+
+    @pytest.mark.parametrize("bad", [-1, 1.5, "2", None])
+    def test_a_number_of_points_that_is_no_count_is_refused(self, bad):
+        engine = self.engine()
+        for ask in (engine.random, engine.fast_forward):
+            with pytest.raises(InvalidValue, match="n must be an integer >= 0"):
+                ask(bad)
+        assert engine.num_generated == 0
+
+    @pytest.mark.parametrize("bad", [-1, "7", 0.5, True])
+    def test_a_seed_of_another_kind_is_refused(self, bad):
+        with pytest.raises(InvalidValue, match="rng must be"):
+            self.engine(rng=bad)
+
+
+class EngineContract(Refusals):
     """Subclass it as ``class TestMine(EngineContract): engine_class = Mine``; n and d are ones that it has."""
 
     engine_class: type[qmc.FamilyEngine]
@@ -132,19 +149,6 @@ class EngineContract:
         with pytest.raises(InvalidValue, match="n must be an integer >= 1"):
             self.engine(n=bad)
 
-    @pytest.mark.parametrize("bad", [-1, 1.5, "2", None])
-    def test_a_number_of_points_that_is_no_count_is_refused(self, bad):
-        engine = self.engine()
-        for ask in (engine.random, engine.fast_forward):
-            with pytest.raises(InvalidValue, match="n must be an integer >= 0"):
-                ask(bad)
-        assert engine.num_generated == 0
-
-    @pytest.mark.parametrize("bad", [-1, "7", 0.5, True])
-    def test_a_seed_of_another_kind_is_refused(self, bad):
-        with pytest.raises(InvalidValue, match="rng must be"):
-            self.engine(rng=bad)
-
     def test_an_option_that_the_family_does_not_have_is_refused(self):
         with pytest.raises(InvalidValue, match="scramble"):
             self.engine(scramble=True)
@@ -173,7 +177,7 @@ class EngineContract:
         assert normal.random(self.n).shape == (self.n, self.d)
 
 
-class SequenceContract:
+class SequenceContract(Refusals):
     """Subclass it as ``class TestMine(SequenceContract): engine_class = Mine``."""
 
     engine_class: type[qmc.SequenceEngine]
@@ -232,19 +236,6 @@ class SequenceContract:
     def test_a_dimension_that_is_no_positive_integer_is_refused(self, bad):
         with pytest.raises(InvalidValue, match="d must be an integer >= 1"):
             self.engine(d=bad)
-
-    @pytest.mark.parametrize("bad", [-1, 1.5, "2", None])
-    def test_a_number_of_points_that_is_no_count_is_refused(self, bad):
-        engine = self.engine()
-        for ask in (engine.random, engine.fast_forward):
-            with pytest.raises(InvalidValue, match="n must be an integer >= 0"):
-                ask(bad)
-        assert engine.num_generated == 0
-
-    @pytest.mark.parametrize("bad", [-1, "7", 0.5, True])
-    def test_a_seed_of_another_kind_is_refused(self, bad):
-        with pytest.raises(InvalidValue, match="rng must be"):
-            self.engine(rng=bad)
 
     def test_scipys_own_tools_take_it(self):
         quadrature = qmc_quad(

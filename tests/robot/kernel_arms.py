@@ -72,6 +72,14 @@ def box_scene(inner=0.36):
     return Scene("box", obstacles, allowed)
 
 
+TABLE = Scene(
+    "cell",
+    (Obstacle.of("table", "box", (1.0, 1.2, 0.05), (0.25, 0.0, -0.025), cell=True),),
+    frozenset({("base", "table"), ("shoulder", "table")}),
+)
+"""The cell of a UR5 on its table."""
+
+
 def random_rotation(rng):
     """A rotation (9 floats), uniform."""
     q = rng.normal(size=4)

@@ -16,14 +16,8 @@ from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.robot_roadmap import SceneRoadmap
 from evenroad.robot_roadmap.spread import displacement_weights, spread_order
 from evenroad.robot_roadmap.turns import lifted_motions_free, whole_turns
-from tests.robot.kernel_arms import STRAIGHT, Z, box_scene, ur5
+from tests.robot.kernel_arms import STRAIGHT, TABLE, Z, box_scene, ur5
 from tests.robot.surface_oracle import mesh_clearance, point_clearance
-
-TABLE = Scene(
-    "cell",
-    (Obstacle.of("table", "box", (1.0, 1.2, 0.05), (0.25, 0.0, -0.025), cell=True),),
-    frozenset({("base", "table"), ("shoulder", "table")}),
-)
 
 
 @pytest.fixture(scope="module")

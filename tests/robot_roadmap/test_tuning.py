@@ -5,19 +5,13 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from evenroad.robot import ArmWorld, Obstacle, Scene
+from evenroad.robot import ArmWorld
 from evenroad.robot_roadmap import make, tuning
 from evenroad.robot_roadmap.file import load_robot_roadmap, save_robot_roadmap
 from evenroad.robot_roadmap.make import joined, make_roadmap
 from evenroad.robot_roadmap.recipe import Recipe
 from evenroad.robot_roadmap.tuning import random_problems, solved_by, tune_recipe
-from tests.robot.kernel_arms import ur5
-
-TABLE = Scene(
-    "cell",
-    (Obstacle.of("table", "box", (1.0, 1.2, 0.05), (0.25, 0.0, -0.025), cell=True),),
-    frozenset({("base", "table"), ("shoulder", "table")}),
-)
+from tests.robot.kernel_arms import TABLE, ur5
 
 
 @pytest.fixture(scope="module")
