@@ -74,6 +74,25 @@ raise SystemExit(evenroad.cli.main())
     assert (done.returncode, done.stderr) == (130, "evenroad: interrupted; what was finished is kept\n")
 
 
+def test_an_interrupt_that_cython_dropped_is_not_lost_and_leaves_no_traceback():
+    """SciPy's Sobol points come out as zeros after it; Cython prints what it drops."""
+    code = """
+import signal, sys, time
+import evenroad.cli.verbs
+import numpy.lib._npyio_impl as files
+from scipy.stats import qmc
+def run(arguments):
+    files.NpzFile.__getitem__ = lambda self, key: signal.raise_signal(signal.SIGINT)
+    assert (qmc.Sobol(2, scramble=False).random(4) == 0).all()
+    time.sleep(10)
+    return 0
+evenroad.cli.verbs.run = run
+raise SystemExit(evenroad.cli.main())
+"""
+    done = python("-c", code)
+    assert (done.returncode, done.stderr) == (130, "evenroad: interrupted; what was finished is kept\n")
+
+
 def test_a_second_interrupt_that_is_only_seen_while_leaving_changes_nothing():
     """Files were being closed when it came: the next who looks for signals is the call that turns them off."""
     code = """

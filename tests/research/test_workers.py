@@ -1,5 +1,6 @@
 """Worker processes: one thread each, deaf to Ctrl-C, and gone when their parent is."""
 
+import ctypes
 import os
 import signal
 import subprocess
@@ -9,7 +10,7 @@ import time
 import pytest
 
 from evenroad.errors import InvalidValue
-from evenroad.research.workers import ProcessPool, processes
+from evenroad.research.workers import ProcessPool, SerialExecutor, processes
 
 PATIENCE = 60.0
 
@@ -78,3 +79,20 @@ def test_processes_that_are_not_waited_for_are_ended_in_what_they_do():
 def test_the_number_of_processes_is_a_positive_integer():
     with pytest.raises(InvalidValue, match="jobs"):
         processes(0)
+
+
+def test_a_call_in_this_process_that_dropped_an_interrupt_has_no_result():
+    """What compiled code computes after it may be wrong: SciPy's Sobol points are zeros."""
+
+    def drops():
+        raise KeyboardInterrupt
+
+    before, seen = sys.unraisablehook, []
+    sys.unraisablehook = seen.append
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            SerialExecutor().submit(ctypes.CFUNCTYPE(None)(drops))
+        assert sys.unraisablehook == seen.append
+    finally:
+        sys.unraisablehook = before
+    assert [dropped.exc_type for dropped in seen] == [KeyboardInterrupt]

@@ -9,6 +9,7 @@ import sys
 import threading
 import warnings
 from collections.abc import Sequence
+from types import TracebackType
 
 INTERRUPTED = 130
 """Exit code after Ctrl-C."""
@@ -28,6 +29,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     warnings.formatwarning = lambda message, *where: f"evenroad: warning: {message}\n"
     hook = _Unraisable()
     sys.unraisablehook = hook
+    # Cython prints what it drops by this one first.
+    sys.excepthook = _print_unless_interrupted
     try:
         return _run(sys.argv[1:])
     except (KeyboardInterrupt, Exception) as error:
@@ -53,6 +56,13 @@ def _run(arguments: Sequence[str]) -> int:
 def _interrupted() -> int:
     print("evenroad: interrupted; what was finished is kept", file=sys.stderr)
     return INTERRUPTED
+
+
+def _print_unless_interrupted(
+    kind: type[BaseException], error: BaseException, where: TracebackType | None
+) -> None:
+    if kind is not KeyboardInterrupt:
+        sys.__excepthook__(kind, error, where)
 
 
 class _Unraisable:

@@ -51,7 +51,8 @@ class SerialExecutor(Executor):
         """Run the call; what it raises is in the future, but Ctrl-C stops everything."""
         future: Future[Result] = Future()
         try:
-            future.set_result(fn(*args, **kwargs))
+            with _dropped_interrupts_raised():
+                future.set_result(fn(*args, **kwargs))
         except Exception as error:
             future.set_exception(error)
         return future
@@ -110,6 +111,28 @@ def _interrupts_held_back() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _dropped_interrupts_raised() -> Iterator[None]:
+    """Raise at the end of the block an interrupt that compiled code dropped in it.
+
+    SciPy's Sobol points are zeros after one that came while they read their direction numbers.
+    """
+    before, dropped = sys.unraisablehook, False
+
+    def note(what: sys.UnraisableHookArgs) -> None:
+        nonlocal dropped
+        dropped = dropped or what.exc_type is KeyboardInterrupt
+        before(what)
+
+    sys.unraisablehook = note
+    try:
+        yield
+    finally:
+        sys.unraisablehook = before
+    if dropped:
+        raise KeyboardInterrupt
 
 
 def _settle(initializer: Callable[..., object] | None, initargs: tuple[Any, ...]) -> None:
