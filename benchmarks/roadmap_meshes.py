@@ -33,7 +33,8 @@ from evenroad.robot.reference.coal_world import CoalWorld
 from evenroad.robot.trees import shorten
 from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.own_shapes import OwnShapesWorld
-from evenroad.robot_roadmap.robot_roadmap import CUTS, PAIRS, RobotRoadmap, SceneRoadmap
+from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
+from evenroad.robot_roadmap.scene_roadmap import CUTS, PAIRS, SceneRoadmap
 from evenroad.space.path import path_length
 
 FIRST = 9

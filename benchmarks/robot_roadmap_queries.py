@@ -29,7 +29,8 @@ from evenroad.robot import ArmWorld, with_limits
 from evenroad.robot.trees import shorten
 from evenroad.robot_roadmap.chance import chance_of_freedom
 from evenroad.robot_roadmap.make import make_roadmap
-from evenroad.robot_roadmap.robot_roadmap import CUTS, PAIRS, RobotRoadmap, SceneRoadmap
+from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
+from evenroad.robot_roadmap.scene_roadmap import CUTS, PAIRS, SceneRoadmap
 from evenroad.robot_roadmap.search_memory import NUMBER
 
 COPIES = 3

@@ -28,7 +28,8 @@ from evenroad.roadmap import KNearest
 from evenroad.roadmap.plan import plan
 from evenroad.robot import ArmWorld, Robot, Scene
 from evenroad.robot_roadmap.make import joined, make_roadmap
-from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap, SceneRoadmap
+from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
+from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
 
 K = 10
 SIZES = (64, 128, 256, 1024)

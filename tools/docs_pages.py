@@ -52,6 +52,7 @@ REFERENCE = {
         (
             "evenroad.robot_roadmap.make",
             "evenroad.robot_roadmap.robot_roadmap",
+            "evenroad.robot_roadmap.scene_roadmap",
             "evenroad.robot_roadmap.file",
             "evenroad.robot_roadmap.certify",
         ),

@@ -13,7 +13,7 @@ from evenroad.robot import ArmWorld, Joint, Mimic, Obstacle, Scene, with_group, 
 from evenroad.robot_roadmap import chance
 from evenroad.robot_roadmap.cell import day_and_all
 from evenroad.robot_roadmap.make import make_roadmap
-from evenroad.robot_roadmap.robot_roadmap import SceneRoadmap
+from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
 from evenroad.robot_roadmap.spread import displacement_weights, spread_order
 from evenroad.robot_roadmap.turns import lifted_motions_free, whole_turns
 from tests.robot.kernel_arms import STRAIGHT, TABLE, Z, box_scene, ur5

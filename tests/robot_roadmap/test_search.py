@@ -10,7 +10,7 @@ import pytest
 from evenroad.robot import ArmWorld, Scene, with_limits
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
 from evenroad.robot_roadmap.make import make_roadmap
-from evenroad.robot_roadmap.robot_roadmap import SceneRoadmap
+from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
 from evenroad.robot_roadmap.search_memory import ENTRIES
 from evenroad.robot_roadmap.turns import MOST_TURNS, one_turn
 from evenroad.space import JointSpace
@@ -198,7 +198,7 @@ def test_a_world_without_lanes_finds_the_same_path(roadmap):
 
 
 def test_what_the_roadmap_does_not_lead_to_soon_is_left_to_the_trees_and_learned(roadmap, monkeypatch):
-    monkeypatch.setattr("evenroad.robot_roadmap.robot_roadmap.TRIED_MOTIONS", 1)
+    monkeypatch.setattr("evenroad.robot_roadmap.scene_roadmap.TRIED_MOTIONS", 1)
     known = SceneRoadmap(roadmap, box_scene())
     start, goal = far_apart(known)
     first = known.plan(start, goal[0], shorten=False)

@@ -5,7 +5,7 @@ import pytest
 
 from evenroad.robot import Scene, with_limits
 from evenroad.robot_roadmap.make import make_roadmap
-from evenroad.robot_roadmap.robot_roadmap import SceneRoadmap
+from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
 from evenroad.robot_roadmap.search_memory import BLOCKED, FREE, NODES, PROVED
 from evenroad.space.path import subdivide
 from tests.robot.kernel_arms import box_scene, ur5
@@ -76,7 +76,7 @@ def test_a_scene_of_which_nothing_is_known_has_no_group(roadmap):
 def test_ends_that_are_cut_off_get_ways_out_that_are_learned(roadmap, monkeypatch):
     known, some = known_well(roadmap)
     # No link is tried: every end is cut off.
-    monkeypatch.setattr("evenroad.robot_roadmap.robot_roadmap.TRIED_MOTIONS", 1)
+    monkeypatch.setattr("evenroad.robot_roadmap.scene_roadmap.TRIED_MOTIONS", 1)
     ways = 0
     for start, goal in some[6:]:
         result = known.plan(start, goal)
@@ -89,9 +89,9 @@ def test_ends_that_are_cut_off_get_ways_out_that_are_learned(roadmap, monkeypatc
             # Both ends lead on from now on: once more there is nothing to be learned.
             learned = len(known.learned)
             assert all(known.world.recheck(way).all() for way in known.learned[ways:])
-            monkeypatch.setattr("evenroad.robot_roadmap.robot_roadmap.TRIED_MOTIONS", 90)
+            monkeypatch.setattr("evenroad.robot_roadmap.scene_roadmap.TRIED_MOTIONS", 90)
             again = known.plan(start, goal)
-            monkeypatch.setattr("evenroad.robot_roadmap.robot_roadmap.TRIED_MOTIONS", 1)
+            monkeypatch.setattr("evenroad.robot_roadmap.scene_roadmap.TRIED_MOTIONS", 1)
             assert again.planner == "robot roadmap"
             assert len(known.learned) == learned
         ways = len(known.learned)

@@ -42,7 +42,7 @@ from evenroad.robot.straight import Straight
 from evenroad.robot.trees import prepare
 from evenroad.robot.upright import Upright
 from evenroad.robot_roadmap.cell import day_and_all
-from evenroad.robot_roadmap.robot_roadmap import SceneRoadmap
+from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
 from evenroad.world import World
 
 

@@ -15,7 +15,8 @@ from evenroad.robot.arm_world import RECHECK_TOLERANCE
 from evenroad.robot_roadmap.chance import Surroundings, random_scene
 from evenroad.robot_roadmap.pockets import body_of, links_of, pocket_around, tips_of
 from evenroad.robot_roadmap.recipe import Recipe
-from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap, SceneRoadmap
+from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
+from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
 
 GAMMAS = (0.0, 1.0, 2.0, 4.0, 8.0, 16.0)
 """Powers of the chance of being free that are tried."""

@@ -12,7 +12,7 @@ from evenroad.research.arms.problems import draw_problem, robot_and_generator, s
 from evenroad.research.arms.roadmaps import roadmap_of
 from evenroad.research.bench.task import Outcome, Problem, Task
 from evenroad.robot import ArmWorld
-from evenroad.robot_roadmap.robot_roadmap import SceneRoadmap
+from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
 from evenroad.world.protocol import Connection
 
 KEPT, TREES = "kept", "trees"

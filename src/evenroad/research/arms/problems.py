@@ -19,7 +19,8 @@ from evenroad.research.bench.task import Problem, ProblemSource
 from evenroad.robot import ArmWorld, Robot, Scene
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
 from evenroad.robot.kinematics import link_poses
-from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap, SceneRoadmap
+from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
+from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
 
 POOL = 300_000
 """From so many configurations those with the tool in a region are taken."""

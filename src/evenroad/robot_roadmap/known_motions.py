@@ -1,0 +1,71 @@
+"""What a robot's roadmap knows: milestones and motions that are free of the robot itself and of its fixed cell."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from evenroad._arrays import Floats, Ints, Ints32
+from evenroad.robot import ArmWorld, Robot, Scene
+from evenroad.robot_roadmap.known_graph import KnownGraph
+from evenroad.robot_roadmap.turns import OneTurn, one_turn, whole_turns
+
+
+@dataclass(frozen=True, eq=False)
+class KnownMotions:
+    """Milestones and motions of a robot in its cell.
+
+    Attributes
+    ----------
+    robot : Robot
+        Whose roadmap it is.
+    cell : Scene
+        What never moves around it.
+    resolution : float
+        Largest step of a motion check [rad].
+    milestones : ndarray, shape (n, dim)
+        Free of robot and cell, of which every beginning is well spread [rad or m]; read-only.
+    edges : ndarray of int32, shape (m, 2)
+        Motions that are proved free of robot and cell, smaller row first, ascending; read-only.
+    turns : ndarray of int8, shape (m, dim)
+        By how many turns each edge leads past its second milestone; read-only.
+    weights : ndarray, shape (dim,)
+        What a unit of each joint counts in the roadmap's metric.
+    gamma : float
+        The power of the chance of being free that milestones are as dense as.
+    ends : int
+        How many ends in pockets they learned from, at most.
+    tuned : str
+        What came of tuning gamma; empty without.
+    """
+
+    robot: Robot
+    cell: Scene
+    resolution: float
+    milestones: Floats
+    edges: Ints32
+    turns: Ints
+    weights: Floats
+    gamma: float
+    ends: int = 0
+    tuned: str = ""
+
+    @cached_property
+    def world(self) -> ArmWorld:
+        """The robot in its cell alone."""
+        return ArmWorld(self.robot, self.cell, resolution=self.resolution)
+
+    @cached_property
+    def bare(self) -> Robot:
+        """The robot without the pairs of its own that are tested: what the roadmap knows."""
+        return replace(self.robot, pairs=())
+
+    @cached_property
+    def one_turn(self) -> OneTurn:
+        """The ranges that the milestones are in."""
+        return one_turn(self.world.space, whole_turns(self.robot))
+
+    @cached_property
+    def graph(self) -> KnownGraph:
+        """The roadmap by node, for the compiled search."""
+        return KnownGraph(self.milestones, self.edges, self.turns, self.one_turn)

@@ -1,0 +1,313 @@
+"""What becomes of a robot's roadmap in the scene of a day: queries, and what one finds out for the next."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._arrays import Floats
+from evenroad._clock import now
+from evenroad.geometry.shapes import Shape
+from evenroad.roadmap import Budget, PlanResult, Status
+from evenroad.roadmap.answer import connected, gave_up, refusal
+from evenroad.roadmap.attempt import Attempt
+from evenroad.roadmap.find_path import NO_POINTS, SECONDS, with_reasons
+from evenroad.roadmap.query import Query, read_places
+from evenroad.robot import ArmWorld, Robot, Scene, configuration, in_scene
+from evenroad.robot.trees import shorten
+from evenroad.robot_roadmap.ask import ENDS_TAKEN, SPENT, Asked, Checks, ask
+from evenroad.robot_roadmap.cell import day_and_all, left_to_check, require_same_robot
+from evenroad.robot_roadmap.known_motions import KnownMotions
+from evenroad.robot_roadmap.lazy_search import CUT_OFF, NONE
+from evenroad.robot_roadmap.own_shapes import OwnShapesWorld
+from evenroad.robot_roadmap.pockets import links_of
+from evenroad.robot_roadmap.ways_out import learn_ways_out
+from evenroad.space.path import path_length
+from evenroad.world.protocol import Connection
+
+Place = str | npt.ArrayLike
+"""A configuration: numbers in the order of the group, or a text as :func:`evenroad.robot.configuration` takes it."""
+
+PLANNER = "robot roadmap"
+
+SHARE = 0.5
+"""Of the time, for the roadmap; the rest is the trees', where it does not lead to the goal."""
+
+GREED = 3.0
+"""What the bound of the search is multiplied by: a third of the checks of a shortest way, and once they are shortened
+its paths are no longer."""
+
+LINKS = 300
+"""Each end is tried to be linked to so many milestones where nothing else is said; plans without trees go by
+`links_of`: asked lazily, more links cost little but where ends are cut off, and there they are worth much."""
+
+TRIED_LINKS, TRIED_MOTIONS = 40, 90
+"""Where trees may follow, so many links of each end are tried, and so many motions: trees find ways out of narrow
+places with fewer checks than long links do."""
+
+PAIRS, CUTS, BATCHES, LONG_WAY = 16, 32, 100, 10
+"""What a path along the roadmap is shortened with, half of the work on trees' paths for half a percent of length, and
+twice that from so many waypoints on: those ways out led round about."""
+
+_LONG = 1e8
+"""Seconds that stand for no limit."""
+
+_ready: set[str] = set()
+"""Backends whose programs are compiled."""
+
+
+class SceneRoadmap:
+    """A robot's roadmap in one scene, with what earlier queries found out there; of one thread.
+
+    Parameters
+    ----------
+    roadmap : RobotRoadmap
+    scene : Scene
+        What stands around the robot today.  The roadmap's cell is always there, named again or not.
+    robot : Robot, optional
+        The roadmap's robot with other limits or named states.  Default: as it is in the scene.
+    shapes : sequence of Shape, optional
+        The robot's own, as of :func:`evenroad.robot.reference.coal_world.original_shapes`, which decide where its
+        capsules touch (extra ``mesh``).  Default: capsules alone.
+
+    Attributes
+    ----------
+    world : ArmWorld
+        The robot in its cell, with the day's obstacles.
+    learned : list of ndarrays, shapes (p, dim)
+        Ways that trees found where the roadmap led nowhere; their waypoints serve later queries here.
+
+    Raises
+    ------
+    InvalidValue
+        If the robot is another than the roadmap's, or the scene has the cell in another way: the text says how.
+    UnknownName
+        If the scene names something that is not there.
+    """
+
+    def __init__(
+        self,
+        roadmap: KnownMotions,
+        scene: Scene,
+        robot: Robot | None = None,
+        shapes: Sequence[Shape] | None = None,
+    ) -> None:
+        day, everything = day_and_all(roadmap.cell, scene)
+        robot = in_scene(roadmap.robot if robot is None else robot, everything)
+        require_same_robot(roadmap.robot, roadmap.cell, robot.empty_handed())
+        self.roadmap = roadmap
+        self.world = ArmWorld(robot, everything, resolution=roadmap.resolution)
+        # What the roadmap knows to be free of the robot and its cell is asked about the other obstacles alone.
+        bare, left = left_to_check(robot, roadmap.cell, day, everything)
+        # One and the same where it can be: what is known of it need not be looked up by all of its values.
+        bare = roadmap.bare if robot is roadmap.robot else bare
+        self._day = ArmWorld(bare, left, resolution=roadmap.resolution)
+        self._asked: tuple[Checks, Checks] = self.world, self._day
+        self._own: SceneRoadmap | None = None
+        if shapes is not None:
+            # With verdicts of its own: what blocks the capsules need not block the shapes.
+            self._own = SceneRoadmap(roadmap, scene, robot)
+            self._own._asked = OwnShapesWorld(self.world, shapes), OwnShapesWorld(self._day, shapes)
+        self._graph = roadmap.graph.within(np.array(self.world.space.low), np.array(self.world.space.high))
+        self._wraps = bool(np.any(self.world.space.wrapping))
+        self.learned: list[Floats] = []
+        if self.world.backend not in _ready:
+            # Compiled, or loaded, before a clock runs; nothing is checked but the ends.
+            self._ask(roadmap.milestones[0], roadmap.milestones[:1], 0, math.inf, 1)
+            self._graph.learn(roadmap.milestones[:0])
+            self._graph.around(roadmap.weights, 0.0, 1)
+            _ready.add(self.world.backend)
+
+    def connect(
+        self,
+        start: Floats,
+        goals: Floats,
+        *,
+        most_motions: int = 2**31 - 1,
+        seconds: float = SECONDS,
+        links: int = LINKS,
+        greed: float = GREED,
+    ) -> Connection:
+        """Join a start, (dim,), to the goal, (g, dim), that the roadmap leads to.
+
+        Each is tried to be linked to `links` milestones, of few to all; the path is the shortest one along the roadmap
+        where `greed` is 1.
+        """
+        asked = self._ask(start, goals, most_motions, now() + seconds, links, greed)
+        return Connection(asked.path, asked.goal, self._size, asked.milestones, asked.motions)
+
+    def _ask(
+        self,
+        start: Floats,
+        goals: Floats,
+        most: int,
+        deadline: float,
+        links: int,
+        greed: float = GREED,
+        *,
+        only_known: bool = False,
+        unturned: bool = False,
+    ) -> Asked:
+        return ask(
+            *self._asked,
+            self._graph,
+            start,
+            goals,
+            links=links,
+            greed=greed,
+            most_motions=most,
+            deadline=deadline,
+            only_known=only_known,
+            unturned=unturned,
+        )
+
+    @property
+    def _size(self) -> int:
+        return len(self.roadmap.milestones)
+
+    def plan(
+        self,
+        start: Place,
+        goal: Place | Sequence[Place],
+        *,
+        budget: Budget | None = None,
+        shorten: bool = True,
+        trees: bool = True,
+    ) -> PlanResult:
+        """Plan from a start to one of the goals: along the roadmap and, where it does not lead there soon, with trees.
+
+        Parameters
+        ----------
+        start, goal : str, array_like of shape (dim,); of goals a sequence of such, too
+            Numbers in the order of the group [rad or m], or a text as :func:`evenroad.robot.configuration` takes it.
+        budget : Budget, optional
+            Default: 5 s.  Half of the time is the roadmap's, the rest the trees'.
+        shorten : bool
+            Whether the path is made shorter.
+        trees : bool
+            Whether trees are tried, after 90 motions along the roadmap; else more of its links and all motions are.
+
+        Returns
+        -------
+        PlanResult
+            Every motion of its path is proved free.
+
+        Raises
+        ------
+        InvalidValue, UnknownName
+            If start or goal is no configuration of the robot.
+        """
+        budget = Budget(seconds=SECONDS) if budget is None else budget
+        first, goals = read_places(self._place(start), self._places(goal), self.world.space)
+        began, deadline = now(), budget.deadline()
+        most = 2**31 - 1 if budget.motions is None else budget.motions
+        links = TRIED_LINKS if trees else links_of(self._size)
+        limits = min(most, TRIED_MOTIONS) if trees else most, began + SHARE * min(deadline - began, _LONG)
+        asked = self._ask(first, goals, *limits, links)
+        if asked.goal < 0 and self._own is not None:
+            budget = budget.rest(deadline, asked.motions)
+            return self._own.plan(first, goals, budget=budget, shorten=shorten, trees=trees)
+        if asked.ended in (NONE, CUT_OFF, SPENT) and trees and len(goals) == 1:
+            asked = self._by_ways_out(asked, first, goals, most, limits[1])
+        elif asked.ended in (NONE, CUT_OFF) and not trees and self.roadmap.one_turn.lifts.any():
+            # What leads to the goal within one turn is not to be lost.
+            before, asked = asked.motions, self._ask(first, goals, *limits, links, unturned=True)
+            asked = replace(asked, motions=asked.motions + before)
+        if asked.goal >= 0:
+            return self._solved(asked, first, goals, shorten, began)
+        query = Query(first, goals, shorten=shorten, budget=budget)
+        attempt = Attempt(self._asked[0], query, NO_POINTS, "none", PLANNER)
+        attempt.deadline, attempt.motions_checked = deadline, asked.motions
+        attempt.watch.seconds["search"] = now() - began
+        if (refused := refusal(attempt)) is not None:
+            return refused
+        if asked.ended == ENDS_TAKEN:
+            # Without the goals that are not free.
+            asked = self._ask(first, goals[attempt.goals], *limits, links)
+            attempt.motions_checked = asked.motions
+        connection = Connection(asked.path, asked.goal, self._size, asked.milestones, asked.motions)
+        if asked.goal < 0 and trees and attempt.left() is not None:
+            connection = self._by_trees(attempt, asked)
+        if connection.goal >= 0:
+            return connected(attempt, connection)
+        failed = gave_up(attempt, connection)
+        if not trees:
+            text = f"the roadmap of {self._size} milestones does not lead from start to goal today"
+            failed = replace(failed, status=Status.NOT_CONNECTED, message=text)
+        return with_reasons(self._asked[0], failed)
+
+    def _by_ways_out(self, asked: Asked, start: Floats, goals: Floats, most: int, deadline: float) -> Asked:
+        """Ask again along what is known to be free, with ways learned that lead there from the ends."""
+        left = most - asked.motions
+        out = learn_ways_out(self.world, self._graph, self.roadmap.weights, (start, goals[0]), left, deadline)
+        self.learned += out.ways
+        before = asked.milestones + out.configurations, asked.motions + out.motions
+        if out.complete:
+            asked = self._ask(start, goals, TRIED_MOTIONS, deadline, TRIED_LINKS, only_known=True)
+            before = before[0] + asked.milestones, before[1] + asked.motions
+        return replace(asked, milestones=before[0], motions=before[1])
+
+    def _by_trees(self, attempt: Attempt, asked: Asked) -> Connection:
+        """Return what trees find, and learn it."""
+        attempt.planner = f"{PLANNER}, then trees"
+        grown = attempt.connect(self.world)
+        if grown.goal >= 0:
+            self.learned.append(grown.path)
+            self._graph.learn(grown.path)
+        checked = asked.milestones + grown.configurations, asked.motions + grown.motions
+        return replace(grown, configurations=checked[0], motions=checked[1])
+
+    def _solved(self, asked: Asked, start: Floats, goals: Floats, shorter: bool, began: float) -> PlanResult:
+        """Return the result of a query that the roadmap answered."""
+        world, path, found = self.world, asked.path, now()
+        length = raw_length = self._length(path)
+        counts = dict(
+            nodes=self._size,
+            configurations_checked=1 + len(goals) + asked.milestones,
+            edges_checked=asked.motions,
+        )
+        seconds = {"search": found - began}
+        if shorter:
+            work = 2 if len(path) >= LONG_WAY else 1
+            path, counts["shortcut_motions"] = shorten(
+                world, path, pairs=work * PAIRS, cuts=work * CUTS, batches=work * BATCHES
+            )
+            length, seconds["shortcut"] = self._length(path), now() - found
+        to = f" to goal {asked.goal}" if len(goals) > 1 else ""
+        return PlanResult(
+            status=Status.SOLVED,
+            message=f"path of length {length:.6g} with {len(path)} waypoints{to}",
+            start=start,
+            goals=goals,
+            origin=NO_POINTS,
+            rule="none",
+            planner=PLANNER,
+            goal_index=asked.goal,
+            path=path,
+            milestone_path=asked.path,
+            proof=world.proof if self._asked[0] is world or world.recheck(path).all() else "resolution",
+            cost=length,
+            milestone_cost=raw_length,
+            counts=counts,
+            seconds=seconds,
+        )
+
+    def _length(self, path: Floats) -> float:
+        places = path.tolist()
+        # Where nothing wraps the sum is the same, in a tenth of the time.
+        return path_length(path, self.world.space) if self._wraps else sum(map(math.dist, places, places[1:]))
+
+    def _place(self, place: Place) -> npt.ArrayLike:
+        """Return a configuration of a text; of numbers themselves."""
+        if isinstance(place, str):
+            return configuration(self.world.robot, place, self.world.scene)
+        return place
+
+    def _places(self, goal: Place | Sequence[Place]) -> npt.ArrayLike:
+        if isinstance(goal, list | tuple) and any(isinstance(each, str) for each in goal):
+            return [self._place(each) for each in goal]  # type: ignore[return-value]
+        return self._place(goal)  # type: ignore[arg-type]
