@@ -1,6 +1,6 @@
 """NeuroLDS, the published neural sequence, trained again: a network from the index of a point to the point.
 
-    python -m benchmarks.neural_sequence --out neural_sequences.npz   # 10 networks, the points of each
+    python -m benchmarks.neural_sequence --out neural_sequences.npz   # four networks, the points of each
 
 Van Huffel, Kirk, Chahine, Rusch and Rus (2025): waves of the index, a network of rectified layers and a sigmoid; first
 it learns Sobol's points from index 128 on, then the mean over all beginnings of their L2 discrepancy is made small.
@@ -22,9 +22,9 @@ from evenroad.points.measures.l2 import MaximumPairs, star
 from evenroad.points.measures.prefixes import _squared, _weighted_slopes
 from evenroad.points.samplers import Sobol
 
-POINTS, DIMENSION, BURNT = 1024, 4, 128
-BANDS, WIDTH, LAYERS = 16, 256, 4
-LEARNING, TUNING = 3000, 3000
+POINTS, DIMENSION, BURNT = 1000, 4, 128
+BANDS, WIDTH, LAYERS = 32, 256, 4
+LEARNING, TUNING = 2500, 2500
 """Steps of learning Sobol's points, and of making the discrepancy small."""
 
 RATES = (1e-3, 1e-3)
@@ -97,7 +97,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--networks", type=int, default=10)
+    parser.add_argument("--networks", type=int, default=4)
     parser.add_argument("--points", type=int, default=POINTS)
     parser.add_argument("--steps", type=int, nargs=2, default=(LEARNING, TUNING))
     parser.add_argument("--out", type=Path, default=Path("neural_sequences.npz"))
