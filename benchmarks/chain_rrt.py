@@ -189,7 +189,10 @@ def clearance(q, walls):  # type: ignore[no-untyped-def]
         for w in range(walls.shape[1]):
             cx, cy = walls[0, w], walls[1, w]
             dx, dy = cx + walls[2, w], cy + walls[3, w]
-            least = min(least, _apart(x[k], y[k], x[k + 1], y[k + 1], cx, cy, dx, dy))
+            # Of segments whose middles are far apart nothing needs to be known.
+            far = math.hypot(x[k] + x[k + 1] - cx - dx, y[k] + y[k + 1] - cy - dy)
+            if far - 1.0 / joints - math.hypot(walls[2, w], walls[3, w]) < 2.0 * least:
+                least = min(least, _apart(x[k], y[k], x[k + 1], y[k + 1], cx, cy, dx, dy))
         for i in range(k - 1):
             least = min(least, 0.5 * _apart(x[k], y[k], x[k + 1], y[k + 1], x[i], y[i], x[i + 1], y[i + 1]))
     return least

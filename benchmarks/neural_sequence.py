@@ -10,6 +10,7 @@ The recipe is theirs, the code is ours; what differs is in docs/sequences.md.
 from __future__ import annotations
 
 import argparse
+import itertools
 import math
 import time
 from pathlib import Path
@@ -41,7 +42,7 @@ def waves(points: int, bands: int) -> torch.Tensor:
 
 def network(bands: int, width: int, layers: int, d: int) -> torch.nn.Sequential:
     sizes = [1 + 2 * bands] + [width] * layers
-    inner = [part for a, b in zip(sizes, sizes[1:]) for part in (torch.nn.Linear(a, b), torch.nn.ReLU())]
+    inner = [part for a, b in itertools.pairwise(sizes) for part in (torch.nn.Linear(a, b), torch.nn.ReLU())]
     return torch.nn.Sequential(*inner, torch.nn.Linear(width, d), torch.nn.Sigmoid())
 
 
@@ -65,7 +66,8 @@ def train(
     d: int = DIMENSION,
     steps: tuple[int, int] = (LEARNING, TUNING),
 ) -> tuple[Floats, dict[str, float]]:
-    """Return the points, (points, d), and the mean discrepancy of the beginnings of Sobol's, learnt and tuned points."""
+    """Return the points, (points, d), and the mean discrepancies of Sobol's, the learnt and the tuned points."""
+    torch.set_num_threads(1)
     torch.manual_seed(seed)
     features, made = waves(points, BANDS), network(BANDS, WIDTH, LAYERS, d)
     target = torch.tensor(Sobol(scramble=False, start=BURNT).draw(points, d).points, dtype=torch.float32)
@@ -102,7 +104,6 @@ def main() -> None:
     parser.add_argument("--steps", type=int, nargs=2, default=(LEARNING, TUNING))
     parser.add_argument("--out", type=Path, default=Path("neural_sequences.npz"))
     options = parser.parse_args()
-    torch.set_num_threads(1)
     made = []
     for seed in range(options.networks):
         began = time.process_time()

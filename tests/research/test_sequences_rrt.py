@@ -23,8 +23,10 @@ def cross(a, b, c, d):
 def is_free(q, walls, shrunk=1e-6):
     """Whether a chain of angles q touches neither itself nor the walls: another formula, end pieces left out."""
     heading = np.cumsum(q)
-    joints = np.vstack([[0.0, 0.0], np.cumsum(np.column_stack([np.cos(heading), np.sin(heading)]), axis=0) / JOINTS])
-    links = list(zip(joints[:-1], joints[1:], strict=True))
+    joints = np.vstack(
+        [[0.0, 0.0], np.cumsum(np.column_stack([np.cos(heading), np.sin(heading)]), axis=0) / JOINTS]
+    )
+    links = list(itertools.pairwise(joints))
     obstacles = [(walls[:2, i], walls[:2, i] + walls[2:, i]) for i in range(walls.shape[1])]
     inner = [(a + shrunk * (b - a), b - shrunk * (b - a)) for a, b in links]
     if any(cross(*one, *other) for one, other in itertools.combinations(inner, 2)):
@@ -103,7 +105,9 @@ def test_a_turned_scene_is_the_same_problem():
     assert grow(points, task, moved).draws == grow(there, turned, SETTING).draws > 0
 
 
-@pytest.mark.parametrize(("width", "lengths"), [(0.4, [1 + 0.2 * math.pi, 1 - 0.2 * math.pi]), (2.0 / math.pi, [2.0])])
+@pytest.mark.parametrize(
+    ("width", "lengths"), [(0.4, [1 + 0.2 * math.pi, 1 - 0.2 * math.pi]), (2.0 / math.pi, [2.0])]
+)
 def test_the_widest_tunnel_has_no_inner_wall(width, lengths):
     found = JOINTS * np.linalg.norm(tunnel(width)[2:], axis=0)
     np.testing.assert_allclose(found, np.repeat(lengths, 3), rtol=1e-6)
@@ -142,7 +146,7 @@ def test_the_networks_objective_is_the_mean_star_discrepancy_and_its_slope():
 def test_the_network_learns_sobols_points_and_then_lowers_the_discrepancy(monkeypatch):
     neural = pytest.importorskip("benchmarks.neural_sequence", exc_type=ImportError)
     monkeypatch.setattr(neural, "WIDTH", 64)
-    points, found = neural.train(0, points=50, steps=(300, 200))
+    points, found = neural.train(0, points=50, steps=(150, 100))
     assert points.shape == (50, JOINTS)
     assert points.min() > 0.0
     assert points.max() < 1.0
