@@ -32,10 +32,10 @@ WIDTHS = (0.64, 0.40)
 PUBLISHED = {0.64: (96.6, 88.0), 0.40: (80.0, 67.3)}
 """Width -> success [%] of NeuroLDS and of Halton."""
 
-BURNT, LONGEST, MOST = 128, 1024, 2048
+BURNT, LONGEST, MOST = 128, 1000, 1700
 """Points that plain sequences leave out; length of the trained sets; draws of a run, at most."""
 
-SETS = 8
+SETS = 4
 """Sequences of the kinds that take long to make."""
 
 MAIN = Setting(step=0.9, turned=True)
@@ -59,7 +59,7 @@ def fixed(name: str, number: int) -> Floats:
     if name == "sobol":
         return Sobol(scramble=False, start=BURNT).draw(MOST, JOINTS).points
     if name == "greedy":
-        return of_bank(LONGEST, JOINTS, number)
+        return of_bank(1024, JOINTS, number)
     if name == "sequence":
         return draw("sequence", LONGEST, JOINTS, rng=number).points
     with np.load(_neural) as file:
