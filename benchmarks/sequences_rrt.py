@@ -4,6 +4,8 @@
     python -m benchmarks.sequences_rrt calibrate                             # how many draws; tuning problems
     python -m benchmarks.sequences_rrt plan --neural neural_sequences.npz    # docs/data/sequences_rrt.csv
     python -m benchmarks.sequences_rrt variants --neural neural_sequences.npz
+    python -m benchmarks.sequences_rrt luck                                  # sequences of one kind among themselves
+    python -m benchmarks.sequences_rrt discrepancy --neural neural_sequences.npz
     python -m benchmarks.sequences_rrt picture
 
 Every method solves the same problems.  `plain` sequences are the same points each time, from index 128 on; those of
@@ -204,6 +206,34 @@ def needed_for(goal: float, draws: list[Ints], resamples: int = 400) -> tuple[fl
     return found[0], *(float(each) for each in np.percentile(found[1:], (2.5, 97.5)))
 
 
+def luck(sequences: int = 30, problems: int = 160) -> list[dict[str, object]]:
+    """Print and return how far sequences of one kind, Halton's under one shift each, are apart in success.
+
+    Then two groups of ten of them are drawn, again and again, as if they were two methods.
+    """
+    rng, rows = np.random.default_rng(3), []
+    shifts = np.random.default_rng(2).random((sequences, JOINTS))
+    for width in WIDTHS:
+        tasks = [problem(width, i, int(Stream.REPORTING), MAIN) for i in range(problems)]
+        success = np.empty(sequences)
+        for i, shift in enumerate(shifts):
+            points = (fixed("halton", 0)[: COUNTS["main"][width]] + shift) % 1.0
+            success[i] = 100.0 * np.mean([grow(points, task, MAIN).draws > 0 for task in tasks])
+        groups = np.array([rng.permutation(success)[:20].reshape(2, 10).mean(axis=1) for _ in range(20000)])
+        apart = np.abs(groups[:, 0] - groups[:, 1])
+        gain = PUBLISHED[width][0] - PUBLISHED[width][1]
+        row: dict[str, object] = {"width": width, "sequences": sequences, "problems": problems}
+        row |= {"mean": round(success.mean(), 1), "deviation": round(success.std(ddof=1), 1)}
+        row |= {"least": round(success.min(), 1), "most": round(success.max(), 1)}
+        row |= {
+            "tens apart by 95 %": round(float(np.quantile(apart, 0.95)), 1),
+            "published gain": round(gain, 1),
+        }
+        rows.append(row | {"tens at least so far apart [%]": round(100.0 * float((apart >= gain).mean()), 1)})
+        print(rows[-1], flush=True)
+    return rows
+
+
 LENGTHS = (16, 24, 32, 48, 64, 100, 128, 181, 256, 362, 512, 660, 724, 1024)
 
 
@@ -306,7 +336,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("part", choices=("calibrate", "plan", "variants", "discrepancy", "picture"))
+    parser.add_argument("part", choices=("calibrate", "plan", "variants", "luck", "discrepancy", "picture"))
     parser.add_argument("--problems", type=int, default=1600)
     parser.add_argument("--neural", type=Path, default=Path("neural_sequences.npz"))
     parser.add_argument("--methods", nargs="+", choices=METHODS, default=METHODS)
@@ -325,6 +355,8 @@ def main() -> None:
     elif options.part == "variants":
         rows = [row for label in VARIANTS for row in compared(runs, label, names, COUNTS[label])]
         write(rows, options.out / "sequences_rrt_variants.csv")
+    elif options.part == "luck":
+        write(luck(), options.out / "sequences_rrt_luck.csv")
     elif options.part == "discrepancy":
         write(discrepancy(), options.out / "sequences_neural.csv")
     else:
