@@ -1,15 +1,16 @@
 """NeuroLDS's published comparison again: RRT in a chain of four joints, its draws taken from sequences.
 
-    python -m benchmarks.neural_sequence --out neural_sequences.npz          # the peer, trained here
-    python -m benchmarks.sequences_rrt calibrate                             # how many draws; tuning problems
-    python -m benchmarks.sequences_rrt plan --neural neural_sequences.npz    # docs/data/sequences_rrt.csv
-    python -m benchmarks.sequences_rrt variants --neural neural_sequences.npz
-    python -m benchmarks.sequences_rrt luck                                  # sequences of one kind among themselves
-    python -m benchmarks.sequences_rrt discrepancy --neural neural_sequences.npz
+    python -m benchmarks.neural_sequence --out neural_star.npz    # the peer, trained here, on its own discrepancy
+    python -m benchmarks.neural_sequence --measure hickernell --steps 1500 2500 --out neural_hickernell.npz
+    python -m benchmarks.sequences_rrt calibrate                  # how many draws; tuning problems
+    python -m benchmarks.sequences_rrt plan                       # docs/data/sequences_rrt.csv
+    python -m benchmarks.sequences_rrt variants                   # other ways to fill in what is not published
+    python -m benchmarks.sequences_rrt luck                       # sequences of one kind among themselves
+    python -m benchmarks.sequences_rrt discrepancy
     python -m benchmarks.sequences_rrt picture
 
 Every method solves the same problems.  `plain` sequences are the same points each time, from index 128 on; those of
-`neural`, `sequence` and `greedy` are taken in turn; `shifted` adds a new vector modulo 1 for each problem.
+networks, `sequence` and `greedy` are taken in turn; `shifted` adds a new vector modulo 1 for each problem.
 """
 
 from __future__ import annotations
@@ -70,11 +71,17 @@ def fixed(name: str, number: int) -> Floats:
         return of_bank(1024, JOINTS, number)
     if name == "sequence":
         return draw("sequence", LONGEST, JOINTS, rng=number).points
-    with np.load(_neural) as file:
-        return np.asarray(file["points"][number % len(file["points"])], np.float64)
+    return networks(name)[number]
 
 
 _neural = Path()
+
+
+@cache
+def networks(name: str) -> Floats:
+    """Return the points of the networks of that name, (networks, n, d)."""
+    with np.load(_neural / f"{name.replace(' ', '_')}.npz") as file:
+        return np.asarray(file["points"], np.float64)
 
 
 def sequences_of(name: str) -> int:
@@ -84,14 +91,14 @@ def sequences_of(name: str) -> int:
         return 1
     if kind in ("greedy", "sequence"):
         return SETS
-    return len(np.load(_neural)["points"]) if kind == "neural" else 0
+    return len(networks(kind)) if kind.startswith("neural") else 0
 
 
 def points_of(name: str, number: int) -> Floats:
     """Return the draws of a method for the problem of that number."""
     kind, _, how = name.partition(", ")
     rng = np.random.default_rng([7, number])
-    if how in ("plain", "shifted") or kind in ("greedy", "sequence", "neural"):
+    if how or kind in ("greedy", "sequence") or kind.startswith("neural"):
         points = fixed(kind, number % max(sequences_of(kind), 1))
         return (points + rng.random(JOINTS)) % 1.0 if how == "shifted" else points
     return draw(kind, MOST, JOINTS, rng=rng).points
@@ -110,8 +117,10 @@ METHODS = (
     "sequence, shifted",
     "greedy",
     "greedy, shifted",
-    "neural",
-    "neural, shifted",
+    "neural star",
+    "neural star, shifted",
+    "neural hickernell",
+    "neural hickernell, shifted",
 )
 
 
@@ -272,7 +281,13 @@ def picture(runs: Runs, out: Path) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    colours = {"neural": "#c2410c", "halton": "#6b7280", "sobol": "#111827", "growing": "#2f5fd0"}
+    colours = {
+        "neural star": "#c2410c",
+        "neural hickernell": "#0f766e",
+        "halton": "#6b7280",
+        "sobol": "#111827",
+        "growing": "#2f5fd0",
+    }
     colours |= {"sequence": "#d1343b", "uniform": "#b9c0c7", "greedy": "#6a4c93"}
     figure = Figure(figsize=(13, 7.5), dpi=110, layout="constrained")
     FigureCanvasAgg(figure)
@@ -338,7 +353,7 @@ def main() -> None:
     )
     parser.add_argument("part", choices=("calibrate", "plan", "variants", "luck", "discrepancy", "picture"))
     parser.add_argument("--problems", type=int, default=1600)
-    parser.add_argument("--neural", type=Path, default=Path("neural_sequences.npz"))
+    parser.add_argument("--neural", type=Path, default=Path(), help="folder of the networks' points")
     parser.add_argument("--methods", nargs="+", choices=METHODS, default=METHODS)
     parser.add_argument(
         "--runs", type=Path, default=Path("sequences_rrt_runs.npz"), help="keeps what is done"
