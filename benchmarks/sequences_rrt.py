@@ -1,7 +1,6 @@
 """NeuroLDS's published comparison again: RRT in a chain of four joints, its draws taken from sequences.
 
-    python -m benchmarks.neural_sequence --out neural_star.npz    # the peer, trained here, on its own discrepancy
-    python -m benchmarks.neural_sequence --measure hickernell --steps 1500 2500 --out neural_hickernell.npz
+    python -m benchmarks.neural_sequence --out neural_star.npz    # the peer, trained here
     python -m benchmarks.sequences_rrt calibrate                  # how many draws; tuning problems
     python -m benchmarks.sequences_rrt plan                       # docs/data/sequences_rrt.csv
     python -m benchmarks.sequences_rrt variants                   # other ways to fill in what is not published
@@ -119,8 +118,6 @@ METHODS = (
     "greedy, shifted",
     "neural star",
     "neural star, shifted",
-    "neural hickernell",
-    "neural hickernell, shifted",
 )
 
 
@@ -204,15 +201,26 @@ def compared(
     return rows
 
 
-def needed_for(goal: float, draws: list[Ints], resamples: int = 400) -> tuple[float, float, float]:
-    """Return how many draws solve `goal` [%] on average over the widths, and the 95 % interval over problems."""
-    rng = np.random.default_rng(0)
-    found = []
-    for i in range(resamples + 1):
-        chosen = rng.integers(len(draws[0]), size=len(draws[0])) if i else slice(None)
-        pooled = np.concatenate([each[chosen] for each in draws])
-        found.append(float(np.quantile(pooled, goal / 100.0, method="inverted_cdf")))
-    return found[0], *(float(each) for each in np.percentile(found[1:], (2.5, 97.5)))
+def needed(runs: Runs, names: tuple[str, ...], like: str = "neural star, shifted") -> list[dict[str, object]]:
+    """Print and return the draws with which methods solve, over both widths, what the networks' points solve.
+
+    With 95 % intervals over problems (bootstrap) of their ratio to the networks' own.
+    """
+    rng, rows = np.random.default_rng(0), []
+    draws = {name: np.array([runs.of("main", name, width) for width in WIDTHS]) for name in names}
+    chosen = [np.arange(runs.problems), *rng.integers(runs.problems, size=(400, runs.problems))]
+    found: dict[str, list[float]] = {name: [] for name in names}
+    for each in chosen:
+        goal = float((draws[like][:, each] <= 850).mean())
+        for name in names:
+            found[name].append(float(np.quantile(draws[name][:, each], goal, method="inverted_cdf")))
+    for name in names:
+        ratios = np.array(found[name]) / np.array(found[like])
+        low, high = np.percentile(ratios[1:], (2.5, 97.5))
+        row: dict[str, object] = {"method": name, "draws": int(found[name][0]), "ratio": round(ratios[0], 3)}
+        rows.append(row | {"low": round(float(low), 3), "high": round(float(high), 3)})
+        print(*rows[-1].values(), flush=True)
+    return rows
 
 
 def luck(sequences: int = 30, problems: int = 160) -> list[dict[str, object]]:
@@ -367,6 +375,7 @@ def main() -> None:
         calibrate(options.problems)
     elif options.part == "plan":
         write(compared(runs, "main", names, COUNTS["main"]), options.out / "sequences_rrt.csv")
+        write(needed(runs, names), options.out / "sequences_rrt_draws.csv")
     elif options.part == "variants":
         rows = [row for label in VARIANTS for row in compared(runs, label, names, COUNTS[label])]
         write(rows, options.out / "sequences_rrt_variants.csv")
