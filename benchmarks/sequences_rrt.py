@@ -57,6 +57,7 @@ COUNTS = {
 }
 """Setting -> width -> draws; chosen with :func:`calibrate`."""
 
+LUCK = ("main", "only the tunnel is moved")
 DATA = Path("docs/data")
 
 
@@ -223,23 +224,24 @@ def needed(runs: Runs, names: tuple[str, ...], like: str = "neural star, shifted
     return rows
 
 
-def luck(sequences: int = 30, problems: int = 160) -> list[dict[str, object]]:
+def luck(label: str, sequences: int = 30, problems: int = 160) -> list[dict[str, object]]:
     """Print and return how far sequences of one kind, Halton's under one shift each, are apart in success.
 
     Then two groups of ten of them are drawn, again and again, as if they were two methods.
     """
-    rng, rows = np.random.default_rng(3), []
+    rng, rows, setting = np.random.default_rng(3), [], VARIANTS[label]
     shifts = np.random.default_rng(2).random((sequences, JOINTS))
     for width in WIDTHS:
-        tasks = [problem(width, i, int(Stream.REPORTING), MAIN) for i in range(problems)]
+        tasks = [problem(width, i, int(Stream.REPORTING), setting) for i in range(problems)]
         success = np.empty(sequences)
         for i, shift in enumerate(shifts):
-            points = (fixed("halton", 0)[: COUNTS["main"][width]] + shift) % 1.0
-            success[i] = 100.0 * np.mean([grow(points, task, MAIN).draws > 0 for task in tasks])
+            points = (fixed("halton", 0)[: COUNTS[label][width]] + shift) % 1.0
+            success[i] = 100.0 * np.mean([grow(points, task, setting).draws > 0 for task in tasks])
         groups = np.array([rng.permutation(success)[:20].reshape(2, 10).mean(axis=1) for _ in range(20000)])
         apart = np.abs(groups[:, 0] - groups[:, 1])
         gain = PUBLISHED[width][0] - PUBLISHED[width][1]
-        row: dict[str, object] = {"width": width, "sequences": sequences, "problems": problems}
+        row: dict[str, object] = {"setting": label, "width": width, "draws": COUNTS[label][width]}
+        row |= {"sequences": sequences, "problems": problems}
         row |= {"mean": round(success.mean(), 1), "deviation": round(success.std(ddof=1), 1)}
         row |= {"least": round(success.min(), 1), "most": round(success.max(), 1)}
         row |= {
@@ -251,7 +253,7 @@ def luck(sequences: int = 30, problems: int = 160) -> list[dict[str, object]]:
     return rows
 
 
-LENGTHS = (16, 24, 32, 48, 64, 100, 128, 181, 256, 362, 512, 660, 724, 1024)
+LENGTHS = (16, 24, 32, 48, 64, 100, 128, 181, 256, 362, 512, 660, 724, 1000)
 
 
 def discrepancy() -> list[dict[str, object]]:
@@ -380,7 +382,7 @@ def main() -> None:
         rows = [row for label in VARIANTS for row in compared(runs, label, names, COUNTS[label])]
         write(rows, options.out / "sequences_rrt_variants.csv")
     elif options.part == "luck":
-        write(luck(), options.out / "sequences_rrt_luck.csv")
+        write([row for label in LUCK for row in luck(label)], options.out / "sequences_rrt_luck.csv")
     elif options.part == "discrepancy":
         write(discrepancy(), options.out / "sequences_neural.csv")
     else:
