@@ -212,7 +212,7 @@ def needed(runs: Runs, names: tuple[str, ...], like: str = "neural star, shifted
     chosen = [np.arange(runs.problems), *rng.integers(runs.problems, size=(400, runs.problems))]
     found: dict[str, list[float]] = {name: [] for name in names}
     for each in chosen:
-        goal = float((draws[like][:, each] <= 850).mean())
+        goal = float((draws[like][:, each] <= COUNTS["main"][WIDTHS[0]]).mean())
         for name in names:
             found[name].append(float(np.quantile(draws[name][:, each], goal, method="inverted_cdf")))
     for name in names:
