@@ -346,7 +346,7 @@ def picture(runs: Runs, out: Path) -> None:
         place.axvline(COUNTS["main"][width], color="black", lw=0.6)
         place.set(xlim=(0, LONGEST), ylim=(0, 100), xlabel="draws", title=f"solved [%], width {width:.2f}")
         place.grid(alpha=0.3)
-    axes[0, 2].legend(fontsize=7, ncols=2, loc="upper left")
+    axes[1, 2].legend(fontsize=7, loc="upper left")
     figure.savefig("docs/sequences_rrt.png")
 
 
