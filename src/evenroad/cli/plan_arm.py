@@ -23,10 +23,10 @@ from evenroad.cli.plan_parts import (
     chosen_budget,
     chosen_rule,
     common_query,
-    draw_points,
     finish,
     load_compiled_code,
     output_files,
+    planned_points,
     wants_points,
 )
 from evenroad.cli.roadmap import kept_roadmap
@@ -76,7 +76,7 @@ def plan_arm(plan: PlanArm) -> int:
     require_trajectory_options(plan, [path for path in inputs if path is not None], files.values())
     world, start, goals = query.world, query.start, query.goals
     rule = chosen_rule(plan, default_rule(world.space).k)
-    points = draw_points(plan, world.space.cube_dim) if wants_points(plan) else None
+    points = planned_points(plan, world.space.cube_dim) if wants_points(plan) else None
     load_compiled_code(world, start, goals, points, rule, SEARCH)
 
     def plan_once(world: World, start: Floats, goals: Floats, shorten: bool) -> PlanResult:
