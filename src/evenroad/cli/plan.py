@@ -236,7 +236,7 @@ def plan_type(words: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
         return chosen
     if for_arm == ("--robot-radius" in given):
         text = "give --robot-radius (a disk) or --robot (an arm), exactly one of them, not"
-        raise InvalidValue(f"{text} {'both' if for_arm else 'neither'}")
+        raise InvalidValue(f"{text} {'both' if for_arm else 'neither'}; all options: evenroad plan --help")
     other, needs = (PlanDisk, "--robot-radius") if chosen is PlanArm else (PlanArm, "--robot")
     for option in sorted(given & (option_names(other) - option_names(chosen))):
         raise InvalidValue(f"{option} goes with {needs} only")
