@@ -17,13 +17,9 @@ from evenroad.robot.kernel.motion_states import COUNTS
 from evenroad.robot_roadmap import lazy_search as search
 from evenroad.robot_roadmap import search_memory as at
 from evenroad.robot_roadmap.known_graph import KnownGraph
-from evenroad.robot_roadmap.lazy_search import EDGE, FOUND, FULL, NODE, STRAIGHT
+from evenroad.robot_roadmap.lazy_search import EDGE, ENDS_TAKEN, FOUND, FULL, NODE, PAUSED, SPENT, STRAIGHT
 from evenroad.robot_roadmap.search_memory import BLOCKED, PROVED, UNKNOWN
 from evenroad.world import World
-
-ENDS_TAKEN, SPENT, PAUSED = range(FULL + 1, FULL + 4)
-"""What a search ends with besides what ``lazy_search.step`` does: start or goals not free, motions or time over, and
-what only compiled code ends with."""
 
 _SLICE = 1000
 """Batches of sixteen checks between two looks at the clock: about 10 ms."""

@@ -66,6 +66,9 @@ NODE, EDGE, LINK, STRAIGHT, FOUND, NONE, CUT_OFF, FULL = range(8)
 """What `step` ends with: a milestone, a motion of the roadmap, a link of an end or the motion straight to a goal to be
 asked about; a way, none, no free link of a goal, no room."""
 
+ENDS_TAKEN, SPENT, PAUSED = range(FULL + 1, FULL + 4)
+"""What whoever answers ends with besides: start or goals not free, motions or time over, its slice used up."""
+
 ONWARD = 0.5
 """Links are tried in the order of their length and this share of what is left beyond them."""
 

@@ -19,10 +19,10 @@ from evenroad.roadmap.find_path import NO_POINTS, SECONDS, with_reasons
 from evenroad.roadmap.query import Query, read_places
 from evenroad.robot import ArmWorld, Robot, Scene, configuration, in_scene
 from evenroad.robot.trees import shorten
-from evenroad.robot_roadmap.ask import ENDS_TAKEN, SPENT, Asked, Checks, ask
+from evenroad.robot_roadmap.ask import Asked, Checks, ask
 from evenroad.robot_roadmap.cell import day_and_all, left_to_check, require_same_robot
 from evenroad.robot_roadmap.known_motions import KnownMotions
-from evenroad.robot_roadmap.lazy_search import CUT_OFF, NONE
+from evenroad.robot_roadmap.lazy_search import CUT_OFF, ENDS_TAKEN, NONE, SPENT
 from evenroad.robot_roadmap.own_shapes import OwnShapesWorld
 from evenroad.robot_roadmap.pockets import links_of
 from evenroad.robot_roadmap.ways_out import learn_ways_out
