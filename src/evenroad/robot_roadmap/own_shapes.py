@@ -90,9 +90,10 @@ class OwnShapesWorld:
 class SolidMeshes(CoalWorld):
     """As CoalWorld, but what is wholly inside of a mesh touches it: a link in an obstacle, or the other way round."""
 
-    def _contacts(self, poses: Floats) -> Iterator[tuple[str, str]]:
-        yield from super()._contacts(poses)
+    def _contacts(self, poses: Floats, near: Bools) -> Iterator[tuple[str, str]]:
+        yield from super()._contacts(poses, near)
         inner = self._inner
+        inner = _Inner(*(column[near[inner.test]] for column in inner))  # type: ignore[arg-type]
         if not len(inner.mesh):
             return
         fixed = [obstacle.body.pose.matrix for obstacle in self.scene.obstacles]
@@ -115,22 +116,25 @@ class SolidMeshes(CoalWorld):
     @cached_property
     def _inner(self) -> _Inner:
         rows = []
-        for shape, number, is_obstacle in self._tests:
+        for test, (shape, number, is_obstacle) in enumerate(self._tests):
             other = number + len(self._shapes)
             for mesh, body in ((shape, other), (other, shape)) if is_obstacle else ():
                 if mesh in self._corners:
                     # Surfaces that do not meet are inside of each other as a whole: one place tells.
                     place = self._corners[body][0, 0] if body in self._corners else np.zeros(3)
                     corners = self._corners[mesh].reshape(-1, 3)
-                    rows.append((mesh, body, place, corners.min(axis=0), corners.max(axis=0)))
-        numbers = np.array([row[:2] for row in rows], dtype=np.int64).reshape(-1, 2)
-        places = np.array([row[2:] for row in rows]).reshape(-1, 3, 3)
-        return _Inner(numbers[:, 0], numbers[:, 1], *np.moveaxis(places, 1, 0))
+                    rows.append((test, mesh, body, place, corners.min(axis=0), corners.max(axis=0)))
+        numbers = np.array([row[:3] for row in rows], dtype=np.int64).reshape(-1, 3)
+        places = np.array([row[3:] for row in rows]).reshape(-1, 3, 3)
+        return _Inner(*numbers.T, *np.moveaxis(places, 1, 0))
 
 
 class _Inner(NamedTuple):
-    """What may be inside of which mesh, (m,) each; a place of it, in its frame; the mesh's box in its own, (m, 3)."""
+    """What may be inside of which mesh, and the number of the test of both, (m,) each; a place of it, in its frame; the
+    mesh's box in its own, (m, 3).
+    """
 
+    test: Ints
     mesh: Ints
     body: Ints
     place: Floats
