@@ -39,11 +39,11 @@ from evenroad.robot_roadmap.lazy_search import (
     way_back,
     write_asked,
 )
-from evenroad.robot_roadmap.search_memory import BLOCKED, DOUBTED, FREE, PROVED, UNKNOWN, Search
+from evenroad.robot_roadmap.search_memory import BLOCKED, DOUBTED, FREE, UNKNOWN, Search
 from evenroad.robot_roadmap.search_metric import distance, write
 from evenroad.world import World
 
-NOT_ASKED, NOT_PROVED = 4.0, 16.0
+NOT_ASKED, NOT_PROVED = 5.0, 20.0
 """How many times as long as it is a motion counts that nobody has asked about, and one that is not proved soon."""
 
 DEARLY = 16
@@ -109,9 +109,9 @@ def ask_few(world: Checks, day: Checks, graph: KnownGraph, most_motions: int, de
         judge = day if question == EDGE and desk[at.BY] < desk[at.BASE] else world
         motions += 1 - dearly
         if _proves_soon(judge) and not dearly:
-            verdict = PROVED if judge.motion_proved(a, b)[0] else DOUBTED
+            verdict = FREE if judge.motion_proved(a, b)[0] else DOUBTED
         else:
-            verdict = PROVED if judge.motion_certified(a, b, RECHECK_TOLERANCE)[0] else BLOCKED
+            verdict = FREE if judge.motion_certified(a, b, RECHECK_TOLERANCE)[0] else BLOCKED
 
 
 @program

@@ -268,7 +268,7 @@ def answer(s: Search, question: int, verdict: int) -> None:
         s.nodes[to] = verdict
     elif question == EDGE:
         s.edges[by] = verdict
-        if verdict >= FREE:
+        if verdict == FREE:
             entry = s.desk[PENDING]
             join(
                 s,

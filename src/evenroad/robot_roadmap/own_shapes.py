@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import ClassVar, NamedTuple
 
@@ -26,7 +26,7 @@ class OwnShapesWorld:
     """A robot that is free where its capsules are or, else, its own shapes are.
 
     What the capsules prove is free without a question to coal; other motions are checked at states a tenth of the
-    resolution apart.  What is wholly inside of a mesh touches it.  `shapes` are as of
+    resolution apart, by coal where the capsules touch.  What is wholly inside of a mesh touches it.  `shapes` are as of
     :func:`evenroad.robot.reference.coal_world.original_shapes`.  Raises what CoalWorld does.  Clouds block as they do
     for capsules alone: coal knows none.
     """
@@ -45,8 +45,13 @@ class OwnShapesWorld:
         scene, resolution = world.scene, world.resolution
         names = [each.name for each in scene.obstacles if isinstance(each.body, PointCloud)]
         others = [each.name for each in scene.obstacles if each.name not in names]
-        clouds = ArmWorld(world.robot, scene.without(*others), resolution=resolution) if names else None
-        coal = SolidMeshes(world.robot, scene.without(*names), self.shapes, resolution / FINER)
+        # Of the robot against itself the shapes are the judge.
+        bare = replace(world.robot, pairs=())
+        clouds = ArmWorld(bare, scene.without(*others), resolution=resolution) if names else None
+        capsules = ArmWorld(world.robot, scene.without(*names), resolution=resolution) if names else world
+        coal = WithinCapsules(
+            world.robot, scene.without(*names), self.shapes, resolution / FINER, capsules=capsules
+        )
         set_fields(self, _coal=coal, _clouds=clouds)
 
     @property
@@ -62,6 +67,10 @@ class OwnShapesWorld:
             left = left[self._clouds.valid(q[left])]
         free[left] = self._coal.valid(q[left])
         return free
+
+    def motion_proved(self, a: Floats, b: Floats) -> Bools:
+        """Return which motions, (m, dim) each, the capsules prove free: (m,); that asks coal nothing."""
+        return self.capsules.motion_certified(a, b, RECHECK_TOLERANCE)
 
     def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> Bools:
         """Return which motions, (m, dim) each, are proved free for the capsules, or free at states for the shapes."""
@@ -127,6 +136,20 @@ class SolidMeshes(CoalWorld):
         numbers = np.array([row[:3] for row in rows], dtype=np.int64).reshape(-1, 3)
         places = np.array([row[3:] for row in rows]).reshape(-1, 3, 3)
         return _Inner(*numbers.T, *np.moveaxis(places, 1, 0))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class WithinCapsules(SolidMeshes):
+    """As SolidMeshes, of shapes that lie within a robot's capsules: where these touch nothing, nobody else is asked."""
+
+    capsules: ArmWorld
+
+    def _free(self, q: Floats) -> Bools:
+        free = self.capsules.valid(q)
+        left = np.flatnonzero(~free)
+        if len(left):
+            free[left] = super()._free(q[left])
+        return free
 
 
 class _Inner(NamedTuple):
