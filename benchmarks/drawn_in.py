@@ -9,7 +9,7 @@ d of 3, 4, 6 and 8.  A set is `even`, times a factor about the middle.  Differen
 with the standard error of their mean over worlds; "sobol" are scrambled Sobol points as they are.
 
 `--plan` asks :func:`evenroad.roadmap.plan` instead, which links start and goal to 100 milestones, whatever k is: in
-worlds of difficulty 50, N = 512.
+worlds of difficulty 50, N = 512, k = 4 and 6, the factor that is used beside 1.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ import numpy as np
 
 from benchmarks.nested_k import smallest_k
 from evenroad.points import draw
-from evenroad.points.samplers.even import drawn_in
+from evenroad.points.samplers.even import DRAWN_IN, drawn_in
 from evenroad.research.problems.fair import (
     CALIBRATED_AT,
     DIFFICULTIES,
@@ -36,8 +36,8 @@ from evenroad.research.suites import COUNTS
 from evenroad.roadmap import KNearest, plan
 
 FACTORS = (1.0, 0.95, 0.9, 0.85, 0.8)
-NAMES = (*map(str, FACTORS), "sobol")
 RULES = (3, 4, 6, 8)
+LINKED_RULES = (4, 6)
 FIRST = 200_000
 """Number of the first world: lower ones were looked at before."""
 
@@ -65,20 +65,25 @@ def main() -> None:
 
 def compared(family: Family, d: int, first: int, worlds: int, linked: bool) -> list[tuple[object, ...]]:
     """Print and return success and differences in one kind of world."""
-    rules = [k for k in RULES if k < d]
+    rules = [k for k in RULES if k < d and not (linked and k not in LINKED_RULES)]
+    factors = (1.0, DRAWN_IN) if linked else FACTORS
+    names = [f"{factor:g}" for factor in factors] + ["sobol"]
     calibrated = CALIBRATED_AT[family, d]
     cells = sorted({(50, n) for n in (*COUNTS, calibrated)} | {(25, calibrated), (75, calibrated)})
     cells = [(50, 512)] if linked else cells
     # Another N is another world, too: so all differences are independent.
     solved = np.concatenate(
         [
-            [in_one_world(family, d, *cell, first + worlds * i + j, rules, linked) for j in range(worlds)]
+            [
+                in_one_world(family, d, *cell, first + worlds * i + j, factors, rules, linked)
+                for j in range(worlds)
+            ]
             for i, cell in enumerate(cells)
         ]
     ).astype(float)
     rows: list[tuple[object, ...]] = []
     for j, k in enumerate(rules):
-        for i, name in enumerate(NAMES):
+        for i, name in enumerate(names):
             gain = solved[:, i, j] - solved[:, 0, j]
             error = gain.std(ddof=1) / np.sqrt(len(gain))
             text = f"{100 * solved[:, i, j].mean():5.1f} %, {100 * gain.mean():+5.1f} +- {100 * error:.1f}"
@@ -99,14 +104,21 @@ def compared(family: Family, d: int, first: int, worlds: int, linked: bool) -> l
 
 
 def in_one_world(
-    family: Family, d: int, difficulty: int, n: int, number: int, rules: list[int], linked: bool
+    family: Family,
+    d: int,
+    difficulty: int,
+    n: int,
+    number: int,
+    factors: tuple[float, ...],
+    rules: list[int],
+    linked: bool,
 ) -> list[list[bool]]:
-    """Return what is solved in one world, a row for each of :data:`NAMES`, by k."""
+    """Return what is solved in one world by k, a row for each factor and one for scrambled Sobol."""
     size = SIZES[family, d][DIFFICULTIES.index(difficulty)]
     problem = make_instance(Stream.TUNING, family, d, difficulty, size, number)
     even, sobol = (draw(name, n, d, rng=number) for name in ("even", "sobol"))
     solved = []
-    for points in (*(drawn_in(even, factor) for factor in FACTORS), sobol):
+    for points in (*(drawn_in(even, factor) for factor in factors), sobol):
         if linked:
             ends = problem.world, problem.start, problem.goal
             ask = partial(plan, *ends, points, success_only=True, shorten=False)
