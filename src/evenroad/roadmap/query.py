@@ -15,7 +15,7 @@ from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import PointSet
 from evenroad.points.samplers import make_sampler
-from evenroad.points.samplers.even import SOBOL_FROM, drawn_in
+from evenroad.points.samplers.even import DRAWN_IN_FROM, drawn_in
 from evenroad.points.samplers.poses import Sliced
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.rules import Rule
@@ -122,7 +122,7 @@ def even_points(n: int, space: Space, rule: Rule | None = None, *, rng: RngLike 
     """Return n points of the space's cube, as planners take them: `even`, but others in SE(3) and for sparse roadmaps.
 
     In SE(3) evenness is worth nothing: there they are `sliced` for a rule of at most 6 neighbours, else scrambled Sobol
-    points.  In a box of ten dimensions and more, for a rule of at most 6 neighbours, they are drawn in to the middle.
+    points.  In a box of seven dimensions and more, for a rule of at most 6 neighbours, they are drawn in to the middle.
     """
     d = space.cube_dim
     k = None if rule is None else rule.reach(n, space).k
@@ -131,7 +131,7 @@ def even_points(n: int, space: Space, rule: Rule | None = None, *, rng: RngLike 
     if [(type(part), part.dim) for part in parts] == [(Box, 3), (SO3, 4)]:
         return (Sliced() if sparse else make_sampler("sobol")).draw(n, d, rng=rng)
     points = make_sampler("even").draw(n, d, rng=rng)
-    return drawn_in(points) if sparse and d >= SOBOL_FROM and isinstance(space, Box) else points
+    return drawn_in(points) if sparse and d >= DRAWN_IN_FROM and isinstance(space, Box) else points
 
 
 def _finite(value: npt.ArrayLike) -> Floats:

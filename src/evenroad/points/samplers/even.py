@@ -17,6 +17,9 @@ TURNED_FROM = 6
 SOBOL_FROM = 10
 """Dimension from which on `even` is scrambled Sobol points: there no lattice solves more."""
 
+DRAWN_IN_FROM = 7
+"""Dimension from which on points of a sparse roadmap are drawn in to the middle of a box."""
+
 DRAWN_IN = 0.85
 """To which share of their distance from the middle points of a sparse roadmap are drawn in."""
 
