@@ -84,6 +84,7 @@ class Instead(NamedTuple):
 TASTE = "--only maze-1 --runs 1 --jobs 1 --store"
 INSTEAD = {
     "make *": Instead(None, "a Makefile's target: that there is such a one is tested"),
+    "python3 -m venv *": Instead(None, "an environment: the release check makes one"),
     "pip install *": Instead(None, "needs a network: the release check tries it"),
     "python examples/ros2/*": Instead(None, "nodes of ROS 2: tests_peers feeds them messages"),
     "python -m benchmarks*": Instead(None, "minutes to hours: that there is such a one is tested"),
