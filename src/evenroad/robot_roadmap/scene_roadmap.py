@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats
 from evenroad._clock import now
+from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import Shape
 from evenroad.roadmap import Budget, PlanResult, Status
 from evenroad.roadmap.answer import connected, gave_up, refusal
@@ -18,6 +20,8 @@ from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.find_path import NO_POINTS, SECONDS, with_reasons
 from evenroad.roadmap.query import Query, read_places
 from evenroad.robot import ArmWorld, Robot, Scene, configuration, in_scene
+from evenroad.robot.goals import goals_of
+from evenroad.robot.pose_goal import PoseGoal
 from evenroad.robot.trees import shorten
 from evenroad.robot_roadmap.ask import Asked, Checks, ask
 from evenroad.robot_roadmap.cell import day_and_all, left_to_check, require_same_robot
@@ -32,6 +36,10 @@ from evenroad.world.protocol import Connection
 
 Place = str | npt.ArrayLike
 """A configuration: numbers in the order of the group, or a text as :func:`evenroad.robot.configuration` takes it."""
+
+POSES = (Pose, PoseGoal)
+Goal = Place | Pose | PoseGoal
+"""A configuration, or where a link is to be."""
 
 PLANNER = "robot roadmap"
 
@@ -180,7 +188,7 @@ class SceneRoadmap:
     def plan(
         self,
         start: Place,
-        goal: Place | Sequence[Place],
+        goal: Goal | Sequence[Goal],
         *,
         budget: Budget | None = None,
         shorten: bool = True,
@@ -192,6 +200,7 @@ class SceneRoadmap:
         ----------
         start, goal : str, array_like of shape (dim,); of goals a sequence of such, too
             Numbers in the order of the group [rad or m], or a text as :func:`evenroad.robot.configuration` takes it.
+            A goal may be a Pose or PoseGoal, too: then all postures that are found for it are goals.
         budget : Budget, optional
             Default: 5 s.  Half of the time is the roadmap's, the rest the trees'.
         shorten : bool
@@ -209,6 +218,8 @@ class SceneRoadmap:
         InvalidValue, UnknownName
             If start or goal is no configuration of the robot.
         """
+        if any(isinstance(each, POSES) for each in (goal if isinstance(goal, list | tuple) else (goal,))):
+            return self._to_poses(start, goal, budget=budget, shorten=shorten, trees=trees)
         budget = Budget(seconds=SECONDS) if budget is None else budget
         first, goals = read_places(self._place(start), self._places(goal), self.world.space)
         began, deadline = now(), budget.deadline()
@@ -336,13 +347,34 @@ class SceneRoadmap:
         # Where nothing wraps the sum is the same, in a tenth of the time.
         return path_length(path, self.world.space) if self._wraps else sum(map(math.dist, places, places[1:]))
 
+    def _to_poses(self, start: Place, goal: Goal | Sequence[Goal], **how: Any) -> PlanResult:
+        """Plan to the postures that reach poses, and to the configurations beside them."""
+        places: Sequence[Goal] = [goal] if isinstance(goal, POSES) else goal  # type: ignore[assignment]
+        place, space = self._place(start), self.world.space
+        first = read_places(place, place, space)[0]
+        given = goals_of(
+            self.world, first, places, lambda each: read_places(place, self._place(each), space)[1][0]
+        )
+        if not given.unreached:
+            return self.plan(first, given.configurations, **how)
+        return PlanResult(
+            status=Status.GOAL_INVALID if given.in_collision else Status.GOAL_UNREACHABLE,
+            message=given.unreached,
+            start=first,
+            goals=given.configurations,
+            origin=NO_POINTS,
+            rule="none",
+            planner="none",
+            seconds={"goals": given.seconds},
+        )
+
     def _place(self, place: Place) -> npt.ArrayLike:
         """Return a configuration of a text; of numbers themselves."""
         if isinstance(place, str):
             return configuration(self.world.robot, place, self.world.scene)
         return place
 
-    def _places(self, goal: Place | Sequence[Place]) -> npt.ArrayLike:
+    def _places(self, goal: Goal | Sequence[Goal]) -> npt.ArrayLike:
         if isinstance(goal, list | tuple) and any(isinstance(each, str) for each in goal):
             return [self._place(each) for each in goal]  # type: ignore[return-value]
         return self._place(goal)  # type: ignore[arg-type]
