@@ -5,11 +5,12 @@ import pytest
 
 from evenroad.points import draw
 from evenroad.points.samplers import Sobol
+from evenroad.points.samplers.even import drawn_in
 from evenroad.points.samplers.poses import Sliced
 from evenroad.research.worlds import Corridor
 from evenroad.roadmap import KEarlier, KNearest, Radius, Roadmap, fmt, plan, plan_anytime
 from evenroad.roadmap.query import even_points
-from evenroad.space import SE2, SE3, SO3, JointSpace, Product
+from evenroad.space import SE2, SE3, SO3, Box, JointSpace, Product
 from evenroad.world import FunctionWorld
 from tests.counting import Counting
 
@@ -91,6 +92,16 @@ def test_a_number_of_points_in_space_means_sliced_poses_for_few_neighbours_and_s
 @pytest.mark.parametrize("space", [JOINTS, SE2((0.0, 0.0), (1.0, 1.0)), Product([SO3(), SO3()])])
 def test_elsewhere_a_number_of_points_means_the_even_lattice(space):
     assert even_points(40, space, KNearest(4), rng=3) == draw("even", 40, space.cube_dim, rng=3)
+
+
+@pytest.mark.parametrize(
+    ("rule", "near"),
+    [(KNearest(4), True), (KEarlier(2), True), (KNearest(5), False), (Radius(0.5), False), (None, False)],
+)
+def test_in_a_box_points_are_drawn_in_for_fewer_neighbours_than_dimensions(rule, near):
+    box = Box([0.0] * 5, [1.0, 2.0, 3.0, 4.0, 5.0])
+    points = draw("even", 30, 5, rng=3)
+    assert even_points(30, box, rule, rng=3) == (drawn_in(points) if near else points)
 
 
 @pytest.mark.parametrize("rule", [KNearest(5), KNearest(15)])

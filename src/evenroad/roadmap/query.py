@@ -15,6 +15,7 @@ from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import PointSet
 from evenroad.points.samplers import make_sampler
+from evenroad.points.samplers.even import drawn_in
 from evenroad.points.samplers.poses import Sliced
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.rules import Rule
@@ -115,17 +116,19 @@ def as_points(points: PointSet | int, space: Space, rule: Rule | None = None) ->
 
 
 def even_points(n: int, space: Space, rule: Rule | None = None, *, rng: RngLike = 0) -> PointSet:
-    """Return n points of the space's cube, as planners take them: `even`, but others in SE(3).
+    """Return n points of the space's cube, as planners take them: `even`, but others in SE(3) and for sparse roadmaps.
 
-    Evenness is worth nothing there: they are `sliced` for a rule of at most d = 6 neighbours, else scrambled
-    Sobol points.
+    In a box and for a rule of fewer neighbours than dimensions they are drawn in to the middle.  In SE(3) evenness is
+    worth nothing: there they are `sliced` for a rule of at most d = 6 neighbours, else scrambled Sobol points.
     """
-    parts = space.parts if isinstance(space, Product) else ()
-    if [(type(part), part.dim) for part in parts] != [(Box, 3), (SO3, 4)]:
-        return make_sampler("even").draw(n, space.cube_dim, rng=rng)
+    d = space.cube_dim
     k = None if rule is None else rule.reach(n, space).k
-    sampler = Sliced() if k is not None and k <= space.cube_dim else make_sampler("sobol")
-    return sampler.draw(n, space.cube_dim, rng=rng)
+    parts = space.parts if isinstance(space, Product) else ()
+    if [(type(part), part.dim) for part in parts] == [(Box, 3), (SO3, 4)]:
+        sampler = Sliced() if k is not None and k <= d else make_sampler("sobol")
+        return sampler.draw(n, d, rng=rng)
+    points = make_sampler("even").draw(n, d, rng=rng)
+    return drawn_in(points) if isinstance(space, Box) and k is not None and k < d else points
 
 
 def _finite(value: npt.ArrayLike) -> Floats:
