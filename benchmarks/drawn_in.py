@@ -3,6 +3,7 @@
     python -m benchmarks.drawn_in --worlds 200 -d 5 6 7 10 --csv docs/data/drawn_in.csv
     python -m benchmarks.drawn_in --plan --worlds 300 -d 5 7 10 --csv docs/data/drawn_in_plan.csv
     python -m benchmarks.drawn_in --beside-uniform --worlds 300 -d 10
+    python -m benchmarks.drawn_in --corners --worlds 120
 
 Success in balls and boxes of the tuning stream, numbers that chose nothing else, in the cells of the fair suite
 (difficulty 50 with N = 128 to 1024, 25 and 75 with the N of the calibration), k nearest as in the suite, every k below
@@ -11,7 +12,8 @@ with the standard error of their mean over worlds; "sobol" are scrambled Sobol p
 
 `--plan` asks :func:`evenroad.roadmap.plan` instead, which links start and goal to 100 milestones, whatever k is: in
 worlds of difficulty 50, N = 512, k = 4 and 6, the factor that is used beside 1.  `--beside-uniform` asks what uniform
-points gain by that factor, in such worlds, by the rule alone.
+points gain by that factor, in such worlds, by the rule alone; `--corners` what so many sets lose in a passage along
+corners of the cube.
 """
 
 from __future__ import annotations
@@ -26,6 +28,7 @@ import numpy as np
 from benchmarks.nested_k import smallest_k
 from evenroad.points import draw
 from evenroad.points.samplers.even import DRAWN_IN, drawn_in
+from evenroad.research.problems import source_named
 from evenroad.research.problems.fair import (
     CALIBRATED_AT,
     DIFFICULTIES,
@@ -52,8 +55,12 @@ def main() -> None:
     parser.add_argument("-d", type=int, nargs="*", default=[5, 6, 7, 10])
     parser.add_argument("--plan", action="store_true")
     parser.add_argument("--beside-uniform", action="store_true")
+    parser.add_argument("--corners", action="store_true")
     parser.add_argument("--csv", type=Path)
     options = parser.parse_args()
+    if options.corners:
+        corners(options.worlds)
+        return
     if options.beside_uniform:
         for d in options.d:
             beside_uniform(d, options.worlds)
@@ -156,6 +163,17 @@ def beside_uniform(d: int, worlds: int) -> None:
                 f"k={k} {m:+.1f} +- {e:.1f}" for k, m, e in zip(LINKED_RULES, means, errors, strict=True)
             )
             print(f"{family.name.lower()} d={d} {text}: {shown}", flush=True)
+
+
+def corners(sets: int) -> None:
+    """Print the success on `hypercube-legacy6` with N = 512, of `even` as it is and drawn in."""
+    problem, rules = source_named("hypercube-legacy6").make(0), (4, 6, 8)
+    drawn = [draw("even", 512, problem.set_dim, rng=i) for i in range(sets)]
+    for text, share in (("even", 1.0), ("drawn in", DRAWN_IN)):
+        least = np.array(
+            [smallest_k(problem, drawn_in(points, share).points, max(rules)) for points in drawn]
+        )
+        print(text, ", ".join(f"k={k} {100 * (least <= k).mean():.1f} %" for k in rules), flush=True)
 
 
 if __name__ == "__main__":
