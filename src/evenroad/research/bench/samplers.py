@@ -132,7 +132,7 @@ def _exists(ask: Callable[[str, int, int], object], family: str, n: int, d: int)
     try:
         ask(family, n, d)
     except (NotAvailable, UnknownName) as error:
-        return str(error).removesuffix(" (or allow fewer)")
+        return str(error).removesuffix(" (or allow_fewer)")
     return ""
 
 
