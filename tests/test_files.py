@@ -85,8 +85,8 @@ def test_whatever_is_read_the_error_is_ours(tmp_path, what, reader):
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("a: [1, 2\n", "is not YAML, as a scene is: line 2, column 1: "),
-        ("a: 1\n b: 2", "is not YAML, as a scene is: line 2, column 3: "),
+        ("a: [1, 2\n", "line 2, column 1: "),
+        ("a: 1\n b: 2", "line 2, column 3: "),
     ],
 )
 def test_yaml_that_does_not_parse_is_said_with_its_place(tmp_path, text, says):
