@@ -114,7 +114,9 @@ def _grow(points, walls, start, goal, step, every, wraps):  # type: ignore[no-un
     n, joints = points.shape
     room = 2 * n + 2
     nodes, parents = np.empty((room, joints)), np.zeros(room, np.int64)
+    columns, squares = np.empty((joints, room)), np.empty(room)
     away = np.empty(joints)
+    columns[:, 0] = start
     nodes[0], used, count, since = start, 0, 1, 0
     while used < n:
         since += 1
@@ -122,22 +124,19 @@ def _grow(points, walls, start, goal, step, every, wraps):  # type: ignore[no-un
             target, since = goal, 0
         else:
             target, used = points[used], used + 1
-        near, least = 0, np.inf
-        for i in range(count):
-            square = 0.0
-            for k in range(joints):
-                turn = target[k] - nodes[i, k]
-                if wraps:
-                    turn -= TURN * np.rint(turn / TURN)
-                square += turn * turn
-            if square < least:
-                near, least = i, square
+        squares[:count] = 0.0
+        for k in range(joints):
+            for i in range(count):
+                turn = abs(target[k] - columns[k, i])
+                turn = min(turn, TURN - turn) if wraps else turn
+                squares[i] += turn * turn
+        near = np.argmin(squares[:count])
         if not _goes(nodes[near], target, step, wraps, walls, away):
             continue
         for k in range(joints):
             end = nodes[near, k] + away[k]
             nodes[count, k] = end - TURN * np.rint(end / TURN) if wraps else end
-        parents[count] = near
+        columns[:, count], parents[count] = nodes[count], near
         count += 1
         left = 0.0
         for k in range(joints):
@@ -183,6 +182,7 @@ def clearance(q, walls):  # type: ignore[no-untyped-def]
     """Return the least distance of a link to a wall, or half of that of two links without a common joint."""
     joints, heading, least = len(q), 0.0, np.inf
     x, y = np.zeros(joints + 1), np.zeros(joints + 1)
+    longest = math.sqrt(np.max(walls[2] ** 2 + walls[3] ** 2))
     for k in range(joints):
         heading += q[k]
         x[k + 1], y[k + 1] = x[k] + math.cos(heading) / joints, y[k] + math.sin(heading) / joints
@@ -190,8 +190,9 @@ def clearance(q, walls):  # type: ignore[no-untyped-def]
             cx, cy = walls[0, w], walls[1, w]
             dx, dy = cx + walls[2, w], cy + walls[3, w]
             # Of segments whose middles are far apart nothing needs to be known.
-            far = math.hypot(x[k] + x[k + 1] - cx - dx, y[k] + y[k + 1] - cy - dy)
-            if far - 1.0 / joints - math.hypot(walls[2, w], walls[3, w]) < 2.0 * least:
+            far_x, far_y = x[k] + x[k + 1] - cx - dx, y[k] + y[k + 1] - cy - dy
+            near = 2.0 * least + 1.0 / joints + longest
+            if far_x * far_x + far_y * far_y < near * near:
                 least = min(least, _apart(x[k], y[k], x[k + 1], y[k + 1], cx, cy, dx, dy))
         for i in range(k - 1):
             least = min(least, 0.5 * _apart(x[k], y[k], x[k + 1], y[k + 1], x[i], y[i], x[i + 1], y[i + 1]))

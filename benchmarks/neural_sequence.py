@@ -1,6 +1,6 @@
 """NeuroLDS, the published neural sequence, trained again: a network from the index of a point to the point.
 
-    python -m benchmarks.neural_sequence --out neural_sequences.npz   # four networks, the points of each
+    python -m benchmarks.neural_sequence --out neural_star.npz   # two networks, the points of each
 
 Van Huffel, Kirk, Chahine, Rusch and Rus (2025): waves of the index, a network of rectified layers and a sigmoid; first
 it learns Sobol's points from index 128 on, then the mean over all beginnings of their L2 discrepancy is made small.
@@ -19,8 +19,8 @@ import numpy as np
 import torch
 
 from evenroad._arrays import Floats
-from evenroad.points.measures.l2 import MaximumPairs, star
-from evenroad.points.measures.prefixes import _squared, _weighted_slopes
+from evenroad.points.measures.l2 import MaximumPairs
+from evenroad.points.measures.prefixes import PREFIXED, _squared, _weighted_slopes
 from evenroad.points.samplers import Sobol
 
 POINTS, DIMENSION, BURNT = 1000, 4, 128
@@ -46,10 +46,10 @@ def network(bands: int, width: int, layers: int, d: int) -> torch.nn.Sequential:
     return torch.nn.Sequential(*inner, torch.nn.Linear(width, d), torch.nn.Sigmoid())
 
 
-def mean_prefix(points: Floats) -> tuple[float, Floats]:
-    """Return the mean L2 star discrepancy of the first 2 .. n points, and its gradient, both of shape (n, d)."""
+def mean_prefix(points: Floats, measure: str = "star") -> tuple[float, Floats]:
+    """Return the mean L2 discrepancy of the first 2 .. n points, (n, d), and its gradient, of that shape."""
     columns = np.ascontiguousarray(points.T, dtype=np.float64)
-    terms, lengths = star(columns, np.ones(len(columns))), np.arange(1, len(points) + 1)
+    terms, lengths = PREFIXED[measure](columns, np.ones(len(columns))), np.arange(1, len(points) + 1)
     rooted = np.sqrt(np.maximum(_squared(columns, terms), 1e-12))
     slopes = np.where(lengths > 1, 0.5 / rooted, 0.0) / (len(points) - 1)
     of_pairs = np.cumsum((slopes / lengths**2)[::-1])[::-1].copy()
@@ -65,13 +65,14 @@ def train(
     points: int = POINTS,
     d: int = DIMENSION,
     steps: tuple[int, int] = (LEARNING, TUNING),
+    measure: str = "star",
 ) -> tuple[Floats, dict[str, float]]:
     """Return the points, (points, d), and the mean discrepancies of Sobol's, the learnt and the tuned points."""
     torch.set_num_threads(1)
     torch.manual_seed(seed)
     features, made = waves(points, BANDS), network(BANDS, WIDTH, LAYERS, d)
     target = torch.tensor(Sobol(scramble=False, start=BURNT).draw(points, d).points, dtype=torch.float32)
-    found = {"sobol": mean_prefix(target.numpy())[0]}
+    found = {"sobol": mean_prefix(target.numpy(), measure)[0]}
     for stage, (count, rate) in enumerate(zip(steps, RATES, strict=True)):
         optimiser = torch.optim.AdamW(made.parameters(), lr=rate, weight_decay=1e-4, betas=(0.9, 0.98))
         for step in range(count):
@@ -83,13 +84,13 @@ def train(
             if stage == 0:
                 torch.mean((now - target) ** 2).backward()
             else:
-                _, gradient = mean_prefix(now.detach().numpy())
+                _, gradient = mean_prefix(now.detach().numpy(), measure)
                 now.backward(torch.tensor(gradient, dtype=torch.float32))
             torch.nn.utils.clip_grad_norm_(made.parameters(), 1.0)
             optimiser.step()
         with torch.no_grad():
             now = made(features)
-            found["tuned" if stage else "learnt"] = mean_prefix(now.numpy())[0]
+            found["tuned" if stage else "learnt"] = mean_prefix(now.numpy(), measure)[0]
             if stage == 0:
                 found["root mean square to Sobol's"] = float(((now - target) ** 2).mean().sqrt())
     return now.numpy().astype(np.float64), found
@@ -99,15 +100,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--networks", type=int, default=4)
+    parser.add_argument("--networks", type=int, default=2)
     parser.add_argument("--points", type=int, default=POINTS)
     parser.add_argument("--steps", type=int, nargs=2, default=(LEARNING, TUNING))
-    parser.add_argument("--out", type=Path, default=Path("neural_sequences.npz"))
+    parser.add_argument("--measure", choices=tuple(PREFIXED), default="star")
+    parser.add_argument("--out", type=Path, default=Path("neural_star.npz"))
     options = parser.parse_args()
     made = []
     for seed in range(options.networks):
         began = time.process_time()
-        points, found = train(seed, options.points, steps=tuple(options.steps))
+        points, found = train(seed, options.points, DIMENSION, tuple(options.steps), options.measure)
         made.append(points)
         text = ", ".join(f"{name} {value:.3e}" for name, value in found.items())
         print(f"network {seed}, {time.process_time() - began:.0f} s: {text}", flush=True)

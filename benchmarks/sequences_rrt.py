@@ -1,13 +1,16 @@
 """NeuroLDS's published comparison again: RRT in a chain of four joints, its draws taken from sequences.
 
-    python -m benchmarks.neural_sequence --out neural_sequences.npz          # the peer, trained here
-    python -m benchmarks.sequences_rrt calibrate                             # how many draws; tuning problems
-    python -m benchmarks.sequences_rrt plan --neural neural_sequences.npz    # docs/data/sequences_rrt.csv
-    python -m benchmarks.sequences_rrt variants --neural neural_sequences.npz
+    python -m benchmarks.neural_sequence --out neural_star.npz    # the peer, trained here, on its own discrepancy
+    python -m benchmarks.neural_sequence --measure hickernell --steps 1500 2500 --out neural_hickernell.npz
+    python -m benchmarks.sequences_rrt calibrate                  # how many draws; tuning problems
+    python -m benchmarks.sequences_rrt plan                       # docs/data/sequences_rrt.csv
+    python -m benchmarks.sequences_rrt variants                   # other ways to fill in what is not published
+    python -m benchmarks.sequences_rrt luck                       # sequences of one kind among themselves
+    python -m benchmarks.sequences_rrt discrepancy
     python -m benchmarks.sequences_rrt picture
 
 Every method solves the same problems.  `plain` sequences are the same points each time, from index 128 on; those of
-`neural`, `sequence` and `greedy` are taken in turn; `shifted` adds a new vector modulo 1 for each problem.
+networks, `sequence` and `greedy` are taken in turn; `shifted` adds a new vector modulo 1 for each problem.
 """
 
 from __future__ import annotations
@@ -32,10 +35,10 @@ WIDTHS = (0.64, 0.40)
 PUBLISHED = {0.64: (96.6, 88.0), 0.40: (80.0, 67.3)}
 """Width -> success [%] of NeuroLDS and of Halton."""
 
-BURNT, LONGEST, MOST = 128, 1024, 2048
+BURNT, LONGEST, MOST = 128, 1000, 1700
 """Points that plain sequences leave out; length of the trained sets; draws of a run, at most."""
 
-SETS = 8
+SETS = 4
 """Sequences of the kinds that take long to make."""
 
 MAIN = Setting(step=0.9, turned=True)
@@ -46,7 +49,13 @@ VARIANTS = {
     "joints end at +-pi": Setting(step=0.9, turned=True, wraps=False),
     "only the tunnel is moved": Setting(step=0.9, shift=0.9),
 }
-COUNTS = {label: dict.fromkeys(WIDTHS, 850) for label in VARIANTS}
+COUNTS = {
+    "main": {0.64: 850, 0.40: 850},
+    "goal drawn every 20th time": {0.64: 38, 0.40: 399},
+    "steps of 1.4": {0.64: 135, 0.40: 424},
+    "joints end at +-pi": {0.64: 793, 0.40: LONGEST},
+    "only the tunnel is moved": {0.64: 823, 0.40: 919},
+}
 """Setting -> width -> draws; chosen with :func:`calibrate`."""
 
 DATA = Path("docs/data")
@@ -59,14 +68,20 @@ def fixed(name: str, number: int) -> Floats:
     if name == "sobol":
         return Sobol(scramble=False, start=BURNT).draw(MOST, JOINTS).points
     if name == "greedy":
-        return of_bank(LONGEST, JOINTS, number)
+        return of_bank(1024, JOINTS, number)
     if name == "sequence":
         return draw("sequence", LONGEST, JOINTS, rng=number).points
-    with np.load(_neural) as file:
-        return np.asarray(file["points"][number % len(file["points"])], np.float64)
+    return networks(name)[number]
 
 
 _neural = Path()
+
+
+@cache
+def networks(name: str) -> Floats:
+    """Return the points of the networks of that name, (networks, n, d)."""
+    with np.load(_neural / f"{name.replace(' ', '_')}.npz") as file:
+        return np.asarray(file["points"], np.float64)
 
 
 def sequences_of(name: str) -> int:
@@ -76,14 +91,14 @@ def sequences_of(name: str) -> int:
         return 1
     if kind in ("greedy", "sequence"):
         return SETS
-    return len(np.load(_neural)["points"]) if kind == "neural" else 0
+    return len(networks(kind)) if kind.startswith("neural") else 0
 
 
 def points_of(name: str, number: int) -> Floats:
     """Return the draws of a method for the problem of that number."""
     kind, _, how = name.partition(", ")
     rng = np.random.default_rng([7, number])
-    if how in ("plain", "shifted") or kind in ("greedy", "sequence", "neural"):
+    if how or kind in ("greedy", "sequence") or kind.startswith("neural"):
         points = fixed(kind, number % max(sequences_of(kind), 1))
         return (points + rng.random(JOINTS)) % 1.0 if how == "shifted" else points
     return draw(kind, MOST, JOINTS, rng=rng).points
@@ -102,8 +117,10 @@ METHODS = (
     "sequence, shifted",
     "greedy",
     "greedy, shifted",
-    "neural",
-    "neural, shifted",
+    "neural star",
+    "neural star, shifted",
+    "neural hickernell",
+    "neural hickernell, shifted",
 )
 
 
@@ -198,6 +215,34 @@ def needed_for(goal: float, draws: list[Ints], resamples: int = 400) -> tuple[fl
     return found[0], *(float(each) for each in np.percentile(found[1:], (2.5, 97.5)))
 
 
+def luck(sequences: int = 30, problems: int = 160) -> list[dict[str, object]]:
+    """Print and return how far sequences of one kind, Halton's under one shift each, are apart in success.
+
+    Then two groups of ten of them are drawn, again and again, as if they were two methods.
+    """
+    rng, rows = np.random.default_rng(3), []
+    shifts = np.random.default_rng(2).random((sequences, JOINTS))
+    for width in WIDTHS:
+        tasks = [problem(width, i, int(Stream.REPORTING), MAIN) for i in range(problems)]
+        success = np.empty(sequences)
+        for i, shift in enumerate(shifts):
+            points = (fixed("halton", 0)[: COUNTS["main"][width]] + shift) % 1.0
+            success[i] = 100.0 * np.mean([grow(points, task, MAIN).draws > 0 for task in tasks])
+        groups = np.array([rng.permutation(success)[:20].reshape(2, 10).mean(axis=1) for _ in range(20000)])
+        apart = np.abs(groups[:, 0] - groups[:, 1])
+        gain = PUBLISHED[width][0] - PUBLISHED[width][1]
+        row: dict[str, object] = {"width": width, "sequences": sequences, "problems": problems}
+        row |= {"mean": round(success.mean(), 1), "deviation": round(success.std(ddof=1), 1)}
+        row |= {"least": round(success.min(), 1), "most": round(success.max(), 1)}
+        row |= {
+            "tens apart by 95 %": round(float(np.quantile(apart, 0.95)), 1),
+            "published gain": round(gain, 1),
+        }
+        rows.append(row | {"tens at least so far apart [%]": round(100.0 * float((apart >= gain).mean()), 1)})
+        print(rows[-1], flush=True)
+    return rows
+
+
 LENGTHS = (16, 24, 32, 48, 64, 100, 128, 181, 256, 362, 512, 660, 724, 1024)
 
 
@@ -236,7 +281,13 @@ def picture(runs: Runs, out: Path) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    colours = {"neural": "#c2410c", "halton": "#6b7280", "sobol": "#111827", "growing": "#2f5fd0"}
+    colours = {
+        "neural star": "#c2410c",
+        "neural hickernell": "#0f766e",
+        "halton": "#6b7280",
+        "sobol": "#111827",
+        "growing": "#2f5fd0",
+    }
     colours |= {"sequence": "#d1343b", "uniform": "#b9c0c7", "greedy": "#6a4c93"}
     figure = Figure(figsize=(13, 7.5), dpi=110, layout="constrained")
     FigureCanvasAgg(figure)
@@ -300,9 +351,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("part", choices=("calibrate", "plan", "variants", "discrepancy", "picture"))
+    parser.add_argument("part", choices=("calibrate", "plan", "variants", "luck", "discrepancy", "picture"))
     parser.add_argument("--problems", type=int, default=1600)
-    parser.add_argument("--neural", type=Path, default=Path("neural_sequences.npz"))
+    parser.add_argument("--neural", type=Path, default=Path(), help="folder of the networks' points")
     parser.add_argument("--methods", nargs="+", choices=METHODS, default=METHODS)
     parser.add_argument(
         "--runs", type=Path, default=Path("sequences_rrt_runs.npz"), help="keeps what is done"
@@ -319,6 +370,8 @@ def main() -> None:
     elif options.part == "variants":
         rows = [row for label in VARIANTS for row in compared(runs, label, names, COUNTS[label])]
         write(rows, options.out / "sequences_rrt_variants.csv")
+    elif options.part == "luck":
+        write(luck(), options.out / "sequences_rrt_luck.csv")
     elif options.part == "discrepancy":
         write(discrepancy(), options.out / "sequences_neural.csv")
     else:

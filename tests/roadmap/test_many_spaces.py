@@ -95,13 +95,26 @@ def test_elsewhere_a_number_of_points_means_the_even_lattice(space):
 
 
 @pytest.mark.parametrize(
-    ("rule", "near"),
-    [(KNearest(4), True), (KEarlier(2), True), (KNearest(5), False), (Radius(0.5), False), (None, False)],
+    ("d", "rule", "near"),
+    [
+        (10, KNearest(4), True),
+        (12, KEarlier(6), True),
+        (10, KNearest(7), False),
+        (7, KNearest(4), True),
+        (6, KNearest(4), False),
+        (10, Radius(0.5), False),
+        (10, None, False),
+    ],
 )
-def test_in_a_box_points_are_drawn_in_for_fewer_neighbours_than_dimensions(rule, near):
-    box = Box([0.0] * 5, [1.0, 2.0, 3.0, 4.0, 5.0])
-    points = draw("even", 30, 5, rng=3)
+def test_in_a_box_of_many_dimensions_points_of_a_sparse_roadmap_are_drawn_in(d, rule, near):
+    points = draw("even", 30, d, rng=3)
+    box = Box([0.0] * d, [2.0] * d)
     assert even_points(30, box, rule, rng=3) == (drawn_in(points) if near else points)
+
+
+def test_joints_are_not_drawn_in():
+    space = JointSpace([-3.0] * 10, [3.0] * 10)
+    assert even_points(30, space, KNearest(4), rng=3) == draw("even", 30, 10, rng=3)
 
 
 @pytest.mark.parametrize("rule", [KNearest(5), KNearest(15)])

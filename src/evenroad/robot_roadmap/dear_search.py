@@ -75,6 +75,9 @@ class Asked:
 class ProvesSoon(Checks, Protocol):
     """A world that can say for little of some motions that they are free."""
 
+    def proved(self, q: Floats) -> Bools:
+        """Return which configurations, (n, dim), are known to be free for little: (n,)."""
+
     def motion_proved(self, a: Floats, b: Floats) -> Bools:
         """Return which motions, (m, dim) each, are proved free for little: (m,); of the others nothing is said."""
 
@@ -90,6 +93,9 @@ def ask_few(world: Checks, day: Checks, graph: KnownGraph, most_motions: int, de
     if not world.valid(graph.ends).all():
         return Asked(ENDS_TAKEN, nothing, -1, 0, 0)
     graph.ends[:] = world.space.interpolate(graph.ends, graph.ends, 0.0)
+    if _proves_soon(world):
+        for end in np.flatnonzero(~world.proved(graph.ends)).tolist():
+            graph.doubt(end)
     question, verdict = -1, UNKNOWN
     while True:
         question = _go_on(address(desk), question, verdict, NOT_ASKED, NOT_PROVED, address(path), len(path))

@@ -68,6 +68,10 @@ class OwnShapesWorld:
         free[left] = self._coal.valid(q[left])
         return free
 
+    def proved(self, q: Floats) -> Bools:
+        """Return which configurations, (n, dim), are free for the capsules: (n,)."""
+        return self.capsules.valid(q)
+
     def motion_proved(self, a: Floats, b: Floats) -> Bools:
         """Return which motions, (m, dim) each, the capsules prove free: (m,); that asks coal nothing."""
         return self.capsules.motion_certified(a, b, RECHECK_TOLERANCE)

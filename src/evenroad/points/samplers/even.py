@@ -17,8 +17,11 @@ TURNED_FROM = 6
 SOBOL_FROM = 10
 """Dimension from which on `even` is scrambled Sobol points: there no lattice solves more."""
 
+DRAWN_IN_FROM = 7
+"""Dimension from which on points of a sparse roadmap are drawn in to the middle of a box."""
+
 DRAWN_IN = 0.85
-"""How far from the middle points stay, as a share, where a roadmap has fewer neighbours than dimensions."""
+"""To which share of their distance from the middle points of a sparse roadmap are drawn in."""
 
 
 @dataclass(frozen=True)
