@@ -31,7 +31,7 @@ ENDS = 3000
 SCENES = 400
 """Random scenes by which the chance of being free is measured."""
 
-FIRST = 1500
+MEASURED = 1500
 """Configurations that the weights of the metric are measured on."""
 
 
@@ -66,7 +66,7 @@ def known_of(
     pool_rng, scene_rng, pocket_rng = streams
     progress("drawing configurations", 0.0)
     pool = _free_pool(world, one, max(CHOICE * n, FIRST), pool_rng)
-    weights = displacement_weights(world.robot, pool[:FIRST])
+    weights = displacement_weights(world.robot, pool[:MEASURED])
     chance = np.ones(len(pool))
     if any(recipe.gamma > 0.0 for recipe in recipes):
         chance = chance_of_freedom(
