@@ -177,7 +177,7 @@ def test_a_robots_roadmap_serves_a_robot_with_its_hands_full():
         frozenset({("base_link", "table"), ("shoulder_link", "table")}),
         limits=dict.fromkeys(robot.group, (-math.pi, math.pi)),
     )
-    roadmap = make_roadmap(robot, cell, 32, rng=0)
+    roadmap = make_roadmap(robot, cell, 32, ends=100, rng=0)
     rod = HeldObject("rod", Cylinder(0.03, 0.5, pose=Pose((0, 0, 0.25))), "tool0", ("wrist_2_link",))
     scene = Scene("today", (Obstacle.of("post", "box", (0.1, 0.1, 0.8), (0.5, 0.4, 0.4)),), attached=(rod,))
     known = roadmap.in_scene(scene)

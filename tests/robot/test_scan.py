@@ -182,7 +182,7 @@ def test_the_command_plans_above_a_scanned_table(tmp_path, monkeypatch, ur5, cap
 
 def test_a_roadmap_of_a_robot_serves_in_a_scan(ur5):
     home = [0, -np.pi / 2, 0, -np.pi / 2, 0, 0]
-    roadmap = make_roadmap(ur5, None, n=32, rng=0)
+    roadmap = make_roadmap(ur5, None, n=32, ends=100, rng=0)
     cloud = PointCloud(np.concatenate([table(), skin(ur5, home)]), 0.006)
     scene = scene_seen_by(ur5, Scene("s", (Obstacle("scan", cloud, seen=Seen(UPRIGHT)),)))
     result = roadmap.plan(scene, home, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0])

@@ -36,11 +36,11 @@ def pool(arm):
 def test_a_pocket_holds_the_tip_between_five_walls_and_is_open_to_the_side_of_the_robot_or_above(arm, pool):
     around, rng = Surroundings.of(arm, pool), np.random.default_rng(0)
     tips = pockets.tips_of(arm, pool)
-    open_above = 0
-    for tip in tips[:100, 0]:
-        pocket = pockets.pocket_around(tip, around, rng)
-        walls, centre, turn, half = pocket.walls(), pocket.centre, pocket.turn, pocket.half
+    open_above, drawn = 0, pockets.pockets_around(tips[:100, 0], around, rng)
+    for i, tip in enumerate(tips[:100, 0]):
+        walls, centre, turn, half = drawn.walls(i), drawn.centre[i], drawn.turn[i], drawn.half[i]
         assert len(walls) == 5
+        assert drawn.holds(i, tip[np.newaxis])[0]
         assert np.all(np.abs((tip - centre) @ turn) <= 0.5 * half + 1e-12)
         np.testing.assert_allclose(turn @ turn.T, np.eye(3), atol=1e-12)
         assert np.linalg.det(turn) > 0.0
@@ -58,35 +58,46 @@ def test_a_pocket_holds_the_tip_between_five_walls_and_is_open_to_the_side_of_th
 def test_what_is_passed_over_before_a_world_is_made_touches_a_wall(arm, pool):
     around, rng = Surroundings.of(arm, pool), np.random.default_rng(4)
     tips, (body, radii) = pockets.tips_of(arm, pool), pockets.body_of(arm, pool)
-    passed, touching = 0, 0
-    for q, tip, places in zip(pool[:300], tips[:300, 0], body, strict=False):
-        pocket = pockets.pocket_around(tip, around, rng)
-        free = ArmWorld(arm, Scene("pocket", pocket.walls())).valid(q[np.newaxis])[0]
-        touching += not free
-        if pocket.touched_by(places, radii):
-            passed += 1
-            assert not free
+    drawn = pockets.pockets_around(tips[:300, 0], around, rng)
+    passed = drawn.touched_by(body[:300], radii)
+    free = np.array(
+        [ArmWorld(arm, Scene("pocket", drawn.walls(i))).valid(pool[i : i + 1])[0] for i in range(300)]
+    )
+    assert not (passed & free).any()
+    touching, passed = np.sum(~free), np.sum(passed)
     assert 0.8 * touching <= passed < 300
 
 
 def test_ends_see_what_straight_motions_reach_and_never_themselves(arm, pool, monkeypatch):
+    monkeypatch.setattr(pockets, "FIRST", 150)
+    monkeypatch.setattr(pockets, "NEAR", 60)
+    cell = Scene("post", (Obstacle.of("post", "box", (0.1, 0.1, 1.0), (0.5, 0.3, 0.5)),))
+    pool = pool[ArmWorld(arm, cell).valid(pool)]
     kept = []
     seen_of = pockets._seen
 
-    def noting(world, pool, scaled, end):
-        found = seen_of(world, pool, scaled, end)
-        kept.append((world, end, found))
+    def noting(world, inside, pool, scaled, end, first):
+        found = seen_of(world, inside, pool, scaled, end, first)
+        kept.append((world.scene.obstacles, end, found))
         return found
 
     monkeypatch.setattr(pockets, "_seen", noting)
-    seen = ends_in_pockets(arm, NOTHING, pool, pool, 30, np.random.default_rng(1))
+    seen = ends_in_pockets(arm, cell, pool, 2.0 * pool, 30, np.random.default_rng(1))
     assert len(seen.first) == 31
     assert seen.first[-1] == len(seen.which) > 0
-    for number, (world, end, found) in enumerate(kept):
+    for number, (walls, end, found) in enumerate(kept):
         assert seen.which[seen.first[number] : seen.first[number + 1]].tolist() == found.tolist()
         assert end not in found
+        world = ArmWorld(arm, replace(cell, obstacles=(*cell.obstacles, *walls)), resolution=pockets.STEP)
         assert world.valid(pool[end : end + 1])[0]
         assert world.motion_valid(np.broadcast_to(pool[end], (len(found), 4)), pool[found]).all()
+        # Of the first ones whatever can be reached, of the others the nearest that can.
+        reached = world.motion_valid(np.broadcast_to(pool[end], pool.shape), pool)
+        reached = np.flatnonzero(reached & world.valid(pool[end] + pockets.EARLY * (pool - pool[end])))
+        apart = np.linalg.norm(pool - pool[end], axis=1)
+        nearest = 150 + np.argsort(apart[150:])[:60]
+        tried = np.append(np.arange(150), nearest)
+        assert set(found.tolist()) == (set(reached.tolist()) & set(tried.tolist())) - {end}
 
 
 def test_the_same_generator_gives_the_same_ends(arm, pool):

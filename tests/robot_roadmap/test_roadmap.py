@@ -22,7 +22,7 @@ from tests.robot.surface_oracle import mesh_clearance, point_clearance
 
 @pytest.fixture(scope="module")
 def roadmap():
-    return make_roadmap(ur5(joints=3), TABLE, 40, k=4, gamma=0.0)
+    return make_roadmap(ur5(joints=3), TABLE, 40, k=4, gamma=0.0, ends=100)
 
 
 def test_milestones_and_motions_are_free_of_robot_and_cell(roadmap):
@@ -71,10 +71,10 @@ def test_clouds_and_meshes_of_a_cell_are_kept_in_its_file(tmp_path):
 
 
 def test_the_same_arguments_give_the_same_roadmap(roadmap):
-    again = make_roadmap(ur5(joints=3), TABLE, 40, k=4, gamma=0.0)
+    again = make_roadmap(ur5(joints=3), TABLE, 40, k=4, gamma=0.0, ends=100)
     np.testing.assert_array_equal(again.milestones, roadmap.milestones)
     np.testing.assert_array_equal(again.edges, roadmap.edges)
-    other = make_roadmap(ur5(joints=3), TABLE, 40, k=4, gamma=0.0, rng=1)
+    other = make_roadmap(ur5(joints=3), TABLE, 40, k=4, gamma=0.0, ends=100, rng=1)
     assert not np.array_equal(other.milestones, roadmap.milestones)
 
 
@@ -97,7 +97,7 @@ def test_random_scenes_leave_more_room_to_an_arm_that_is_folded(monkeypatch):
 
 
 def test_one_milestone_and_ones_that_cannot_be_made():
-    one = make_roadmap(ur5(joints=3), TABLE, 1, gamma=0.0)
+    one = make_roadmap(ur5(joints=3), TABLE, 1, gamma=0.0, ends=100)
     assert one.edges.shape == (0, 2)
     assert one.plan(Scene("today"), [0.0, -1.5, 0.0], [1.0, -1.5, 0.0]).solved
     for n in (0, -3, 1.5, 1 << 16):
@@ -145,7 +145,7 @@ def test_a_slider_that_goes_straight_up_has_a_roadmap():
         (),
         ("lift",),
     )
-    roadmap = make_roadmap(robot, None, 16)
+    roadmap = make_roadmap(robot, None, 16, ends=100)
     assert displacement_weights(robot, roadmap.milestones).tolist() == [1.0]
     lid = Scene("lid", (Obstacle.of("lid", "box", (1, 1, 0.1), (0, 0, 0.8)),))
     assert roadmap.plan(lid, [0.0], [0.5]).solved
@@ -222,7 +222,7 @@ def test_a_joint_that_turns_on_may_have_limits_in_the_cell_but_none_of_a_day(roa
     body = Capsule((0.2, 0, 0.1), (0.6, 0, 0.1), 0.05, link="arm")
     robot = er.Robot("turner", ("base", "arm"), (joint,), (body,), (), ("turn",))
     limited = Scene("limited", limits={"turn": (-1.0, 2.0)})
-    endless, kept = make_roadmap(robot, None, 8), make_roadmap(robot, limited, 8)
+    endless, kept = make_roadmap(robot, None, 8, ends=20), make_roadmap(robot, limited, 8, ends=20)
     er.save_robot_roadmap(tmp_path / "a.roadmap", kept)
     assert er.load_robot_roadmap(tmp_path / "a.roadmap", robot, limited).milestones.min() >= -1.0
     assert SceneRoadmap(kept, Scene("today"), robot).world.space.high == (2.0,)

@@ -16,7 +16,7 @@ from tests.robot_roadmap.test_search import TURN, hard
 @pytest.fixture(scope="module")
 def roadmap():
     """Three joints of two turns each, in nothing."""
-    return make_roadmap(ur5(joints=3), None, 48, k=5, gamma=0.0)
+    return make_roadmap(ur5(joints=3), None, 48, k=5, gamma=0.0, ends=100)
 
 
 def known_well(roadmap, count=12):

@@ -37,7 +37,7 @@ class MakeRoadmap(RobotOptions):
     """How many milestones."""
     k: Annotated[int, tyro.conf.arg(aliases=["-k"])] = 16
     """Each is joined to so many of the nearest ones that it can reach freely."""
-    gamma: float = 2.0
+    gamma: float = 4.0
     """Milestones are as dense as the chance of being free in random scenes to this power, >= 0."""
     tune: bool = False
     """Choose gamma by random problems for this arm in this cell: some times as long."""

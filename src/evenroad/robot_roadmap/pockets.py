@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from evenroad._arrays import Floats, Ints
+from evenroad._arrays import Bools, Floats, Ints
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene
 from evenroad.robot.kinematics import capsule_ends, link_poses
 from evenroad.robot_roadmap.chance import Surroundings
@@ -37,11 +37,21 @@ INSIDE = 0.7
 IN_ONE = 4
 """Ends in one pocket at most."""
 
+FIRST = 4096
+"""Configurations that each end is tried to be joined to: the first ones, wherever they are, so that what is seen from
+afar counts as well."""
+
 NEAR = 1500
-"""Configurations that each end is tried to be joined to: the nearest."""
+"""And the nearest of those that follow."""
+
+EARLY = 0.1
+"""How far along a motion it is looked at first: most that leave a pocket touch its walls at once."""
 
 STEP = 0.2
 """Of the motions that are tried; nothing is proved here [rad]."""
+
+BATCH = 64
+"""Pockets that are drawn at once."""
 
 TRIES = 40
 """Pockets for each end that is wanted, at most."""
@@ -90,40 +100,51 @@ def ends_in_pockets(
     around = Surroundings.of(robot, pool)
     tips = tips_of(robot, pool)
     body, radii = body_of(robot, pool)
+    bare, inside = replace(robot, pairs=()), ArmWorld(robot, cell, resolution=STEP)
     own_of: list[int] = []
     found: list[Ints] = []
-    for _ in range(TRIES * count if tips.shape[1] else 0):
-        if len(found) == count:
-            break
-        own, tip = int(rng.integers(len(pool))), int(rng.integers(tips.shape[1]))
-        pocket = pocket_around(tips[own, tip], around, rng)
-        if pocket.touched_by(body[own], radii):
-            continue
-        scene = replace(cell, name="pocket", obstacles=(*cell.obstacles, *pocket.walls()))
-        world = ArmWorld(robot, scene, resolution=STEP)
-        if not world.valid(pool[own : own + 1])[0]:
-            continue
-        others = np.flatnonzero(
-            (np.abs((tips[:, tip] - pocket.centre) @ pocket.turn) < INSIDE * pocket.half).all(axis=1)
-        )
-        others = rng.permutation(others[world.valid(pool[others])])[: IN_ONE - 1]
-        for end in np.unique(np.append(others, own))[: count - len(found)]:
-            own_of.append(int(end))
-            found.append(_seen(world, pool, scaled, int(end)))
-        progress(len(found) / count)
+    drawn = TRIES * count if tips.shape[1] else 0
+    while len(found) < count and drawn > 0:
+        owns, which = rng.integers(len(pool), size=BATCH), rng.integers(tips.shape[1], size=BATCH)
+        drawn -= BATCH
+        batch = pockets_around(tips[owns, which], around, rng)
+        for i in np.flatnonzero(~batch.touched_by(body[owns], radii)):
+            if len(found) == count:
+                break
+            own = int(owns[i])
+            # What the pool is free of already is not asked about again.
+            world = ArmWorld(bare, Scene("pocket", batch.walls(i)), resolution=STEP)
+            if not world.valid(pool[own : own + 1])[0]:
+                continue
+            others = np.flatnonzero(batch.holds(i, tips[:, which[i]]))
+            others = rng.permutation(others[world.valid(pool[others])])[: IN_ONE - 1]
+            first = np.flatnonzero(world.valid(pool[:FIRST]))
+            for end in np.unique(np.append(others, own))[: count - len(found)]:
+                own_of.append(int(end))
+                found.append(_seen(world, inside, pool, scaled, int(end), first))
+            progress(len(found) / count)
     if not found:
         return no_ends()
     return Seen(np.array(own_of), np.cumsum([0, *map(len, found)]), np.concatenate(found))
 
 
-def _seen(world: ArmWorld, pool: Floats, scaled: Floats, end: int) -> Ints:
-    """Return which of the nearest configurations a straight motion joins to an end, itself left out."""
-    squared = ((scaled - scaled[end]) ** 2).sum(axis=1)
-    squared[end] = np.inf
-    near = np.argpartition(squared, NEAR)[:NEAR] if len(pool) > NEAR else np.flatnonzero(squared < np.inf)
-    near = near[world.valid(pool[near])]
-    free = world.motion_valid(np.broadcast_to(pool[end], (len(near), pool.shape[1])), pool[near])
-    return near[free].astype(np.int64)
+def _seen(world: ArmWorld, inside: ArmWorld, pool: Floats, scaled: Floats, end: int, first: Ints) -> Ints:
+    """Return which configurations a straight motion joins to an end, itself left out: of the first ones and those near.
+
+    `world` has the pocket alone, `inside` robot and cell.
+    """
+    near = first
+    if len(pool) > FIRST:
+        squared = ((scaled[FIRST:] - scaled[end]) ** 2).sum(axis=1)
+        later = np.arange(len(squared)) if len(squared) <= NEAR else np.argpartition(squared, NEAR)[:NEAR]
+        later = later + FIRST
+        near = np.append(first, later[world.valid(pool[later])])
+    near = near[near != end]
+    start = np.broadcast_to(pool[end], (len(near), pool.shape[1]))
+    near = near[world.valid(world.space.interpolate(start, pool[near], EARLY))]
+    for checks in (world, inside):
+        near = near[checks.motion_valid(np.broadcast_to(pool[end], (len(near), pool.shape[1])), pool[near])]
+    return near.astype(np.int64)
 
 
 def tips_of(robot: Robot, pool: Floats) -> Floats:
@@ -144,8 +165,10 @@ def body_of(robot: Robot, pool: Floats) -> tuple[Floats, Floats]:
     return places.reshape(len(pool), -1, 3), np.repeat([each.radius for each in robot.capsules], ALONG)
 
 
-class Pocket(NamedTuple):
-    """A box without its side to -x: centre, (3,), axes, (3, 3), half extents, (3,), of its walls too, (5, 3) each."""
+class Pockets(NamedTuple):
+    """Boxes without their sides to -x: centres, (m, 3), axes, (m, 3, 3), half extents, (m, 3), places and half extents
+    of their walls, (m, 5, 3) each.
+    """
 
     centre: Floats
     turn: Floats
@@ -153,36 +176,52 @@ class Pocket(NamedTuple):
     places: Floats
     sizes: Floats
 
-    def touched_by(self, body: Floats, radii: Floats) -> bool:
-        """Say whether a wall is nearer to one of some places, (n, 3), than its radius: what costs no world."""
-        apart = np.abs(((body - self.centre) @ self.turn)[:, np.newaxis] - self.places) - self.sizes
-        apart = np.maximum(apart, 0.0, out=apart)
-        return bool((np.einsum("ijk,ijk->ij", apart, apart).min(axis=1) < radii * radii).any())
+    def touched_by(self, body: Floats, radii: Floats) -> Bools:
+        """Return of which pockets a wall is nearer to one of some places, (m, n, 3), than its radius, (n,): (m,).
 
-    def walls(self) -> tuple[Obstacle, ...]:
-        """Return the walls as obstacles."""
-        axes = tuple(self.turn.ravel().tolist())
+        What costs no world.
+        """
+        apart = np.einsum("mni,mij->mnj", body - self.centre[:, np.newaxis], self.turn)[:, :, np.newaxis]
+        apart = np.abs(apart - self.places[:, np.newaxis]) - self.sizes[:, np.newaxis]
+        apart = np.maximum(apart, 0.0, out=apart)
+        squared = np.einsum("mnwk,mnwk->mnw", apart, apart).min(axis=2)
+        touched: Bools = (squared < radii * radii).any(axis=1)
+        return touched
+
+    def holds(self, i: int, places: Floats) -> Bools:
+        """Return which places, (n, 3), are well inside of a pocket."""
+        inside: Bools = (np.abs((places - self.centre[i]) @ self.turn[i]) < INSIDE * self.half[i]).all(axis=1)
+        return inside
+
+    def walls(self, i: int) -> tuple[Obstacle, ...]:
+        """Return the walls of a pocket as obstacles."""
+        axes = tuple(self.turn[i].ravel().tolist())
         return tuple(
             Obstacle.of(
-                f"wall {i} of a pocket",
+                f"wall {number} of a pocket",
                 "box",
                 (2.0 * size).tolist(),
-                (self.centre + self.turn @ place).tolist(),
+                (self.centre[i] + self.turn[i] @ place).tolist(),
                 axes,
             )
-            for i, (place, size) in enumerate(zip(self.places, self.sizes, strict=True))
+            for number, (place, size) in enumerate(zip(self.places[i], self.sizes[i], strict=True))
         )
 
 
-def pocket_around(tip: Floats, around: Surroundings, rng: np.random.Generator) -> Pocket:
-    """Return a pocket around a tip."""
-    x, y, _ = tip - around.base
-    angle = np.arctan2(y, x) + rng.uniform(-TURNED, TURNED)
-    cosine, sine = np.cos(angle), np.sin(angle)
-    turn = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
-    if rng.random() < UPWARDS:
-        turn = turn @ np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
-    half = around.reach * rng.uniform(_LEAST, _MOST)
-    centre = tip - turn @ (half * rng.uniform(-0.5, 0.5, 3))
-    sizes = np.where(_SIDES == 0.0, half, WALL * around.reach)
-    return Pocket(centre, turn, half, _SIDES * half, sizes)
+def pockets_around(tips: Floats, around: Surroundings, rng: np.random.Generator) -> Pockets:
+    """Return a pocket around each tip, (m, 3)."""
+    x, y, _ = (tips - around.base).T
+    angle = np.arctan2(y, x) + rng.uniform(-TURNED, TURNED, len(tips))
+    turn = np.zeros((len(tips), 3, 3))
+    turn[:, 0, 0] = turn[:, 1, 1] = np.cos(angle)
+    turn[:, 1, 0] = np.sin(angle)
+    turn[:, 0, 1] = -turn[:, 1, 0]
+    turn[:, 2, 2] = 1.0
+    above = rng.random(len(tips)) < UPWARDS
+    turn[above] = turn[above] @ np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
+    half = around.reach * rng.uniform(_LEAST, _MOST, (len(tips), 3))
+    off = half * rng.uniform(-0.5, 0.5, (len(tips), 3))
+    centre = tips - np.einsum("mij,mj->mi", turn, off)
+    half_walls = half[:, np.newaxis]
+    sizes = np.where(_SIDES == 0.0, half_walls, WALL * around.reach)
+    return Pockets(centre, turn, half, _SIDES * half_walls, sizes)

@@ -12,26 +12,26 @@ from evenroad.errors import InvalidValue
 from evenroad.points import draw
 from evenroad.robot import ArmWorld
 from evenroad.robot_roadmap.chance import chance_of_freedom
-from evenroad.robot_roadmap.pockets import Seen, ends_in_pockets
+from evenroad.robot_roadmap.pockets import FIRST, Seen, ends_in_pockets
 from evenroad.robot_roadmap.spread import displacement_weights, spread_order
 from evenroad.robot_roadmap.turns import TURN, OneTurn
 
 CHOICE = 16
-"""Free configurations that one milestone is chosen from."""
+"""Free configurations that one milestone is chosen from; of few milestones FIRST in all."""
 
 MOST_DRAWN = 1 << 20
 """Where fewer than the wanted ones are free among so many, the robot is said to be hardly ever free."""
 
-GAMMA = 2.0
+GAMMA = 4.0
 """Power of the chance of being free that milestones are as dense as, before the ends count."""
 
-ENDS = 1500
+ENDS = 3000
 """Ends in pockets at random that milestones learn from."""
 
 SCENES = 400
 """Random scenes by which the chance of being free is measured."""
 
-FIRST = 1500
+MEASURED = 1500
 """Configurations that the weights of the metric are measured on."""
 
 
@@ -65,8 +65,8 @@ def known_of(
     """Find out what recipes for n milestones need; the streams draw pool, scenes and pockets."""
     pool_rng, scene_rng, pocket_rng = streams
     progress("drawing configurations", 0.0)
-    pool = _free_pool(world, one, CHOICE * n, pool_rng)
-    weights = displacement_weights(world.robot, pool[:FIRST])
+    pool = _free_pool(world, one, max(CHOICE * n, FIRST), pool_rng)
+    weights = displacement_weights(world.robot, pool[:MEASURED])
     chance = np.ones(len(pool))
     if any(recipe.gamma > 0.0 for recipe in recipes):
         chance = chance_of_freedom(

@@ -14,9 +14,8 @@ STEP = 1e-4
 LEAST_WEIGHT = 0.01
 """Of the joint that moves the body most: what a joint that moves nothing counts."""
 
-
-OFTEN = 0.7
-"""What an end counts after each point that it sees, as a share of before."""
+SERVED = 1.5
+"""An end that sees m of the chosen points counts (1 + m)^-SERVED: soon little, but never nothing."""
 
 LEAST_SEEN = 1e-3
 """Share of ends that every point counts to be seen by at least, so that spreading goes on when all are served."""
@@ -58,7 +57,7 @@ def spread_order(
     distance to those before and its preference, so that spacing is in proportion to 1 / preference.  Axes repeat after
     `period`, (dim,); inf where they do not.  Where end e sees the points ``which[first[e]:first[e + 1]]``, the
     preference is also in proportion to LEAST_SEEN plus the share of ends that see a point, of which one counts
-    OFTEN^m as much after m of the points it sees were chosen.
+    (1 + m)^-SERVED as much after m of the points it sees were chosen.
     """
     return _order(points, period, preference, count, first, which)
 
@@ -67,7 +66,7 @@ def spread_order(
 def _order(points, period, preference, count, first, which):  # type: ignore[no-untyped-def]
     n, dim = points.shape
     ends = max(len(first) - 1, 1)
-    seeing, weight = np.zeros(n + 1, dtype=np.int64), np.ones(ends)
+    seeing, times = np.zeros(n + 1, dtype=np.int64), np.ones(ends)
     use = np.full(n, LEAST_SEEN)
     for i in which:
         seeing[i + 1] += 1
@@ -84,8 +83,8 @@ def _order(points, period, preference, count, first, which):  # type: ignore[no-
     for i in range(count):
         order[i] = chosen
         for e in by_point[seeing[chosen] : seeing[chosen + 1]]:
-            lost = (1.0 - OFTEN) * weight[e]
-            weight[e] -= lost
+            lost = times[e] ** -SERVED - (times[e] + 1.0) ** -SERVED
+            times[e] += 1.0
             for row in which[first[e] : first[e + 1]]:
                 use[row] -= lost / ends
         best, following = -1.0, 0

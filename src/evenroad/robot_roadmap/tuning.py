@@ -13,7 +13,7 @@ from evenroad._arrays import Bools, Floats
 from evenroad.robot import ArmWorld, Scene
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
 from evenroad.robot_roadmap.chance import Surroundings, random_scene
-from evenroad.robot_roadmap.pockets import body_of, links_of, pocket_around, tips_of
+from evenroad.robot_roadmap.pockets import body_of, links_of, pockets_around, tips_of
 from evenroad.robot_roadmap.recipe import Recipe
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
 from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
@@ -66,12 +66,12 @@ def random_problems(few: RobotRoadmap, rng: np.random.Generator) -> Iterator[Ran
         ends = rng.integers(len(places), size=(2, PAIRS))
         things = random_scene(*around, rng).obstacles
         if drawn % 2 and tips.shape[1]:
-            for goal in ends[1]:
-                pocket = pocket_around(tips[goal, rng.integers(tips.shape[1])], around, rng)
-                if not pocket.touched_by(body[goal], radii):
-                    break
-            ends[1] = goal
-            things += pocket.walls()
+            goals = ends[1]
+            around_goals = pockets_around(tips[goals, rng.integers(tips.shape[1], size=PAIRS)], around, rng)
+            # The last one, too, where all are touched.
+            clear = np.append(np.flatnonzero(~around_goals.touched_by(body[goals], radii)), PAIRS - 1)[0]
+            ends[1] = goals[clear]
+            things += around_goals.walls(clear)
         things = tuple(
             replace(each, name=f"{number} of a random problem") for number, each in enumerate(things)
         )
