@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import argparse
 import csv
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
@@ -189,23 +189,8 @@ class Gains:
         return float(np.mean(self.room[key])), gains.mean(), gains.std(ddof=1) / np.sqrt(len(gains))
 
 
-def unexplained(gains: Gains, of: Callable[[tuple[str, str, float]], float]) -> float:
-    """Return how far the gains of an arm are from a parabola through those of all others, root mean square [points].
-
-    The parabola is over what `of` tells of a rule and its value.
-    """
-    keys = [key for key in gains.by_problem if key[1] != "cut"]
-    x, y = np.array([of(key) for key in keys]), np.array([gains.of(key)[1] for key in keys])
-    arms = np.array([key[0] for key in keys])
-    apart = [
-        y[arms == arm] - np.polyval(np.polyfit(x[arms != arm], y[arms != arm], 2), x[arms == arm])
-        for arm in gains.arms
-    ]
-    return float(np.sqrt(np.mean(np.concatenate(apart) ** 2)))
-
-
 def table(gains: Gains) -> None:
-    """Print gains by arm and value with the room that is left, averages over bins of room, and what tells them best."""
+    """Print gains by arm and value with the room that is left, and averages over bins of room."""
     for rule, values in RULES.items():
         print(f"\n{rule}: gain (room)\n| arm | deviation | " + " | ".join(f"{v:g}" for v in values) + " |")
         print("|---|--:|" + "--:|" * len(values))
@@ -228,12 +213,6 @@ def table(gains: Gains) -> None:
             error = all_of.std(ddof=1) / np.sqrt(len(all_of)) if by_arm else 0.0
             cells.append(f"{all_of.mean():+.1f} ± {error:.1f} ({len(by_arm)} arms)" if by_arm else "-")
         print(f"| {low:g} .. {high:g} | " + " | ".join(cells) + " |")
-    for title, of in {
-        "gamma": lambda key: np.log(key[2]),
-        "room": lambda key: np.log(gains.of(key)[0]),
-        "gamma times joints": lambda key: np.log(key[2] * len(arm_named(key[0]).group)),
-    }.items():
-        print(f"the others' parabola over {title}: {unexplained(gains, of):.2f} points off")
 
 
 def picture(gains: Gains, out: Path) -> None:

@@ -1,7 +1,8 @@
 """Recipes of roadmaps on the suite's problems, paired with the control.
 
-    python -m benchmarks.arm_recipes --robot ur5-5 -n 256 --problems 60 --draws 2 --recipes 0:0 2:0 0:1500 2:1500
-    python -m benchmarks.arm_recipes --robot scara --stream report --recipes 2:1500 tune --against 2:1500
+    python -m benchmarks.arm_recipes --robot ur5-5 -n 256 --problems 60 --draws 2 --recipes 0:0 4:0 0:3000 4:3000
+    python -m benchmarks.arm_recipes --robot scara --stream report --recipes 4:3000 tune --against 4:3000
+    python -m benchmarks.arm_recipes -n 64 --recipes 4:3000 --afar 0
 
 A recipe is GAMMA:ENDS, as `evenroad.make_roadmap` takes them, or `tune`, which chooses them; the control are the first
 scrambled Sobol points that are free of robot and cell, in the same metric.  Constants are chosen on the stream `tune`.
@@ -23,6 +24,7 @@ from evenroad.research.arms.roadmaps import cell_of, first_free
 from evenroad.research.arms.robots import ARMS, arm_named
 from evenroad.research.arms.scenes import GENERATORS
 from evenroad.robot import with_group
+from evenroad.robot_roadmap import pockets
 from evenroad.robot_roadmap.make import joined, make_roadmap
 from evenroad.robot_roadmap.pockets import links_of
 from evenroad.robot_roadmap.recipe import Recipe, chosen, known_of
@@ -47,9 +49,13 @@ def main() -> None:
     parser.add_argument("--problems", type=int, default=60, help="of each generator")
     parser.add_argument("--draws", type=int, default=2)
     parser.add_argument("--stream", default="tune", choices=["tune", "report"])
-    parser.add_argument("--recipes", nargs="+", default=["0:0", "2:0", "0:1500", "2:1500"])
+    parser.add_argument("--recipes", nargs="+", default=["0:0", "4:0", "0:3000", "4:3000"])
+    parser.add_argument(
+        "--afar", type=int, default=pockets.FIRST, help="configurations that ends are tried with, however far"
+    )
     parser.add_argument("--against", default="control", help="the recipe that the others are compared with")
     options = parser.parse_args()
+    pockets.FIRST = options.afar
     arm = arm_named(options.robot)
     cell, links, n = cell_of(arm), options.links or links_of(options.n), options.n
     found = [

@@ -239,7 +239,7 @@ def test_a_search_without_room_begins_again_with_more(roadmap, monkeypatch):
         prepare(*arguments, **more)
         rooms.append(arguments[-1])
         if arguments[-1] < 4:
-            known._graph.desk[ENTRIES] = 60
+            known._graph.desk[ENTRIES] = 50
 
     monkeypatch.setattr(known._graph, "prepare", little)
     found = known.connect(start, goal)
