@@ -108,7 +108,7 @@ def ends_in_pockets(
         owns, which = rng.integers(len(pool), size=BATCH), rng.integers(tips.shape[1], size=BATCH)
         drawn -= BATCH
         batch = pockets_around(tips[owns, which], around, rng)
-        for i in np.flatnonzero(~batch.touched_by(body[owns], radii)):
+        for i in np.flatnonzero(~batch.touched_by(body[owns], radii)).tolist():
             if len(found) == count:
                 break
             own = int(owns[i])
