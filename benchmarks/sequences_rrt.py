@@ -1,7 +1,6 @@
 """NeuroLDS's published comparison again: RRT in a chain of four joints, its draws taken from sequences.
 
-    python -m benchmarks.neural_sequence --out neural_star.npz    # the peer, trained here, on its own discrepancy
-    python -m benchmarks.neural_sequence --measure hickernell --steps 1500 2500 --out neural_hickernell.npz
+    python -m benchmarks.neural_sequence --out neural_star.npz    # the peer, trained here
     python -m benchmarks.sequences_rrt calibrate                  # how many draws; tuning problems
     python -m benchmarks.sequences_rrt plan                       # docs/data/sequences_rrt.csv
     python -m benchmarks.sequences_rrt variants                   # other ways to fill in what is not published
@@ -58,6 +57,7 @@ COUNTS = {
 }
 """Setting -> width -> draws; chosen with :func:`calibrate`."""
 
+LUCK = ("main", "only the tunnel is moved")
 DATA = Path("docs/data")
 
 
@@ -119,8 +119,6 @@ METHODS = (
     "greedy, shifted",
     "neural star",
     "neural star, shifted",
-    "neural hickernell",
-    "neural hickernell, shifted",
 )
 
 
@@ -204,34 +202,46 @@ def compared(
     return rows
 
 
-def needed_for(goal: float, draws: list[Ints], resamples: int = 400) -> tuple[float, float, float]:
-    """Return how many draws solve `goal` [%] on average over the widths, and the 95 % interval over problems."""
-    rng = np.random.default_rng(0)
-    found = []
-    for i in range(resamples + 1):
-        chosen = rng.integers(len(draws[0]), size=len(draws[0])) if i else slice(None)
-        pooled = np.concatenate([each[chosen] for each in draws])
-        found.append(float(np.quantile(pooled, goal / 100.0, method="inverted_cdf")))
-    return found[0], *(float(each) for each in np.percentile(found[1:], (2.5, 97.5)))
+def needed(runs: Runs, names: tuple[str, ...], like: str = "neural star, shifted") -> list[dict[str, object]]:
+    """Print and return the draws with which methods solve, over both widths, what the networks' points solve.
+
+    With 95 % intervals over problems (bootstrap) of their ratio to the networks' own.
+    """
+    rng, rows = np.random.default_rng(0), []
+    draws = {name: np.array([runs.of("main", name, width) for width in WIDTHS]) for name in names}
+    chosen = [np.arange(runs.problems), *rng.integers(runs.problems, size=(400, runs.problems))]
+    found: dict[str, list[float]] = {name: [] for name in names}
+    for each in chosen:
+        goal = float((draws[like][:, each] <= COUNTS["main"][WIDTHS[0]]).mean())
+        for name in names:
+            found[name].append(float(np.quantile(draws[name][:, each], goal, method="inverted_cdf")))
+    for name in names:
+        ratios = np.array(found[name]) / np.array(found[like])
+        low, high = np.percentile(ratios[1:], (2.5, 97.5))
+        row: dict[str, object] = {"method": name, "draws": int(found[name][0]), "ratio": round(ratios[0], 3)}
+        rows.append(row | {"low": round(float(low), 3), "high": round(float(high), 3)})
+        print(*rows[-1].values(), flush=True)
+    return rows
 
 
-def luck(sequences: int = 30, problems: int = 160) -> list[dict[str, object]]:
+def luck(label: str, sequences: int = 30, problems: int = 160) -> list[dict[str, object]]:
     """Print and return how far sequences of one kind, Halton's under one shift each, are apart in success.
 
     Then two groups of ten of them are drawn, again and again, as if they were two methods.
     """
-    rng, rows = np.random.default_rng(3), []
+    rng, rows, setting = np.random.default_rng(3), [], VARIANTS[label]
     shifts = np.random.default_rng(2).random((sequences, JOINTS))
     for width in WIDTHS:
-        tasks = [problem(width, i, int(Stream.REPORTING), MAIN) for i in range(problems)]
+        tasks = [problem(width, i, int(Stream.REPORTING), setting) for i in range(problems)]
         success = np.empty(sequences)
         for i, shift in enumerate(shifts):
-            points = (fixed("halton", 0)[: COUNTS["main"][width]] + shift) % 1.0
-            success[i] = 100.0 * np.mean([grow(points, task, MAIN).draws > 0 for task in tasks])
+            points = (fixed("halton", 0)[: COUNTS[label][width]] + shift) % 1.0
+            success[i] = 100.0 * np.mean([grow(points, task, setting).draws > 0 for task in tasks])
         groups = np.array([rng.permutation(success)[:20].reshape(2, 10).mean(axis=1) for _ in range(20000)])
         apart = np.abs(groups[:, 0] - groups[:, 1])
         gain = PUBLISHED[width][0] - PUBLISHED[width][1]
-        row: dict[str, object] = {"width": width, "sequences": sequences, "problems": problems}
+        row: dict[str, object] = {"setting": label, "width": width, "draws": COUNTS[label][width]}
+        row |= {"sequences": sequences, "problems": problems}
         row |= {"mean": round(success.mean(), 1), "deviation": round(success.std(ddof=1), 1)}
         row |= {"least": round(success.min(), 1), "most": round(success.max(), 1)}
         row |= {
@@ -243,7 +253,7 @@ def luck(sequences: int = 30, problems: int = 160) -> list[dict[str, object]]:
     return rows
 
 
-LENGTHS = (16, 24, 32, 48, 64, 100, 128, 181, 256, 362, 512, 660, 724, 1024)
+LENGTHS = (16, 24, 32, 48, 64, 100, 128, 181, 256, 362, 512, 660, 724, 1000)
 
 
 def discrepancy() -> list[dict[str, object]]:
@@ -336,7 +346,7 @@ def picture(runs: Runs, out: Path) -> None:
         place.axvline(COUNTS["main"][width], color="black", lw=0.6)
         place.set(xlim=(0, LONGEST), ylim=(0, 100), xlabel="draws", title=f"solved [%], width {width:.2f}")
         place.grid(alpha=0.3)
-    axes[0, 2].legend(fontsize=7, ncols=2, loc="upper left")
+    axes[1, 2].legend(fontsize=7, loc="upper left")
     figure.savefig("docs/sequences_rrt.png")
 
 
@@ -367,11 +377,12 @@ def main() -> None:
         calibrate(options.problems)
     elif options.part == "plan":
         write(compared(runs, "main", names, COUNTS["main"]), options.out / "sequences_rrt.csv")
+        write(needed(runs, names), options.out / "sequences_rrt_draws.csv")
     elif options.part == "variants":
         rows = [row for label in VARIANTS for row in compared(runs, label, names, COUNTS[label])]
         write(rows, options.out / "sequences_rrt_variants.csv")
     elif options.part == "luck":
-        write(luck(), options.out / "sequences_rrt_luck.csv")
+        write([row for label in LUCK for row in luck(label)], options.out / "sequences_rrt_luck.csv")
     elif options.part == "discrepancy":
         write(discrepancy(), options.out / "sequences_neural.csv")
     else:

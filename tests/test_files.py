@@ -84,13 +84,16 @@ def test_whatever_is_read_the_error_is_ours(tmp_path, what, reader):
 
 @pytest.mark.parametrize(
     ("text", "says"),
-    [("a: [1, 2\n", "is not YAML: line 2, column 1: "), ("a: 1\n b: 2", "is not YAML: line 2, column 3: ")],
+    [
+        ("a: [1, 2\n", "line 2, column 1: "),
+        ("a: 1\n b: 2", "line 2, column 3: "),
+    ],
 )
 def test_yaml_that_does_not_parse_is_said_with_its_place(tmp_path, text, says):
     (tmp_path / "a.yaml").write_text(text)
     with pytest.raises(yaml.YAMLError):
         yaml.safe_load(text)
-    with pytest.raises(BrokenFile, match=says):
+    with pytest.raises(BrokenFile, match=f"is not YAML, as a scene is: {says}"):
         read_mapping(tmp_path / "a.yaml", "scene")
 
 
@@ -99,7 +102,7 @@ def test_json_that_does_not_parse_is_said_with_its_place(tmp_path, text, place):
     (tmp_path / "a.json").write_text(text)
     with pytest.raises(json.JSONDecodeError):
         json.loads(text)
-    with pytest.raises(BrokenFile, match=f"a.json is not JSON: {place}"):
+    with pytest.raises(BrokenFile, match=f"a.json is not JSON, as a plan is: {place}"):
         read_json_file(tmp_path / "a.json", "plan")
 
 

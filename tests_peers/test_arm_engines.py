@@ -10,7 +10,7 @@ from tests.robot.mesh_arms import FORK, LONG, write_fork_arm
 from tests.robot.oracle import clearance, obstacle_distance
 
 from evenroad.errors import BrokenFile, InvalidValue
-from evenroad.geometry import Mesh
+from evenroad.geometry import Mesh, Pose, TriangleMesh
 from evenroad.robot import link_poses, load_robot
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.reference.coal_world import CoalWorld, original_shapes
@@ -91,6 +91,30 @@ def test_no_shapes_are_no_free_pass(engine):
 def test_coal_names_what_touches():
     robot, scene = CASES["ur5"]
     assert CoalWorld(robot, scene).explain(np.array([0.0, 0.6, 0.0, 0.0, 0.0])).endswith("touches 'table'")
+
+
+@pytest.mark.parametrize(("robot", "scene"), CASES.values(), ids=CASES)
+def test_no_contact_of_coal_is_missed_by_the_boxes_around_bodies(robot, scene, monkeypatch):
+    turned = Pose((0.3, 0.2, 0.2), (0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6))
+    mesh = replace(tetrahedron(0.15), pose=turned)
+    scene = replace(scene, obstacles=(*scene.obstacles, Obstacle("surface", mesh)))
+    world = CoalWorld(robot, scene)
+    q = world.space.from_cube(np.random.default_rng(2).random((150, world.space.dim)))
+    found = [world.contacts(each) for each in q]
+    assert sum(map(len, found)) > 50
+    assert any("surface" in pair for contacts in found for pair in contacts)
+    skipped = 1.0 - world._near(world._poses(q)).mean()
+    assert skipped > 0.5
+    monkeypatch.setattr(
+        CoalWorld, "_near", lambda self, poses: np.full((len(self._tests), poses.shape[1]), True)
+    )
+    assert [world.contacts(each) for each in q] == found
+
+
+def tetrahedron(half):
+    """A tetrahedron."""
+    corners = half * np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
+    return Mesh(TriangleMesh(corners, np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]), "four"))
 
 
 @pytest.fixture

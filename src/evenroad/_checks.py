@@ -76,7 +76,8 @@ def require_extra(module: str, extra: str, what: str) -> Any:
     try:
         return import_module(module)
     except ImportError as error:
-        raise NotAvailable(f"{what} needs the extra: pip install 'evenroad[{extra}]' ({error})") from error
+        how = f"pip install 'evenroad[{extra}]', in a clone '.[{extra}]'"
+        raise NotAvailable(f"{what} needs the extra: {how} ({error})") from error
 
 
 def as_batch(name: str, values: object, dim: int) -> Floats:

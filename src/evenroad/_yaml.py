@@ -35,7 +35,7 @@ def read_mapping(path: Path, what: str) -> dict[str, Any]:
     except OSError as error:
         raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
     except (yaml.YAMLError, ValueError, LookupError, AttributeError, RecursionError) as error:
-        raise not_a("YAML", path, _why(error)) from error
+        raise not_a(f"YAML, as a {what} is", path, _why(error)) from error
     if not isinstance(document, dict):
         raise not_a(f"a {what}", path, "it must consist of 'key: value' lines")
     return {str(key): value for key, value in document.items()}

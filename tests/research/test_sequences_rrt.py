@@ -120,26 +120,28 @@ def test_the_goal_is_drawn_when_the_setting_says_so():
     assert 0 < grow(points, task, biased).draws < grow(points, task, SETTING).draws
 
 
-def brute_mean(points):
-    found = []
+def brute_mean(points, top=1.0):
+    """Mean L2 discrepancy of the beginnings; `top` 1 is the star discrepancy, 2 Hickernell's."""
+    found, d = [], points.shape[1]
     for n in range(2, len(points) + 1):
         x = points[:n]
-        linear = np.prod((1.0 - x * x) / 2.0, axis=1).sum()
-        pairs = np.prod(1.0 - np.maximum(x[:, None], x[None]), axis=2).sum()
-        found.append(math.sqrt(3.0 ** -x.shape[1] - 2.0 * linear / n + pairs / n**2))
+        linear = np.prod((2.0 * top - 1.0 - x * x) / 2.0, axis=1).sum()
+        pairs = np.prod(top - np.maximum(x[:, None], x[None]), axis=2).sum()
+        found.append(math.sqrt((top - 2.0 / 3.0) ** d - 2.0 * linear / n + pairs / n**2))
     return np.mean(found)
 
 
-def test_the_networks_objective_is_the_mean_star_discrepancy_and_its_slope():
+@pytest.mark.parametrize(("measure", "top"), [("star", 1.0), ("hickernell", 2.0)])
+def test_the_networks_objective_is_the_mean_discrepancy_and_its_slope(measure, top):
     neural = pytest.importorskip("benchmarks.neural_sequence", exc_type=ImportError)
     points = np.random.default_rng(1).random((20, JOINTS))
-    value, gradient = neural.mean_prefix(points)
-    assert value == pytest.approx(brute_mean(points), rel=1e-12)
+    value, gradient = neural.mean_prefix(points, measure)
+    assert value == pytest.approx(brute_mean(points, top), rel=1e-12)
     for row, column in ((0, 0), (7, 2), (19, 3)):
         above, below = points.copy(), points.copy()
         above[row, column] += 1e-6
         below[row, column] -= 1e-6
-        slope = (brute_mean(above) - brute_mean(below)) / 2e-6
+        slope = (brute_mean(above, top) - brute_mean(below, top)) / 2e-6
         assert gradient[row, column] == pytest.approx(slope, rel=1e-5, abs=1e-9)
 
 

@@ -5,11 +5,11 @@ import pytest
 from scipy.spatial import ConvexHull
 
 from evenroad.geometry import Pose, TriangleMesh
-from evenroad.geometry.shapes import Capsule, Mesh
+from evenroad.geometry.shapes import Capsule, Mesh, PointCloud
 from evenroad.robot import ArmWorld, Robot, Scene
 from evenroad.robot.joint import Joint
 from evenroad.robot.scene import Obstacle
-from evenroad.robot_roadmap.own_shapes import OwnShapesWorld, is_inside
+from evenroad.robot_roadmap.own_shapes import OwnShapesWorld, SolidMeshes, is_inside
 from tests.robot.kernel_arms import STRAIGHT, Z
 
 
@@ -26,13 +26,17 @@ def block(half, away=0.0, sound=True):
     return TriangleMesh(corners + np.array([away, 0.0, 0.0]), triangles, "block")
 
 
-def world_with(*obstacles):
+def world_with(*obstacles, pairs=()):
     """A block on a turning arm, half a metre out, in a capsule that is larger."""
     pytest.importorskip("coal")
     joint = Joint("joint", "revolute", "base", "link", (0, 0, 0), STRAIGHT, Z, -3.0, 3.0)
     capsule = Capsule((0.4, 0.0, 0.0), (0.6, 0.0, 0.0), 0.18, link="link")
-    robot = Robot("arm", ("base", "link"), (joint,), (capsule,), (), ("joint",))
+    fixed = Capsule((0.3, 0.0, 0.0), (0.3, 0.0, 0.1), 0.05, link="base")
+    capsules = (fixed, capsule) if pairs else (capsule,)
+    robot = Robot("arm", ("base", "link"), (joint,), capsules, pairs, ("joint",))
     shapes = [Mesh(block(0.1, 0.5), link="link")]
+    if pairs:
+        shapes.append(Mesh(block(0.02, 0.3), link="base"))
     return OwnShapesWorld(ArmWorld(robot, Scene("scene", obstacles)), shapes)
 
 
@@ -52,6 +56,52 @@ def test_what_is_inside_of_a_mesh_is_not_free(obstacle):
     assert not world.motion_valid(inside, inside + 0.001)[0]
     assert "touches 'ball'" in world.explain(inside[0])
     assert world.valid(outside)[0]
+
+
+def test_what_is_free_touches_nothing_and_the_other_way_round():
+    rng, near = np.random.default_rng(1), 0
+    for away, radius in rng.uniform([0.3, 0.005], [0.75, 0.06], (40, 2)):
+        height = rng.uniform(-0.2, 0.2)
+        world = world_with(Obstacle.of("ball", "sphere", (radius,), (away, 0.0, height)))
+        q = rng.uniform(-0.8, 0.8, (60, 1))
+        # Where the ball is, seen from the block, which is turned about the origin.
+        place = np.column_stack([away * np.cos(q), -away * np.sin(q), np.full(len(q), height)])
+        beyond = np.maximum(np.abs(place - [0.5, 0.0, 0.0]) - 0.1, 0.0)
+        apart = np.linalg.norm(beyond, axis=1) - radius
+        sure = np.abs(apart) > 1e-6
+        near += np.count_nonzero(np.abs(apart) < 0.01)
+        np.testing.assert_array_equal(world.valid(q)[sure], apart[sure] > 0.0)
+        free = world.motion_valid(q[:-1], q[1:])
+        assert not (free & ~((apart[:-1] > 0.0) & (apart[1:] > 0.0)))[sure[:-1] & sure[1:]].any()
+    assert near > 100
+
+
+def test_coal_is_asked_only_where_the_capsules_touch(monkeypatch):
+    world = world_with(Obstacle.of("ball", "sphere", (0.03,), (0.5, 0.14, 0.0)))
+    states = []
+    free = SolidMeshes._free
+    monkeypatch.setattr(SolidMeshes, "_free", lambda self, q: states.append(q) or free(self, q))
+    assert world.motion_valid(np.array([[-1.5]]), np.zeros((1, 1)))[0]
+    asked = np.concatenate(states)
+    assert len(asked) > 5
+    assert not world.capsules.valid(asked).any()
+    states.clear()
+    assert world.motion_proved(np.array([[-1.5]]), np.array([[-1.0]]))[0]
+    assert world.motion_valid(np.array([[-1.5]]), np.array([[-1.0]]))[0]
+    assert not states
+
+
+def test_clouds_are_asked_about_what_the_shapes_say_of_the_robot_itself():
+    """A cloud in the scene does not bring back that the capsules of two links touch."""
+    cloud = Obstacle("dust", PointCloud(np.array([[0.0, 0.0, 3.0]]), radius=0.01))
+    world = world_with(cloud, pairs=(("base", "link"),))
+    q = np.zeros((1, 1))
+    assert not world.capsules.valid(q)[0]
+    assert world.valid(q)[0]
+    assert world.motion_valid(q, q + 0.1)[0]
+    near = world_with(Obstacle("dust", PointCloud(np.array([[0.5, 0.0, 0.0]]), radius=0.01)))
+    assert not near.valid(q)[0]
+    assert "dust" in near.explain(q[0])
 
 
 def test_what_only_the_capsule_touches_is_free():

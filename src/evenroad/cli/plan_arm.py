@@ -51,7 +51,8 @@ def plan_arm(plan: PlanArm) -> int:
 
     Links without a body are named, with a warning where the URDF draws them: their collisions go unseen.
     """
-    budget, asked_goals = chosen_budget(plan), _goals(plan)
+    # All that can be refused at once is, before anything is compiled.
+    budget, asked_goals, scene = chosen_budget(plan), _goals(plan), load_scene(plan.world)
     kept = None if plan.roadmap is None else kept_roadmap(plan)
     ways = _ways(plan)
     if not wants_points(plan) and kept is None:
@@ -61,7 +62,7 @@ def plan_arm(plan: PlanArm) -> int:
     assert robot is not None
     query = arm_query(
         robot,
-        plan.world if kept is None else day_and_all(kept.cell, load_scene(plan.world))[1],
+        scene if kept is None else day_and_all(kept.cell, scene)[1],
         " ".join(plan.start),
         asked_goals,
         resolution=plan.resolution,

@@ -128,15 +128,20 @@ class SceneRoadmap:
             # With verdicts of its own: what blocks the capsules need not block the shapes.
             self._own = SceneRoadmap(roadmap, scene, robot)
             self._own._asked = OwnShapesWorld(self.world, shapes), OwnShapesWorld(self._day, shapes)
+            self._own._make_ready()
         self._graph = roadmap.graph.within(np.array(self.world.space.low), np.array(self.world.space.high))
         self._wraps = bool(np.any(self.world.space.wrapping))
         self.learned: list[Floats] = []
-        if self.world.backend not in _ready:
-            # Compiled, or loaded, before a clock runs; nothing is checked but the ends.
+        self._make_ready()
+
+    def _make_ready(self) -> None:
+        """Compile, or load, what a query takes before a clock runs; nothing is checked but the ends."""
+        backend, roadmap = self._asked[0].backend, self.roadmap
+        if backend not in _ready:
             self._ask(roadmap.milestones[0], roadmap.milestones[:1], 0, math.inf, 1)
             self._graph.learn(roadmap.milestones[:0])
             self._graph.around(roadmap.weights, 0.0, 1)
-            _ready.add(self.world.backend)
+            _ready.add(backend)
 
     def connect(
         self,
@@ -252,14 +257,14 @@ class SceneRoadmap:
             asked = self._ask(first, goals[attempt.goals], *limits, links)
             attempt.motions_checked = asked.motions
         connection = Connection(asked.path, asked.goal, self._size, asked.milestones, asked.motions)
-        if asked.goal < 0 and trees and attempt.left() is not None:
+        if asked.goal < 0 and follow and attempt.left() is not None:
             connection = self._by_trees(attempt, asked)
         if connection.goal >= 0:
             result = connected(attempt, connection)
             assert result.path is not None
             return replace(result, proof=self._proof(result.path))
         failed = gave_up(attempt, connection)
-        if not trees:
+        if not trees or (not follow and asked.ended != SPENT):
             text = f"the roadmap of {self._size} milestones does not lead from start to goal today"
             failed = replace(failed, status=Status.NOT_CONNECTED, message=text)
         return with_reasons(self._asked[0], failed)

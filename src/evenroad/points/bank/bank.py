@@ -109,7 +109,7 @@ def _file(folder: Path, family: str, n: int, d: int) -> Path:
             return large
     raise NotAvailable(
         f"the {family} sets of n={n} in d={d} are in the package evenroad-sets, which is not installed:"
-        " pip install evenroad-sets"
+        " pip install evenroad-sets, in a clone ./sets"
     )
 
 
