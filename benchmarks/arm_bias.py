@@ -1,7 +1,7 @@
 """Why a bias by the chance of being free gains or loses: how much room it leaves, whatever the number of joints.
 
-    python -m benchmarks.arm_bias --problems 30 --draws 2 --out docs/data/arm_bias.csv
-    python -m benchmarks.arm_bias --table docs/data/arm_bias.csv --picture docs/arm_bias.png
+    python -m benchmarks.arm_bias --problems 30 --draws 2 --out arm_bias.csv
+    python -m benchmarks.arm_bias --table arm_bias.csv --picture docs/arm_bias.png
 
 Six arms: a UR5 of five joints and the same with a roll of its upper arm put in, which makes it redundant; our arm of
 seven, with its redundant joint held, with its last two held, and with its rolls half as wide.  256 milestones are
@@ -238,6 +238,11 @@ def picture(gains: Gains, out: Path) -> None:
     ):
         panel.axhline(0.0, color="0.7", linewidth=0.8)
         panel.set(xscale="log", xlabel=label)
+        panel.minorticks_off()
+    for panel, ticks in zip(
+        panels, ((0.5, 1, 2, 4, 8, 16), (0.01, 0.03, 0.1, 0.3, 1), (0.04, 0.1, 0.3, 0.6)), strict=True
+    ):
+        panel.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     panels[0].set_ylabel("gain over spacing alone [%]")
     panels[0].legend(fontsize=6)
     figure.savefig(out, dpi=110)
@@ -251,7 +256,7 @@ def main() -> None:
     parser.add_argument("--problems", type=int, default=0, help="of each generator")
     parser.add_argument("--draws", type=int, default=3)
     parser.add_argument("--arms", nargs="+", default=list(NAMES), choices=list(NAMES))
-    parser.add_argument("--out", type=Path, default=Path("docs/data/arm_bias.csv"))
+    parser.add_argument("--out", type=Path, default=Path("arm_bias.csv"))
     parser.add_argument("--table", type=Path)
     parser.add_argument("--picture", type=Path)
     options = parser.parse_args()

@@ -71,7 +71,7 @@ def random_problems(few: RobotRoadmap, rng: np.random.Generator) -> Iterator[Ran
             # The last one, too, where all are touched.
             clear = np.append(np.flatnonzero(~around_goals.touched_by(body[goals], radii)), PAIRS - 1)[0]
             ends[1] = goals[clear]
-            things += around_goals.walls(clear)
+            things += around_goals.walls(int(clear))
         things = tuple(
             replace(each, name=f"{number} of a random problem") for number, each in enumerate(things)
         )
