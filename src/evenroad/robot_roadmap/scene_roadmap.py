@@ -49,7 +49,7 @@ TRIED_LINKS, TRIED_MOTIONS = 40, 90
 """Where trees may follow, so many links of each end are tried, and so many motions: trees find ways out of narrow
 places with fewer checks than long links do."""
 
-PAIRS, CUTS, BATCHES, LONG_WAY = 16, 32, 100, 10
+SLIDES, CUTS, BATCHES = 48, 8, 250
 """What a path along the roadmap is shortened with, half of the work on trees' paths for half a percent of length, and
 twice that from so many waypoints on: those ways out led round about."""
 
@@ -272,9 +272,8 @@ class SceneRoadmap:
         )
         seconds = {"search": found - began}
         if shorter:
-            work = 2 if len(path) >= LONG_WAY else 1
             path, counts["shortcut_motions"] = shorten(
-                world, path, pairs=work * PAIRS, cuts=work * CUTS, batches=work * BATCHES
+                world, path, cuts=CUTS, batches=BATCHES, slides=SLIDES
             )
             length, seconds["shortcut"] = self._length(path), now() - found
         to = f" to goal {asked.goal}" if len(goals) > 1 else ""

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import doubles_at, matrix_at
 from evenroad.robot.kernel.lane_world import LaneWorld
-from evenroad.robot.kernel.layout import program, quick, quick_inlined
+from evenroad.robot.kernel.layout import LANES, program, quick, quick_inlined
 from evenroad.robot.kernel.motion import canonical, distance_and_way, enter
 from evenroad.robot.kernel.motion_checks import (
     COARSE,
@@ -18,6 +18,7 @@ from evenroad.robot.kernel.motion_checks import (
 )
 from evenroad.robot.kernel.motion_states import BATCHES as BATCHES_DONE
 from evenroad.robot.kernel.motion_states import COUNTS, MOTIONS
+from evenroad.robot.kernel.slide import SPARE, slide
 
 Floats = npt.NDArray[np.float64]
 
@@ -29,6 +30,8 @@ WORTH_WHILE = 3e-3
 CUT_WORTH_WHILE = 1e-3
 """Motions that shorten the path by less than this share are not looked at; the second where corners are cut."""
 
+SLIDES, PAIRS, ENOUGH = 8, 4, 3e-3
+
 _BESIDE = 1 << 32
 """Two counts in one number: less to read after a call."""
 
@@ -39,10 +42,13 @@ MOST_CUTS, MOST_BATCHES = 64, 1 << 30
 def shorten_path(
     world: LaneWorld,
     path: Floats,
+    most_cuts: int,
+    most_batches: int,
     pairs: int,
     count: int,
-    most_cuts: int = MOST_CUTS,
-    most_batches: int = MOST_BATCHES,
+    ball: int = 0,
+    ball_count: int = 0,
+    most_slides: int = 0,
 ) -> tuple[Floats, int]:
     """Return a path that is no longer, without waypoints where it is not finite, and how many motions were looked at.
 
@@ -61,12 +67,12 @@ def shorten_path(
         After so many batches of sixteen checks nothing more is tried.
     """
     size, dim = path.shape
-    rows = size + count + most_cuts + 4
-    room, arguments = world.arguments(COUNTS + rows * (dim + 1) + 3 * dim)
+    rows = size + count + most_cuts + most_slides + 20
+    room, arguments = world.arguments(COUNTS + rows * (dim + 1) + 3 * dim + (SPARE + rows) * dim + LANES + rows)
     points = room[-rows * dim :].reshape(rows, dim)
     room[:COUNTS], points[:size] = 0.0, path
     motions, left = divmod(
-        shorten_points(rows, size, dim, pairs, count, most_cuts, most_batches, *arguments), _BESIDE
+        shorten_points(rows, size, dim, pairs, count, most_cuts, most_batches, most_slides, ball, ball_count, *arguments), _BESIDE
     )
     return points[:left].copy(), motions
 
@@ -80,6 +86,9 @@ def shorten_points(
     count: int,
     most_cuts: int,
     most_batches: int,
+    most_slides: int,
+    ball: int,
+    ball_count: int,
     check: int,
     resolution: float,
     tables: int,
@@ -95,7 +104,8 @@ def shorten_points(
     pairs, own = matrix_at(shares, (count, 2)), room + 8 * COUNTS
     ends, way = matrix_at(own, (2, dim)), doubles_at(own + 8 * 2 * dim, (dim,))
     places = doubles_at(own + 8 * 3 * dim, (rows,))
-    points = matrix_at(own + 8 * (3 * dim + rows), (rows, dim))
+    sliding, steps = own + 8 * (3 * dim + rows), matrix_at(ball, (ball_count, dim))
+    points = matrix_at(sliding + 8 * ((SPARE + rows) * dim + LANES + rows), (rows, dim))
     for i in range(size):
         for k in range(dim):
             if not np.isfinite(points[i, k]):
@@ -103,7 +113,23 @@ def shorten_points(
         enter(points[i], checks.bounds, points[i])
     size = _pass_by(points, size, checks)
     _measure(points, places, size, way, checks)
-    for row in range(count):
+    slides, pair = 0, 0
+    while size > 2 and slides < most_slides and checks.counts[BATCHES_DONE] < most_batches:
+        before = places[size - 1]
+        if slide(points, size, slides, SLIDES, steps, LANES * slides, sliding, checks):
+            _measure(points, places, size, way, checks)
+        slides += SLIDES
+        for _ in range(PAIRS):
+            low = min(pairs[pair, 0], pairs[pair, 1]) * places[size - 1]
+            high = max(pairs[pair, 0], pairs[pair, 1]) * places[size - 1]
+            size = _joined(points, places, size, low, high, WORTH_WHILE, ends, way, checks)
+            pair = (pair + 1) % count
+        if size > 2:
+            size = _pass_by(points, size, checks)
+            _measure(points, places, size, way, checks)
+        if places[size - 1] > before * (1.0 - ENOUGH):
+            break
+    for row in range(0 if most_slides > 0 else count):
         if checks.counts[BATCHES_DONE] >= most_batches:
             break
         low = min(pairs[row, 0], pairs[row, 1]) * places[size - 1]
@@ -111,7 +137,7 @@ def shorten_points(
         size = _joined(points, places, size, low, high, WORTH_WHILE, ends, way, checks)
     cuts, i, gained = 0, 1, places[size - 1]
     # Corners, one after the other and again while that gains anything: the shorter side, half of it, a quarter.
-    while cuts < most_cuts and i < size - 1 and checks.counts[BATCHES_DONE] < most_batches:
+    while cuts < most_cuts and i < size - 1 and (most_slides > 0 or checks.counts[BATCHES_DONE] < most_batches):
         reach = min(places[i] - places[i - 1], places[i + 1] - places[i])
         length = places[size - 1]
         for _ in range(3):
