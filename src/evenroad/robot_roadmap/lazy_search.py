@@ -40,6 +40,7 @@ from evenroad.robot_roadmap.search_memory import (
     ONLY_KNOWN,
     OPEN,
     OTHER,
+    OWN,
     PARENT,
     PENDING,
     PHASE,
@@ -69,6 +70,9 @@ asked about; a way, none, no free link of a goal, no room."""
 ONWARD = 0.5
 """Links are tried in the order of their length and this share of what is left beyond them."""
 
+LEARNED = 10
+"""Of the links that are tried, so many lead to the nearest milestones that were learned in the scene."""
+
 AIMED = 4
 """A goal of which so many links were blocked before a free one was found is approached by that one."""
 
@@ -80,6 +84,8 @@ def begin(s: Search) -> None:
     for end in range(d[ENDS]):
         measure(s, end, d[MEASURED])
     d[MEASURED] = d[NODES]
+    learned = min(LEARNED, d[NODES] - d[OWN])
+    most = max(d[LINKS] - learned, d[LINKS] // 2)
     for end in range(d[ENDS]):
         count, last, s.radius[end] = 0, np.inf, 0.0
         for i in range(d[NODES]):
@@ -96,8 +102,15 @@ def begin(s: Search) -> None:
             key = away + np.float32(ONWARD) * beyond
             if key >= last or s.nodes[i] == BLOCKED or s.links[end, i] == BLOCKED:
                 continue
-            count = kept_in_order(s.keys, s.near[end], count, d[LINKS], key, i)
-            last = s.keys[count - 1] if count == d[LINKS] else np.inf
+            count = kept_in_order(s.keys, s.near[end], count, most, key, i)
+            last = s.keys[count - 1] if count == most else np.inf
+        if most < d[LINKS] and count == most:
+            more = 0
+            for i in range(d[OWN], d[NODES]):
+                away = s.away[end * capacity + i]
+                if s.nodes[i] != BLOCKED and s.links[end, i] != BLOCKED:
+                    more = kept_in_order(s.keys, s.near[end, most:], more, d[LINKS] - most, away, i)
+            count += more
         for rank in range(count):
             s.radius[end] = max(s.radius[end], s.away[end * capacity + s.near[end, rank]])
         for rank in range(count, d[LINKS]):

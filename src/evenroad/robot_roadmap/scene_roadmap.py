@@ -45,13 +45,16 @@ LINKS = 300
 """Each end is tried to be linked to so many milestones where nothing else is said; plans without trees go by
 `links_of`: asked lazily, more links cost little but where ends are cut off, and there they are worth much."""
 
-TRIED_LINKS, TRIED_MOTIONS = 40, 90
+TRIED_LINKS, TRIED_MOTIONS = 40, 60
 """Where trees may follow, so many links of each end are tried, and so many motions: trees find ways out of narrow
 places with fewer checks than long links do."""
 
-SLIDES, CUTS, BATCHES = 48, 8, 250
-"""What a path along the roadmap is shortened with, half of the work on trees' paths for half a percent of length, and
-twice that from so many waypoints on: those ways out led round about."""
+SLIDES, CUTS = 96, 32
+"""What a path along the roadmap is shortened with at most."""
+
+BATCHES, LEAST_BATCHES = 100, 40
+"""After so many batches of sixteen checks, less one for each motion that the search asked about, but no fewer than the
+second, no waypoint slides on: what took long to be found is shortened less."""
 
 _LONG = 1e8
 """Seconds that stand for no limit."""
@@ -272,8 +275,9 @@ class SceneRoadmap:
         )
         seconds = {"search": found - began}
         if shorter:
+            batches = max(BATCHES - asked.motions, LEAST_BATCHES)
             path, counts["shortcut_motions"] = shorten(
-                world, path, cuts=CUTS, batches=BATCHES, slides=SLIDES
+                world, path, cuts=CUTS, batches=batches, slides=SLIDES
             )
             length, seconds["shortcut"] = self._length(path), now() - found
         to = f" to goal {asked.goal}" if len(goals) > 1 else ""

@@ -54,7 +54,10 @@ VERDICTS, LIFTING = 27, 28
 UNTURNED = 29
 """Desk: 1 where ends are linked to milestones as these are, 0 where these are turned to be near."""
 
-DESK = 30
+OWN = 30
+"""Desk: how many of the milestones are the roadmap's own; those behind were learned in the scene."""
+
+DESK = 31
 
 OTHER, NEXT, NUMBER, HALF = range(4)
 """Of a half edge: where it leads, the next one of the same milestone or -1, its edge; how many things that is."""

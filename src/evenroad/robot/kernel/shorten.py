@@ -35,9 +35,6 @@ SLIDES, PAIRS, ENOUGH = 8, 4, 3e-3
 _BESIDE = 1 << 32
 """Two counts in one number: less to read after a call."""
 
-MOST_CUTS, MOST_BATCHES = 64, 1 << 30
-"""So many cuts of corners are tried at most, and so many batches checked, where nothing else is said."""
-
 
 def shorten_path(
     world: LaneWorld,
