@@ -4,10 +4,11 @@
     python -m benchmarks.roadmap_meshes --triangles           # our own compiled triangles as obstacles
 
 The UR5's links are meshes, 24 corners around each capsule, inside of it; so are the obstacles.  `coal` asks coal about
-every state; `capsules, then coal` asks coal only about motions that are not proved free for the capsules.  Trees are
-OMPL's RRT-Connect through ``evenroad.adapters.ompl``, with the range of ours; with --triangles they are ours.  Both
-paths are shortened by our compiled shortener, equally much.  Scenes and queries come from the seeds kept for reporting;
-times are of the processor, the first nine queries of a scene are left out.
+every state, of trees and roadmap; `shapes` is what ``in_scene(scene, shapes)`` does, where coal is asked what the
+capsules do not tell; with `--thicker 0.01` these are so many metres thicker than the meshes, which the queries are free
+for.  Trees are OMPL's RRT-Connect through ``evenroad.adapters.ompl``, with the range of ours and the same checker; with
+--triangles they are ours.  Both paths are shortened by our compiled shortener, equally much.  Scenes and queries come
+from the seeds kept for reporting; times are of the processor, the first nine queries of a scene are left out.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from dataclasses import replace
 import numpy as np
 from tests_peers.engines.surface import shape_surface
 
-from benchmarks.arm_problems import REPORTING, Pool, arm, problems, queries
+from benchmarks.arm_problems import REPORTING, TUNING, Pool, arm, problems, queries
 from benchmarks.clouds import triangles_of
 from benchmarks.robot_roadmap_queries import QuickWorld, ratio_of_tails
 from benchmarks.robot_roadmaps import table_of
@@ -32,9 +33,9 @@ from evenroad.robot import ArmWorld, Obstacle, Robot, Scene
 from evenroad.robot.reference.coal_world import CoalWorld
 from evenroad.robot.trees import shorten
 from evenroad.robot_roadmap.make import make_roadmap
-from evenroad.robot_roadmap.own_shapes import OwnShapesWorld
+from evenroad.robot_roadmap.own_shapes import OwnShapesWorld, SolidMeshes
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
-from evenroad.robot_roadmap.scene_roadmap import CUTS, PAIRS, SceneRoadmap
+from evenroad.robot_roadmap.scene_roadmap import CUTS, DEAR_BATCHES, SLIDES, SceneRoadmap
 from evenroad.space.path import path_length
 
 FIRST = 9
@@ -45,7 +46,18 @@ STEP = 1.5
 
 SECONDS = 20.0
 Row = tuple[float, float, float]
-Query = Callable[[np.ndarray, np.ndarray], Row | None]
+Query = Callable[[np.ndarray, np.ndarray], Row]
+"""From start and goal to seconds, states that coal was asked about, and the length of the path or nan."""
+
+
+class Counted(CoalWorld):
+    """Coal alone, which counts the states that it is asked about; of all worlds together."""
+
+    states = 0
+
+    def _free(self, q: np.ndarray) -> np.ndarray:
+        Counted.states += len(q)
+        return super()._free(q)
 
 
 class OnlyCoal:
@@ -54,28 +66,37 @@ class OnlyCoal:
     backend, proof = "coal", "resolution"
 
     def __init__(self, world: ArmWorld, shapes: list[Shape]) -> None:
-        self._world = CoalWorld(world.robot, world.scene, shapes, world.resolution)
-        self.shorten = world.shorten
+        self._world = Counted(world.robot, world.scene, shapes, world.resolution)
+        self.shorten, self.explain = world.shorten, world.explain
         self.space, self.valid = self._world.space, self._world.valid
-        self.motions = 0
-
-    def motion_valid(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
-        """Return which motions are free, (m,)."""
-        self.motions += len(a)
-        return self._world.motion_valid(a, b)
+        self.motion_valid = self._world.motion_valid
 
     def motion_certified(self, a: np.ndarray, b: np.ndarray, tolerance: float) -> np.ndarray:
         """Return which motions are free, (m,)."""
         return self.motion_valid(a, b)
 
 
-class CapsulesFirst(OwnShapesWorld):
-    """The checker of the library, counted."""
+def count_states() -> None:
+    """Make coal count what the library's checker asks it, too."""
+    asked = SolidMeshes._free
 
-    def motion_certified(self, a: np.ndarray, b: np.ndarray, tolerance: float) -> np.ndarray:
-        """Return which motions are free, (m,)."""
-        object.__setattr__(self, "motions", getattr(self, "motions", 0) + len(a))
-        return super().motion_certified(a, b, tolerance)
+    def _free(self: SolidMeshes, q: np.ndarray) -> np.ndarray:
+        Counted.states += len(q)
+        return asked(self, q)
+
+    SolidMeshes._free = _free  # type: ignore[method-assign]
+
+
+def thicker(robot: Robot, by: float) -> Robot:
+    """Return a robot with thicker capsules, without the pairs that then always touch [m]."""
+    capsules = tuple(replace(each, radius=each.radius + by) for each in robot.capsules)
+    robot = replace(robot, capsules=capsules)
+    q = ArmWorld(robot, Scene("nothing", ())).space.from_cube(np.random.default_rng(0).random((2000, 6)))
+
+    def parts(pair: tuple[str, str]) -> bool:
+        return bool(ArmWorld(replace(robot, pairs=(pair,)), Scene("nothing", ())).valid(q).any())
+
+    return replace(robot, pairs=tuple(filter(parts, robot.pairs)))
 
 
 def meshes_of(robot: Robot) -> list[Shape]:
@@ -94,7 +115,7 @@ def with_triangles(scene: Scene, halvings: int = 0) -> Scene:
     return replace(scene, obstacles=tuple(map(as_mesh, scene.obstacles)))
 
 
-def by_trees(world: ArmWorld, checks: OnlyCoal | CapsulesFirst) -> Query:
+def by_trees(world: ArmWorld, checks: OnlyCoal | OwnShapesWorld) -> Query:
     """Return what asks OMPL's trees with a checker, then our shortener."""
     from ompl import geometric as og
     from ompl import util as ou
@@ -103,34 +124,30 @@ def by_trees(world: ArmWorld, checks: OnlyCoal | CapsulesFirst) -> Query:
 
     ou.setLogLevel(ou.LogLevel.LOG_NONE)
 
-    def ask(start: np.ndarray, goal: np.ndarray) -> Row | None:
-        before = getattr(checks, "motions", 0)
-        began = time.thread_time()
+    def ask(start: np.ndarray, goal: np.ndarray) -> Row:
+        before, began = Counted.states, time.thread_time()
         planner = og.RRTConnect(space_information(checks))  # type: ignore[arg-type]
         planner.setRange(STEP)
         path = solve(planner, start, goal, SECONDS)
-        if path is None:
-            return None
-        path, _ = shorten(world, path, pairs=PAIRS, cuts=CUTS)
-        seconds = time.thread_time() - began
-        return seconds, getattr(checks, "motions", 0) - before, path_length(path, world.space)
+        length = np.nan
+        if path is not None:
+            path, _ = shorten(world, path, cuts=CUTS, batches=DEAR_BATCHES, slides=SLIDES)
+            length = path_length(path, world.space)
+        return time.thread_time() - began, Counted.states - before, length
 
     return ask
 
 
-def along(known: SceneRoadmap, counted: Callable[[], int]) -> Query:
+def along(known: SceneRoadmap) -> Query:
     """Return what asks a kept roadmap."""
 
-    def ask(start: np.ndarray, goal: np.ndarray) -> Row | None:
-        before, began = counted(), time.thread_time()
+    def ask(start: np.ndarray, goal: np.ndarray) -> Row:
+        before, began = Counted.states, time.thread_time()
         result = known.plan(start, goal, budget=Budget(seconds=SECONDS))
         seconds = time.thread_time() - began
-        return (seconds, counted() - before, result.cost) if result.solved else None
+        return seconds, Counted.states - before, result.cost if result.solved else np.nan
 
     return ask
-
-
-CHECKERS = {"coal": OnlyCoal, "capsules-coal": CapsulesFirst}
 
 
 def by_coal(
@@ -138,16 +155,13 @@ def by_coal(
 ) -> dict[str, tuple[Query, Query]]:
     """Return trees and the roadmap for some checkers."""
     pairs = {}
-    for title in titles:
-        kind = CHECKERS[title]
+    if "coal" in titles:
         known = SceneRoadmap(made, world.scene)
-        whole, day = kind(known.world, shapes), kind(known._day, shapes)
-        known._asked = whole, day  # type: ignore[assignment]
-
-        def counted(whole: object = whole, day: object = day) -> int:
-            return getattr(whole, "motions", 0) + getattr(day, "motions", 0)
-
-        pairs[title] = by_trees(world, kind(world, shapes)), along(known, counted)
+        known._asked = OnlyCoal(known.world, shapes), OnlyCoal(known._day, shapes)  # type: ignore[assignment]
+        pairs["coal"] = by_trees(world, OnlyCoal(world, shapes)), along(known)
+    if "shapes" in titles:
+        own = by_trees(world, OwnShapesWorld(world, shapes))
+        pairs["shapes"] = own, along(SceneRoadmap(made, world.scene, shapes=shapes))
     return pairs
 
 
@@ -155,13 +169,12 @@ def by_triangles(made: RobotRoadmap, world: ArmWorld) -> dict[str, tuple[Query, 
     """Return our trees, shortened as much as the roadmap's paths, and the roadmap; both compiled."""
     quick = QuickWorld(world.robot, world.scene)
 
-    def trees(start: np.ndarray, goal: np.ndarray) -> Row | None:
+    def trees(start: np.ndarray, goal: np.ndarray) -> Row:
         began = time.thread_time()
         result = find_path(quick, start, goal, budget=Budget(seconds=SECONDS))
-        seconds = time.thread_time() - began
-        return (seconds, result.counts["edges_checked"], result.cost) if result.solved else None
+        return time.thread_time() - began, 0, result.cost if result.solved else np.nan
 
-    return {"our triangles": (trees, along(SceneRoadmap(made, world.scene), lambda: 0))}
+    return {"our triangles": (trees, along(SceneRoadmap(made, world.scene)))}
 
 
 def main() -> None:
@@ -170,42 +183,46 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--triangles", action="store_true")
-    parser.add_argument("--queries", type=int, default=40, help="in each scene")
+    parser.add_argument("--thicker", type=float, default=0.0, help="capsules than meshes [m]")
+    parser.add_argument("--tuning", action="store_true", help="the seeds that constants were chosen on")
+    parser.add_argument("--queries", type=int, default=100, help="in each scene")
     parser.add_argument("--scenes", type=int, default=2, help="of each kind")
     parser.add_argument("-n", type=int, default=1024, help="milestones")
-    parser.add_argument("--checkers", nargs="+", default=[*CHECKERS], choices=CHECKERS)
+    parser.add_argument("--checkers", nargs="+", default=["coal", "shapes"], choices=["coal", "shapes"])
     parser.add_argument("--kinds", nargs="+", default=["table", "box", "shelf"])
     options = parser.parse_args()
+    count_states()
+    seeds = TUNING if options.tuning else REPORTING
     pool = Pool(arm("ur5"))
-    made = make_roadmap(pool.robot, table_of(next(problems(pool, REPORTING))), options.n)
+    robot = thicker(pool.robot, options.thicker) if options.thicker else pool.robot
+    made = make_roadmap(robot, table_of(next(problems(pool, seeds))), options.n)
     shapes = meshes_of(pool.robot)
-    print("| kind | checker | queries | trees ms | roadmap ms | medians | means | 95 % | motions | length |")
-    print("|---|---|---|" + "---|" * 7, flush=True)
+    print(
+        "| kind | checker | queries | trees ms | roadmap ms | medians | means | 95 % | states | length | not solved |"
+    )
+    print("|---|---|---|" + "---|" * 8, flush=True)
     for kind in options.kinds:
         rows: dict[str, list[tuple[Row, Row, bool]]] = {}
-        lost: dict[str, int] = {}
-        for seed in REPORTING[: options.scenes]:
+        for seed in seeds[: options.scenes]:
             world, pairs = queries(pool, kind, seed, options.queries)
             # The table is the cell's, and stays a box.
             table, *things = world.scene.obstacles
             day = with_triangles(replace(world.scene, obstacles=tuple(things)), 3 if options.triangles else 0)
-            world = ArmWorld(world.robot, replace(day, obstacles=(table, *day.obstacles)))
+            world = ArmWorld(robot, replace(day, obstacles=(table, *day.obstacles)))
             how = () if options.triangles else tuple(options.checkers)
             calls = by_coal(made, world, shapes, how) or by_triangles(made, world)
             for number, (start, goal) in enumerate(pairs):
+                least = path_length(np.array([start, goal]), world.space)
                 for title, (trees, roadmap) in calls.items():
                     one, other = trees(start, goal), roadmap(start, goal)
-                    if one is None or other is None:
-                        lost[title] = lost.get(title, 0) + 1
-                    elif number >= FIRST:
-                        least = path_length(np.array([start, goal]), world.space)
-                        rows.setdefault(title, []).append((one, other, bool(np.isclose(other[2], least))))
+                    if number >= FIRST and least > 0.0:
+                        straight = bool(np.isclose(other[2], least))
+                        rows.setdefault(title, []).append((one, other, straight))
         for title, values in rows.items():
             measured = np.array([[one, other] for one, other, _ in values])
             straight = np.array([each for _, _, each in values])
             for what, some in (("all", measured), ("not straight", measured[~straight])):
                 print(f"| {kind} | {title} | {what}, {len(some)} | {_figures(some)} |", flush=True)
-            print(f"{kind}, {title}: {lost.get(title, 0)} not solved by one", flush=True)
 
 
 def _figures(table: np.ndarray) -> str:
@@ -215,7 +232,8 @@ def _figures(table: np.ndarray) -> str:
     cells += [_interval(of, roadmap, trees) for of in (np.median, np.mean)]
     cells += ["{:.2f} ({:.2f} .. {:.2f})".format(*ratio_of_tails(roadmap, trees))]
     cells += [f"{table[:, 0, 1].mean():.0f}, {table[:, 1, 1].mean():.0f}"]
-    return " | ".join([*cells, f"{np.mean(table[:, 1, 2] / table[:, 0, 2]):.3f}"])
+    lost = np.isnan(table[:, :, 2]).sum(axis=0)
+    return " | ".join([*cells, f"{np.nanmean(table[:, 1, 2] / table[:, 0, 2]):.3f}", f"{lost[0]}, {lost[1]}"])
 
 
 def _interval(of: Callable[[np.ndarray], float], a: np.ndarray, b: np.ndarray) -> str:

@@ -1,6 +1,8 @@
 """Klamp't's PRM on our map and points, our planner on a robot of Klamp't's, and a trajectory for it; extra `klampt`."""
 
+from contextlib import chdir
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import klampt
 
@@ -16,16 +18,16 @@ print("Klamp't's PRM on 256 even points:", "no path" if path is None else f"{len
 
 # Ours on theirs: a robot that Klamp't reads, among what stands in Klamp't's world.
 BODY = '<collision><origin xyz=".5 0 0"/><geometry><box size=".9 .1 .1"/></geometry></collision>'
-Path("two_links.urdf").write_text(
-    f"""<robot name="two_links"><klampt use_vis_geom="0"/><link name="world"/>
+TWO_LINKS = f"""<robot name="two_links"><klampt use_vis_geom="0"/><link name="world"/>
 <link name="upper">{BODY}</link><link name="fore">{BODY}</link>
 <joint name="turn" type="revolute"><parent link="world"/><child link="upper"/><origin xyz="0 0 0"/>
 <axis xyz="0 0 1"/><limit lower="-2" upper="2" velocity="1" effort="1"/></joint>
 <joint name="bend" type="revolute"><parent link="upper"/><child link="fore"/><origin xyz="1 0 0"/>
 <axis xyz="0 0 1"/><limit lower="-2.8" upper="2.8" velocity="1" effort="1"/></joint></robot>"""
-)
 model = klampt.WorldModel()
-model.readFile("two_links.urdf")
+with TemporaryDirectory() as folder, chdir(folder):
+    Path("two_links.urdf").write_text(TWO_LINKS)
+    model.readFile("two_links.urdf")
 post, shape = klampt.GeometricPrimitive(), klampt.Geometry3D()
 post.setAABB([1.2, -0.1, -1.0], [1.4, 0.1, 1.0])
 shape.setGeometricPrimitive(post)

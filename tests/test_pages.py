@@ -4,6 +4,7 @@ import importlib
 import os
 import re
 import runpy
+from pathlib import Path
 
 import pytest
 from tools import run_examples, run_pages
@@ -107,11 +108,27 @@ def test_the_readme_is_short_and_its_python_five_lines_long():
     assert len([line for line in code.splitlines() if line.strip()]) <= 5
 
 
+LEAVES = {
+    "01": ("maze.json", "maze-plan.png"),
+    "02": ("office.pgm", "office.yaml", "office-plan.png"),
+    "04": ("box-reach.png",),
+    "05": ("pick.png",),
+    "06": ("two-arms.png",),
+    "07": ("scanned-table.png",),
+    "08": tuple(f"out/reach.{suffix}" for suffix in ("csv", "gif", "json", "script", "yaml")),
+}
+"""Number of an example -> the files that it leaves in the folder."""
+
+
 @pytest.mark.parametrize("path", run_examples.EXAMPLES, ids=lambda path: path.name)
 def test_the_example_runs_and_prints_what_its_page_shows(path, capsys):
     for package in re.findall(r"extra `(\w+)`", path.read_text()):
         pytest.importorskip(package)
     runpy.run_path(str(path), run_name="__main__")
+    left = {str(each) for each in Path().rglob("*") if each.is_file()}
+    assert left == set(LEAVES.get(path.name[:2], ())), (
+        "an example leaves what its text names, and nothing else"
+    )
     kept = (run_examples.SHOWN / f"{path.stem}.txt").read_text()
     assert _words(capsys.readouterr().out) == _words(kept), "python tools/run_examples.py keeps it anew"
     for picture in run_examples.SHOWN.glob(f"{path.stem}.png"):

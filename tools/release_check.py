@@ -177,7 +177,7 @@ def try_all(steps: Steps, work: Path, options: argparse.Namespace) -> None:
         raise SystemExit("first and second plan differ")
     for name, command in README_STEPS.items():
         steps.run(name, command, **here)
-    large = "evenroad points -n 512 -d 2 --family hickernell -o large.npy"
+    large = "evenroad points -n 512 -d 2 --sampler hickernell -o large.npy"
     steps.run("a large set without evenroad-sets", large, expect=2, says="pip install evenroad-sets", **here)
     steps.run("pip install of evenroad-sets", f"{pip} --no-deps {sets.resolve()}", cwd=ROOT)
     steps.run("the large set", large, **here)

@@ -1,14 +1,15 @@
-"""Writing files so that a reader only ever sees the old content or the whole new content."""
+"""Writing files so that a reader only ever sees the old content or the whole new content; and telling files apart."""
 
 from __future__ import annotations
 
+import json
 import os
 import stat
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 from evenroad._compiled import user_cache
 from evenroad.errors import BrokenFile
@@ -20,6 +21,18 @@ except ImportError:  # Windows
 
 _PREFIX, _SUFFIX = ".evenroad-", ".part"
 """Of the names of temporary files."""
+_BEGINNINGS = {
+    b"\x93NUMPY": "a .npy array",
+    b"PK": "a .npz or other archive",
+    b"\x89PNG": "a PNG image",
+    b"P5": "a PGM image",
+    b"\xff\xd8\xff": "a JPEG image",
+    b"GIF8": "a GIF image",
+    b"SQLite format 3": "a SQLite file",
+    b"%PDF": "a PDF",
+    b"<": "XML",
+}
+"""How a file begins -> what it is."""
 
 
 @contextmanager
@@ -81,6 +94,40 @@ def _new_part(folder: Path) -> tuple[int, int | None, str]:
             return handle, os.dup(handle), name
         # Between the two steps somebody took it for an abandoned one.
         os.close(handle)
+
+
+def not_a(wanted: str, path: str | os.PathLike[str], why: str = "") -> BrokenFile:
+    """Return the error of a file that was read as `wanted`: what it is instead or, of a text, why it is none."""
+    found = looks_like(path)
+    if found == "text" and why:
+        return BrokenFile(f"{path} is not {wanted}: {why}")
+    return BrokenFile(f"{path} is {found}, not {wanted}")
+
+
+def looks_like(path: str | os.PathLike[str]) -> str:
+    """Return what a file that can be read seems to be by its content, whatever its name says."""
+    with open(path, "rb") as file:
+        begin = file.read(4096).lstrip()
+    if not begin:
+        return "empty"
+    for known, what in _BEGINNINGS.items():
+        if begin.startswith(known):
+            return what
+    # A character may be cut in two by the end of what was read.
+    is_text = b"\0" not in begin and "\ufffd" not in begin.decode(errors="replace")[:-1]
+    return "text" if is_text else "no text"
+
+
+def read_json_file(path: str | os.PathLike[str], what: str) -> Any:
+    """Return what a JSON file, of the kind `what`, holds; BrokenFile if it cannot be read or is none."""
+    try:
+        return json.loads(Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
+    except json.JSONDecodeError as error:
+        raise not_a("JSON", path, f"line {error.lineno}, column {error.colno}: {error.msg}") from error
+    except (ValueError, RecursionError) as error:
+        raise not_a("JSON", path, str(error)) from error
 
 
 def cache_folder() -> Path:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._files import atomic_write
+from evenroad._files import atomic_write, not_a
 from evenroad.errors import BrokenFile, shown
 
 Path = str | os.PathLike[str]
@@ -27,8 +27,11 @@ def write_npz(path: Path, arrays: Mapping[str, npt.ArrayLike], *, compressed: bo
 
 
 @contextmanager
-def reading(path: Path, kind: str) -> Iterator[None]:
-    """Turn whatever goes wrong in the block into a BrokenFile that names the file and the `kind` that it is not."""
+def reading(path: Path, kind: str, begins: bytes = b"") -> Iterator[None]:
+    """Turn whatever goes wrong in the block into a BrokenFile that names the file and the `kind` that it is not.
+
+    What every such file `begins` with, where that is given, tells a damaged one from one of another kind.
+    """
     try:
         yield
     except BrokenFile:
@@ -40,7 +43,14 @@ def reading(path: Path, kind: str) -> Iterator[None]:
     except Exception as error:
         # No list is complete: damaged headers alone give errors of the tokenizer, of memory and of overflow, and
         # zipfile has its own for every compression, encryption and version that it does not know.
-        raise BrokenFile(f"{path} is not a readable {kind}: {shown(error)}") from error
+        if not begins:
+            raise BrokenFile(f"{path} is not a readable {kind}: {shown(error)}") from error
+        with open(path, "rb") as file:
+            is_other = file.read(len(begins)) != begins
+        if is_other:
+            raise not_a(f"a {kind}", path) from error
+        why = "it was damaged, cut off, or holds Python objects"
+        raise BrokenFile(f"{path} is not a readable {kind}: {why}") from error
 
 
 def read_npz(path: Path, what: str, *layouts: Collection[str]) -> Arrays:
@@ -50,7 +60,7 @@ def read_npz(path: Path, what: str, *layouts: Collection[str]) -> Arrays:
     """
     arrays = {}
     # Opened here, not by NumPy, which leaves the handle open when the archive is broken.
-    with reading(path, f".npz {what}"), open(path, "rb") as file:
+    with reading(path, f".npz {what}", b"PK"), open(path, "rb") as file:
         archive = np.load(file, allow_pickle=False)
         if not isinstance(archive, np.lib.npyio.NpzFile):
             raise BrokenFile(f"{path} is a plain array, not a .npz {what}")

@@ -11,6 +11,7 @@ from typing import Any
 import yaml
 
 from evenroad._checks import require_known
+from evenroad._files import not_a
 from evenroad.errors import BrokenFile, InvalidValue
 
 # libyaml where PyYAML was built with it: ten times as fast.
@@ -34,10 +35,18 @@ def read_mapping(path: Path, what: str) -> dict[str, Any]:
     except OSError as error:
         raise BrokenFile(f"cannot read the {what} {path}: {error.strerror or error}") from error
     except (yaml.YAMLError, ValueError, LookupError, AttributeError, RecursionError) as error:
-        raise BrokenFile(f"{path} is not YAML: {' '.join(str(error).split())}") from error
+        raise not_a("YAML", path, _why(error)) from error
     if not isinstance(document, dict):
-        raise BrokenFile(f"{path} is not a {what}: it must consist of 'key: value' lines")
+        raise not_a(f"a {what}", path, "it must consist of 'key: value' lines")
     return {str(key): value for key, value in document.items()}
+
+
+def _why(error: Exception) -> str:
+    """Return what a reader of YAML complains of, and where, in one line."""
+    mark = getattr(error, "problem_mark", None)
+    if mark is None:
+        return " ".join(str(error).split())
+    return f"line {mark.line + 1}, column {mark.column + 1}: {error.problem}"  # type: ignore[attr-defined]
 
 
 def _require_shallow(text: str, path: Path) -> None:

@@ -8,14 +8,13 @@ import platform
 from collections.abc import Sequence
 from dataclasses import asdict
 from importlib import metadata
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad import __version__
-from evenroad._files import atomic_write
+from evenroad._files import atomic_write, read_json_file
 from evenroad.errors import BrokenFile
 from evenroad.points import Origin
 from evenroad.roadmap import PlanResult, Status
@@ -57,12 +56,9 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
 
     Raises BrokenFile if the file is missing, or is no such record.
     """
-    try:
-        record = json.loads(Path(path).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise BrokenFile(f"cannot read the plan {path}: {error.strerror or error}") from error
-    except ValueError as error:
-        raise BrokenFile(f"{path} is not JSON: {error}") from error
+    record = read_json_file(path, "plan")
+    if not isinstance(record, dict) or not {"status", "query", "path"} <= set(record):
+        raise BrokenFile(f"{path} is not a plan of evenroad: it must have status, query, path and more")
     try:
         query = dict(record["query"])
         start, goals = (np.array(query[name], dtype=np.float64) for name in ("start", "goals"))
@@ -89,7 +85,8 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
             seconds={str(phase): float(value) for phase, value in record["seconds"].items()},
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise BrokenFile(f"{path} is not a plan of evenroad: {type(error).__name__} {error}") from error
+        why = f"it lacks {error}" if isinstance(error, KeyError) else str(error)
+        raise BrokenFile(f"{path} is not a plan of evenroad: {why}") from error
     return result, query
 
 

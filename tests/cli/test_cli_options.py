@@ -90,6 +90,39 @@ def test_the_help_tells_of_every_option_its_default_and_stays_within_the_width(w
     assert max(map(len, text.splitlines())) <= width
     for part in ("-n INT, --n INT", "{gas,wood}", "(default: gas)", "--layers", "--heat FLOAT", "Shiny."):
         assert part in text
+    # What the text of an option says of itself is not said again.
+    assert "None" not in text
+    assert "False" not in text
+
+
+@dataclass(frozen=True, kw_only=True)
+class Iced(Bake):
+    """Bake a cake that is iced."""
+
+    sampler: str | None = None
+    """Who
+    tastes it."""
+    many: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]]
+    """Colours."""
+
+
+def test_the_help_lists_a_verbs_own_options_first_and_its_texts_in_one_piece(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "100")
+    with pytest.raises(SystemExit, match="0"):
+        read_options("ice", Iced, ["--help"])
+    text = capsys.readouterr().out
+    named = [word for word in text.split() if word in ("--sampler", "--many", "--heat", "--glazed-twice")]
+    assert named == ["--sampler", "--many", "--heat", "--glazed-twice"]
+    assert "Who tastes it." in text
+    assert "(required, repeatable)" in text
+
+
+def test_a_name_that_an_option_once_had_is_taken_where_the_verb_has_todays():
+    words = ["cake.txt", "--many", "red"]
+    assert read_options("ice", Iced, [*words, "--family", "aunts"]).sampler == "aunts"
+    assert read_options("ice", Iced, [*words, "--family=aunts"]).sampler == "aunts"
+    with pytest.raises(EvenroadError, match="unknown option of evenroad bake: '--family'"):
+        read("cake.txt", "--family", "aunts")
 
 
 def test_what_completes_words_knows_every_verb(run):
@@ -108,7 +141,7 @@ def test_what_completes_words_knows_every_verb(run):
             "-n/--n must be a whole number, got 'many'",
         ),
         ("points -n 16 -d 2", "missing from evenroad points: -o PATH, --out PATH; all options: evenroad"),
-        ("measure", "missing from evenroad measure: FILE"),
+        ("measure", "missing from evenroad measure: SET"),
         ("train -n 16 -d 2 -o a --method sgd", "invalid choice 'sgd' for argument '--method'. Expected"),
         ("plot", "unknown verb 'plot'; known: bench, certify, demo, export"),
     ],

@@ -2,14 +2,13 @@ import json
 import re
 import subprocess
 import sys
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from PIL import Image
 
 import evenroad as er
-from evenroad.cli.plan_parts import draw_points
+from evenroad.cli.sampler import SamplerOptions, draw_points
 from evenroad.cli.verbs import VERBS
 from evenroad.points import draw
 from evenroad.research.mazes import load_maze
@@ -71,8 +70,7 @@ def test_the_default_set_of_the_plane_is_even_for_any_n_and_the_output_says_so(r
 
 @pytest.mark.parametrize("d", [3, 4, 6])
 def test_the_default_set_of_every_dimension_is_even(d):
-    asked = SimpleNamespace(n=500, seed=4, sampler="auto", plain=False, skip=0, allow_fewer=False)
-    assert draw_points(asked, d) == draw("even", 500, d, rng=4)
+    assert draw_points(SamplerOptions(seed=4), 500, d)[0] == draw("even", 500, d, rng=4)
 
 
 def test_the_same_command_gives_the_same_path_and_another_seed_another(run, tmp_path):
@@ -249,8 +247,8 @@ BAD = {
     "k of zero": ({"k": 0}, "k must be"),
     "a connection radius of zero": ({"connect_radius": 0}, "connection radius"),
     "both rules": ({"connect_radius": 5, "k": 5}, "not both"),
-    "a negative seed": ({"seed": -1}, "rng must be"),
-    "an unknown sampler": ({"sampler": "sobel"}, "known: auto, cover, even, .*halton.*sobol"),
+    "a negative seed": ({"seed": -1}, "--seed must be an integer >= 0, got -1"),
+    "an unknown sampler": ({"sampler": "sobel"}, "known: cover, even, .*halton.*sobol"),
     "a family without this n": (
         {"sampler": "hickernell", "n": 100},
         "it has n = 16, 32, 64, 128, 256, 512, 1024, 2048",
@@ -413,7 +411,7 @@ def test_the_installed_command_works_in_a_process_of_its_own(tmp_path):
 def test_a_plan_on_points_says_what_they_guarantee_where_it_is_asked(run, room, tmp_path):
     asked = plan_arguments(room, (3, 3), (3, 27), 1.0, sampler="cover", k=20, out="answer")
     plain = run(*asked, "-n", 256)
-    code, out, err = run(*asked, "-n", 256, "--certify")
+    code, out, err = run(*asked, "-n", 256, "--guarantees")
     record = json.loads((tmp_path / "answer.json").read_text())
     world = er.load_map(room).world(1.0)
     certificate = er.plan(
@@ -429,6 +427,6 @@ def test_a_plan_on_points_says_what_they_guarantee_where_it_is_asked(run, room, 
 
 
 def test_only_a_roadmap_guarantees_anything(run, room):
-    code, out, err = run(*plan_arguments(room, (3, 3), (3, 27), 1.0), "--certify")
+    code, out, err = run(*plan_arguments(room, (3, 3), (3, 27), 1.0), "--guarantees")
     assert (code, out) == (2, "")
-    assert "--certify speaks of a roadmap: say of how many points with -n" in err
+    assert "--guarantees speaks of a roadmap: say of how many points with -n" in err

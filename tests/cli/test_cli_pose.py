@@ -59,7 +59,7 @@ def test_out_of_reach_is_an_answer_with_a_picture(run, tmp_path):
     [
         (("--goal-pose", "0.6 0 0.2 0 0 0 2"), "norm 1, got 2"),
         (("--goal-pose", "0.6 0 nan"), "finite numbers, got '0.6 0 nan'"),
-        ((*POSE, "--tip", "hand"), "unknown link of 'ur5' 'hand'"),
+        ((*POSE, "--tip", "hand"), "unknown link of 'ur5': 'hand'"),
         ((*POSE, "--frame", "wrist_1_link"), "must stand still"),
         ((*POSE, "--tolerance", "-1"), "position_tolerance must be a finite number >= 0"),
         (("--goal-pose", "0.6 0 0.2", "--free-axis", "z"), "--free-axis needs a rotation"),

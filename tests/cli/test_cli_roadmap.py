@@ -70,7 +70,7 @@ def test_a_plan_along_it_is_that_of_python_and_proved(made):
         (["roadmap", "ur5", "--cell", "cell.yaml", "-o", "cell.yaml"], "would overwrite"),
         (
             ["plan", "box-reach.yaml", "--roadmap", "cell.yaml", *ENDS],
-            "is not a readable .npz roadmap of a robot",
+            "is text, not a .npz roadmap of a robot",
         ),
         (["plan", "box-reach.yaml", "--roadmap", "none", *ENDS], "no such file: none"),
         (["plan", "box-reach.yaml", "--roadmap", "none", *ENDS, "-n", "5"], "goes without points"),

@@ -16,7 +16,7 @@ from evenroad.research.workers import interrupt_between_steps
 
 
 def test_a_shipped_set_is_written_as_a_plain_array(run, tmp_path):
-    code, out, err = run("points", "-n", 64, "-d", 2, "--family", "hickernell", "-o", "set.npy")
+    code, out, err = run("points", "-n", 64, "-d", 2, "--sampler", "hickernell", "-o", "set.npy")
     assert (code, err) == (0, "")
     assert "(exact)" in out
     array = np.load(tmp_path / "set.npy")
@@ -24,19 +24,19 @@ def test_a_shipped_set_is_written_as_a_plain_array(run, tmp_path):
 
 
 def test_npz_keeps_the_origin(run, tmp_path):
-    run("points", "-n", 64, "-d", 2, "--family", "hickernell", "--seed", 3, "-o", "set.npz")
+    run("points", "-n", 64, "-d", 2, "--sampler", "hickernell", "--seed", 3, "-o", "set.npz")
     assert load_points(tmp_path / "set.npz") == draw("hickernell", 64, 2, rng=3)
 
 
 def test_any_other_n_is_fresh_once_and_then_cached(run, tmp_path):
-    arguments = ("points", "-n", 11, "-d", 2, "--family", "hickernell")
+    arguments = ("points", "-n", 11, "-d", 2, "--sampler", "hickernell")
     assert "(fresh)" in run(*arguments, "-o", "a.npy")[1]
     assert "(cached)" in run(*arguments, "-o", "b.npy")[1]
     np.testing.assert_array_equal(np.load(tmp_path / "a.npy"), np.load(tmp_path / "b.npy"))
 
 
 def test_no_train_refuses_and_names_what_there_is(run, tmp_path):
-    code, _, err = run("points", "-n", 11, "-d", 2, "--family", "hickernell", "--no-train", "-o", "a.npy")
+    code, _, err = run("points", "-n", 11, "-d", 2, "--sampler", "hickernell", "--no-train", "-o", "a.npy")
     assert code == 2
     assert "it has n = 16, 32" in err
     assert list(tmp_path.iterdir()) == []
@@ -48,17 +48,36 @@ def test_the_default_family_in_ten_dimensions_is_there_at_once(run, tmp_path):
     assert load_points(tmp_path / "a.npz").origin.family == "even"
 
 
-@pytest.mark.parametrize(("verb", "option"), [("points", "--family"), ("plan", "--sampler")])
-def test_the_help_names_every_sampler(run, verb, option):
+@pytest.mark.parametrize("verb", ["points", "plan"])
+def test_the_help_names_every_sampler(run, verb):
     _, out, _ = run(verb, "--help")
-    named = re.findall(r"\w+", out.rpartition(option)[2].partition("--")[0])
+    named = re.findall(r"\w+", out.rpartition("--sampler")[2].partition("--")[0])
     assert set(SAMPLERS) <= set(named)
 
 
-def test_constructed_families_are_written_too(run, tmp_path):
-    for family in ("korobov", "lattice", "halton", "uniform"):
-        assert run("points", "-n", 20, "-d", 3, "--family", family, "-o", f"{family}.npy")[0] == 0
-        assert np.load(tmp_path / f"{family}.npy").shape == (20, 3)
+def test_constructed_sets_are_written_too(run, tmp_path):
+    for sampler in ("korobov", "lattice", "halton", "uniform"):
+        assert run("points", "-n", 20, "-d", 3, "--sampler", sampler, "-o", f"{sampler}.npy")[0] == 0
+        assert np.load(tmp_path / f"{sampler}.npy").shape == (20, 3)
+
+
+@pytest.mark.parametrize(
+    ("words", "options"),
+    [
+        ("halton --plain --skip 3", {"scramble": False, "start": 3}),
+        ("sukharev --allow-fewer", {"allow_fewer": True}),
+    ],
+)
+def test_points_take_the_options_of_a_sampler_that_plans_take(run, tmp_path, words, options):
+    name, *rest = words.split()
+    assert run("points", "-n", 20, "-d", 3, "--sampler", name, *rest, "-o", "a.npy")[0] == 0
+    np.testing.assert_array_equal(np.load(tmp_path / "a.npy"), draw(name, 20, 3, **options).points)
+
+
+def test_the_name_that_the_sampler_once_had_is_still_taken(run, tmp_path):
+    for option in ("--sampler=sobol", "--family=sobol"):
+        assert run("points", "-n", 16, "-d", 2, option, "-o", f"{option[2:8]}.npy")[0] == 0
+    np.testing.assert_array_equal(np.load(tmp_path / "sample.npy"), np.load(tmp_path / "family.npy"))
 
 
 @pytest.mark.parametrize(
@@ -68,10 +87,19 @@ def test_constructed_families_are_written_too(run, tmp_path):
         (("-n", 8, "-d", 0, "-o", "a.npy"), "d must be an integer >= 1, got 0"),
         (("-n", 8, "-d", 2, "-o", "a.txt"), r"known: \.npy, \.npz"),
         (("-n", 8, "-d", 2, "-o", "no/a.npy"), "does not exist"),
-        (("-n", 8, "-d", 2, "--family", "evn", "-o", "a.npy"), "unknown sampler 'evn'; known: .*even"),
-        (("-n", 8, "-d", 2, "--family", "evn", "--no-train", "-o", "a.npy"), "unknown sampler 'evn'"),
+        (("-n", 8, "-d", 2, "--sampler", "evn", "-o", "a.npy"), "unknown sampler 'evn'; known: .*even"),
+        (("-n", 8, "-d", 2, "--sampler", "evn", "--no-train", "-o", "a.npy"), "unknown sampler 'evn'"),
         (("-n", 8, "-d", 2, "--no-train", "-o", "a.npy"), "--no-train does not go with 'even'"),
-        (("-n", 8, "-d", 2, "--seed", -1, "-o", "a.npy"), "rng must be"),
+        (
+            ("-n", 8, "-d", 2, "--plain", "-o", "a.npy"),
+            "--plain does not go .* 'even', only with halton and sobol",
+        ),
+        (
+            ("-n", 8, "-d", 2, "--sampler", "sobol", "--skip", -1, "-o", "a.npy"),
+            "--skip must be an integer >= 0",
+        ),
+        (("-n", 8, "-d", 2, "--sampler", "sukharev", "-o", "a.npy"), r"are 4 and 9 \(or allow_fewer\)"),
+        (("-n", 8, "-d", 2, "--seed", -1, "-o", "a.npy"), "--seed must be an integer >= 0, got -1"),
     ],
 )
 def test_bad_requests_for_points_get_one_line(run, tmp_path, arguments, says):
@@ -82,9 +110,9 @@ def test_bad_requests_for_points_get_one_line(run, tmp_path, arguments, says):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("option", ["-n", "-d", "--family", "--seed", "-o"])
+@pytest.mark.parametrize("option", ["-n", "-d", "--sampler", "--seed", "-o"])
 def test_an_error_repeats_a_little_of_what_points_was_asked_for(run, tmp_path, option):
-    line = {"-n": 8, "-d": 2, "--family": "uniform", "--seed": 0, "-o": "a.npy"}
+    line = {"-n": 8, "-d": 2, "--sampler": "uniform", "--seed": 0, "-o": "a.npy"}
     line[option] = "-" + "7" * 3000 if option in ("-n", "-d", "--seed") else "x" * 5000
     code, out, err = run("points", *(each for pair in line.items() for each in pair))
     assert (code, out) == (2, "")
@@ -378,7 +406,7 @@ def test_a_value_beyond_the_range_of_a_float_is_left_out_and_said_so():
 
 def test_a_folder_is_no_point_set(run, tmp_path):
     (tmp_path / "sets.npz").mkdir()
-    for name, kind in ((tmp_path, ".npy array"), ("sets.npz", ".npz point set")):
+    for name, kind in ((tmp_path, ".npy array of shape (n, d)"), ("sets.npz", ".npz point set")):
         code, out, err = run("measure", name)
         assert (code, out) == (2, "")
         assert err == f"evenroad: error: {name} is a folder, not a {kind}\n"

@@ -75,6 +75,7 @@ def test_the_meshes_are_asked_about_what_is_driven(run, tmp_path, monkeypatch):
         asked.append(path)
         return MeshCheck("in collision", 1, "a touches b")
 
+    (tmp_path / "t.json").write_text("of an earlier run")
     monkeypatch.setattr("evenroad.cli.trajectory.mesh_check", in_collision)
     code, _, err = run(*REACH, "--trajectory", "t.json")
     assert code == 2

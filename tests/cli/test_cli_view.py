@@ -2,6 +2,7 @@ import json
 
 import numpy as np
 import pytest
+import trimesh
 from PIL import Image
 
 from evenroad.cli.view import View
@@ -55,6 +56,8 @@ def test_bad_input_is_one_line(run, tmp_path, words, said):
         ({"query": {"joints": None}}, "damaged plan"),
         ({"query": {"held": {"a": "b"}}}, "damaged plan"),
         ({"query": {"srdf": 5}}, "damaged plan"),
+        ({"query": {"packages": {"a": 5}}}, "damaged plan"),
+        ({"query": {"arguments": "a"}}, "damaged plan"),
     ],
 )
 def test_a_damaged_plan_is_one_line(run, tmp_path, change, said):
@@ -79,3 +82,35 @@ def test_joints_that_were_held_are_where_the_plan_held_them(run, tmp_path):
     query, _ = View(world=tmp_path / "box-reach.json")._query()
     held = held_values(query.world.robot)
     assert held["shoulder_lift_joint"] == pytest.approx(-np.pi / 2)
+
+
+def test_a_plan_knows_where_the_packages_of_its_robot_are(run, tmp_path):
+    folder = tmp_path / "ours" / "meshes"
+    folder.mkdir(parents=True)
+    trimesh.creation.box((0.1, 0.1, 0.6)).export(folder / "pole.stl")
+    drawn = '<visual><geometry><mesh filename="package://ours_desc/meshes/pole.stl"/></geometry></visual>'
+    (tmp_path / "pole.urdf").write_text(
+        f"""<robot name="pole"><link name="base"/><link name="pole">{drawn}</link>
+        <joint name="turn" type="revolute"><parent link="base"/><child link="pole"/><axis xyz="1 0 0"/>
+        <limit lower="-1" upper="1" velocity="1" effort="1"/></joint></robot>"""
+    )
+    (tmp_path / "nothing.yaml").write_text("obstacles: {}")
+    made = ("--robot", "pole.urdf", "--package", f"ours_desc={folder.parent}", "--use-visuals")
+    code, _, err = run("plan", "nothing.yaml", *made, "--start", "-0.5", "--goal", "0.5", "--no-picture")
+    assert code == 0, err
+    query, _ = View(world=tmp_path / "nothing.json")._query()
+    assert "pole" in {capsule.link for capsule in query.world.robot.capsules}
+
+
+def test_a_plan_along_a_roadmap_is_shown_with_its_arm_and_its_cell(run, tmp_path):
+    (tmp_path / "cell.yaml").write_text(
+        "obstacles: {fence: {shape: box, size: [0.1, 2, 1], xyz: [-1, 0, 0.5]}}"
+    )
+    assert run("roadmap", "ur5", "--cell", "cell.yaml", "-n", 8, "-o", "a.roadmap")[0] == 0
+    (tmp_path / "day.yaml").write_text("obstacles: {ball: {shape: sphere, radius: 0.05, xyz: [1, 0, 1]}}")
+    ends = ("--start", "0,-1.5,0,-1.5,0,0", "--goal", "0.3,-1.5,0,-1.5,0,0")
+    code, _, err = run("plan", "day.yaml", "--roadmap", "a.roadmap", *ends, "--no-picture")
+    assert code == 0, err
+    query, result = View(world=tmp_path / "day.json")._query()
+    assert {each.name for each in query.world.scene.obstacles} == {"fence", "ball"}
+    assert result.solved

@@ -5,11 +5,12 @@ import pytest
 
 from evenroad.points import draw
 from evenroad.points.samplers import Sobol
+from evenroad.points.samplers.even import drawn_in
 from evenroad.points.samplers.poses import Sliced
 from evenroad.research.worlds import Corridor
 from evenroad.roadmap import KEarlier, KNearest, Radius, Roadmap, fmt, plan, plan_anytime
 from evenroad.roadmap.query import even_points
-from evenroad.space import SE2, SE3, SO3, JointSpace, Product
+from evenroad.space import SE2, SE3, SO3, Box, JointSpace, Product
 from evenroad.world import FunctionWorld
 from tests.counting import Counting
 
@@ -91,6 +92,29 @@ def test_a_number_of_points_in_space_means_sliced_poses_for_few_neighbours_and_s
 @pytest.mark.parametrize("space", [JOINTS, SE2((0.0, 0.0), (1.0, 1.0)), Product([SO3(), SO3()])])
 def test_elsewhere_a_number_of_points_means_the_even_lattice(space):
     assert even_points(40, space, KNearest(4), rng=3) == draw("even", 40, space.cube_dim, rng=3)
+
+
+@pytest.mark.parametrize(
+    ("d", "rule", "near"),
+    [
+        (10, KNearest(4), True),
+        (12, KEarlier(6), True),
+        (10, KNearest(7), False),
+        (7, KNearest(4), True),
+        (6, KNearest(4), False),
+        (10, Radius(0.5), False),
+        (10, None, False),
+    ],
+)
+def test_in_a_box_of_many_dimensions_points_of_a_sparse_roadmap_are_drawn_in(d, rule, near):
+    points = draw("even", 30, d, rng=3)
+    box = Box([0.0] * d, [2.0] * d)
+    assert even_points(30, box, rule, rng=3) == (drawn_in(points) if near else points)
+
+
+def test_joints_are_not_drawn_in():
+    space = JointSpace([-3.0] * 10, [3.0] * 10)
+    assert even_points(30, space, KNearest(4), rng=3) == draw("even", 30, 10, rng=3)
 
 
 @pytest.mark.parametrize("rule", [KNearest(5), KNearest(15)])

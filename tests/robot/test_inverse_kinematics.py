@@ -249,7 +249,7 @@ def test_misses_are_those_of_forward_kinematics():
 
 def test_a_tip_that_is_not_there_and_one_that_nothing_moves_are_refused():
     world = ArmWorld(UR5, EMPTY)
-    with pytest.raises(UnknownName, match="unknown link of 'ur5' 'hand'; known: base_link"):
+    with pytest.raises(UnknownName, match="unknown link of 'ur5': 'hand'; known: base_link"):
         reach(world, PoseGoal(IDENTITY, "hand"), np.zeros(6))
     with pytest.raises(InvalidValue, match="moves the link 'base_link'"):
         reach(world, PoseGoal(IDENTITY, "base_link"), np.zeros(6))

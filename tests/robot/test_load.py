@@ -229,9 +229,9 @@ def test_the_cache_takes_notice_of_every_change(tmp_path, changed):
 def test_an_srdf_without_a_pair_is_told_from_no_srdf_and_from_one_that_is_empty(tmp_path):
     path, empty = write(tmp_path, two_joints()), write(tmp_path, "", "empty")
     assert load_model(path).pairs_from == "computed"
-    with pytest.raises(BrokenFile, match="empty is not XML"):
+    with pytest.raises(BrokenFile, match="empty is empty, not XML"):
         load_model(path, srdf=empty)
-    with pytest.raises(BrokenFile, match="empty is not a file of bodies"):
+    with pytest.raises(BrokenFile, match="empty is empty, not a file of bodies"):
         load_model(path, bodies=empty)
 
 

@@ -254,7 +254,7 @@ def test_a_scene_with_and_without_an_obstacle_is_another_scene():
     assert both.without("wall", "ball") == Scene("s", states=scene.states)
     with pytest.raises(InvalidValue, match=r"twice: \['ball'\]"):
         scene.with_(BALL)
-    with pytest.raises(UnknownName, match="obstacle of scene 's' 'table'; known: ball"):
+    with pytest.raises(UnknownName, match="obstacle of scene 's': 'table'; known: ball"):
         scene.without("table")
 
 

@@ -150,7 +150,7 @@ def test_what_is_wrong_in_an_srdf_is_named(case, read):
 
 def test_an_srdf_that_is_no_xml_or_missing_is_named(tmp_path):
     arm = read_urdf(write(tmp_path, ARM))
-    with pytest.raises(BrokenFile, match=r"arm\.urdf\.txt is not XML"):
+    with pytest.raises(BrokenFile, match=r"arm\.urdf\.txt is text, not XML"):
         read_srdf(write(tmp_path, "hello", "arm.urdf.txt"), arm)
     with pytest.raises(BrokenFile, match="cannot read the SRDF"):
         read_srdf(tmp_path / "none.srdf", arm)

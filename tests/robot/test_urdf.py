@@ -283,7 +283,7 @@ BROKEN = {
         "joint 'a' in .*: <joint> has more than one <limit>",
     ),
     "no XML": ("<robot name='a'><link", BrokenFile, "is not XML"),
-    "an empty file": ("", BrokenFile, "is not XML"),
+    "an empty file": ("", BrokenFile, "is empty, not XML"),
     "another kind of XML": ("<sdf/>", BrokenFile, "not a URDF: its outermost element is <sdf>"),
     "no links": (urdf(), BrokenFile, "has no links"),
     "a cycle": (

@@ -9,7 +9,7 @@ import pytest
 import evenroad as er
 from evenroad.geometry import Mesh, PointCloud, Pose, TriangleMesh
 from evenroad.geometry.shapes import Capsule
-from evenroad.robot import ArmWorld, Joint, Mimic, Obstacle, Scene, with_group, with_limits
+from evenroad.robot import ArmWorld, Joint, Mimic, Obstacle, Scene, link_poses, with_group, with_limits
 from evenroad.robot_roadmap import chance
 from evenroad.robot_roadmap.cell import day_and_all
 from evenroad.robot_roadmap.make import make_roadmap
@@ -341,3 +341,20 @@ def test_shapes_are_asked_within_what_the_capsules_left_of_the_budget(roadmap):
     assert budgets
     assert all(budget.seconds < 3.0 and 1 <= budget.motions <= 50 for budget in budgets)
     assert any(budget.motions < 50 for budget in budgets)
+
+
+def test_a_pose_is_a_goal_as_it_is_elsewhere(roadmap):
+    scene, robot = roadmap.in_scene(Scene("today")), roadmap.robot
+    tip, (start, end) = robot.links[-1], roadmap.milestones[[0, 1]]
+    xyz = link_poses(robot, end[np.newaxis])[0, -1, :3, 3]
+    pose = er.PoseGoal(er.Pose(tuple(xyz)), tip=tip, position_only=True)
+    found = scene.plan(start, pose)
+    assert found.solved, found.message
+    np.testing.assert_allclose(link_poses(robot, found.path[-1:])[0, -1, :3, 3], xyz, atol=1e-6)
+    beside = scene.plan(start, [pose, start])
+    assert beside.solved
+    assert len(beside.goals) == len(found.goals) + 1
+    far = scene.plan(start, er.PoseGoal(er.Pose((9.0, 0.0, 0.0)), tip=tip, position_only=True))
+    assert far.status is er.Status.GOAL_UNREACHABLE
+    assert "out of reach" in far.message
+    assert far.path is None

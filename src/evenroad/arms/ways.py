@@ -82,7 +82,7 @@ def _through(world: UprightWorld, result: PlanResult, shorten: bool) -> PlanResu
         return result
     path, tilt = world.path_through(result.path, shorten=shorten)
     if tilt > world.tolerance:
-        message = f"the path that was found is tilted by {tilt:.4g} rad, more than {world.tolerance:.4g}"
+        message = f"on the path that was found {world.tilted(tilt)}"
         return replace(result, status=Status.NOT_CONNECTED, message=message, path=None, cost=None, proof=None)
     raw = path if not shorten else world.path_through(result.path, shorten=False)[0]
     return _with_path(world, result, path, raw, {"tilt_rad": tilt})
@@ -144,8 +144,7 @@ def _line(within: World, world: ArmWorld, chain: Chain, straight: Straight, q: F
         return line
     if (tilt := within.largest_tilt(line.path)) <= within.tolerance:
         return line
-    why = f"along it {within.chain.tip!r} is tilted by {tilt:.4g} rad, more than {within.tolerance:.4g}"
-    return Line(line.path[:1], why)
+    return Line(line.path[:1], f"along it {within.tilted(tilt)}")
 
 
 def _with_path(

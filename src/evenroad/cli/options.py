@@ -6,16 +6,24 @@ A verb is a frozen dataclass.  Its fields are its options, and the text below a 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import redirect_stderr
-from dataclasses import MISSING, fields
+from dataclasses import MISSING, fields, is_dataclass, replace
+from inspect import get_annotations
 from io import StringIO
 from itertools import dropwhile, takewhile
 from textwrap import fill
 from typing import Annotated, Any, Union
 
 from tyro import cli, conf
-from tyro.constructors import ConstructorRegistry, PrimitiveConstructorSpec, PrimitiveTypeInfo
+from tyro.constructors import (
+    ConstructorRegistry,
+    PrimitiveConstructorSpec,
+    PrimitiveTypeInfo,
+    StructConstructorSpec,
+    StructFieldSpec,
+    StructTypeInfo,
+)
 
 from evenroad._checks import require_known
 from evenroad._terminal import table_width
@@ -26,6 +34,12 @@ MARKS = (conf.FlagCreatePairsOff, conf.DisallowNone, conf.PositionalMetavarFromF
 NUMBERS = {int: "a whole number", float: "a number"}
 RULES = ConstructorRegistry()
 AXES = ("-x", "-y", "-z")
+EARLIER = {"--family": "--sampler", "--certify": "--guarantees"}
+"""Names that options once had, and are still taken by, where a verb has none of the name itself."""
+_INSIDE: list[StructTypeInfo] = []
+"""The verb whose options tyro lists by its own rule, at the moment."""
+UNSAID = (None, False, "", ())
+"""Defaults that the help does not repeat: its text says what is done without the option."""
 
 
 def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
@@ -35,6 +49,7 @@ def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:
     SystemExit after its help, where the words ask for that.
     """
     known, program = option_names(kind), f"evenroad {verb}"
+    words = [today(word, known) for word in words]
     for name in sorted(given_options(words) - known - HELP):
         raise UnknownName.among(f"option of {program}:", name, known)
     texts = [" ".join(text.split()) for text in (kind.__doc__ or "").split("\n\n")]
@@ -67,6 +82,13 @@ def given_options(words: Sequence[str]) -> set[str]:
     return {word.partition("=")[0].replace("_", "-") for word in words if word.startswith("--")}
 
 
+def today(word: str, known: set[str]) -> str:
+    """Return a word with the name that an option has today, if it once had another."""
+    name, equals, value = word.partition("=")
+    new = EARLIER.get(name, name)
+    return new + equals + value if new in known and name not in known else word
+
+
 def _with_axes(words: Sequence[str]) -> list[str]:
     """Return words in which an axis, as in ``--away -z``, is no option: the two become ``--away=-z``."""
     joined: list[str] = []
@@ -88,6 +110,39 @@ def _parsed(kind: Any, prog: str, words: Sequence[str], about: str = "") -> Any:
         if not end.code:
             raise
         raise InvalidValue(f"{_in_words(said.getvalue())}; all options: {prog} --help") from None
+
+
+@RULES.struct_rule
+def _verb(info: StructTypeInfo) -> StructConstructorSpec | None:
+    """Tell tyro to list a verb's own options before those that it shares, and what to say of their defaults."""
+    if _INSIDE or not is_dataclass(info.type):
+        return None
+    _INSIDE.append(info)
+    try:
+        made = ConstructorRegistry.get_struct_spec(info)
+    finally:
+        _INSIDE.pop()
+    assert isinstance(made, StructConstructorSpec)
+    # From the verb's class up to those that it inherits from.
+    places = [name for each in info.type.__mro__ for name in get_annotations(each)]
+    listed = sorted(made.fields, key=lambda field: places.index(field.name))
+    return replace(made, fields=tuple(map(_worded, listed)))
+
+
+def _worded(field: StructFieldSpec) -> StructFieldSpec:
+    """Return an option with its text in one piece, and without a default that only says that there is none."""
+    hint = None
+    if "AppendAction" in str(field.type):
+        hint = "(repeatable)" if field.default == () else "(required, repeatable)"
+    elif any(field.default is each for each in UNSAID):
+        hint = ""
+    kind = field.type if hint is None else Annotated[field.type, conf.arg(help_behavior_hint=hint)]
+    return replace(field, helptext=lambda: _text(field.helptext), type=kind)  # type: ignore[arg-type]
+
+
+def _text(help: str | Callable[[], str | None] | None) -> str:
+    """Return the help of an option in one piece: tyro would keep some ends of lines."""
+    return " ".join(((help() if callable(help) else help) or "").split())
 
 
 @RULES.primitive_rule

@@ -12,11 +12,12 @@ from typing import Annotated, Any, ClassVar
 import tyro
 
 from evenroad.cli.options import HELP, given_options, option_names
+from evenroad.cli.sampler import SamplerOptions
 from evenroad.errors import InvalidValue
 
 
 @dataclass(frozen=True, kw_only=True)
-class PlanOptions:
+class PlanOptions(SamplerOptions):
     """What every plan is told."""
 
     planner: ClassVar[str]
@@ -27,8 +28,7 @@ class PlanOptions:
     start: tuple[str, ...]
     """Where to start."""
     goal: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]]
-    """As start.  Required; given more than once, the path ends at the first one that is reached.
-    With points or --improve at the cheapest."""
+    """Where to go."""
     n: Annotated[int | None, tyro.conf.arg(aliases=["-n"])] = None
     """Plan on a roadmap of exactly so many points (ps-PRM); where only other options speak of points: 512.
     Default: no points, but until there is a path or a proof that there is none, or the time is over."""
@@ -42,20 +42,11 @@ class PlanOptions:
     """Connect each milestone with its k nearest, symmetrised (default 10; 20 from six joints on)."""
     connect_radius: float | None = None
     """Connect milestones up to this distance instead, in map units or radians."""
-    sampler: str = "auto"
-    """auto (even), even, growing, sequence, hickernell, mpmc, korobov, lattice, cover, halton, sobol, sukharev or
-    uniform."""
-    plain: bool = False
-    """halton and sobol: the plain sequence instead of the scrambled one."""
-    skip: int = 0
-    """halton and sobol: index of the first point of the sequence."""
-    allow_fewer: bool = False
-    """sukharev: take the largest grid with at most n points."""
     seed: int = 0
     """Seed of everything random; the same command gives the same path."""
     raw: bool = False
     """Leave the path as it was found, without shortcutting it."""
-    out: Path | None = None
+    out: Annotated[Path | None, tyro.conf.arg(aliases=["-o"])] = None
     """Where results go: OUT.json, OUT.png and, for an arm, OUT.csv.
     Default: the world's stem in the current folder, with -plan added where that would overwrite an input."""
     no_picture: bool = False
@@ -84,6 +75,9 @@ class PlanDisk(PlanOptions):
     """A map: a .png or .pgm image, or a ROS map_server .yaml."""
     start: tuple[str, ...]
     """x y in map units."""
+    goal: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]]
+    """As start.  Given more than once, the path ends at the first one that is reached.
+    With points or --improve at the cheapest."""
     robot_radius: float
     """Plan for a disk of this radius, > 0, in map units."""
     clearance: float = 0.0
@@ -92,7 +86,7 @@ class PlanDisk(PlanOptions):
     """May pass through unknown cells of a ROS map."""
     csv: bool = False
     """Also write the path as OUT.csv."""
-    certify: bool = False
+    guarantees: bool = False
     """Say what the roadmap guarantees: from which clearance on it has a path wherever there is one, and how long it is
     at most.  With points; the sampler cover guarantees most."""
 
@@ -215,7 +209,7 @@ class Demo:
     """Which maze: 1, 2 or 3, of rising difficulty."""
     n: Annotated[int, tyro.conf.arg(aliases=["-n"])] = 1024
     """How many points to draw."""
-    out: Path = Path("demo")
+    out: Annotated[Path, tyro.conf.arg(aliases=["-o"])] = Path("demo")
     """Where results go: OUT.png and OUT.json."""
 
     def run(self) -> int:
@@ -242,7 +236,7 @@ def plan_type(words: Sequence[str]) -> type[PlanDisk] | type[PlanArm]:
         return chosen
     if for_arm == ("--robot-radius" in given):
         text = "give --robot-radius (a disk) or --robot (an arm), exactly one of them, not"
-        raise InvalidValue(f"{text} {'both' if for_arm else 'neither'}")
+        raise InvalidValue(f"{text} {'both' if for_arm else 'neither'}; all options: evenroad plan --help")
     other, needs = (PlanDisk, "--robot-radius") if chosen is PlanArm else (PlanArm, "--robot")
     for option in sorted(given & (option_names(other) - option_names(chosen))):
         raise InvalidValue(f"{option} goes with {needs} only")

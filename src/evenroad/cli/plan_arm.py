@@ -23,10 +23,10 @@ from evenroad.cli.plan_parts import (
     chosen_budget,
     chosen_rule,
     common_query,
-    draw_points,
     finish,
     load_compiled_code,
     output_files,
+    planned_points,
     wants_points,
 )
 from evenroad.cli.roadmap import kept_roadmap
@@ -51,7 +51,7 @@ def plan_arm(plan: PlanArm) -> int:
 
     Links without a body are named, with a warning where the URDF draws them: their collisions go unseen.
     """
-    budget = chosen_budget(plan)
+    budget, asked_goals = chosen_budget(plan), _goals(plan)
     kept = None if plan.roadmap is None else kept_roadmap(plan)
     ways = _ways(plan)
     if not wants_points(plan) and kept is None:
@@ -63,7 +63,7 @@ def plan_arm(plan: PlanArm) -> int:
         robot,
         plan.world if kept is None else day_and_all(kept.cell, load_scene(plan.world))[1],
         " ".join(plan.start),
-        _goals(plan),
+        asked_goals,
         resolution=plan.resolution,
         degrees=plan.deg,
         **({} if plan.robot is None else plan.options()),
@@ -76,7 +76,7 @@ def plan_arm(plan: PlanArm) -> int:
     require_trajectory_options(plan, [path for path in inputs if path is not None], files.values())
     world, start, goals = query.world, query.start, query.goals
     rule = chosen_rule(plan, default_rule(world.space).k)
-    points = draw_points(plan, world.space.cube_dim) if wants_points(plan) else None
+    points = planned_points(plan, world.space.cube_dim) if wants_points(plan) else None
     load_compiled_code(world, start, goals, points, rule, SEARCH)
 
     def plan_once(world: World, start: Floats, goals: Floats, shorten: bool) -> PlanResult:
@@ -93,12 +93,14 @@ def plan_arm(plan: PlanArm) -> int:
     result, meshes = finished(query, result, certified=plan.certified)
     more_rows, trajectory = trajectory_rows(plan, query, result, ways)
     robot, model = world.robot, query.model
+    made = plan.options()
     asked = {
         "scene": str(plan.world),
         "robot": plan.robot,
         "roadmap": None if plan.roadmap is None else str(plan.roadmap),
         "srdf": None if plan.srdf is None else str(plan.srdf),
         "bodies": None if plan.bodies is None else str(plan.bodies),
+        **{name: made[name] for name in ("use_visuals", "packages", "arguments")},
         "joints": list(robot.group),
         "goal_names": list(query.goal_names),
         "held": held_values(robot),

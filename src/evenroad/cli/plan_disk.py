@@ -10,17 +10,16 @@ import numpy as np
 
 from evenroad import roadmap
 from evenroad._compiled import say_if_compiling
-from evenroad._rng import generator
 from evenroad.cli.certify import guarantee_rows, guarantees
 from evenroad.cli.plan import PlanDisk
 from evenroad.cli.plan_parts import (
     chosen_budget,
     chosen_rule,
     common_query,
-    draw_points,
     finish,
     load_compiled_code,
     output_files,
+    planned_points,
     wants_points,
 )
 from evenroad.errors import InvalidValue
@@ -34,10 +33,9 @@ from evenroad.world.gridmap.load import map_files
 def plan_disk(plan: PlanDisk) -> int:
     """Plan, write, report; return 0 when solved, else 1."""
     rule = chosen_rule(plan, default_k=10)
-    generator(plan.seed)
     budget = chosen_budget(plan)
-    if plan.certify and not wants_points(plan):
-        raise InvalidValue("--certify speaks of a roadmap: say of how many points with -n")
+    if plan.guarantees and not wants_points(plan):
+        raise InvalidValue("--guarantees speaks of a roadmap: say of how many points with -n")
     start = _position("start", plan.start)
     goals = [_position("goal", goal) for goal in plan.goal]
     if plan.world.suffix in (".yaml", ".yml"):
@@ -57,9 +55,9 @@ def plan_disk(plan: PlanDisk) -> int:
         world = (gridmap.cropped() if gridmap.unknown.any() else gridmap).world(
             plan.robot_radius, clearance=plan.clearance
         )
-        points = draw_points(plan, 2)
+        points = planned_points(plan, 2)
         load_compiled_code(world, start, goals, points, rule)
-        shorten, certify = not plan.raw, plan.certify
+        shorten, certify = not plan.raw, plan.guarantees
         result = roadmap.plan(
             world, start, goals, points, rule=rule, shorten=shorten, budget=budget, certify=certify
         )

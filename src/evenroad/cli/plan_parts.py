@@ -10,14 +10,14 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad import roadmap
-from evenroad._checks import require_count, require_known, require_positive
+from evenroad._checks import require_positive
 from evenroad._files import require_writable_folder
-from evenroad._rng import generator
 from evenroad._terminal import print_table
 from evenroad.cli.plan import PlanOptions
+from evenroad.cli.sampler import chosen_sampler, draw_points, require_seed, speaks_of_points
 from evenroad.errors import InvalidValue
 from evenroad.io import save_json, save_path_csv
-from evenroad.points import SAMPLERS, PointSet, make_sampler
+from evenroad.points import PointSet
 from evenroad.roadmap import Budget, KNearest, PlanResult, Radius, Rule
 from evenroad.roadmap.find_path import SECONDS
 from evenroad.world import ConnectsItself, Rechecks, World
@@ -32,8 +32,6 @@ PROOFS = {
 
 _FEW = 16
 """Points of a plan that only loads compiled code."""
-_TAKES = {"halton": {"plain", "skip"}, "sobol": {"plain", "skip"}, "sukharev": {"allow_fewer"}}
-"""Options that only these samplers take."""
 
 
 def chosen_rule(plan: PlanOptions, default_k: int) -> Rule:
@@ -48,13 +46,14 @@ def chosen_rule(plan: PlanOptions, default_k: int) -> Rule:
 def wants_points(plan: PlanOptions) -> bool:
     """Return whether an option was given that speaks of points or of how they are joined."""
     given = (plan.n, plan.k, plan.connect_radius)
-    return any(value is not None for value in given) or bool(
-        plan.sampler != "auto" or plan.plain or plan.skip or plan.allow_fewer
-    )
+    return any(value is not None for value in given) or speaks_of_points(plan)
 
 
 def chosen_budget(plan: PlanOptions) -> Budget:
-    """Return how long to plan, and refuse what does not go with the points that were asked for."""
+    """Return how long to plan, and refuse what does not go with the points that were asked for, or with none."""
+    if wants_points(plan):
+        chosen_sampler(plan, _n(plan))
+    require_seed(plan.seed)
     if plan.improve and wants_points(plan):
         raise InvalidValue("--improve goes without points: a roadmap of exactly so many has one best path")
     if plan.time is not None:
@@ -62,22 +61,13 @@ def chosen_budget(plan: PlanOptions) -> Budget:
     return Budget() if wants_points(plan) else Budget(seconds=SECONDS)
 
 
-def draw_points(plan: PlanOptions, d: int) -> PointSet:
-    """Draw the set of n points in d dimensions that was asked for, refusing options that its sampler would ignore."""
-    n = require_count("n", DEFAULT_N if plan.n is None else plan.n)
-    generator(plan.seed)
-    name = "even" if plan.sampler == "auto" else plan.sampler
-    require_known("sampler", name, [*SAMPLERS, "auto"])
-    takes = _TAKES.get(name, set())
-    for option in ("plain", "skip", "allow_fewer"):
-        if getattr(plan, option) and option not in takes:
-            raise InvalidValue(f"--{option.replace('_', '-')} does not go with the sampler {name!r}")
-    options: dict[str, Any] = {}
-    if "plain" in takes:
-        options = {"scramble": not plan.plain, "start": plan.skip}
-    elif takes:
-        options = {"allow_fewer": plan.allow_fewer}
-    return make_sampler(name, **options).draw(n, d, rng=plan.seed)
+def planned_points(plan: PlanOptions, d: int) -> PointSet:
+    """Draw the set of points in d dimensions that was asked for."""
+    return draw_points(plan, _n(plan), d)[0]
+
+
+def _n(plan: PlanOptions) -> int:
+    return DEFAULT_N if plan.n is None else plan.n
 
 
 def load_compiled_code(
@@ -181,6 +171,8 @@ def print_plan(result: PlanResult, files: Iterable[Path], more: Sequence[tuple[s
         rows.append(("proved", PROOFS[result.proof]))
     # Without digits that say nothing, so that all phases fit into one line.
     times = {phase: 1e3 * seconds for phase, seconds in result.seconds.items()}
-    rows.append(("time [ms]", ", ".join(f"{phase} {ms:.{int(ms < 10)}f}" for phase, ms in times.items())))
+    if times:
+        spent = ", ".join(f"{phase} {ms:.{int(ms < 10)}f}" for phase, ms in times.items())
+        rows.append(("time [ms]", spent))
     rows += [*more, ("files", ", ".join(map(str, files)))]
     print_table(rows, first="green" if result.solved else "red")

@@ -14,6 +14,7 @@ from evenroad._files import require_writable_folder
 from evenroad._terminal import print_table, progress_shown
 from evenroad.cli.plan import PlanArm, RobotOptions
 from evenroad.cli.plan_parts import wants_points
+from evenroad.cli.sampler import require_seed
 from evenroad.errors import InvalidValue
 from evenroad.robot import Scene, find_robot, find_scene, load_model, load_scene
 from evenroad.robot_roadmap.file import load_robot_roadmap, save_robot_roadmap
@@ -49,6 +50,7 @@ class MakeRoadmap(RobotOptions):
 
     def run(self) -> int:
         """Load, make, write, report; return 0."""
+        require_seed(self.seed)
         inputs = [*find_robot(self.robot), self.srdf, self.bodies]
         inputs += [] if self.cell is None else [find_scene(self.cell)]
         out = Path(f"{Path(self.robot).stem}.roadmap") if self.out is None else self.out

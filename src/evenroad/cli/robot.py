@@ -69,7 +69,7 @@ def bodiless_rows(model: RobotModel) -> list[tuple[str, str]]:
     """Return rows, name and text: what was read otherwise, links that nothing touches, pairs that always touch."""
     rows = [("note", note) for note in model.notes]
     if model.bodiless:
-        rows.append(("no body", ", ".join(model.bodiless)))
+        rows.append(("no body", f"{', '.join(model.bodiless)} (without a shape: nothing is found to touch)"))
     if model.drawn_only:
         text = "drawn, but without collision geometry, so that nothing is found to touch: "
         rows.append(("WARNING", text + ", ".join(model.drawn_only)))

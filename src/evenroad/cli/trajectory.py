@@ -48,6 +48,12 @@ def require_trajectory_options(plan: PlanArm, inputs: Iterable[Path], outputs: I
         require_writable_folder(file)
 
 
+def _remove_earlier(plan: PlanArm) -> None:
+    """Remove the trajectories of an earlier run, which must not pass for this one's."""
+    for file in plan.trajectory:
+        file.unlink(missing_ok=True)
+
+
 def trajectory_rows(
     plan: PlanArm, query: ArmQuery, result: PlanResult, ways: tuple[Straight | None, Upright | None]
 ) -> tuple[list[tuple[str, str]], dict[str, Any] | None]:
@@ -56,9 +62,7 @@ def trajectory_rows(
         return [], None
     stays = result.path is not None and bool(np.all(result.path == result.path[0]))
     if not result.solved or result.path is None or stays:
-        # One of an earlier run must not pass for this one's.
-        for file in plan.trajectory:
-            file.unlink(missing_ok=True)
+        _remove_earlier(plan)
         return [("trajectory", "none: the start is the goal")] if stays else [], None
     from evenroad.trajectory import arm_trajectory, limits_of
     from evenroad.trajectory.files import save_trajectories
@@ -67,23 +71,28 @@ def trajectory_rows(
     straight, upright = (None if way is None else replace(way, tip=way.tip or tip) for way in ways)
     joints = plan.controller_joints
     order = None if joints is None else [*map(str.strip, joints.split(","))]
-    trajectory = arm_trajectory(
-        world,
-        result.path,
-        limits_of(world.robot, plan.limits),
-        speed=plan.speed,
-        deviation=plan.deviation,
-        step=plan.step,
-        rounded_by_controller=any(file.name.lower().endswith(_MOVEJ) for file in plan.trajectory),
-        straight=straight,  # type: ignore[arg-type]
-        upright=upright,  # type: ignore[arg-type]
-    )
-    meshes = mesh_check(query, trajectory.positions)
-    if meshes is not None and meshes.verdict == "in collision":
-        raise NotAvailable(
-            "the trajectory is free for the robot's capsules, but not for the shapes that they stand for:"
-            f" in collision {meshes.message}; a smaller --deviation may help"
+    limits = limits_of(world.robot, plan.limits)
+    try:
+        trajectory = arm_trajectory(
+            world,
+            result.path,
+            limits,
+            speed=plan.speed,
+            deviation=plan.deviation,
+            step=plan.step,
+            rounded_by_controller=any(file.name.lower().endswith(_MOVEJ) for file in plan.trajectory),
+            straight=straight,  # type: ignore[arg-type]
+            upright=upright,  # type: ignore[arg-type]
         )
+        meshes = mesh_check(query, trajectory.positions)
+        if meshes is not None and meshes.verdict == "in collision":
+            raise NotAvailable(
+                "the trajectory is free for the robot's capsules, but not for the shapes that they stand for:"
+                f" in collision {meshes.message}; a smaller --deviation may help"
+            )
+    except NotAvailable:
+        _remove_earlier(plan)
+        raise
     save_trajectories(plan.trajectory, trajectory, order)
     used = ", ".join(f"{100 * share:.0f} % of {kind}" for kind, share in trajectory.highest.items())
     stops = f", {trajectory.stops} stops" if trajectory.stops else ""

@@ -18,9 +18,19 @@ from evenroad.io import load_plan
 from evenroad.points import draw
 from evenroad.roadmap import Budget, PlanResult
 from evenroad.roadmap.find_path import find_path
-from evenroad.robot import ArmWorld, find_robot
+from evenroad.robot import ArmWorld, find_robot, load_scene
 from evenroad.robot.urdf_xml import RobotFile
+from evenroad.robot_roadmap.cell import day_and_all
+from evenroad.robot_roadmap.file import load_robot_roadmap
 
+FILES = {
+    "srdf": str | None,
+    "bodies": str | None,
+    "use_visuals": bool | None,
+    "packages": dict | None,
+    "arguments": dict | None,
+}
+"""What a plan says of how its robot was made of files, and of which kind it is; plans of earlier versions said less."""
 SECONDS = 0.5
 """To plan again at most, while somebody moves an end by hand."""
 
@@ -87,15 +97,20 @@ class View(RobotOptions):
             query = arm_query(self.robot, self.world, self.start, goal, **options)
             return query, self._planned(query.world, query.start, query.goals)
         result, asked = load_plan(self.world)
-        robot = self.robot or asked.get("robot")
-        if not isinstance(robot, str) or not isinstance(asked.get("scene"), str):
+        robot: Any = self.robot or asked.get("robot")
+        kept = asked.get("roadmap")
+        if not isinstance(robot or kept, str) or not isinstance(asked.get("scene"), str):
             raise InvalidValue(f"{self.world} is not the plan of an arm: it names no robot and scene")
         _require_sound(self.world, asked)
-        for name in ("srdf", "bodies"):
-            options[name] = options[name] or asked.get(name)
+        for name in FILES:
+            options[name] = options[name] or asked.get(name) or options[name]
         options["group"] = options["group"] or ",".join(asked["joints"])
-        held = asked["held"]
-        query = arm_query(robot, asked["scene"], result.start, list(result.goals), held=held, **options)
+        scene = load_scene(asked["scene"])
+        if kept is not None:
+            roadmap = load_robot_roadmap(kept)
+            scene = day_and_all(roadmap.cell, scene)[1]
+            robot, options = (roadmap.robot, {}) if robot is None else (robot, options)
+        query = arm_query(robot, scene, result.start, list(result.goals), held=asked["held"], **options)
         if self.n is not None:
             result = self._planned(query.world, query.start, query.goals)
         return query, result
@@ -117,8 +132,11 @@ class View(RobotOptions):
 
 def _require_sound(file: Path, asked: dict[str, Any]) -> None:
     """Raise BrokenFile where a plan does not say what robot it is of as `evenroad plan` does."""
-    joints, held = asked.get("joints"), asked.get("held")
-    sound = isinstance(joints, list) and all(isinstance(name, str) for name in joints)
-    sound &= isinstance(held, dict) and all(isinstance(value, int | float) for value in held.values())
-    if not sound or not all(isinstance(asked.get(name), str | None) for name in ("srdf", "bodies")):
+    kinds = {"joints": list, "held": dict, **FILES}
+    sound = all(isinstance(asked.get(name), kind) for name, kind in kinds.items())
+    if sound:
+        pairs = [*(asked.get("packages") or {}).values(), *(asked.get("arguments") or {}).values()]
+        sound = all(isinstance(text, str) for text in (*asked["joints"], *pairs))
+        sound &= all(isinstance(value, int | float) for value in asked["held"].values())
+    if not sound:
         raise BrokenFile(f"{file} is a damaged plan: of its robot's joints, held joints or files")

@@ -39,7 +39,8 @@ class Origin:
     version: str = __version__
 
     def __str__(self) -> str:
-        parts = [self.family, self.method]
+        # Of points that were given, the one word is enough.
+        parts = [*dict.fromkeys((self.family, self.method))]
         if self.replica is not None:
             parts.append(f"set {self.replica}")
         if self.start:

@@ -15,6 +15,7 @@ from evenroad._rng import RngLike
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import PointSet
 from evenroad.points.samplers import make_sampler
+from evenroad.points.samplers.even import DRAWN_IN_FROM, drawn_in
 from evenroad.points.samplers.poses import Sliced
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.rules import Rule
@@ -31,6 +32,9 @@ A start in a narrow place sees few of its nearest milestones.  On shelves, 100 l
 FEW = 256
 """Up to so many milestones, start and goals are linked to all."""
 
+
+SPARSE = 6
+"""Neighbours up to which points are chosen for being connected, more than for reaching everywhere."""
 
 EdgeCost: TypeAlias = Callable[[Floats, Floats], Floats]
 """Costs of the motions between the rows of two (m, dim) arrays, (m,); the same both ways, >= their lengths."""
@@ -115,17 +119,19 @@ def as_points(points: PointSet | int, space: Space, rule: Rule | None = None) ->
 
 
 def even_points(n: int, space: Space, rule: Rule | None = None, *, rng: RngLike = 0) -> PointSet:
-    """Return n points of the space's cube, as planners take them: `even`, but others in SE(3).
+    """Return n points of the space's cube, as planners take them: `even`, but others in SE(3) and for sparse roadmaps.
 
-    Evenness is worth nothing there: they are `sliced` for a rule of at most d = 6 neighbours, else scrambled
-    Sobol points.
+    In SE(3) evenness is worth nothing: there they are `sliced` for a rule of at most 6 neighbours, else scrambled Sobol
+    points.  In a box of seven dimensions and more, for a rule of at most 6 neighbours, they are drawn in to the middle.
     """
-    parts = space.parts if isinstance(space, Product) else ()
-    if [(type(part), part.dim) for part in parts] != [(Box, 3), (SO3, 4)]:
-        return make_sampler("even").draw(n, space.cube_dim, rng=rng)
+    d = space.cube_dim
     k = None if rule is None else rule.reach(n, space).k
-    sampler = Sliced() if k is not None and k <= space.cube_dim else make_sampler("sobol")
-    return sampler.draw(n, space.cube_dim, rng=rng)
+    sparse = k is not None and k <= SPARSE
+    parts = space.parts if isinstance(space, Product) else ()
+    if [(type(part), part.dim) for part in parts] == [(Box, 3), (SO3, 4)]:
+        return (Sliced() if sparse else make_sampler("sobol")).draw(n, d, rng=rng)
+    points = make_sampler("even").draw(n, d, rng=rng)
+    return drawn_in(points) if sparse and d >= DRAWN_IN_FROM and isinstance(space, Box) else points
 
 
 def _finite(value: npt.ArrayLike) -> Floats:

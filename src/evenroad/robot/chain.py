@@ -95,7 +95,7 @@ def chain_of(robot: Robot, tip: str) -> Chain:
     if kept is not None:
         return kept[1]
     tree = tables.tree
-    require_known(f"link of {robot.name!r}", tip, tree.links)
+    require_known(f"link of {robot.name!r}:", tip, tree.links)
     frames = _carrying(tree, tree.links[tip].frame)
     if not frames:
         raise InvalidValue(f"no joint of the group, {','.join(robot.group)}, moves the link {tip!r}")
@@ -161,7 +161,7 @@ def frame_pose(robot: Robot, frame: str) -> Pose:
     if not frame or frame == robot.links[0]:
         return IDENTITY
     links = prepared(robot).tables.tree.links
-    require_known(f"link of {robot.name!r}", frame, links)
+    require_known(f"link of {robot.name!r}:", frame, links)
     place = links[frame]
     if place.frame != 0:
         raise InvalidValue(

@@ -95,7 +95,7 @@ def reach(world: Checks, goal: PoseGoal, start: npt.ArrayLike) -> Reached:
     if not free.any():
         touching = Counter(world.explain(q) for q in solved)
         text = "; ".join(f"{why} in {times}" for why, times in touching.most_common(3))
-        why = f"{goal} is reached in collision alone: of {len(solved)} postures found {text}"
+        why = f"{goal} is reached, but only in collision: of {len(solved)} postures found {text}"
         return Reached(solved[:0], len(solved), len(solved), solver, solved[0], why)
     turned = _with_turns(chain, solved[free], start)
     return Reached(turned, len(solved), int((~free).sum()), solver, turned[0])

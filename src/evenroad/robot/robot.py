@@ -75,7 +75,7 @@ class Robot:
         Raises UnknownName if the robot has no such link; InvalidValue if the tool has no body, or a name in common with
         the robot.
         """
-        require_known(f"link of {self.name!r}", at, self.links)
+        require_known(f"link of {self.name!r}:", at, self.links)
         if not isinstance(tool, Robot):
             shapes = [replace(shape, link="tool") for shape in tool]
             capsules = tuple(capsule for shape in shapes for capsule in fit_capsules(shape))

@@ -174,7 +174,7 @@ class Scene:
         """
         known = [obstacle.name for obstacle in self.obstacles]
         for name in names:
-            require_known(f"obstacle of scene {self.name!r}", name, known)
+            require_known(f"obstacle of scene {self.name!r}:", name, known)
         return replace(
             self,
             obstacles=tuple(obstacle for obstacle in self.obstacles if obstacle.name not in names),

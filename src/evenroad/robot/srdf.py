@@ -42,6 +42,8 @@ def read_srdf(path: Path, urdf: Urdf) -> Srdf:
     value that is not a finite number.
     """
     root = read_xml(path, "SRDF", "an SRDF")
+    if root.find("joint") is not None:
+        raise BrokenFile(f"{path} is a URDF, not an SRDF: it has joints")
     elements = {_attribute(group, "name", path): group for group in root.findall("group")}
     virtual = frozenset(_attribute(joint, "name", path) for joint in root.findall("virtual_joint"))
     passive = frozenset(

@@ -139,7 +139,7 @@ def _from_pairs(robot: Robot, text: str, degrees: bool) -> Floats:
     while pair := _PAIR.match(text, place):
         place = pair.end()
         name, number = pair.groups()
-        require_known(f"joint of {robot.name!r}", name, robot.group)
+        require_known(f"joint of {robot.name!r}:", name, robot.group)
         if name in values:
             raise InvalidValue(f"joint {name!r} is given twice")
         values[name] = _value(robot, name, number, degrees)

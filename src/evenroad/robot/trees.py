@@ -165,8 +165,8 @@ def shorten(
     batches : int
         After so many batches of sixteen checks the lanes try no more.
     slides : int
-        So often at most the lanes let a waypoint slide along what it touches, which straight motions cannot, in place
-        of most of the pairs.
+        So often at most the lanes let a waypoint slide along what it touches, and try half as many pairs, in place of
+        all pairs; cuts follow, whatever the batches.
 
     Raises
     ------
@@ -184,8 +184,8 @@ def shorten(
     if world.backend == "scalar":
         return _shortened(world, as_batch("path", path, dim))
     places, count = _place(share_pairs)
-    given = (places, min(pairs, count)) if not slides else (places, count, *_place(ball_points, dim), slides)
-    short, motions = _shorten_path()(world.lanes, path, cuts, batches, *given)
+    work = (count, slides, *_place(ball_points, dim)) if slides else (min(pairs, count),)
+    short, motions = _shorten_path()(world.lanes, path, cuts, batches, places, *work)
     if not len(short):
         as_batch("path", path, dim)
     return short, motions

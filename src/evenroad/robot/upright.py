@@ -231,4 +231,13 @@ class UprightWorld:
         tilt = float(self.tilts(q[np.newaxis])[0])
         if tilt <= self.tolerance:
             return self.world.explain(q)
-        return f"{self.chain.tip!r} is tilted by {tilt:.4g} rad, more than {self.tolerance:.4g}"
+        return self.tilted(tilt)
+
+    def tilted(self, tilt: float) -> str:
+        """Return in words that a tilt [rad] is too much, and of what."""
+        every = (sign + name for name in AXES for sign in ("", "-"))
+        numbers = f"({', '.join(f'{each:.3g}' for each in self.axis)})"
+        axis = next((name for name in every if as_axis("axis", name) == self.axis), numbers)
+        return (
+            f"axis {axis} of {self.chain.tip!r} is tilted by {tilt:.4g} rad, more than {self.tolerance:.4g}"
+        )

@@ -16,6 +16,7 @@ from xml.etree.ElementTree import Element, TreeBuilder
 from xml.parsers import expat
 
 from evenroad._checks import require_extra
+from evenroad._files import not_a
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.shapes import PRIMITIVES
 
@@ -131,7 +132,14 @@ def _parsed(content: bytes, path: Path) -> Element:
         parser.Parse(content.strip(b" \t\r\n\0"), True)
         return builder.close()
     except (expat.ExpatError, ValueError, LookupError) as error:
-        raise BrokenFile(f"{path} is not XML: {error}") from error
+        raise _no_xml(content, path, error) from error
+
+
+def _no_xml(content: bytes, path: Path, error: Exception) -> BrokenFile:
+    """Return the error of what is no XML; a text that does not even begin as such is another kind of file."""
+    if content.lstrip(b" \t\r\n\0\xef\xbb\xbf").startswith(b"<"):
+        return BrokenFile(f"{path} is not XML: {error}")
+    return not_a("XML, as URDF, xacro, MJCF and SRDF are", path)
 
 
 def _expanded(file: RobotFile) -> Element:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Protocol, TypeGuard
+from typing import TypeGuard
 
 import numpy as np
 
-from evenroad._arrays import Bools, Floats
+from evenroad._arrays import Floats
 from evenroad._clock import now
 from evenroad.robot import ArmWorld
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
@@ -16,39 +15,13 @@ from evenroad.robot.kernel.layout import program
 from evenroad.robot.kernel.motion_states import COUNTS
 from evenroad.robot_roadmap import lazy_search as search
 from evenroad.robot_roadmap import search_memory as at
+from evenroad.robot_roadmap.dear_search import Asked, Checks, ask_few
 from evenroad.robot_roadmap.known_graph import KnownGraph
-from evenroad.robot_roadmap.lazy_search import EDGE, FOUND, FULL, NODE, STRAIGHT
+from evenroad.robot_roadmap.lazy_search import EDGE, ENDS_TAKEN, FOUND, FULL, NODE, PAUSED, SPENT, STRAIGHT
 from evenroad.robot_roadmap.search_memory import BLOCKED, PROVED, UNKNOWN
-from evenroad.world import World
-
-ENDS_TAKEN, SPENT, PAUSED = range(FULL + 1, FULL + 4)
-"""What a search ends with besides what ``lazy_search.step`` does: start or goals not free, motions or time over, and
-what only compiled code ends with."""
 
 _SLICE = 1000
 """Batches of sixteen checks between two looks at the clock: about 10 ms."""
-
-
-class Checks(World, Protocol):
-    """A world that proves motions, and says who does: ``lanes`` are asked by compiled code."""
-
-    @property
-    def backend(self) -> str:
-        """Who checks."""
-
-    def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> Bools:
-        """Return which motions, (m, dim) each, are free: (m,)."""
-
-
-@dataclass(frozen=True, eq=False)
-class Asked:
-    """What a search ended with: a path, (p, dim), and its goal or -1; milestones and motions that were asked about."""
-
-    ended: int
-    path: Floats
-    goal: int
-    milestones: int
-    motions: int
 
 
 def ask(
@@ -76,8 +49,10 @@ def ask(
         graph.prepare(start, goals, links, greed, room, only_known=only_known, unturned=unturned)
         if _by_one_program(world) and _by_one_program(day):
             asked = _by_lanes(world, day, graph, most_motions, deadline)
-        else:
+        elif isinstance(world, ArmWorld):
             asked = _one_by_one(world, day, graph, most_motions, deadline)
+        else:
+            asked = ask_few(world, day, graph, most_motions, deadline)
         if asked.ended != FULL:
             return asked
         room *= 2

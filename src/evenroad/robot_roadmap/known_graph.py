@@ -14,6 +14,7 @@ from evenroad.robot.kernel.layout import program, quick
 from evenroad.robot_roadmap import search_memory as at
 from evenroad.robot_roadmap.search_memory import (
     BLOCKED,
+    DOUBTED,
     FREE,
     PROVED,
     UNKNOWN,
@@ -175,6 +176,12 @@ class KnownGraph:
             # Verdicts of the links, and behind them the turns of those that do not turn.
             self._links[:, : desk[at.NODES]] = 0
             self._straight[:], desk[at.MEASURED] = UNKNOWN, 0
+
+    def doubt(self, end: int) -> None:
+        """Take it that no motion of an end of the query is proved soon."""
+        motions = self._links[end], self._straight[end : end + 1] if end else self._straight
+        for verdicts in motions:
+            verdicts[verdicts == UNKNOWN] = DOUBTED
 
     def around(self, weights: Floats, onward: float, most: int) -> list[Floats | None]:
         """Return which milestones, (m, dim), ways out of start and goal of the last search may lead to.

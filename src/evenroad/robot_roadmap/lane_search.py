@@ -20,10 +20,12 @@ from evenroad.robot.kernel.motion_checks import (
 from evenroad.robot.kernel.motion_states import BATCHES
 from evenroad.robot_roadmap.lazy_search import (
     EDGE,
+    ENDS_TAKEN,
     FOUND,
-    FULL,
     LINK,
     NODE,
+    PAUSED,
+    SPENT,
     STRAIGHT,
     answer,
     begin,
@@ -50,9 +52,6 @@ from evenroad.robot_roadmap.search_memory import (
 )
 
 Ints = npt.NDArray[np.int64]
-
-ENDS_TAKEN, SPENT, PAUSED = range(FULL + 1, FULL + 4)
-"""What a call ends with besides what `step` does: start or goals not free, motions spent, its slice used up."""
 
 ROWS, MILESTONES, MOTIONS, GOAL, REPORT = range(5)
 """Of the report: waypoints written, milestones and motions that were asked about, the goal that was reached."""

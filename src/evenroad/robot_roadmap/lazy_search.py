@@ -67,6 +67,9 @@ NODE, EDGE, LINK, STRAIGHT, FOUND, NONE, CUT_OFF, FULL = range(8)
 """What `step` ends with: a milestone, a motion of the roadmap, a link of an end or the motion straight to a goal to be
 asked about; a way, none, no free link of a goal, no room."""
 
+ENDS_TAKEN, SPENT, PAUSED = range(FULL + 1, FULL + 4)
+"""What whoever answers ends with besides: start or goals not free, motions or time over, its slice used up."""
+
 ONWARD = 0.5
 """Links are tried in the order of their length and this share of what is left beyond them."""
 
@@ -115,12 +118,12 @@ def begin(s: Search) -> None:
             s.radius[end] = max(s.radius[end], s.away[end * capacity + s.near[end, rank]])
         for rank in range(count, d[LINKS]):
             s.near[end, rank] = -1
-    _clear(s)
+    clear(s)
     d[AIM], d[AIMED_END], d[PHASE] = -1, -1, ASK_STRAIGHT
 
 
 @quick
-def _clear(s: Search) -> None:
+def clear(s: Search) -> None:
     """Forget what the search has got to."""
     d = s.desk
     d[SIZE], d[MADE], d[WAITING], d[PENDING] = 0, 0, 0, -1
@@ -156,11 +159,11 @@ def step(s: Search) -> int:
                 if d[AIM] < 0:
                     return NONE
                 # Not by the milestone that was aimed at: once more with all links of the goals.
-                _clear(s)
+                clear(s)
                 d[AIM] = -1
                 _open(s)
                 continue
-            d[PENDING] = _pop(s)
+            d[PENDING] = pop(s)
         entry = d[PENDING]
         state, question = s.entries[entry, STATE], question_of(s, entry)
         verdict = verdict_of(s, question)
@@ -215,13 +218,13 @@ def _open(s: Search) -> None:
     d = s.desk
     for end in range(1, d[ENDS]):
         if s.straight[end] != BLOCKED:
-            _push(s, -end, -1, -1, distance(s, s.ends[0], s.ends[end]), 0.0)
+            push(s, -end, -1, -1, distance(s, s.ends[0], s.ends[end]), 0.0)
     for rank in range(d[LINKS]):
         i = s.near[0, rank]
         if i >= 0 and (s.links[0, i] >= FREE or (s.links[0, i] == UNKNOWN and d[ONLY_KNOWN] == 0)):
-            state = _state(s, i, s.turns[0, i])
+            state = state_of(s, i, s.turns[0, i])
             if state >= 0:
-                _push(s, state, -1, -1, s.away[i], s.bounds[state, LEFT])
+                push(s, state, -1, -1, s.away[i], s.bounds[state, LEFT])
 
 
 @quick
@@ -315,7 +318,7 @@ def _expand(s: Search, state: int, entry: int) -> bool:
         link, away = s.links[end, node], s.away[end * d[CAPACITY] + node]
         wanted = d[AIM] < 0 and away <= s.radius[end] and d[ONLY_KNOWN] == 0
         if s.turns[end, node] == packed and (link >= FREE or (link == UNKNOWN and wanted)):
-            _push(s, -end, entry, -1, cost + away, 0.0)
+            push(s, -end, entry, -1, cost + away, 0.0)
     half = s.first[node]
     while half >= 0:
         there, edge, reached = s.halves[half, OTHER], s.halves[half, NUMBER], cost + s.lengths[half]
@@ -327,17 +330,17 @@ def _expand(s: Search, state: int, entry: int) -> bool:
             continue
         if d[SIZE] >= d[STATES] or d[MADE] >= d[ENTRIES]:
             return False
-        other = _state(s, there, turned)
+        other = state_of(s, there, turned)
         if other < 0 or s.states[other, REACHED] >= 0 or reached >= s.bounds[other, LEAST]:
             continue
         if s.edges[edge] >= FREE and s.nodes[there] == FREE:
             s.bounds[other, LEAST] = reached
-        _push(s, other, entry, edge, reached, s.bounds[other, LEFT])
+        push(s, other, entry, edge, reached, s.bounds[other, LEFT])
     return True
 
 
 @quick
-def _state(s: Search, node: int, packed: int) -> int:
+def state_of(s: Search, node: int, packed: int) -> int:
     """Return the state of a milestone after turns, a new one where there was none; -1 where limits forbid it."""
     state = s.heads[node]
     while state >= 0:
@@ -372,7 +375,7 @@ def _state(s: Search, node: int, packed: int) -> int:
 
 
 @quick
-def _push(s: Search, state: int, parent: int, via: int, cost: float, left: float) -> None:
+def push(s: Search, state: int, parent: int, via: int, cost: float, left: float) -> None:
     """Make an entry and put it into the queue, a heap with the least key first."""
     d, entry = s.desk, s.desk[MADE]
     d[MADE] += 1
@@ -390,7 +393,7 @@ def _push(s: Search, state: int, parent: int, via: int, cost: float, left: float
 
 
 @quick
-def _pop(s: Search) -> int:
+def pop(s: Search) -> int:
     """Take the entry with the least key out of the queue."""
     first = s.items[0]
     s.desk[WAITING] -= 1

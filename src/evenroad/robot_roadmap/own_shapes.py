@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import ClassVar, NamedTuple
 
@@ -26,7 +26,7 @@ class OwnShapesWorld:
     """A robot that is free where its capsules are or, else, its own shapes are.
 
     What the capsules prove is free without a question to coal; other motions are checked at states a tenth of the
-    resolution apart.  What is wholly inside of a mesh touches it.  `shapes` are as of
+    resolution apart, by coal where the capsules touch.  What is wholly inside of a mesh touches it.  `shapes` are as of
     :func:`evenroad.robot.reference.coal_world.original_shapes`.  Raises what CoalWorld does.  Clouds block as they do
     for capsules alone: coal knows none.
     """
@@ -45,8 +45,13 @@ class OwnShapesWorld:
         scene, resolution = world.scene, world.resolution
         names = [each.name for each in scene.obstacles if isinstance(each.body, PointCloud)]
         others = [each.name for each in scene.obstacles if each.name not in names]
-        clouds = ArmWorld(world.robot, scene.without(*others), resolution=resolution) if names else None
-        coal = SolidMeshes(world.robot, scene.without(*names), self.shapes, resolution / FINER)
+        # Of the robot against itself the shapes are the judge.
+        bare = replace(world.robot, pairs=())
+        clouds = ArmWorld(bare, scene.without(*others), resolution=resolution) if names else None
+        capsules = ArmWorld(world.robot, scene.without(*names), resolution=resolution) if names else world
+        coal = WithinCapsules(
+            world.robot, scene.without(*names), self.shapes, resolution / FINER, capsules=capsules
+        )
         set_fields(self, _coal=coal, _clouds=clouds)
 
     @property
@@ -62,6 +67,14 @@ class OwnShapesWorld:
             left = left[self._clouds.valid(q[left])]
         free[left] = self._coal.valid(q[left])
         return free
+
+    def proved(self, q: Floats) -> Bools:
+        """Return which configurations, (n, dim), are free for the capsules: (n,)."""
+        return self.capsules.valid(q)
+
+    def motion_proved(self, a: Floats, b: Floats) -> Bools:
+        """Return which motions, (m, dim) each, the capsules prove free: (m,); that asks coal nothing."""
+        return self.capsules.motion_certified(a, b, RECHECK_TOLERANCE)
 
     def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> Bools:
         """Return which motions, (m, dim) each, are proved free for the capsules, or free at states for the shapes."""
@@ -90,9 +103,10 @@ class OwnShapesWorld:
 class SolidMeshes(CoalWorld):
     """As CoalWorld, but what is wholly inside of a mesh touches it: a link in an obstacle, or the other way round."""
 
-    def _contacts(self, poses: Floats) -> Iterator[tuple[str, str]]:
-        yield from super()._contacts(poses)
+    def _contacts(self, poses: Floats, near: Bools) -> Iterator[tuple[str, str]]:
+        yield from super()._contacts(poses, near)
         inner = self._inner
+        inner = _Inner(*(column[near[inner.test]] for column in inner))  # type: ignore[arg-type]
         if not len(inner.mesh):
             return
         fixed = [obstacle.body.pose.matrix for obstacle in self.scene.obstacles]
@@ -115,22 +129,39 @@ class SolidMeshes(CoalWorld):
     @cached_property
     def _inner(self) -> _Inner:
         rows = []
-        for shape, number, is_obstacle in self._tests:
+        for test, (shape, number, is_obstacle) in enumerate(self._tests):
             other = number + len(self._shapes)
             for mesh, body in ((shape, other), (other, shape)) if is_obstacle else ():
                 if mesh in self._corners:
                     # Surfaces that do not meet are inside of each other as a whole: one place tells.
                     place = self._corners[body][0, 0] if body in self._corners else np.zeros(3)
                     corners = self._corners[mesh].reshape(-1, 3)
-                    rows.append((mesh, body, place, corners.min(axis=0), corners.max(axis=0)))
-        numbers = np.array([row[:2] for row in rows], dtype=np.int64).reshape(-1, 2)
-        places = np.array([row[2:] for row in rows]).reshape(-1, 3, 3)
-        return _Inner(numbers[:, 0], numbers[:, 1], *np.moveaxis(places, 1, 0))
+                    rows.append((test, mesh, body, place, corners.min(axis=0), corners.max(axis=0)))
+        numbers = np.array([row[:3] for row in rows], dtype=np.int64).reshape(-1, 3)
+        places = np.array([row[3:] for row in rows]).reshape(-1, 3, 3)
+        return _Inner(*numbers.T, *np.moveaxis(places, 1, 0))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class WithinCapsules(SolidMeshes):
+    """As SolidMeshes, of shapes that lie within a robot's capsules: where these touch nothing, nobody else is asked."""
+
+    capsules: ArmWorld
+
+    def _free(self, q: Floats) -> Bools:
+        free = self.capsules.valid(q)
+        left = np.flatnonzero(~free)
+        if len(left):
+            free[left] = super()._free(q[left])
+        return free
 
 
 class _Inner(NamedTuple):
-    """What may be inside of which mesh, (m,) each; a place of it, in its frame; the mesh's box in its own, (m, 3)."""
+    """What may be inside of which mesh, and the number of the test of both, (m,) each; a place of it, in its frame; the
+    mesh's box in its own, (m, 3).
+    """
 
+    test: Ints
     mesh: Ints
     body: Ints
     place: Floats

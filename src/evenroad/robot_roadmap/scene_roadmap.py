@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats
 from evenroad._clock import now
+from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import Shape
 from evenroad.roadmap import Budget, PlanResult, Status
 from evenroad.roadmap.answer import connected, gave_up, refusal
@@ -18,19 +20,26 @@ from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.find_path import NO_POINTS, SECONDS, with_reasons
 from evenroad.roadmap.query import Query, read_places
 from evenroad.robot import ArmWorld, Robot, Scene, configuration, in_scene
+from evenroad.robot.goals import goals_of
+from evenroad.robot.pose_goal import PoseGoal
 from evenroad.robot.trees import shorten
-from evenroad.robot_roadmap.ask import ENDS_TAKEN, SPENT, Asked, Checks, ask
+from evenroad.robot_roadmap.ask import Asked, Checks, ask
 from evenroad.robot_roadmap.cell import day_and_all, left_to_check, require_same_robot
 from evenroad.robot_roadmap.known_motions import KnownMotions
-from evenroad.robot_roadmap.lazy_search import CUT_OFF, NONE
+from evenroad.robot_roadmap.lazy_search import CUT_OFF, ENDS_TAKEN, NONE, SPENT
 from evenroad.robot_roadmap.own_shapes import OwnShapesWorld
 from evenroad.robot_roadmap.pockets import links_of
+from evenroad.robot_roadmap.search_memory import NODES
 from evenroad.robot_roadmap.ways_out import learn_ways_out
 from evenroad.space.path import path_length
 from evenroad.world.protocol import Connection
 
 Place = str | npt.ArrayLike
 """A configuration: numbers in the order of the group, or a text as :func:`evenroad.robot.configuration` takes it."""
+
+POSES = (Pose, PoseGoal)
+Goal = Place | Pose | PoseGoal
+"""A configuration, or where a link is to be."""
 
 PLANNER = "robot roadmap"
 
@@ -55,6 +64,13 @@ SLIDES, CUTS = 96, 32
 BATCHES, LEAST_BATCHES = 100, 40
 """After so many batches of sixteen checks, less one for each motion that the search asked about, but no fewer than the
 second, no waypoint slides on: what took long to be found is shortened less."""
+
+DEAR_LINKS, DEAR_BATCHES, MOST_LEARNED = 100, 400, 2000
+"""Where checks are dear: so many links of each end are tried, capsules shorten with so many batches, and ends of
+queries are learned until there are so many milestones more."""
+
+SOON = 5000
+"""So many motions ways out may take before shapes are asked: some milliseconds."""
 
 _LONG = 1e8
 """Seconds that stand for no limit."""
@@ -175,7 +191,7 @@ class SceneRoadmap:
     def plan(
         self,
         start: Place,
-        goal: Place | Sequence[Place],
+        goal: Goal | Sequence[Goal],
         *,
         budget: Budget | None = None,
         shorten: bool = True,
@@ -187,6 +203,7 @@ class SceneRoadmap:
         ----------
         start, goal : str, array_like of shape (dim,); of goals a sequence of such, too
             Numbers in the order of the group [rad or m], or a text as :func:`evenroad.robot.configuration` takes it.
+            A goal may be a Pose or PoseGoal, too: then all postures that are found for it are goals.
         budget : Budget, optional
             Default: 5 s.  Half of the time is the roadmap's, the rest the trees'.
         shorten : bool
@@ -204,24 +221,29 @@ class SceneRoadmap:
         InvalidValue, UnknownName
             If start or goal is no configuration of the robot.
         """
+        if any(isinstance(each, POSES) for each in (goal if isinstance(goal, list | tuple) else (goal,))):
+            return self._to_poses(start, goal, budget=budget, shorten=shorten, trees=trees)
         budget = Budget(seconds=SECONDS) if budget is None else budget
         first, goals = read_places(self._place(start), self._places(goal), self.world.space)
         began, deadline = now(), budget.deadline()
         most = 2**31 - 1 if budget.motions is None else budget.motions
-        links = TRIED_LINKS if trees else links_of(self._size)
-        limits = min(most, TRIED_MOTIONS) if trees else most, began + SHARE * min(deadline - began, _LONG)
+        # Trees grow among what is free for the capsules.
+        follow = trees and (not self._dear or self._capsules_free(first, goals))
+        links = (DEAR_LINKS if self._dear else TRIED_LINKS) if follow else links_of(self._size)
+        limits = min(most, TRIED_MOTIONS) if follow else most, began + SHARE * min(deadline - began, _LONG)
         asked = self._ask(first, goals, *limits, links)
-        if asked.goal < 0 and self._own is not None:
-            budget = budget.rest(deadline, asked.motions)
-            return self._own.plan(first, goals, budget=budget, shorten=shorten, trees=trees)
-        if asked.ended in (NONE, CUT_OFF, SPENT) and trees and len(goals) == 1:
-            asked = self._by_ways_out(asked, first, goals, most, limits[1])
-        elif asked.ended in (NONE, CUT_OFF) and not trees and self.roadmap.one_turn.lifts.any():
+        if asked.ended in (NONE, CUT_OFF, SPENT) and follow and len(goals) == 1:
+            soon = most if self._own is None else min(most, asked.motions + SOON)
+            asked = self._by_ways_out(asked, first, goals, soon, limits[1], links)
+        elif asked.ended in (NONE, CUT_OFF) and not follow and self.roadmap.one_turn.lifts.any():
             # What leads to the goal within one turn is not to be lost.
             before, asked = asked.motions, self._ask(first, goals, *limits, links, unturned=True)
             asked = replace(asked, motions=asked.motions + before)
         if asked.goal >= 0:
             return self._solved(asked, first, goals, shorten, began)
+        if self._own is not None:
+            budget = budget.rest(deadline, asked.motions)
+            return self._own.plan(first, goals, budget=budget, shorten=shorten, trees=trees)
         query = Query(first, goals, shorten=shorten, budget=budget)
         attempt = Attempt(self._asked[0], query, NO_POINTS, "none", PLANNER)
         attempt.deadline, attempt.motions_checked = deadline, asked.motions
@@ -236,21 +258,25 @@ class SceneRoadmap:
         if asked.goal < 0 and trees and attempt.left() is not None:
             connection = self._by_trees(attempt, asked)
         if connection.goal >= 0:
-            return connected(attempt, connection)
+            result = connected(attempt, connection)
+            assert result.path is not None
+            return replace(result, proof=self._proof(result.path))
         failed = gave_up(attempt, connection)
         if not trees:
             text = f"the roadmap of {self._size} milestones does not lead from start to goal today"
             failed = replace(failed, status=Status.NOT_CONNECTED, message=text)
         return with_reasons(self._asked[0], failed)
 
-    def _by_ways_out(self, asked: Asked, start: Floats, goals: Floats, most: int, deadline: float) -> Asked:
+    def _by_ways_out(
+        self, asked: Asked, start: Floats, goals: Floats, most: int, deadline: float, links: int
+    ) -> Asked:
         """Ask again along what is known to be free, with ways learned that lead there from the ends."""
         left = most - asked.motions
         out = learn_ways_out(self.world, self._graph, self.roadmap.weights, (start, goals[0]), left, deadline)
         self.learned += out.ways
         before = asked.milestones + out.configurations, asked.motions + out.motions
         if out.complete:
-            asked = self._ask(start, goals, TRIED_MOTIONS, deadline, TRIED_LINKS, only_known=True)
+            asked = self._ask(start, goals, TRIED_MOTIONS, deadline, links, only_known=True)
             before = before[0] + asked.milestones, before[1] + asked.motions
         return replace(asked, milestones=before[0], motions=before[1])
 
@@ -267,6 +293,8 @@ class SceneRoadmap:
     def _solved(self, asked: Asked, start: Floats, goals: Floats, shorter: bool, began: float) -> PlanResult:
         """Return the result of a query that the roadmap answered."""
         world, path, found = self.world, asked.path, now()
+        if self._dear:
+            self._learn_ends(path)
         length = raw_length = self._length(path)
         counts = dict(
             nodes=self._size,
@@ -275,10 +303,8 @@ class SceneRoadmap:
         )
         seconds = {"search": found - began}
         if shorter:
-            batches = max(BATCHES - asked.motions, LEAST_BATCHES)
-            path, counts["shortcut_motions"] = shorten(
-                world, path, cuts=CUTS, batches=batches, slides=SLIDES
-            )
+            batches = DEAR_BATCHES if self._dear else max(BATCHES - asked.motions, LEAST_BATCHES)
+            path, counts["shortcut_motions"] = shorten(world, path, cuts=CUTS, batches=batches, slides=SLIDES)
             length, seconds["shortcut"] = self._length(path), now() - found
         to = f" to goal {asked.goal}" if len(goals) > 1 else ""
         return PlanResult(
@@ -292,17 +318,56 @@ class SceneRoadmap:
             goal_index=asked.goal,
             path=path,
             milestone_path=asked.path,
-            proof=world.proof if self._asked[0] is world or world.recheck(path).all() else "resolution",
+            proof=self._proof(path),
             cost=length,
             milestone_cost=raw_length,
             counts=counts,
             seconds=seconds,
         )
 
+    def _learn_ends(self, path: Floats) -> None:
+        """Make milestones of the ends of a path: links to them are shorter for the next query."""
+        if len(path) > 2 and int(self._graph.desk[NODES]) < self._size + MOST_LEARNED:
+            self._graph.learn(path[:2])
+            self._graph.learn(path[-2:])
+
+    @property
+    def _dear(self) -> bool:
+        """Whether others than the capsules are asked."""
+        return not isinstance(self._asked[0], ArmWorld)
+
+    def _capsules_free(self, start: Floats, goals: Floats) -> bool:
+        return bool(self.world.valid(start[np.newaxis])[0] and self.world.valid(goals).any())
+
+    def _proof(self, path: Floats) -> str:
+        """Return what a path is known by: states alone where the capsules do not prove all of it."""
+        return "resolution" if self._dear and not self.world.recheck(path).all() else self.world.proof
+
     def _length(self, path: Floats) -> float:
         places = path.tolist()
         # Where nothing wraps the sum is the same, in a tenth of the time.
         return path_length(path, self.world.space) if self._wraps else sum(map(math.dist, places, places[1:]))
+
+    def _to_poses(self, start: Place, goal: Goal | Sequence[Goal], **how: Any) -> PlanResult:
+        """Plan to the postures that reach poses, and to the configurations beside them."""
+        places: Sequence[Goal] = [goal] if isinstance(goal, POSES) else goal  # type: ignore[assignment]
+        place, space = self._place(start), self.world.space
+        first = read_places(place, place, space)[0]
+        given = goals_of(
+            self.world, first, places, lambda each: read_places(place, self._place(each), space)[1][0]
+        )
+        if not given.unreached:
+            return self.plan(first, given.configurations, **how)
+        return PlanResult(
+            status=Status.GOAL_INVALID if given.in_collision else Status.GOAL_UNREACHABLE,
+            message=given.unreached,
+            start=first,
+            goals=given.configurations,
+            origin=NO_POINTS,
+            rule="none",
+            planner="none",
+            seconds={"goals": given.seconds},
+        )
 
     def _place(self, place: Place) -> npt.ArrayLike:
         """Return a configuration of a text; of numbers themselves."""
@@ -310,7 +375,7 @@ class SceneRoadmap:
             return configuration(self.world.robot, place, self.world.scene)
         return place
 
-    def _places(self, goal: Place | Sequence[Place]) -> npt.ArrayLike:
+    def _places(self, goal: Goal | Sequence[Goal]) -> npt.ArrayLike:
         if isinstance(goal, list | tuple) and any(isinstance(each, str) for each in goal):
             return [self._place(each) for each in goal]  # type: ignore[return-value]
         return self._place(goal)  # type: ignore[arg-type]

@@ -24,8 +24,8 @@ Ints32 = npt.NDArray[np.int32]
 Bytes = npt.NDArray[np.uint8]
 Singles = npt.NDArray[np.float32]
 
-UNKNOWN, BLOCKED, FREE, PROVED = range(4)
-"""Verdicts; FREE is a motion at its states, PROVED one throughout."""
+UNKNOWN, BLOCKED, DOUBTED, FREE, PROVED = range(5)
+"""Verdicts; DOUBTED is a motion that was not proved soon, FREE is a motion at its states, PROVED one throughout."""
 
 CAPACITY, HALVES, EDGES, DIM, ENDS, LINKS, STATES, ENTRIES = range(8)
 """Desk: for how many milestones, half edges and edges there is room; how many coordinates, ends and links of each; room

@@ -15,7 +15,7 @@ import yaml
 
 from evenroad._arrays import Floats
 from evenroad._checks import require_extra
-from evenroad._files import atomic_write
+from evenroad._files import atomic_write, read_json_file
 from evenroad.errors import BrokenFile, UnknownName
 from evenroad.trajectory.limits import Limits
 from evenroad.trajectory.trajectory import Trajectory
@@ -81,14 +81,10 @@ def load_trajectory(path: str | os.PathLike[str]) -> Trajectory:
 
     Raises BrokenFile if it cannot be read, or is not what it says: shapes, numbers, order of time, and limits.
     """
-    try:
-        record = json.loads(Path(path).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise BrokenFile(f"cannot read the trajectory {path}: {error.strerror or error}") from error
-    except ValueError as error:
-        raise BrokenFile(f"{path} is not JSON: {error}") from error
+    record = read_json_file(path, "trajectory")
     if not isinstance(record, dict) or record.get("format") != FORMAT:
-        raise BrokenFile(f"{path} is not a trajectory: its 'format' must be {FORMAT!r}")
+        wrote = "as `evenroad plan --trajectory` writes it"
+        raise BrokenFile(f"{path} is not a trajectory: its 'format' must be {FORMAT!r}, {wrote}")
     try:
         return _from_record(record)
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:

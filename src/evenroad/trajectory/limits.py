@@ -100,7 +100,7 @@ def _read(path: Path, joints: set[str]) -> dict[str, dict[str, float]]:
         raise BrokenFile(f"{path} must have a mapping 'joint_limits', joint -> limits")
     limits = {}
     for name, row in table.items():
-        require_known(f"joint in {path}", name, joints)
+        require_known(f"joint in {path}:", name, joints)
         if not isinstance(row, dict):
             raise BrokenFile(f"joint_limits of {name!r} in {path} must be a mapping, got {row!r}")
         limits[str(name)] = _limits_of_joint(row, f"{name} in {path}")
@@ -111,7 +111,7 @@ def _limits_of_joint(row: dict[Any, Any], where: str) -> dict[str, float]:
     known = {f"max_{kind}" for kind in _KINDS} | {f"has_{kind}_limits" for kind in _KINDS}
     known |= {"has_position_limits", "min_position", "max_position"}
     for key in row:
-        require_known(f"limit of {where}", key, known)
+        require_known(f"limit of {where}:", key, known)
     return {
         kind: require_positive(f"max_{kind} of {where}", row[f"max_{kind}"])
         for kind in _KINDS

@@ -11,7 +11,7 @@ from evenroad.errors import InvalidValue
 from evenroad.points import SAMPLERS, draw
 from evenroad.points.measures import MEASURES
 from evenroad.points.samplers import korobov
-from evenroad.points.samplers.korobov import Even, Korobov, korobov_generator
+from evenroad.points.samplers.korobov import Korobov, korobov_generator
 from evenroad.research.measures import riesz_rooted, separation
 from tests.points.samplers.sampler_contract import SamplerContract
 
@@ -63,29 +63,6 @@ class TestKorobov(SamplerContract):
         monkeypatch.setattr(korobov, "generator", lambda rng: AlmostOne())
         for n in (1, 2, 3, 49, 64):
             assert self.sampler.draw(n, 2).n == n
-
-
-class TestEven(SamplerContract):
-    sampler = Even()
-    shapes = ((5, 1), (3, 2), (5, 3), (6, 4), (1, 6), (20, 7), (100, 10))
-
-    def test_below_six_dimensions_it_is_the_korobov_lattice_under_its_own_name(self):
-        for n, d in self.shapes:
-            points = self.sampler.draw(n, d, rng=3)
-            assert points == draw("even", n, d, rng=3)
-            if d < 6:
-                assert points == Korobov().draw(n, d, rng=3).with_origin(family="even")
-
-    @pytest.mark.parametrize(("n", "d"), [(50, 6), (64, 10)])
-    def test_from_six_on_each_set_has_its_axes_in_another_order(self, n, d):
-        a = korobov_generator(n, d)
-        powers, orders = [pow(a, k, n) for k in range(d)], set()
-        for seed in range(6):
-            points = self.sampler.draw(n, d, rng=seed).points
-            step = np.rint(((points[1] - points[0]) % 1.0) * n).astype(int).tolist()
-            assert sorted(step) == sorted(powers)
-            orders.add(tuple(step))
-        assert len(orders) > 1
 
 
 @pytest.mark.parametrize("d", [2, 3])

@@ -7,10 +7,11 @@ from evenroad.errors import NotAvailable, UnknownName
 from evenroad.points import draw
 from evenroad.points.bank import Bank
 from evenroad.points.samplers import Halton, Sobol
+from evenroad.points.samplers.even import drawn_in
 from evenroad.research.bench.samplers import SAMPLERS, draw_set, why_not
 from evenroad.roadmap import KNearest
 from evenroad.roadmap.query import even_points
-from evenroad.space import SE3
+from evenroad.space import SE3, Box
 
 
 def _draw(name, n, d, run=0, seed=0):
@@ -97,9 +98,26 @@ def test_an_unknown_sampler_gets_the_list():
         why_not("nonsense", 10, 2)
 
 
-def test_even_is_drawn_for_the_space_and_the_rule_as_a_planner_draws_it():
-    space = SE3((0.0, 0.0, 0.0), (1.0, 1.0, 1.0), weights=(1.0, 0.3))
-    for rule in (KNearest(4), KNearest(20)):
-        given, _ = draw_set("even", 30, 6, 0, np.random.default_rng(2), (space, rule))
-        assert given == even_points(30, space, rule, rng=np.random.default_rng(2).spawn(2)[0])
-        assert given != _draw("even", 30, 6, seed=2)[0]
+SPACE = SE3((0.0, 0.0, 0.0), (1.0, 1.0, 1.0), weights=(1.0, 0.3))
+CUBE = Box([0.0] * 10, [1.0] * 10)
+
+
+@pytest.mark.parametrize(("space", "rule"), [(SPACE, KNearest(4)), (Box([0.0] * 9, [1.0] * 9), KNearest(10))])
+def test_even_is_drawn_for_the_space_and_the_rule_as_a_planner_draws_it(space, rule):
+    d = space.cube_dim
+    given, _ = draw_set("even", 30, d, 0, np.random.default_rng(2), (space, rule))
+    assert given == even_points(30, space, rule, rng=np.random.default_rng(2).spawn(2)[0])
+    assert (given == _draw("even", 30, d, seed=2)[0]) == (space is not SPACE)
+
+
+@pytest.mark.parametrize(("use", "d"), [((SPACE, KNearest(20)), 6), ((CUBE, KNearest(10)), 10), (None, 12)])
+def test_where_even_is_sobol_points_they_are_those_of_the_row_of_sobol(use, d):
+    given, _ = draw_set("even", 30, d, 0, np.random.default_rng(2), use)
+    other, _ = draw_set("sobol scrambled", 30, d, 0, np.random.default_rng(2), use)
+    np.testing.assert_array_equal(given.points, other.points)
+
+
+def test_where_even_is_sobol_points_drawn_in_they_are_those_of_the_row_of_sobol_drawn_in():
+    given, _ = draw_set("even", 30, 10, 0, np.random.default_rng(2), (CUBE, KNearest(4)))
+    other, _ = draw_set("sobol scrambled", 30, 10, 0, np.random.default_rng(2))
+    np.testing.assert_array_equal(given.points, drawn_in(other).points)

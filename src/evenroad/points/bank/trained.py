@@ -135,7 +135,7 @@ class Trained:
         except (NotAvailable, UnknownName) as error:
             known = str(error)
         command = (
-            f"evenroad points -n {n} -d {d} --family {self.family} --seed {seed_of(rng) or 0} -o set.npy"
+            f"evenroad points -n {n} -d {d} --sampler {self.family} --seed {seed_of(rng) or 0} -o set.npy"
         )
         return f"{known}; this one is made by: {command}"
 

@@ -12,8 +12,8 @@ from evenroad.points.bank import TRAINED_FAMILIES, Trained
 from evenroad.points.pointset import PointSet
 from evenroad.points.randomise import Symmetry
 from evenroad.points.samplers.cover import Cover as Cover
+from evenroad.points.samplers.even import Even as Even
 from evenroad.points.samplers.growing import Growing as Growing
-from evenroad.points.samplers.korobov import Even as Even
 from evenroad.points.samplers.korobov import Korobov as Korobov
 from evenroad.points.samplers.lattice import Lattice as Lattice
 from evenroad.points.samplers.plain import Halton as Halton

@@ -37,9 +37,6 @@ BLOCK = 2**14
 TIE = 1e-9
 """Energies closer than this, relatively, are equal: rounding does not choose between mirrored lattices."""
 
-TURNED_FROM = 6
-"""Dimension from which on `even` permutes the axes of each set; below, ten neighbours are 2 d and span all."""
-
 
 @dataclass(frozen=True)
 class Korobov:
@@ -71,20 +68,6 @@ class Korobov:
         points = (lattice + shift) % 1.0
         method = f"rank-1 lattice a={multiplier}, {how}"
         return PointSet(points, Origin(family=self.name, method=method, objective="riesz", seed=seed_of(rng)))
-
-
-@dataclass(frozen=True)
-class Even(Korobov):
-    """Our default: a Korobov lattice in every dimension; ``benchmarks/decide_even.py`` has the evidence.
-
-    From six dimensions on axes hardly ever count alike: those of an arm's joints, those of rotations.  The few short
-    vectors of the lattice may then lie in axes that count little, and with k < 2 d neighbours the roadmap falls apart
-    into sheets.  No one order of the axes is good everywhere, so there each set has another.
-    """
-
-    name = "even"
-    about = "our default: a randomly shifted Korobov lattice"
-    turned_from = TURNED_FROM
 
 
 def korobov_generator(n: int, d: int) -> int:

@@ -58,7 +58,7 @@ class Sukharev:
         if k**d != n and not self.allow_fewer:
             raise NotAvailable(
                 f"a Sukharev grid in d={d} has k^{d} points: n={n} is none, the nearest are"
-                f" {k**d} and {(k + 1) ** d} (or allow fewer)"
+                f" {k**d} and {(k + 1) ** d} (or allow_fewer)"
             )
         # The digits of the row number in base k are the row's cell; for k = 1 all are 0, whatever d.
         place = k ** np.arange(d - 1, -1, -1, dtype=np.int64) if k > 1 else np.ones(d, dtype=np.int64)

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from evenroad._checks import require_known
+from evenroad._rng import RngLike
 from evenroad.errors import NotAvailable, UnknownName
 from evenroad.points import PointSet, draw, make_sampler
 from evenroad.points.bank import Bank
@@ -101,7 +102,22 @@ def _from_pool(family: str, n: int, d: int, run: int, rng: np.random.Generator, 
 def _even(family: str, n: int, d: int, run: int, rng: np.random.Generator, use: Use | None) -> Drawn:
     # Of two spawned generators the first, as from a pool: so rows of an `even` that was one keep their bits.
     choice = rng.spawn(2)[0]
-    return (draw(family, n, d, rng=choice) if use is None else even_points(n, *use, rng=choice)), ""
+    points = _even_of(family, n, d, choice, use)
+    if "scrambled" in points.origin.method:
+        # The scramble of Sobol's own row, so that no difference from it is chance.
+        points = _even_of(family, n, d, _unspent(choice), use)
+    return points, ""
+
+
+def _even_of(family: str, n: int, d: int, rng: RngLike, use: Use | None) -> PointSet:
+    return draw(family, n, d, rng=rng) if use is None else even_points(n, *use, rng=rng)
+
+
+def _unspent(generator: np.random.Generator) -> np.random.SeedSequence:
+    """Return the seeds of a generator as they were before it was spawned."""
+    seeds = generator.bit_generator.seed_seq
+    assert isinstance(seeds, np.random.SeedSequence)
+    return np.random.SeedSequence(seeds.entropy, spawn_key=seeds.spawn_key)
 
 
 def _always(family: str, n: int, d: int) -> str:
@@ -116,7 +132,7 @@ def _exists(ask: Callable[[str, int, int], object], family: str, n: int, d: int)
     try:
         ask(family, n, d)
     except (NotAvailable, UnknownName) as error:
-        return str(error).removesuffix(" (or allow fewer)")
+        return str(error).removesuffix(" (or allow_fewer)")
     return ""
 
 
@@ -136,6 +152,6 @@ SAMPLERS: dict[str, RunSampler] = {
     "sukharev": RunSampler("sukharev", _grid, _grid_exists),
     "mpmc": RunSampler("mpmc", _from_pool, _pool_exists),
     "hickernell": RunSampler("hickernell", _from_pool, _pool_exists),
-    "even": RunSampler("even", _even, _always, "in SE(3) what a planner takes"),
+    "even": RunSampler("even", _even, _always, "what a planner takes for the space and the rule"),
 }
 """Name -> how the set of a run is drawn, in the order of tables."""

@@ -11,6 +11,7 @@ from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
+from evenroad._files import not_a
 from evenroad.errors import BrokenFile
 from evenroad.research.bench.task import key_of
 
@@ -48,7 +49,7 @@ def sqlite_errors(path: Path) -> Iterator[None]:
         raise damaged(path, error) from error
     except sqlite3.Error as error:
         if "not a database" in str(error):
-            raise BrokenFile(f"{path} is not a store of benchmark results: {error}") from error
+            raise not_a("a store of benchmark results", path, "it is no database") from error
         journal = path.with_name(f"{path.name}-journal")
         if getattr(error, "sqlite_errorname", "") in _READ_ROLLBACK and os.path.exists(journal):
             raise BrokenFile(
@@ -69,7 +70,8 @@ def connect(path: Path) -> sqlite3.Connection:
     """Open the file of a store for reading, and writing where that is permitted; BrokenFile if it is no sound one."""
     # Not Path.is_file, which raises where a name is too long.
     if not os.path.isfile(path):
-        raise BrokenFile(f"no such store: {path}")
+        found = ", which is a folder" if os.path.isdir(path) else ""
+        raise BrokenFile(f"no such store: {path}{found}")
     with sqlite_errors(path):
         # Not read-only: a run that was killed in the middle of a commit is rolled back by the next one to open.
         connection = sqlite3.connect(
@@ -78,7 +80,7 @@ def connect(path: Path) -> sqlite3.Connection:
     try:
         with sqlite_errors(path):
             if _pragma(connection, "application_id") != APPLICATION:
-                raise BrokenFile(f"{path} is a SQLite file, but not a store of benchmark results")
+                raise not_a("a store of benchmark results", path, "it is no database")
             if (schema := _pragma(connection, "user_version")) != SCHEMA:
                 raise BrokenFile(
                     f"{path} has schema version {schema}, this evenroad reads {SCHEMA}: use another file,"

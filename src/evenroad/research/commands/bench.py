@@ -110,7 +110,7 @@ class Bench:
             asked["runs"] = self.runs
         of_arms: dict[str, Any] = {"draws": self.draws, "samplers": words_of(self.samplers)}
         of_arms |= {name: counts_of(name, getattr(self, name)) for name in ("counts", "neighbours")}
-        of_arms = {name: value for name, value in of_arms.items() if value}
+        of_arms = {name: value for name, value in of_arms.items() if value not in (None, [])}
         if of_arms and self.suite != "arms":
             raise InvalidValue(f"--{next(iter(of_arms))} goes with the suite arms, got {self.suite!r}")
         return SUITES[self.suite](**asked, **of_arms)

@@ -24,22 +24,22 @@ from evenroad.research.measures import riesz_rooted, separation, star_discrepanc
 class Measure:
     """Print every measure of a point set: discrepancies, dispersion, separation, energy."""
 
-    file: tyro.conf.Positional[Path]
+    set: tyro.conf.Positional[Path]
     """A .npy array of shape (n, d), or a .npz point set."""
     json: bool = False
     """Print JSON instead of a table."""
 
     def run(self) -> int:
         """Measure and print."""
-        points = read_points(self.file)
+        points = read_points(self.set)
         if points.n == 0:
-            raise InvalidValue(f"{self.file} holds no points, there is nothing to measure")
+            raise InvalidValue(f"{self.set} holds no points, there is nothing to measure")
         rows = measure_all(points)
         if self.json:
-            record = {"file": str(self.file), "n": points.n, "d": points.d, "hash": points.hash}
+            record = {"file": str(self.set), "n": points.n, "d": points.d, "hash": points.hash}
             print(json.dumps(record | {name: value for name, value, _ in rows}, indent=2, allow_nan=False))
         else:
-            title = f"{self.file}: n={points.n}, d={points.d}, {points.origin}"
+            title = f"{self.set}: n={points.n}, d={points.d}, {points.origin}"
             shown = [(name, "-" if value is None else f"{value:.6g}", note) for name, value, note in rows]
             print_table(shown, ("measure", "value", ""), title, right=(1,))
         return 0

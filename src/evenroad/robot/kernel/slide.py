@@ -67,7 +67,10 @@ def _slid(points: Floats, i: int, ball: Floats, first: int, room: int, checks: C
     dim = points.shape[1]
     places, lengths = matrix_at(room, (SPARE, dim)), doubles_at(room + 8 * SPARE * dim, (LANES,))
     a, here, b, way = points[i - 1], points[i], points[i + 1], places[LANES]
-    before, after = distance_and_way(a, here, checks.bounds, way), distance_and_way(here, b, checks.bounds, way)
+    before, after = (
+        distance_and_way(a, here, checks.bounds, way),
+        distance_and_way(here, b, checks.bounds, way),
+    )
     reach, least, inside = min(before, after), (before + after) * (1.0 - WORTH_WHILE), 0
     for lane in range(LANES):
         place, direction = places[lane], ball[(first + lane) % len(ball)]

@@ -6,12 +6,13 @@ import os
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from itertools import product
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from evenroad._arrays import Bools, Floats, set_fields
+from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import require_extra
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.mesh import TriangleMesh
@@ -24,6 +25,9 @@ from evenroad.robot.scene import Scene
 from evenroad.robot.urdf_xml import RobotFile
 from evenroad.space import JointSpace
 from evenroad.world.function import FunctionWorld, TestedAtStates
+
+_ROUNDING = 1e-9
+"""Added to boxes: more than double precision loses on a robot of many metres [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,14 +66,16 @@ class CoalWorld(EngineWorld):
     """Configurations in which no shape of a robot meets an obstacle or another link; one after the other.
 
     Links are placed by our own forward kinematics in double precision; coal (a fork of FCL) tests spheres, boxes,
-    cylinders and capsules exactly, and meshes by trees of boxes over their triangles.  Meshes are surfaces: what is
-    wholly inside of one does not meet it.  Parameters and errors are those of :class:`EngineWorld`.
+    cylinders and capsules exactly, and meshes by trees of boxes over their triangles.  Bodies whose boxes are apart are
+    not tested.  Meshes are surfaces: what is wholly inside of one does not meet it.  Parameters and errors are those of
+    :class:`EngineWorld`.
     """
 
     _coal: Any = field(init=False, repr=False)
     _solids: list[Any] = field(init=False, repr=False)
     _obstacles: list[tuple[Any, Any]] = field(init=False, repr=False)
     _tests: list[tuple[int, int, bool]] = field(init=False, repr=False)
+    _boxes: _Boxes = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         coal = require_coal()
@@ -82,23 +88,29 @@ class CoalWorld(EngineWorld):
             _obstacles=[(coal_shape(coal, body), _transform(coal, body.pose.matrix)) for body in bodies],
             _tests=tests_of(self.robot, self.scene, self._shapes),
         )
+        set_fields(self, _boxes=self._boxes_of_all())
 
     def explain(self, q: Floats) -> str:
         """Return in words why one configuration, (dim,), is not free."""
         batch = np.asarray(q, dtype=np.float64)[np.newaxis]
         if not self.space.contains(batch)[0]:
             return self._states.explain(batch[0])
-        bodies = next(self._contacts(self._poses(batch)[:, 0]), None)
+        bodies = next(self._contacts_at(batch), None)
         return "it is free" if bodies is None else f"{bodies[0]!r} touches {bodies[1]!r}"
 
     def _free(self, q: Floats) -> Bools:
         poses = self._poses(q)
-        contacts = (next(self._contacts(poses[:, row]), None) for row in range(len(q)))
+        near = self._near(poses)
+        contacts = (next(self._contacts(poses[:, row], near[:, row]), None) for row in range(len(q)))
         return np.array([contact is None for contact in contacts], dtype=np.bool_)
 
     def contacts(self, q: Floats) -> set[tuple[str, str]]:
         """Return all that touches in one configuration, (dim,): a link and an obstacle, or a pair of links."""
-        return set(self._contacts(self._poses(np.asarray(q, dtype=np.float64)[np.newaxis])[:, 0]))
+        return set(self._contacts_at(np.asarray(q, dtype=np.float64)[np.newaxis]))
+
+    def _contacts_at(self, q: Floats) -> Iterator[tuple[str, str]]:
+        poses = self._poses(q)
+        return self._contacts(poses[:, 0], self._near(poses)[:, 0])
 
     def _poses(self, q: Floats) -> Floats:
         """Return the pose of every shape of the robot, (shapes, n, 4, 4)."""
@@ -106,17 +118,70 @@ class CoalWorld(EngineWorld):
         number = {link: i for i, link in enumerate(self.robot.links)}
         return np.stack([links[:, number[shape.link]] @ shape.pose.matrix for shape in self._shapes])
 
-    def _contacts(self, poses: Floats) -> Iterator[tuple[str, str]]:
+    def _boxes_of_all(self) -> _Boxes:
+        solids = [*self._solids, *(solid for solid, _ in self._obstacles)]
+        for solid in solids:
+            solid.computeLocalAABB()
+        low = np.array([solid.aabb_local.min_ for solid in solids])
+        high = np.array([solid.aabb_local.max_ for solid in solids])
+        tests = np.array(self._tests, dtype=np.int64).reshape(-1, 3)
+        fixed = np.array([obstacle.body.pose.matrix for obstacle in self.scene.obstacles])
+        second = tests[:, 1] + len(self._shapes) * tests[:, 2]
+        return _Boxes(
+            0.5 * (low + high),
+            0.5 * (high - low) + _ROUNDING,
+            fixed.reshape(-1, 1, 4, 4),
+            tests[:, 0],
+            second,
+        )
+
+    def _near(self, poses: Floats) -> Bools:
+        """Return of which tests the boxes around the two bodies are not known to be apart, (tests, n).
+
+        For the poses of all shapes, (shapes, n, 4, 4).  Balls around the boxes are tried first, then the directions of
+        their edges (Gottschalk, Lin and Manocha 1996).
+        """
+        boxes, n = self._boxes, poses.shape[1]
+        placed = np.concatenate([poses, np.broadcast_to(boxes.fixed, (len(boxes.fixed), n, 4, 4))])
+        turns = placed[..., :3, :3]
+        centres = placed[..., :3, 3] + (turns @ boxes.middle[:, np.newaxis, :, np.newaxis])[..., 0]
+        reach = np.linalg.norm(boxes.half, axis=1)
+        apart = centres[boxes.second] - centres[boxes.first]
+        near = (apart**2).sum(axis=2) <= ((reach[boxes.first] + reach[boxes.second]) ** 2)[:, np.newaxis]
+        test, row = np.nonzero(near)
+        one, other = boxes.first[test], boxes.second[test]
+        by, first, second = apart[test, row][:, np.newaxis], turns[one, row], turns[other, row]
+        across = np.abs(first.swapaxes(1, 2) @ second)
+        mine, its = boxes.half[one], boxes.half[other]
+        close = np.abs((by @ first)[:, 0]) <= mine + (across @ its[..., np.newaxis])[..., 0]
+        close &= np.abs((by @ second)[:, 0]) <= its + (mine[:, np.newaxis] @ across)[:, 0]
+        near[test, row] = close.all(axis=1)
+        return near
+
+    def _contacts(self, poses: Floats, near: Bools) -> Iterator[tuple[str, str]]:
         """Yield two bodies that touch after the other two, for the poses of all shapes, (shapes, 4, 4)."""
         coal, solids = self._coal, self._solids
-        places = [_transform(coal, pose) for pose in poses]
+        places = cache(lambda shape: _transform(coal, poses[shape]))
         request, result = asking_for_contacts(coal.CollisionRequest()), coal.CollisionResult()
-        for shape, other, is_obstacle in self._tests:
-            second = self._obstacles[other] if is_obstacle else (solids[other], places[other])
+        for number in np.flatnonzero(near).tolist():
+            shape, other, is_obstacle = self._tests[number]
+            second = self._obstacles[other] if is_obstacle else (solids[other], places(other))
             result.clear()
-            if coal.collide(solids[shape], places[shape], *second, request, result):
+            if coal.collide(solids[shape], places(shape), *second, request, result):
                 name = self.scene.obstacles[other].name if is_obstacle else self._shapes[other].link
                 yield self._shapes[shape].link, name
+
+
+class _Boxes(NamedTuple):
+    """Boxes around bodies, shapes first, in their own frames: middles and half extents, (b, 3); the poses of obstacles,
+    (m, 1, 4, 4); and the two bodies of each test, (t,).
+    """
+
+    middle: Floats
+    half: Floats
+    fixed: Floats
+    first: Ints
+    second: Ints
 
 
 def tests_of(robot: Robot, scene: Scene, shapes: Sequence[Shape]) -> list[tuple[int, int, bool]]:

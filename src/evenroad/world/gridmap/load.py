@@ -17,6 +17,7 @@ from PIL import Image
 
 from evenroad._arrays import Bools
 from evenroad._checks import require_known, require_positive
+from evenroad._files import looks_like, not_a
 from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.world.gridmap.frame import MapFrame
@@ -203,7 +204,9 @@ def _decoded(stream: IO[bytes], file: Path) -> Image.Image:
     except Image.DecompressionBombError:
         raise BrokenFile(f"the image {file} is too large: at most {LARGEST_IMAGE} pixels are read") from None
     except Exception as error:  # a decoder fed with garbage may raise anything
-        raise BrokenFile(f"{file} is not a PNG or PGM image{_reason(error)}") from error
+        if looks_like(file) in ("a PNG image", "a PGM image"):
+            raise BrokenFile(f"the image {file} is broken or cut short{_reason(error)}") from error
+        raise not_a("a PNG or PGM image", file) from error
     columns, rows = image.size
     if columns * rows > LARGEST_IMAGE:
         size = f"{columns} x {rows} pixels, at most {LARGEST_IMAGE} are read"

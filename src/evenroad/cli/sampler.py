@@ -1,0 +1,84 @@
+"""Points by the name of a sampler: the options that say which, for every verb that draws some, and the drawing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from evenroad.errors import InvalidValue, shown
+
+if TYPE_CHECKING:
+    from evenroad.points import PointSet
+
+DEFAULT = "even"
+TAKES = {"plain": ("halton", "sobol"), "skip": ("halton", "sobol"), "allow_fewer": ("sukharev",)}
+"""Option -> the samplers that take it."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SamplerOptions:
+    """Which points are drawn."""
+
+    sampler: str | None = None
+    """even, growing, sequence, hickernell, mpmc, korobov, lattice, cover, halton, sobol, sukharev or uniform
+    (default: even)."""
+    plain: bool = False
+    """halton and sobol: the plain sequence instead of the scrambled one."""
+    skip: int = 0
+    """halton and sobol: index of the first point of the sequence."""
+    allow_fewer: bool = False
+    """sukharev: take the largest grid with at most n points."""
+    seed: int = 0
+    """Which set of the sampler, and every other random choice."""
+
+
+def speaks_of_points(options: SamplerOptions) -> bool:
+    """Return whether an option was given that says which points to draw."""
+    return options.sampler not in (None, "auto") or any(getattr(options, option) for option in TAKES)
+
+
+def chosen_sampler(options: SamplerOptions, n: int) -> str:
+    """Return the name of the sampler; refuse, before anything takes time, a bad n and what the sampler would ignore."""
+    # Here, since help does not wait for NumPy.
+    from evenroad._checks import require_count, require_known
+    from evenroad.points import SAMPLERS
+
+    # Plans have said "auto" of the default.
+    name = DEFAULT if options.sampler in (None, "auto") else str(options.sampler)
+    require_known("sampler", name, SAMPLERS)
+    require_count("n", n)
+    require_seed(options.seed)
+    if options.skip < 0:
+        raise InvalidValue(f"--skip must be an integer >= 0, got {shown(options.skip)}")
+    for option, takers in TAKES.items():
+        if getattr(options, option) and name not in takers:
+            said = f"--{option.replace('_', '-')} does not go with the sampler {name!r}"
+            raise InvalidValue(f"{said}, only with {' and '.join(takers)}")
+    return name
+
+
+def draw_points(options: SamplerOptions, n: int, d: int, *, train: bool = False) -> tuple[PointSet, str]:
+    """Draw the set of n points in d dimensions that was asked for; return it, and where it comes from.
+
+    A set that is annealed, and neither ships nor is in the cache, is made where it may be trained, else refused.
+    """
+    from evenroad._terminal import progress_shown
+    from evenroad.points import make_sampler
+    from evenroad.points.bank import TRAINED_FAMILIES, Trained
+
+    name = chosen_sampler(options, n)
+    if name in TRAINED_FAMILIES:
+        with progress_shown(f"annealing {name} n={n} d={d}") as callback:
+            return Trained(name, train=train, callback=callback).find(n, d, rng=options.seed)
+    how: dict[str, Any] = {}
+    if name in TAKES["plain"]:
+        how = {"scramble": not options.plain, "start": options.skip}
+    elif name in TAKES["allow_fewer"]:
+        how = {"allow_fewer": options.allow_fewer}
+    return make_sampler(name, **how).draw(n, d, rng=options.seed), "exact"
+
+
+def require_seed(seed: int) -> None:
+    """Raise InvalidValue for a seed that is none."""
+    if seed < 0:
+        raise InvalidValue(f"--seed must be an integer >= 0, got {shown(seed)}")

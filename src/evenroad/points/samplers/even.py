@@ -1,0 +1,58 @@
+"""Our default: a Korobov lattice, in many dimensions scrambled Sobol points, drawn in for roadmaps of few edges."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from evenroad._checks import require_count
+from evenroad._rng import RngLike
+from evenroad.points.pointset import PointSet
+from evenroad.points.randomise import Symmetry
+from evenroad.points.samplers.korobov import Korobov
+from evenroad.points.samplers.plain import Sobol
+
+TURNED_FROM = 6
+"""Dimension from which on `even` permutes the axes of each set; below, ten neighbours are 2 d and span all."""
+
+SOBOL_FROM = 10
+"""Dimension from which on `even` is scrambled Sobol points: there no lattice solves more."""
+
+DRAWN_IN_FROM = 7
+"""Dimension from which on points of a sparse roadmap are drawn in to the middle of a box."""
+
+DRAWN_IN = 0.85
+"""To which share of their distance from the middle points of a sparse roadmap are drawn in."""
+
+
+@dataclass(frozen=True)
+class Even(Korobov):
+    """Our default: a Korobov lattice, from ten dimensions on scrambled Sobol points.
+
+    ``benchmarks/decide_even.py`` has the evidence for the lattice.  From six dimensions on axes hardly ever count
+    alike: those of an arm's joints, those of rotations.  The few short vectors of the lattice may then lie in axes that
+    count little, and with k < 2 d neighbours the roadmap falls apart into sheets.  No one order of the axes is good
+    everywhere, so there each set has another.
+    """
+
+    name = "even"
+    about = "our default: a shifted Korobov lattice, from d = 10 on scrambled Sobol"
+    # Sobol's; a lattice is shifted as it is drawn.
+    symmetries = frozenset({Symmetry.PERMUTATION})
+    turned_from = TURNED_FROM
+
+    def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
+        """Return n points, shape (n, d); limits are those of :class:`Korobov`, of :class:`Sobol` from d = 10 on."""
+        n, d = require_count("n", n), require_count("d", d)
+        if d < SOBOL_FROM:
+            return super().draw(n, d, rng=rng)
+        return Sobol().draw(n, d, rng=rng).with_origin(family=self.name, method="scrambled Sobol")
+
+
+def drawn_in(points: PointSet, share: float = DRAWN_IN) -> PointSet:
+    """Return the points, each moved towards the middle of the cube to this share of its distance, 0 < share <= 1.
+
+    Motions between them are shorter by that share.  Where each point has few neighbours, that is worth more than to
+    reach the corners: ``benchmarks/drawn_in.py`` has the evidence.
+    """
+    method = f"{points.origin.method}, drawn in to {share:g}"
+    return PointSet(0.5 + share * (points.points - 0.5), points.origin).with_origin(method=method)

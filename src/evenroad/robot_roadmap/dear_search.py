@@ -1,0 +1,252 @@
+"""The search of a roadmap where questions are dear: it plans a whole way, and asks about what is not known of it.
+
+A lazy search after Dellin and Srinivasa 2016, in which a motion that nobody has asked about counts as longer than it
+is: so it goes along what is known, and asks about short motions that lead there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol, TypeGuard
+
+import numpy as np
+
+from evenroad._arrays import Bools, Floats
+from evenroad._clock import now
+from evenroad.robot.arm_world import RECHECK_TOLERANCE
+from evenroad.robot.kernel.addresses import address, matrix_at
+from evenroad.robot.kernel.layout import program, quick
+from evenroad.robot_roadmap import search_memory as at
+from evenroad.robot_roadmap.known_graph import KnownGraph
+from evenroad.robot_roadmap.lazy_search import (
+    EDGE,
+    ENDS_TAKEN,
+    FOUND,
+    FULL,
+    LINK,
+    NODE,
+    NONE,
+    SPENT,
+    STRAIGHT,
+    answer,
+    begin,
+    clear,
+    pop,
+    push,
+    question_of,
+    state_of,
+    verdict_of,
+    way_back,
+    write_asked,
+)
+from evenroad.robot_roadmap.search_memory import BLOCKED, DOUBTED, FREE, UNKNOWN, Search
+from evenroad.robot_roadmap.search_metric import distance, write
+from evenroad.world import World
+
+NOT_ASKED, NOT_PROVED = 5.0, 20.0
+"""How many times as long as it is a motion counts that nobody has asked about, and one that is not proved soon."""
+
+DEARLY = 16
+"""Added to a question about a motion that was not proved soon."""
+
+
+class Checks(World, Protocol):
+    """A world that proves motions, and says who does: ``lanes`` are asked by compiled code."""
+
+    @property
+    def backend(self) -> str:
+        """Who checks."""
+
+    def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> Bools:
+        """Return which motions, (m, dim) each, are free: (m,)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """What a search ended with: a path, (p, dim), and its goal or -1; milestones and motions that were asked about."""
+
+    ended: int
+    path: Floats
+    goal: int
+    milestones: int
+    motions: int
+
+
+class ProvesSoon(Checks, Protocol):
+    """A world that can say for little of some motions that they are free."""
+
+    def proved(self, q: Floats) -> Bools:
+        """Return which configurations, (n, dim), are known to be free for little: (n,)."""
+
+    def motion_proved(self, a: Floats, b: Floats) -> Bools:
+        """Return which motions, (m, dim) each, are proved free for little: (m,); of the others nothing is said."""
+
+
+def _proves_soon(world: Checks) -> TypeGuard[ProvesSoon]:
+    return hasattr(world, "motion_proved")
+
+
+def ask_few(world: Checks, day: Checks, graph: KnownGraph, most_motions: int, deadline: float) -> Asked:
+    """Search for a way of the query that a graph was prepared for."""
+    desk, path, nothing = graph.desk, graph.path, np.empty((0, len(graph.asked[0])))
+    milestones = motions = 0
+    if not world.valid(graph.ends).all():
+        return Asked(ENDS_TAKEN, nothing, -1, 0, 0)
+    graph.ends[:] = world.space.interpolate(graph.ends, graph.ends, 0.0)
+    if _proves_soon(world):
+        for end in np.flatnonzero(~world.proved(graph.ends)).tolist():
+            graph.doubt(end)
+    question, verdict = -1, UNKNOWN
+    while True:
+        question = _go_on(address(desk), question, verdict, NOT_ASKED, NOT_PROVED, address(path), len(path))
+        if question == FOUND:
+            rows, goal = int(desk[at.BY]), int(desk[at.TO]) - 1
+            return Asked(FOUND, path[:rows][::-1].copy(), goal, milestones, motions)
+        dearly, question = divmod(question, DEARLY)
+        if question > STRAIGHT:
+            return Asked(question, nothing, -1, milestones, motions)
+        if motions >= most_motions or now() >= deadline:
+            return Asked(SPENT, nothing, -1, milestones, motions)
+        a, b = graph.asked[:1], graph.asked[1:]
+        if question == NODE:
+            milestones += 1
+            verdict = FREE if day.valid(a)[0] else BLOCKED
+            continue
+        judge = day if question == EDGE and desk[at.BY] < desk[at.BASE] else world
+        motions += 1 - dearly
+        if _proves_soon(judge) and not dearly:
+            verdict = FREE if judge.motion_proved(a, b)[0] else DOUBTED
+        else:
+            verdict = FREE if judge.motion_certified(a, b, RECHECK_TOLERANCE)[0] else BLOCKED
+
+
+@program
+def _go_on(
+    desk: int, answered: int, verdict: int, unknown: float, doubted: float, path: int, rows: int
+) -> int:
+    """Take the answer to a question, or begin where there was none, and return the next one, plus DEARLY where the
+    motion was not proved soon; of a way that was found what ``ask._go_on`` writes.
+    """
+    s = at.search_at(desk)
+    if answered < 0:
+        begin(s)
+    else:
+        answer(s, answered, verdict)
+    d = s.desk
+    d[at.AIM] = -1
+    for end in range(1, d[at.ENDS]):
+        if s.straight[end] == UNKNOWN and d[at.ONLY_KNOWN] == 0:
+            # Whoever goes straight needs no roadmap; most of what is blocked is found out soon.
+            d[at.TO] = end
+            for k in range(d[at.DIM]):
+                s.asked[0, k], s.asked[1, k] = s.ends[0, k], s.ends[end, k]
+            return STRAIGHT
+    entry = _cheapest_way(s, unknown, doubted)
+    if entry < 0:
+        return NONE if entry == -1 else FULL
+    d[at.PENDING] = entry
+    question = _first_open(s, entry)
+    if question == FOUND:
+        d[at.TO] = -s.entries[entry, at.STATE]
+        d[at.BY] = way_back(s, matrix_at(path, (rows, d[at.DIM])))
+    return question
+
+
+@quick
+def _cheapest_way(s: Search, unknown: float, doubted: float) -> int:
+    """Return the entry at the end of the way that counts least, -1 where there is none, -2 where there is no room."""
+    d = s.desk
+    clear(s)
+    for end in range(1, d[at.ENDS]):
+        price = _price(s, s.straight[end], unknown, doubted)
+        if price < np.inf:
+            push(s, -end, -1, -1, price * distance(s, s.ends[0], s.ends[end]), 0.0)
+    for rank in range(d[at.LINKS]):
+        i = s.near[0, rank]
+        if i >= 0 and s.nodes[i] != BLOCKED:
+            price = _price(s, s.links[0, i], unknown, doubted)
+            state = state_of(s, i, s.turns[0, i]) if price < np.inf else -1
+            if state >= 0:
+                _offer(s, state, -1, -1, price * s.away[i])
+    while d[at.WAITING] > 0:
+        entry = pop(s)
+        state = s.entries[entry, at.STATE]
+        if state < 0:
+            return entry
+        if s.states[state, at.REACHED] < 0:
+            s.states[state, at.REACHED] = entry
+            if not _expand(s, state, entry, unknown, doubted):
+                return -2
+    return -1
+
+
+@quick
+def _price(s: Search, verdict: int, unknown: float, doubted: float) -> float:
+    """Return what a unit of length of a motion counts of which this is known."""
+    if verdict >= FREE:
+        return 1.0
+    if verdict == BLOCKED or s.desk[at.ONLY_KNOWN] != 0:
+        return np.inf
+    return unknown if verdict == UNKNOWN else doubted
+
+
+@quick
+def _offer(s: Search, state: int, parent: int, via: int, cost: float) -> None:
+    """Put what a state is reached by into the queue, if nothing better was."""
+    if cost < s.bounds[state, at.LEAST]:
+        s.bounds[state, at.LEAST] = cost
+        push(s, state, parent, via, cost, s.bounds[state, at.LEFT])
+
+
+@quick
+def _expand(s: Search, state: int, entry: int, unknown: float, doubted: float) -> bool:
+    """Put all that a state leads to into the queue; return whether there was room."""
+    d, node, packed, cost = s.desk, s.states[state, at.OF], s.states[state, at.LIFTED], s.costs[entry]
+    if d[at.MADE] + d[at.ENDS] > d[at.ENTRIES]:
+        return False
+    for end in range(1, d[at.ENDS]):
+        link, away = s.links[end, node], s.away[end * d[at.CAPACITY] + node]
+        price = _price(s, link, unknown, doubted)
+        if price < np.inf and s.turns[end, node] == packed and (link >= FREE or away <= s.radius[end]):
+            push(s, -end, entry, -1, cost + price * away, 0.0)
+    half = s.first[node]
+    while half >= 0:
+        there, edge = s.halves[half, at.OTHER], s.halves[half, at.NUMBER]
+        turned = packed + s.leads[half] if d[at.LIFTING] != 0 else packed
+        reached = cost + _price(s, s.edges[edge], unknown, doubted) * s.lengths[half]
+        half = s.halves[half, at.NEXT]
+        if reached == np.inf or s.nodes[there] == BLOCKED:
+            continue
+        if d[at.SIZE] >= d[at.STATES] or d[at.MADE] >= d[at.ENTRIES]:
+            return False
+        other = state_of(s, there, turned)
+        if other >= 0 and s.states[other, at.REACHED] < 0:
+            _offer(s, other, entry, edge, reached)
+    return True
+
+
+@quick
+def _first_open(s: Search, entry: int) -> int:
+    """Return the first question about a way: about its milestones first, then its links, then its edges, what was not
+    proved soon at the end; FOUND where it is all known to be free.
+    """
+    d, best, chosen = s.desk, np.inf, -1
+    here = entry
+    while here >= 0:
+        state, question = s.entries[here, at.STATE], question_of(s, here)
+        verdict = verdict_of(s, question)
+        if verdict < FREE and state >= 0 and s.nodes[s.states[state, at.OF]] == UNKNOWN:
+            d[at.TO] = s.states[state, at.OF]
+            write(s, d[at.TO], s.states[state, at.LIFTED], s.asked[0])
+            return NODE
+        if verdict < FREE:
+            rank = (2.0 if verdict == DOUBTED else 0.0) + (0.0 if question == LINK else 1.0)
+            if rank < best:
+                best, chosen = rank, here
+        here = s.entries[here, at.PARENT]
+    if chosen < 0:
+        return FOUND
+    d[at.PENDING] = chosen
+    question = question_of(s, chosen)
+    write_asked(s, chosen, question)
+    return question + (DEARLY if verdict_of(s, question) == DOUBTED else 0)

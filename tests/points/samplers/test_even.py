@@ -1,0 +1,60 @@
+"""Tests of evenroad.points.samplers.even."""
+
+import numpy as np
+import pytest
+
+from evenroad.points import PointSet, draw
+from evenroad.points.samplers.even import Even, drawn_in
+from evenroad.points.samplers.korobov import Korobov, korobov_generator
+from tests.points.samplers.sampler_contract import SamplerContract
+
+
+class TestEven(SamplerContract):
+    sampler = Even()
+    shapes = ((5, 1), (3, 2), (5, 3), (6, 4), (1, 6), (20, 7), (60, 9), (100, 10), (7, 30))
+
+    def test_below_six_dimensions_it_is_the_korobov_lattice_under_its_own_name(self):
+        for n, d in self.shapes:
+            points = self.sampler.draw(n, d, rng=3)
+            assert points == draw("even", n, d, rng=3)
+            if d < 6:
+                assert points == Korobov().draw(n, d, rng=3).with_origin(family="even")
+
+    @pytest.mark.parametrize(("n", "d"), [(50, 6), (64, 9)])
+    def test_from_six_on_each_set_has_its_axes_in_another_order(self, n, d):
+        a = korobov_generator(n, d)
+        powers, orders = [pow(a, k, n) for k in range(d)], set()
+        for seed in range(6):
+            points = self.sampler.draw(n, d, rng=seed).points
+            step = np.rint(((points[1] - points[0]) % 1.0) * n).astype(int).tolist()
+            assert sorted(step) == sorted(powers)
+            orders.add(tuple(step))
+        assert len(orders) > 1
+
+    @pytest.mark.parametrize("d", [10, 13])
+    def test_from_ten_on_it_is_scrambled_sobol_points(self, d):
+        points = self.sampler.draw(32, d, rng=3)
+        np.testing.assert_array_equal(points.points, draw("sobol", 32, d, rng=3).points)
+        assert points.origin.family == "even"
+
+
+class TestDrawnIn:
+    @pytest.mark.parametrize("share", [1.0, 0.85, 0.5])
+    def test_all_distances_shrink_by_the_share_and_the_middle_stays(self, share):
+        points = draw("even", 20, 3, rng=1)
+        near = drawn_in(points, share)
+        for first, second in (
+            (points.points - 0.5, near.points - 0.5),
+            (np.diff(points, axis=0), np.diff(near, axis=0)),
+        ):
+            np.testing.assert_allclose(
+                np.linalg.norm(second, axis=1), share * np.linalg.norm(first, axis=1), rtol=1e-12
+            )
+
+    def test_the_set_says_so(self):
+        origin = drawn_in(draw("even", 8, 12, rng=1)).origin
+        assert (origin.family, origin.method) == ("even", "scrambled Sobol, drawn in to 0.85")
+
+    def test_corners_stay_in_the_cube(self):
+        corner = PointSet(np.full((1, 5), np.nextafter(1.0, 0.0)))
+        assert drawn_in(corner, 1.0).points.max() < 1.0
