@@ -58,6 +58,8 @@ from evenroad.robot_roadmap.search_memory import (
     Search,
     join,
     kept_in_order,
+    pop,
+    push,
 )
 from evenroad.robot_roadmap.search_metric import distance, measure, write
 
@@ -372,40 +374,3 @@ def state_of(s: Search, node: int, packed: int) -> int:
     if not inside:
         s.bounds[state, LEFT] = np.inf
     return state if inside else -1
-
-
-@quick
-def push(s: Search, state: int, parent: int, via: int, cost: float, left: float) -> None:
-    """Make an entry and put it into the queue, a heap with the least key first."""
-    d, entry = s.desk, s.desk[MADE]
-    d[MADE] += 1
-    s.entries[entry, STATE], s.entries[entry, PARENT], s.entries[entry, VIA] = state, parent, via
-    s.costs[entry] = cost
-    key, place = cost + left, d[WAITING]
-    d[WAITING] += 1
-    while place > 0:
-        above = (place - 1) // 2
-        if s.keys[above] <= key:
-            break
-        s.keys[place], s.items[place] = s.keys[above], s.items[above]
-        place = above
-    s.keys[place], s.items[place] = key, entry
-
-
-@quick
-def pop(s: Search) -> int:
-    """Take the entry with the least key out of the queue."""
-    first = s.items[0]
-    s.desk[WAITING] -= 1
-    size = s.desk[WAITING]
-    key, item, place = s.keys[size], s.items[size], 0
-    while True:
-        below = 2 * place + 1
-        if below + 1 < size and s.keys[below + 1] < s.keys[below]:
-            below += 1
-        if below >= size or s.keys[below] >= key:
-            break
-        s.keys[place], s.items[place] = s.keys[below], s.items[below]
-        place = below
-    s.keys[place], s.items[place] = key, item
-    return first
