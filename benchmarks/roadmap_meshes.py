@@ -35,7 +35,7 @@ from evenroad.robot.trees import shorten
 from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.own_shapes import OwnShapesWorld, SolidMeshes
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
-from evenroad.robot_roadmap.scene_roadmap import CUTS, DEAR_BATCHES, SLIDES, SceneRoadmap
+from evenroad.robot_roadmap.scene_roadmap import BATCHES, CUTS, DEAR_WORK, PAIRS, SceneRoadmap
 from evenroad.space.path import path_length
 
 FIRST = 9
@@ -131,7 +131,9 @@ def by_trees(world: ArmWorld, checks: OnlyCoal | OwnShapesWorld) -> Query:
         path = solve(planner, start, goal, SECONDS)
         length = np.nan
         if path is not None:
-            path, _ = shorten(world, path, cuts=CUTS, batches=DEAR_BATCHES, slides=SLIDES)
+            path, _ = shorten(
+                world, path, pairs=DEAR_WORK * PAIRS, cuts=DEAR_WORK * CUTS, batches=DEAR_WORK * BATCHES
+            )
             length = path_length(path, world.space)
         return time.thread_time() - began, Counted.states - before, length
 

@@ -30,7 +30,7 @@ from evenroad.robot.trees import shorten
 from evenroad.robot_roadmap.chance import chance_of_freedom
 from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
-from evenroad.robot_roadmap.scene_roadmap import BATCHES, CUTS, SLIDES, SceneRoadmap
+from evenroad.robot_roadmap.scene_roadmap import CUTS, PAIRS, SceneRoadmap
 from evenroad.robot_roadmap.search_memory import NUMBER
 
 COPIES = 3
@@ -46,11 +46,11 @@ TURN = 2.0 * np.pi
 
 
 class QuickWorld(ArmWorld):
-    """An arm's world whose paths are shortened as those of roadmaps."""
+    """An arm's world whose paths are shortened as little as those of roadmaps."""
 
     def shorten(self, path: np.ndarray) -> tuple[np.ndarray, int]:
         """Return a path that is not longer, and how many motions were looked at."""
-        return shorten(self, path, cuts=CUTS, batches=BATCHES, slides=SLIDES)
+        return shorten(self, path, pairs=PAIRS, cuts=CUTS)
 
 
 def timed(calls: list[Callable[[], PlanResult]]) -> tuple[float, PlanResult]:
@@ -82,7 +82,7 @@ def costs(name: str, count: int, n: int, kinds: list[str]) -> None:
                 ends = partial(find_path, start=start, goal=goal, budget=LIMIT)
                 calls = {
                     "trees": [partial(ends, world)] * COPIES,
-                    "trees, shortened alike": [partial(ends, quick)] * COPIES,
+                    "trees, shortened as much": [partial(ends, quick)] * COPIES,
                     "roadmap, kept scene": [partial(k.plan, start, goal, budget=LIMIT) for k in copies],
                     "roadmap, new scene": [partial(made.plan, world.scene, start, goal, budget=LIMIT)]
                     * COPIES,

@@ -22,14 +22,6 @@ ARMS = {
 }
 
 
-WAYS = {
-    "pairs": {},
-    "slides": {"slides": 96, "cuts": 32},
-    "few slides": {"slides": 96, "cuts": 32, "batches": 40},
-}
-ways = pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
-
-
 def length(world, path):
     return world.space.distance(path[:-1], path[1:]).sum()
 
@@ -51,29 +43,26 @@ def paths(request):
     return world, found
 
 
-@ways
-def test_no_shortened_path_touches_anything(paths, way):
+def test_no_shortened_path_touches_anything(paths):
     world, found = paths
     for path in found:
-        shorter, _ = shorten(world, path, **way)
+        shorter, _ = shorten(world, path)
         assert clearance(world.robot, world.scene, dense_states(world, shorter)).min() > 0.0
 
 
-@ways
-def test_every_motion_is_proved(paths, way):
+def test_every_motion_is_proved(paths):
     world, found = paths
     proofs = CertifiedWorld(replace(world, backend="scalar"), 1e-6)
     for path in found:
-        shorter, motions = shorten(world, path, **way)
+        shorter, motions = shorten(world, path)
         assert proofs.motion_valid(shorter[:-1], shorter[1:]).all()
         assert motions > 0
 
 
-@ways
-def test_paths_keep_their_ends_and_become_shorter(paths, way):
+def test_paths_keep_their_ends_and_become_shorter(paths):
     world, found = paths
     for path in found:
-        shorter, _ = shorten(world, path, **way)
+        shorter, _ = shorten(world, path)
         np.testing.assert_array_equal(shorter[[0, -1]], path[[0, -1]])
         assert length(world, shorter) <= length(world, path) * (1 + 1e-12)
         assert world.space.contains(shorter).all()
@@ -86,30 +75,10 @@ def test_paths_are_about_as_short_as_those_of_all_pairs(paths):
     assert ours <= 1.03 * theirs
 
 
-def test_waypoints_that_slide_make_shorter_paths_than_all_pairs():
-    robot, scene, count = ARMS["ur5"]
-    world, ratios = ArmWorld(robot, scene), []
-    for a, b in queries(world, 2 * count, seed=1):
-        path = connect(world, a, [b], most_motions=5_000, seconds=30).path
-        if len(path) > 2 and len(joined := shorten(world, path)[0]) > 2:
-            slid = shorten(world, path, slides=400, cuts=32)[0]
-            ratios.append(length(world, slid) / length(world, joined))
-    print(len(ratios), np.mean(ratios))
-    assert len(ratios) >= 10
-    assert np.mean(ratios) <= 0.98
-
-
-def test_more_slides_than_are_worth_while_end_soon(paths):
+def test_the_same_path_gives_the_same_path(paths):
     world, found = paths
-    for path in found[:3]:
-        assert shorten(world, path, slides=20_000, cuts=32)[1] < 5_000
-
-
-@ways
-def test_the_same_path_gives_the_same_path(paths, way):
-    world, found = paths
-    first, motions = shorten(world, found[0], **way)
-    again, motions_again = shorten(world, found[0], **way)
+    first, motions = shorten(world, found[0])
+    again, motions_again = shorten(world, found[0])
     np.testing.assert_array_equal(first, again)
     assert motions == motions_again
 

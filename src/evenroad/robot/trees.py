@@ -147,7 +147,6 @@ def shorten(
     pairs: int = 1 << 30,
     cuts: int = 64,
     batches: int = 1 << 30,
-    slides: int = 0,
 ) -> tuple[Floats, int]:
     """Return a path that is not longer, and how many motions were looked at.
 
@@ -164,9 +163,6 @@ def shorten(
         So many motions between places along the path are tried at most, by the lanes so many cuts of corners, too.
     batches : int
         After so many batches of sixteen checks the lanes try no more.
-    slides : int
-        So often at most the lanes let a waypoint slide along what it touches, and try half as many pairs, in place of
-        all pairs; cuts follow, whatever the batches.
 
     Raises
     ------
@@ -184,8 +180,7 @@ def shorten(
     if world.backend == "scalar":
         return _shortened(world, as_batch("path", path, dim))
     places, count = _place(share_pairs)
-    work = (count, slides, *_place(ball_points, dim)) if slides else (min(pairs, count),)
-    short, motions = _shorten_path()(world.lanes, path, cuts, batches, places, *work)
+    short, motions = _shorten_path()(world.lanes, path, places, min(pairs, count), cuts, batches)
     if not len(short):
         as_batch("path", path, dim)
     return short, motions

@@ -31,13 +31,15 @@ from evenroad.robot_roadmap.lazy_search import (
     answer,
     begin,
     clear,
+    pop,
+    push,
     question_of,
     state_of,
     verdict_of,
     way_back,
     write_asked,
 )
-from evenroad.robot_roadmap.search_memory import BLOCKED, DOUBTED, FREE, UNKNOWN, Search, pop, push
+from evenroad.robot_roadmap.search_memory import BLOCKED, DOUBTED, FREE, UNKNOWN, Search
 from evenroad.robot_roadmap.search_metric import distance, write
 from evenroad.world import World
 

@@ -65,7 +65,6 @@ class KnownGraph:
         self._query, self._shape = np.empty(0), (0, 0)
         self._make_room(n, count, len(edges))
         self.desk[[at.NODES, at.HALVES_MADE, at.EDGES_MADE, at.BASE]] = n, count, len(edges), len(edges)
-        self.desk[at.OWN] = n
         self.milestones[:n], self.columns[:, :n] = milestones, milestones.T
         turned = np.where(one.lifts, turns, 0) @ (2**BITS) ** np.arange(dim)
         half, here = self.halves[:count], np.arange(count)

@@ -40,7 +40,6 @@ from evenroad.robot_roadmap.search_memory import (
     ONLY_KNOWN,
     OPEN,
     OTHER,
-    OWN,
     PARENT,
     PENDING,
     PHASE,
@@ -58,8 +57,6 @@ from evenroad.robot_roadmap.search_memory import (
     Search,
     join,
     kept_in_order,
-    pop,
-    push,
 )
 from evenroad.robot_roadmap.search_metric import distance, measure, write
 
@@ -75,9 +72,6 @@ ENDS_TAKEN, SPENT, PAUSED = range(FULL + 1, FULL + 4)
 ONWARD = 0.5
 """Links are tried in the order of their length and this share of what is left beyond them."""
 
-LEARNED = 10
-"""Of the links that are tried, so many lead to the nearest milestones that were learned in the scene."""
-
 AIMED = 4
 """A goal of which so many links were blocked before a free one was found is approached by that one."""
 
@@ -89,8 +83,6 @@ def begin(s: Search) -> None:
     for end in range(d[ENDS]):
         measure(s, end, d[MEASURED])
     d[MEASURED] = d[NODES]
-    learned = min(LEARNED, d[NODES] - d[OWN])
-    most = max(d[LINKS] - learned, d[LINKS] // 2)
     for end in range(d[ENDS]):
         count, last, s.radius[end] = 0, np.inf, 0.0
         for i in range(d[NODES]):
@@ -107,15 +99,8 @@ def begin(s: Search) -> None:
             key = away + np.float32(ONWARD) * beyond
             if key >= last or s.nodes[i] == BLOCKED or s.links[end, i] == BLOCKED:
                 continue
-            count = kept_in_order(s.keys, s.near[end], count, most, key, i)
-            last = s.keys[count - 1] if count == most else np.inf
-        if most < d[LINKS] and count == most:
-            more = 0
-            for i in range(d[OWN], d[NODES]):
-                away = s.away[end * capacity + i]
-                if s.nodes[i] != BLOCKED and s.links[end, i] != BLOCKED:
-                    more = kept_in_order(s.keys, s.near[end, most:], more, d[LINKS] - most, away, i)
-            count += more
+            count = kept_in_order(s.keys, s.near[end], count, d[LINKS], key, i)
+            last = s.keys[count - 1] if count == d[LINKS] else np.inf
         for rank in range(count):
             s.radius[end] = max(s.radius[end], s.away[end * capacity + s.near[end, rank]])
         for rank in range(count, d[LINKS]):
@@ -374,3 +359,40 @@ def state_of(s: Search, node: int, packed: int) -> int:
     if not inside:
         s.bounds[state, LEFT] = np.inf
     return state if inside else -1
+
+
+@quick
+def push(s: Search, state: int, parent: int, via: int, cost: float, left: float) -> None:
+    """Make an entry and put it into the queue, a heap with the least key first."""
+    d, entry = s.desk, s.desk[MADE]
+    d[MADE] += 1
+    s.entries[entry, STATE], s.entries[entry, PARENT], s.entries[entry, VIA] = state, parent, via
+    s.costs[entry] = cost
+    key, place = cost + left, d[WAITING]
+    d[WAITING] += 1
+    while place > 0:
+        above = (place - 1) // 2
+        if s.keys[above] <= key:
+            break
+        s.keys[place], s.items[place] = s.keys[above], s.items[above]
+        place = above
+    s.keys[place], s.items[place] = key, entry
+
+
+@quick
+def pop(s: Search) -> int:
+    """Take the entry with the least key out of the queue."""
+    first = s.items[0]
+    s.desk[WAITING] -= 1
+    size = s.desk[WAITING]
+    key, item, place = s.keys[size], s.items[size], 0
+    while True:
+        below = 2 * place + 1
+        if below + 1 < size and s.keys[below + 1] < s.keys[below]:
+            below += 1
+        if below >= size or s.keys[below] >= key:
+            break
+        s.keys[place], s.items[place] = s.keys[below], s.items[below]
+        place = below
+    s.keys[place], s.items[place] = key, item
+    return first

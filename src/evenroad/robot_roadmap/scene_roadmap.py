@@ -54,19 +54,16 @@ LINKS = 300
 """Each end is tried to be linked to so many milestones where nothing else is said; plans without trees go by
 `links_of`: asked lazily, more links cost little but where ends are cut off, and there they are worth much."""
 
-TRIED_LINKS, TRIED_MOTIONS = 40, 60
+TRIED_LINKS, TRIED_MOTIONS = 40, 90
 """Where trees may follow, so many links of each end are tried, and so many motions: trees find ways out of narrow
 places with fewer checks than long links do."""
 
-SLIDES, CUTS = 96, 32
-"""What a path along the roadmap is shortened with at most."""
+PAIRS, CUTS, BATCHES, LONG_WAY = 16, 32, 100, 10
+"""What a path along the roadmap is shortened with, half of the work on trees' paths for half a percent of length, and
+twice that from so many waypoints on: those ways out led round about."""
 
-BATCHES, LEAST_BATCHES = 100, 40
-"""After so many batches of sixteen checks, less one for each motion that the search asked about, but no fewer than the
-second, no waypoint slides on: what took long to be found is shortened less."""
-
-DEAR_LINKS, DEAR_BATCHES, MOST_LEARNED = 100, 400, 2000
-"""Where checks are dear: so many links of each end are tried, capsules shorten with so many batches, and ends of
+DEAR_LINKS, DEAR_WORK, MOST_LEARNED = 100, 4, 2000
+"""Where checks are dear: so many links of each end are tried, capsules shorten with so many times the work, and ends of
 queries are learned until there are so many milestones more."""
 
 SOON = 5000
@@ -214,7 +211,7 @@ class SceneRoadmap:
         shorten : bool
             Whether the path is made shorter.
         trees : bool
-            Whether trees are tried, after 60 motions along the roadmap; else more of its links and all motions are.
+            Whether trees are tried, after 90 motions along the roadmap; else more of its links and all motions are.
 
         Returns
         -------
@@ -308,8 +305,10 @@ class SceneRoadmap:
         )
         seconds = {"search": found - began}
         if shorter:
-            batches = DEAR_BATCHES if self._dear else max(BATCHES - asked.motions, LEAST_BATCHES)
-            path, counts["shortcut_motions"] = shorten(world, path, cuts=CUTS, batches=batches, slides=SLIDES)
+            work = DEAR_WORK if self._dear else 2 if len(path) >= LONG_WAY else 1
+            path, counts["shortcut_motions"] = shorten(
+                world, path, pairs=work * PAIRS, cuts=work * CUTS, batches=work * BATCHES
+            )
             length, seconds["shortcut"] = self._length(path), now() - found
         to = f" to goal {asked.goal}" if len(goals) > 1 else ""
         return PlanResult(

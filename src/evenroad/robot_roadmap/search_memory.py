@@ -54,10 +54,7 @@ VERDICTS, LIFTING = 27, 28
 UNTURNED = 29
 """Desk: 1 where ends are linked to milestones as these are, 0 where these are turned to be near."""
 
-OWN = 30
-"""Desk: how many of the milestones are the roadmap's own; those behind were learned in the scene."""
-
-DESK = 31
+DESK = 30
 
 OTHER, NEXT, NUMBER, HALF = range(4)
 """Of a half edge: where it leads, the next one of the same milestone or -1, its edge; how many things that is."""
@@ -228,40 +225,3 @@ def group_of(s: Search, node: int) -> int:
 def join(s: Search, a: int, b: int) -> None:
     """Make one group of those of two milestones."""
     s.groups[group_of(s, a)] = group_of(s, b)
-
-
-@quick
-def push(s: Search, state: int, parent: int, via: int, cost: float, left: float) -> None:
-    """Make an entry and put it into the queue, a heap with the least key first."""
-    d, entry = s.desk, s.desk[MADE]
-    d[MADE] += 1
-    s.entries[entry, STATE], s.entries[entry, PARENT], s.entries[entry, VIA] = state, parent, via
-    s.costs[entry] = cost
-    key, place = cost + left, d[WAITING]
-    d[WAITING] += 1
-    while place > 0:
-        above = (place - 1) // 2
-        if s.keys[above] <= key:
-            break
-        s.keys[place], s.items[place] = s.keys[above], s.items[above]
-        place = above
-    s.keys[place], s.items[place] = key, entry
-
-
-@quick
-def pop(s: Search) -> int:
-    """Take the entry with the least key out of the queue."""
-    first = s.items[0]
-    s.desk[WAITING] -= 1
-    size = s.desk[WAITING]
-    key, item, place = s.keys[size], s.items[size], 0
-    while True:
-        below = 2 * place + 1
-        if below + 1 < size and s.keys[below + 1] < s.keys[below]:
-            below += 1
-        if below >= size or s.keys[below] >= key:
-            break
-        s.keys[place], s.items[place] = s.keys[below], s.items[below]
-        place = below
-    s.keys[place], s.items[place] = key, item
-    return first

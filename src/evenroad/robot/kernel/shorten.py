@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import doubles_at, matrix_at
 from evenroad.robot.kernel.lane_world import LaneWorld
-from evenroad.robot.kernel.layout import LANES, program, quick, quick_inlined
+from evenroad.robot.kernel.layout import program, quick, quick_inlined
 from evenroad.robot.kernel.motion import canonical, distance_and_way, enter
 from evenroad.robot.kernel.motion_checks import (
     COARSE,
@@ -18,7 +18,6 @@ from evenroad.robot.kernel.motion_checks import (
 )
 from evenroad.robot.kernel.motion_states import BATCHES as BATCHES_DONE
 from evenroad.robot.kernel.motion_states import COUNTS, MOTIONS
-from evenroad.robot.kernel.slide import SPARE, slide
 
 Floats = npt.NDArray[np.float64]
 
@@ -30,23 +29,20 @@ WORTH_WHILE = 3e-3
 CUT_WORTH_WHILE = 1e-3
 """Motions that shorten the path by less than this share are not looked at; the second where corners are cut."""
 
-SLIDES, PAIRS, ENOUGH = 8, 4, 3e-3
-"""After so many slides so many pairs are tried, again and again until both together gain less than this share."""
-
 _BESIDE = 1 << 32
 """Two counts in one number: less to read after a call."""
+
+MOST_CUTS, MOST_BATCHES = 64, 1 << 30
+"""So many cuts of corners are tried at most, and so many batches checked, where nothing else is said."""
 
 
 def shorten_path(
     world: LaneWorld,
     path: Floats,
-    most_cuts: int,
-    most_batches: int,
     pairs: int,
     count: int,
-    most_slides: int = 0,
-    ball: int = 0,
-    ball_count: int = 0,
+    most_cuts: int = MOST_CUTS,
+    most_batches: int = MOST_BATCHES,
 ) -> tuple[Floats, int]:
     """Return a path that is no longer, without waypoints where it is not finite, and how many motions were looked at.
 
@@ -56,25 +52,22 @@ def shorten_path(
         The robot in its scene.
     path : float64 array, shape (p, dim), p >= 2
         Waypoints, every motion free.
-    most_cuts : int
-        So many cuts of corners are tried at most.
-    most_batches : int
-        After so many batches of sixteen checks nothing more is tried; of slides, which come before cuts, no more.
     pairs, count
         Address of a float64 array, (count, 2): shares of the path's length, from 0 to 1, between which places a
         straight motion is tried.
-    most_slides : int
-        So often a waypoint slides at most; 0 for pairs alone.
-    ball, ball_count
-        Address of a float64 array, (ball_count, dim): directions of slides.
+    most_cuts : int
+        So many cuts of corners are tried at most.
+    most_batches : int
+        After so many batches of sixteen checks nothing more is tried.
     """
     size, dim = path.shape
-    rows = size + count + most_cuts + most_slides + PAIRS + 4
-    room, arguments = world.arguments(COUNTS + (2 * dim + 2) * rows + (SPARE + 3) * dim + LANES)
+    rows = size + count + most_cuts + 4
+    room, arguments = world.arguments(COUNTS + rows * (dim + 1) + 3 * dim)
     points = room[-rows * dim :].reshape(rows, dim)
     room[:COUNTS], points[:size] = 0.0, path
-    work = pairs, count, most_cuts, most_batches, most_slides, ball, ball_count
-    motions, left = divmod(shorten_points(rows, size, dim, *work, *arguments), _BESIDE)
+    motions, left = divmod(
+        shorten_points(rows, size, dim, pairs, count, most_cuts, most_batches, *arguments), _BESIDE
+    )
     return points[:left].copy(), motions
 
 
@@ -87,9 +80,6 @@ def shorten_points(
     count: int,
     most_cuts: int,
     most_batches: int,
-    most_slides: int,
-    ball: int,
-    ball_count: int,
     check: int,
     resolution: float,
     tables: int,
@@ -105,8 +95,7 @@ def shorten_points(
     pairs, own = matrix_at(shares, (count, 2)), room + 8 * COUNTS
     ends, way = matrix_at(own, (2, dim)), doubles_at(own + 8 * 2 * dim, (dim,))
     places = doubles_at(own + 8 * 3 * dim, (rows,))
-    sliding, steps = own + 8 * (3 * dim + rows), matrix_at(ball, (ball_count, dim))
-    points = matrix_at(sliding + 8 * ((SPARE + rows) * dim + LANES + rows), (rows, dim))
+    points = matrix_at(own + 8 * (3 * dim + rows), (rows, dim))
     for i in range(size):
         for k in range(dim):
             if not np.isfinite(points[i, k]):
@@ -114,94 +103,39 @@ def shorten_points(
         enter(points[i], checks.bounds, points[i])
     size = _pass_by(points, size, checks)
     _measure(points, places, size, way, checks)
-    if most_slides > 0:
-        size = _slide_on(
-            points, places, size, pairs, steps, most_slides, most_batches, sliding, ends, way, checks
-        )
-        # Cuts are few, and worth more than their checks where waypoints have slid.
-        size = _cut_corners(points, places, size, most_cuts, 1 << 60, ends, way, checks)
-    else:
-        for row in range(count):
-            if checks.counts[BATCHES_DONE] >= most_batches:
-                break
-            size = _pair_joined(points, places, size, pairs[row], ends, way, checks)
-        size = _cut_corners(points, places, size, most_cuts, most_batches, ends, way, checks)
-    if checks.counts[BATCHES_DONE] < most_batches:
-        size = _pass_by(points, size, checks)
-    return size + _BESIDE * checks.counts[MOTIONS]
-
-
-@quick
-def _slide_on(
-    points: Floats,
-    places: Floats,
-    size: int,
-    pairs: Floats,
-    steps: Floats,
-    most_slides: int,
-    most_batches: int,
-    room: int,
-    ends: Floats,
-    way: Floats,
-    checks: Checks,
-) -> int:
-    """Let waypoints slide, try pairs and pass by what is not needed, again and again; return the path's new size."""
-    slides = pair = 0
-    while size > 2 and slides < most_slides and checks.counts[BATCHES_DONE] < most_batches:
-        before = places[size - 1]
-        if slide(points, size, slides, SLIDES, steps, LANES * slides, room, checks):
-            _measure(points, places, size, way, checks)
-        slides += SLIDES
-        for _ in range(PAIRS):
-            size = _pair_joined(points, places, size, pairs[pair], ends, way, checks)
-            pair = (pair + 1) % len(pairs)
-        if size > 2:
-            size = _pass_by(points, size, checks)
-            _measure(points, places, size, way, checks)
-        if places[size - 1] > before * (1.0 - ENOUGH):
+    for row in range(count):
+        if checks.counts[BATCHES_DONE] >= most_batches:
             break
-    return size
-
-
-@quick
-def _pair_joined(
-    points: Floats, places: Floats, size: int, pair: Floats, ends: Floats, way: Floats, checks: Checks
-) -> int:
-    """Join two places, shares of the path's length, where that is worth while and free; return its new size."""
-    low, high = min(pair[0], pair[1]) * places[size - 1], max(pair[0], pair[1]) * places[size - 1]
-    return _joined(points, places, size, low, high, WORTH_WHILE, ends, way, checks)
-
-
-@quick
-def _cut_corners(
-    points: Floats,
-    places: Floats,
-    size: int,
-    most_cuts: int,
-    most_batches: int,
-    ends: Floats,
-    way: Floats,
-    checks: Checks,
-) -> int:
-    """Cut corners, one after the other and again while that gains anything; return the path's new size.
-
-    Of each the shorter side is cut off, or half of it, or a quarter.
-    """
+        low = min(pairs[row, 0], pairs[row, 1]) * places[size - 1]
+        high = max(pairs[row, 0], pairs[row, 1]) * places[size - 1]
+        size = _joined(points, places, size, low, high, WORTH_WHILE, ends, way, checks)
     cuts, i, gained = 0, 1, places[size - 1]
+    # Corners, one after the other and again while that gains anything: the shorter side, half of it, a quarter.
     while cuts < most_cuts and i < size - 1 and checks.counts[BATCHES_DONE] < most_batches:
         reach = min(places[i] - places[i - 1], places[i + 1] - places[i])
         length = places[size - 1]
         for _ in range(3):
             cuts += 1
-            low, high = places[i] - reach, places[i] + reach
-            size = _joined(points, places, size, low, high, CUT_WORTH_WHILE, ends, way, checks)
+            size = _joined(
+                points,
+                places,
+                size,
+                places[i] - reach,
+                places[i] + reach,
+                CUT_WORTH_WHILE,
+                ends,
+                way,
+                checks,
+            )
             if places[size - 1] < length:
                 break
             reach *= 0.5
         i += 1
         if i >= size - 1 and places[size - 1] < gained * (1.0 - WORTH_WHILE):
             i, gained = 1, places[size - 1]
-    return size
+    if checks.counts[BATCHES_DONE] < most_batches:
+        size = _pass_by(points, size, checks)
+    return size + _BESIDE * checks.counts[MOTIONS]
 
 
 @quick
