@@ -1,7 +1,7 @@
 """With fewer neighbours than dimensions, how far should points of a box be drawn in to its middle?
 
     python -m benchmarks.drawn_in --worlds 200 -d 5 6 7 10 --csv docs/data/drawn_in.csv
-    python -m benchmarks.drawn_in --plan --worlds 300 -d 5 7 10 --csv docs/data/drawn_in_plan.csv
+    python -m benchmarks.drawn_in --plan --worlds 200 -d 5 7 10 --csv docs/data/drawn_in_plan.csv
     python -m benchmarks.drawn_in --beside-uniform --worlds 300 -d 10
     python -m benchmarks.drawn_in --corners --worlds 120
 
