@@ -19,7 +19,9 @@ def main() -> int:
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     names = sorted(
-        path.stem for path in Path(__file__).parent.glob("*.py") if path.stem not in HELPERS | DECISIONS | ASKED
+        path.stem
+        for path in Path(__file__).parent.glob("*.py")
+        if path.stem not in HELPERS | DECISIONS | ASKED
     )
     failed = []
     for name in options.only or names:

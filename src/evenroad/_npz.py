@@ -43,7 +43,8 @@ def reading(path: Path, kind: str, begins: bytes = b"") -> Iterator[None]:
     except Exception as error:
         # No list is complete: damaged headers alone give errors of the tokenizer, of memory and of overflow, and
         # zipfile has its own for every compression, encryption and version that it does not know.
-        if not begins:
+        # What cannot even be opened says why by itself.
+        if not begins or (isinstance(error, OSError) and error.errno is not None):
             raise BrokenFile(f"{path} is not a readable {kind}: {shown(error)}") from error
         with open(path, "rb") as file:
             is_other = file.read(len(begins)) != begins

@@ -87,12 +87,18 @@ def test_a_call_in_this_process_that_dropped_an_interrupt_has_no_result():
     def drops():
         raise KeyboardInterrupt
 
+    def fails_then():
+        ctypes.CFUNCTYPE(None)(drops)()
+        raise ValueError("no compiled object yet")
+
     before, seen = sys.unraisablehook, []
     sys.unraisablehook = seen.append
     try:
         with pytest.raises(KeyboardInterrupt):
             SerialExecutor().submit(ctypes.CFUNCTYPE(None)(drops))
+        with pytest.raises(KeyboardInterrupt):
+            SerialExecutor().submit(fails_then)
         assert sys.unraisablehook == seen.append
     finally:
         sys.unraisablehook = before
-    assert [dropped.exc_type for dropped in seen] == [KeyboardInterrupt]
+    assert [dropped.exc_type for dropped in seen] == [KeyboardInterrupt] * 2

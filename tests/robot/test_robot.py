@@ -69,7 +69,7 @@ def test_a_tool_of_shapes_collides_where_the_bare_arm_does_not():
         (
             lambda: UR5.with_tool([Box((1, 1, 1))], at="hand"),
             UnknownName,
-            "link of 'ur5' 'hand'; known: .*tool0",
+            "link of 'ur5': 'hand'; known: .*tool0",
         ),
         (lambda: UR5.with_tool([], at="tool0"), InvalidValue, "must have a body"),
         (lambda: UR5.with_tool(UR5, at="tool0"), InvalidValue, "names of their links, both have .*prefix="),

@@ -72,7 +72,7 @@ def test_a_joint_that_is_not_named_stays_within_its_limits(tmp_path):
         ("elbow_joint=x", InvalidValue, "got 'x'"),
         ("elbow_joint=1,elbow_joint=2", InvalidValue, "given twice"),
         ("elbow_joint=1,2", InvalidValue, "'2' is not of the form name=value"),
-        ("knee=1", UnknownName, "joint of 'ur5' 'knee'; known: elbow_joint"),
+        ("knee=1", UnknownName, "joint of 'ur5': 'knee'; known: elbow_joint"),
         (
             "hom",
             UnknownName,

@@ -145,6 +145,6 @@ def test_ends_of_queries_are_learned_and_the_same_path_is_found_again(roadmap):
     before = len(asked(first))
     for start, goal in some:
         if first.plan(start, goal, trees=False).solved:
-            # The straight motion is asked about anew.
-            assert len(asked(first)) <= before + 1
+            # The straight motion is asked about anew, and a link to an end that is a milestone but for its last bits.
+            assert len(asked(first)) <= before + 2
         before = len(asked(first))

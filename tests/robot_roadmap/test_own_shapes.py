@@ -58,6 +58,17 @@ def test_what_is_inside_of_a_mesh_is_not_free(obstacle):
     assert world.valid(outside)[0]
 
 
+@pytest.mark.parametrize("first", [0, 1])
+def test_a_piece_of_a_mesh_that_is_inside_of_another_touches_it_wherever_the_rest_is(first):
+    away, inside = block(0.02, 2.0), block(0.02, 0.45)
+    one, other = (away, inside)[first], (away, inside)[1 - first]
+    corners = np.concatenate([one.vertices, other.vertices])
+    both = TriangleMesh(corners, np.concatenate([one.triangles, other.triangles + len(one.vertices)]), "both")
+    world = world_with(Obstacle("both", Mesh(both)))
+    assert not world.valid(np.zeros((1, 1)))[0]
+    assert world.valid(np.full((1, 1), 1.5))[0]
+
+
 def test_what_is_free_touches_nothing_and_the_other_way_round():
     rng, near = np.random.default_rng(1), 0
     for away, radius in rng.uniform([0.3, 0.005], [0.75, 0.06], (40, 2)):

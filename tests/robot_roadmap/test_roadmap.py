@@ -8,7 +8,8 @@ import pytest
 
 import evenroad as er
 from evenroad.geometry import Mesh, PointCloud, Pose, TriangleMesh
-from evenroad.geometry.shapes import Capsule
+from evenroad.geometry.shapes import Box, Capsule
+from evenroad.roadmap import Status
 from evenroad.robot import ArmWorld, Joint, Mimic, Obstacle, Scene, link_poses, with_group, with_limits
 from evenroad.robot_roadmap import chance
 from evenroad.robot_roadmap.cell import day_and_all
@@ -355,6 +356,34 @@ def test_a_pose_is_a_goal_as_it_is_elsewhere(roadmap):
     assert beside.solved
     assert len(beside.goals) == len(found.goals) + 1
     far = scene.plan(start, er.PoseGoal(er.Pose((9.0, 0.0, 0.0)), tip=tip, position_only=True))
-    assert far.status is er.Status.GOAL_UNREACHABLE
+    assert far.status is Status.GOAL_UNREACHABLE
     assert "out of reach" in far.message
     assert far.path is None
+
+
+@pytest.mark.parametrize("cloud", [False, True])
+def test_what_touches_the_base_leaves_no_configuration_free(roadmap, cloud):
+    """No joint moves it, so that compiled checks are told nothing of it."""
+    body = (
+        PointCloud([(0.0, 0.0, 0.02)], 0.02)
+        if cloud
+        else Box((0.02, 0.02, 0.02), pose=Pose((0.0, 0.0, 0.02)))
+    )
+    known = roadmap.in_scene(Scene("today", (Obstacle("clamp", body),)))
+    assert known.world.fixed_contact is not None
+    for trees in (True, False):
+        result = known.plan(roadmap.milestones[0], roadmap.milestones[1], trees=trees)
+        assert (result.status, result.path) == (Status.START_INVALID, None)
+        assert "'clamp'" in result.message
+    assert known.connect(roadmap.milestones[0], roadmap.milestones[1:2]).goal == -1
+
+
+def test_a_spent_budget_is_not_a_roadmap_that_leads_nowhere(roadmap):
+    known = roadmap.in_scene(Scene("today", (Obstacle.of("ball", "sphere", (0.05,), (0.5, 0.3, 0.4)),)))
+    statuses = []
+    for start, goal in zip(roadmap.milestones[:12], roadmap.milestones[12:24], strict=True):
+        fresh = roadmap.in_scene(known.world.scene)
+        if known.plan(start, goal, trees=False).solved:
+            statuses.append(fresh.plan(start, goal, trees=False, budget=er.Budget(motions=1)).status)
+    assert Status.BUDGET_SPENT in statuses
+    assert Status.NOT_CONNECTED not in statuses

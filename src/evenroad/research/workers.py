@@ -131,8 +131,9 @@ def _dropped_interrupts_raised() -> Iterator[None]:
         yield
     finally:
         sys.unraisablehook = before
-    if dropped:
-        raise KeyboardInterrupt
+        # Whatever the call raised: after an interrupt that is no outcome.
+        if dropped:
+            raise KeyboardInterrupt
 
 
 def _settle(initializer: Callable[..., object] | None, initargs: tuple[Any, ...]) -> None:

@@ -44,6 +44,9 @@ def ask(
     `only_known` the query is the last one, and nothing is gone along but what is known to be free by now.
     With `unturned` ends are linked to milestones as these are, not turned to be near.
     """
+    if isinstance(world, ArmWorld) and world.fixed_contact is not None:
+        # Of what no joint moves compiled code is told nothing.
+        return Asked(ENDS_TAKEN, np.empty((0, len(start))), -1, 0, 0)
     room = 1
     while True:
         graph.prepare(start, goals, links, greed, room, only_known=only_known, unturned=unturned)

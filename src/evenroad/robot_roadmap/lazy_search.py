@@ -58,7 +58,7 @@ from evenroad.robot_roadmap.search_memory import (
     join,
     kept_in_order,
 )
-from evenroad.robot_roadmap.search_metric import distance, measure, write
+from evenroad.robot_roadmap.search_metric import distance, is_at, measure, write
 
 Floats = npt.NDArray[np.float64]
 
@@ -92,7 +92,7 @@ def begin(s: Search) -> None:
                 for other in range(2, d[ENDS]):
                     beyond = min(beyond, s.away[other * capacity + i])
             away = s.away[end * capacity + i]
-            if away == 0.0 and s.nodes[i] == FREE:
+            if away == 0.0 and s.nodes[i] == FREE and is_at(s, end, i):
                 # An end that is a milestone needs no other.
                 count, s.near[end, 0], s.links[end, i] = 1, i, PROVED
                 break

@@ -8,6 +8,8 @@ from functools import cached_property
 from typing import ClassVar, NamedTuple
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad.geometry.shapes import Mesh, PointCloud, Shape
@@ -133,13 +135,16 @@ class SolidMeshes(CoalWorld):
             other = number + len(self._shapes)
             for mesh, body in ((shape, other), (other, shape)) if is_obstacle else ():
                 if mesh in self._corners:
-                    # Surfaces that do not meet are inside of each other as a whole: one place tells.
-                    place = self._corners[body][0, 0] if body in self._corners else np.zeros(3)
+                    # Surfaces that do not meet are inside of each other piece by piece: one place of each tells.
+                    places = (
+                        places_in_pieces(self._corners[body]) if body in self._corners else np.zeros((1, 3))
+                    )
                     corners = self._corners[mesh].reshape(-1, 3)
-                    rows.append((test, mesh, body, place, corners.min(axis=0), corners.max(axis=0)))
+                    box = corners.min(axis=0), corners.max(axis=0)
+                    rows += [(test, mesh, body, place, *box) for place in places]
         numbers = np.array([row[:3] for row in rows], dtype=np.int64).reshape(-1, 3)
-        places = np.array([row[3:] for row in rows]).reshape(-1, 3, 3)
-        return _Inner(*numbers.T, *np.moveaxis(places, 1, 0))
+        placed = np.array([row[3:] for row in rows]).reshape(-1, 3, 3)
+        return _Inner(*numbers.T, *np.moveaxis(placed, 1, 0))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -167,6 +172,16 @@ class _Inner(NamedTuple):
     place: Floats
     low: Floats
     high: Floats
+
+
+def places_in_pieces(corners: Floats) -> Floats:
+    """Return a corner of each connected piece of a surface of triangles, (t, 3, 3): (p, 3)."""
+    places, corner = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+    a, b, c = corner.reshape(-1, 3).T
+    pairs = np.append(a, b), np.append(b, c)
+    joined = coo_array((np.ones(len(pairs[0])), pairs), shape=(len(places), len(places)))
+    _, first = np.unique(connected_components(joined, directed=False)[1], return_index=True)
+    return np.asarray(places[first])
 
 
 def is_inside(corners: Floats, place: Floats) -> bool:

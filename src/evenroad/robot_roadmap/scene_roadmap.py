@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats
+from evenroad._checks import require_count
 from evenroad._clock import now
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import Shape
@@ -71,6 +72,9 @@ SOON = 5000
 
 _LONG = 1e8
 """Seconds that stand for no limit."""
+
+_SOME = 64
+"""Milestones among which one that is free today is looked for, to compile with."""
 
 _ready: set[str] = set()
 """Backends whose programs are compiled."""
@@ -138,10 +142,13 @@ class SceneRoadmap:
         """Compile, or load, what a query takes before a clock runs; nothing is checked but the ends."""
         backend, roadmap = self._asked[0].backend, self.roadmap
         if backend not in _ready:
-            self._ask(roadmap.milestones[0], roadmap.milestones[:1], 0, math.inf, 1)
+            first = int(np.argmax(self._asked[0].valid(roadmap.milestones[:_SOME])))
+            end = roadmap.milestones[first : first + 1]
+            asked = self._ask(end[0], end, 0, math.inf, 1)
             self._graph.learn(roadmap.milestones[:0])
             self._graph.around(roadmap.weights, 0.0, 1)
-            _ready.add(backend)
+            if asked.ended != ENDS_TAKEN:
+                _ready.add(backend)
 
     def connect(
         self,
@@ -158,6 +165,7 @@ class SceneRoadmap:
         Each is tried to be linked to `links` milestones, of few to all; the path is the shortest one along the roadmap
         where `greed` is 1.
         """
+        links = require_count("links", links)
         asked = self._ask(start, goals, most_motions, now() + seconds, links, greed)
         return Connection(asked.path, asked.goal, self._size, asked.milestones, asked.motions)
 
@@ -232,14 +240,16 @@ class SceneRoadmap:
         # Trees grow among what is free for the capsules.
         follow = trees and (not self._dear or self._capsules_free(first, goals))
         links = (DEAR_LINKS if self._dear else TRIED_LINKS) if follow else links_of(self._size)
-        limits = min(most, TRIED_MOTIONS) if follow else most, began + SHARE * min(deadline - began, _LONG)
+        share = SHARE if follow or self._own is not None else 1.0
+        limits = min(most, TRIED_MOTIONS) if follow else most, began + share * min(deadline - began, _LONG)
         asked = self._ask(first, goals, *limits, links)
         if asked.ended in (NONE, CUT_OFF, SPENT) and follow and len(goals) == 1:
             soon = most if self._own is None else min(most, asked.motions + SOON)
             asked = self._by_ways_out(asked, first, goals, soon, limits[1], links)
         elif asked.ended in (NONE, CUT_OFF) and not follow and self.roadmap.one_turn.lifts.any():
             # What leads to the goal within one turn is not to be lost.
-            before, asked = asked.motions, self._ask(first, goals, *limits, links, unturned=True)
+            before, left = asked.motions, limits[0] - asked.motions
+            asked = self._ask(first, goals, left, limits[1], links, unturned=True)
             asked = replace(asked, motions=asked.motions + before)
         if asked.goal >= 0:
             return self._solved(asked, first, goals, shorten, began)
@@ -264,7 +274,7 @@ class SceneRoadmap:
             assert result.path is not None
             return replace(result, proof=self._proof(result.path))
         failed = gave_up(attempt, connection)
-        if not trees or (not follow and asked.ended != SPENT):
+        if not follow and asked.ended != SPENT:
             text = f"the roadmap of {self._size} milestones does not lead from start to goal today"
             failed = replace(failed, status=Status.NOT_CONNECTED, message=text)
         return with_reasons(self._asked[0], failed)
@@ -278,7 +288,8 @@ class SceneRoadmap:
         self.learned += out.ways
         before = asked.milestones + out.configurations, asked.motions + out.motions
         if out.complete:
-            asked = self._ask(start, goals, TRIED_MOTIONS, deadline, links, only_known=True)
+            rest = min(TRIED_MOTIONS, max(most - before[1], 0))
+            asked = self._ask(start, goals, rest, deadline, links, only_known=True)
             before = before[0] + asked.milestones, before[1] + asked.motions
         return replace(asked, milestones=before[0], motions=before[1])
 

@@ -104,7 +104,9 @@ def test_an_objective_of_the_origin_that_is_not_known_is_refused():
 
 @pytest.mark.parametrize("name", sorted(SAMPLERS))
 def test_a_sampler_says_of_itself_what_its_sets_say_of_theirs(name):
-    assert symmetries_of(draw(name, 64, 2).origin) == SAMPLERS[name]().symmetries
+    # `even` is a lattice in few dimensions and Sobol points in many: what it says holds for both.
+    of_sets = [symmetries_of(draw(name, 64, d).origin) for d in ((2, 12) if name == "even" else (2,))]
+    assert frozenset.intersection(*of_sets) == SAMPLERS[name]().symmetries
 
 
 def test_a_korobov_set_may_be_moved_in_every_way_and_stays_as_separated():
