@@ -86,6 +86,8 @@ def draw_success(lines: Sequence[Line], robot: str, k: str) -> Figure:
                         label=title_of(curve[0]),
                     )
         panel.set(xscale="log", xticks=counts, xticklabels=counts, xlabel="milestones", title=generator)
+        # Numbers of four digits touch where there are many.
+        panel.tick_params(axis="x", labelsize="x-small", labelrotation=45 if len(counts) > 5 else 0)
         panel.minorticks_off()
     panels[0].set(ylabel="solved [%]", ylim=(-3, 103))
     panels[-1].legend(fontsize=7, loc="center left", bbox_to_anchor=(1.0, 0.5))
