@@ -117,6 +117,12 @@ def test_the_default_name_is_the_maps_stem_in_the_current_folder(run, tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["level1.json", "level1.png"]
 
 
+@pytest.mark.parametrize("out", ["way", "way.json", "way.png"])
+def test_who_names_one_of_the_files_means_all_of_them(run, tmp_path, out):
+    run(*plan_arguments(out=out))
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["way.json", "way.png"]
+
+
 def test_the_default_name_never_overwrites_the_map(run, room):
     before = room.read_bytes()
     code, _, _ = run(*plan_arguments(room, (5, 5), (5, 25), 2))

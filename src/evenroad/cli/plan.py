@@ -47,7 +47,7 @@ class PlanOptions(SamplerOptions):
     raw: bool = False
     """Leave the path as it was found, without shortcutting it."""
     out: Annotated[Path | None, tyro.conf.arg(aliases=["-o"])] = None
-    """Where results go: OUT.json, OUT.png and, for an arm, OUT.csv.
+    """Where results go: OUT.json, OUT.png and, for an arm, OUT.csv; OUT may end in one of these.
     Default: the world's stem in the current folder, with -plan added where that would overwrite an input."""
     no_picture: bool = False
     """Draw no picture."""

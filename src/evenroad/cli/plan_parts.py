@@ -104,6 +104,9 @@ def output_files(
         return {suffix: stem.with_name(f"{stem.name}.{suffix}") for suffix in suffixes}
 
     stem = plan.out if plan.out is not None else Path(plan.world.stem)
+    if plan.out is not None and stem.suffix[1:] in (*suffixes, "png"):
+        # Who names one of the files means all of them.
+        stem = stem.with_suffix("")
     if plan.out is None and any(path.resolve() in taken for path in named(stem).values()):
         stem = Path(f"{plan.world.stem}-plan")
     files = named(stem)
