@@ -8,8 +8,6 @@ from functools import cached_property
 from typing import ClassVar, NamedTuple
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad.geometry.shapes import Mesh, PointCloud, Shape
@@ -176,6 +174,10 @@ class _Inner(NamedTuple):
 
 def places_in_pieces(corners: Floats) -> Floats:
     """Return a corner of each connected piece of a surface of triangles, (t, 3, 3): (p, 3)."""
+    # Imported late: linear algebra comes with it, which a plan without meshes does not need.
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
     places, corner = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
     a, b, c = corner.reshape(-1, 3).T
     pairs = np.append(a, b), np.append(b, c)
