@@ -13,31 +13,7 @@ from evenroad.robot_roadmap.turns import OneTurn, one_turn, whole_turns
 
 @dataclass(frozen=True, eq=False)
 class KnownMotions:
-    """Milestones and motions of a robot in its cell.
-
-    Attributes
-    ----------
-    robot : Robot
-        Whose roadmap it is.
-    cell : Scene
-        What never moves around it.
-    resolution : float
-        Largest step of a motion check [rad].
-    milestones : ndarray, shape (n, dim)
-        Free of robot and cell, of which every beginning is well spread [rad or m]; read-only.
-    edges : ndarray of int32, shape (m, 2)
-        Motions that are proved free of robot and cell, smaller row first, ascending; read-only.
-    turns : ndarray of int8, shape (m, dim)
-        By how many turns each edge leads past its second milestone; read-only.
-    weights : ndarray, shape (dim,)
-        What a unit of each joint counts in the roadmap's metric.
-    gamma : float
-        The power of the chance of being free that milestones are as dense as.
-    ends : int
-        How many ends in pockets they learned from, at most.
-    tuned : str
-        What came of tuning gamma; empty without.
-    """
+    """Milestones and motions of a robot in its cell: the fields of a RobotRoadmap, which documents them."""
 
     robot: Robot
     cell: Scene
