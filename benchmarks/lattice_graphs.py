@@ -1,0 +1,284 @@
+"""What should the search for a Korobov lattice look at: its energy, its minima, its projections, or its graph?
+
+    python -m benchmarks.lattice_graphs --figures --csv docs/data/lattice_figures.csv
+    python -m benchmarks.lattice_graphs --worlds 1500 --csv docs/data/lattice_graphs.csv
+    python -m benchmarks.lattice_graphs --poses --worlds 1200 --csv docs/data/lattice_poses.csv
+
+`--figures`: 200 numbers of points from 64 to 1024, logarithmically spread: successive minima, the share of n at which
+the k nearest do not span all axes (or span them and fall into sheets), and into how many pieces the k-nearest graph of
+the shifted points in the cube really falls.
+
+Without it, success in balls and boxes of the tuning stream, difficulty 50, numbers that chose nothing else, k nearest
+as in the suite.  World by world the number of points goes through 24 from 128 to 1024, so that many lattices count, and
+the lattices of a world have the same shift.  "graph" is, for each k, the lattice chosen for that k; "any vector" a
+rank-1 lattice whose generating vector is no power, by descent of the energy along its axes; "moved" the lattice with
+Gaussian noise of 5 % of the spacing, so that no two points have the same neighbours.  Differences are in points, paired
+by world; the error is that of the mean over worlds or over the means by n, whichever is larger.
+
+`--poses` asks random worlds in SE(3) with the axes of places and of rotations weighed as that space weighs them: the
+lattice "even" takes elsewhere, with its axes in random order; "graph, weighed" the one of best graph among the same
+finalists and all ways to deal their axes to places and rotations, stretched as the space stretches them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import time
+from collections.abc import Callable, Sequence
+from functools import cache
+from itertools import combinations
+from math import gcd
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.nested_k import smallest_k
+from evenroad._arrays import Floats
+from evenroad.points import draw
+from evenroad.points.measures.rank_one import least_neighbours, neighbour_directions, successive_minima
+from evenroad.points.samplers import korobov
+from evenroad.points.samplers.korobov import korobov_generator
+from evenroad.points.samplers.poses import Sliced
+from evenroad.research.problems.fair import ROTATION_WEIGHT, SIZES, Family, Stream, make_instance
+from evenroad.roadmap.neighbours import nearest
+from evenroad.roadmap.search import components
+
+RULES = (4, 6, 10, 20)
+COUNTS = tuple(round(128 * 8 ** (i / 23)) for i in range(24))
+FIRST = 800_000
+"""Number of the first world: lower ones were looked at before."""
+NOISE = 0.05
+STARTS = 4
+Vector = tuple[int, ...]
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--figures", action="store_true")
+    parser.add_argument("--poses", action="store_true")
+    parser.add_argument("--worlds", type=int, default=240, help="of each kind")
+    parser.add_argument("-d", type=int, nargs="*", default=[2, 3, 5, 6, 7, 10])
+    parser.add_argument("--csv", type=Path)
+    options = parser.parse_args()
+    if options.figures:
+        header = ["set", "d", "first", "ratio", "least", "largest_least", "seconds"]
+        header += [
+            f"{what}{k}" for k in RULES for what in ("short_of_axes", "sheets", "pieces", "largest_piece")
+        ]
+        lines = [line for d in options.d if d < 10 for line in figures(d)]
+    else:
+        header = [
+            "kind",
+            "d",
+            "set",
+            "k",
+            "worlds",
+            "success",
+            "minus_energy",
+            "error",
+            "minus_sobol",
+            "error_sobol",
+        ]
+        kinds = (
+            [(Family.SE3, 6)]
+            if options.poses
+            else [(kind, d) for d in options.d for kind in (Family.BALLS, Family.BOXES)]
+        )
+        lines = [line for kind, d in kinds for line in planning(kind, d, options.worlds)]
+    if options.csv:
+        with open(options.csv, "w", newline="") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(header)
+            writer.writerows(lines)
+
+
+def powers(n: int, d: int, by: str = "energy", k: int | None = None) -> Vector:
+    """Return the generating vector of a Korobov lattice."""
+    multiplier = korobov_generator(n, d, by, k)
+    return tuple(pow(multiplier, i, n) for i in range(d))
+
+
+@cache
+def any_vector(n: int, d: int) -> Vector:
+    """Return a generating vector of small energy: the best of some descents, axis by axis over all numbers."""
+    units = np.array([i for i in range(1, n // 2 + 1) if gcd(i, n) == 1])
+    steps = np.arange(1, n // 2 + 1)
+    squared = _wrapped(units[:, np.newaxis] * steps, n) ** 2
+    random = np.random.default_rng([n, d])
+    best, least = powers(n, d), np.inf
+    for start in range(STARTS):
+        z = np.append(1, random.choice(units, d - 1)) if start else np.array(best)
+        before = np.zeros_like(z)
+        while (z != before).any():
+            before = z.copy()
+            for axis in range(1, d):
+                others = sum(_wrapped(steps * z[i], n) ** 2 for i in range(d) if i != axis)
+                shortest = (others + squared).min()
+                energies = ((shortest / (others + squared)) ** d).sum(axis=1)
+                z[axis] = units[np.argmin(energies)]
+                energy = float(np.log(energies.min()) - d * np.log(shortest))
+        if energy < least - 1e-9:
+            best, least = tuple(int(i) for i in z), energy
+    return best
+
+
+def _wrapped(multiples: np.ndarray, n: int) -> Floats:
+    return np.minimum(multiples % n, -multiples % n).astype(float)
+
+
+def figures(d: int) -> list[tuple[object, ...]]:
+    """Print and return what the lattices of one dimension are like, a line for each objective."""
+    numbers = np.unique(np.rint(np.geomspace(64, 1024, 200)).astype(int)).tolist()
+    ways: dict[str, Callable[[int], Vector]] = {
+        "energy": lambda n: powers(n, d),
+        "minima": lambda n: powers(n, d, "minima"),
+        "projections": lambda n: powers(n, d, "projections"),
+        **{f"graph {k}": lambda n, k=k: powers(n, d, "graph", k) for k in (4, 6, 10)},
+    }
+    lines = []
+    for name, way in ways.items():
+        began = time.process_time()
+        vectors = [way(n) for n in numbers]
+        seconds = (time.process_time() - began) / len(numbers)
+        minima = np.array([successive_minima(n, z) for n, z in zip(numbers, vectors, strict=True)])
+        first = float(np.median(minima[:, 0] * np.array(numbers) ** (1 / d)))
+        ratio = float(np.median(minima[:, -1] / minima[:, 0]))
+        least = [least_neighbours(n, z) for n, z in zip(numbers, vectors, strict=True)]
+        line = [name, d, f"{first:.3f}", f"{ratio:.3f}", int(np.median(least)), max(least), f"{seconds:.4f}"]
+        for k in RULES:
+            directions = [neighbour_directions(n, z, k) for n, z in zip(numbers, vectors, strict=True)]
+            pieces, largest = np.array([in_cube(n, z, k) for n, z in zip(numbers, vectors, strict=True)]).T
+            short = np.mean([each.rank < d for each in directions])
+            sheets = np.mean([1 < each.sheets < np.inf for each in directions])
+            line += [f"{short:.3f}", f"{sheets:.3f}", int(pieces.max()), f"{largest.min():.3f}"]
+        print(*line, flush=True)
+        lines.append(tuple(line))
+    return lines
+
+
+def in_cube(n: int, z: Vector, k: int) -> tuple[int, float]:
+    """Return the pieces of the graph of k nearest of the shifted points in the cube, and the largest's share."""
+    neighbours = nearest(shifted(n, z, np.random.default_rng([n, k])), k)
+    own = np.repeat(np.arange(n), neighbours.shape[1])
+    label = components(n, np.stack([own, neighbours.ravel()], axis=1).astype(np.int32))
+    sizes = np.unique(label, return_counts=True)[1]
+    return len(sizes), sizes.max() / n
+
+
+def shifted(n: int, z: Sequence[int], random: np.random.Generator, noise: float = 0.0) -> Floats:
+    """Return the points of a lattice, shifted, (n, d), with noise in units of the spacing."""
+    d = len(z)
+    points = np.arange(n)[:, np.newaxis] * np.array(z) % n / n + random.random(d)
+    if noise:
+        points += noise * n ** (-1 / d) * random.standard_normal((n, d))
+    return points % 1.0
+
+
+def planning(kind: Family, d: int, worlds: int) -> list[tuple[object, ...]]:
+    """Print and return success and differences in one kind of world."""
+    size = SIZES[kind, d][1]
+    names: list[str] = []
+    solved = []
+    for number in range(FIRST, FIRST + worlds):
+        problem = make_instance(Stream.TUNING, kind, d, 50, size, number)
+        n = COUNTS[number % len(COUNTS)]
+        by_name = in_world(problem, sets_of_poses(n, number) if kind is Family.SE3 else sets(n, d, number))
+        names = list(by_name)
+        solved.append([by_name[name] for name in names])
+    success = np.array(solved, dtype=float)
+    groups = np.arange(FIRST, FIRST + worlds) % len(COUNTS)
+    lines = []
+    for i, name in enumerate(names):
+        text = []
+        for j, k in enumerate((*RULES, "all")):
+            own = success[:, i].mean(axis=1) if k == "all" else success[:, i, j]
+            line: list[object] = [kind.name.lower(), d, name, k, worlds, f"{100 * own.mean():.2f}"]
+            for other in (names.index("energy"), names.index("sobol")):
+                beside = success[:, other].mean(axis=1) if k == "all" else success[:, other, j]
+                gain, error = difference(own - beside, groups)
+                line += [f"{gain:.2f}", f"{error:.2f}"]
+                if other == names.index("energy"):
+                    text.append(f"{k}: {100 * own.mean():.1f} {gain:+.1f} ({error:.1f})")
+            lines.append(tuple(line))
+        print(f"{kind.name.lower()} d={d} {name:16}", ", ".join(text), flush=True)
+    return lines
+
+
+def difference(gains: Floats, groups: np.ndarray) -> tuple[float, float]:
+    """Return the mean in points, and its standard error over worlds or over numbers of points: the larger."""
+    means = np.array([gains[groups == g].mean() for g in np.unique(groups)])
+    errors = [each.std(ddof=1) / np.sqrt(len(each)) for each in (gains, means)]
+    return 100 * float(gains.mean()), 100 * max(errors)
+
+
+def in_world(problem: object, sets: dict[str, list[Floats]]) -> dict[str, list[bool]]:
+    """Return what is solved by k; a set for each k, or one for all."""
+    known: dict[int, int] = {}
+    solved = {}
+    for name, by_k in sets.items():
+        for points in by_k:
+            if id(points) not in known:
+                known[id(points)] = smallest_k(problem, points, RULES[-1])
+        solved[name] = [
+            known[id(points)] <= k for points, k in zip(by_k * (len(RULES) // len(by_k)), RULES, strict=True)
+        ]
+    return solved
+
+
+def sets(n: int, d: int, number: int) -> dict[str, list[Floats]]:
+    """Return the sets of one world."""
+    made: dict[Vector, Floats] = {}
+
+    def of(z: Vector) -> Floats:
+        if z not in made:
+            made[z] = shifted(n, z, np.random.default_rng([18, d, number]))
+        return made[z]
+
+    return {
+        "energy": [of(powers(n, d))],
+        "sobol": [draw("sobol", n, d, rng=number).points],
+        "minima": [of(powers(n, d, "minima"))],
+        "projections": [of(powers(n, d, "projections"))],
+        "graph": [of(powers(n, d, "graph", k)) for k in RULES],
+        "any vector": [of(any_vector(n, d))],
+        "moved": [shifted(n, powers(n, d), np.random.default_rng([18, d, number]), NOISE)],
+    }
+
+
+def sets_of_poses(n: int, number: int) -> dict[str, list[Floats]]:
+    """Return the sets of one world in SE(3)."""
+    random = np.random.default_rng([18, number])
+    return {
+        "energy": [shifted(n, random.permutation(powers(n, 6)), random)],
+        "sobol": [draw("sobol", n, 6, rng=number).points],
+        "graph, weighed": [shifted(n, weighed(n, k), np.random.default_rng([18, number])) for k in RULES],
+        "sliced": [Sliced().draw(n, 6, rng=number).points],
+    }
+
+
+@cache
+def weighed(n: int, k: int) -> Vector:
+    """Return the lattice and the order of its axes whose k neighbours span most of SE(3), as the space stretches it.
+
+    All rotations have the volume pi^2, weighed: a cube of that volume stands for them.
+    """
+    side = ROTATION_WEIGHT[3] * np.pi ** (2 / 3)
+    scale = (1.0, 1.0, 1.0, side, side, side)
+    candidates = korobov._candidates(n, 6)
+    energies = korobov._energies(korobov._powers(candidates, n, 6), n)
+    best: tuple[tuple[float, ...], Vector] | None = None
+    for a in candidates[np.argsort(energies)[:16]].tolist():
+        for places in combinations(range(6), 3):
+            order = (*places, *(i for i in range(6) if i not in places))
+            z = tuple(pow(a, i, n) for i in order)
+            found = neighbour_directions(n, z, k, scale)
+            minima = successive_minima(n, z, scale)
+            score = (-found.rank, found.sheets, -round(found.width, 9), round(minima[-1] / minima[0], 9))
+            best = (score, z) if best is None or score < best[0] else best
+    assert best is not None
+    return best[1]
+
+
+if __name__ == "__main__":
+    main()
