@@ -10,10 +10,10 @@ the shifted points in the cube really falls.
 
 Without it, success in balls and boxes of the tuning stream, difficulty 50, numbers that chose nothing else, k nearest
 as in the suite.  World by world the number of points goes through 24 from 128 to 1024, so that many lattices count, and
-the lattices of a world have the same shift.  "graph" is, for each k, the lattice chosen for that k; "any vector" a
-rank-1 lattice whose generating vector is no power, by descent of the energy along its axes; "moved" the lattice with
-Gaussian noise of 5 % of the spacing, so that no two points have the same neighbours.  Differences are in points, paired
-by world; the error is that of the mean over worlds or over the means by n, whichever is larger.
+the lattices of a world have the same shift.  "graph" and "width" are, for each k, the lattice chosen for that k; "any
+vector" is a rank-1 lattice whose generating vector is no power, by descent of the energy along its axes; "moved" the
+lattice with Gaussian noise of 5 % of the spacing, so that no two points have the same neighbours.  Differences are in
+points, paired by world; the error is that of the mean over worlds or over the means by n, whichever is larger.
 
 `--poses` asks random worlds in SE(3) with the axes of places and of rotations weighed as that space weighs them: the
 lattice "even" takes elsewhere, with its axes in random order; "graph, weighed" the one of best graph among the same
@@ -241,6 +241,7 @@ def sets(n: int, d: int, number: int) -> dict[str, list[Floats]]:
         "minima": [of(powers(n, d, "minima"))],
         "projections": [of(powers(n, d, "projections"))],
         "graph": [of(powers(n, d, "graph", k)) for k in RULES],
+        "width": [of(powers(n, d, "width", k)) for k in RULES],
         "any vector": [of(any_vector(n, d))],
         "moved": [shifted(n, powers(n, d), np.random.default_rng([18, d, number]), NOISE)],
     }

@@ -39,8 +39,8 @@ BLOCK = 2**14
 TIE = 1e-9
 """Energies closer than this, relatively, are equal: rounding does not choose between mirrored lattices."""
 
-OBJECTIVES = ("energy", "minima", "projections", "graph")
-"""What :func:`korobov_generator` may choose by."""
+OBJECTIVES = {"energy": False, "minima": False, "projections": False, "graph": True, "width": True}
+"""What :func:`korobov_generator` may choose by -> whether it depends on the number of neighbours."""
 
 FINALISTS = 64
 """Lattices of least energy among which the other objectives choose."""
@@ -96,14 +96,14 @@ def korobov_generator(n: int, d: int, by: str = "energy", k: int | None = None) 
 
     `by` names another objective, decided among the 64 lattices of least energy, ties by energy: "minima" the smallest
     ratio of the last successive minimum to the first, "projections" the smallest mean log energy of the projections on
-    2, on 3 and on all axes, "graph" what the `k` nearest neighbours span: most dimensions, then fewest sheets, then
-    the largest width (:func:`~evenroad.points.measures.rank_one.neighbour_directions`).
+    2, on 3 and on all axes, "graph" what the `k` nearest neighbours span: most dimensions, then fewest sheets; "width"
+    the same, then the largest width (:func:`~evenroad.points.measures.rank_one.neighbour_directions`).
 
     a, n - a and the inverse of a modulo n give the same lattice up to a reflection or the order of the axes; one
     of the four is tried, and the smallest is returned.  While n^2 d <= 10^8 all multipliers without a common
     divisor with n are tried, so a is the best one; above that a fixed choice of them spread over 1 .. n/2, as
     many as :data:`WORK` allows.  Raises InvalidValue unless n is 1 .. 2**26 and d >= 1, for other objectives than the
-    energy 1 .. 2**16 and d <= 16; if there is no such objective; and if k is not given for "graph" alone.
+    energy 1 .. 2**16 and d <= 16; if there is no such objective; and unless k is given just where it counts.
     """
     n, d = require_count("n", n), require_count("d", d)
     _require_objective(by, k)
@@ -117,10 +117,8 @@ def korobov_generator(n: int, d: int, by: str = "energy", k: int | None = None) 
 
 def _require_objective(by: str, k: int | None) -> None:
     require_known("objective of a Korobov lattice", by, OBJECTIVES)
-    if (k is None) == (by == "graph"):
-        raise InvalidValue(
-            f"k goes with by='graph' alone, and has to be given there, got by={by!r} and k={k!r}"
-        )
+    if (k is None) == OBJECTIVES[by]:
+        raise InvalidValue(f"k goes with by='graph' and 'width' alone, and has to, got by={by!r} and k={k!r}")
     if k is not None:
         require_count("k", k)
 
@@ -145,17 +143,17 @@ def _chosen(n: int, d: int, by: str, k: int | None) -> int:
             np.mean([_energies(vectors[:, chosen], n) / len(chosen) for chosen in each], 0) for each in sizes
         )
         return int(finalists[np.argmin(np.floor(scores / TIE))])
-    best = min(range(len(finalists)), key=lambda i: _score(n, vectors[i].astype(np.int64), k))
+    best = min(range(len(finalists)), key=lambda i: _score(n, vectors[i].astype(np.int64), by, k))
     return int(finalists[best])
 
 
-def _score(n: int, vector: Ints, k: int | None) -> tuple[float, ...]:
-    """Return what is to be small: of the graph of k neighbours, or the ratio of the minima."""
+def _score(n: int, vector: Ints, by: str, k: int | None) -> tuple[float, ...]:
+    """Return what is to be small: the ratio of the minima, or what is wrong with the graph of k neighbours."""
     if k is None:
         minima = successive_minima(n, vector)
         return (round(minima[-1] / minima[0], 9),)
     directions = neighbour_directions(n, vector, k)
-    return -directions.rank, directions.sheets, round(-directions.width, 9)
+    return -directions.rank, directions.sheets, round(-directions.width, 9) if by == "width" else 0.0
 
 
 def _candidates(n: int, d: int) -> Ints:
