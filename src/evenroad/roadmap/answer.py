@@ -10,6 +10,7 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad.points.measures.rank_one import least_neighbours, neighbour_directions
+from evenroad.points.measures.short_vectors import MOST_AXES
 from evenroad.roadmap.attempt import Attempt, Searched
 from evenroad.roadmap.neighbours import flat_metric
 from evenroad.roadmap.result import PlanResult, SearchedGraph, Status
@@ -18,9 +19,6 @@ from evenroad.roadmap.shortcut import shortcut
 from evenroad.space import Space
 from evenroad.space.path import path_length
 from evenroad.world import Connection, Explains, Rechecks, Separates, Shortens, World
-
-MOST_KNOWN = 10
-"""Dimensions up to which the short vectors of a lattice are found in milliseconds."""
 
 PROVED = "proved: there is no path; start and goal lie in two components of the free space"
 
@@ -184,7 +182,7 @@ def _few_directions(attempt: Attempt, points: int) -> str:
         return ""
     # Nearest points come in opposite pairs: so many are needed at least.
     needed = 2 * d - 1
-    if d <= MOST_KNOWN and not (lattice[2] and np.ptp(scale) > 1e-9 * scale[0]):
+    if d <= MOST_AXES and not (lattice[2] and np.ptp(scale) > 1e-9 * scale[0]):
         vector = [pow(int(lattice[1]), i, points) for i in range(d)]
         if (np.abs(neighbour_directions(points, vector, k, scale).vectors) >= points).any():
             # The box is so long, or the points so few, that neighbours would lie beyond it.

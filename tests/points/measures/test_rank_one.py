@@ -11,7 +11,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from evenroad.errors import InvalidValue
+from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.points import draw
 from evenroad.points.measures.rank_one import (
     covering_bounds,
@@ -223,3 +223,10 @@ def test_bad_numbers_of_axes_and_neighbours_are_refused():
         projected_minima(8, (1, 3), 3)
     with pytest.raises(InvalidValue, match="k must be"):
         neighbour_directions(8, (1, 3), 0)
+
+
+def test_lattices_of_all_too_many_short_vectors_are_refused():
+    # All points lie on the diagonal.
+    with pytest.raises(NotAvailable, match="too many are short"):
+        successive_minima(2**24, (1, 1, 1))
+    assert successive_minima(500, (1, 1, 1))[0] == pytest.approx(3**0.5 / 500)

@@ -38,12 +38,17 @@ def generating_vector(points: object) -> Ints | None:
 def successive_minima(n: int, vector: Any, scale: Any = None) -> Floats:
     """Return the successive minima, (d,): the i-th is the least length up to which i vectors are independent.
 
-    The first is the smallest distance of two points on the torus.  The last over the first is 1 at best, and bounded
-    over all n for lattices that are quasi-uniform.
+    The first is the smallest distance of two points on the torus.
     """
     vectors, _ = short_vectors(n, vector, scale=scale)
     span, lengths = _Span(vectors.shape[1]), np.sqrt(squared_lengths(vectors, _weights(vectors, scale))) / n
     return np.array([each for each, v in zip(lengths, vectors.tolist(), strict=True) if span.add(v)])
+
+
+def minima_ratio(n: int, vector: Any, scale: Any = None) -> float:
+    """Return the last successive minimum over the first: 1 at best, bounded over all n for quasi-uniform lattices."""
+    minima = successive_minima(n, vector, scale)
+    return float(minima[-1] / minima[0])
 
 
 def covering_bounds(n: int, vector: Any, scale: Any = None) -> tuple[float, float]:

@@ -15,13 +15,16 @@ import numpy as np
 
 from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_count
-from evenroad.errors import InvalidValue, shown
+from evenroad.errors import InvalidValue, NotAvailable, shown
 
 LARGEST_N = 2**26
 """Up to here squared lengths are whole in float64, or nearly."""
 
 MOST_AXES = 16
-"""Beyond this a ball that holds a basis may hold millions of vectors."""
+"""Beyond this a ball that holds a basis may hold too many vectors; of usual lattices it holds a few dozen here."""
+
+MOST_VECTORS = 10**6
+"""Vectors that are looked at, at most: seconds."""
 
 SAME = 1e-9
 """Squared lengths closer than this, relatively, are equal."""
@@ -52,12 +55,18 @@ def short_vectors(n: int, vector: Any, pairs: int = 0, scale: Any = None) -> tup
     """Return the shortest vectors, (m, d) in units of 1/n, and the ranks of their lengths, (m,), one for equal ones.
 
     One of each opposite pair, all up to some length: at least `pairs`, and a basis among them.  `n`, `vector`, `scale`
-    and errors are those of :func:`lattice_basis`.
+    and errors are those of :func:`lattice_basis`; NotAvailable if a ball that holds a basis holds above 10^6 vectors.
     """
     basis = lattice_basis(n, vector, scale)
     weights = np.ones(len(basis)) if scale is None else np.asarray(scale, dtype=np.float64)
     limit = float(squared_lengths(basis, weights)[-1]) * (1.0 + SAME)
+    d, cell = len(basis), math.prod(weights.tolist()) * float(n) ** (len(basis) - 1)
     while True:
+        ball = math.pi ** (d / 2) / math.gamma(d / 2 + 1) * limit ** (d / 2)
+        if ball > MOST_VECTORS * cell:
+            raise NotAvailable(
+                f"vectors of the lattice of n={n} differ so much in length that too many are short"
+            )
         found = _enumerated(basis.tolist(), weights.tolist(), limit)
         if len(found) >= pairs:
             break

@@ -19,7 +19,7 @@ from evenroad._arrays import Floats, Ints
 from evenroad._checks import require_count, require_known
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
-from evenroad.points.measures.rank_one import neighbour_directions, successive_minima
+from evenroad.points.measures.rank_one import minima_ratio, neighbour_directions
 from evenroad.points.measures.short_vectors import MOST_AXES
 from evenroad.points.pointset import Origin, PointSet
 from evenroad.points.randomise import ALL_SYMMETRIES
@@ -150,8 +150,7 @@ def _chosen(n: int, d: int, by: str, k: int | None) -> int:
 def _score(n: int, vector: Ints, by: str, k: int | None) -> tuple[float, ...]:
     """Return what is to be small: the ratio of the minima, or what is wrong with the graph of k neighbours."""
     if k is None:
-        minima = successive_minima(n, vector)
-        return (round(minima[-1] / minima[0], 9),)
+        return (round(minima_ratio(n, vector), 9),)
     directions = neighbour_directions(n, vector, k)
     return -directions.rank, directions.sheets, round(-directions.width, 9) if by == "width" else 0.0
 
