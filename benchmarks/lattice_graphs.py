@@ -1,8 +1,9 @@
 """What should the search for a Korobov lattice look at: its energy, its minima, its projections, or its graph?
 
     python -m benchmarks.lattice_graphs --figures --csv docs/data/lattice_figures.csv
-    python -m benchmarks.lattice_graphs --worlds 1500 --csv docs/data/lattice_graphs.csv
-    python -m benchmarks.lattice_graphs --poses --worlds 1200 --csv docs/data/lattice_poses.csv
+    python -m benchmarks.lattice_graphs --worlds 960 --csv docs/data/lattice_graphs.csv
+    python -m benchmarks.lattice_graphs --paths --worlds 480 -d 2 3 5 --csv docs/data/lattice_paths.csv
+    python -m benchmarks.lattice_graphs --poses --worlds 480 --csv docs/data/lattice_poses.csv
 
 `--figures`: 200 numbers of points from 64 to 1024, logarithmically spread: successive minima, the share of n at which
 the k nearest do not span all axes (or span them and fall into sheets), and into how many pieces the k-nearest graph of
@@ -14,6 +15,10 @@ the lattices of a world have the same shift.  "graph" and "width" are, for each 
 vector" is a rank-1 lattice whose generating vector is no power, by descent of the energy along its axes; "moved" the
 lattice with Gaussian noise of 5 % of the spacing, so that no two points have the same neighbours.  Differences are in
 points, paired by world; the error is that of the mean over worlds or over the means by n, whichever is larger.
+
+`--paths`: how much longer than straight lines ways are along the roadmap of an empty cube, means over pairs of points
+at least .3 apart and over six numbers of points; and in those worlds (other numbers) the lengths of the roadmap's paths
+and of the shortened ones beside those of "energy", in per cent, where both found one.
 
 `--poses` asks random worlds in SE(3) with the axes of places and of rotations weighed as that space weighs them: the
 lattice "even" takes elsewhere, with its axes in random order; "graph, weighed" the one of best graph among the same
@@ -32,15 +37,18 @@ from math import gcd
 from pathlib import Path
 
 import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import dijkstra
 
 from benchmarks.nested_k import smallest_k
 from evenroad._arrays import Floats
-from evenroad.points import draw
+from evenroad.points import PointSet, draw
 from evenroad.points.measures.rank_one import least_neighbours, neighbour_directions, successive_minima
 from evenroad.points.samplers import korobov
 from evenroad.points.samplers.korobov import korobov_generator
 from evenroad.points.samplers.poses import Sliced
 from evenroad.research.problems.fair import ROTATION_WEIGHT, SIZES, Family, Stream, make_instance
+from evenroad.roadmap import KNearest, plan
 from evenroad.roadmap.neighbours import nearest
 from evenroad.roadmap.search import components
 
@@ -50,6 +58,8 @@ FIRST = 800_000
 """Number of the first world: lower ones were looked at before."""
 NOISE = 0.05
 STARTS = 4
+FIRST_PATHS = 850_000
+PATHS_OF = ("energy", "sobol", "graph", "moved")
 Vector = tuple[int, ...]
 
 
@@ -57,6 +67,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--figures", action="store_true")
     parser.add_argument("--poses", action="store_true")
+    parser.add_argument("--paths", action="store_true")
     parser.add_argument("--worlds", type=int, default=240, help="of each kind")
     parser.add_argument("-d", type=int, nargs="*", default=[2, 3, 5, 6, 7, 10])
     parser.add_argument("--csv", type=Path)
@@ -67,6 +78,9 @@ def main() -> None:
             f"{what}{k}" for k in RULES for what in ("short_of_axes", "sheets", "pieces", "largest_piece")
         ]
         lines = [line for d in options.d if d < 10 for line in figures(d)]
+    elif options.paths:
+        header = ["where", "d", "set", "k", "worlds", "value", "error", "shortened", "error_shortened"]
+        lines = [line for d in options.d for line in (*in_empty_cube(d), *paths(d, options.worlds))]
     else:
         header = [
             "kind",
@@ -164,6 +178,64 @@ def in_cube(n: int, z: Vector, k: int) -> tuple[int, float]:
     label = components(n, np.stack([own, neighbours.ravel()], axis=1).astype(np.int32))
     sizes = np.unique(label, return_counts=True)[1]
     return len(sizes), sizes.max() / n
+
+
+def in_empty_cube(d: int) -> list[tuple[object, ...]]:
+    """Print and return how much longer ways along the roadmap are than straight lines."""
+    lines: list[tuple[object, ...]] = []
+    for k in RULES:
+        of: dict[str, list[float]] = {}
+        for n in COUNTS[::4]:
+            for name, by_k in sets(n, d, n).items():
+                of.setdefault(name, []).append(stretch(by_k[RULES.index(k) % len(by_k)], k))
+        print(
+            f"empty cube d={d} k={k}",
+            *(f"{name} {np.mean(each):.2f}" for name, each in of.items()),
+            flush=True,
+        )
+        lines += [
+            ("empty cube", d, name, k, "", f"{np.mean(each):.3f}", "", "", "") for name, each in of.items()
+        ]
+    return lines
+
+
+def stretch(points: Floats, k: int) -> float:
+    """Return the mean of shortest ways over straight lines, from 40 of the points to all that are not near."""
+    n = len(points)
+    neighbours = nearest(points, k)
+    own, other = np.repeat(np.arange(n), neighbours.shape[1]), neighbours.ravel()
+    lengths = np.linalg.norm(points[own] - points[other], axis=1)
+    starts = np.linspace(0, n - 1, 40).astype(int)
+    ways = dijkstra(coo_matrix((lengths, (own, other)), shape=(n, n)).tocsr(), directed=False, indices=starts)
+    straight = np.linalg.norm(points[starts, np.newaxis] - points, axis=2)
+    return float((ways / np.maximum(straight, 1e-9))[straight >= 0.3].mean())
+
+
+def paths(d: int, worlds: int) -> list[tuple[object, ...]]:
+    """Print and return lengths of paths beside those of "energy" [%], as found and shortened."""
+    lines: list[tuple[object, ...]] = []
+    for kind in (Family.BALLS, Family.BOXES):
+        found = np.full((worlds, len(PATHS_OF), len(RULES), 2), np.nan)
+        for i in range(worlds):
+            number = FIRST_PATHS + i
+            problem = make_instance(Stream.TUNING, kind, d, 50, SIZES[kind, d][1], number)
+            made = sets(COUNTS[number % len(COUNTS)], d, number)
+            for j, name in enumerate(PATHS_OF):
+                for m, k in enumerate(RULES):
+                    points = PointSet(made[name][m % len(made[name])])
+                    ends = problem.world, problem.start, problem.goal
+                    result = plan(*ends, points, rule=KNearest(k), links=None)
+                    if result.solved:
+                        found[i, j, m] = result.milestone_cost, result.cost
+        longer = 100.0 * (np.log(found) - np.log(found[:, :1]))
+        for j, name in enumerate(PATHS_OF[1:], 1):
+            for m, k in enumerate(RULES):
+                both = longer[~np.isnan(longer[:, j, m, 0]), j, m]
+                means, errors = both.mean(axis=0), both.std(axis=0, ddof=1) / np.sqrt(len(both))
+                line = [f"{x:.2f}" for pair in zip(means, errors, strict=True) for x in pair]
+                lines.append((kind.name.lower(), d, name, k, len(both), *line))
+                print(*lines[-1], flush=True)
+    return lines
 
 
 def shifted(n: int, z: Sequence[int], random: np.random.Generator, noise: float = 0.0) -> Floats:
