@@ -2,6 +2,7 @@
 
     python -m benchmarks.lattice_graphs --figures --csv docs/data/lattice_figures.csv
     python -m benchmarks.lattice_graphs --worlds 960 --csv docs/data/lattice_graphs.csv
+    python -m benchmarks.lattice_graphs --poor --worlds 960 -d 4 5 6 7 --csv docs/data/lattice_poor.csv
     python -m benchmarks.lattice_graphs --paths --worlds 480 -d 2 3 5 --csv docs/data/lattice_paths.csv
     python -m benchmarks.lattice_graphs --poses --worlds 480 --csv docs/data/lattice_poses.csv
 
@@ -15,6 +16,9 @@ the lattices of a world have the same shift.  "graph" and "width" are, for each 
 vector" is a rank-1 lattice whose generating vector is no power, by descent of the energy along its axes; "moved" the
 lattice with Gaussian noise of 5 % of the spacing, so that no two points have the same neighbours.  Differences are in
 points, paired by world; the error is that of the mean over worlds or over the means by n, whichever is larger.
+
+`--poor`: the same in other worlds, for those n from 64 to 1024 alone whose best Korobov lattice is poor (last minimum
+over first above 1.5): there `even` has "any vector".  Difficulty 75 up to 250 points, 50 above.
 
 `--paths`: how much longer than straight lines ways are along the roadmap of an empty cube, means over pairs of points
 at least .3 apart and over six numbers of points; and in those worlds (other numbers) the lengths of the roadmap's paths
@@ -33,7 +37,6 @@ import time
 from collections.abc import Callable, Sequence
 from functools import cache
 from itertools import combinations
-from math import gcd
 from pathlib import Path
 
 import numpy as np
@@ -43,11 +46,23 @@ from scipy.sparse.csgraph import dijkstra
 from benchmarks.nested_k import smallest_k
 from evenroad._arrays import Floats
 from evenroad.points import PointSet, draw
-from evenroad.points.measures.rank_one import least_neighbours, neighbour_directions, successive_minima
-from evenroad.points.samplers import korobov
+from evenroad.points.measures.rank_one import (
+    least_neighbours,
+    minima_ratio,
+    neighbour_directions,
+    successive_minima,
+)
+from evenroad.points.samplers import korobov, rank_one_search
 from evenroad.points.samplers.korobov import korobov_generator
 from evenroad.points.samplers.poses import Sliced
-from evenroad.research.problems.fair import ROTATION_WEIGHT, SIZES, Family, Stream, make_instance
+from evenroad.research.problems.fair import (
+    DIFFICULTIES,
+    ROTATION_WEIGHT,
+    SIZES,
+    Family,
+    Stream,
+    make_instance,
+)
 from evenroad.roadmap import KNearest, plan
 from evenroad.roadmap.neighbours import nearest
 from evenroad.roadmap.search import components
@@ -57,7 +72,7 @@ COUNTS = tuple(round(128 * 8 ** (i / 23)) for i in range(24))
 FIRST = 800_000
 """Number of the first world: lower ones were looked at before."""
 NOISE = 0.05
-STARTS = 4
+FIRST_POOR = 880_000
 FIRST_PATHS = 850_000
 PATHS_OF = ("energy", "sobol", "graph", "moved")
 Vector = tuple[int, ...]
@@ -66,6 +81,7 @@ Vector = tuple[int, ...]
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--figures", action="store_true")
+    parser.add_argument("--poor", action="store_true")
     parser.add_argument("--poses", action="store_true")
     parser.add_argument("--paths", action="store_true")
     parser.add_argument("--worlds", type=int, default=240, help="of each kind")
@@ -99,7 +115,7 @@ def main() -> None:
             if options.poses
             else [(kind, d) for d in options.d for kind in (Family.BALLS, Family.BOXES)]
         )
-        lines = [line for kind, d in kinds for line in planning(kind, d, options.worlds)]
+        lines = [line for kind, d in kinds for line in planning(kind, d, options.worlds, options.poor)]
     if options.csv:
         with open(options.csv, "w", newline="") as file:
             writer = csv.writer(file, lineterminator="\n")
@@ -115,30 +131,8 @@ def powers(n: int, d: int, by: str = "energy", k: int | None = None) -> Vector:
 
 @cache
 def any_vector(n: int, d: int) -> Vector:
-    """Return a generating vector of small energy: the best of some descents, axis by axis over all numbers."""
-    units = np.array([i for i in range(1, n // 2 + 1) if gcd(i, n) == 1])
-    steps = np.arange(1, n // 2 + 1)
-    squared = _wrapped(units[:, np.newaxis] * steps, n) ** 2
-    random = np.random.default_rng([n, d])
-    best, least = powers(n, d), np.inf
-    for start in range(STARTS):
-        z = np.append(1, random.choice(units, d - 1)) if start else np.array(best)
-        before = np.zeros_like(z)
-        while (z != before).any():
-            before = z.copy()
-            for axis in range(1, d):
-                others = sum(_wrapped(steps * z[i], n) ** 2 for i in range(d) if i != axis)
-                shortest = (others + squared).min()
-                energies = ((shortest / (others + squared)) ** d).sum(axis=1)
-                z[axis] = units[np.argmin(energies)]
-                energy = float(np.log(energies.min()) - d * np.log(shortest))
-        if energy < least - 1e-9:
-            best, least = tuple(int(i) for i in z), energy
-    return best
-
-
-def _wrapped(multiples: np.ndarray, n: int) -> Floats:
-    return np.minimum(multiples % n, -multiples % n).astype(float)
+    """Return a generating vector of small energy that need not be one of powers."""
+    return rank_one_search._descended(n, powers(n, d)) if d > 2 else powers(n, d)
 
 
 def figures(d: int) -> list[tuple[object, ...]]:
@@ -247,19 +241,23 @@ def shifted(n: int, z: Sequence[int], random: np.random.Generator, noise: float 
     return points % 1.0
 
 
-def planning(kind: Family, d: int, worlds: int) -> list[tuple[object, ...]]:
+def planning(kind: Family, d: int, worlds: int, poor: bool = False) -> list[tuple[object, ...]]:
     """Print and return success and differences in one kind of world."""
-    size = SIZES[kind, d][1]
+    counts, first = (poor_counts(d), FIRST_POOR) if poor else (COUNTS, FIRST)
+    made = sets_of_poses if kind is Family.SE3 else sets_where_poor if poor else sets
     names: list[str] = []
     solved = []
-    for number in range(FIRST, FIRST + worlds):
-        problem = make_instance(Stream.TUNING, kind, d, 50, size, number)
-        n = COUNTS[number % len(COUNTS)]
-        by_name = in_world(problem, sets_of_poses(n, number) if kind is Family.SE3 else sets(n, d, number))
+    for number in range(first, first + worlds):
+        n = counts[number % len(counts)]
+        difficulty = 75 if poor and n <= 250 else 50
+        size = SIZES[kind, d][DIFFICULTIES.index(difficulty)]
+        by_name = in_world(
+            make_instance(Stream.TUNING, kind, d, difficulty, size, number), made(n, d, number)
+        )
         names = list(by_name)
         solved.append([by_name[name] for name in names])
     success = np.array(solved, dtype=float)
-    groups = np.arange(FIRST, FIRST + worlds) % len(COUNTS)
+    groups = np.arange(first, first + worlds) % len(counts)
     lines = []
     for i, name in enumerate(names):
         text = []
@@ -270,11 +268,25 @@ def planning(kind: Family, d: int, worlds: int) -> list[tuple[object, ...]]:
                 beside = success[:, other].mean(axis=1) if k == "all" else success[:, other, j]
                 gain, error = difference(own - beside, groups)
                 line += [f"{gain:.2f}", f"{error:.2f}"]
-                if other == names.index("energy"):
-                    text.append(f"{k}: {100 * own.mean():.1f} {gain:+.1f} ({error:.1f})")
+                text.append(f"{gain:+.1f} ({error:.1f})")
+            text.insert(-2, f"k={k}: {100 * own.mean():.1f}")
             lines.append(tuple(line))
-        print(f"{kind.name.lower()} d={d} {name:16}", ", ".join(text), flush=True)
+        print(f"{kind.name.lower()} d={d} {name:16}", " ".join(text), flush=True)
     return lines
+
+
+@cache
+def poor_counts(d: int) -> tuple[int, ...]:
+    """Return the numbers of points whose best Korobov lattice is poor."""
+    return tuple(n for n in range(64, 1025) if minima_ratio(n, powers(n, d)) > rank_one_search.POOR)
+
+
+def sets_where_poor(n: int, d: int, number: int) -> dict[str, list[Floats]]:
+    """Return the sets of one world."""
+    vectors = {"energy": powers(n, d), "any vector": rank_one_search.rank_one_vector(n, d)}
+    random = [np.random.default_rng([18, d, number]) for _ in vectors]
+    made = {name: [shifted(n, z, r)] for (name, z), r in zip(vectors.items(), random, strict=True)}
+    return made | {"sobol": [draw("sobol", n, d, rng=number).points]}
 
 
 def difference(gains: Floats, groups: np.ndarray) -> tuple[float, float]:
@@ -319,7 +331,7 @@ def sets(n: int, d: int, number: int) -> dict[str, list[Floats]]:
     }
 
 
-def sets_of_poses(n: int, number: int) -> dict[str, list[Floats]]:
+def sets_of_poses(n: int, d: int, number: int) -> dict[str, list[Floats]]:
     """Return the sets of one world in SE(3)."""
     random = np.random.default_rng([18, number])
     return {

@@ -49,7 +49,10 @@ def test_few_neighbours_on_a_lattice_are_named_as_a_cause():
 
     # The six nearest of this lattice of 128 points lie in a plane, the ten nearest of 96 in five dimensions in three.
     assert "the nearest 6 of this lattice leave directions out, 7 would not" in message("even", 128, 3, 6)
-    assert "the nearest 10 of this lattice leave directions out, 21 would not" in message("even", 96, 5, 10)
+    assert "the nearest 10 of this lattice leave directions out, 21 would not" in message(
+        "korobov", 96, 5, 10
+    )
+    assert "the nearest 10 of this lattice leave directions out, 13 would not" in message("even", 96, 5, 10)
     assert "the nearest 4 of this lattice leave directions out" in message("even", 128, 7, 4)
     # One of two opposite neighbours is enough.
     assert "directions" in message("even", 64, 2, 2)

@@ -174,7 +174,7 @@ def _few_directions(attempt: Attempt, points: int) -> str:
     """Return what to say of a Korobov lattice whose points have neighbours in too few directions."""
     space, d = attempt.world.space, attempt.world.space.cube_dim
     rule = re.match(r"k=(\d+) symmetrised", attempt.rule)
-    lattice = re.match(r"rank-1 lattice a=(\d+), (axes permuted)?", attempt.origin.method)
+    lattice = re.match(r"rank-1 lattice (a|z)=([\d ]+), (axes permuted)?", attempt.origin.method)
     if rule is None or lattice is None:
         return ""
     k, scale = int(rule[1]), _axis_scales(space)
@@ -182,8 +182,9 @@ def _few_directions(attempt: Attempt, points: int) -> str:
         return ""
     # Nearest points come in opposite pairs: so many are needed at least.
     needed = 2 * d - 1
-    if d <= MOST_AXES and not (lattice[2] and np.ptp(scale) > 1e-9 * scale[0]):
-        vector = [pow(int(lattice[1]), i, points) for i in range(d)]
+    if d <= MOST_AXES and not (lattice[3] and np.ptp(scale) > 1e-9 * scale[0]):
+        numbers = [int(each) for each in lattice[2].split()]
+        vector = [pow(numbers[0], i, points) for i in range(d)] if lattice[1] == "a" else numbers
         if (np.abs(neighbour_directions(points, vector, k, scale).vectors) >= points).any():
             # The box is so long, or the points so few, that neighbours would lie beyond it.
             return ""

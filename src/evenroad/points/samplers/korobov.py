@@ -7,7 +7,7 @@ a general set needs O(n^2 d).  That makes a search over all multipliers a matter
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations, islice
@@ -76,19 +76,24 @@ class Korobov:
         Raises InvalidValue also for what :func:`korobov_generator` refuses.
         """
         n, d = require_count("n", n), require_count("d", d)
-        multiplier, random = korobov_generator(n, d, self.by, self.k), generator(rng)
-        shift, axes, how = random.random(d), np.arange(d), "shifted"
+        vector, method = self._vector(n, d)
+        random = generator(rng)
+        shift, how = random.random(d), "shifted"
         if d >= self.turned_from:
-            axes, how = random.permutation(d), "axes permuted, shifted"
-        powers = np.array([pow(multiplier, int(k), n) for k in axes], dtype=np.int64)
-        lattice = np.arange(n)[:, None] * powers % n / n
+            vector, how = [vector[int(axis)] for axis in random.permutation(d)], "axes permuted, shifted"
+        lattice = np.arange(n)[:, None] * np.array(vector, dtype=np.int64) % n / n
         # Both summands are >= 0, so the remainder is exact and below 1.
         points = (lattice + shift) % 1.0
-        method = f"rank-1 lattice a={multiplier}, {how}"
+        method = f"rank-1 lattice {method}, {how}"
         objective = "riesz" if self.by == "energy" else self.by if self.k is None else f"{self.by} k={self.k}"
         return PointSet(
             points, Origin(family=self.name, method=method, objective=objective, seed=seed_of(rng))
         )
+
+    def _vector(self, n: int, d: int) -> tuple[Sequence[int], str]:
+        """Return the generating vector, and how it is told."""
+        multiplier = korobov_generator(n, d, self.by, self.k)
+        return [pow(multiplier, axis, n) for axis in range(d)], f"a={multiplier}"
 
 
 def korobov_generator(n: int, d: int, by: str = "energy", k: int | None = None) -> int:
