@@ -89,7 +89,7 @@ def main() -> None:
     parser.add_argument("--csv", type=Path)
     options = parser.parse_args()
     if options.figures:
-        header = ["set", "d", "first", "ratio", "least", "largest_least", "seconds"]
+        header = ["set", "d", "first", "ratio", "worst_ratio", "least", "worst_least", "seconds"]
         header += [
             f"{what}{k}" for k in RULES for what in ("short_of_axes", "sheets", "pieces", "largest_piece")
         ]
@@ -140,6 +140,7 @@ def figures(d: int) -> list[tuple[object, ...]]:
     numbers = np.unique(np.rint(np.geomspace(64, 1024, 200)).astype(int)).tolist()
     ways: dict[str, Callable[[int], Vector]] = {
         "energy": lambda n: powers(n, d),
+        "even": lambda n: rank_one_search.rank_one_vector(n, d),
         "minima": lambda n: powers(n, d, "minima"),
         "projections": lambda n: powers(n, d, "projections"),
         **{f"graph {k}": lambda n, k=k: powers(n, d, "graph", k) for k in (4, 6, 10)},
@@ -151,9 +152,10 @@ def figures(d: int) -> list[tuple[object, ...]]:
         seconds = (time.process_time() - began) / len(numbers)
         minima = np.array([successive_minima(n, z) for n, z in zip(numbers, vectors, strict=True)])
         first = float(np.median(minima[:, 0] * np.array(numbers) ** (1 / d)))
-        ratio = float(np.median(minima[:, -1] / minima[:, 0]))
+        ratios = minima[:, -1] / minima[:, 0]
         least = [least_neighbours(n, z) for n, z in zip(numbers, vectors, strict=True)]
-        line = [name, d, f"{first:.3f}", f"{ratio:.3f}", int(np.median(least)), max(least), f"{seconds:.4f}"]
+        line: list[object] = [name, d, f"{first:.3f}", f"{np.median(ratios):.3f}", f"{ratios.max():.3f}"]
+        line += [int(np.median(least)), max(least), f"{seconds:.4f}"]
         for k in RULES:
             directions = [neighbour_directions(n, z, k) for n, z in zip(numbers, vectors, strict=True)]
             pieces, largest = np.array([in_cube(n, z, k) for n, z in zip(numbers, vectors, strict=True)]).T
