@@ -4,7 +4,7 @@
     python -m benchmarks.lattice_graphs --worlds 960 -d 2 3 5 7 --csv docs/data/lattice_graphs.csv
     python -m benchmarks.lattice_graphs --worlds 240 -d 6 10 --csv docs/data/lattice_graphs_6_10.csv
     python -m benchmarks.lattice_graphs --poor --worlds 960 -d 4 5 6 7 --csv docs/data/lattice_poor.csv
-    python -m benchmarks.lattice_graphs --paths --worlds 240 -d 2 3 5 --csv docs/data/lattice_paths.csv
+    python -m benchmarks.lattice_graphs --paths --worlds 240 -d 2 3 --csv docs/data/lattice_paths.csv
     python -m benchmarks.lattice_graphs --poses --worlds 480 --csv docs/data/lattice_poses.csv
 
 `--figures`: 100 numbers of points from 64 to 1024, logarithmically spread: successive minima, the share of n at which
