@@ -56,6 +56,7 @@ from evenroad.points.measures.rank_one import (
 from evenroad.points.samplers import korobov, rank_one_search
 from evenroad.points.samplers.korobov import korobov_generator
 from evenroad.points.samplers.poses import Sliced
+from evenroad.research.bench.task import Problem
 from evenroad.research.problems.fair import (
     DIFFICULTIES,
     ROTATION_WEIGHT,
@@ -299,7 +300,7 @@ def difference(gains: Floats, groups: np.ndarray) -> tuple[float, float]:
     return 100 * float(gains.mean()), 100 * max(errors)
 
 
-def in_world(problem: object, sets: dict[str, list[Floats]]) -> dict[str, list[bool]]:
+def in_world(problem: Problem, sets: dict[str, list[Floats]]) -> dict[str, list[bool]]:
     """Return what is solved by k; a set for each k, or one for all."""
     known: dict[int, int] = {}
     solved = {}
@@ -338,7 +339,7 @@ def sets_of_poses(n: int, d: int, number: int) -> dict[str, list[Floats]]:
     """Return the sets of one world in SE(3)."""
     random = np.random.default_rng([18, number])
     return {
-        "energy": [shifted(n, random.permutation(powers(n, 6)), random)],
+        "energy": [shifted(n, random.permutation(powers(n, 6)).tolist(), random)],
         "sobol": [draw("sobol", n, 6, rng=number).points],
         "graph, weighed": [shifted(n, weighed(n, k), np.random.default_rng([18, number])) for k in RULES],
         "sliced": [Sliced().draw(n, 6, rng=number).points],
