@@ -212,8 +212,7 @@ def _open(s: Search) -> None:
         if i >= 0 and (s.links[0, i] >= FREE or (s.links[0, i] == UNKNOWN and d[ONLY_KNOWN] == 0)):
             state = state_of(s, i, s.turns[0, i])
             if state >= 0:
-                put_off = s.rules[NEARBY, 0] * s.away[i]
-                push(s, state, -1, -1, s.away[i], s.bounds[state, LEFT] + put_off)
+                push(s, state, -1, -1, s.away[i], s.bounds[state, LEFT] + s.rules[NEARBY, 0] * s.away[i])
 
 
 @quick
