@@ -189,6 +189,7 @@ def main() -> None:
     parser.add_argument("--tuning", action="store_true", help="the seeds that constants were chosen on")
     parser.add_argument("--queries", type=int, default=100, help="in each scene")
     parser.add_argument("--scenes", type=int, default=2, help="of each kind")
+    parser.add_argument("--minutes", type=float, default=np.inf, help="after which a scene's next is begun")
     parser.add_argument("-n", type=int, default=1024, help="milestones")
     parser.add_argument("--checkers", nargs="+", default=["coal", "shapes"], choices=["coal", "shapes"])
     parser.add_argument("--kinds", nargs="+", default=["table", "box", "shelf"])
@@ -213,7 +214,10 @@ def main() -> None:
             world = ArmWorld(robot, replace(day, obstacles=(table, *day.obstacles)))
             how = () if options.triangles else tuple(options.checkers)
             calls = by_coal(made, world, shapes, how) or by_triangles(made, world)
+            until = time.monotonic() + 60.0 * options.minutes
             for number, (start, goal) in enumerate(pairs):
+                if time.monotonic() > until:
+                    break
                 least = path_length(np.array([start, goal]), world.space)
                 for title, (trees, roadmap) in calls.items():
                     one, other = trees(start, goal), roadmap(start, goal)

@@ -80,23 +80,32 @@ def meeting_surfaces(scratch: Singles, ints: Ints, table: Singles, blocked: int,
     _, capsules = scratch_places(ints)
     desk, meeting = integers_at(ints[at.SURFACES], (ANY_LENGTH,)), 0
     surfaces, of_capsules = desk[0], singles_at(desk[1], (ANY_LENGTH,))
-    for number in range(surfaces):
-        place = desk[DESK + SURFACE_ROW * number]
-        tested = integers_at(desk[DESK + SURFACE_ROW * number + 1], (ANY_LENGTH,))
-        cloud = singles_at(place + tree.BYTES_OF_HEADER, (ANY_LENGTH,))
-        windings = integers_at(place, (tree.HEADER,))[tree.WINDINGS]
-        # From the outermost capsules inwards: those touch most often.
-        for i in range(ints[at.CAPSULES] - 1, ints[at.FIXED_CAPSULES] - 1, -1):
+    around, counts = desk[2], integers_at(desk[3], (ANY_LENGTH,))
+    # From the outermost capsules inwards: those touch most often.
+    for i in range(ints[at.CAPSULES] - 1, ints[at.FIXED_CAPSULES] - 1, -1):
+        here, open_to = capsules + PLACED * i, ALL
+        slack, half, one_by_squared = row(of_capsules, CAPSULE_ROW * i, 3)
+        (covering,) = row(table, ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i + 6, 1)
+        if around != 0 and counts[i] > 1:
+            # One look for all surfaces; of none of them it says that the capsule touches it.
+            all_of_them = singles_at(around + tree.BYTES_OF_HEADER, (ANY_LENGTH,))
+            open_to, _ = _near_and_touching(
+                scratch, here, i, half, covering, slack, around, all_of_them, ints, table
+            )
+        for number in range(surfaces if counts[i] > 0 else 0):
+            if open_to & ~(blocked | meeting) == 0:
+                break
+            tested = integers_at(desk[DESK + SURFACE_ROW * number + 1], (ANY_LENGTH,))
             if tested[i] == 0:
                 continue
-            here = capsules + PLACED * i
-            slack, half, one_by_squared = row(of_capsules, CAPSULE_ROW * i, 3)
-            (covering,) = row(table, ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i + 6, 1)
+            place = desk[DESK + SURFACE_ROW * number]
+            cloud = singles_at(place + tree.BYTES_OF_HEADER, (ANY_LENGTH,))
+            windings = integers_at(place, (tree.HEADER,))[tree.WINDINGS]
             reach = covering - slack + cloud[tree.RADIUS]
             near, sure = _near_and_touching(
                 scratch, here, i, half, covering, slack, place, cloud, ints, table
             )
-            near &= ~(blocked | meeting | sure)
+            near &= open_to & ~(blocked | meeting | sure)
             meeting |= sure & ~blocked
             if meeting != 0 and enough == 1:
                 return meeting
@@ -113,8 +122,8 @@ def meeting_surfaces(scratch: Singles, ints: Ints, table: Singles, blocked: int,
                     meeting |= 1 << lane
                     if enough == 1:
                         return meeting
-            if blocked | meeting == ALL:
-                return meeting
+        if blocked | meeting == ALL:
+            return meeting
     return meeting
 
 

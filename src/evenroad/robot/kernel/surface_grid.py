@@ -62,7 +62,7 @@ class Grid:
 
 def grid_of_points(points: Floats) -> Grid:
     """Return the grid of points, (n, 3)."""
-    low, cell, counts = _frame(points.min(axis=0), points.max(axis=0))
+    low, cell, counts = frame(points.min(axis=0), points.max(axis=0))
     taken = np.zeros(counts, dtype=np.bool_)
     places = np.minimum(((points - low) * (1.0 / cell)).astype(np.int64), np.array(counts) - 1)
     taken[tuple(places.T)] = True
@@ -76,7 +76,7 @@ def grid_of_triangles(triangles: Floats, solid: Floats, turned: bool, reach: flo
     outside.  Where they do not, it is inside where a line from outside crosses an odd number of them.
     """
     low, high = (np.clip(each, -reach, reach) for each in _bounds(triangles))
-    low, cell, counts = _frame(low, high)
+    low, cell, counts = frame(low, high)
     taken = np.zeros(counts, dtype=np.bool_)
     _take(triangles, low, cell, taken)
     if len(solid) == 0:
@@ -90,9 +90,9 @@ def _bounds(triangles: Floats) -> tuple[Floats, Floats]:
     return triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))
 
 
-def _frame(low: Floats, high: Floats) -> tuple[Floats, float, tuple[int, int, int]]:
+def frame(low: Floats, high: Floats, cells: int = CELLS) -> tuple[Floats, float, tuple[int, int, int]]:
     """Return lower corner, side of a cell and numbers of cells of a grid that reaches half a cell beyond, or more."""
-    cell = max(float(np.prod(np.maximum(high - low, LEAST_CELL)) / CELLS) ** (1 / 3), LEAST_CELL)
+    cell = max(float(np.prod(np.maximum(high - low, LEAST_CELL)) / cells) ** (1 / 3), LEAST_CELL)
     x, y, z = np.ceil((high - low) / cell + 1.0).astype(np.int64).tolist()
     return low - 0.5 * (np.array([x, y, z]) * cell - (high - low)), cell, (x, y, z)
 
