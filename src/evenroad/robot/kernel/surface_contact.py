@@ -102,6 +102,8 @@ def meeting_surfaces(scratch: Singles, ints: Ints, table: Singles, blocked: int,
             cloud = singles_at(place + tree.BYTES_OF_HEADER, (ANY_LENGTH,))
             windings = integers_at(place, (tree.HEADER,))[tree.WINDINGS]
             reach = covering - slack + cloud[tree.RADIUS]
+            if around != 0 and _beside(scratch, here, half + reach, cloud) & open_to == 0:
+                continue
             near, sure = _near_and_touching(
                 scratch, here, i, half, covering, slack, place, cloud, ints, table
             )
@@ -189,6 +191,15 @@ def _asked(centre: Any, near: Any, touching: Any, place: int, cloud: Singles) ->
     sure = below_zero(larger(away + cloud[tree.TOLD] - touching, away - step * _TOLD_APART))
     sure &= below_zero(outside - _LEAST)
     return below_zero(outside + away * away - near * near), sure
+
+
+@inner
+def _beside(scratch: Singles, here: int, near: Any, cloud: Singles) -> int:
+    """Return the mask of lanes in which a capsule's middle is within `near` of the box that a grid fills."""
+    x, y, z, _, width, depth, height = row(cloud, tree.LOW, 7)
+    u, v, w = minus(load_vector(scratch, here), (x, y, z))
+    u, v, w = u - _cut(u, width), v - _cut(v, depth), w - _cut(w, height)
+    return below_zero(u * u + v * v + w * w - near * near)
 
 
 @inlined
