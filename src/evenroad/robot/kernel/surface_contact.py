@@ -83,30 +83,29 @@ def meeting_surfaces(scratch: Singles, ints: Ints, table: Singles, blocked: int,
     around, counts = desk[2], integers_at(desk[3], (ANY_LENGTH,))
     # From the outermost capsules inwards: those touch most often.
     for i in range(ints[at.CAPSULES] - 1, ints[at.FIXED_CAPSULES] - 1, -1):
+        if counts[i] == 0:
+            continue
         here, open_to = capsules + PLACED * i, ALL
         slack, half, one_by_squared = row(of_capsules, CAPSULE_ROW * i, 3)
         (covering,) = row(table, ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i + 6, 1)
-        if around != 0 and counts[i] > 1:
-            # One look for all surfaces; of none of them it says that the capsule touches it.
-            all_of_them = singles_at(around + tree.BYTES_OF_HEADER, (ANY_LENGTH,))
-            open_to, _ = _near_and_touching(
-                scratch, here, i, half, covering, slack, around, all_of_them, ints, table
-            )
-        for number in range(surfaces if counts[i] > 0 else 0):
-            if open_to & ~(blocked | meeting) == 0:
-                break
-            tested = integers_at(desk[DESK + SURFACE_ROW * number + 1], (ANY_LENGTH,))
-            if tested[i] == 0:
+        # First, for all of them, the grid around several.
+        for number in range(-1 if around != 0 and counts[i] > 1 else 0, surfaces):
+            place = desk[DESK + SURFACE_ROW * number] if number >= 0 else around
+            if number >= 0 and integers_at(desk[DESK + SURFACE_ROW * number + 1], (ANY_LENGTH,))[i] == 0:
                 continue
-            place = desk[DESK + SURFACE_ROW * number]
             cloud = singles_at(place + tree.BYTES_OF_HEADER, (ANY_LENGTH,))
             windings = integers_at(place, (tree.HEADER,))[tree.WINDINGS]
             reach = covering - slack + cloud[tree.RADIUS]
-            if around != 0 and _beside(scratch, here, half + reach, cloud) & open_to == 0:
+            if surfaces > 1 and number >= 0 and _beside(scratch, here, half + reach, cloud) & open_to == 0:
                 continue
             near, sure = _near_and_touching(
                 scratch, here, i, half, covering, slack, place, cloud, ints, table
             )
+            if number < 0:
+                open_to = near & ~(blocked | meeting)
+                if open_to == 0:
+                    break
+                continue
             near &= open_to & ~(blocked | meeting | sure)
             meeting |= sure & ~blocked
             if meeting != 0 and enough == 1:
