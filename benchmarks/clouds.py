@@ -13,6 +13,7 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -151,6 +152,15 @@ def main() -> None:
     for name, body in bodies.items():
         scene = Scene(name, (Obstacle("scan", body),), frozenset((link, "scan") for link in base))
         worlds[name] = ArmWorld(boxes.robot, scene)
+    # Each box a mesh of its own, with a grid around all of them, and without it.
+    each = tuple(Obstacle(box.name, Mesh(triangles_of(box, 4))) for box in boxes.scene.obstacles)
+    apart = Scene("apart", each, boxes.scene.allowed)
+    for name in ("6 meshes", "6 meshes, no grid around"):
+        worlds[name] = ArmWorld(boxes.robot, apart)
+    surfaces = worlds[name].lanes.surfaces
+    assert surfaces is not None
+    lanes = replace(worlds[name].lanes, surfaces=replace(surfaces, around=None))
+    object.__setattr__(worlds[name], "lanes", lanes)
     compare(worlds, args.repeats, args.count)
     print(f"\n{'':<28}{'built [ms]':>12}{'beyond contact [um], median / most of 60':>44}")
     for name, body in bodies.items():

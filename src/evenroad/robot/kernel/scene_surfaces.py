@@ -93,19 +93,32 @@ def scene_surfaces(scene: Scene, robot: RobotTables, tested: Bools) -> SceneSurf
 
     `tested` says which capsules are tested against which obstacles, (capsules, obstacles).
     """
-    found = {
-        number: array
+    numbers = [
+        number
         for number, obstacle in enumerate(scene.obstacles)
-        if isinstance(obstacle.body, PointCloud | Mesh)
-        and tested[:, number].any()
-        and (array := surface_of(obstacle.body, robot.reach)) is not None
-    }
-    if not found:
+        if isinstance(obstacle.body, PointCloud | Mesh) and tested[:, number].any()
+    ]
+    bodies = tuple(scene.obstacles[number].body for number in numbers)
+    return _surfaces(bodies, tuple(numbers), tested[:, numbers].tobytes(), robot)
+
+
+@lru_cache(maxsize=16)
+def _surfaces(
+    bodies: tuple[PointCloud | Mesh, ...], numbers: tuple[int, ...], tested: bytes, robot: RobotTables
+) -> SceneSurfaces | None:
+    """Return these bodies as `scene_surfaces` does; kept, since the next world often has them, too."""
+    arrays = [surface_of(body, robot.reach) for body in bodies]
+    near = [place for place, array in enumerate(arrays) if array is not None]
+    if not near:
         return None
-    flags = np.ascontiguousarray(tested[:, list(found)].T, dtype=np.int64)
-    bodies = tuple(scene.obstacles[number].body for number in found)
-    around = _around(bodies, robot.reach) if len(found) > 1 else None
-    return SceneSurfaces(tuple(found.values()), tuple(found), flags, _capsule_rows(robot.capsules), around)
+    flags = np.frombuffer(tested, dtype=np.bool_).reshape(-1, len(bodies))[:, near]
+    return SceneSurfaces(
+        tuple(array for array in arrays if array is not None),
+        tuple(numbers[place] for place in near),
+        np.ascontiguousarray(flags.T, dtype=np.int64),
+        _capsule_rows(robot.capsules),
+        _around(tuple(bodies[place] for place in near), robot.reach) if len(near) > 1 else None,
+    )
 
 
 def _capsule_rows(capsules: Sequence[PlacedCapsule]) -> npt.NDArray[np.float32]:
