@@ -54,6 +54,21 @@ def triangles_of(box: Obstacle, halvings: int) -> TriangleMesh:
     return TriangleMesh(box.body.pose.apply(mesh.vertices), mesh.faces)
 
 
+def in_pieces(box: Obstacle, count: int) -> list[Obstacle]:
+    """Return meshes that make up a box, cut across its longest side."""
+    sizes, turn = np.array(box.size), np.reshape(box.rotation, (3, 3))
+    longest = int(np.argmax(sizes))
+    shifts = ((np.arange(count) + 0.5) / count - 0.5) * sizes[longest]
+    sizes[longest] /= count
+    pieces = [
+        Obstacle.of(
+            f"{box.name} {i}", "box", tuple(sizes), tuple(box.xyz + shift * turn[:, longest]), box.rotation
+        )
+        for i, shift in enumerate(shifts)
+    ]
+    return [Obstacle(piece.name, Mesh(triangles_of(piece, 4))) for piece in pieces]
+
+
 def _corners(mesh: TriangleMesh) -> Floats:
     return mesh.vertices[mesh.triangles]
 
@@ -152,13 +167,14 @@ def main() -> None:
     for name, body in bodies.items():
         scene = Scene(name, (Obstacle("scan", body),), frozenset((link, "scan") for link in base))
         worlds[name] = ArmWorld(boxes.robot, scene)
-    # Each box a mesh of its own, with a grid around all of them, and without it.
-    each = tuple(Obstacle(box.name, Mesh(triangles_of(box, 4))) for box in boxes.scene.obstacles)
-    apart = Scene("apart", each, boxes.scene.allowed)
-    for name in ("6 meshes", "6 meshes, no grid around"):
-        worlds[name] = ArmWorld(boxes.robot, apart)
+    # Each box a mesh of its own, or four, with a grid around all of them and without it.
+    for name, parts in (("6 meshes", 1), ("24 meshes", 4), ("24 meshes, no grid", 4)):
+        each = tuple(piece for box in boxes.scene.obstacles for piece in in_pieces(box, parts))
+        allowed = frozenset((link, piece.name) for link in base for piece in each)
+        worlds[name] = ArmWorld(boxes.robot, Scene(name, each, allowed))
     surfaces = worlds[name].lanes.surfaces
     assert surfaces is not None
+    assert surfaces.around is not None
     lanes = replace(worlds[name].lanes, surfaces=replace(surfaces, around=None))
     object.__setattr__(worlds[name], "lanes", lanes)
     compare(worlds, args.repeats, args.count)

@@ -7,6 +7,7 @@ import pytest
 
 from evenroad.geometry import Mesh
 from evenroad.robot.arm_world import ArmWorld
+from evenroad.robot.kernel import scene_surfaces
 from evenroad.robot.kernel import surface_tree as tree
 from evenroad.robot.kernel.scene_surfaces import surface_of
 from evenroad.robot.kernel.surface_around import surface_around
@@ -32,6 +33,15 @@ SCENES = {
         allowed=frozenset({("forearm", "mesh0"), ("wrist1", "mesh1"), ("upperarm", "mesh2")}),
     ),
 }
+
+
+@pytest.fixture(autouse=True)
+def around_few(monkeypatch):
+    """Have a grid around two surfaces."""
+    monkeypatch.setattr(scene_surfaces, "MANY", 2)
+    scene_surfaces._surfaces.cache_clear()
+    yield
+    scene_surfaces._surfaces.cache_clear()
 
 
 @pytest.fixture(scope="module", params=SCENES)
@@ -100,3 +110,11 @@ def test_bytes_are_no_more_than_the_distances():
     assert min(slack) >= 0.0
     # Good for something: some two cells are lost.
     assert np.median(slack) < 3.0 / table[tree.ONE_BY_CELL]
+
+
+def test_only_many_surfaces_have_a_grid_around_them(monkeypatch):
+    for many, expected in ((6, True), (7, False)):
+        monkeypatch.setattr(scene_surfaces, "MANY", many)
+        scene_surfaces._surfaces.cache_clear()
+        world = ArmWorld(ur5(np.pi), SCENES["closed ones that overlap"])
+        assert (world.lanes.surfaces.around is not None) == expected

@@ -34,6 +34,9 @@ and the number of its obstacle."""
 CAPSULE_ROW = 3
 """By how much the spheres over a capsule are larger than it, half its length, one over the square of that."""
 
+MANY = 8
+"""From so many surfaces on there is a grid around all of them: motions among fewer are no quicker for it."""
+
 PIECE = 0.1
 """Triangles are cut until no side is longer than this share of the robot's reach: a box around a large one says
 little."""
@@ -54,7 +57,7 @@ class SceneSurfaces:
     capsules : float32 array, shape (capsules, 3)
         See `CAPSULE_ROW`.
     around : int64 array, optional
-        A grid around several surfaces, see ``surface_around``.
+        A grid around many surfaces, see ``surface_around``.
     """
 
     arrays: tuple[Ints, ...]
@@ -117,7 +120,7 @@ def _surfaces(
         tuple(numbers[place] for place in near),
         np.ascontiguousarray(flags.T, dtype=np.int64),
         _capsule_rows(robot.capsules),
-        _around(tuple(bodies[place] for place in near), robot.reach) if len(near) > 1 else None,
+        _around(tuple(bodies[place] for place in near), robot.reach) if len(near) >= MANY else None,
     )
 
 
