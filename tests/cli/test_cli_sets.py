@@ -232,8 +232,8 @@ def test_the_network_is_judged_by_the_exact_star_discrepancy_on_request(run, tmp
     assert json.loads((tmp_path / "sets" / "request.json").read_text())["network"]["start"] == "kronecker"
 
 
-def test_orders_are_searched_from_the_command_line(run, tmp_path):
-    line = ("train", "-n", 12, "-d", 2, "--method", "order", "--objective", "star", "--sets", 2, "--jobs", 1)
+def test_orders_are_what_is_searched_for_the_star_discrepancy_of_the_plane(run, tmp_path):
+    line = ("train", "-n", 12, "-d", 2, "--objective", "star", "--sets", 2, "--jobs", 1)
     code, out, _ = run(*line, "--steps", 200, "-o", "sets")
     assert code == 0
     best = min(star_discrepancy(load_points(tmp_path / "sets" / f"set-000{i}.npz")) for i in range(2))
@@ -277,6 +277,7 @@ MPMC = ("train", "-n", 12, "-d", 2, "--method", "mpmc", "--sets", 2, "--jobs", 1
         (("--method", "order", "--objective", "star", "-d", 3), "not in d = 3"),
         (("--method", "order", "--objective", "star", "--refine", 3), "--refine does not go"),
         (("--judge", "star"), "--judge does not go with the method 'anneal'"),
+        (("--objective", "star", "--judge", "star"), "--judge does not go with the method 'order'"),
         (("--method", "order", "--objective", "star", "--start", "sobol"), "--start does not go"),
         (("--method", "mpmc", "--start", "grid"), "unknown start 'grid'.*kronecker"),
         (("--method", "mpmc", "--judge", "star", "-d", 3), "not in d = 3"),
