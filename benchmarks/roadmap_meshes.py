@@ -192,9 +192,8 @@ def among_triangles(pool: Pool, made: RobotRoadmap, seeds: range, options: argpa
             scene, began = of_meshes(world.scene, options.halvings), time.thread_time()
             world = ArmWorld(pool.robot, scene)
             made_in.append(time.thread_time() - began)
-            sizes.append(
-                sum(len(o.body.triangles.triangles) for o in world.scene.obstacles if o.shape == "mesh")
-            )
+            bodies = [obstacle.body for obstacle in world.scene.obstacles]
+            sizes.append(sum(len(body.triangles.triangles) for body in bodies if isinstance(body, Mesh)))
             quick = QuickWorld(world.robot, world.scene)
             copies = [SceneRoadmap(made, world.scene) for _ in range(COPIES)]
             for number, (start, goal) in enumerate(pairs):
@@ -213,7 +212,7 @@ def among_triangles(pool: Pool, made: RobotRoadmap, seeds: range, options: argpa
                     continue
                 for title, (seconds, result) in answers.items():
                     motions = sum(result.counts.get(c, 0) for c in ("edges_checked", "shortcut_motions"))
-                    rows.setdefault(title, []).append((seconds, motions, result.cost))
+                    rows.setdefault(title, []).append((seconds, motions, result.cost or 0.0))
         print(
             f"{kind}: grids and trees of a new scene's meshes take {1e3 * np.median(made_in):.0f} ms; {lost} unsolved",
             file=sys.stderr,
