@@ -33,6 +33,7 @@ from evenroad.robot_roadmap.search_memory import (
     LOW,
     MADE,
     MEASURED,
+    NEARBY,
     NEXT,
     NODES,
     NUMBER,
@@ -211,7 +212,7 @@ def _open(s: Search) -> None:
         if i >= 0 and (s.links[0, i] >= FREE or (s.links[0, i] == UNKNOWN and d[ONLY_KNOWN] == 0)):
             state = state_of(s, i, s.turns[0, i])
             if state >= 0:
-                push(s, state, -1, -1, s.away[i], s.bounds[state, LEFT])
+                push(s, state, -1, -1, s.away[i], s.bounds[state, LEFT] + s.rules[NEARBY, 0] * s.away[i])
 
 
 @quick

@@ -59,11 +59,10 @@ DESK = 30
 OTHER, NEXT, NUMBER, HALF = range(4)
 """Of a half edge: where it leads, the next one of the same milestone or -1, its edge; how many things that is."""
 
-LOW, HIGH, LIFTS, ENDLESS, MIDDLE, GREED = range(6)
+LOW, HIGH, LIFTS, ENDLESS, MIDDLE, GREED, NEARBY, RULE_ROWS = range(8)
 """Rows of the rules: limits; 1 for joints that are lifted by whole turns, or turn on for ever; the middle of the range
-of milestones; what the bound is multiplied by, 1 for the shortest way."""
-
-RULE_ROWS = 6
+of milestones; what the bound is multiplied by, 1 for the shortest way; by how many times their length links of the
+start are put off.  And how many rows that is."""
 
 OF, LIFTED, SIBLING, REACHED = range(4)
 """Of a state: milestone, packed turns, the next state of the same milestone or -1, the entry it was reached by."""
@@ -88,7 +87,7 @@ class Search(NamedTuple):
         Verdicts of milestones, their first half edges, and another one that free motions lead to, or itself.
     halves, leads, lengths, edges : arrays
         Half edges, (h, 3), their turns, packed, their lengths, verdicts of edges.
-    rules : float64 array, shape (6, dim)
+    rules : float64 array, shape (7, dim)
     ends, asked : float64 arrays, shapes (e + 1, dim) and (2, dim)
         Start, goals and a place that is learned; the two ends of the motion that is asked about.
     away, turns, links, near : arrays, shape (e + 1, capacity); the first in one piece
