@@ -131,6 +131,9 @@ def counts(name: str, count: int, n: int, kinds: list[str]) -> None:
             made.in_scene(p.scene).plan(p.start, p.goal, shorten=False, trees=False)
             for p in indirect(pool, REPORTING[:count], (kind,))
         ]
+        if not results:
+            print(f"{kind}: no problem whose straight motion is not free")
+            continue
         asked = np.array([[r.counts["configurations_checked"], r.counts["edges_checked"]] for r in results])
         share = 100 * np.mean([r.solved for r in results])
         print(
