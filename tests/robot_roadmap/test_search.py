@@ -12,7 +12,8 @@ from evenroad.robot.arm_world import RECHECK_TOLERANCE
 from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.scene_roadmap import GREED, NEARBY, SceneRoadmap
 from evenroad.robot_roadmap.search_memory import BLOCKED, ENTRIES, UNKNOWN
-from evenroad.robot_roadmap.turns import MOST_TURNS, one_turn
+from evenroad.robot_roadmap.search_metric import BITS
+from evenroad.robot_roadmap.turns import MOST_LIFTED, MOST_TURNS, one_turn
 from evenroad.space import JointSpace
 from tests.robot.kernel_arms import box_scene, ur5
 
@@ -201,6 +202,17 @@ def test_joints_of_very_many_turns_are_followed_over_some_of_them():
         assert result.solved
         assert known.world.recheck(result.path).all()
         assert np.abs(np.diff(result.path[:, 0])).sum() >= turned - start[0] - 1e-9
+
+
+def test_of_very_many_joints_only_those_turn_on_that_the_search_can_follow():
+    wide = JointSpace([-TURN] * 20, [TURN] * 20, [False] * 20, [1.0] * 20)
+    one = one_turn(wide, np.ones(20, dtype=np.bool_))
+    assert one.lifts.tolist() == [True] * MOST_LIFTED + [False] * (20 - MOST_LIFTED)
+    # The others are planned in all of their range, and lead over no end of it.
+    assert (one.high - one.low)[~one.lifts].tolist() == pytest.approx([2.0 * TURN] * (20 - MOST_LIFTED))
+    assert not one.wraps[~one.lifts].any()
+    # Each has four bits of a whole number, of which none is the sign.
+    assert 2 ** (BITS * MOST_LIFTED) < 2**62
 
 
 def test_checks_run_out_and_come_back(roadmap):
