@@ -18,12 +18,15 @@ from evenroad.robot_roadmap.search_memory import (
     BLOCKED,
     BY,
     CAPACITY,
+    CLOSE,
     DIM,
     ENDS,
     ENTRIES,
     FREE,
     GREED,
     HIGH,
+    HUB,
+    LANDMARKS,
     LEAST,
     LEFT,
     LIFTED,
@@ -51,14 +54,16 @@ from evenroad.robot_roadmap.search_memory import (
     STATE,
     STATES,
     TO,
+    TOLD,
     UNKNOWN,
     VIA,
     WAITING,
+    WEIGHTS,
     Search,
     join,
     kept_in_order,
 )
-from evenroad.robot_roadmap.search_metric import distance, is_at, measure, write
+from evenroad.robot_roadmap.search_metric import distance, is_at, measure, write, write_distances
 
 Floats = npt.NDArray[np.float64]
 
@@ -103,10 +108,29 @@ def begin(s: Search) -> None:
             last = s.keys[count - 1] if count == d[LINKS] else np.inf
         for rank in range(count):
             s.radius[end] = max(s.radius[end], s.away[end * capacity + s.near[end, rank]])
+        if d[CLOSE] > 0 and count == d[LINKS]:
+            count -= d[CLOSE]
+            count += _close(s, end, count)
         for rank in range(count, d[LINKS]):
             s.near[end, rank] = -1
     clear(s)
-    d[AIM], d[AIMED_END], d[PHASE] = -1, -1, ASK_STRAIGHT
+    d[AIM], d[AIMED_END], d[HUB], d[PHASE] = -1, -1, -1, ASK_STRAIGHT
+
+
+@quick
+def _close(s: Search, end: int, count: int) -> int:
+    """Choose milestones near in displacement besides the first ones that were, and return how many."""
+    d, n, found = s.desk, s.desk[NODES], 0
+    for i in range(n):
+        s.heads[i] = -1
+    for rank in range(count):
+        s.heads[s.near[end, rank]] = 0
+    write_distances(s, end, s.rules[WEIGHTS], s.costs[:n])
+    near = s.near[end, count:]
+    for i in range(n):
+        if s.nodes[i] >= FREE and s.heads[i] < 0 and s.links[end, i] != BLOCKED:
+            found = kept_in_order(s.keys, near, found, d[CLOSE], s.costs[i], i)
+    return found
 
 
 @quick
@@ -193,6 +217,7 @@ def _goal_link(s: Search) -> int:
                     s.asked[0, k] = s.ends[end, k]
                 write(s, i, s.turns[end, i], s.asked[1])
                 return LINK
+            d[HUB] = i if i < d[TOLD] else -1
             if missed >= AIMED and s.rules[GREED, 0] > 1.0:
                 d[AIM], d[AIMED_END] = i, end
             return NONE
@@ -355,6 +380,10 @@ def state_of(s: Search, node: int, packed: int) -> int:
             else:
                 # Where the goal's link would be, as it was measured.
                 least = min(least, s.away[end * d[CAPACITY] + node])
+    if d[HUB] >= 0 and node < d[TOLD]:
+        for mark in range(d[LANDMARKS]):
+            apart = s.far[node * d[LANDMARKS] + mark] - s.far[d[HUB] * d[LANDMARKS] + mark]
+            least = max(least, abs(apart))
     s.bounds[state, LEFT], s.bounds[state, LEAST] = s.rules[GREED, 0] * least, np.inf
     if not inside:
         s.bounds[state, LEFT] = np.inf

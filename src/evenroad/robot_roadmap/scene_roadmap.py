@@ -27,6 +27,7 @@ from evenroad.robot.trees import shorten
 from evenroad.robot_roadmap.ask import Asked, Checks, ask
 from evenroad.robot_roadmap.cell import day_and_all, left_to_check, require_same_robot
 from evenroad.robot_roadmap.known_motions import KnownMotions
+from evenroad.robot_roadmap.explored import explore
 from evenroad.robot_roadmap.lazy_search import CUT_OFF, ENDS_TAKEN, NONE, SPENT
 from evenroad.robot_roadmap.own_shapes import OwnShapesWorld
 from evenroad.robot_roadmap.pockets import links_of
@@ -69,6 +70,9 @@ queries are learned until there are so many milestones more."""
 
 SOON = 5000
 """So many motions ways out may take before shapes are asked: some milliseconds."""
+
+ENDS = 200
+"""Ends in narrow places that are explored."""
 
 _LONG = 1e8
 """Seconds that stand for no limit."""
@@ -149,6 +153,10 @@ class SceneRoadmap:
             self._graph.around(roadmap.weights, 0.0, 1)
             if asked.ended != ENDS_TAKEN:
                 _ready.add(backend)
+
+    def explore(self, ends: int = ENDS, *, rng: int = 0) -> None:
+        """Explore."""
+        self.learned += explore(self.roadmap, self.world, self._day, self._graph, ends, np.random.default_rng(rng))
 
     def connect(
         self,
