@@ -24,6 +24,7 @@ from evenroad.robot_roadmap.ways_out import learn_ways_out
 LINKS, MOTIONS, GREED = 40, 90, 3.0
 """Each end is asked for a way to a milestone with so many links and motions, as by a query."""
 
+SOON = 0
 OUT = 5000
 """So many motions a way out may take."""
 
@@ -58,7 +59,8 @@ def explore(
             world, day, graph, end, goal, links=LINKS, greed=GREED, most_motions=MOTIONS, deadline=math.inf
         )
         if asked.ended == FOUND:
-            graph.learn(asked.path[:2])
+            if asked.motions >= SOON:
+                graph.learn(asked.path[:2])
         else:
             ways += learn_ways_out(world, graph, roadmap.weights, (end, goal[0]), OUT, now() + _LONG).ways
     settle(graph, world, day)

@@ -19,6 +19,8 @@ from evenroad.robot_roadmap.search_memory import (
     BY,
     CAPACITY,
     CLOSE,
+    CLOSE_GOALS,
+    CLOSE_START,
     DIM,
     ENDS,
     ENTRIES,
@@ -77,6 +79,9 @@ ENDS_TAKEN, SPENT, PAUSED = range(FULL + 1, FULL + 4)
 ONWARD = 0.5
 """Links are tried in the order of their length and this share of what is left beyond them."""
 
+GUIDED = 3.0
+"""What is known of the way to the goal is multiplied by, where that is more than the bound."""
+
 AIMED = 4
 """A goal of which so many links were blocked before a free one was found is approached by that one."""
 
@@ -108,29 +113,23 @@ def begin(s: Search) -> None:
             last = s.keys[count - 1] if count == d[LINKS] else np.inf
         for rank in range(count):
             s.radius[end] = max(s.radius[end], s.away[end * capacity + s.near[end, rank]])
-        if d[CLOSE] > 0 and count == d[LINKS]:
-            count -= d[CLOSE]
-            count += _close(s, end, count)
         for rank in range(count, d[LINKS]):
             s.near[end, rank] = -1
     clear(s)
     d[AIM], d[AIMED_END], d[HUB], d[PHASE] = -1, -1, -1, ASK_STRAIGHT
+    d[CLOSE_START] = d[CLOSE_GOALS] = d[CLOSE]
 
 
 @quick
-def _close(s: Search, end: int, count: int) -> int:
-    """Choose milestones near in displacement besides the first ones that were, and return how many."""
-    d, n, found = s.desk, s.desk[NODES], 0
-    for i in range(n):
-        s.heads[i] = -1
-    for rank in range(count):
-        s.heads[s.near[end, rank]] = 0
+def _choose_close(s: Search, end: int) -> None:
+    """Choose other milestones that an end is tried to be linked to: free ones that are near in displacement."""
+    d, n, count = s.desk, s.desk[NODES], 0
     write_distances(s, end, s.rules[WEIGHTS], s.costs[:n])
-    near = s.near[end, count:]
     for i in range(n):
-        if s.nodes[i] >= FREE and s.heads[i] < 0 and s.links[end, i] != BLOCKED:
-            found = kept_in_order(s.keys, near, found, d[CLOSE], s.costs[i], i)
-    return found
+        if s.nodes[i] >= FREE and s.links[end, i] != BLOCKED:
+            count = kept_in_order(s.keys, s.near[end], count, d[CLOSE], s.costs[i], i)
+    for rank in range(count, d[LINKS]):
+        s.near[end, rank] = -1
 
 
 @quick
@@ -158,6 +157,11 @@ def step(s: Search) -> int:
                 d[PHASE] = OPEN
     if d[PHASE] == ASK_GOALS:
         question = _goal_link(s)
+        if question == CUT_OFF and d[CLOSE_GOALS] > 0 and d[ONLY_KNOWN] == 0:
+            d[CLOSE_GOALS] = 0
+            for end in range(1, d[ENDS]):
+                _choose_close(s, end)
+            question = _goal_link(s)
         if question != NONE:
             return question
         d[PHASE] = OPEN
@@ -166,6 +170,10 @@ def step(s: Search) -> int:
         d[PHASE] = SEARCH
     while True:
         if d[PENDING] < 0:
+            if d[WAITING] == 0 and d[AIM] < 0 and d[CLOSE_START] > 0 and d[ONLY_KNOWN] == 0:
+                d[CLOSE_START] = 0
+                _choose_close(s, 0)
+                _open_links(s)
             if d[WAITING] == 0:
                 if d[AIM] < 0:
                     return NONE
@@ -231,6 +239,13 @@ def _open(s: Search) -> None:
     for end in range(1, d[ENDS]):
         if s.straight[end] != BLOCKED:
             push(s, -end, -1, -1, distance(s, s.ends[0], s.ends[end]), 0.0)
+    _open_links(s)
+
+
+@quick
+def _open_links(s: Search) -> None:
+    """Put the links of the start into the queue."""
+    d = s.desk
     for rank in range(d[LINKS]):
         i = s.near[0, rank]
         if i >= 0 and (s.links[0, i] >= FREE or (s.links[0, i] == UNKNOWN and d[ONLY_KNOWN] == 0)):
@@ -380,11 +395,11 @@ def state_of(s: Search, node: int, packed: int) -> int:
             else:
                 # Where the goal's link would be, as it was measured.
                 least = min(least, s.away[end * d[CAPACITY] + node])
+    s.bounds[state, LEFT], s.bounds[state, LEAST] = s.rules[GREED, 0] * least, np.inf
     if d[HUB] >= 0 and node < d[TOLD]:
         for mark in range(d[LANDMARKS]):
             apart = s.far[node * d[LANDMARKS] + mark] - s.far[d[HUB] * d[LANDMARKS] + mark]
-            least = max(least, abs(apart))
-    s.bounds[state, LEFT], s.bounds[state, LEAST] = s.rules[GREED, 0] * least, np.inf
+            s.bounds[state, LEFT] = max(s.bounds[state, LEFT], GUIDED * abs(apart))
     if not inside:
         s.bounds[state, LEFT] = np.inf
     return state if inside else -1

@@ -18,6 +18,8 @@ POOL = 40_000
 FAR = 0.3
 """A place is closed in where one does not get so far from it, as a share of the reach."""
 
+ROUNDS, BESIDE, AWAY = 1, 8, 0.4
+
 BALL = 0.01
 """Radius of what goes there [m]."""
 
@@ -35,11 +37,24 @@ def ends_between_obstacles(world: ArmWorld, count: int, rng: np.random.Generator
     q = q[world.valid(q)]
     if not len(q):
         return q
-    tips, reach = tips_of(world.robot, q), Surroundings.of(world.robot, q).reach
-    closed = np.zeros(len(q))
-    for tip in range(tips.shape[1]):
-        closed = np.maximum(closed, _closed_in(world.scene, tips[:, tip], FAR * reach))
+    reach = Surroundings.of(world.robot, q).reach
+    closed = _closed(world, q, FAR * reach)
+    for _ in range(ROUNDS):
+        best = np.argsort(-closed, kind="stable")[:count]
+        q, closed = q[best], closed[best]
+        more = np.repeat(q, BESIDE, axis=0)
+        more = np.clip(more + rng.normal(0.0, AWAY, more.shape), world.space.low, world.space.high)
+        more = more[world.valid(more)]
+        q, closed = np.concatenate([q, more]), np.concatenate([closed, _closed(world, more, FAR * reach)])
     return q[np.argsort(-closed, kind="stable")[:count]]
+
+
+def _closed(world: ArmWorld, q: Floats, far: float) -> Floats:
+    """Return in how many directions a tip does not get far: (n,)."""
+    tips, closed = tips_of(world.robot, q), np.zeros(len(q))
+    for tip in range(tips.shape[1]):
+        closed = np.maximum(closed, _closed_in(world.scene, tips[:, tip], far))
+    return closed
 
 
 def _closed_in(scene: Scene, places: Floats, far: float) -> Floats:

@@ -56,9 +56,12 @@ UNTURNED = 29
 
 FAR, LANDMARKS, TOLD, HUB, CLOSE = range(30, 35)
 """Desk, where a scene was explored: address of how far milestones are from some along motions known to be free, of how
-many, for how many milestones; the milestone that a goal is approached by, or -1; how many links go by displacement."""
+many, for how many milestones; the milestone that a goal is approached by, or -1; how many links by displacement."""
 
-DESK = 35
+CLOSE_START, CLOSE_GOALS = range(35, 37)
+"""Desk: more than 0 where start or goals may still be linked by displacement."""
+
+DESK = 37
 
 OTHER, NEXT, NUMBER, HALF = range(4)
 """Of a half edge: where it leads, the next one of the same milestone or -1, its edge; how many things that is."""
