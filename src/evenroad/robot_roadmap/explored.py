@@ -22,9 +22,11 @@ from evenroad.robot_roadmap.search_memory import BLOCKED, FREE, PROVED, UNKNOWN
 from evenroad.robot_roadmap.ways_out import learn_ways_out
 
 LINKS, MOTIONS, GREED = 40, 90, 3.0
-"""Each end is asked for a way to a milestone with so many links and motions, as by a query."""
+"""From each end a way to some milestone is searched with so many links and motions, as for a query."""
 
-SOON = 0
+SOON = 20
+"""An end that leads there by fewer motions need not be known: too many ends beside each other make ways longer."""
+
 OUT = 5000
 """So many motions a way out may take."""
 
@@ -34,15 +36,20 @@ JOINED = 30
 _LONG = 1e8
 """Seconds that stand for no limit."""
 
-LANDMARKS = 16
+LANDMARKS = 24
 """From so many milestones it is known how far all others are along free motions."""
 
-CLOSE = 20
-"""Of the links of an end so many go by displacement: where an end is cut off, nearly all of those that are free."""
+CLOSE = 30
+"""An end that none of its links joins is tried to be linked to so many milestones that are nearest in displacement."""
 
 
 def explore(
-    roadmap: KnownMotions, world: ArmWorld, day: ArmWorld, graph: KnownGraph, count: int, rng: np.random.Generator
+    roadmap: KnownMotions,
+    world: ArmWorld,
+    day: ArmWorld,
+    graph: KnownGraph,
+    count: int,
+    rng: np.random.Generator,
 ) -> list[Floats]:
     """Learn ways to so many ends in narrow places, and what joins them; return those that trees found, (p, dim) each.
 
@@ -74,7 +81,8 @@ def settle(graph: KnownGraph, world: ArmWorld, day: ArmWorld) -> None:
     n, nodes = int(graph.desk[at.NODES]), graph.nodes
     q = graph.milestones[:n]
     unknown = np.flatnonzero(nodes[:n] == UNKNOWN)
-    nodes[unknown] = np.where(world.valid(q[unknown]), FREE, BLOCKED)
+    # What is out of limits may be within them after a turn.
+    nodes[unknown] = np.where(world.valid(q[unknown]), FREE, UNKNOWN if graph.desk[at.LIFTING] else BLOCKED)
     a, b, turns = graph.motions()
     verdicts = graph.edges[: len(a)]
     open_ = (verdicts == UNKNOWN) & ~turns & (nodes[a] >= FREE) & (nodes[b] >= FREE)
@@ -98,8 +106,8 @@ def _join(graph: KnownGraph, world: ArmWorld, first: int) -> None:
     pairs = np.unique(pairs, axis=0)
     n, (a, b, _) = len(q), graph.motions()
     pairs = pairs[~np.isin(pairs @ (n, 1), np.minimum(a, b) * n + np.maximum(a, b))]
-    pairs = pairs[world.motion_certified(*q[pairs.T], RECHECK_TOLERANCE)]
-    graph.join(pairs, world.space.distance(*q[pairs.T]))
+    pairs = pairs[world.motion_certified(q[pairs[:, 0]], q[pairs[:, 1]], RECHECK_TOLERANCE)]
+    graph.join(pairs, world.space.distance(q[pairs[:, 0]], q[pairs[:, 1]]))
 
 
 def _known(graph: KnownGraph, lengths: Floats) -> csr_matrix:
@@ -112,7 +120,12 @@ def _known(graph: KnownGraph, lengths: Floats) -> csr_matrix:
 
 
 def _distances(graph: KnownGraph) -> Floats:
-    """Return how far it is to each milestone from landmarks that are far from each other, (n, landmarks)."""
+    """Return how far it is to each milestone from landmarks that are far from each other, (n, landmarks).
+
+    Of joints of several turns nothing is said: how far it is depends on the turns.
+    """
+    if graph.desk[at.LIFTING]:
+        return np.empty((0, 0))
     a, _, _ = graph.motions()
     lengths = np.empty(len(a))
     made = int(graph.desk[at.HALVES_MADE])

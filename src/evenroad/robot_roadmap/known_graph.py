@@ -213,7 +213,9 @@ class KnownGraph:
         """Take motions between milestones, (m, 2), of such lengths, (m,), for edges that are proved free today."""
         self._own_halves()
         desk, more = self.desk, len(pairs)
-        while desk[at.EDGES_MADE] + more > desk[at.EDGES] or desk[at.HALVES_MADE] + 2 * more > desk[at.HALVES]:
+        while (
+            desk[at.EDGES_MADE] + more > desk[at.EDGES] or desk[at.HALVES_MADE] + 2 * more > desk[at.HALVES]
+        ):
             self._grow()
         edge, first = int(desk[at.EDGES_MADE]), int(desk[at.HALVES_MADE])
         self.edges[edge : edge + more] = PROVED

@@ -11,6 +11,7 @@ from evenroad.geometry.shapes import Capsule
 from evenroad.robot import ArmWorld, Joint, Robot, Scene
 from evenroad.robot_roadmap.chance import Surroundings
 from evenroad.robot_roadmap.pockets import tips_of
+from evenroad.robot_roadmap.turns import TURN
 
 POOL = 40_000
 """Configurations that are drawn, of which the ends are those that are closed in most."""
@@ -18,7 +19,8 @@ POOL = 40_000
 FAR = 0.3
 """A place is closed in where one does not get so far from it, as a share of the reach."""
 
-ROUNDS, BESIDE, AWAY = 1, 8, 0.4
+ROUNDS, BESIDE, AWAY = 2, 8, 1 / 16
+"""So often, so many are drawn beside each of the best, away by a deviation of this share of a joint's range or turn."""
 
 BALL = 0.01
 """Radius of what goes there [m]."""
@@ -27,7 +29,9 @@ STEP = 0.03
 """Of the ball's motions; nothing is proved here [m]."""
 
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
-_WAYS = np.array([way for way in itertools.product((-1.0, 0.0, 1.0), repeat=3) if np.abs(way).sum() in (1.0, 3.0)])
+_WAYS = np.array(
+    [way for way in itertools.product((-1.0, 0.0, 1.0), repeat=3) if np.abs(way).sum() in (1.0, 3.0)]
+)
 """To the sides and corners of a cube."""
 
 
@@ -39,11 +43,13 @@ def ends_between_obstacles(world: ArmWorld, count: int, rng: np.random.Generator
         return q
     reach = Surroundings.of(world.robot, q).reach
     closed = _closed(world, q, FAR * reach)
+    low, high = np.array(world.space.low), np.array(world.space.high)
+    away = AWAY * np.minimum(high - low, TURN)
     for _ in range(ROUNDS):
         best = np.argsort(-closed, kind="stable")[:count]
         q, closed = q[best], closed[best]
         more = np.repeat(q, BESIDE, axis=0)
-        more = np.clip(more + rng.normal(0.0, AWAY, more.shape), world.space.low, world.space.high)
+        more = np.clip(more + rng.normal(0.0, 1.0, more.shape) * away, low, high)
         more = more[world.valid(more)]
         q, closed = np.concatenate([q, more]), np.concatenate([closed, _closed(world, more, FAR * reach)])
     return q[np.argsort(-closed, kind="stable")[:count]]
@@ -59,7 +65,9 @@ def _closed(world: ArmWorld, q: Floats, far: float) -> Floats:
 
 def _closed_in(scene: Scene, places: Floats, far: float) -> Floats:
     """Return in how many directions a ball does not get far from places, (n, 3): (n,); 0 where there is no place."""
-    ball = ArmWorld(_ball(places.min(axis=0) - 2.0 * far, places.max(axis=0) + 2.0 * far), _alone(scene), STEP)
+    ball = ArmWorld(
+        _ball(places.min(axis=0) - 2.0 * far, places.max(axis=0) + 2.0 * far), _alone(scene), STEP
+    )
     blocked = np.zeros(len(places))
     for way in _WAYS:
         blocked += ~ball.motion_valid(places, places + far / np.linalg.norm(way) * way)

@@ -13,7 +13,8 @@ from evenroad.roadmap import Budget, PlanResult
 from evenroad.robot import Scene
 from evenroad.robot_roadmap.known_motions import KnownMotions
 from evenroad.robot_roadmap.learned import with_paths
-from evenroad.robot_roadmap.scene_roadmap import Place, SceneRoadmap
+from evenroad.robot_roadmap.places import Place
+from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
 
 
 @dataclass(frozen=True, eq=False)

@@ -68,7 +68,7 @@ OTHER, NEXT, NUMBER, HALF = range(4)
 
 LOW, HIGH, LIFTS, ENDLESS, MIDDLE, GREED, WEIGHTS = range(7)
 """Rows of the rules: limits; 1 for joints that are lifted by whole turns, or turn on for ever; the middle of the range
-of milestones; what the bound is multiplied by, 1 for the shortest way; what a unit of a joint counts as displacement."""
+of milestones; what the bound is multiplied by, 1 for the shortest way; what a unit counts as displacement."""
 
 RULE_ROWS = 7
 
