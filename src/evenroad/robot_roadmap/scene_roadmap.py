@@ -64,7 +64,7 @@ SOON = 5000
 ENDS = 400
 """Ends in narrow places that are tried where a scene is explored."""
 
-EXPLORED_LINKS, EXPLORED_MOTIONS, EXPLORED_WORK = 20, 150, (24, 48, 200)
+EXPLORED_LINKS, EXPLORED_MOTIONS, EXPLORED_WORK = 20, 150, (20, 40, 120)
 """In an explored scene fewer links do, and what is left of the time goes into shortening."""
 
 _LONG = 1e8
