@@ -77,7 +77,7 @@ def explore(
 
 
 def settle(graph: KnownGraph, world: ArmWorld, day: ArmWorld) -> None:
-    """Ask about all milestones and edges that nobody has asked about, but for those that turn."""
+    """Ask about all milestones that nobody has asked about, and edges that are not proved, but for those that turn."""
     n, nodes = int(graph.desk[at.NODES]), graph.nodes
     q = graph.milestones[:n]
     unknown = np.flatnonzero(nodes[:n] == UNKNOWN)
@@ -85,7 +85,7 @@ def settle(graph: KnownGraph, world: ArmWorld, day: ArmWorld) -> None:
     nodes[unknown] = np.where(world.valid(q[unknown]), FREE, UNKNOWN if graph.desk[at.LIFTING] else BLOCKED)
     a, b, turns = graph.motions()
     verdicts = graph.edges[: len(a)]
-    open_ = (verdicts == UNKNOWN) & ~turns & (nodes[a] >= FREE) & (nodes[b] >= FREE)
+    open_ = ~np.isin(verdicts, (BLOCKED, PROVED)) & ~turns & (nodes[a] >= FREE) & (nodes[b] >= FREE)
     old = np.arange(len(a)) < graph.desk[at.BASE]
     for asked, rows in ((day, np.flatnonzero(open_ & old)), (world, np.flatnonzero(open_ & ~old))):
         free = asked.motion_certified(q[a[rows]], q[b[rows]], RECHECK_TOLERANCE)

@@ -57,7 +57,10 @@ def ends_between_obstacles(world: ArmWorld, count: int, rng: np.random.Generator
 
 def _closed(world: ArmWorld, q: Floats, far: float) -> Floats:
     """Return in how many directions a tip does not get far: (n,)."""
-    tips, closed = tips_of(world.robot, q), np.zeros(len(q))
+    closed = np.zeros(len(q))
+    if not len(q):
+        return closed
+    tips = tips_of(world.robot, q)
     for tip in range(tips.shape[1]):
         closed = np.maximum(closed, _closed_in(world.scene, tips[:, tip], far))
     return closed
@@ -65,18 +68,13 @@ def _closed(world: ArmWorld, q: Floats, far: float) -> Floats:
 
 def _closed_in(scene: Scene, places: Floats, far: float) -> Floats:
     """Return in how many directions a ball does not get far from places, (n, 3): (n,); 0 where there is no place."""
-    ball = ArmWorld(
-        _ball(places.min(axis=0) - 2.0 * far, places.max(axis=0) + 2.0 * far), _alone(scene), STEP
-    )
+    around = places.min(axis=0) - 2.0 * far, places.max(axis=0) + 2.0 * far
+    # Nothing that the scene says of its robot.
+    ball = ArmWorld(_ball(*around), Scene(scene.name, scene.obstacles), STEP)
     blocked = np.zeros(len(places))
     for way in _WAYS:
         blocked += ~ball.motion_valid(places, places + far / np.linalg.norm(way) * way)
     return np.where(ball.valid(places), blocked, 0.0)
-
-
-def _alone(scene: Scene) -> Scene:
-    """Return the obstacles of a scene with nothing said of a robot."""
-    return Scene(scene.name, scene.obstacles)
 
 
 def _ball(low: Floats, high: Floats) -> Robot:
