@@ -75,6 +75,9 @@ ENDS_TAKEN, SPENT, PAUSED = range(FULL + 1, FULL + 4)
 ONWARD = 0.5
 """Links are tried in the order of their length and this share of what is left beyond them."""
 
+CLOSE_ONWARD = 0.3
+"""The same of links by displacement, which find a way for most ends that see nothing, but lead round about."""
+
 AIMED = 4
 """A goal of which so many links were blocked before a free one was found is approached by that one."""
 
@@ -120,6 +123,9 @@ def _choose_close(s: Search, end: int) -> None:
     """Choose other milestones that an end is tried to be linked to: free ones that are near in displacement."""
     d, n, count = s.desk, s.desk[NODES], 0
     write_distances(s, end, s.rules[WEIGHTS], s.costs[:n])
+    write_distances(s, 1 if end == 0 else 0, s.rules[WEIGHTS], s.keys[:n])
+    for i in range(n):
+        s.costs[i] += CLOSE_ONWARD * s.keys[i]
     for i in range(n):
         if s.nodes[i] >= FREE and s.links[end, i] != BLOCKED:
             count = kept_in_order(s.keys, s.near[end], count, d[CLOSE], s.costs[i], i)
