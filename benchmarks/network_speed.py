@@ -37,7 +37,7 @@ def main() -> None:
             for _ in range(STEPS):
                 MEASURES["hickernell"].of_columns(columns)
 
-        config = NetworkConfig(n, d, steps=STEPS)
+        config = NetworkConfig(n, d, width=32, steps=STEPS)
         step = milliseconds(partial(train, config))
         print(f"{d:2d}  {n:4d}  {step:9.2f}  {milliseconds(losses):17.2f}", flush=True)
 

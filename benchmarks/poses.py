@@ -1,6 +1,7 @@
 """Sets that are even on the manifold itself, beside those that are even in the cube: dispersion, and planning.
 
     python -m benchmarks.poses --csv docs/data/poses.csv
+    python -m benchmarks.poses --plane --worlds 400 -n 256 --csv docs/data/poses_plane.csv
     python -m benchmarks.poses --tune --worlds 400 -n 512
     python -m benchmarks.poses --fresh --worlds 600 -n 128 256 512 1024 --csv docs/data/poses_fresh.csv
     python -m benchmarks.poses --puzzles --draws 200 -n 1024 --csv docs/data/poses_puzzles.csv
@@ -14,6 +15,7 @@ SE(3): success in the fair suite's worlds of the reporting stream, every sampler
 the suite; "+-" is the standard error of the difference from scrambled Sobol, paired by world.  "sliced" is what a
 planner takes, "even" the lattice in the cube that is mapped to poses.  `--puzzles` asks the two of the paper's suite,
 whose sets give the rotation, too: there differences are not paired, since all sets meet the same obstacles.
+`--plane` asks the same in SE(2), and how large the holes of even directions of the sphere are.
 `--fresh` is the slice against scrambled Sobol once more, in worlds that nobody had seen when everything was decided,
 others for each N.  `--tune` compares shares of poses in the slice, in worlds of the tuning stream, which chose the
 share.
@@ -31,12 +33,13 @@ from scipy.spatial.transform import Rotation
 from benchmarks.nested_k import smallest_k
 from evenroad._arrays import Floats
 from evenroad.points import draw
-from evenroad.points.samplers.poses import Poses, Rotations, Sliced
+from evenroad.points.samplers.poses import Poses, Rotations, Sliced, spread_directions
 from evenroad.research.problems import source_named
 from evenroad.research.problems.fair import ROTATION_WEIGHT, SIZES, Family, Stream, make_instance
 from evenroad.space import SO3
 
 SAMPLERS = ("sliced", "poses", "even", "sobol", "hickernell", "uniform")
+IN_PLANE = ("poses", "even", "sobol", "hickernell", "uniform")
 SHARES = {"a sixth": 1 / 6, "a third": 1 / 3, "half": 0.5, "all": 1.0}
 RULES = (4, 6, 10, 20)
 FRESH = 1_000_000
@@ -52,6 +55,7 @@ def main() -> None:
     parser.add_argument("--tune", action="store_true")
     parser.add_argument("--fresh", action="store_true")
     parser.add_argument("--puzzles", action="store_true")
+    parser.add_argument("--plane", action="store_true")
     parser.add_argument("--csv", type=Path)
     options = parser.parse_args()
     if options.tune:
@@ -63,6 +67,11 @@ def main() -> None:
         rows = fresh(options.n, options.worlds)
     elif options.puzzles:
         rows = [row for name in PUZZLES for n in options.n for row in puzzle(name, n, options.draws)]
+    elif options.plane:
+        rows = [row for n in (48, 192) for row in directions(n)]
+        rows += [
+            row for n in options.n for row in planning(n, options.worlds, options.draws, IN_PLANE, stream, 3)
+        ]
     else:
         rows = [] if options.tune else [row for n in (72, 576) for row in rotations(n)]
         rows += [
@@ -103,6 +112,32 @@ def rotations(n: int) -> list[tuple[object, ...]]:
             ("hole", n, "", sampler, f"{hole:.2f}", "", ""),
             ("gap", n, "", sampler, f"{gap:.2f}", "", ""),
         ]
+    return rows
+
+
+def directions(n: int) -> list[tuple[object, ...]]:
+    """Print and return the largest hole of n directions of the sphere [degrees]; the median of five draws."""
+    probes = np.random.default_rng(0).standard_normal((200_000, 3))
+    probes /= np.linalg.norm(probes, axis=1, keepdims=True)
+    rows: list[tuple[object, ...]] = []
+    for sampler in ("directions", "healpix", "even", "sobol", "uniform"):
+        holes = []
+        for seed in range(5):
+            if sampler == "directions":
+                u = spread_directions(n, 3, rng=seed)
+            else:
+                around = healpix(round((n / 12) ** 0.5))
+                if sampler != "healpix":
+                    around = [
+                        (2 * z - 1, 2 * np.pi * turn) for z, turn in draw(sampler, n, 2, rng=seed).points
+                    ]
+                z, phi = np.array(around).T
+                flat = np.sqrt(1 - z * z)
+                u = np.column_stack([z, flat * np.cos(phi), flat * np.sin(phi)])
+            nearest = min((some @ u.T).max(1).min() for some in np.split(probes, 100))
+            holes.append(np.degrees(np.arccos(nearest)))
+        print(f"S^2 n={n} {sampler:10} largest hole {np.median(holes):5.1f} degrees", flush=True)
+        rows.append(("hole of directions", n, "", sampler, f"{np.median(holes):.2f}", "", ""))
     return rows
 
 
@@ -159,15 +194,17 @@ def orthogonal_images(n: int) -> Floats:
 
 
 def planning(
-    n: int, worlds: int, draws: int, samplers: tuple[str, ...], stream: Stream
+    n: int, worlds: int, draws: int, samplers: tuple[str, ...], stream: Stream, d: int = 6
 ) -> list[tuple[object, ...]]:
-    """Print and return the success in SE(3), of difficulty 50."""
+    """Print and return the success in SE(3), or SE(2) for d = 3, of difficulty 50."""
+    family, space = (Family.SE3, "SE(3)") if d == 6 else (Family.SE2, "SE(2)")
     solved = {(sampler, k): np.zeros(worlds) for sampler in samplers for k in RULES}
     for number in range(worlds):
-        problem = make_instance(stream, Family.SE3, 6, 50, SIZES[Family.SE3, 6][1], number)
+        problem = make_instance(stream, family, d, 50, SIZES[family, d][1], number)
         for sampler in samplers:
             for run in range(draws):
-                least = smallest_k(problem, _cube(sampler, n, draws * number + run), RULES[-1])
+                cube = _cube(sampler, n, draws * number + run, (1.0,) * (3 if d == 6 else 2))
+                least = smallest_k(problem, cube, RULES[-1])
                 for k in RULES:
                     solved[sampler, k][number] += (least <= k) / draws
     rows: list[tuple[object, ...]] = []
@@ -176,9 +213,17 @@ def planning(
             mine, gain = solved[sampler, k], solved[sampler, k] - solved["sobol", k]
             error = gain.std(ddof=1) / np.sqrt(worlds)
             text = f"{100 * mine.mean():5.1f} %, {100 * gain.mean():+5.1f} +- {100 * error:.1f} on Sobol"
-            print(f"SE(3) n={n} k={k:2} {sampler:10} {text}", flush=True)
+            print(f"{space} n={n} k={k:2} {sampler:10} {text}", flush=True)
             rows.append(
-                ("success", n, k, sampler, f"{mine.mean():.4f}", f"{gain.mean():.4f}", f"{error:.4f}")
+                (
+                    "success" if d == 6 else "success in SE(2)",
+                    n,
+                    k,
+                    sampler,
+                    f"{mine.mean():.4f}",
+                    f"{gain.mean():.4f}",
+                    f"{error:.4f}",
+                )
             )
     return rows
 
@@ -231,12 +276,13 @@ def puzzle(name: str, n: int, draws: int) -> list[tuple[object, ...]]:
 
 
 def _cube(sampler: str, n: int, seed: int, sides: tuple[float, ...] = (1.0, 1.0, 1.0)) -> Floats:
+    d = 6 if len(sides) == 3 else 3
     if sampler == "poses":
-        turn = ROTATION_WEIGHT[3] if max(sides) == 1.0 else 1.0
-        return Poses(sides=sides, turn=turn).draw(n, 6, rng=seed).points
+        turn = ROTATION_WEIGHT[len(sides)] if max(sides) == 1.0 else 1.0
+        return Poses(sides=sides, turn=turn).draw(n, d, rng=seed).points
     if sampler == "sliced" or sampler in SHARES:
         return Sliced(SHARES.get(sampler, 1 / 3)).draw(n, rng=seed).points
-    return draw(sampler, n, 6, rng=seed).points
+    return draw(sampler, n, d, rng=seed).points
 
 
 if __name__ == "__main__":

@@ -361,6 +361,8 @@ def main() -> None:
     parser.add_argument("--methods", nargs="+", choices=PLANNED, default=PLANNED)
     parser.add_argument("--out", type=Path, default=DATA)
     options = parser.parse_args()
+    if "sobol" not in options.methods:
+        parser.error("--methods must have sobol among them, which the others are compared with")
     if options.part == "picture":
         picture(options.out)
         return

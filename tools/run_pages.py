@@ -94,8 +94,8 @@ INSTEAD = {
     ),
     "evenroad bench paper --quick *": Instead(f"evenroad bench paper {TASTE} results.db", "half a minute"),
     "evenroad bench arms --runs 300 *": Instead(f"evenroad bench paper {TASTE} results.db", "days"),
-    "evenroad train -n 100 -d 2 --method order *": Instead(
-        "evenroad train -n 12 -d 2 --method order --objective star --sets 1 --steps 20 -o sets", "minutes"
+    "evenroad train -n 100 -d 2 --objective star *": Instead(
+        "evenroad train -n 12 -d 2 --objective star --sets 1 --steps 20 -o sets", "minutes"
     ),
     "evenroad train -n 256 -d 3 --method mpmc *": Instead(
         'evenroad train -n 16 -d 3 --method mpmc --objective "prefixes(hickernell)" --sets 1 --steps 2 -o prefix-sets',

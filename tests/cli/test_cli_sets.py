@@ -149,6 +149,16 @@ def test_json_has_the_same_measures(run):
     assert record["star_squared"] == pytest.approx(record["star_rooted"] ** 2)
 
 
+def test_a_lattice_is_recognised_by_its_points_and_others_are_none(run):
+    np.save("set.npy", draw("even", 128, 3, rng=5).points)
+    record = json.loads(run("measure", "set.npy", "--json")[1])
+    assert record["lattice_neighbours"] == 7
+    assert 1.0 < record["lattice_minima_ratio"] < 1.3
+    assert record["lattice_projected_minimum"] < record["separation_periodic"] * 128**0.5
+    np.save("set.npy", draw("sobol", 128, 3).points)
+    assert not [name for name in json.loads(run("measure", "set.npy", "--json")[1]) if "lattice" in name]
+
+
 def test_in_high_dimensions_the_dispersion_is_called_a_lower_bound(run):
     np.save("set.npy", draw("halton", 64, 6).points)
     record = json.loads(run("measure", "set.npy", "--json")[1])
@@ -232,8 +242,8 @@ def test_the_network_is_judged_by_the_exact_star_discrepancy_on_request(run, tmp
     assert json.loads((tmp_path / "sets" / "request.json").read_text())["network"]["start"] == "kronecker"
 
 
-def test_orders_are_searched_from_the_command_line(run, tmp_path):
-    line = ("train", "-n", 12, "-d", 2, "--method", "order", "--objective", "star", "--sets", 2, "--jobs", 1)
+def test_orders_are_what_is_searched_for_the_star_discrepancy_of_the_plane(run, tmp_path):
+    line = ("train", "-n", 12, "-d", 2, "--objective", "star", "--sets", 2, "--jobs", 1)
     code, out, _ = run(*line, "--steps", 200, "-o", "sets")
     assert code == 0
     best = min(star_discrepancy(load_points(tmp_path / "sets" / f"set-000{i}.npz")) for i in range(2))
@@ -277,6 +287,7 @@ MPMC = ("train", "-n", 12, "-d", 2, "--method", "mpmc", "--sets", 2, "--jobs", 1
         (("--method", "order", "--objective", "star", "-d", 3), "not in d = 3"),
         (("--method", "order", "--objective", "star", "--refine", 3), "--refine does not go"),
         (("--judge", "star"), "--judge does not go with the method 'anneal'"),
+        (("--objective", "star", "--judge", "star"), "--judge does not go with the method 'order'"),
         (("--method", "order", "--objective", "star", "--start", "sobol"), "--start does not go"),
         (("--method", "mpmc", "--start", "grid"), "unknown start 'grid'.*kronecker"),
         (("--method", "mpmc", "--judge", "star", "-d", 3), "not in d = 3"),

@@ -129,6 +129,20 @@ def test_exploring_again_finds_the_same_and_another_seed_something_else(roadmap,
     assert not np.array_equal(first._graph.milestones[:n], other._graph.milestones[:n])
 
 
+def test_the_shortest_way_along_an_explored_roadmap_is_no_longer_than_a_greedy_one(roadmap, ends):
+    known = explored(roadmap)
+    n = int(known._graph.desk[at.NODES])
+    ratio = []
+    for start, goal in ends[:20]:
+        shortest, greedy = (known.connect(start, goal[None], links=n, greed=g) for g in (1.0, 3.0))
+        length, other = (
+            np.linalg.norm(np.diff(way.path, axis=0), axis=1).sum() for way in (shortest, greedy)
+        )
+        assert length <= other + 1e-6
+        ratio.append(other / length)
+    assert max(ratio) > 1.01
+
+
 def test_fewer_queries_need_trees_once_a_scene_is_explored(roadmap, ends):
     def ways(known):
         before = len(known.learned)

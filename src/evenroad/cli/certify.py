@@ -73,7 +73,7 @@ class Certify:
         for name in ("k", "connect_radius", "sides", "length"):
             if getattr(self, name) is not None:
                 raise InvalidValue(
-                    f"--{name.replace('_', '-')} goes with a point set; the roadmap knows its own"
+                    f"--{name.replace('_', '-')} goes with a point set, not with an arm's roadmap"
                 )
         # Here, so that sets do not wait for robots to load.
         from evenroad.robot_roadmap.certify import certify_robot_roadmap
@@ -153,7 +153,11 @@ def guarantee_rows(
     path = f"nothing is guaranteed: {needed}; take a larger k or radius, or more points"
     if (least := said["complete_from_clearance"]) is not None:
         path = f"if one of clearance {least:.6g}{unit} does; if none is found, none does"
-    tried = f"all free ones up to {certificate.between:.6g}, from start and goal {certificate.ends:.6g}"
+    between, ends = (
+        f"up to {most:.6g}" if math.isfinite(most) else "of any length"
+        for most in (certificate.between, certificate.ends)
+    )
+    tried = f"all free ones {between}, from start and goal {ends}"
     return [
         ("largest hole", f"{certificate.dispersion:.6g} at most, {certificate.at_least:.6g} at least"),
         ("motions tried", tried),

@@ -6,8 +6,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from evenroad.errors import InvalidValue
+from evenroad.geometry.pose import NO_ROTATION
 from evenroad.geometry.shapes import PRIMITIVES
 from evenroad.robot import Obstacle, Robot, Scene, held_values, in_scene
+
+LONG = 120
+"""Characters that tell a body."""
 
 
 def day_and_all(cell: Scene, scene: Scene) -> tuple[Scene, Scene]:
@@ -71,7 +75,10 @@ def _text(obstacle: Obstacle) -> str:
     if obstacle.shape not in PRIMITIVES:
         return str(obstacle.body)
     size, xyz = (", ".join(f"{value:g}" for value in values) for values in (obstacle.size, obstacle.xyz))
-    return f"{obstacle.shape} of {size} at ({xyz})"
+    turned = ""
+    if obstacle.rotation != NO_ROTATION:
+        turned = f" turned by [{', '.join(f'{value:.4g}' for value in obstacle.rotation)}]"
+    return f"{obstacle.shape} of {size} at ({xyz}){turned}"
 
 
 def require_same_robot(made: Robot, cell: Scene, given: Robot) -> None:
@@ -83,7 +90,12 @@ def require_same_robot(made: Robot, cell: Scene, given: Robot) -> None:
     known = {joint: limits for joint, limits in cell.limits.items() if joint in names}
     given = in_scene(given, replace(cell, limits=known))
     if (difference := next(_differences(made, given), None)) is not None:
-        raise InvalidValue(f"the roadmap was made for another robot, {made.name!r}: {difference}")
+        other = (
+            "another group of"
+            if made.links == given.links and made.group != given.group
+            else "another robot,"
+        )
+        raise InvalidValue(f"the roadmap was made for {other} {made.name!r}: {difference}")
 
 
 def require_same_cell(made: Scene, given: Scene) -> None:
@@ -117,15 +129,18 @@ def _differences(made: Robot, given: Robot) -> Iterator[str]:
             yield f"it had a joint {joint.name!r}, which this one lacks"
         elif other is joint:
             continue
-        elif replace(other, lower=joint.lower, upper=joint.upper, velocity=joint.velocity) != joint:
-            yield f"joint {joint.name!r} has another place, axis or kind ({joint.kind}, now {other.kind})"
+        for field in ("kind", "parent", "child", "xyz", "rotation", "axis", "mimic"):
+            was, now = getattr(joint, field), getattr(other, field)
+            if was != now:
+                yield f"joint {joint.name!r} had {field} {was}, now {now}"
     if len(joints) != len(made.joints):
         yield "this one has more joints"
     # What a scene narrows keeps the bodies and pairs themselves.
     same = made.capsules is given.capsules and made.hulls is given.hulls and made.pairs is given.pairs
     for link in () if same else made.links:
         if _bodies(made, link) != _bodies(given, link):
-            yield f"the bodies of {link!r} differ: {len(_bodies(made, link))}, now {len(_bodies(given, link))}"
+            had, has = _lost(made, given, link), _lost(given, made, link)
+            yield f"the bodies of {link!r} differ: it had {had}; this one has {has}"
     pairs = (() if same else sorted(map(str, map(sorted, robot.pairs))) for robot in (made, given))
     ours, theirs = map(tuple, pairs)
     if ours != theirs:
@@ -138,9 +153,21 @@ def _differences(made: Robot, given: Robot) -> Iterator[str]:
 
 def _bodies(robot: Robot, link: str) -> list[str]:
     """Return the capsules and hulls of a link as texts in which no two different ones look the same."""
-    capsules = [repr(capsule) for capsule in robot.capsules if capsule.link == link]
-    hulls = [repr((hull.points.tolist(), hull.radius)) for hull in robot.hulls if hull.link == link]
+    capsules = [
+        f"a capsule of radius {c.radius!r} from {c.a!r} to {c.b!r}" for c in robot.capsules if c.link == link
+    ]
+    hulls = [
+        f"a hull of radius {hull.radius!r} of {hull.points.tolist()!r}"
+        for hull in robot.hulls
+        if hull.link == link
+    ]
     return sorted(capsules + hulls)
+
+
+def _lost(of: Robot, other: Robot, link: str) -> str:
+    """Return how many bodies of a link another robot does not have, and the first of them."""
+    lost = [body for body in _bodies(of, link) if body not in _bodies(other, link)]
+    return f"{len(lost)}, {lost[0][:LONG]}" if lost else "none"
 
 
 def _lists(what: str, ours: object, theirs: object) -> str:

@@ -39,7 +39,7 @@ _LONG = 1e8
 LANDMARKS = 24
 """From so many milestones it is known how far all others are along free motions."""
 
-CLOSE = 30
+CLOSE = 20
 """An end that none of its links joins is tried to be linked to so many milestones that are nearest in displacement."""
 
 

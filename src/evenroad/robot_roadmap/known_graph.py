@@ -140,6 +140,7 @@ class KnownGraph:
         goals: Floats,
         links: int,
         greed: float,
+        nearby: float = 0.0,
         room: int = 1,
         *,
         only_known: bool = False,
@@ -147,11 +148,12 @@ class KnownGraph:
     ) -> None:
         """Write a query, of which nothing is known yet.
 
-        `greed` multiplies the bound of the search, 1 for the shortest way; `room` the usual memory.  With
-        `only_known` it is the last query, whose links are known; where these are forgotten, it is a new one.  With
+        `greed` multiplies the bound of the search, 1 for the shortest way; `nearby` times their length links of the
+        start come later than this says, so that near milestones are tried first; `room` multiplies the usual memory.
+        With `only_known` it is the last query, whose links are known; where these are forgotten, it is a new one.  With
         `unturned` ends are linked to milestones in their one turn.
         """
-        desk, e, self.rules[at.GREED] = self.desk, 1 + len(goals), greed
+        desk, e, self.rules[at.GREED], self.rules[at.NEARBY] = self.desk, 1 + len(goals), greed, nearby
         dim, capacity = int(desk[at.DIM]), int(desk[at.CAPACITY])
         desk[at.LINKS] = min(links, desk[at.NODES])
         if self._shape != (e, room):

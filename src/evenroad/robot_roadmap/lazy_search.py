@@ -34,6 +34,7 @@ from evenroad.robot_roadmap.search_memory import (
     LINKS,
     MADE,
     MEASURED,
+    NEARBY,
     NEXT,
     NODES,
     NUMBER,
@@ -226,9 +227,10 @@ def _goal_link(s: Search) -> int:
                     s.asked[0, k] = s.ends[end, k]
                 write(s, i, s.turns[end, i], s.asked[1])
                 return LINK
-            d[HUB] = i if i < d[TOLD] else -1
-            if missed >= AIMED and s.rules[GREED, 0] > 1.0:
-                d[AIM], d[AIMED_END] = i, end
+            if s.rules[GREED, 0] > 1.0:
+                d[HUB] = i if i < d[TOLD] else -1
+                if missed >= AIMED:
+                    d[AIM], d[AIMED_END] = i, end
             return NONE
     return CUT_OFF
 
@@ -252,7 +254,7 @@ def _open_links(s: Search) -> None:
         if i >= 0 and (s.links[0, i] >= FREE or (s.links[0, i] == UNKNOWN and d[ONLY_KNOWN] == 0)):
             state = state_of(s, i, s.turns[0, i])
             if state >= 0:
-                push(s, state, -1, -1, s.away[i], s.bounds[state, LEFT])
+                push(s, state, -1, -1, s.away[i], s.bounds[state, LEFT] + s.rules[NEARBY, 0] * s.away[i])
 
 
 @quick

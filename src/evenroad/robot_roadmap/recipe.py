@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
@@ -21,6 +22,9 @@ CHOICE = 16
 
 MOST_DRAWN = 1 << 20
 """Where fewer than the wanted ones are free among so many, the robot is said to be hardly ever free."""
+
+ASKED = 100
+"""Of these it is found out what blocks them, and what blocks most is named."""
 
 GAMMA = 4.0
 """Power of the chance of being free that milestones are as dense as, before the ends count."""
@@ -108,8 +112,10 @@ def _free_pool(world: ArmWorld, one: OneTurn, count: int, rng: np.random.Generat
             break
         drawn *= 2
     if not len(free):
+        blocked = Counter(world.explain(each) for each in q[-ASKED:])
+        often, count = blocked.most_common(1)[0]
         raise InvalidValue(
-            f"the robot is never free in its cell: of {drawn} configurations none; in the last one"
-            f" {world.explain(q[-1])}"
+            f"the robot is never free in its cell: of {drawn} configurations none; in {count} of the last"
+            f" {blocked.total()} {often}"
         )
     return free[:count]

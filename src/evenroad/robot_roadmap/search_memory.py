@@ -66,11 +66,10 @@ DESK = 37
 OTHER, NEXT, NUMBER, HALF = range(4)
 """Of a half edge: where it leads, the next one of the same milestone or -1, its edge; how many things that is."""
 
-LOW, HIGH, LIFTS, ENDLESS, MIDDLE, GREED, WEIGHTS = range(7)
+LOW, HIGH, LIFTS, ENDLESS, MIDDLE, GREED, NEARBY, WEIGHTS, RULE_ROWS = range(9)
 """Rows of the rules: limits; 1 for joints that are lifted by whole turns, or turn on for ever; the middle of the range
-of milestones; what the bound is multiplied by, 1 for the shortest way; what a unit counts as displacement."""
-
-RULE_ROWS = 7
+of milestones; what the bound is multiplied by, 1 for the shortest way; by how many times their length links of the
+start are put off; what a unit of a joint counts as displacement.  And how many rows that is."""
 
 OF, LIFTED, SIBLING, REACHED = range(4)
 """Of a state: milestone, packed turns, the next state of the same milestone or -1, the entry it was reached by."""
@@ -95,7 +94,7 @@ class Search(NamedTuple):
         Verdicts of milestones, their first half edges, and another one that free motions lead to, or itself.
     halves, leads, lengths, edges : arrays
         Half edges, (h, 3), their turns, packed, their lengths, verdicts of edges.
-    rules : float64 array, shape (7, dim)
+    rules : float64 array, shape (8, dim)
     far : float32 array, shape (told, landmarks)
         How far milestones are from landmarks along what is known to be free.
     ends, asked : float64 arrays, shapes (e + 1, dim) and (2, dim)

@@ -33,9 +33,10 @@ class Train:
     """How many points."""
     d: Annotated[int, tyro.conf.arg(aliases=["-d"])]
     """How many dimensions."""
-    method: Literal["anneal", "mpmc", "order"] = "anneal"
+    method: Literal["anneal", "mpmc", "order"] | None = None
     """anneal: noisy Adam on the coordinates. mpmc: the message-passing network. order: d = 2, --objective star alone,
-    and this the exact star discrepancy: orders of the points are tried, each with its best places."""
+    and this the exact star discrepancy: orders of the points are tried, each with its best places.  Default: order for
+    --objective star in d = 2, else anneal."""
     objective: str = "hickernell"
     """What is made small: a sum of measures, energies or their logs, e.g. "hickernell+10*riesz"."""
     sets: int = 8
@@ -60,22 +61,26 @@ class Train:
         """Train, write, report."""
         self._check()
         self._make_folder()
-        title = f"{self.method} n={self.n} d={self.d} x {self.sets}"
+        title = f"{self._chosen} n={self.n} d={self.d} x {self.sets}"
         with interrupt_between_steps() as check, progress_shown(title) as report:
 
             def callback(step: int, steps: int, best: float) -> None:
                 check()
                 report(step, steps, best)
 
-            make = {"anneal": self._anneal, "mpmc": self._network, "order": self._order}[self.method]
+            make = {"anneal": self._anneal, "mpmc": self._network, "order": self._order}[self._chosen]
             sets = make(callback)
         objective = parse_objective(self.objective)
         name, value = str(objective), objective.value
-        if self.method == "order" or self.judge == "star":
+        if self._chosen == "order" or self.judge == "star":
             name, value = "star discrepancy", star_discrepancy
         values = np.array([value(each) for each in sets])
         print(f"{self.out}: {len(sets)} sets, {name}: mean {values.mean():.6g}, best {values.min():.6g}")
         return 0
+
+    @property
+    def _chosen(self) -> str:
+        return self.method or ("order" if (self.d, self.objective) == (2, "star") else "anneal")
 
     def _check(self) -> None:
         """Refuse bad options before anything is written, and those that the method would silently ignore."""
@@ -85,16 +90,16 @@ class Train:
         require_points_for(parse_objective(self.objective), self.n)
         of_network = {"refine": self.refine, "start": self.start, "judge": self.judge != "objective"}
         for name, given in of_network.items():
-            if given and self.method != "mpmc":
-                raise InvalidValue(f"--{name} does not go with the method {self.method!r}")
-        if self.method == "order" and (self.d, self.objective) != (2, "star"):
+            if given and self._chosen != "mpmc":
+                raise InvalidValue(f"--{name} does not go with the method {self._chosen!r}")
+        if self._chosen == "order" and (self.d, self.objective) != (2, "star"):
             raise InvalidValue(
                 f"the method 'order' makes sets in d = 2 for --objective star,"
                 f" not in d = {self.d} for {shown(self.objective)}"
             )
         if self.jobs is not None:
             require_count("jobs", self.jobs)
-        if self.method == "mpmc":
+        if self._chosen == "mpmc":
             self._config()
 
     def _make_folder(self) -> None:
