@@ -159,11 +159,6 @@ def step(s: Search) -> int:
                 d[PHASE] = OPEN
     if d[PHASE] == ASK_GOALS:
         question = _goal_link(s)
-        if question == CUT_OFF and d[CLOSE_GOALS] > 0 and d[ONLY_KNOWN] == 0:
-            d[CLOSE_GOALS] = 0
-            for end in range(1, d[ENDS]):
-                _choose_close(s, end)
-            question = _goal_link(s)
         if question != NONE:
             return question
         d[PHASE] = OPEN
@@ -212,27 +207,32 @@ def step(s: Search) -> int:
 def _goal_link(s: Search) -> int:
     """Return NONE where a free link of a goal is known; else the question for one, or CUT_OFF."""
     d = s.desk
-    for end in range(1, d[ENDS]):
-        missed = 0
-        for rank in range(d[LINKS]):
-            i = s.near[end, rank]
-            if i < 0 or s.nodes[i] == BLOCKED:
-                continue
-            if s.links[end, i] == BLOCKED:
-                missed += 1
-                continue
-            if s.links[end, i] == UNKNOWN:
-                d[TO], d[BY] = end, i
-                for k in range(d[DIM]):
-                    s.asked[0, k] = s.ends[end, k]
-                write(s, i, s.turns[end, i], s.asked[1])
-                return LINK
-            if s.rules[GREED, 0] > 1.0:
-                d[HUB] = i if i < d[TOLD] else -1
-                if missed >= AIMED:
-                    d[AIM], d[AIMED_END] = i, end
-            return NONE
-    return CUT_OFF
+    while True:
+        for end in range(1, d[ENDS]):
+            missed = 0
+            for rank in range(d[LINKS]):
+                i = s.near[end, rank]
+                if i < 0 or s.nodes[i] == BLOCKED:
+                    continue
+                if s.links[end, i] == BLOCKED:
+                    missed += 1
+                    continue
+                if s.links[end, i] == UNKNOWN:
+                    d[TO], d[BY] = end, i
+                    for k in range(d[DIM]):
+                        s.asked[0, k] = s.ends[end, k]
+                    write(s, i, s.turns[end, i], s.asked[1])
+                    return LINK
+                if s.rules[GREED, 0] > 1.0:
+                    d[HUB] = i if i < d[TOLD] else -1
+                    if missed >= AIMED:
+                        d[AIM], d[AIMED_END] = i, end
+                return NONE
+        if d[CLOSE_GOALS] == 0 or d[ONLY_KNOWN] != 0:
+            return CUT_OFF
+        d[CLOSE_GOALS] = 0
+        for end in range(1, d[ENDS]):
+            _choose_close(s, end)
 
 
 @quick
