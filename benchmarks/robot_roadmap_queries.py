@@ -68,7 +68,7 @@ def timed(calls: list[Callable[[], PlanResult]]) -> tuple[float, PlanResult]:
     return min(seconds), results[0]
 
 
-def costs(name: str, count: int, n: int, kinds: list[str]) -> None:
+def costs(name: str, count: int, n: int, kinds: list[str], seeds: range = REPORTING) -> None:
     """Print milliseconds, motions and lengths of queries, along a kept roadmap and with trees."""
     pool = Pool(arm(name))
     began = time.process_time()
@@ -78,17 +78,23 @@ def costs(name: str, count: int, n: int, kinds: list[str]) -> None:
     print("|---|" + "---|" * 7)
     for kind in kinds:
         rows: dict[str, list[tuple[float, float, float, float]]] = {}
-        straight, unsolved = [], 0
-        for seed in REPORTING[:SCENES]:
+        straight, unsolved, explored = [], 0, []
+        for seed in seeds[:SCENES]:
             world, pairs = queries(pool, kind, seed, count)
             quick = QuickWorld(world.robot, world.scene)
             copies = [SceneRoadmap(made, world.scene) for _ in range(COPIES)]
+            known = [SceneRoadmap(made, world.scene) for _ in range(COPIES)]
+            for each in known:
+                began = time.process_time()
+                each.explore()
+                explored.append(time.process_time() - began)
             for number, (start, goal) in enumerate(pairs):
                 ends = partial(find_path, start=start, goal=goal, budget=LIMIT)
                 calls = {
                     "trees": [partial(ends, world)] * COPIES,
                     "trees, shortened as much": [partial(ends, quick)] * COPIES,
                     "roadmap, kept scene": [partial(k.plan, start, goal, budget=LIMIT) for k in copies],
+                    "roadmap, explored scene": [partial(k.plan, start, goal, budget=LIMIT) for k in known],
                     "roadmap, new scene": [partial(made.plan, world.scene, start, goal, budget=LIMIT)]
                     * COPIES,
                 }
@@ -116,6 +122,15 @@ def costs(name: str, count: int, n: int, kinds: list[str]) -> None:
                 f" {length:.3f} |",
                 flush=True,
             )
+        before, after = (
+            np.mean(rows[f"roadmap, {which} scene"], axis=0)[0] for which in ("kept", "explored")
+        )
+        once = np.median(explored)
+        print(
+            f"{kind}: exploring takes {once:.3f} s of the processor, as much as it saves in"
+            f" {once / (trees[:, 0].mean() - after):.0f} queries against trees, in {once / (before - after):.0f}"
+            " against a kept scene"
+        )
         print(
             f"{kind}: {len(trees)} queries, {unsolved} unsolved; straight from start to goal is"
             f" {np.mean(straight / trees[:, 3]):.3f} of the trees' length"
@@ -337,12 +352,14 @@ def main() -> None:
     parser.add_argument("--remember", type=int, default=0, help="problems of each kind")
     parser.add_argument("--floor", type=int, default=0, help="queries in each scene")
     parser.add_argument("--prices", type=int, default=0, help="problems of each kind")
+    parser.add_argument("--tuning", action="store_true", help="queries on the seeds kept for tuning")
     parser.add_argument("--draws", type=int, default=2)
     parser.add_argument("-n", type=int, help="milestones; default: 1024 for queries, else 256")
     parser.add_argument("--kinds", nargs="+", default=["table", "box", "shelf"], choices=KINDS)
     options = parser.parse_args()
     if options.queries:
-        costs(options.robot, options.queries, options.n or 1024, options.kinds)
+        seeds = TUNING if options.tuning else REPORTING
+        costs(options.robot, options.queries, options.n or 1024, options.kinds, seeds)
     if options.counts:
         counts(options.robot, options.counts, options.n or 1024, options.kinds)
     if options.suite:
