@@ -29,7 +29,7 @@ from evenroad.research.arms.roadmaps import made_roadmap
 from evenroad.research.arms.scenes import GENERATORS
 from evenroad.roadmap import Budget, PlanResult
 from evenroad.roadmap.find_path import find_path
-from evenroad.robot import ArmWorld, with_limits
+from evenroad.robot import ArmWorld, Scene, with_limits
 from evenroad.robot.trees import shorten
 from evenroad.robot_roadmap import scene_roadmap
 from evenroad.robot_roadmap.chance import chance_of_freedom
@@ -68,6 +68,11 @@ def timed(calls: list[Callable[[], PlanResult]]) -> tuple[float, PlanResult]:
     return min(seconds), results[0]
 
 
+def in_new_scene(made: RobotRoadmap, scene: Scene, start: np.ndarray, goal: np.ndarray) -> PlanResult:
+    """Plan along the roadmap in a scene that it has never seen."""
+    return made.in_scene(scene).plan(start, goal, budget=LIMIT)
+
+
 def costs(name: str, count: int, n: int, kinds: list[str], seeds: range = REPORTING) -> None:
     """Print milliseconds, motions and lengths of queries, along a kept roadmap and with trees."""
     pool = Pool(arm(name))
@@ -95,7 +100,8 @@ def costs(name: str, count: int, n: int, kinds: list[str], seeds: range = REPORT
                     "trees, shortened as much": [partial(ends, quick)] * COPIES,
                     "roadmap, kept scene": [partial(k.plan, start, goal, budget=LIMIT) for k in copies],
                     "roadmap, explored scene": [partial(k.plan, start, goal, budget=LIMIT) for k in known],
-                    "roadmap, new scene": [partial(made.plan, world.scene, start, goal, budget=LIMIT)]
+                    "roadmap, new scene": [partial(in_new_scene, made, world.scene, start, goal)] * COPIES,
+                    "trees first, new scene": [partial(made.plan, world.scene, start, goal, budget=LIMIT)]
                     * COPIES,
                 }
                 answers = {title: timed(some) for title, some in calls.items()}

@@ -52,7 +52,7 @@ def test_a_plan_along_it_is_that_of_python_and_proved(made):
     assert main(["plan", "box-reach.yaml", "--roadmap", "my.roadmap", *ENDS, "--out", "a"]) == 0
     record = json.loads((made / "a.json").read_text())
     scene = er.load_scene("box-reach")
-    result = er.load_robot_roadmap("my.roadmap").plan(scene, "home", "inside")
+    result = er.load_robot_roadmap("my.roadmap").in_scene(scene).plan("home", "inside")
     assert record["path"] == result.path.tolist()
     assert record["proof"] == "certified"
     assert (

@@ -389,6 +389,19 @@ def test_what_touches_the_base_leaves_no_configuration_free(roadmap, cloud):
     assert known.connect(roadmap.milestones[0], roadmap.milestones[1:2]).goal == -1
 
 
+def test_one_query_in_a_new_scene_goes_by_trees_and_many_along_the_roadmap(roadmap):
+    start, goal = [0.0, -1.5, 0.0], [2.0, -1.0, 1.0]
+    once, known = roadmap.plan(box_scene(), start, goal), roadmap.in_scene(box_scene())
+    assert once.planner == "trees"
+    assert once.proof == "certified"
+    assert known.plan(start, goal).planner == "robot roadmap"
+    assert known.world.recheck(once.path).all()
+    ways = len(known.learned)
+    again = known.plan(start, goal, trees="first")
+    np.testing.assert_array_equal(again.path, once.path)
+    assert len(known.learned) == ways + 1
+
+
 def test_a_spent_budget_is_not_a_roadmap_that_leads_nowhere(roadmap):
     known = roadmap.in_scene(Scene("today", (Obstacle.of("ball", "sphere", (0.05,), (0.5, 0.3, 0.4)),)))
     statuses = []

@@ -52,6 +52,9 @@ STEP = 0.2
 BATCH = 64
 """Pockets that are drawn at once."""
 
+MOST_SEEN, FEWEST = 6 * 10**7, 50
+"""Pairs of capsules on all motions to what ends see: no more ends follow then, if there are that many."""
+
 TRIES = 40
 """Pockets for each end that is wanted, at most."""
 
@@ -127,12 +130,16 @@ def ends_in_pockets(
                     yield world, end
 
     found: list[Ints] = []
+    pairs = 0
     for seen in in_order(lambda world, end: _seen(world, inside, pool, scaled, end), ends()):
         found.append(seen)
-        progress(len(found) / count)
+        pairs += len(seen) * len(robot.pairs)
+        progress(max(len(found) / count, pairs / MOST_SEEN))
+        if pairs > MOST_SEEN and len(found) >= FEWEST:
+            break
     if not found:
         return no_ends()
-    return Seen(np.array(own_of), np.cumsum([0, *map(len, found)]), np.concatenate(found))
+    return Seen(np.array(own_of[: len(found)]), np.cumsum([0, *map(len, found)]), np.concatenate(found))
 
 
 def _seen(world: ArmWorld, inside: ArmWorld, pool: Floats, scaled: Floats, end: int) -> Ints:

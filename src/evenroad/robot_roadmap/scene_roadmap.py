@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -25,7 +25,7 @@ from evenroad.robot_roadmap.ask import Asked, Checks, ask
 from evenroad.robot_roadmap.cell import day_and_all, left_to_check, require_same_robot
 from evenroad.robot_roadmap.explored import explore
 from evenroad.robot_roadmap.known_motions import KnownMotions
-from evenroad.robot_roadmap.lazy_search import CUT_OFF, ENDS_TAKEN, NONE, SPENT
+from evenroad.robot_roadmap.lazy_search import CUT_OFF, ENDS_TAKEN, NONE, PAUSED, SPENT
 from evenroad.robot_roadmap.own_shapes import OwnShapesWorld
 from evenroad.robot_roadmap.places import Goal, Place, read_ends
 from evenroad.robot_roadmap.pockets import links_of
@@ -77,6 +77,9 @@ _LONG = 1e8
 
 _SOME = 64
 """Milestones among which one that is free today is looked for, to compile with."""
+
+_NOT_ASKED = Asked(PAUSED, np.empty((0, 0)), -1, 0, 0)
+"""What trees begin with where they are first."""
 
 _ready: set[str] = set()
 """Backends whose programs are compiled."""
@@ -229,7 +232,7 @@ class SceneRoadmap:
         *,
         budget: Budget | None = None,
         shorten: bool = True,
-        trees: bool = True,
+        trees: bool | Literal["first"] = True,
     ) -> PlanResult:
         """Plan from a start to one of the goals: along the roadmap and, where it does not lead there soon, with trees.
 
@@ -242,8 +245,9 @@ class SceneRoadmap:
             Default: 5 s.  Half of the time is the roadmap's, the rest the trees'.
         shorten : bool
             Whether the path is made shorter.
-        trees : bool
+        trees : bool or "first"
             Whether trees are tried, after 90 motions along the roadmap; else more of its links and all motions are.
+            With "first" they are before it, where capsules alone are asked: quicker as long as nothing is known here.
 
         Returns
         -------
@@ -268,7 +272,8 @@ class SceneRoadmap:
         share = SHARE if follow or self._own is not None else 1.0
         limits = min(most, tried[1]) if follow else most, began + share * min(deadline - began, _LONG)
         order = GREED, 0.0 if follow else NEARBY
-        asked = self._ask(first, goals, *limits, links, *order)
+        at_once = trees == "first" and follow and not self._dear
+        asked = _NOT_ASKED if at_once else self._ask(first, goals, *limits, links, *order)
         if asked.ended in (NONE, CUT_OFF, SPENT) and follow and len(goals) == 1:
             soon = most if self._own is None else min(most, asked.motions + SOON)
             asked = self._by_ways_out(asked, first, goals, soon, limits[1], links)
@@ -294,6 +299,7 @@ class SceneRoadmap:
             attempt.motions_checked = asked.motions
         connection = Connection(asked.path, asked.goal, self._size, asked.milestones, asked.motions)
         if asked.goal < 0 and follow and attempt.left() is not None:
+            attempt.planner = "trees" if at_once else f"{PLANNER}, then trees"
             connection = self._by_trees(attempt, asked)
         if connection.goal >= 0:
             result = connected(attempt, connection)
@@ -321,7 +327,6 @@ class SceneRoadmap:
 
     def _by_trees(self, attempt: Attempt, asked: Asked) -> Connection:
         """Return what trees find, and learn it."""
-        attempt.planner = f"{PLANNER}, then trees"
         grown = attempt.connect(self.world)
         if grown.goal >= 0:
             self.learned.append(grown.path)
