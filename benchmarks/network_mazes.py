@@ -14,6 +14,7 @@ import numpy as np
 
 from benchmarks.nested_k import smallest_k
 from evenroad.points import PointSet, draw
+from evenroad.points.bank import Bank
 from evenroad.research.mazes import load_maze
 from evenroad.research.network import NetworkConfig
 from evenroad.research.network.train import kronecker
@@ -22,7 +23,7 @@ from evenroad.research.training import train_many
 from evenroad.roadmap import KNearest, plan
 
 CELLS = ((64, (1, 2)), (128, (2,)), (256, (3,)))
-SEED, STARTS, POOL = 7, 400, 8
+SEED, STARTS = 7, 400
 NEIGHBOURS = (4, 6, 10, 20)
 
 
@@ -90,7 +91,7 @@ def main() -> None:
         )
         shifts = np.random.default_rng(SEED).random((STARTS, 2))
         starts = [PointSet(kronecker(n, shift)) for shift in shifts]
-        pool = [draw("mpmc", n, 2, rng=i) for i in range(POOL)]
+        pool = [PointSet(points) for points in Bank().cell("mpmc", n, 2).load()]
         for level in levels:
             cells = (solved(level, sets) for sets in (made, starts, other, pool))
             print(f"| {level} | {n} | " + " | ".join(cells) + " |", flush=True)
