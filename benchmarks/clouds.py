@@ -13,6 +13,7 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -51,6 +52,21 @@ def triangles_of(box: Obstacle, halvings: int) -> TriangleMesh:
     for _ in range(halvings):
         mesh = mesh.subdivide()
     return TriangleMesh(box.body.pose.apply(mesh.vertices), mesh.faces)
+
+
+def in_pieces(box: Obstacle, count: int) -> list[Obstacle]:
+    """Return meshes that make up a box, cut across its longest side."""
+    sizes, turn = np.array(box.size), np.reshape(box.rotation, (3, 3))
+    longest = int(np.argmax(sizes))
+    shifts = ((np.arange(count) + 0.5) / count - 0.5) * sizes[longest]
+    sizes[longest] /= count
+    pieces = [
+        Obstacle.of(
+            f"{box.name} {i}", "box", tuple(sizes), tuple(box.xyz + shift * turn[:, longest]), box.rotation
+        )
+        for i, shift in enumerate(shifts)
+    ]
+    return [Obstacle(piece.name, Mesh(triangles_of(piece, 4))) for piece in pieces]
 
 
 def _corners(mesh: TriangleMesh) -> Floats:
@@ -151,6 +167,16 @@ def main() -> None:
     for name, body in bodies.items():
         scene = Scene(name, (Obstacle("scan", body),), frozenset((link, "scan") for link in base))
         worlds[name] = ArmWorld(boxes.robot, scene)
+    # Each box a mesh of its own, or four, with a grid around all of them and without it.
+    for name, parts in (("6 meshes", 1), ("24 meshes", 4), ("24 meshes, no grid", 4)):
+        each = tuple(piece for box in boxes.scene.obstacles for piece in in_pieces(box, parts))
+        allowed = frozenset((link, piece.name) for link in base for piece in each)
+        worlds[name] = ArmWorld(boxes.robot, Scene(name, each, allowed))
+    surfaces = worlds[name].lanes.surfaces
+    assert surfaces is not None
+    assert surfaces.around is not None
+    lanes = replace(worlds[name].lanes, surfaces=replace(surfaces, around=None))
+    object.__setattr__(worlds[name], "lanes", lanes)
     compare(worlds, args.repeats, args.count)
     print(f"\n{'':<28}{'built [ms]':>12}{'beyond contact [um], median / most of 60':>44}")
     for name, body in bodies.items():

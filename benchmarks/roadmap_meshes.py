@@ -1,33 +1,36 @@
 """What queries of a robot's roadmap cost where meshes are the checker, beside trees with the same checker.
 
     python -m benchmarks.roadmap_meshes                       # extras [mesh] and [ompl]
-    python -m benchmarks.roadmap_meshes --triangles           # our own compiled triangles as obstacles
+    python -m benchmarks.roadmap_meshes --triangles           # our own compiled triangles as obstacles, core alone
 
 The UR5's links are meshes, 24 corners around each capsule, inside of it; so are the obstacles.  `coal` asks coal about
 every state, of trees and roadmap; `shapes` is what ``in_scene(scene, shapes)`` does, where coal is asked what the
 capsules do not tell; with `--thicker 0.01` these are so many metres thicker than the meshes, which the queries are free
-for.  Trees are OMPL's RRT-Connect through ``evenroad.adapters.ompl``, with the range of ours and the same checker; with
---triangles they are ours.  Both paths are shortened by our compiled shortener, equally much.  Scenes and queries come
-from the seeds kept for reporting; times are of the processor, the first nine queries of a scene are left out.
+for.  Trees are OMPL's RRT-Connect through ``evenroad.adapters.ompl``, with the range of ours and the same checker, and
+both paths are shortened by our compiled shortener, equally much; with --triangles they are ours, as `plan` grows them.
+Scenes and queries come from the seeds kept for reporting; times are of the processor, the first nine queries of a scene
+are left out.
 """
 
 from __future__ import annotations
 
 import argparse
+import sys
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from tests_peers.engines.surface import shape_surface
 
 from benchmarks.arm_problems import REPORTING, TUNING, Pool, arm, problems, queries
 from benchmarks.clouds import triangles_of
-from benchmarks.robot_roadmap_queries import QuickWorld, ratio_of_tails
+from benchmarks.robot_roadmap_queries import COPIES, QuickWorld, ratio_of_tails, timed
 from benchmarks.robot_roadmaps import table_of
 from evenroad.geometry import Mesh
 from evenroad.geometry.shapes import Shape, along_z
-from evenroad.roadmap import Budget
+from evenroad.roadmap import Budget, PlanResult
 from evenroad.roadmap.find_path import find_path
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene
 from evenroad.robot.reference.coal_world import CoalWorld
@@ -104,6 +107,13 @@ def meshes_of(robot: Robot) -> list[Shape]:
     return [Mesh(shape_surface(along_z(capsule)), link=capsule.link) for capsule in robot.capsules]
 
 
+def of_meshes(scene: Scene, halvings: int = 0) -> Scene:
+    """Return a scene in which all is triangles but the table, which is the cell's."""
+    table, *things = scene.obstacles
+    day = with_triangles(replace(scene, obstacles=tuple(things)), halvings)
+    return replace(day, obstacles=(table, *day.obstacles))
+
+
 def with_triangles(scene: Scene, halvings: int = 0) -> Scene:
     """Return a scene whose boxes and cylinders are triangles."""
 
@@ -167,16 +177,57 @@ def by_coal(
     return pairs
 
 
-def by_triangles(made: RobotRoadmap, world: ArmWorld) -> dict[str, tuple[Query, Query]]:
-    """Return our trees, shortened as much as the roadmap's paths, and the roadmap; both compiled."""
-    quick = QuickWorld(world.robot, world.scene)
-
-    def trees(start: np.ndarray, goal: np.ndarray) -> Row:
-        began = time.thread_time()
-        result = find_path(quick, start, goal, budget=Budget(seconds=SECONDS))
-        return time.thread_time() - began, 0, result.cost if result.solved else np.nan
-
-    return {"our triangles": (trees, along(SceneRoadmap(made, world.scene)))}
+def among_triangles(pool: Pool, made: RobotRoadmap, seeds: range, options: argparse.Namespace) -> None:
+    """Print what queries among obstacles of triangles cost, checked in compiled code; the best of three each."""
+    print(
+        "| kind | triangles | planner | median ms | mean ms | mean / trees | 95 % / trees | motions | length |"
+    )
+    print("|---|---|---|" + "---|" * 6, flush=True)
+    budget = Budget(seconds=1.0)
+    for kind in options.kinds:
+        rows: dict[str, list[Row]] = {}
+        sizes, made_in, lost = [], [], 0
+        for seed in seeds[: options.scenes]:
+            world, pairs = queries(pool, kind, seed, options.queries)
+            scene, began = of_meshes(world.scene, options.halvings), time.thread_time()
+            world = ArmWorld(pool.robot, scene)
+            made_in.append(time.thread_time() - began)
+            bodies = [obstacle.body for obstacle in world.scene.obstacles]
+            sizes.append(sum(len(body.triangles.triangles) for body in bodies if isinstance(body, Mesh)))
+            quick = QuickWorld(world.robot, world.scene)
+            copies = [SceneRoadmap(made, world.scene) for _ in range(COPIES)]
+            for number, (start, goal) in enumerate(pairs):
+                ends = partial(find_path, start=start, goal=goal, budget=budget)
+                calls: dict[str, list[Callable[[], PlanResult]]] = {
+                    "trees": [partial(ends, world)] * COPIES,
+                    "trees, shortened as much": [partial(ends, quick)] * COPIES,
+                    "roadmap, kept scene": [partial(k.plan, start, goal, budget=budget) for k in copies],
+                    "roadmap, new scene": [partial(made.plan, world.scene, start, goal, budget=budget)]
+                    * COPIES,
+                }
+                answers = {title: timed(some) for title, some in calls.items()}
+                solved = all(result.solved for _, result in answers.values())
+                lost += not solved
+                if number < FIRST or np.allclose(start, goal) or not solved:
+                    continue
+                for title, (seconds, result) in answers.items():
+                    motions = sum(result.counts.get(c, 0) for c in ("edges_checked", "shortcut_motions"))
+                    rows.setdefault(title, []).append((seconds, motions, result.cost or 0.0))
+        print(
+            f"{kind}: grids and trees of a new scene's meshes take {1e3 * np.median(made_in):.0f} ms; {lost} unsolved",
+            file=sys.stderr,
+        )
+        trees = np.array(rows["trees"])
+        for title, values in rows.items():
+            table = np.array(values)
+            seconds, motions, costs = table.T
+            tails = "{:.2f} ({:.2f} .. {:.2f})".format(*ratio_of_tails(seconds, trees[:, 0]))
+            print(
+                f"| {kind}, {len(table)} | {np.mean(sizes):.0f} | {title} | {1e3 * np.median(seconds):.3f} |"
+                f" {1e3 * seconds.mean():.3f} | {_interval(np.mean, seconds, trees[:, 0])} | {tails} |"
+                f" {motions.mean():.0f} | {np.mean(costs / trees[:, 2]):.3f} |",
+                flush=True,
+            )
 
 
 def main() -> None:
@@ -185,10 +236,12 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--triangles", action="store_true")
+    parser.add_argument("--halvings", type=int, default=3, help="of the sides of these triangles")
     parser.add_argument("--thicker", type=float, default=0.0, help="capsules than meshes [m]")
     parser.add_argument("--tuning", action="store_true", help="the seeds that constants were chosen on")
     parser.add_argument("--queries", type=int, default=100, help="in each scene")
     parser.add_argument("--scenes", type=int, default=2, help="of each kind")
+    parser.add_argument("--minutes", type=float, default=np.inf, help="after which a scene's next is begun")
     parser.add_argument("-n", type=int, default=1024, help="milestones")
     parser.add_argument("--checkers", nargs="+", default=["coal", "shapes"], choices=["coal", "shapes"])
     parser.add_argument("--kinds", nargs="+", default=["table", "box", "shelf"])
@@ -198,6 +251,9 @@ def main() -> None:
     pool = Pool(arm("ur5"))
     robot = thicker(pool.robot, options.thicker) if options.thicker else pool.robot
     made = make_roadmap(robot, table_of(next(problems(pool, seeds))), options.n)
+    if options.triangles:
+        among_triangles(pool, made, seeds, options)
+        return
     shapes = meshes_of(pool.robot)
     print(
         "| kind | checker | queries | trees ms | roadmap ms | medians | means | 95 % | states | length | not solved |"
@@ -207,13 +263,12 @@ def main() -> None:
         rows: dict[str, list[tuple[Row, Row, bool]]] = {}
         for seed in seeds[: options.scenes]:
             world, pairs = queries(pool, kind, seed, options.queries)
-            # The table is the cell's, and stays a box.
-            table, *things = world.scene.obstacles
-            day = with_triangles(replace(world.scene, obstacles=tuple(things)), 3 if options.triangles else 0)
-            world = ArmWorld(robot, replace(day, obstacles=(table, *day.obstacles)))
-            how = () if options.triangles else tuple(options.checkers)
-            calls = by_coal(made, world, shapes, how) or by_triangles(made, world)
+            world = ArmWorld(robot, of_meshes(world.scene))
+            calls = by_coal(made, world, shapes, tuple(options.checkers))
+            until = time.monotonic() + 60.0 * options.minutes
             for number, (start, goal) in enumerate(pairs):
+                if time.monotonic() > until:
+                    break
                 least = path_length(np.array([start, goal]), world.space)
                 for title, (trees, roadmap) in calls.items():
                     one, other = trees(start, goal), roadmap(start, goal)

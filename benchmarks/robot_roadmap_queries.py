@@ -2,6 +2,7 @@
 
     python -m benchmarks.robot_roadmap_queries --queries 100
     python -m benchmarks.robot_roadmap_queries --counts 60
+    python -m benchmarks.robot_roadmap_queries --suite 150
     python -m benchmarks.robot_roadmap_queries --turns 40
     python -m benchmarks.robot_roadmap_queries --remember 40
     python -m benchmarks.robot_roadmap_queries --floor 8
@@ -23,10 +24,14 @@ import numpy as np
 
 from benchmarks.arm_problems import KINDS, REPORTING, TUNING, Pool, Problem, arm, problems, queries
 from benchmarks.robot_roadmaps import table_of
+from evenroad.research.arms.problems import draw_problem
+from evenroad.research.arms.roadmaps import made_roadmap
+from evenroad.research.arms.scenes import GENERATORS
 from evenroad.roadmap import Budget, PlanResult
 from evenroad.roadmap.find_path import find_path
 from evenroad.robot import ArmWorld, with_limits
 from evenroad.robot.trees import shorten
+from evenroad.robot_roadmap import scene_roadmap
 from evenroad.robot_roadmap.chance import chance_of_freedom
 from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
@@ -63,7 +68,7 @@ def timed(calls: list[Callable[[], PlanResult]]) -> tuple[float, PlanResult]:
     return min(seconds), results[0]
 
 
-def costs(name: str, count: int, n: int, kinds: list[str]) -> None:
+def costs(name: str, count: int, n: int, kinds: list[str], seeds: range = REPORTING) -> None:
     """Print milliseconds, motions and lengths of queries, along a kept roadmap and with trees."""
     pool = Pool(arm(name))
     began = time.process_time()
@@ -73,17 +78,23 @@ def costs(name: str, count: int, n: int, kinds: list[str]) -> None:
     print("|---|" + "---|" * 7)
     for kind in kinds:
         rows: dict[str, list[tuple[float, float, float, float]]] = {}
-        straight, unsolved = [], 0
-        for seed in REPORTING[:SCENES]:
+        straight, unsolved, explored = [], 0, []
+        for seed in seeds[:SCENES]:
             world, pairs = queries(pool, kind, seed, count)
             quick = QuickWorld(world.robot, world.scene)
             copies = [SceneRoadmap(made, world.scene) for _ in range(COPIES)]
+            known = [SceneRoadmap(made, world.scene) for _ in range(COPIES)]
+            for each in known:
+                began = time.process_time()
+                each.explore()
+                explored.append(time.process_time() - began)
             for number, (start, goal) in enumerate(pairs):
                 ends = partial(find_path, start=start, goal=goal, budget=LIMIT)
                 calls = {
                     "trees": [partial(ends, world)] * COPIES,
                     "trees, shortened as much": [partial(ends, quick)] * COPIES,
                     "roadmap, kept scene": [partial(k.plan, start, goal, budget=LIMIT) for k in copies],
+                    "roadmap, explored scene": [partial(k.plan, start, goal, budget=LIMIT) for k in known],
                     "roadmap, new scene": [partial(made.plan, world.scene, start, goal, budget=LIMIT)]
                     * COPIES,
                 }
@@ -111,6 +122,15 @@ def costs(name: str, count: int, n: int, kinds: list[str]) -> None:
                 f" {length:.3f} |",
                 flush=True,
             )
+        before, after = (
+            np.mean(rows[f"roadmap, {which} scene"], axis=0)[0] for which in ("kept", "explored")
+        )
+        once = np.median(explored)
+        print(
+            f"{kind}: exploring takes {once:.3f} s of the processor, as much as it saves in"
+            f" {once / (trees[:, 0].mean() - after):.0f} queries against trees, in {once / (before - after):.0f}"
+            " against a kept scene"
+        )
         print(
             f"{kind}: {len(trees)} queries, {unsolved} unsolved; straight from start to goal is"
             f" {np.mean(straight / trees[:, 3]):.3f} of the trees' length"
@@ -134,6 +154,40 @@ def counts(name: str, count: int, n: int, kinds: list[str]) -> None:
         print(
             f"{kind}: median of {np.median(asked[:, 0]):.0f} configurations and {np.median(asked[:, 1]):.0f} motions,"
             f" {share:.0f} % of {len(results)} solved",
+            flush=True,
+        )
+
+
+def counts_in_suite(name: str, count: int, n: int, draws: int) -> None:
+    """Print the same for problems of `evenroad bench arms`, and what it is without links that are put off."""
+    mades = [made_roadmap(name, n, draw, 0) for draw in range(draws)]
+    put_off = scene_roadmap.NEARBY
+    print("| kind | solved | configurations | motions (95 %) | motions, none put off | length |")
+    for kind in GENERATORS:
+        rows = np.empty((count, draws, 2, 3))
+        for number in range(count):
+            problem = draw_problem(name, kind, "report", number)
+            assert isinstance(problem.world, ArmWorld)
+            for draw, nearby in np.ndindex(draws, 2):
+                scene_roadmap.NEARBY = (0.0, put_off)[nearby]
+                found = (
+                    mades[draw].in_scene(problem.world.scene).plan(problem.start, problem.goal, trees=False)
+                )
+                asked = found.counts.get("configurations_checked", 0), found.counts["edges_checked"]
+                rows[number, draw, nearby] = *asked, found.cost if found.solved else np.nan
+        solved, rng = np.isfinite(rows[..., 2]), np.random.default_rng(0)
+        assert (solved[..., 0] == solved[..., 1]).all()
+        medians, both = [], rows[solved[..., 0]]
+        for _ in range(2000):
+            again = rng.integers(count, size=count)
+            medians.append(np.median(rows[again][solved[again][..., 0]][:, :, 1], axis=0))
+        (low0, low), (high0, high) = np.quantile(medians, [0.025, 0.975], axis=0)
+        before, after = np.median(both, axis=0)
+        longer = both[:, 1, 2] / both[:, 0, 2]
+        print(
+            f"| {kind} | {100 * solved[..., 0].mean():.0f} % of {solved[..., 0].size} | {after[0]:.0f} |"
+            f" {after[1]:.0f} ({low:.0f} .. {high:.0f}) | {before[1]:.0f} ({low0:.0f} .. {high0:.0f}) |"
+            f" {longer.mean():.3f} ± {longer.std(ddof=1) / np.sqrt(len(longer)):.3f} |",
             flush=True,
         )
 
@@ -293,18 +347,23 @@ def main() -> None:
     parser.add_argument("--robot", default="ur5")
     parser.add_argument("--queries", type=int, default=0, help="in each scene")
     parser.add_argument("--counts", type=int, default=0, help="problems of each kind")
+    parser.add_argument("--suite", type=int, default=0, help="problems of each of the suite's generators")
     parser.add_argument("--turns", type=int, default=0, help="problems of each kind")
     parser.add_argument("--remember", type=int, default=0, help="problems of each kind")
     parser.add_argument("--floor", type=int, default=0, help="queries in each scene")
     parser.add_argument("--prices", type=int, default=0, help="problems of each kind")
+    parser.add_argument("--tuning", action="store_true", help="queries on the seeds kept for tuning")
     parser.add_argument("--draws", type=int, default=2)
     parser.add_argument("-n", type=int, help="milestones; default: 1024 for queries, else 256")
     parser.add_argument("--kinds", nargs="+", default=["table", "box", "shelf"], choices=KINDS)
     options = parser.parse_args()
     if options.queries:
-        costs(options.robot, options.queries, options.n or 1024, options.kinds)
+        seeds = TUNING if options.tuning else REPORTING
+        costs(options.robot, options.queries, options.n or 1024, options.kinds, seeds)
     if options.counts:
         counts(options.robot, options.counts, options.n or 1024, options.kinds)
+    if options.suite:
+        counts_in_suite(options.robot, options.suite, options.n or 1024, options.draws)
     if options.turns:
         turns(options.robot, options.turns, options.n or 256, options.draws)
     if options.remember:

@@ -13,7 +13,7 @@ ROOT = Path(evenroad.__file__).parent
 
 BASE = {
     *("errors", "_checks", "_rng", "_files", "_npz", "_yaml"),
-    *("_arrays", "_clock", "_terminal", "_compiled", "_fingerprint", "_njit"),
+    *("_arrays", "_clock", "_terminal", "_compiled", "_fingerprint", "_njit", "_threads"),
 }
 MAY_IMPORT = {
     "points": BASE,

@@ -149,6 +149,16 @@ def test_json_has_the_same_measures(run):
     assert record["star_squared"] == pytest.approx(record["star_rooted"] ** 2)
 
 
+def test_a_lattice_is_recognised_by_its_points_and_others_are_none(run):
+    np.save("set.npy", draw("even", 128, 3, rng=5).points)
+    record = json.loads(run("measure", "set.npy", "--json")[1])
+    assert record["lattice_neighbours"] == 7
+    assert 1.0 < record["lattice_minima_ratio"] < 1.3
+    assert record["lattice_projected_minimum"] < record["separation_periodic"] * 128**0.5
+    np.save("set.npy", draw("sobol", 128, 3).points)
+    assert not [name for name in json.loads(run("measure", "set.npy", "--json")[1]) if "lattice" in name]
+
+
 def test_in_high_dimensions_the_dispersion_is_called_a_lower_bound(run):
     np.save("set.npy", draw("halton", 64, 6).points)
     record = json.loads(run("measure", "set.npy", "--json")[1])

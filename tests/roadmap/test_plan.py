@@ -7,8 +7,9 @@ from evenroad.errors import InvalidValue
 from evenroad.points import PointSet, draw
 from evenroad.roadmap import KNearest, Radius, Status, plan
 from evenroad.roadmap.shortcut import shortcut
+from evenroad.space import Box
 from evenroad.space.path import path_length
-from evenroad.world import GridMap
+from evenroad.world import FunctionWorld, GridMap
 
 
 def _map(*rows):
@@ -40,13 +41,31 @@ def test_no_way_around_a_wall_is_an_answer_with_its_reason():
 
 
 def test_few_neighbours_on_a_lattice_are_named_as_a_cause():
-    def message(points, rule):
-        return plan(WALL.world(0.5), (2, 2), (18, 18), points, rule=rule).message
+    def message(family, n, d, k, *sides):
+        space = Box([0.0] * d, sides or [1.0] * d)
+        wall = FunctionWorld(space, lambda q: np.abs(q[:, 0] - 0.5) > 0.2, resolution=0.02)
+        points = draw(family, n, d, rng=4)
+        return plan(wall, [0.1] * d, [0.9] * d, points, rule=KNearest(k)).message
 
-    for family in ("even", "lattice"):
-        assert "fewer than 4 leave directions out" in message(draw(family, 64, 2), KNearest(3))
-        assert "directions" not in message(draw(family, 64, 2), KNearest(4))
-    assert "directions" not in message(draw("halton", 64, 2), KNearest(3))
+    # The six nearest of this lattice of 128 points lie in a plane, the ten nearest of 96 in five dimensions in three.
+    assert "the nearest 6 of this lattice leave directions out, 7 would not" in message("even", 128, 3, 6)
+    assert "the nearest 10 of this lattice leave directions out, 21 would not" in message(
+        "korobov", 96, 5, 10
+    )
+    assert "the nearest 10 of this lattice leave directions out, 13 would not" in message("even", 96, 5, 10)
+    assert "the nearest 4 of this lattice leave directions out" in message("even", 128, 7, 4)
+    # One of two opposite neighbours is enough.
+    assert "directions" in message("even", 64, 2, 2)
+    assert "directions" not in message("even", 64, 2, 3)
+    # Where one side is long, the nearest lie along the other; where it is so long that they lie outside, who knows.
+    assert "directions" not in message("even", 100, 2, 4)
+    assert "the nearest 4 of this lattice leave directions out, 9 would not" in message(
+        "even", 100, 2, 4, 1, 8
+    )
+    assert "directions" not in message("even", 100, 2, 4, 1, 1000)
+    # Of A_d* all nearest are equally near, and others have no pairs.
+    for family in ("halton", "lattice"):
+        assert "directions" not in message(family, 64, 3, 3)
 
 
 @pytest.mark.parametrize(

@@ -9,9 +9,10 @@ import trimesh
 from evenroad.geometry import Mesh, Pose, TriangleMesh, rotation_from_rpy
 from evenroad.geometry.mesh import closed_parts, merged
 from evenroad.robot.arm_world import ArmWorld
+from evenroad.robot.kernel.surface_grid import STEPS, grid_of_triangles
 from evenroad.robot.scene import Obstacle, Scene
 from tests.robot.kernel_arms import as_balls, edge, random_tree, seven_joint_arm, ur5
-from tests.robot.surface_oracle import mesh_clearance
+from tests.robot.surface_oracle import mesh_clearance, point_triangle
 
 BAND = 1e-5
 """Nearer to contact than this [m] either verdict is right; but single precision must then say blocked."""
@@ -169,3 +170,37 @@ def test_a_robot_that_stands_inside_is_never_free():
     world = ArmWorld(thin(ur5()), scene_of(ball(0, 0, 0, 1.0)))
     assert world.fixed_contact == ("base", "mesh0")
     assert not world.valid(np.zeros((1, 6)))[0]
+
+
+def all_sorts(rng):
+    """Triangles large and small, slivers, such without an area, along planes between cells and out of the grid."""
+    sizes = np.repeat([1.0, 0.1, 0.003], [20, 100, 400])[:, None, None]
+    corners = rng.uniform(-0.4, 0.4, (520, 1, 3)) + sizes * rng.uniform(-1, 1, (520, 3, 3))
+    corners[:40, 2] = corners[:40, 1] + rng.normal(0.0, 1e-12, (40, 3))
+    corners[40:80, 2] = 0.5 * (corners[40:80, 0] + corners[40:80, 1])
+    corners[80:120, :, 1] = 0.25
+    corners[120:130] = corners[120:130, :1]
+    corners[130:160] = np.round(corners[130:160], 1)
+    return corners
+
+
+def test_the_grid_of_triangles_says_no_more_than_is_true_and_no_less_than_it_should():
+    rng = np.random.default_rng(6)
+    corners = all_sorts(rng)
+    grid = grid_of_triangles(corners, corners[:0], False, 0.6)
+    weights = rng.dirichlet(np.full(3, 0.5), (len(corners), 2000))
+    weights[:, :3] = np.eye(3)
+    on = (weights @ corners).reshape(-1, 3)
+    cells = np.floor((on - grid.low) / grid.cell).astype(int)
+    cells = cells[((cells >= 0) & (cells < grid.taken.shape)).all(axis=1)]
+    assert len(cells) > 500_000
+    assert grid.taken[tuple(cells.T)].all()
+    x = rng.uniform(-0.6, 0.6, (2000, 3))
+    told = grid.distances[tuple(((x - grid.low) / grid.cell).astype(int).T)] * (grid.cell / STEPS)
+    rows = corners.transpose(1, 0, 2)
+    apart = np.array([point_triangle(np.broadcast_to(row, (len(corners), 3)), *rows).min() for row in x])
+    # What lies beyond the grid is not in it.
+    near = apart < 0.6 - np.abs(x).max(axis=1)
+    assert near.sum() > 1000
+    assert (told <= apart)[near].all()
+    assert (apart <= told + grid.told)[near].all()

@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from evenroad import _threads
 from evenroad.robot import ArmWorld, Obstacle, Scene, load_robot, with_group, with_limits
-from evenroad.robot_roadmap import pockets
-from evenroad.robot_roadmap.chance import Surroundings
+from evenroad.robot_roadmap import pockets, sight
+from evenroad.robot_roadmap.chance import Surroundings, chance_of_freedom
 from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.pockets import ends_in_pockets, links_of
 from evenroad.robot_roadmap.spread import spread_order
@@ -76,12 +77,13 @@ def test_ends_see_what_straight_motions_reach_and_never_themselves(arm, pool, mo
     kept = []
     seen_of = pockets._seen
 
-    def noting(world, inside, pool, scaled, end, first):
-        found = seen_of(world, inside, pool, scaled, end, first)
+    def noting(world, inside, pool, scaled, end):
+        found = seen_of(world, inside, pool, scaled, end)
         kept.append((world.scene.obstacles, end, found))
         return found
 
     monkeypatch.setattr(pockets, "_seen", noting)
+    monkeypatch.setattr(_threads, "processors", lambda: 1)
     seen = ends_in_pockets(arm, cell, pool, 2.0 * pool, 30, np.random.default_rng(1))
     assert len(seen.first) == 31
     assert seen.first[-1] == len(seen.which) > 0
@@ -93,7 +95,7 @@ def test_ends_see_what_straight_motions_reach_and_never_themselves(arm, pool, mo
         assert world.motion_valid(np.broadcast_to(pool[end], (len(found), 4)), pool[found]).all()
         # Of the first ones whatever can be reached, of the others the nearest that can.
         reached = world.motion_valid(np.broadcast_to(pool[end], pool.shape), pool)
-        reached = np.flatnonzero(reached & world.valid(pool[end] + pockets.EARLY * (pool - pool[end])))
+        reached = np.flatnonzero(reached & world.valid(pool[end] + sight.EARLY * (pool - pool[end])))
         apart = np.linalg.norm(pool - pool[end], axis=1)
         nearest = 150 + np.argsort(apart[150:])[:60]
         tried = np.append(np.arange(150), nearest)
@@ -103,6 +105,45 @@ def test_ends_see_what_straight_motions_reach_and_never_themselves(arm, pool, mo
 def test_the_same_generator_gives_the_same_ends(arm, pool):
     first, again = (ends_in_pockets(arm, NOTHING, pool, pool, 10, np.random.default_rng(2)) for _ in range(2))
     assert first.which.tolist() == again.which.tolist()
+
+
+def test_the_number_of_processors_changes_nothing(arm, pool, monkeypatch):
+    seen, chances = [], []
+    for count in (1, 3):
+        monkeypatch.setattr(_threads, "processors", lambda count=count: count)
+        seen.append(ends_in_pockets(arm, NOTHING, pool, pool, 40, np.random.default_rng(2)))
+        chances.append(chance_of_freedom(arm, pool, 40, np.random.default_rng(2)))
+    assert len(seen[0].own) == 40
+    for one, several in zip(*seen, strict=True):
+        assert one.tolist() == several.tolist()
+    assert chances[0].tolist() == chances[1].tolist()
+
+
+@pytest.mark.parametrize("endless", [False, True])
+def test_looks_at_sixteen_motions_at_once_only_find_sooner_what_each_motion_touches(arm, endless):
+    if endless:
+        first, *others = arm.joints
+        arm = replace(arm, joints=(replace(first, kind="continuous", lower=-np.inf, upper=np.inf), *others))
+    wall = Obstacle.of("wall", "box", (0.05, 1.0, 1.0), (0.45, 0.2, 0.3))
+    post = Obstacle.of("post", "box", (0.1, 0.1, 1.0), (-0.4, 0.3, 0.5))
+    inside = ArmWorld(arm, Scene("cell", (post,)), resolution=0.2)
+    pocket = ArmWorld(replace(arm, pairs=()), Scene("pocket", (wall,)), resolution=0.2)
+    pool = inside.space.from_cube(np.random.default_rng(5).random((3000, 4)))
+    pool = pool[inside.valid(pool)]
+    rows, count = np.arange(len(pool)), 0
+    for end in np.flatnonzero(pocket.valid(pool))[:40].tolist():
+        here = np.broadcast_to(pool[end], pool.shape)
+        free = pocket.valid(pool) & pocket.valid(pocket.space.interpolate(here, pool, sight.EARLY))
+        free &= pocket.motion_valid(here, pool) & inside.motion_valid(here, pool) & (rows != end)
+        found = sight.joined_to(pocket, inside, pool, end, rows)
+        assert found.tolist() == np.flatnonzero(free).tolist()
+        # The slow checks, in double precision, are free wherever the others are.
+        slow = ArmWorld(pocket.robot, pocket.scene, resolution=0.2, backend="scalar")
+        by_slow = sight.joined_to(slow, inside, pool, end, rows)
+        assert set(found.tolist()) <= set(by_slow.tolist())
+        assert len(by_slow) <= 1.01 * len(found) + 2
+        count += len(found)
+    assert 0.02 < count / (40 * len(rows)) < 0.9
 
 
 def test_an_arm_whose_tip_stays_where_it_is_has_no_pockets(arm, pool):

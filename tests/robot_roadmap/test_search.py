@@ -10,9 +10,10 @@ import pytest
 from evenroad.robot import ArmWorld, Scene, with_limits
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
 from evenroad.robot_roadmap.make import make_roadmap
-from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
-from evenroad.robot_roadmap.search_memory import ENTRIES
-from evenroad.robot_roadmap.turns import MOST_TURNS, one_turn
+from evenroad.robot_roadmap.scene_roadmap import GREED, NEARBY, SceneRoadmap
+from evenroad.robot_roadmap.search_memory import BLOCKED, ENTRIES, UNKNOWN
+from evenroad.robot_roadmap.search_metric import BITS
+from evenroad.robot_roadmap.turns import MOST_LIFTED, MOST_TURNS, one_turn
 from evenroad.space import JointSpace
 from tests.robot.kernel_arms import box_scene, ur5
 
@@ -139,6 +140,30 @@ def hard(known, least=0.0):
             yield start, goal[np.newaxis]
 
 
+def test_links_of_the_start_that_are_put_off_are_tried_from_the_nearest_on_and_lead_to_as_much(roadmap):
+    scene = box_scene()
+    turned = (
+        roadmap.milestones + TURN * np.array(list(itertools.product((-1, 0, 1), repeat=3)))[:, np.newaxis]
+    )
+    for start, goals in itertools.islice(hard(SceneRoadmap(roadmap, scene)), 12):
+        known, space = SceneRoadmap(roadmap, scene), roadmap.world.space
+        found = known._ask(start, goals, 10**6, np.inf, 48, GREED, 1e6)
+        assert found.goal == 0
+        assert known.world.recheck(found.path).all()
+        away = np.linalg.norm(turned - start, axis=2)
+        away[((turned < space.low) | (turned > space.high)).any(axis=2)] = np.inf
+        away, verdicts = away.min(axis=0), known._graph._links[0, : len(roadmap.milestones)]
+        here = known._graph.nodes[: len(away)] != BLOCKED
+        tried = verdicts != UNKNOWN
+        assert away[tried].max() <= away[here & ~tried].min() + 1e-5
+        # So it is asked, if less strictly, where no trees follow.
+        near, far = roadmap.in_scene(scene), roadmap.in_scene(scene)
+        planned = near.plan(start, goals, shorten=False, trees=False)
+        found = far._ask(start, goals, 10**6, np.inf, 48, GREED, NEARBY)
+        assert planned.counts["edges_checked"] == found.motions
+        np.testing.assert_array_equal(planned.path, found.path)
+
+
 def far_apart(known):
     return next(hard(known, 1.5 * TURN))
 
@@ -177,6 +202,17 @@ def test_joints_of_very_many_turns_are_followed_over_some_of_them():
         assert result.solved
         assert known.world.recheck(result.path).all()
         assert np.abs(np.diff(result.path[:, 0])).sum() >= turned - start[0] - 1e-9
+
+
+def test_of_very_many_joints_only_those_turn_on_that_the_search_can_follow():
+    wide = JointSpace([-TURN] * 20, [TURN] * 20, [False] * 20, [1.0] * 20)
+    one = one_turn(wide, np.ones(20, dtype=np.bool_))
+    assert one.lifts.tolist() == [True] * MOST_LIFTED + [False] * (20 - MOST_LIFTED)
+    # The others are planned in all of their range, and lead over no end of it.
+    assert (one.high - one.low)[~one.lifts].tolist() == pytest.approx([2.0 * TURN] * (20 - MOST_LIFTED))
+    assert not one.wraps[~one.lifts].any()
+    # Each has four bits of a whole number, of which none is the sign.
+    assert 2 ** (BITS * MOST_LIFTED) < 2**62
 
 
 def test_checks_run_out_and_come_back(roadmap):

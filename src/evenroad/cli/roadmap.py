@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated
@@ -73,7 +74,7 @@ class MakeRoadmap(RobotOptions):
                 tune=self.tune,
                 resolution=self.resolution,
                 rng=self.seed,
-                progress=lambda what, share: shown(int(1000 * share), 1000),
+                progress=_progress(shown, self.tune),
             )
         seconds = time.perf_counter() - began
         save_robot_roadmap(out, roadmap)
@@ -90,6 +91,34 @@ class MakeRoadmap(RobotOptions):
         ]
         print_table(rows)
         return 0
+
+
+_UNTIL = {
+    "drawing configurations": 0.02,
+    "random scenes": 0.1,
+    "pockets": 0.9,
+    "choosing and joining milestones": 1.0,
+}
+_UNTIL_TUNED = {
+    "drawing configurations": 0.01,
+    "random scenes": 0.05,
+    "pockets": 0.35,
+    "tuning: problems": 0.7,
+    "tuning: recipes": 0.95,
+    "choosing and joining milestones": 1.0,
+}
+"""Up to which share of the time what is done takes, in its order; about."""
+
+
+def _progress(shown: Callable[..., None], tune: bool) -> Callable[[str, float], None]:
+    """Return what turns the share of what is being done into that of all."""
+    until = _UNTIL_TUNED if tune else _UNTIL
+    since = dict(zip(until, (0.0, *until.values()), strict=False))
+
+    def progress(what: str, share: float) -> None:
+        shown(int(1000 * (since[what] + share * (until[what] - since[what]))), 1000)
+
+    return progress
 
 
 def kept_roadmap(plan: PlanArm) -> RobotRoadmap:

@@ -9,10 +9,14 @@ from typing import Any
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad.points.measures.rank_one import least_neighbours, neighbour_directions
+from evenroad.points.measures.short_vectors import MOST_AXES
 from evenroad.roadmap.attempt import Attempt, Searched
+from evenroad.roadmap.neighbours import flat_metric
 from evenroad.roadmap.result import PlanResult, SearchedGraph, Status
 from evenroad.roadmap.search import BLOCKED, FREE, EdgeStates, components
 from evenroad.roadmap.shortcut import shortcut
+from evenroad.space import Space
 from evenroad.space.path import path_length
 from evenroad.world import Connection, Explains, Rechecks, Separates, Shortens, World
 
@@ -70,7 +74,11 @@ def answer(
     else:
         # Under ``complete`` nothing but more points helps.
         wider = "radius" if "radius" in attempt.rule else "k" if attempt.rule.startswith("k") else ""
-        advice = f"try n={2 * points}" + (f" or a larger {wider}" if wider else "") + _few_directions(attempt)
+        advice = (
+            f"try n={2 * points}"
+            + (f" or a larger {wider}" if wider else "")
+            + _few_directions(attempt, points)
+        )
         failed = _result(attempt, Status.NOT_CONNECTED, f"{so_far}, {missing} {made}: {advice}")
     return replace(failed, counts=counts, roadmap=graph)
 
@@ -162,16 +170,35 @@ def _reach(attempt: Attempt, searched: Searched, counts: dict[str, int]) -> tupl
     return so_far, "and the two components do not meet"
 
 
-def _few_directions(attempt: Attempt) -> str:
-    """Return what to say of a lattice whose points have fewer neighbours than directions."""
-    k, d = re.match(r"k=(\d+) ", attempt.rule), attempt.world.space.cube_dim
-    if (
-        k is None
-        or int(k[1]) >= 2 * d
-        or not ("lattice" in attempt.origin.method or "A_d*" in attempt.origin.method)
-    ):
+def _few_directions(attempt: Attempt, points: int) -> str:
+    """Return what to say of a Korobov lattice whose points have neighbours in too few directions."""
+    space, d = attempt.world.space, attempt.world.space.cube_dim
+    rule = re.match(r"k=(\d+) symmetrised", attempt.rule)
+    lattice = re.match(r"rank-1 lattice (a|z)=([\d ]+), (axes permuted)?", attempt.origin.method)
+    if rule is None or lattice is None:
         return ""
-    return f"; a lattice's nearest points come in opposite pairs, so that fewer than {2 * d} leave directions out"
+    k, scale = int(rule[1]), _axis_scales(space)
+    if scale is None:
+        return ""
+    # Nearest points come in opposite pairs: so many are needed at least.
+    needed = 2 * d - 1
+    if d <= MOST_AXES and not (lattice[3] and np.ptp(scale) > 1e-9 * scale[0]):
+        numbers = [int(each) for each in lattice[2].split()]
+        vector = [pow(numbers[0], i, points) for i in range(d)] if lattice[1] == "a" else numbers
+        if (np.abs(neighbour_directions(points, vector, k, scale).vectors) >= points).any():
+            # The box is so long, or the points so few, that neighbours would lie beyond it.
+            return ""
+        needed = least_neighbours(points, vector, scale)
+    return f"; the nearest {k} of this lattice leave directions out, {needed} would not" if k < needed else ""
+
+
+def _axis_scales(space: Space) -> Floats | None:
+    """Return what each axis of the cube counts in a flat space, (d,), or None."""
+    metric = flat_metric(space)
+    if metric is None:
+        return None
+    corners = space.from_cube(np.vstack([np.zeros(space.cube_dim), 0.25 * np.eye(space.cube_dim)]))
+    return np.asarray(4.0 * np.linalg.norm(metric.scale * (corners[1:] - corners[0]), axis=1))
 
 
 def _result(attempt: Attempt, status: Status, message: str, **more: Any) -> PlanResult:

@@ -33,6 +33,7 @@ def ask(
     *,
     links: int,
     greed: float,
+    nearby: float = 0.0,
     only_known: bool = False,
     unturned: bool = False,
     most_motions: int,
@@ -40,16 +41,17 @@ def ask(
 ) -> Asked:
     """Search for a way from a start, (dim,), to one of some goals, (g, dim), each tried to be linked to so many.
 
-    Of what the roadmap knows to be free of robot and cell, `day` is asked; of the rest the whole world.  With
-    `only_known` the query is the last one, and nothing is gone along but what is known to be free by now.
-    With `unturned` ends are linked to milestones as these are, not turned to be near.
+    Of what the roadmap knows to be free of robot and cell, `day` is asked; of the rest the whole world.  `greed` and
+    `nearby` are as `KnownGraph.prepare` has them.  With `only_known` the query is the last one, and nothing is gone
+    along but what is known to be free by now.  With `unturned` ends are linked to milestones as these are, not turned
+    to be near.
     """
     if isinstance(world, ArmWorld) and world.fixed_contact is not None:
         # Of what no joint moves compiled code is told nothing.
         return Asked(ENDS_TAKEN, np.empty((0, len(start))), -1, 0, 0)
     room = 1
     while True:
-        graph.prepare(start, goals, links, greed, room, only_known=only_known, unturned=unturned)
+        graph.prepare(start, goals, links, greed, nearby, room, only_known=only_known, unturned=unturned)
         if _by_one_program(world) and _by_one_program(day):
             asked = _by_lanes(world, day, graph, most_motions, deadline)
         elif isinstance(world, ArmWorld):

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad._threads import in_order
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene
 from evenroad.robot.kinematics import capsule_ends, link_poses
 
@@ -64,8 +65,9 @@ def chance_of_freedom(
     """
     bare, around = replace(robot, pairs=()), Surroundings.of(robot, q)
     free = np.zeros(len(q))
-    for i in range(scenes):
-        free += ArmWorld(bare, random_scene(*around, rng)).valid(q)
+    drawn = ((ArmWorld(bare, random_scene(*around, rng)), q) for _ in range(scenes))
+    for i, verdicts in enumerate(in_order(ArmWorld.valid, drawn)):
+        free += verdicts
         progress((i + 1) / scenes)
     return free / scenes
 

@@ -31,16 +31,14 @@ from evenroad.robot_roadmap.lazy_search import (
     answer,
     begin,
     clear,
-    pop,
-    push,
     question_of,
-    state_of,
     verdict_of,
     way_back,
     write_asked,
 )
 from evenroad.robot_roadmap.search_memory import BLOCKED, DOUBTED, FREE, UNKNOWN, Search
 from evenroad.robot_roadmap.search_metric import distance, write
+from evenroad.robot_roadmap.search_queue import pop, push, state_of
 from evenroad.world import World
 
 NOT_ASKED, NOT_PROVED = 5.0, 20.0

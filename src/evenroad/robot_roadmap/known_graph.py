@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._arrays import Floats, Ints, Ints32
+from evenroad._arrays import Bools, Floats, Ints, Ints32
 from evenroad.robot.kernel.addresses import address, doubles_at, integers_at, matrix_at
 from evenroad.robot.kernel.layout import program, quick
 from evenroad.robot_roadmap import search_memory as at
@@ -61,6 +61,7 @@ class KnownGraph:
         self.rules[[at.LOW, at.HIGH]] = one.limits
         self.rules[at.LIFTS], self.rules[at.ENDLESS] = one.lifts, one.wraps & ~one.lifts
         self.rules[at.MIDDLE], self.rules[at.GREED] = 0.5 * (one.low + one.high), 1.0
+        self.rules[at.WEIGHTS] = 1.0
         self.desk[at.DIM], self.desk[at.LIFTING] = dim, one.lifts.any()
         self._query, self._shape = np.empty(0), (0, 0)
         self._make_room(n, count, len(edges))
@@ -139,6 +140,7 @@ class KnownGraph:
         goals: Floats,
         links: int,
         greed: float,
+        nearby: float = 0.0,
         room: int = 1,
         *,
         only_known: bool = False,
@@ -146,11 +148,12 @@ class KnownGraph:
     ) -> None:
         """Write a query, of which nothing is known yet.
 
-        `greed` multiplies the bound of the search, 1 for the shortest way; `room` the usual memory.  With
-        `only_known` it is the last query, whose links are known; where these are forgotten, it is a new one.  With
+        `greed` multiplies the bound of the search, 1 for the shortest way; `nearby` times their length links of the
+        start come later than this says, so that near milestones are tried first; `room` multiplies the usual memory.
+        With `only_known` it is the last query, whose links are known; where these are forgotten, it is a new one.  With
         `unturned` ends are linked to milestones in their one turn.
         """
-        desk, e, self.rules[at.GREED] = self.desk, 1 + len(goals), greed
+        desk, e, self.rules[at.GREED], self.rules[at.NEARBY] = self.desk, 1 + len(goals), greed, nearby
         dim, capacity = int(desk[at.DIM]), int(desk[at.CAPACITY])
         desk[at.LINKS] = min(links, desk[at.NODES])
         if self._shape != (e, room):
@@ -195,6 +198,53 @@ class KnownGraph:
             None if count < 0 else rows[:count] for rows, count in zip(found, counts.tolist(), strict=True)
         ]
 
+    def motions(self) -> tuple[Ints, Ints, Bools]:
+        """Return from which milestone to which the edges lead, (m,) each, and which of them after turns."""
+        count, made = int(self.desk[at.EDGES_MADE]), int(self.desk[at.HALVES_MADE])
+        owner, here = np.empty(made, dtype=np.int64), np.arange(self.desk[at.NODES])
+        half = self.first[: len(here)]
+        while len(half):
+            here, half = here[half >= 0], half[half >= 0]
+            owner[half] = here
+            half = self.halves[half, at.NEXT].astype(np.int64)
+        number, ends = self.halves[:made, at.NUMBER], np.empty((3, count), dtype=np.int64)
+        ends[:, number] = owner, self.halves[:made, at.OTHER], self.leads[:made]
+        return ends[0], ends[1], ends[2] != 0
+
+    def join(self, pairs: Ints, lengths: Floats) -> None:
+        """Take motions between milestones, (m, 2), of such lengths, (m,), for edges that are proved free today."""
+        self._own_halves()
+        desk, more = self.desk, len(pairs)
+        while (
+            desk[at.EDGES_MADE] + more > desk[at.EDGES] or desk[at.HALVES_MADE] + 2 * more > desk[at.HALVES]
+        ):
+            self._grow()
+        edge, first = int(desk[at.EDGES_MADE]), int(desk[at.HALVES_MADE])
+        self.edges[edge : edge + more] = PROVED
+        new = slice(first, first + 2 * more)
+        self.halves[new, at.OTHER] = pairs[:, ::-1].T.ravel()
+        self.halves[new, at.NUMBER] = np.tile(np.arange(edge, edge + more), 2)
+        self.lengths[new], self.leads[new] = np.tile(lengths, 2), 0
+        for half, node in enumerate(pairs.T.ravel().tolist(), first):
+            self.halves[half, at.NEXT], self.first[node] = self.first[node], half
+        desk[at.EDGES_MADE] += more
+        desk[at.HALVES_MADE] += 2 * more
+
+    def guide(self, far: Floats, weights: Floats, close: int) -> None:
+        """Guide searches by how far milestones are from landmarks along what is known to be free, (n, landmarks).
+
+        So many links of each end go by displacement, in the metric of such weights, (dim,).
+        """
+        self._far, self.rules[at.WEIGHTS] = np.ascontiguousarray(far, dtype=np.float32), weights
+        desk = self.desk
+        desk[at.FAR], desk[[at.TOLD, at.LANDMARKS]], desk[at.CLOSE] = address(self._far), far.shape, close
+
+    def _own_halves(self) -> None:
+        """Share half edges no longer."""
+        if self._shares:
+            self._graph, self._shares = self._graph.copy(), False
+            self._lay_out()
+
     def learn(self, path: Floats) -> None:
         """Take the waypoints of a path, (p, dim), for milestones; its motions are proved free today.
 
@@ -205,9 +255,8 @@ class KnownGraph:
         steps = np.abs(np.diff(turns, axis=0))
         if np.abs(turns).max(initial=0.0) > MOST_TURNS or steps.max(initial=0.0) > AT_ONCE:
             return
-        if self._shares and len(path):
-            self._graph, self._shares = self._graph.copy(), False
-            self._lay_out()
+        if len(path):
+            self._own_halves()
         if not len(self._query):
             # Room that is worked in.
             self.prepare(self.milestones[0], self.milestones[:1], 1, 1.0)

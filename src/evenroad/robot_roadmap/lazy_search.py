@@ -18,21 +18,23 @@ from evenroad.robot_roadmap.search_memory import (
     BLOCKED,
     BY,
     CAPACITY,
+    CLOSE,
+    CLOSE_GOALS,
+    CLOSE_START,
     DIM,
     ENDS,
     ENTRIES,
     FREE,
     GREED,
-    HIGH,
+    HUB,
     LEAST,
     LEFT,
     LIFTED,
     LIFTING,
-    LIFTS,
     LINKS,
-    LOW,
     MADE,
     MEASURED,
+    NEARBY,
     NEXT,
     NODES,
     NUMBER,
@@ -46,19 +48,21 @@ from evenroad.robot_roadmap.search_memory import (
     PROVED,
     REACHED,
     SEARCH,
-    SIBLING,
     SIZE,
     STATE,
     STATES,
     TO,
+    TOLD,
     UNKNOWN,
     VIA,
     WAITING,
+    WEIGHTS,
     Search,
     join,
     kept_in_order,
 )
-from evenroad.robot_roadmap.search_metric import distance, is_at, measure, write
+from evenroad.robot_roadmap.search_metric import distance, is_at, measure, write, write_distances
+from evenroad.robot_roadmap.search_queue import pop, push, state_of
 
 Floats = npt.NDArray[np.float64]
 
@@ -71,6 +75,9 @@ ENDS_TAKEN, SPENT, PAUSED = range(FULL + 1, FULL + 4)
 
 ONWARD = 0.5
 """Links are tried in the order of their length and this share of what is left beyond them."""
+
+CLOSE_ONWARD = 0.3
+"""The same of links by displacement, which find a way for most ends that see nothing, but lead round about."""
 
 AIMED = 4
 """A goal of which so many links were blocked before a free one was found is approached by that one."""
@@ -97,6 +104,8 @@ def begin(s: Search) -> None:
                 count, s.near[end, 0], s.links[end, i] = 1, i, PROVED
                 break
             key = away + np.float32(ONWARD) * beyond
+            if d[CLOSE] > 0 and s.links[end, i] >= FREE:
+                key = np.float32(0.0)
             if key >= last or s.nodes[i] == BLOCKED or s.links[end, i] == BLOCKED:
                 continue
             count = kept_in_order(s.keys, s.near[end], count, d[LINKS], key, i)
@@ -106,7 +115,23 @@ def begin(s: Search) -> None:
         for rank in range(count, d[LINKS]):
             s.near[end, rank] = -1
     clear(s)
-    d[AIM], d[AIMED_END], d[PHASE] = -1, -1, ASK_STRAIGHT
+    d[AIM], d[AIMED_END], d[HUB], d[PHASE] = -1, -1, -1, ASK_STRAIGHT
+    d[CLOSE_START] = d[CLOSE_GOALS] = d[CLOSE]
+
+
+@quick
+def _choose_close(s: Search, end: int) -> None:
+    """Choose other milestones that an end is tried to be linked to: free ones that are near in displacement."""
+    d, n, count = s.desk, s.desk[NODES], 0
+    write_distances(s, end, s.rules[WEIGHTS], s.costs[:n])
+    write_distances(s, 1 if end == 0 else 0, s.rules[WEIGHTS], s.keys[:n])
+    for i in range(n):
+        s.costs[i] += CLOSE_ONWARD * s.keys[i]
+    for i in range(n):
+        if s.nodes[i] >= FREE and s.links[end, i] != BLOCKED:
+            count = kept_in_order(s.keys, s.near[end], count, d[CLOSE], s.costs[i], i)
+    for rank in range(count, d[LINKS]):
+        s.near[end, rank] = -1
 
 
 @quick
@@ -142,6 +167,10 @@ def step(s: Search) -> int:
         d[PHASE] = SEARCH
     while True:
         if d[PENDING] < 0:
+            if d[WAITING] == 0 and d[AIM] < 0 and d[CLOSE_START] > 0 and d[ONLY_KNOWN] == 0:
+                d[CLOSE_START] = 0
+                _choose_close(s, 0)
+                _open_links(s)
             if d[WAITING] == 0:
                 if d[AIM] < 0:
                     return NONE
@@ -178,25 +207,32 @@ def step(s: Search) -> int:
 def _goal_link(s: Search) -> int:
     """Return NONE where a free link of a goal is known; else the question for one, or CUT_OFF."""
     d = s.desk
-    for end in range(1, d[ENDS]):
-        missed = 0
-        for rank in range(d[LINKS]):
-            i = s.near[end, rank]
-            if i < 0 or s.nodes[i] == BLOCKED:
-                continue
-            if s.links[end, i] == BLOCKED:
-                missed += 1
-                continue
-            if s.links[end, i] == UNKNOWN:
-                d[TO], d[BY] = end, i
-                for k in range(d[DIM]):
-                    s.asked[0, k] = s.ends[end, k]
-                write(s, i, s.turns[end, i], s.asked[1])
-                return LINK
-            if missed >= AIMED and s.rules[GREED, 0] > 1.0:
-                d[AIM], d[AIMED_END] = i, end
-            return NONE
-    return CUT_OFF
+    while True:
+        for end in range(1, d[ENDS]):
+            missed = 0
+            for rank in range(d[LINKS]):
+                i = s.near[end, rank]
+                if i < 0 or s.nodes[i] == BLOCKED:
+                    continue
+                if s.links[end, i] == BLOCKED:
+                    missed += 1
+                    continue
+                if s.links[end, i] == UNKNOWN:
+                    d[TO], d[BY] = end, i
+                    for k in range(d[DIM]):
+                        s.asked[0, k] = s.ends[end, k]
+                    write(s, i, s.turns[end, i], s.asked[1])
+                    return LINK
+                if s.rules[GREED, 0] > 1.0:
+                    d[HUB] = i if i < d[TOLD] else -1
+                    if missed >= AIMED:
+                        d[AIM], d[AIMED_END] = i, end
+                return NONE
+        if d[CLOSE_GOALS] == 0 or d[ONLY_KNOWN] != 0:
+            return CUT_OFF
+        d[CLOSE_GOALS] = 0
+        for end in range(1, d[ENDS]):
+            _choose_close(s, end)
 
 
 @quick
@@ -206,12 +242,19 @@ def _open(s: Search) -> None:
     for end in range(1, d[ENDS]):
         if s.straight[end] != BLOCKED:
             push(s, -end, -1, -1, distance(s, s.ends[0], s.ends[end]), 0.0)
+    _open_links(s)
+
+
+@quick
+def _open_links(s: Search) -> None:
+    """Put the links of the start into the queue."""
+    d = s.desk
     for rank in range(d[LINKS]):
         i = s.near[0, rank]
         if i >= 0 and (s.links[0, i] >= FREE or (s.links[0, i] == UNKNOWN and d[ONLY_KNOWN] == 0)):
             state = state_of(s, i, s.turns[0, i])
             if state >= 0:
-                push(s, state, -1, -1, s.away[i], s.bounds[state, LEFT])
+                push(s, state, -1, -1, s.away[i], s.bounds[state, LEFT] + s.rules[NEARBY, 0] * s.away[i])
 
 
 @quick
@@ -324,75 +367,3 @@ def _expand(s: Search, state: int, entry: int) -> bool:
             s.bounds[other, LEAST] = reached
         push(s, other, entry, edge, reached, s.bounds[other, LEFT])
     return True
-
-
-@quick
-def state_of(s: Search, node: int, packed: int) -> int:
-    """Return the state of a milestone after turns, a new one where there was none; -1 where limits forbid it."""
-    state = s.heads[node]
-    while state >= 0:
-        if s.states[state, LIFTED] == packed:
-            return state if s.bounds[state, LEFT] < np.inf else -1
-        state = s.states[state, SIBLING]
-    d, state = s.desk, s.desk[SIZE]
-    d[SIZE] += 1
-    s.states[state, OF], s.states[state, LIFTED] = node, packed
-    s.states[state, SIBLING], s.states[state, REACHED] = s.heads[node], -1
-    s.heads[node] = state
-    least, inside = np.inf, True
-    if d[LIFTING] != 0 or d[AIM] >= 0:
-        write(s, node, packed, s.asked[1])
-        for k in range(d[DIM]):
-            if s.rules[LIFTS, k] > 0.0:
-                inside &= s.rules[LOW, k] <= s.asked[1, k] <= s.rules[HIGH, k]
-    if d[AIM] >= 0:
-        write(s, d[AIM], s.turns[d[AIMED_END], d[AIM]], s.asked[0])
-        least = distance(s, s.asked[1], s.asked[0]) + s.away[d[AIMED_END] * d[CAPACITY] + d[AIM]]
-    else:
-        for end in range(1, d[ENDS]):
-            if d[LIFTING] != 0 and packed != s.turns[end, node]:
-                least = min(least, distance(s, s.asked[1], s.ends[end]))
-            else:
-                # Where the goal's link would be, as it was measured.
-                least = min(least, s.away[end * d[CAPACITY] + node])
-    s.bounds[state, LEFT], s.bounds[state, LEAST] = s.rules[GREED, 0] * least, np.inf
-    if not inside:
-        s.bounds[state, LEFT] = np.inf
-    return state if inside else -1
-
-
-@quick
-def push(s: Search, state: int, parent: int, via: int, cost: float, left: float) -> None:
-    """Make an entry and put it into the queue, a heap with the least key first."""
-    d, entry = s.desk, s.desk[MADE]
-    d[MADE] += 1
-    s.entries[entry, STATE], s.entries[entry, PARENT], s.entries[entry, VIA] = state, parent, via
-    s.costs[entry] = cost
-    key, place = cost + left, d[WAITING]
-    d[WAITING] += 1
-    while place > 0:
-        above = (place - 1) // 2
-        if s.keys[above] <= key:
-            break
-        s.keys[place], s.items[place] = s.keys[above], s.items[above]
-        place = above
-    s.keys[place], s.items[place] = key, entry
-
-
-@quick
-def pop(s: Search) -> int:
-    """Take the entry with the least key out of the queue."""
-    first = s.items[0]
-    s.desk[WAITING] -= 1
-    size = s.desk[WAITING]
-    key, item, place = s.keys[size], s.items[size], 0
-    while True:
-        below = 2 * place + 1
-        if below + 1 < size and s.keys[below + 1] < s.keys[below]:
-            below += 1
-        if below >= size or s.keys[below] >= key:
-            break
-        s.keys[place], s.items[place] = s.keys[below], s.items[below]
-        place = below
-    s.keys[place], s.items[place] = key, item
-    return first

@@ -13,7 +13,7 @@ from evenroad._rng import RngLike, generator
 from evenroad.errors import InvalidValue
 from evenroad.roadmap.neighbours import nearest
 from evenroad.robot import ArmWorld, Robot, Scene, in_scene, scene_seen_by
-from evenroad.robot_roadmap.recipe import ENDS, GAMMA, Recipe, chosen, known_of
+from evenroad.robot_roadmap.recipe import GAMMA, Recipe, chosen, ends_for, known_of
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
 from evenroad.robot_roadmap.tuning import EASY, GAMMAS, tune_recipe
 from evenroad.robot_roadmap.turns import OneTurn, lifted_motions_free, one_turn, shifts, whole_turns
@@ -33,7 +33,7 @@ def make_roadmap(
     *,
     k: int = 16,
     gamma: float = GAMMA,
-    ends: int = ENDS,
+    ends: int | None = None,
     tune: bool = False,
     resolution: float = 0.05,
     rng: RngLike = 0,
@@ -57,8 +57,9 @@ def make_roadmap(
         Each is joined to so many of its nearest ones that it can reach freely, >= 1, and to those that choose it.
     gamma : float, optional
         The spacing is in proportion to the chance of being free to the power of -gamma, >= 0.
-    ends : int
-        How many ends in pockets are learned from, >= 0.
+    ends : int, optional
+        How many ends in pockets are learned from, >= 0.  Default: 3000, fewer for a robot of more than 60 pairs of
+        capsules, but 300 at least.
     tune : bool
         Whether `gamma` gives way to another one that leads to more goals among random problems for this robot in this
         cell: up to a minute more.  `RobotRoadmap.tuned` says what came of it.
@@ -74,7 +75,8 @@ def make_roadmap(
     InvalidValue
         If an argument is no such number, or the robot is never free in its cell; the text says what blocks.
     """
-    n, k, ends = require_count("n", n), require_count("k", k), require_count("ends", ends, at_least=0)
+    n, k = require_count("n", n), require_count("k", k)
+    ends = ends_for(robot) if ends is None else require_count("ends", ends, at_least=0)
     if n > MOST:
         raise InvalidValue(f"n must be at most {MOST}, got {n}")
     cell = Scene("nothing") if cell is None else cell
@@ -147,9 +149,19 @@ def _joined_to_nearest(world: ArmWorld, one: OneTurn, milestones: Floats, weight
     near = nearest(milestones, min(max(TRIED, k), max(len(milestones) - 1, 1)), metric)
     own = np.repeat(np.arange(len(milestones)), near.shape[1])
     pairs, which = np.unique(np.sort(np.stack([own, near.ravel()], axis=1)), axis=0, return_inverse=True)
+    which = which.reshape(near.shape)
     turns = shifts(one, milestones[pairs[:, 0]], milestones[pairs[:, 1]])
-    free = lifted_motions_free(world, one, milestones[pairs[:, 0]], milestones[pairs[:, 1]], turns)
-    reached = free[which.reshape(near.shape)]
+    asked, free = np.zeros((2, len(pairs)), dtype=np.bool_)
+    reached = np.zeros(near.shape, dtype=np.bool_)
+    for first in range(0, near.shape[1], k):
+        # Farther ones only for those that still reach too few.
+        rest = np.flatnonzero(reached.sum(axis=1) < k)
+        some = which[rest, first : first + k]
+        new = np.unique(some[~asked[some]])
+        a, b = milestones[pairs[new, 0]], milestones[pairs[new, 1]]
+        free[new] = lifted_motions_free(world, one, a, b, turns[new])
+        asked[new] = True
+        reached[rest, first : first + k] = free[some]
     kept = reached & (np.cumsum(reached, axis=1) <= k)
-    chosen = np.unique(which.reshape(near.shape)[kept])
+    chosen = np.unique(which[kept])
     return np.concatenate([pairs[chosen], turns[chosen]], axis=1)

@@ -6,16 +6,18 @@ shown: the tip of the robot in boxes of five walls, anywhere that it gets to.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints
+from evenroad._threads import in_order
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene
 from evenroad.robot.kinematics import capsule_ends, link_poses
 from evenroad.robot_roadmap.chance import Surroundings
+from evenroad.robot_roadmap.sight import joined_to
 
 HALF_EXTENTS = ((0.12, 0.25), (0.1, 0.22), (0.1, 0.22))
 """Ranges of a pocket's depth, width and height, halved, as shares of the reach."""
@@ -43,9 +45,6 @@ afar counts as well."""
 
 NEAR = 1500
 """And the nearest of those that follow."""
-
-EARLY = 0.1
-"""How far along a motion it is looked at first: most that leave a pocket touch its walls at once."""
 
 STEP = 0.2
 """Of the motions that are tried; nothing is proved here [rad]."""
@@ -101,50 +100,56 @@ def ends_in_pockets(
     tips = tips_of(robot, pool)
     body, radii = body_of(robot, pool)
     bare, inside = replace(robot, pairs=()), ArmWorld(robot, cell, resolution=STEP)
+    pool = inside.space.wrapped(pool)
+    # What threads share is made before there are any.
+    inside.valid(pool[:1])
+    scaled = np.ascontiguousarray(scaled.T)
     own_of: list[int] = []
+
+    def ends() -> Iterator[tuple[ArmWorld, int]]:
+        drawn = TRIES * count if tips.shape[1] else 0
+        while len(own_of) < count and drawn > 0:
+            owns, which = rng.integers(len(pool), size=BATCH), rng.integers(tips.shape[1], size=BATCH)
+            drawn -= BATCH
+            batch = pockets_around(tips[owns, which], around, rng)
+            for i in np.flatnonzero(~batch.touched_by(body[owns], radii)).tolist():
+                if len(own_of) == count:
+                    return
+                own = int(owns[i])
+                # What the pool is free of already is not asked about again.
+                world = ArmWorld(bare, Scene("pocket", batch.walls(i)), resolution=STEP)
+                if not world.valid(pool[own : own + 1])[0]:
+                    continue
+                others = np.flatnonzero(batch.holds(i, tips[:, which[i]]))
+                others = rng.permutation(others[world.valid(pool[others])])[: IN_ONE - 1]
+                for end in np.unique(np.append(others, own))[: count - len(own_of)].tolist():
+                    own_of.append(end)
+                    yield world, end
+
     found: list[Ints] = []
-    drawn = TRIES * count if tips.shape[1] else 0
-    while len(found) < count and drawn > 0:
-        owns, which = rng.integers(len(pool), size=BATCH), rng.integers(tips.shape[1], size=BATCH)
-        drawn -= BATCH
-        batch = pockets_around(tips[owns, which], around, rng)
-        for i in np.flatnonzero(~batch.touched_by(body[owns], radii)).tolist():
-            if len(found) == count:
-                break
-            own = int(owns[i])
-            # What the pool is free of already is not asked about again.
-            world = ArmWorld(bare, Scene("pocket", batch.walls(i)), resolution=STEP)
-            if not world.valid(pool[own : own + 1])[0]:
-                continue
-            others = np.flatnonzero(batch.holds(i, tips[:, which[i]]))
-            others = rng.permutation(others[world.valid(pool[others])])[: IN_ONE - 1]
-            first = np.flatnonzero(world.valid(pool[:FIRST]))
-            for end in np.unique(np.append(others, own))[: count - len(found)]:
-                own_of.append(int(end))
-                found.append(_seen(world, inside, pool, scaled, int(end), first))
-            progress(len(found) / count)
+    for seen in in_order(lambda world, end: _seen(world, inside, pool, scaled, end), ends()):
+        found.append(seen)
+        progress(len(found) / count)
     if not found:
         return no_ends()
     return Seen(np.array(own_of), np.cumsum([0, *map(len, found)]), np.concatenate(found))
 
 
-def _seen(world: ArmWorld, inside: ArmWorld, pool: Floats, scaled: Floats, end: int, first: Ints) -> Ints:
+def _seen(world: ArmWorld, inside: ArmWorld, pool: Floats, scaled: Floats, end: int) -> Ints:
     """Return which configurations a straight motion joins to an end, itself left out: of the first ones and those near.
 
-    `world` has the pocket alone, `inside` robot and cell.
+    `world` has the pocket alone, `inside` robot and cell; `scaled` is (dim, n).
     """
-    near = first
-    if len(pool) > FIRST:
-        squared = ((scaled[FIRST:] - scaled[end]) ** 2).sum(axis=1)
-        later = np.arange(len(squared)) if len(squared) <= NEAR else np.argpartition(squared, NEAR)[:NEAR]
-        later = later + FIRST
-        near = np.append(first, later[world.valid(pool[later])])
-    near = near[near != end]
-    start = np.broadcast_to(pool[end], (len(near), pool.shape[1]))
-    near = near[world.valid(world.space.interpolate(start, pool[near], EARLY))]
-    for checks in (world, inside):
-        near = near[checks.motion_valid(np.broadcast_to(pool[end], (len(near), pool.shape[1])), pool[near])]
-    return near.astype(np.int64)
+    later = np.arange(FIRST, len(pool))
+    if len(later) > NEAR:
+        squared = np.zeros(len(later))
+        for places in scaled:
+            apart = places[FIRST:] - places[end]
+            apart *= apart
+            squared += apart
+        later = np.argpartition(squared, NEAR)[:NEAR] + FIRST
+    rows = np.append(np.arange(min(FIRST, len(pool))), later)
+    return joined_to(world, inside, pool, end, rows)
 
 
 def tips_of(robot: Robot, pool: Floats) -> Floats:
@@ -190,7 +195,8 @@ class Pockets(NamedTuple):
 
     def holds(self, i: int, places: Floats) -> Bools:
         """Return which places, (n, 3), are well inside of a pocket."""
-        inside: Bools = (np.abs((places - self.centre[i]) @ self.turn[i]) < INSIDE * self.half[i]).all(axis=1)
+        x, y, z = (np.abs((places - self.centre[i]) @ self.turn[i]) < INSIDE * self.half[i]).T
+        inside: Bools = x & y & z
         return inside
 
     def walls(self, i: int) -> tuple[Obstacle, ...]:

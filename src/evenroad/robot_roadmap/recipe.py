@@ -11,7 +11,7 @@ import numpy as np
 from evenroad._arrays import Floats, Ints
 from evenroad.errors import InvalidValue
 from evenroad.points import draw
-from evenroad.robot import ArmWorld
+from evenroad.robot import ArmWorld, Robot
 from evenroad.robot_roadmap.chance import chance_of_freedom
 from evenroad.robot_roadmap.pockets import FIRST, Seen, ends_in_pockets
 from evenroad.robot_roadmap.spread import displacement_weights, spread_order
@@ -31,6 +31,9 @@ GAMMA = 4.0
 
 ENDS = 3000
 """Ends in pockets at random that milestones learn from."""
+
+PAIRS, FEWEST_ENDS = 60, 300
+"""Of robots with more pairs of capsules than that fewer in proportion, since each costs more, but so many at least."""
 
 SCENES = 400
 """Random scenes by which the chance of being free is measured."""
@@ -56,6 +59,11 @@ class Known(NamedTuple):
     periods: Floats
     chance: Floats
     seen: Seen
+
+
+def ends_for(robot: Robot) -> int:
+    """Return how many ends in pockets milestones of a robot learn from."""
+    return min(ENDS, max(FEWEST_ENDS, ENDS * PAIRS // max(len(robot.pairs), 1)))
 
 
 def known_of(

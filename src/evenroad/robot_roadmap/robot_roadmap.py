@@ -13,7 +13,8 @@ from evenroad.roadmap import Budget, PlanResult
 from evenroad.robot import Scene
 from evenroad.robot_roadmap.known_motions import KnownMotions
 from evenroad.robot_roadmap.learned import with_paths
-from evenroad.robot_roadmap.scene_roadmap import Place, SceneRoadmap
+from evenroad.robot_roadmap.places import Place
+from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +60,10 @@ class RobotRoadmap(KnownMotions):
         return replace(self, milestones=milestones, edges=edges, turns=turns)
 
     def in_scene(self, scene: Scene, shapes: Sequence[Shape] | None = None) -> SceneRoadmap:
-        """Return the roadmap in the day's scene, for many queries in it: what one finds out serves the next."""
+        """Return the roadmap in the day's scene, for many queries in it: what one finds out serves the next.
+
+        :meth:`SceneRoadmap.explore` finds out beforehand what makes some of them slow.
+        """
         return SceneRoadmap(self, scene, shapes=shapes)
 
     def plan(

@@ -8,39 +8,31 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from evenroad._arrays import Floats
 from evenroad._checks import require_count
 from evenroad._clock import now
-from evenroad.geometry.pose import Pose
+from evenroad._rng import RngLike, generator
 from evenroad.geometry.shapes import Shape
 from evenroad.roadmap import Budget, PlanResult, Status
 from evenroad.roadmap.answer import connected, gave_up, refusal
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.find_path import NO_POINTS, SECONDS, with_reasons
-from evenroad.roadmap.query import Query, read_places
-from evenroad.robot import ArmWorld, Robot, Scene, configuration, in_scene
-from evenroad.robot.goals import goals_of
-from evenroad.robot.pose_goal import PoseGoal
+from evenroad.roadmap.query import Query
+from evenroad.robot import ArmWorld, Robot, Scene, in_scene
 from evenroad.robot.trees import shorten
 from evenroad.robot_roadmap.ask import Asked, Checks, ask
 from evenroad.robot_roadmap.cell import day_and_all, left_to_check, require_same_robot
+from evenroad.robot_roadmap.explored import explore
 from evenroad.robot_roadmap.known_motions import KnownMotions
 from evenroad.robot_roadmap.lazy_search import CUT_OFF, ENDS_TAKEN, NONE, SPENT
 from evenroad.robot_roadmap.own_shapes import OwnShapesWorld
+from evenroad.robot_roadmap.places import Goal, Place, read_ends
 from evenroad.robot_roadmap.pockets import links_of
 from evenroad.robot_roadmap.search_memory import NODES
 from evenroad.robot_roadmap.ways_out import learn_ways_out
 from evenroad.space.path import path_length
 from evenroad.world.protocol import Connection
-
-Place = str | npt.ArrayLike
-"""A configuration: numbers in the order of the group, or a text as :func:`evenroad.robot.configuration` takes it."""
-
-POSES = (Pose, PoseGoal)
-Goal = Place | Pose | PoseGoal
-"""A configuration, or where a link is to be."""
 
 PLANNER = "robot roadmap"
 
@@ -50,6 +42,10 @@ SHARE = 0.5
 GREED = 3.0
 """What the bound of the search is multiplied by: a third of the checks of a shortest way, and once they are shortened
 its paths are no longer."""
+
+NEARBY = 2.0
+"""Of a start's links so many times their length counts more where no trees follow: a third to two thirds of the motions
+until a way is found, that is 0 to 3 % longer once it is shortened."""
 
 LINKS = 300
 """Each end is tried to be linked to so many milestones where nothing else is said; plans without trees go by
@@ -69,6 +65,12 @@ queries are learned until there are so many milestones more."""
 
 SOON = 5000
 """So many motions ways out may take before shapes are asked: some milliseconds."""
+
+ENDS = 400
+"""Ends in narrow places that are tried where a scene is explored."""
+
+EXPLORED_LINKS, EXPLORED_MOTIONS, EXPLORED_WORK = 20, 150, (20, 40, 120)
+"""In an explored scene fewer links do, and what is left of the time goes into shortening."""
 
 _LONG = 1e8
 """Seconds that stand for no limit."""
@@ -136,6 +138,7 @@ class SceneRoadmap:
         self._graph = roadmap.graph.within(np.array(self.world.space.low), np.array(self.world.space.high))
         self._wraps = bool(np.any(self.world.space.wrapping))
         self.learned: list[Floats] = []
+        self._explored = False
         self._make_ready()
 
     def _make_ready(self) -> None:
@@ -177,9 +180,8 @@ class SceneRoadmap:
         deadline: float,
         links: int,
         greed: float = GREED,
-        *,
-        only_known: bool = False,
-        unturned: bool = False,
+        nearby: float = 0.0,
+        **flags: Any,
     ) -> Asked:
         return ask(
             *self._asked,
@@ -188,15 +190,37 @@ class SceneRoadmap:
             goals,
             links=links,
             greed=greed,
+            nearby=nearby,
             most_motions=most,
             deadline=deadline,
-            only_known=only_known,
-            unturned=unturned,
+            **flags,
         )
 
     @property
     def _size(self) -> int:
         return len(self.roadmap.milestones)
+
+    def explore(self, ends: int = ENDS, *, rng: RngLike = 0) -> None:
+        """Find out beforehand what many queries here would; see docs/robot-roadmaps.md for when it pays.
+
+        Everything the roadmap has is asked about, and ways are learned to ends in narrow places: free configurations
+        with a tip closed in by obstacles, which know no task.  The same `ends` and `rng` give the same answers.
+
+        Parameters
+        ----------
+        ends : int
+            How many are tried, >= 1.
+        rng : int, SeedSequence or Generator
+            Where they are drawn from.
+
+        Raises
+        ------
+        InvalidValue
+            If an argument is no such number.
+        """
+        ends = require_count("ends", ends)
+        self.learned += explore(self.roadmap, self.world, self._day, self._graph, ends, generator(rng))
+        self._explored = True
 
     def plan(
         self,
@@ -231,25 +255,27 @@ class SceneRoadmap:
         InvalidValue, UnknownName
             If start or goal is no configuration of the robot.
         """
-        if any(isinstance(each, POSES) for each in (goal if isinstance(goal, list | tuple) else (goal,))):
-            return self._to_poses(start, goal, budget=budget, shorten=shorten, trees=trees)
-        budget = Budget(seconds=SECONDS) if budget is None else budget
-        first, goals = read_places(self._place(start), self._places(goal), self.world.space)
+        ends = read_ends(self.world, start, goal)
+        if isinstance(ends, PlanResult):
+            return ends
+        (first, goals), budget = ends, Budget(seconds=SECONDS) if budget is None else budget
         began, deadline = now(), budget.deadline()
         most = 2**31 - 1 if budget.motions is None else budget.motions
         # Trees grow among what is free for the capsules.
         follow = trees and (not self._dear or self._capsules_free(first, goals))
-        links = (DEAR_LINKS if self._dear else TRIED_LINKS) if follow else links_of(self._size)
+        tried = (EXPLORED_LINKS, EXPLORED_MOTIONS) if self._explored else (TRIED_LINKS, TRIED_MOTIONS)
+        links = (DEAR_LINKS if self._dear else tried[0]) if follow else links_of(self._size)
         share = SHARE if follow or self._own is not None else 1.0
-        limits = min(most, TRIED_MOTIONS) if follow else most, began + share * min(deadline - began, _LONG)
-        asked = self._ask(first, goals, *limits, links)
+        limits = min(most, tried[1]) if follow else most, began + share * min(deadline - began, _LONG)
+        order = GREED, 0.0 if follow else NEARBY
+        asked = self._ask(first, goals, *limits, links, *order)
         if asked.ended in (NONE, CUT_OFF, SPENT) and follow and len(goals) == 1:
             soon = most if self._own is None else min(most, asked.motions + SOON)
             asked = self._by_ways_out(asked, first, goals, soon, limits[1], links)
         elif asked.ended in (NONE, CUT_OFF) and not follow and self.roadmap.one_turn.lifts.any():
             # What leads to the goal within one turn is not to be lost.
             before, left = asked.motions, limits[0] - asked.motions
-            asked = self._ask(first, goals, left, limits[1], links, unturned=True)
+            asked = self._ask(first, goals, left, limits[1], links, *order, unturned=True)
             asked = replace(asked, motions=asked.motions + before)
         if asked.goal >= 0:
             return self._solved(asked, first, goals, shorten, began)
@@ -264,7 +290,7 @@ class SceneRoadmap:
             return refused
         if asked.ended == ENDS_TAKEN:
             # Without the goals that are not free.
-            asked = self._ask(first, goals[attempt.goals], *limits, links)
+            asked = self._ask(first, goals[attempt.goals], *limits, links, *order)
             attempt.motions_checked = asked.motions
         connection = Connection(asked.path, asked.goal, self._size, asked.milestones, asked.motions)
         if asked.goal < 0 and follow and attempt.left() is not None:
@@ -316,10 +342,11 @@ class SceneRoadmap:
         )
         seconds = {"search": found - began}
         if shorter:
-            work = DEAR_WORK if self._dear else 2 if len(path) >= LONG_WAY else 1
-            path, counts["shortcut_motions"] = shorten(
-                world, path, pairs=work * PAIRS, cuts=work * CUTS, batches=work * BATCHES
-            )
+            pairs, cuts, batches = EXPLORED_WORK
+            if not self._explored:
+                work = DEAR_WORK if self._dear else 2 if len(path) >= LONG_WAY else 1
+                pairs, cuts, batches = work * PAIRS, work * CUTS, work * BATCHES
+            path, counts["shortcut_motions"] = shorten(world, path, pairs=pairs, cuts=cuts, batches=batches)
             length, seconds["shortcut"] = self._length(path), now() - found
         to = f" to goal {asked.goal}" if len(goals) > 1 else ""
         return PlanResult(
@@ -362,35 +389,3 @@ class SceneRoadmap:
         places = path.tolist()
         # Where nothing wraps the sum is the same, in a tenth of the time.
         return path_length(path, self.world.space) if self._wraps else sum(map(math.dist, places, places[1:]))
-
-    def _to_poses(self, start: Place, goal: Goal | Sequence[Goal], **how: Any) -> PlanResult:
-        """Plan to the postures that reach poses, and to the configurations beside them."""
-        places: Sequence[Goal] = [goal] if isinstance(goal, POSES) else goal  # type: ignore[assignment]
-        place, space = self._place(start), self.world.space
-        first = read_places(place, place, space)[0]
-        given = goals_of(
-            self.world, first, places, lambda each: read_places(place, self._place(each), space)[1][0]
-        )
-        if not given.unreached:
-            return self.plan(first, given.configurations, **how)
-        return PlanResult(
-            status=Status.GOAL_INVALID if given.in_collision else Status.GOAL_UNREACHABLE,
-            message=given.unreached,
-            start=first,
-            goals=given.configurations,
-            origin=NO_POINTS,
-            rule="none",
-            planner="none",
-            seconds={"goals": given.seconds},
-        )
-
-    def _place(self, place: Place) -> npt.ArrayLike:
-        """Return a configuration of a text; of numbers themselves."""
-        if isinstance(place, str):
-            return configuration(self.world.robot, place, self.world.scene)
-        return place
-
-    def _places(self, goal: Goal | Sequence[Goal]) -> npt.ArrayLike:
-        if isinstance(goal, list | tuple) and any(isinstance(each, str) for each in goal):
-            return [self._place(each) for each in goal]  # type: ignore[return-value]
-        return self._place(goal)  # type: ignore[arg-type]

@@ -54,16 +54,22 @@ VERDICTS, LIFTING = 27, 28
 UNTURNED = 29
 """Desk: 1 where ends are linked to milestones as these are, 0 where these are turned to be near."""
 
-DESK = 30
+FAR, LANDMARKS, TOLD, HUB, CLOSE = range(30, 35)
+"""Desk, where a scene was explored: address of how far milestones are from some along motions known to be free, of how
+many, for how many milestones; the milestone that a goal is approached by, or -1; how many links by displacement."""
+
+CLOSE_START, CLOSE_GOALS = range(35, 37)
+"""Desk: more than 0 where start or goals may still be linked by displacement."""
+
+DESK = 37
 
 OTHER, NEXT, NUMBER, HALF = range(4)
 """Of a half edge: where it leads, the next one of the same milestone or -1, its edge; how many things that is."""
 
-LOW, HIGH, LIFTS, ENDLESS, MIDDLE, GREED = range(6)
+LOW, HIGH, LIFTS, ENDLESS, MIDDLE, GREED, NEARBY, WEIGHTS, RULE_ROWS = range(9)
 """Rows of the rules: limits; 1 for joints that are lifted by whole turns, or turn on for ever; the middle of the range
-of milestones; what the bound is multiplied by, 1 for the shortest way."""
-
-RULE_ROWS = 6
+of milestones; what the bound is multiplied by, 1 for the shortest way; by how many times their length links of the
+start are put off; what a unit of a joint counts as displacement.  And how many rows that is."""
 
 OF, LIFTED, SIBLING, REACHED = range(4)
 """Of a state: milestone, packed turns, the next state of the same milestone or -1, the entry it was reached by."""
@@ -88,7 +94,9 @@ class Search(NamedTuple):
         Verdicts of milestones, their first half edges, and another one that free motions lead to, or itself.
     halves, leads, lengths, edges : arrays
         Half edges, (h, 3), their turns, packed, their lengths, verdicts of edges.
-    rules : float64 array, shape (6, dim)
+    rules : float64 array, shape (8, dim)
+    far : float32 array, shape (told, landmarks)
+        How far milestones are from landmarks along what is known to be free.
     ends, asked : float64 arrays, shapes (e + 1, dim) and (2, dim)
         Start, goals and a place that is learned; the two ends of the motion that is asked about.
     away, turns, links, near : arrays, shape (e + 1, capacity); the first in one piece
@@ -112,6 +120,7 @@ class Search(NamedTuple):
     lengths: Singles
     edges: Bytes
     rules: Floats
+    far: Singles
     ends: Floats
     asked: Floats
     away: Singles
@@ -180,6 +189,7 @@ def search_at(desk: int) -> Search:
         singles_at(leads + 8 * d[HALVES], (d[HALVES],)),
         bytes_at(d[VERDICTS], (d[EDGES],)),
         matrix_at(d[RULES], (RULE_ROWS, dim)),
+        singles_at(d[FAR], (d[TOLD] * d[LANDMARKS],)),
         matrix_at(d[QUERY], (ends, dim)),
         matrix_at(asked, (2, dim)),
         singles_at(links + 3 * row, (ends * capacity,)),

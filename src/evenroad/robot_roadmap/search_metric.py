@@ -17,14 +17,14 @@ from evenroad.robot_roadmap.search_memory import (
     UNTURNED,
     Search,
 )
-from evenroad.robot_roadmap.turns import TURN
+from evenroad.robot_roadmap.turns import MOST_LIFTED, TURN
 
 Floats = npt.NDArray[np.float64]
 
 BITS = 4
 """Turns of all joints are packed into one number, ``sum_k turn_k 16^k``."""
 
-_OFFSETS = sum(2 ** (BITS - 1) << (BITS * k) for k in range(14))
+_OFFSETS = sum(2 ** (BITS - 1) << (BITS * k) for k in range(MOST_LIFTED))
 
 
 @quick

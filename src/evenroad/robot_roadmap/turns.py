@@ -16,6 +16,9 @@ TURN = 2.0 * np.pi
 MOST_TURNS = 6
 """So many turns to either side are followed; the packed form of the search has room for one more."""
 
+MOST_LIFTED = 14
+"""And of so many joints, the first ones."""
+
 
 @dataclass(frozen=True, eq=False)
 class OneTurn:
@@ -41,10 +44,14 @@ class OneTurn:
 
 
 def one_turn(space: JointSpace, whole: Bools) -> OneTurn:
-    """Return the ranges of a space's joints, cut to one turn where they have more and a turn is `whole`, (dim,)."""
+    """Return the ranges of a space's joints, cut to one turn where they have more and a turn is `whole`, (dim,).
+
+    Joints beyond the first MOST_LIFTED keep theirs.
+    """
     limits = np.array([space.low, space.high])
     endless = np.array(space.wrapping)
     lifts = whole & ~endless & (limits[1] - limits[0] > TURN)
+    lifts[MOST_LIFTED:] = False
     middle = limits.mean(axis=0)
     low = np.where(lifts, middle - 0.5 * TURN, limits[0])
     high = np.where(lifts, middle + 0.5 * TURN, limits[1])

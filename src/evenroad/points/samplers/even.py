@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 from evenroad._checks import require_count
 from evenroad._rng import RngLike
@@ -10,6 +11,7 @@ from evenroad.points.pointset import PointSet
 from evenroad.points.randomise import Symmetry
 from evenroad.points.samplers.korobov import Korobov
 from evenroad.points.samplers.plain import Sobol
+from evenroad.points.samplers.rank_one_search import rank_one_vector
 
 TURNED_FROM = 6
 """Dimension from which on `even` permutes the axes of each set; below, ten neighbours are 2 d and span all."""
@@ -28,17 +30,21 @@ DRAWN_IN = 0.85
 class Even(Korobov):
     """Our default: a Korobov lattice, from ten dimensions on scrambled Sobol points.
 
-    ``benchmarks/decide_even.py`` has the evidence for the lattice.  From six dimensions on axes hardly ever count
+    ``benchmarks/decide_even.py`` has the evidence for the lattice.  Where n has so few multipliers that even the best
+    is poor, as many multiples of 24, the generating vector is one of numbers that are no powers
+    (:func:`~evenroad.points.samplers.rank_one_search.rank_one_vector`).  From six dimensions on axes hardly ever count
     alike: those of an arm's joints, those of rotations.  The few short vectors of the lattice may then lie in axes that
     count little, and with k < 2 d neighbours the roadmap falls apart into sheets.  No one order of the axes is good
     everywhere, so there each set has another.
     """
 
     name = "even"
-    about = "our default: a shifted Korobov lattice, from d = 10 on scrambled Sobol"
+    about = "our default: a shifted rank-1 lattice, from d = 10 on scrambled Sobol"
     # Sobol's; a lattice is shifted as it is drawn.
     symmetries = frozenset({Symmetry.PERMUTATION})
     turned_from = TURNED_FROM
+    by: str = field(default="energy", init=False)
+    k: int | None = field(default=None, init=False)
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
         """Return n points, shape (n, d); limits are those of :class:`Korobov`, of :class:`Sobol` from d = 10 on."""
@@ -46,6 +52,11 @@ class Even(Korobov):
         if d < SOBOL_FROM:
             return super().draw(n, d, rng=rng)
         return Sobol().draw(n, d, rng=rng).with_origin(family=self.name, method="scrambled Sobol")
+
+    def _vector(self, n: int, d: int) -> tuple[Sequence[int], str]:
+        vector, told = super()._vector(n, d)
+        better = rank_one_vector(n, d)
+        return (vector, told) if better == tuple(vector) else (better, f"z={' '.join(map(str, better))}")
 
 
 def drawn_in(points: PointSet, share: float = DRAWN_IN) -> PointSet:

@@ -15,7 +15,8 @@ import tyro
 from evenroad._terminal import print_table
 from evenroad.errors import EvenroadError, InvalidValue
 from evenroad.points import PointSet
-from evenroad.points.measures import MEASURES, dispersion
+from evenroad.points.measures import MEASURES, dispersion, rank_one
+from evenroad.points.measures.short_vectors import MOST_AXES
 from evenroad.points.npz import read_points
 from evenroad.research.measures import riesz_rooted, separation, star_discrepancy
 
@@ -71,6 +72,17 @@ def measure_all(points: PointSet) -> list[tuple[str, float | None, str]]:
     add("separation_periodic", "on the torus", lambda: separation(points, periodic=True))
     add("riesz_rooted", "periodic, s = 2d", lambda: riesz_rooted(points))
     add("riesz_open_rooted", "not periodic, s = 2d", lambda: riesz_rooted(points, periodic=False))
+    z = rank_one.generating_vector(points)
+    if z is not None and points.d <= MOST_AXES:
+        n, pairs = points.n, min(2, points.d)
+        projected = partial(rank_one.projected_minima, n, z, pairs)
+        add("lattice_minima_ratio", "last successive minimum / first", partial(rank_one.minima_ratio, n, z))
+        add(
+            "lattice_projected_minimum",
+            f"of any {pairs} axes, times n^(1/{pairs})",
+            lambda: min(projected().values()),
+        )
+        add("lattice_neighbours", "least k that leads everywhere", lambda: rank_one.least_neighbours(n, z))
     return [_finite(*row) for row in rows]
 
 

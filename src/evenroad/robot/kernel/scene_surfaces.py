@@ -17,6 +17,7 @@ from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.placed_capsules import PlacedCapsule
 from evenroad.robot.kernel.robot_tables import RobotTables
 from evenroad.robot.kernel.scene_tables import OBSTACLE_PADDING
+from evenroad.robot.kernel.surface_around import surface_around
 from evenroad.robot.kernel.surface_grid import grid_of_points, grid_of_triangles
 from evenroad.robot.kernel.surface_tree import surface_array
 from evenroad.robot.scene import Scene
@@ -25,12 +26,16 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 Bools = npt.NDArray[np.bool_]
 
-DESK, SURFACE_ROW = 2, 3
-"""The desk: how many surfaces there are, where capsules' floats are; of each surface its array, the flags of the
-capsules that are tested against it, and the number of its obstacle."""
+DESK, SURFACE_ROW = 4, 3
+"""The desk: how many surfaces there are, where capsules' floats are, a grid around all surfaces or 0, and how many of
+them each capsule is tested against; of each surface its array, the flags of the capsules that are tested against it,
+and the number of its obstacle."""
 
 CAPSULE_ROW = 3
 """By how much the spheres over a capsule are larger than it, half its length, one over the square of that."""
+
+MANY = 8
+"""From so many surfaces on there is a grid around all of them: motions among fewer are no quicker for it."""
 
 PIECE = 0.1
 """Triangles are cut until no side is longer than this share of the robot's reach: a box around a large one says
@@ -51,20 +56,28 @@ class SceneSurfaces:
         1 where a capsule is tested against a surface, else 0.
     capsules : float32 array, shape (capsules, 3)
         See `CAPSULE_ROW`.
+    around : int64 array, optional
+        A grid around many surfaces, see ``surface_around``.
     """
 
     arrays: tuple[Ints, ...]
     numbers: tuple[int, ...]
     tested: Ints
     capsules: npt.NDArray[np.float32]
+    around: Ints | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return how a copy is made: it finds out for itself where its arrays are."""
-        return SceneSurfaces, (self.arrays, self.numbers, self.tested, self.capsules)
+        return SceneSurfaces, (self.arrays, self.numbers, self.tested, self.capsules, self.around)
+
+    @cached_property
+    def _count(self) -> Ints:
+        return self.tested.sum(axis=0)
 
     @cached_property
     def _desk(self) -> Ints:
-        rows = [len(self.arrays), address(self.capsules)]
+        around = 0 if self.around is None else address(self.around)
+        rows = [len(self.arrays), address(self.capsules), around, address(self._count)]
         for array, flags, number in zip(self.arrays, self.tested, self.numbers, strict=True):
             rows += [address(array), address(flags), number]
         return np.array(rows, dtype=np.int64)
@@ -83,17 +96,32 @@ def scene_surfaces(scene: Scene, robot: RobotTables, tested: Bools) -> SceneSurf
 
     `tested` says which capsules are tested against which obstacles, (capsules, obstacles).
     """
-    found = {
-        number: array
+    numbers = [
+        number
         for number, obstacle in enumerate(scene.obstacles)
-        if isinstance(obstacle.body, PointCloud | Mesh)
-        and tested[:, number].any()
-        and (array := surface_of(obstacle.body, robot.reach)) is not None
-    }
-    if not found:
+        if isinstance(obstacle.body, PointCloud | Mesh) and tested[:, number].any()
+    ]
+    bodies = tuple(scene.obstacles[number].body for number in numbers)
+    return _surfaces(bodies, tuple(numbers), tested[:, numbers].tobytes(), robot)
+
+
+@lru_cache(maxsize=16)
+def _surfaces(
+    bodies: tuple[PointCloud | Mesh, ...], numbers: tuple[int, ...], tested: bytes, robot: RobotTables
+) -> SceneSurfaces | None:
+    """Return these bodies as `scene_surfaces` does; kept, since the next world often has them, too."""
+    arrays = [surface_of(body, robot.reach) for body in bodies]
+    near = [place for place, array in enumerate(arrays) if array is not None]
+    if not near:
         return None
-    flags = np.ascontiguousarray(tested[:, list(found)].T, dtype=np.int64)
-    return SceneSurfaces(tuple(found.values()), tuple(found), flags, _capsule_rows(robot.capsules))
+    flags = np.frombuffer(tested, dtype=np.bool_).reshape(-1, len(bodies))[:, near]
+    return SceneSurfaces(
+        tuple(array for array in arrays if array is not None),
+        tuple(numbers[place] for place in near),
+        np.ascontiguousarray(flags.T, dtype=np.int64),
+        _capsule_rows(robot.capsules),
+        _around(tuple(bodies[place] for place in near), robot.reach) if len(near) >= MANY else None,
+    )
 
 
 def _capsule_rows(capsules: Sequence[PlacedCapsule]) -> npt.NDArray[np.float32]:
@@ -102,7 +130,13 @@ def _capsule_rows(capsules: Sequence[PlacedCapsule]) -> npt.NDArray[np.float32]:
     return np.stack([slack, halves, 1.0 / np.maximum(halves**2, at.LEAST_SQUARE)], axis=1).astype(np.float32)
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=4)
+def _around(bodies: tuple[PointCloud | Mesh, ...], reach: float) -> Ints:
+    """Return the grid around several bodies that can be reached; kept, as they are."""
+    return surface_around([array for body in bodies if (array := surface_of(body, reach)) is not None])
+
+
+@lru_cache(maxsize=64)
 def surface_of(body: PointCloud | Mesh, reach: float) -> Ints | None:
     """Return what a robot of this reach can touch of a body; kept, since the next scene often has it, too."""
     if isinstance(body, PointCloud):

@@ -80,23 +80,33 @@ def meeting_surfaces(scratch: Singles, ints: Ints, table: Singles, blocked: int,
     _, capsules = scratch_places(ints)
     desk, meeting = integers_at(ints[at.SURFACES], (ANY_LENGTH,)), 0
     surfaces, of_capsules = desk[0], singles_at(desk[1], (ANY_LENGTH,))
-    for number in range(surfaces):
-        place = desk[DESK + SURFACE_ROW * number]
-        tested = integers_at(desk[DESK + SURFACE_ROW * number + 1], (ANY_LENGTH,))
-        cloud = singles_at(place + tree.BYTES_OF_HEADER, (ANY_LENGTH,))
-        windings = integers_at(place, (tree.HEADER,))[tree.WINDINGS]
-        # From the outermost capsules inwards: those touch most often.
-        for i in range(ints[at.CAPSULES] - 1, ints[at.FIXED_CAPSULES] - 1, -1):
-            if tested[i] == 0:
+    around, counts = desk[2], integers_at(desk[3], (ANY_LENGTH,))
+    # From the outermost capsules inwards: those touch most often.
+    for i in range(ints[at.CAPSULES] - 1, ints[at.FIXED_CAPSULES] - 1, -1):
+        if counts[i] == 0:
+            continue
+        here, open_to = capsules + PLACED * i, ALL
+        slack, half, one_by_squared = row(of_capsules, CAPSULE_ROW * i, 3)
+        (covering,) = row(table, ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i + 6, 1)
+        # First, for all of them, the grid around several.
+        for number in range(-1 if around != 0 and counts[i] > 1 else 0, surfaces):
+            place = desk[DESK + SURFACE_ROW * number] if number >= 0 else around
+            if number >= 0 and integers_at(desk[DESK + SURFACE_ROW * number + 1], (ANY_LENGTH,))[i] == 0:
                 continue
-            here = capsules + PLACED * i
-            slack, half, one_by_squared = row(of_capsules, CAPSULE_ROW * i, 3)
-            (covering,) = row(table, ints[at.CAPSULE_FLOATS] + at.CAPSULE_FLOAT_ROW * i + 6, 1)
+            cloud = singles_at(place + tree.BYTES_OF_HEADER, (ANY_LENGTH,))
+            windings = integers_at(place, (tree.HEADER,))[tree.WINDINGS]
             reach = covering - slack + cloud[tree.RADIUS]
+            if surfaces > 1 and number >= 0 and _beside(scratch, here, half + reach, cloud) & open_to == 0:
+                continue
             near, sure = _near_and_touching(
                 scratch, here, i, half, covering, slack, place, cloud, ints, table
             )
-            near &= ~(blocked | meeting | sure)
+            if number < 0:
+                open_to = near & ~(blocked | meeting)
+                if open_to == 0:
+                    break
+                continue
+            near &= open_to & ~(blocked | meeting | sure)
             meeting |= sure & ~blocked
             if meeting != 0 and enough == 1:
                 return meeting
@@ -113,8 +123,8 @@ def meeting_surfaces(scratch: Singles, ints: Ints, table: Singles, blocked: int,
                     meeting |= 1 << lane
                     if enough == 1:
                         return meeting
-            if blocked | meeting == ALL:
-                return meeting
+        if blocked | meeting == ALL:
+            return meeting
     return meeting
 
 
@@ -180,6 +190,15 @@ def _asked(centre: Any, near: Any, touching: Any, place: int, cloud: Singles) ->
     sure = below_zero(larger(away + cloud[tree.TOLD] - touching, away - step * _TOLD_APART))
     sure &= below_zero(outside - _LEAST)
     return below_zero(outside + away * away - near * near), sure
+
+
+@inner
+def _beside(scratch: Singles, here: int, near: Any, cloud: Singles) -> int:
+    """Return the mask of lanes in which a capsule's middle is within `near` of the box that a grid fills."""
+    x, y, z, _, width, depth, height = row(cloud, tree.LOW, 7)
+    u, v, w = minus(load_vector(scratch, here), (x, y, z))
+    u, v, w = u - _cut(u, width), v - _cut(v, depth), w - _cut(w, height)
+    return below_zero(u * u + v * v + w * w - near * near)
 
 
 @inlined

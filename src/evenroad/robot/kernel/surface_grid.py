@@ -20,6 +20,9 @@ CELLS, LEAST_CELL = 400_000, 4e-3
 FARTHEST_STEPS, STEPS = 64, 4
 """Distances beyond so many cells are not told apart; a byte counts parts of a cell."""
 
+_SURE = 1e-7
+"""What is so near to a cell, in sides of one, is in it, too: more than rounding."""
+
 MOST_WINDINGS = 100
 """Around a place a surface winds at most so often, as far as we count."""
 
@@ -33,9 +36,7 @@ class Grid:
     low, cell : float64 array, shape (3,), and float
         Lower corner, and side of a cell [m].
     taken : bool array, shape (x, y, z)
-        Cells that the surface is in, or next to, by at most `beyond` sides of a cell; or that it has inside.
-    beyond : int
-        0 for points, 1 for triangles.
+        Cells that the surface is in, or that it has inside.
     windings : int8 array, shape (x, y, z), or None
         How often a closed surface winds around the middle of each cell: not 0 inside.
     turned : bool
@@ -45,7 +46,6 @@ class Grid:
     low: Floats
     cell: float
     taken: Bools
-    beyond: int = 0
     windings: npt.NDArray[np.int8] | None = None
     turned: bool = False
 
@@ -57,12 +57,12 @@ class Grid:
     @property
     def told(self) -> float:
         """By how much a place of a cell is farther from the surface at most than its distance says [m]."""
-        return self.cell * (1.0 / STEPS + (2.0 + self.beyond) * math.sqrt(3.0)) * (1.0 + 1e-5)
+        return self.cell * (1.0 / STEPS + 2.0 * math.sqrt(3.0)) * (1.0 + 1e-5)
 
 
 def grid_of_points(points: Floats) -> Grid:
     """Return the grid of points, (n, 3)."""
-    low, cell, counts = _frame(points.min(axis=0), points.max(axis=0))
+    low, cell, counts = frame(points.min(axis=0), points.max(axis=0))
     taken = np.zeros(counts, dtype=np.bool_)
     places = np.minimum(((points - low) * (1.0 / cell)).astype(np.int64), np.array(counts) - 1)
     taken[tuple(places.T)] = True
@@ -76,71 +76,93 @@ def grid_of_triangles(triangles: Floats, solid: Floats, turned: bool, reach: flo
     outside.  Where they do not, it is inside where a line from outside crosses an odd number of them.
     """
     low, high = (np.clip(each, -reach, reach) for each in _bounds(triangles))
-    low, cell, counts = _frame(low, high)
+    low, cell, counts = frame(low, high)
     taken = np.zeros(counts, dtype=np.bool_)
     _take(triangles, low, cell, taken)
     if len(solid) == 0:
-        return Grid(low, cell, taken, 1)
+        return Grid(low, cell, taken)
     windings = np.zeros(counts, dtype=np.int8)
     _wind(solid, turned, low, cell, windings)
-    return Grid(low, cell, taken | (windings != 0), 1, windings, turned)
+    return Grid(low, cell, taken | (windings != 0), windings, turned)
 
 
 def _bounds(triangles: Floats) -> tuple[Floats, Floats]:
     return triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))
 
 
-def _frame(low: Floats, high: Floats) -> tuple[Floats, float, tuple[int, int, int]]:
+def frame(low: Floats, high: Floats, cells: int = CELLS) -> tuple[Floats, float, tuple[int, int, int]]:
     """Return lower corner, side of a cell and numbers of cells of a grid that reaches half a cell beyond, or more."""
-    cell = max(float(np.prod(np.maximum(high - low, LEAST_CELL)) / CELLS) ** (1 / 3), LEAST_CELL)
+    cell = max(float(np.prod(np.maximum(high - low, LEAST_CELL)) / cells) ** (1 / 3), LEAST_CELL)
     x, y, z = np.ceil((high - low) / cell + 1.0).astype(np.int64).tolist()
     return low - 0.5 * (np.array([x, y, z]) * cell - (high - low)), cell, (x, y, z)
 
 
 @njit(cache=True, nogil=True)
 def _take(triangles: Floats, low: Floats, cell: float, taken: Bools) -> None:
-    """Mark the cells that triangles are in: those of boxes around pieces of them, none larger than a cell."""
-    waiting = np.empty((200, 9))
-    shape = taken.shape
+    """Mark the cells that triangles are in: of each, cut into slabs and these into columns, from end to end."""
+    shape = np.array(taken.shape)
+    whole, slab, column, room = np.empty((3, 3)), np.empty((16, 3)), np.empty((16, 3)), np.empty((16, 3))
+    first, last, number = (
+        np.empty(3, dtype=np.int64),
+        np.empty(3, dtype=np.int64),
+        np.empty(3, dtype=np.int64),
+    )
     for i in range(len(triangles)):
-        for corner in range(3):
-            for axis in range(3):
-                waiting[0, 3 * corner + axis] = (triangles[i, corner, axis] - low[axis]) / cell
-        count = 1
-        while count > 0:
-            count -= 1
-            piece = waiting[count].copy()
-            outside, first, last = False, np.zeros(3, dtype=np.int64), np.zeros(3, dtype=np.int64)
-            size = 0.0
-            for axis in range(3):
-                least = min(piece[axis], piece[3 + axis], piece[6 + axis])
-                most = max(piece[axis], piece[3 + axis], piece[6 + axis])
-                outside |= most < 0.0 or least >= shape[axis]
-                first[axis], last[axis] = max(math.floor(least), 0), min(int(most), shape[axis] - 1)
-                size = max(size, most - least)
-            if outside:
-                continue
-            if size <= 1.0 or count > 190:
-                for x in range(first[0], last[0] + 1):
-                    for y in range(first[1], last[1] + 1):
-                        for z in range(first[2], last[2] + 1):
-                            taken[x, y, z] = True
-                continue
-            longest, most = 0, -1.0
-            for side in range(3):
-                squared = 0.0
-                for axis in range(3):
-                    squared += (piece[3 * side + axis] - piece[3 * ((side + 1) % 3) + axis]) ** 2
-                if squared > most:
-                    longest, most = side, squared
-            other = (longest + 1) % 3
-            for half in range(2):
-                waiting[count + half] = piece
-                end = longest if half == 0 else other
-                for axis in range(3):
-                    middle = 0.5 * (piece[3 * longest + axis] + piece[3 * other + axis])
-                    waiting[count + half, 3 * end + axis] = middle
-            count += 2
+        outside, longest = False, 0
+        for axis in range(3):
+            least, most = np.inf, -np.inf
+            for corner in range(3):
+                whole[corner, axis] = (triangles[i, corner, axis] - low[axis]) / cell
+                least, most = min(least, whole[corner, axis]), max(most, whole[corner, axis])
+            outside |= most < -_SURE or least > shape[axis] + _SURE
+            first[axis] = max(math.floor(max(least, 0.0) - _SURE), 0)
+            last[axis] = min(math.floor(min(most, float(shape[axis])) + _SURE), shape[axis] - 1)
+            if last[axis] - first[axis] > last[longest] - first[longest]:
+                longest = axis
+        if outside:
+            continue
+        # Columns run along the longest axis: so they are few.
+        one, other = (longest + 1) % 3, (longest + 2) % 3
+        for a in range(first[one], last[one] + 1):
+            corners = _within(whole, 3, one, a, slab, room)
+            for b in range(first[other], last[other] + 1):
+                count = _within(slab, corners, other, b, column, room)
+                least, most = np.inf, -np.inf
+                for corner in range(count):
+                    least, most = min(least, column[corner, longest]), max(most, column[corner, longest])
+                number[one], number[other] = a, b
+                begin = max(math.floor(max(least, 0.0) - _SURE), 0) if count > 0 else 0
+                end = min(math.floor(min(most, float(shape[longest])) + _SURE), shape[longest] - 1)
+                for c in range(begin, end + 1 if count > 0 else 0):
+                    number[longest] = c
+                    taken[number[0], number[1], number[2]] = True
+
+
+@njit(cache=True, nogil=True)
+def _within(corners: Floats, count: int, axis: int, number: int, into: Floats, room: Floats) -> int:
+    """Write the corners of a convex polygon that is cut off below and above a row of cells, and return how many."""
+    return _cut(
+        room, _cut(corners, count, axis, number - _SURE, 1.0, room), axis, number + 1 + _SURE, -1.0, into
+    )
+
+
+@njit(cache=True, nogil=True)
+def _cut(corners: Floats, count: int, axis: int, bound: float, side: float, into: Floats) -> int:
+    """Write the corners of what is left of a convex polygon on one side of a bound, and return how many."""
+    left = 0
+    for i in range(count):
+        k = i + 1 if i + 1 < count else 0
+        here, there = side * (corners[i, axis] - bound), side * (corners[k, axis] - bound)
+        if here >= 0.0:
+            for entry in range(3):
+                into[left, entry] = corners[i, entry]
+            left += 1
+        if (here >= 0.0) != (there >= 0.0):
+            share = here / (here - there)
+            for entry in range(3):
+                into[left, entry] = corners[i, entry] + share * (corners[k, entry] - corners[i, entry])
+            left += 1
+    return left
 
 
 @njit(cache=True, nogil=True)

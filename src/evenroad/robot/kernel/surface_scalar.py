@@ -6,7 +6,7 @@ Rarely asked, so what is simple will do: leaves one after the other, and a line 
 from __future__ import annotations
 
 from ctypes import CFUNCTYPE, c_int64
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -35,6 +35,7 @@ Singles = npt.NDArray[np.float32]
 _CHECK = CFUNCTYPE(c_int64, *[c_int64] * 5)
 
 
+@lru_cache(maxsize=16)
 def fixed_contact(surfaces: SceneSurfaces, robot: RobotTables) -> tuple[int, int] | None:
     """Return a capsule that does not move and an obstacle, a cloud or mesh, that it touches."""
     if not any(surfaces.tested[:, i].any() for i, each in enumerate(robot.capsules) if each.frame == 0):

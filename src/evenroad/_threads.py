@@ -1,0 +1,38 @@
+"""Threads of this process, for compiled code, which lets others run meanwhile."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from itertools import starmap
+from typing import Any, TypeVar
+
+from evenroad._compiled import processors
+
+AHEAD = 32
+"""Tasks that are drawn before the first of them is done."""
+
+Result = TypeVar("Result")
+
+
+def in_order(function: Callable[..., Result], tasks: Iterable[tuple[Any, ...]]) -> Iterator[Result]:
+    """Yield what a function returns for each task, its arguments, in their order, however many processors there are.
+
+    Tasks are drawn in this thread, and worked on by others as far as there are processors.
+    """
+    threads = processors()
+    if threads < 2:
+        yield from starmap(function, tasks)
+        return
+    waiting: deque[Future[Result]] = deque()
+    with ThreadPoolExecutor(threads) as pool:
+        try:
+            for task in tasks:
+                waiting.append(pool.submit(function, *task))
+                if len(waiting) > AHEAD:
+                    yield waiting.popleft().result()
+            while waiting:
+                yield waiting.popleft().result()
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)

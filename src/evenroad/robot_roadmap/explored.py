@@ -1,0 +1,144 @@
+"""A scene that is explored before queries come: ways to ends in its narrow places, and how far it is along them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import connected_components, dijkstra
+
+from evenroad._arrays import Floats
+from evenroad._clock import now
+from evenroad.robot import ArmWorld
+from evenroad.robot.arm_world import RECHECK_TOLERANCE
+from evenroad.robot_roadmap import search_memory as at
+from evenroad.robot_roadmap.ask import ask
+from evenroad.robot_roadmap.known_graph import KnownGraph
+from evenroad.robot_roadmap.known_motions import KnownMotions
+from evenroad.robot_roadmap.lazy_search import FOUND
+from evenroad.robot_roadmap.narrow_places import ends_between_obstacles
+from evenroad.robot_roadmap.search_memory import BLOCKED, FREE, PROVED, UNKNOWN
+from evenroad.robot_roadmap.ways_out import learn_ways_out
+
+LINKS, MOTIONS, GREED = 40, 90, 3.0
+"""From each end a way to some milestone is searched with so many links and motions, as for a query."""
+
+SOON = 20
+"""An end that leads there by fewer motions need not be known: too many ends beside each other make ways longer."""
+
+OUT = 5000
+"""So many motions a way out may take."""
+
+JOINED = 30
+"""What was learned is joined to so many of the nearest that it reaches."""
+
+_LONG = 1e8
+"""Seconds that stand for no limit."""
+
+LANDMARKS = 24
+"""From so many milestones it is known how far all others are along free motions."""
+
+CLOSE = 20
+"""An end that none of its links joins is tried to be linked to so many milestones that are nearest in displacement."""
+
+
+def explore(
+    roadmap: KnownMotions,
+    world: ArmWorld,
+    day: ArmWorld,
+    graph: KnownGraph,
+    count: int,
+    rng: np.random.Generator,
+) -> list[Floats]:
+    """Learn ways to so many ends in narrow places, and what joins them; return those that trees found, (p, dim) each.
+
+    Of what the roadmap knows to be free of robot and cell, `day` is asked.
+    """
+    settle(graph, world, day)
+    ways: list[Floats] = []
+    hubs = np.flatnonzero(graph.nodes[: len(roadmap.milestones)] >= FREE)
+    if not len(hubs):
+        return ways
+    for end in ends_between_obstacles(world, count, rng):
+        goal = roadmap.milestones[rng.choice(hubs)][np.newaxis]
+        asked = ask(
+            world, day, graph, end, goal, links=LINKS, greed=GREED, most_motions=MOTIONS, deadline=math.inf
+        )
+        if asked.ended == FOUND:
+            if asked.motions >= SOON:
+                graph.learn(asked.path[:2])
+        else:
+            ways += learn_ways_out(world, graph, roadmap.weights, (end, goal[0]), OUT, now() + _LONG).ways
+    settle(graph, world, day)
+    _join(graph, world, len(roadmap.milestones))
+    graph.guide(_distances(graph), roadmap.weights, CLOSE)
+    return ways
+
+
+def settle(graph: KnownGraph, world: ArmWorld, day: ArmWorld) -> None:
+    """Ask about all milestones that nobody has asked about, and edges that are not proved, but for those that turn."""
+    n, nodes = int(graph.desk[at.NODES]), graph.nodes
+    q = graph.milestones[:n]
+    unknown = np.flatnonzero(nodes[:n] == UNKNOWN)
+    # What is out of limits may be within them after a turn.
+    nodes[unknown] = np.where(world.valid(q[unknown]), FREE, UNKNOWN if graph.desk[at.LIFTING] else BLOCKED)
+    a, b, turns = graph.motions()
+    verdicts = graph.edges[: len(a)]
+    open_ = ~np.isin(verdicts, (BLOCKED, PROVED)) & ~turns & (nodes[a] >= FREE) & (nodes[b] >= FREE)
+    old = np.arange(len(a)) < graph.desk[at.BASE]
+    for asked, rows in ((day, np.flatnonzero(open_ & old)), (world, np.flatnonzero(open_ & ~old))):
+        free = asked.motion_certified(q[a[rows]], q[b[rows]], RECHECK_TOLERANCE)
+        verdicts[rows] = np.where(free, PROVED, BLOCKED)
+    groups = connected_components(_known(graph, np.ones(len(a))), directed=False)[1]
+    graph.groups[:n] = np.unique(groups, return_index=True)[1][groups]
+
+
+def _join(graph: KnownGraph, world: ArmWorld, first: int) -> None:
+    """Join the milestones from the first one on to the nearest ones that they reach."""
+    free = np.flatnonzero(graph.nodes[: int(graph.desk[at.NODES])] >= FREE)
+    new, q = free[free >= first], graph.milestones
+    if not len(new):
+        return
+    apart = np.linalg.norm(q[new][:, np.newaxis] - q[free], axis=2)
+    near = free[np.argsort(apart, axis=1, kind="stable")[:, 1 : JOINED + 1]]
+    pairs = np.sort(np.stack([np.repeat(new, near.shape[1]), near.ravel()], axis=1), axis=1)
+    pairs = np.unique(pairs, axis=0)
+    n, (a, b, _) = len(q), graph.motions()
+    pairs = pairs[~np.isin(pairs @ (n, 1), np.minimum(a, b) * n + np.maximum(a, b))]
+    pairs = pairs[world.motion_certified(q[pairs[:, 0]], q[pairs[:, 1]], RECHECK_TOLERANCE)]
+    graph.join(pairs, world.space.distance(q[pairs[:, 0]], q[pairs[:, 1]]))
+
+
+def _known(graph: KnownGraph, lengths: Floats) -> csr_matrix:
+    """Return the lengths of the edges that are known to be free, (n, n); of two the shorter one."""
+    n, (a, b, _) = int(graph.desk[at.NODES]), graph.motions()
+    rows = np.flatnonzero(graph.edges[: len(a)] >= FREE)
+    rows = rows[np.lexsort((lengths[rows], a[rows] * n + b[rows]))]
+    rows = rows[np.unique(a[rows] * n + b[rows], return_index=True)[1]]
+    return csr_matrix((lengths[rows], (a[rows], b[rows])), shape=(n, n))
+
+
+def _distances(graph: KnownGraph) -> Floats:
+    """Return how far it is to each milestone from landmarks that are far from each other, (n, landmarks).
+
+    Of joints of several turns nothing is said: how far it is depends on the turns.
+    """
+    if graph.desk[at.LIFTING]:
+        return np.empty((0, 0))
+    a, _, _ = graph.motions()
+    lengths = np.empty(len(a))
+    made = int(graph.desk[at.HALVES_MADE])
+    lengths[graph.halves[:made, at.NUMBER]] = np.maximum(graph.lengths[:made], 1e-9)
+    known = _known(graph, lengths)
+    mark = int(np.flatnonzero(graph.nodes[: known.shape[0]] >= FREE)[0])
+    nearest, rows = np.full(known.shape[0], np.inf), []
+    for number in range(LANDMARKS + 1):
+        away = dijkstra(known, directed=False, indices=mark)
+        away[~np.isfinite(away)] = 0.0
+        if number:
+            # The first one is anywhere.
+            rows.append(away)
+        nearest = np.minimum(nearest, away) if number else away
+        mark = int(np.argmax(nearest))
+    return np.stack(rows, axis=1)

@@ -1,0 +1,58 @@
+"""Places that a roadmap is asked to lead to: numbers, texts, and poses, which postures reach."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy.typing as npt
+
+from evenroad._arrays import Floats
+from evenroad.geometry.pose import Pose
+from evenroad.roadmap import PlanResult, Status
+from evenroad.roadmap.find_path import NO_POINTS
+from evenroad.roadmap.query import read_places
+from evenroad.robot import ArmWorld, configuration
+from evenroad.robot.goals import goals_of
+from evenroad.robot.pose_goal import PoseGoal
+
+Place = str | npt.ArrayLike
+"""A configuration: numbers in the order of the group, or a text as :func:`evenroad.robot.configuration` takes it."""
+
+POSES = (Pose, PoseGoal)
+Goal = Place | Pose | PoseGoal
+"""A configuration, or where a link is to be."""
+
+
+def read_ends(
+    world: ArmWorld, start: Place, goal: Goal | Sequence[Goal]
+) -> tuple[Floats, Floats] | PlanResult:
+    """Return start, (dim,), and goals, (g, dim), with all postures that reach poses; else why a pose is not reached."""
+    if not any(isinstance(each, POSES) for each in (goal if isinstance(goal, list | tuple) else (goal,))):
+        return read_places(_place(world, start), _places(world, goal), world.space)
+    places: Sequence[Goal] = [goal] if isinstance(goal, POSES) else goal  # type: ignore[assignment]
+    place, space = _place(world, start), world.space
+    first = read_places(place, place, space)[0]
+    given = goals_of(world, first, places, lambda each: read_places(place, _place(world, each), space)[1][0])
+    if not given.unreached:
+        return read_places(first, given.configurations, space)
+    return PlanResult(
+        status=Status.GOAL_INVALID if given.in_collision else Status.GOAL_UNREACHABLE,
+        message=given.unreached,
+        start=first,
+        goals=given.configurations,
+        origin=NO_POINTS,
+        rule="none",
+        planner="none",
+        seconds={"goals": given.seconds},
+    )
+
+
+def _place(world: ArmWorld, place: Place) -> npt.ArrayLike:
+    """Return a configuration of a text; of numbers themselves."""
+    return configuration(world.robot, place, world.scene) if isinstance(place, str) else place
+
+
+def _places(world: ArmWorld, goal: Goal | Sequence[Goal]) -> npt.ArrayLike:
+    if isinstance(goal, list | tuple) and any(isinstance(each, str) for each in goal):
+        return [_place(world, each) for each in goal]  # type: ignore[return-value]
+    return _place(world, goal)  # type: ignore[arg-type]

@@ -1,0 +1,194 @@
+"""Scenes that are explored before queries come: what is learned there is free, the same again, and of use."""
+
+import heapq
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from evenroad.errors import InvalidValue
+from evenroad.roadmap import Status
+from evenroad.robot import Obstacle, Scene, link_poses, with_limits
+from evenroad.robot_roadmap import search_memory as at
+from evenroad.robot_roadmap.make import make_roadmap
+from evenroad.robot_roadmap.narrow_places import ends_between_obstacles
+from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
+from evenroad.robot_roadmap.search_memory import BLOCKED, FREE, PROVED, UNKNOWN
+from evenroad.space.path import subdivide
+from tests.robot.kernel_arms import box_scene, ur5
+from tests.robot.oracle import clearance
+
+ENDS = 150
+
+
+@pytest.fixture(scope="module")
+def roadmap():
+    robot = ur5(limits=math.pi, joints=5)
+    return make_roadmap(robot, None, 128, ends=200)
+
+
+@pytest.fixture(scope="module")
+def ends(roadmap):
+    """Free places of the tool in the box and before it, in turns, of no generator that explores."""
+    world = SceneRoadmap(roadmap, box_scene()).world
+    q = world.space.from_cube(np.random.default_rng(9).random((100_000, 5)))
+    q = q[world.valid(q)]
+    inside = q[in_box(roadmap.robot, q)]
+    return np.stack([inside[:40], q[:40]], axis=1)
+
+
+def in_box(robot, q):
+    """Whether the last link is in the box of `box_scene`, which is open towards the robot."""
+    x, y, z = link_poses(robot, q)[:, -1, :3, 3].T
+    return (x > 0.5) & (x < 0.9) & (abs(y) < 0.18) & (z > 0.01) & (z < 0.37)
+
+
+def explored(roadmap, scene=None, **how):
+    known = SceneRoadmap(roadmap, box_scene() if scene is None else scene)
+    known.explore(**{"ends": ENDS} | how)
+    return known
+
+
+def proved(known):
+    """Two milestones and the length of each edge that is proved, as the graph links them."""
+    graph, found = known._graph, []
+    for node in range(int(graph.desk[at.NODES])):
+        half = int(graph.first[node])
+        while half >= 0:
+            other, after, edge = graph.halves[half].tolist()
+            if graph.edges[edge] == PROVED and graph.leads[half] == 0:
+                found.append((node, other, float(graph.lengths[half])))
+            half = after
+    return found
+
+
+def test_paths_in_an_explored_scene_are_free(roadmap, ends):
+    known = explored(roadmap)
+    for start, goal in ends:
+        result = known.plan(start, goal)
+        assert result.solved
+        assert known.world.recheck(result.path).all()
+        dense, _ = subdivide(result.path, known.world.space, np.full(len(result.path) - 1, 100))
+        assert clearance(known.world.robot, known.world.scene, dense).min() > 0.0
+        np.testing.assert_array_equal(result.path[[0, -1]], [start, goal])
+
+
+def test_motions_that_exploring_takes_for_free_are_free_and_what_it_blocks_is_not(roadmap):
+    known = explored(roadmap)
+    graph, world = known._graph, known.world
+    n, count = int(graph.desk[at.NODES]), int(graph.desk[at.EDGES_MADE])
+    assert not (graph.nodes[:n] == UNKNOWN).any()
+    np.testing.assert_array_equal(world.valid(graph.milestones[:n]), graph.nodes[:n] >= FREE)
+    some = np.random.default_rng(0).permutation(proved(known))[:400]
+    a, b = graph.milestones[some[:, 0].astype(int)], graph.milestones[some[:, 1].astype(int)]
+    dense = (a[:, None] + np.linspace(0.0, 1.0, 60)[:, None] * (b - a)[:, None]).reshape(-1, 5)
+    assert clearance(world.robot, world.scene, dense).min() > 0.0
+    np.testing.assert_allclose(some[:, 2], np.linalg.norm(b - a, axis=1), rtol=1e-5)
+    # Nothing that could be asked about is left.
+    one, other, turns = graph.motions()
+    both = (graph.nodes[one] >= FREE) & (graph.nodes[other] >= FREE)
+    blocked = both & (graph.edges[:count] == BLOCKED)
+    assert not (graph.edges[:count][both] == UNKNOWN).any()
+    assert blocked.any()
+    assert not turns.any()
+    assert not world.motion_certified(
+        graph.milestones[one[blocked]], graph.milestones[other[blocked]], 1e-6
+    ).any()
+
+
+def test_landmarks_tell_how_far_milestones_are_along_motions_known_to_be_free(roadmap):
+    known = explored(roadmap)
+    graph, neighbours = known._graph, {}
+    for a, b, length in proved(known):
+        neighbours.setdefault(a, []).append((b, length))
+    far = graph._far
+    assert far.shape == (graph.desk[at.TOLD], graph.desk[at.LANDMARKS])
+    for column in far.T[:4]:
+        # Where the way to a neighbour begins at nothing; what no way leads to has a 0, too.
+        mark = next(
+            i for i in neighbours if column[i] == 0.0 and any(column[j] > 0.0 for j, _ in neighbours[i])
+        )
+        best, queue = {}, [(0.0, mark)]
+        while queue:
+            cost, here = heapq.heappop(queue)
+            if here not in best:
+                best[here] = cost
+                for there, length in neighbours[here]:
+                    heapq.heappush(queue, (cost + length, there))
+        expected = [best.get(i, 0.0) for i in range(len(column))]
+        np.testing.assert_allclose(column, expected, rtol=1e-4, atol=1e-5)
+
+
+def test_exploring_again_finds_the_same_and_another_seed_something_else(roadmap, ends):
+    first, second, other = explored(roadmap), explored(roadmap), explored(roadmap, rng=1)
+    n = int(first._graph.desk[at.NODES])
+    np.testing.assert_array_equal(first._graph.milestones[:n], second._graph.milestones[:n])
+    for start, goal in ends[:10]:
+        np.testing.assert_array_equal(first.plan(start, goal).path, second.plan(start, goal).path)
+    assert not np.array_equal(first._graph.milestones[:n], other._graph.milestones[:n])
+
+
+def test_the_shortest_way_along_an_explored_roadmap_is_no_longer_than_a_greedy_one(roadmap, ends):
+    known = explored(roadmap)
+    n = int(known._graph.desk[at.NODES])
+    ratio = []
+    for start, goal in ends[:20]:
+        shortest, greedy = (known.connect(start, goal[None], links=n, greed=g) for g in (1.0, 3.0))
+        length, other = (
+            np.linalg.norm(np.diff(way.path, axis=0), axis=1).sum() for way in (shortest, greedy)
+        )
+        assert length <= other + 1e-6
+        ratio.append(other / length)
+    assert max(ratio) > 1.01
+
+
+def test_fewer_queries_need_trees_once_a_scene_is_explored(roadmap, ends):
+    def ways(known):
+        before = len(known.learned)
+        for start, goal in ends:
+            assert known.plan(start, goal).solved
+        return len(known.learned) - before
+
+    assert 2 * ways(explored(roadmap)) < ways(SceneRoadmap(roadmap, box_scene()))
+
+
+def test_ends_have_the_tip_where_obstacles_close_it_in(roadmap):
+    world = SceneRoadmap(roadmap, box_scene()).world
+    q = ends_between_obstacles(world, ENDS, np.random.default_rng(0))
+    assert len(q) == ENDS
+    assert world.valid(q).all()
+    anywhere = world.space.from_cube(np.random.default_rng(1).random((20_000, 5)))
+    usual = in_box(world.robot, anywhere[world.valid(anywhere)]).mean()
+    assert in_box(world.robot, q).mean() > max(0.3, 10.0 * usual)
+
+
+def test_a_scene_with_nothing_in_it_can_be_explored(roadmap, ends):
+    known = explored(roadmap, Scene("nothing"))
+    assert known.plan(*ends[0]).solved
+
+
+def test_where_the_robot_is_never_free_there_is_nothing_to_explore(roadmap):
+    scene = Scene("taken", (Obstacle.of("wall", "box", (4.0, 4.0, 4.0), (0.0, 0.0, 2.0)),))
+    known = explored(roadmap, scene)
+    assert known.learned == []
+    q = roadmap.milestones
+    assert known.plan(q[0], q[1]).status is Status.START_INVALID
+
+
+def test_joints_of_several_turns_can_be_explored(roadmap):
+    robot = with_limits(roadmap.robot, {roadmap.robot.group[0]: (-2.0 * math.pi, 2.0 * math.pi)})
+    wide = make_roadmap(replace(robot, name="wide"), None, 96, ends=50)
+    known = explored(wide)
+    q = known.world.space.from_cube(np.random.default_rng(4).random((60, 5)))
+    q = q[known.world.valid(q)]
+    for start, goal in zip(q[::2], q[1::2], strict=False):
+        result = known.plan(start, goal)
+        assert result.solved
+        assert known.world.recheck(result.path).all()
+
+
+@pytest.mark.parametrize("bad", [{"ends": 0}, {"ends": 2.5}, {"rng": "x"}, {"rng": -1}])
+def test_what_is_no_number_of_ends_or_seed_is_refused(roadmap, bad):
+    with pytest.raises(InvalidValue, match="must be an? int"):
+        explored(roadmap, **bad)
