@@ -32,8 +32,10 @@ TRIALS: dict[str, dict[str, Any]] = {
     "16 neighbours": {"k": 16},
     "five layers": {"layers": 5},
     f"graph rebuilt every {REBUILT} steps": {"rebuilt": True},
+    "noise on the weights": {"shaken": True},
     "no drift of the starts": {"noise": 0.0},
     "drift of half an annealing's noise": {"noise": 0.5},
+    "Sobol starts": {"start": "sobol"},
     "Kronecker starts, no drift": {"start": "kronecker", "noise": 0.0},
     "Korobov starts": {"start": "korobov"},
     "Halton starts": {"start": "halton"},
@@ -53,11 +55,21 @@ class Rebuilt(Network):
         return moves
 
 
+class Shaken(Network):
+    """A network whose weights get Gaussian noise after every step, a third of the rate and so cooling with it."""
+
+    def learn(self, slope: Floats, rate: float) -> None:
+        """Do a step of Adam, and shake the weights."""
+        super().learn(slope, rate)
+        noise = np.random.default_rng(self._step).standard_normal(self.weights.size)
+        self.weights += (rate / 3.0 * noise).astype(np.float32)
+
+
 def values(d: int, sets: int, steps: int, trial: dict[str, Any]) -> Floats:
     """Return the best discrepancy of each set."""
     options = dict(trial)
     steps, restarts = steps * options.pop("times", 1), options.pop("restarts", 1)
-    made = Rebuilt if options.pop("rebuilt", False) else Network
+    made = Rebuilt if options.pop("rebuilt", False) else Shaken if options.pop("shaken", False) else Network
     config = NetworkConfig(N, d, steps=steps // restarts, **options)
     with mock.patch.object(sys.modules["evenroad.research.network.train"], "Network", made):
         seeds = np.random.SeedSequence(SEED).spawn(sets * restarts)
@@ -67,6 +79,7 @@ def values(d: int, sets: int, steps: int, trial: dict[str, Any]) -> Floats:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("-d", type=int, nargs="+", default=[2, 10])
+    parser.add_argument("--only", nargs="+", help="rows whose names have one of these words in them")
     parser.add_argument("--sets", type=int, default=8)
     parser.add_argument("--steps", type=int, default=2000)
     options = parser.parse_args()
@@ -75,6 +88,8 @@ def main() -> None:
         values(d, 1, 20, {})  # compiles
         first = 0.0
         for name, trial in TRIALS.items():
+            if first and options.only and not any(word in name for word in options.only):
+                continue
             began = time.process_time()
             ratios = values(d, options.sets, options.steps, trial) / level
             took = time.process_time() - began

@@ -2,7 +2,7 @@
 
     python tools/draw_network.py        # docs/network.png
 
-Left: the scrambled Sobol points that a training starts from, with the graph of nearest neighbours that stays fixed.
+Left: the Kronecker points that a training starts from, with the graph of nearest neighbours that stays fixed.
 Right: the points that the trained network makes of them.
 """
 
@@ -18,8 +18,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
 
-from evenroad.points import draw
 from evenroad.research.network import NetworkConfig, train
+from evenroad.research.network.train import kronecker
 from evenroad.roadmap import KNearest
 
 N = 64
@@ -82,8 +82,8 @@ def main() -> None:
     FigureCanvasAgg(figure)
     scatter(
         figure.add_axes((0.01, 0.08, 0.22, 0.78)),
-        draw("sobol", N, 2, rng=np.random.default_rng(3)).points,
-        "scrambled Sobol points",
+        kronecker(N, np.random.default_rng(3).random(2)),
+        "Kronecker points",
         BLUE,
         True,
     )

@@ -39,9 +39,9 @@ def main() -> None:
         level = np.mean(Bank().cell("hickernell", N, d).measures["hickernell_rooted"])
         looks = {
             "network": ({}, "#d1343b", "-"),
-            "no drift of the starts": ({"noise": 0.0}, "#d1343b", ":"),
+            "Sobol starts, no drift": ({"start": "sobol", "noise": 0.0}, "#d1343b", ":"),
             "random starts": ({"start": "uniform", "noise": 0.0}, "#6b7680", "-"),
-            "Kronecker starts": ({"start": "kronecker", "noise": 0.0}, "#2a9d4a", "-"),
+            "Kronecker starts": ({"start": "kronecker", "noise": 0.0}, "#2a9d4a", "--"),
         }
         for name, (options, colour, style) in looks.items():
             config = NetworkConfig(N, d, steps=STEPS, **options)  # type: ignore[arg-type]

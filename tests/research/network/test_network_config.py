@@ -38,10 +38,11 @@ def test_names_that_nobody_knows_are_refused():
         NetworkConfig(16, 2, judge="me")
 
 
-def test_the_start_is_chosen_by_the_objective_unless_it_is_asked_for():
-    assert NetworkConfig(16, 2, "star").start == "kronecker"
+def test_the_start_is_kronecker_in_the_plane_but_for_prefixes_unless_it_is_asked_for():
+    assert {NetworkConfig(16, 2).start, NetworkConfig(16, 2, "star").start} == {"kronecker"}
     assert NetworkConfig(16, 2, "star", start="sobol").start == "sobol"
-    assert {NetworkConfig(16, 3, "star").start, NetworkConfig(16, 2).start} == {"sobol"}
+    assert NetworkConfig(16, 2, "prefixes(hickernell)").start == "sobol"
+    assert {NetworkConfig(16, 3, "star").start, NetworkConfig(16, 1).start} == {"sobol"}
 
 
 def test_the_exact_star_discrepancy_judges_in_the_plane_alone():

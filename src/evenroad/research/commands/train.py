@@ -46,8 +46,8 @@ class Train:
     refine: int = 0
     """mpmc: anneal the network's sets for so many more steps, and write them as OUT/refined-0000.npz, ..."""
     start: str | None = None
-    """mpmc: what the network moves: sobol, kronecker, halton, korobov or uniform (default: sobol, but kronecker for
-    --objective star in d = 2)."""
+    """mpmc: what the network moves: sobol, kronecker, halton, korobov or uniform (default: kronecker in d = 2, but for
+    prefixes; else sobol)."""
     judge: Literal["objective", "star"] = "objective"
     """mpmc: what decides which points of a training are its best; star: their exact star discrepancy, d = 2."""
     seed: int = 0

@@ -30,7 +30,7 @@ class NetworkConfig:
         An expression (:mod:`evenroad.research.training.objective`) that is made small.
     start : str or None
         What the network starts from, one of ``STARTS``: it learns by how much to move each point.  None: ``kronecker``
-        for the star discrepancy in the plane, else ``sobol``.
+        in the plane, but for prefixes, else ``sobol``.
     width : int or None
         How many numbers describe a point inside; None: 32, from d = 8 on 64.
     layers, k : int
@@ -71,7 +71,9 @@ class NetworkConfig:
             set_fields(self, width=require_count("width", self.width))
         objective = parse_objective(self.objective)
         if self.start is None:
-            set_fields(self, start="kronecker" if self.d == 2 and str(objective) == "star" else "sobol")
+            # The first points of a Kronecker set are all on one side: no start for a set used from its beginning.
+            prefixes = any(term.prefixes for term in objective.terms)
+            set_fields(self, start="kronecker" if self.d == 2 and not prefixes else "sobol")
         require_known("start", self.start, STARTS)
         require_known("judge", self.judge, JUDGES)
         if self.judge == "star" and self.d != 2:
@@ -88,7 +90,7 @@ class NetworkConfig:
 
     @property
     def drift(self) -> float:
-        """The noise, or its default: in few dimensions Sobol points are in a good basin, which noise leaves."""
+        """The noise, or its default: in few dimensions the starts are in a good basin, which noise leaves."""
         if self.noise is not None:
             return self.noise
         if self.d >= 8:

@@ -89,8 +89,9 @@ def train(config: NetworkConfig, *, rng: RngLike = 0, callback: Callback | None 
     """Train a network to move the points of a start, and return the best points that it made with what judged them.
 
     The method of Message-Passing Monte Carlo (Rusch, Kirk, Bronstein, Lemieux, Rus 2024) with three changes: every set
-    has a network of its own; the network says by how much to move a start, not where a point is; and the start is a
-    scrambled Sobol set, which drifts by a noise that cools.  Graph, layers and loss are the paper's.
+    has a network of its own; the network says by how much to move a start, not where a point is; and the start is good:
+    in the plane Kronecker points, else a scrambled Sobol set, which drifts by a noise that cools.  Graph, layers and
+    loss are the paper's.
 
     Parameters
     ----------
