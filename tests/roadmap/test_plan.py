@@ -43,9 +43,12 @@ def test_no_way_around_a_wall_is_an_answer_with_its_reason():
 def test_few_neighbours_on_a_lattice_are_named_as_a_cause():
     def message(family, n, d, k, *sides):
         space = Box([0.0] * d, sides or [1.0] * d)
-        wall = FunctionWorld(space, lambda q: np.abs(q[:, 0] - 0.5) > 0.2, resolution=0.02)
+        end = np.array(sides or [1.0] * d)
+        wall = FunctionWorld(
+            space, lambda q: np.abs(q[:, 0] / end[0] - 0.5) > 0.2, resolution=0.02 * end.max()
+        )
         points = draw(family, n, d, rng=4)
-        return plan(wall, [0.1] * d, [0.9] * d, points, rule=KNearest(k)).message
+        return plan(wall, 0.1 * end, 0.9 * end, points, rule=KNearest(k)).message
 
     # The six nearest of this lattice of 128 points lie in a plane, the ten nearest of 96 in five dimensions in three.
     assert "the nearest 6 of this lattice leave directions out, 7 would not" in message("even", 128, 3, 6)
@@ -63,6 +66,11 @@ def test_few_neighbours_on_a_lattice_are_named_as_a_cause():
         "even", 100, 2, 4, 1, 8
     )
     assert "directions" not in message("even", 100, 2, 4, 1, 1000)
+    # Many stretched axes: the lattice's short vectors are too many to look at.
+    assert "directions" not in message("even", 128, 5, 4, 1000, 1000, 1, 1, 1)
+    assert "directions" not in message("even", 64, 5, 4, 5000, 3, 3, 3, 3)
+    # Axes in an order that the origin does not tell, and that counts: only a bound is known.
+    assert "leave directions out, at least 11 are needed" in message("even", 128, 6, 4, 1, 1, 1, 1, 1, 1.2)
     # Of A_d* all nearest are equally near, and others have no pairs.
     for family in ("halton", "lattice"):
         assert "directions" not in message(family, 64, 3, 3)

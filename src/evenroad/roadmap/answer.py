@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad.points.measures.rank_one import least_neighbours, neighbour_directions
-from evenroad.points.measures.short_vectors import MOST_AXES
+from evenroad.errors import EvenroadError
+from evenroad.points.measures.rank_one import least_neighbours
+from evenroad.points.measures.short_vectors import MOST_AXES, lattice_basis
 from evenroad.roadmap.attempt import Attempt, Searched
 from evenroad.roadmap.neighbours import flat_metric
 from evenroad.roadmap.result import PlanResult, SearchedGraph, Status
@@ -173,23 +174,29 @@ def _reach(attempt: Attempt, searched: Searched, counts: dict[str, int]) -> tupl
 def _few_directions(attempt: Attempt, points: int) -> str:
     """Return what to say of a Korobov lattice whose points have neighbours in too few directions."""
     space, d = attempt.world.space, attempt.world.space.cube_dim
-    rule = re.match(r"k=(\d+) symmetrised", attempt.rule)
-    lattice = re.match(r"rank-1 lattice (a|z)=([\d ]+), (axes permuted)?", attempt.origin.method)
+    rule, method = re.match(r"k=(\d+) symmetrised", attempt.rule), attempt.origin.method
+    lattice = re.match(r"rank-1 lattice (a|z)=([\d ]+), ", method)
     if rule is None or lattice is None:
         return ""
     k, scale = int(rule[1]), _axis_scales(space)
     if scale is None:
         return ""
     # Nearest points come in opposite pairs: so many are needed at least.
-    needed = 2 * d - 1
-    if d <= MOST_AXES and not (lattice[3] and np.ptp(scale) > 1e-9 * scale[0]):
+    least, told = 2 * d - 1, f"at least {2 * d - 1} are needed"
+    if d <= MOST_AXES and not ("permuted" in method and np.ptp(scale) > 1e-9 * scale[0]):
         numbers = [int(each) for each in lattice[2].split()]
         vector = [pow(numbers[0], i, points) for i in range(d)] if lattice[1] == "a" else numbers
-        if (np.abs(neighbour_directions(points, vector, k, scale).vectors) >= points).any():
-            # The box is so long, or the points so few, that neighbours would lie beyond it.
+        try:
+            if (np.abs(lattice_basis(points, vector, scale)) >= points).any():
+                # The box is so long, or the points so few, that neighbours would lie beyond it.
+                return ""
+            needed = least_neighbours(points, vector, scale)
+        except EvenroadError:
+            # Longer still; or the points are not all that the lattice had.
             return ""
-        needed = least_neighbours(points, vector, scale)
-    return f"; the nearest {k} of this lattice leave directions out, {needed} would not" if k < needed else ""
+        # Fewer are enough if equally near ones happen to be the right ones.
+        least, told = needed, f"{max(needed, least)} would not"
+    return f"; the nearest {k} of this lattice leave directions out, {told}" if k < least else ""
 
 
 def _axis_scales(space: Space) -> Floats | None:

@@ -123,7 +123,10 @@ def neighbour_directions(n: int, vector: Any, k: int, scale: Any = None) -> Dire
 
 
 def least_neighbours(n: int, vector: Any, scale: Any = None) -> int:
-    """Return the least k whose nearest neighbours, symmetrised, generate the lattice: then they lead everywhere."""
+    """Return the least k whose nearest neighbours, symmetrised, generate the lattice: then they lead everywhere.
+
+    Of equally near ones all count, though a graph has but some of them.
+    """
     vectors, rank = short_vectors(n, vector, scale=scale)
     d = vectors.shape[1]
     span = _Span(d)
