@@ -3,17 +3,21 @@
     python -m benchmarks.arm_recipes --robot ur5-5 -n 256 --problems 60 --draws 2 --recipes 0:0 4:0 0:3000 4:3000
     python -m benchmarks.arm_recipes --robot scara --stream report --recipes 4:3000 tune --against 4:3000
     python -m benchmarks.arm_recipes -n 64 --recipes 4:3000 --afar 0
+    python -m benchmarks.arm_recipes --recipes 4:3000 swaps --against 4:3000
 
-A recipe is GAMMA:ENDS, as `evenroad.make_roadmap` takes them, or `tune`, which chooses them; the control are the first
-scrambled Sobol points that are free of robot and cell, in the same metric.  Constants are chosen on the stream `tune`.
-The differences have standard errors over problems.  `room` is the share of the space that milestones are left where
-their density is in proportion to the chance of being free to the power of gamma times the number of joints:
-(sum of p)^2 / (n sum of p^2).
+A recipe is GAMMA:ENDS, as `evenroad.make_roadmap` takes them, `tune`, which chooses them, or `swaps`: milestones of
+the last recipe before it, of which those that serve least are swapped for others as long as more of its random ends
+see one; what such ends, drawn anew, see is said; or `beginning`: the first n of four times as many. The control are
+the first scrambled Sobol points that are free of robot and cell, in the same metric. Constants are chosen on the
+stream `tune`. The differences have standard errors over problems. `room` is the share of the space that milestones
+are left where their density is in proportion to the chance of being free to the power of gamma times the number of
+joints: (sum of p)^2 / (n sum of p^2).
 """
 
 from __future__ import annotations
 
 import argparse
+import itertools
 import time
 from functools import partial
 
@@ -26,10 +30,10 @@ from evenroad.research.arms.scenes import GENERATORS
 from evenroad.robot import with_group
 from evenroad.robot_roadmap import pockets
 from evenroad.robot_roadmap.make import joined, make_roadmap
-from evenroad.robot_roadmap.pockets import links_of
+from evenroad.robot_roadmap.pockets import Seen, links_of
 from evenroad.robot_roadmap.recipe import Recipe, chosen, known_of
 
-TUNED = "tune"
+TUNED, SWAPPED, FIRST_OF_MORE = "tune", "swaps", "beginning"
 
 ARMS["arm7-5"] = lambda: with_group(arm_named("arm7"), arm_named("arm7").group[:5])
 ARMS["arm7-6"] = lambda: with_group(arm_named("arm7"), arm_named("arm7").group[:6])
@@ -69,18 +73,35 @@ def main() -> None:
     make = partial(make_roadmap, arm, cell, n, k=options.k)
     for draw in range(options.draws):
         rng = 1000 + draw
-        recipes = {name: _recipe(name) for name in options.recipes if name != TUNED}
+        recipes = {name: _recipe(name) for name in options.recipes if ":" in name}
         bare = make(gamma=0.0, ends=0, rng=rng)
-        streams = np.random.default_rng(rng).spawn(3)
-        known = known_of(bare.world, bare.one_turn, n, list(recipes.values()), streams, lambda *_: None)
+        known = known_of(bare.world, bare.one_turn, n, list(recipes.values()), _streams(rng), _nothing)
+        recipe, rows = Recipe(), np.arange(n)
         for name in options.recipes:
             if name == TUNED:
                 began = time.process_time()
                 made = make(tune=True, rng=rng)
                 print(f"draw {draw}, in {time.process_time() - began:.1f} s: {made.tuned}", flush=True)
+            elif name == SWAPPED:
+                rows, said = swapped(known.seen, len(known.pool), rows)
+                anew = known_of(
+                    bare.world,
+                    bare.one_turn,
+                    n,
+                    [recipe],
+                    [*_streams(rng)[:2], _streams(rng + 500)[2]],
+                    _nothing,
+                )
+                fresh = [unseen(anew.seen, each) for each in (chosen(known, recipe, n), rows)]
+                made = joined(bare, known.pool[rows], options.k)
+                print(f"draw {draw}: {said}; drawn anew {fresh[0]:.1f}, then {fresh[1]:.1f} %", flush=True)
+            elif name == FIRST_OF_MORE:
+                more = known_of(bare.world, bare.one_turn, 4 * n, [recipe], _streams(rng), _nothing)
+                made = joined(bare, more.pool[chosen(more, recipe, 4 * n)[:n]], options.k)
             else:
                 recipe = recipes[name]
-                made = joined(bare, known.pool[chosen(known, recipe, n)], options.k)
+                rows = chosen(known, recipe, n)
+                made = joined(bare, known.pool[rows], options.k)
                 density = known.chance ** (recipe.gamma * bare.world.space.dim)
                 room.setdefault(name, []).append(density.sum() ** 2 / (len(density) * (density**2).sum()))
             solved.setdefault(name, []).append([joins(made, problem, links) for problem in found])
@@ -101,6 +122,36 @@ def main() -> None:
             f"{recipe:10} {cells} | {100.0 * share.mean():5.1f} | {apart.mean():+5.1f} ± {error:.1f} | {of_room}",
             flush=True,
         )
+
+
+def swapped(seen: Seen, pool: int, rows: np.ndarray) -> tuple[np.ndarray, str]:
+    """Return milestones, rows of a pool, swapped for as long as more ends see one, and what came of it."""
+    ends, swaps, rows = len(seen.own), 0, rows.copy()
+    sees = np.zeros((ends, pool), dtype=np.bool_)
+    sees[np.repeat(np.arange(ends), np.diff(seen.first)), seen.which] = True
+    before = unseen(seen, rows)
+    while True:
+        times = sees[:, rows].sum(axis=1)
+        gain = sees[times == 0].sum(axis=0)
+        loss = sees[times == 1][:, rows].sum(axis=0)
+        new, old = int(np.argmax(gain)), int(np.argmin(loss))
+        if gain[new] <= loss[old]:
+            return rows, f"{swaps} swaps, ends that see none {before:.1f}, then {unseen(seen, rows):.1f} %"
+        rows[old], swaps = new, swaps + 1
+
+
+def unseen(seen: Seen, rows: np.ndarray) -> float:
+    """Return the percentage of ends that see none of some rows."""
+    hit = np.isin(seen.which, rows)
+    return 100.0 * np.mean([not hit[a:b].any() for a, b in itertools.pairwise(seen.first)])
+
+
+def _streams(rng: int) -> list[np.random.Generator]:
+    return np.random.default_rng(rng).spawn(3)
+
+
+def _nothing(what: str, share: float) -> None:
+    """Show no progress."""
 
 
 def _recipe(name: str) -> Recipe:

@@ -91,7 +91,7 @@ def test_list_shows_what_there_is_and_runs_nothing(run, tmp_path):
         "maze-1",
         "hypercube-legacy6",
         "halton paper-blocks",
-        "Korobov",
+        "rank-1 lattice",
     ):
         assert word in out
     assert not (tmp_path / "results.db").exists()

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import connected_components, dijkstra
 
 from evenroad._arrays import Floats, Ints
 from evenroad._clock import now
@@ -20,6 +19,9 @@ from evenroad.robot_roadmap.lazy_search import FOUND
 from evenroad.robot_roadmap.narrow_places import ends_between_obstacles
 from evenroad.robot_roadmap.search_memory import BLOCKED, FREE, PROVED, UNKNOWN
 from evenroad.robot_roadmap.ways_out import learn_ways_out
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
 
 LINKS, MOTIONS, GREED = 40, 90, 3.0
 """From each end a way to some milestone is searched with so many links and motions, as for a query."""
@@ -93,6 +95,9 @@ def settle(graph: KnownGraph, world: ArmWorld, day: ArmWorld) -> None:
     for asked, rows in ((day, np.flatnonzero(open_ & old)), (world, np.flatnonzero(open_ & ~old))):
         free = asked.motion_certified(q[a[rows]], q[b[rows]], RECHECK_TOLERANCE)
         verdicts[rows] = np.where(free, PROVED, BLOCKED)
+    # Imported late, as below: plans do without.
+    from scipy.sparse.csgraph import connected_components
+
     groups = connected_components(_known(graph, np.ones(len(a))), directed=False)[1]
     graph.groups[:n] = np.unique(groups, return_index=True)[1][groups]
 
@@ -120,6 +125,8 @@ def _nearest(q: Floats, some: Ints, free: Ints) -> Ints:
 
 def _known(graph: KnownGraph, lengths: Floats) -> csr_matrix:
     """Return the lengths of the edges that are known to be free, (n, n); of two the shorter one."""
+    from scipy.sparse import csr_matrix
+
     n, (a, b, _) = int(graph.desk[at.NODES]), graph.motions()
     rows = np.flatnonzero(graph.edges[: len(a)] >= FREE)
     rows = rows[np.lexsort((lengths[rows], a[rows] * n + b[rows]))]
@@ -132,6 +139,8 @@ def _distances(graph: KnownGraph) -> Floats:
 
     Of joints of several turns nothing is said: how far it is depends on the turns.
     """
+    from scipy.sparse.csgraph import dijkstra
+
     if graph.desk[at.LIFTING]:
         return np.empty((0, 0))
     a, _, _ = graph.motions()

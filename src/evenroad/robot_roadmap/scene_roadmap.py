@@ -78,9 +78,6 @@ _LONG = 1e8
 _SOME = 64
 """Milestones among which one that is free today is looked for, to compile with."""
 
-_NOT_ASKED = Asked(PAUSED, np.empty((0, 0)), -1, 0, 0)
-"""What trees begin with where they are first."""
-
 _ready: set[str] = set()
 """Backends whose programs are compiled."""
 
@@ -276,7 +273,8 @@ class SceneRoadmap:
         # Trees grow among capsules, in lanes.
         alone = not self._dear and self._own is None and self.world.backend == "lanes"
         at_once = trees == "first" and bool(follow) and alone
-        asked = _NOT_ASKED if at_once else self._ask(first, goals, *limits, links, *order)
+        nothing = Asked(PAUSED, np.empty((0, len(first))), -1, 0, 0)
+        asked = nothing if at_once else self._ask(first, goals, *limits, links, *order)
         if asked.ended in (NONE, CUT_OFF, SPENT) and follow and len(goals) == 1:
             soon = most if self._own is None else min(most, asked.motions + SOON)
             asked = self._by_ways_out(asked, first, goals, soon, limits[1], links)
