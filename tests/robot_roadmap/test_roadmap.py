@@ -414,8 +414,8 @@ def test_where_trees_lead_nowhere_first_the_roadmap_is_asked(roadmap, monkeypatc
     known, budget = roadmap.in_scene(box_scene()), er.Budget(motions=100, seconds=8.0)
     result = known.plan([0.0, -1.5, 0.0], [2.0, -1.0, 1.0], trees="first", budget=budget)
     assert (result.solved, result.planner) == (True, "trees, then robot roadmap")
-    assert given[0][0] == 50
-    assert 3.0 < given[0][1] <= 4.0
+    assert given[0][0] == 80
+    assert 6.0 < given[0][1] <= 6.4
     assert result.counts["edges_checked"] > 10
     assert known.world.recheck(result.path).all()
 

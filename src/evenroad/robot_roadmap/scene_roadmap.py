@@ -39,6 +39,9 @@ PLANNER = "robot roadmap"
 SHARE = 0.5
 """Of the time, for the roadmap; the rest is the trees', where it does not lead to the goal."""
 
+FIRST_SHARE = 0.8
+"""Of the budget, for trees that are first: what is left is enough to go along the roadmap."""
+
 GREED = 3.0
 """What the bound of the search is multiplied by: a third of the checks of a shortest way, and once they are shortened
 its paths are no longer."""
@@ -244,7 +247,7 @@ class SceneRoadmap:
             Whether the path is made shorter.
         trees : bool or "first"
             Whether trees are tried, after 90 motions along the roadmap; else more of its links and all motions are.
-            With "first" they are before it for half of the budget, where capsules alone are asked: quicker as long as
+            With "first" they are before it for most of the budget, where capsules alone are asked: quicker as long as
             nothing is known here.
 
         Returns
@@ -301,11 +304,12 @@ class SceneRoadmap:
         connection = Connection(asked.path, asked.goal, self._size, asked.milestones, asked.motions)
         if asked.goal < 0 and follow and attempt.left() is not None:
             attempt.planner = "trees" if at_once else f"{PLANNER}, then trees"
-            attempt.deadline = limits[1] if at_once else deadline
-            connection = self._by_trees(attempt, asked, max(int(share * most), 1) if at_once else most)
+            share = FIRST_SHARE if at_once else 1.0
+            attempt.deadline = began + share * min(deadline - began, _LONG)
+            connection = self._by_trees(attempt, asked, max(int(share * most), 1))
             attempt.deadline = deadline
             if at_once and connection.goal < 0 and (rest := attempt.left()) is not None:
-                # Where trees lead nowhere in half of the budget, the roadmap may.
+                # Where trees lead nowhere in most of the budget, the roadmap may.
                 after = self.plan(first, goals, budget=rest, shorten=shorten)
                 if after.solved:
                     return _after(attempt, connection, after)
