@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from evenroad._arrays import Floats
+from evenroad._arrays import Floats, Ints
 from evenroad._clock import now
 from evenroad.robot import ArmWorld
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
@@ -34,6 +34,9 @@ OUT = 5000
 
 JOINED = 30
 """What was learned is joined to so many of the nearest that it reaches."""
+
+AT_ONCE = 64
+"""Of so many it is found out at once which are nearest: tables of all would take gigabytes."""
 
 _LONG = 1e8
 """Seconds that stand for no limit."""
@@ -105,14 +108,19 @@ def _join(graph: KnownGraph, world: ArmWorld, first: int) -> None:
     new, q = free[free >= first], graph.milestones
     if not len(new):
         return
-    apart = np.linalg.norm(q[new][:, np.newaxis] - q[free], axis=2)
-    near = free[np.argsort(apart, axis=1, kind="stable")[:, 1 : JOINED + 1]]
+    near = np.concatenate([_nearest(q, some, free) for some in np.array_split(new, -(-len(new) // AT_ONCE))])
     pairs = np.sort(np.stack([np.repeat(new, near.shape[1]), near.ravel()], axis=1), axis=1)
     pairs = np.unique(pairs, axis=0)
     n, (a, b, _) = len(q), graph.motions()
     pairs = pairs[~np.isin(pairs @ (n, 1), np.minimum(a, b) * n + np.maximum(a, b))]
     pairs = pairs[world.motion_certified(q[pairs[:, 0]], q[pairs[:, 1]], RECHECK_TOLERANCE)]
     graph.join(pairs, world.space.distance(q[pairs[:, 0]], q[pairs[:, 1]]))
+
+
+def _nearest(q: Floats, some: Ints, free: Ints) -> Ints:
+    """Return the numbers of the free milestones that are nearest to some of them, without the first: itself."""
+    apart = np.linalg.norm(q[some][:, np.newaxis] - q[free], axis=2)
+    return free[np.argsort(apart, axis=1, kind="stable")[:, 1 : JOINED + 1]]
 
 
 def _known(graph: KnownGraph, lengths: Floats) -> csr_matrix:

@@ -168,6 +168,8 @@ def step(s: Search) -> int:
     while True:
         if d[PENDING] < 0:
             if d[WAITING] == 0 and d[AIM] < 0 and d[CLOSE_START] > 0 and d[ONLY_KNOWN] == 0:
+                if d[SIZE] + d[CLOSE] > d[STATES] or d[MADE] + d[CLOSE] > d[ENTRIES]:
+                    return FULL
                 d[CLOSE_START] = 0
                 _choose_close(s, 0)
                 _open_links(s)

@@ -134,7 +134,7 @@ def ends_in_pockets(
     for seen in in_order(lambda world, end: _seen(world, inside, pool, scaled, end), ends()):
         found.append(seen)
         pairs += len(seen) * len(robot.pairs)
-        progress(max(len(found) / count, pairs / MOST_SEEN))
+        progress(min(max(len(found) / count, pairs / MOST_SEEN), 1.0))
         if pairs > MOST_SEEN and len(found) >= FEWEST:
             break
     if not found:

@@ -39,6 +39,9 @@ PLANNER = "robot roadmap"
 SHARE = 0.5
 """Of the time, for the roadmap; the rest is the trees', where it does not lead to the goal."""
 
+FIRST_SHARE = 0.8
+"""Of the budget, for trees that are first: what is left is enough to go along the roadmap."""
+
 GREED = 3.0
 """What the bound of the search is multiplied by: a third of the checks of a shortest way, and once they are shortened
 its paths are no longer."""
@@ -244,7 +247,8 @@ class SceneRoadmap:
             Whether the path is made shorter.
         trees : bool or "first"
             Whether trees are tried, after 90 motions along the roadmap; else more of its links and all motions are.
-            With "first" they are before it, where capsules alone are asked: quicker as long as nothing is known here.
+            With "first" they are before it for most of the budget, where capsules alone are asked: quicker as long as
+            nothing is known here.
 
         Returns
         -------
@@ -269,7 +273,9 @@ class SceneRoadmap:
         share = SHARE if follow or self._own is not None else 1.0
         limits = min(most, tried[1]) if follow else most, began + share * min(deadline - began, _LONG)
         order = GREED, 0.0 if follow else NEARBY
-        at_once = trees == "first" and follow and not self._dear
+        # Trees grow among capsules, in lanes.
+        alone = not self._dear and self._own is None and self.world.backend == "lanes"
+        at_once = trees == "first" and bool(follow) and alone
         nothing = Asked(PAUSED, np.empty((0, len(first))), -1, 0, 0)
         asked = nothing if at_once else self._ask(first, goals, *limits, links, *order)
         if asked.ended in (NONE, CUT_OFF, SPENT) and follow and len(goals) == 1:
@@ -298,7 +304,15 @@ class SceneRoadmap:
         connection = Connection(asked.path, asked.goal, self._size, asked.milestones, asked.motions)
         if asked.goal < 0 and follow and attempt.left() is not None:
             attempt.planner = "trees" if at_once else f"{PLANNER}, then trees"
-            connection = self._by_trees(attempt, asked)
+            share = FIRST_SHARE if at_once else 1.0
+            attempt.deadline = began + share * min(deadline - began, _LONG)
+            connection = self._by_trees(attempt, asked, max(int(share * most), 1))
+            attempt.deadline = deadline
+            if at_once and connection.goal < 0 and (rest := attempt.left()) is not None:
+                # Where trees lead nowhere in most of the budget, the roadmap may.
+                after = self.plan(first, goals, budget=rest, shorten=shorten)
+                if after.solved:
+                    return _after(attempt, connection, after)
         if connection.goal >= 0:
             result = connected(attempt, connection)
             assert result.path is not None
@@ -323,9 +337,9 @@ class SceneRoadmap:
             before = before[0] + asked.milestones, before[1] + asked.motions
         return replace(asked, milestones=before[0], motions=before[1])
 
-    def _by_trees(self, attempt: Attempt, asked: Asked) -> Connection:
-        """Return what trees find, and learn it."""
-        grown = attempt.connect(self.world)
+    def _by_trees(self, attempt: Attempt, asked: Asked, most: int) -> Connection:
+        """Return what trees find by so many motions, and learn it."""
+        grown = attempt.connect(self.world, most=most)
         if grown.goal >= 0:
             self.learned.append(grown.path)
             self._graph.learn(grown.path)
@@ -392,3 +406,13 @@ class SceneRoadmap:
         places = path.tolist()
         # Where nothing wraps the sum is the same, in a tenth of the time.
         return path_length(path, self.world.space) if self._wraps else sum(map(math.dist, places, places[1:]))
+
+
+def _after(attempt: Attempt, grown: Connection, after: PlanResult) -> PlanResult:
+    """Return a result with what was spent on trees before it."""
+    counts, seconds = dict(after.counts), dict(after.seconds)
+    counts["configurations_checked"] += attempt.checked + grown.configurations
+    counts["edges_checked"] += grown.motions
+    for what, spent in attempt.watch.seconds.items():
+        seconds[what] = seconds.get(what, 0.0) + spent
+    return replace(after, planner=f"trees, then {PLANNER}", counts=counts, seconds=seconds)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -65,22 +65,20 @@ class SceneSurfaces:
     tested: Ints
     capsules: npt.NDArray[np.float32]
     around: Ints | None = None
+    _count: Ints = field(init=False, repr=False)
+    _desk: Ints = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        # At once, since worlds of several threads may share these surfaces.
+        count, around = self.tested.sum(axis=0), 0 if self.around is None else address(self.around)
+        rows = [len(self.arrays), address(self.capsules), around, address(count)]
+        for array, flags, number in zip(self.arrays, self.tested, self.numbers, strict=True):
+            rows += [address(array), address(flags), number]
+        self.__dict__.update(_count=count, _desk=np.array(rows, dtype=np.int64))
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return how a copy is made: it finds out for itself where its arrays are."""
         return SceneSurfaces, (self.arrays, self.numbers, self.tested, self.capsules, self.around)
-
-    @cached_property
-    def _count(self) -> Ints:
-        return self.tested.sum(axis=0)
-
-    @cached_property
-    def _desk(self) -> Ints:
-        around = 0 if self.around is None else address(self.around)
-        rows = [len(self.arrays), address(self.capsules), around, address(self._count)]
-        for array, flags, number in zip(self.arrays, self.tested, self.numbers, strict=True):
-            rows += [address(array), address(flags), number]
-        return np.array(rows, dtype=np.int64)
 
     def added_to(self, ints: Ints, check: int) -> Ints:
         """Return tables of integers that name the surfaces, and the address of the check against them."""
