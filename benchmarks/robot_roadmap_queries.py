@@ -101,8 +101,7 @@ def costs(name: str, count: int, n: int, kinds: list[str], seeds: range = REPORT
                     "roadmap, kept scene": [partial(k.plan, start, goal, budget=LIMIT) for k in copies],
                     "roadmap, explored scene": [partial(k.plan, start, goal, budget=LIMIT) for k in known],
                     "roadmap, new scene": [partial(in_new_scene, made, world.scene, start, goal)] * COPIES,
-                    "trees first, new scene": [partial(made.plan, world.scene, start, goal, budget=LIMIT)]
-                    * COPIES,
+                    "trees, new scene": [partial(made.plan, world.scene, start, goal, budget=LIMIT)] * COPIES,
                 }
                 answers = {title: timed(some) for title, some in calls.items()}
                 apart = np.linalg.norm(start - goal)

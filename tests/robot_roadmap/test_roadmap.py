@@ -17,7 +17,6 @@ from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
 from evenroad.robot_roadmap.spread import displacement_weights, spread_order
 from evenroad.robot_roadmap.turns import lifted_motions_free, whole_turns
-from evenroad.world import Connection
 from tests.robot.kernel_arms import STRAIGHT, TABLE, Z, box_scene, ur5
 from tests.robot.surface_oracle import mesh_clearance, point_clearance
 
@@ -397,27 +396,6 @@ def test_one_query_in_a_new_scene_goes_by_trees_and_many_along_the_roadmap(roadm
     assert once.proof == "certified"
     assert known.plan(start, goal).planner == "robot roadmap"
     assert known.world.recheck(once.path).all()
-    ways = len(known.learned)
-    again = known.plan(start, goal, trees="first")
-    np.testing.assert_array_equal(again.path, once.path)
-    assert len(known.learned) == ways + 1
-
-
-def test_where_trees_lead_nowhere_first_the_roadmap_is_asked(roadmap, monkeypatch):
-    given = []
-
-    def nowhere(self, start, goals, *, most_motions, seconds):
-        given.append((most_motions, seconds))
-        return Connection(np.empty((0, 3)), -1, 2, 30, 10)
-
-    monkeypatch.setattr(ArmWorld, "connect", nowhere)
-    known, budget = roadmap.in_scene(box_scene()), er.Budget(motions=100, seconds=8.0)
-    result = known.plan([0.0, -1.5, 0.0], [2.0, -1.0, 1.0], trees="first", budget=budget)
-    assert (result.solved, result.planner) == (True, "trees, then robot roadmap")
-    assert given[0][0] == 80
-    assert 6.0 < given[0][1] <= 6.4
-    assert result.counts["edges_checked"] > 10
-    assert known.world.recheck(result.path).all()
 
 
 def test_where_trees_do_not_grow_the_roadmap_is_asked_at_once(roadmap, monkeypatch):

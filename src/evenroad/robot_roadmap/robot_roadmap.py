@@ -10,11 +10,12 @@ import numpy.typing as npt
 
 from evenroad.geometry.shapes import Shape
 from evenroad.roadmap import Budget, PlanResult
+from evenroad.roadmap.find_path import find_path
 from evenroad.robot import Scene
 from evenroad.robot_roadmap.known_motions import KnownMotions
 from evenroad.robot_roadmap.learned import with_paths
-from evenroad.robot_roadmap.places import Place
-from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
+from evenroad.robot_roadmap.places import Goal, Place, read_ends
+from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap, world_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,10 +68,16 @@ class RobotRoadmap(KnownMotions):
         return SceneRoadmap(self, scene, shapes=shapes)
 
     def plan(
-        self, scene: Scene, start: Place, goal: Place | Sequence[Place], *, budget: Budget | None = None
+        self, scene: Scene, start: Place, goal: Goal | Sequence[Goal], *, budget: Budget | None = None
     ) -> PlanResult:
-        """Plan one query in the day's scene, see :meth:`SceneRoadmap.plan`: with trees first, which are quicker there.
+        """Plan one query in the day's scene: with trees, which are quicker as long as nothing is known there.
 
-        For more of them, or to go along the roadmap, take :meth:`in_scene`.
+        For more queries, or to go along the roadmap, take :meth:`in_scene`; see :meth:`SceneRoadmap.plan` for the
+        arguments.
         """
-        return self.in_scene(scene).plan(start, goal, budget=budget, trees="first")
+        world, _ = world_of(self, scene)
+        if world.backend != "lanes":
+            # Trees do not grow.
+            return self.in_scene(scene).plan(start, goal, budget=budget)
+        ends = read_ends(world, start, goal)
+        return ends if isinstance(ends, PlanResult) else find_path(world, *ends, budget=budget)

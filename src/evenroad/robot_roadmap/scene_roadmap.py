@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -25,7 +25,7 @@ from evenroad.robot_roadmap.ask import Asked, Checks, ask
 from evenroad.robot_roadmap.cell import day_and_all, left_to_check, require_same_robot
 from evenroad.robot_roadmap.explored import explore
 from evenroad.robot_roadmap.known_motions import KnownMotions
-from evenroad.robot_roadmap.lazy_search import CUT_OFF, ENDS_TAKEN, NONE, PAUSED, SPENT
+from evenroad.robot_roadmap.lazy_search import CUT_OFF, ENDS_TAKEN, NONE, SPENT
 from evenroad.robot_roadmap.own_shapes import OwnShapesWorld
 from evenroad.robot_roadmap.places import Goal, Place, read_ends
 from evenroad.robot_roadmap.pockets import links_of
@@ -38,9 +38,6 @@ PLANNER = "robot roadmap"
 
 SHARE = 0.5
 """Of the time, for the roadmap; the rest is the trees', where it does not lead to the goal."""
-
-FIRST_SHARE = 0.8
-"""Of the budget, for trees that are first: what is left is enough to go along the roadmap."""
 
 GREED = 3.0
 """What the bound of the search is multiplied by: a third of the checks of a shortest way, and once they are shortened
@@ -85,6 +82,14 @@ _ready: set[str] = set()
 """Backends whose programs are compiled."""
 
 
+def world_of(roadmap: KnownMotions, scene: Scene, robot: Robot | None = None) -> tuple[ArmWorld, Scene]:
+    """Return the robot in its cell among the obstacles of a day, and these alone; raises as `SceneRoadmap`."""
+    day, everything = day_and_all(roadmap.cell, scene)
+    robot = in_scene(roadmap.robot if robot is None else robot, everything)
+    require_same_robot(roadmap.robot, roadmap.cell, robot.empty_handed())
+    return ArmWorld(robot, everything, resolution=roadmap.resolution), day
+
+
 class SceneRoadmap:
     """A robot's roadmap in one scene, with what earlier queries found out there; of one thread.
 
@@ -121,13 +126,11 @@ class SceneRoadmap:
         robot: Robot | None = None,
         shapes: Sequence[Shape] | None = None,
     ) -> None:
-        day, everything = day_and_all(roadmap.cell, scene)
-        robot = in_scene(roadmap.robot if robot is None else robot, everything)
-        require_same_robot(roadmap.robot, roadmap.cell, robot.empty_handed())
         self.roadmap = roadmap
-        self.world = ArmWorld(robot, everything, resolution=roadmap.resolution)
+        self.world, day = world_of(roadmap, scene, robot)
+        robot = self.world.robot
         # What the roadmap knows to be free of the robot and its cell is asked about the other obstacles alone.
-        bare, left = left_to_check(robot, roadmap.cell, day, everything)
+        bare, left = left_to_check(robot, roadmap.cell, day, self.world.scene)
         # One and the same where it can be: what is known of it need not be looked up by all of its values.
         bare = roadmap.bare if robot is roadmap.robot else bare
         self._day = ArmWorld(bare, left, resolution=roadmap.resolution)
@@ -232,7 +235,7 @@ class SceneRoadmap:
         *,
         budget: Budget | None = None,
         shorten: bool = True,
-        trees: bool | Literal["first"] = True,
+        trees: bool = True,
     ) -> PlanResult:
         """Plan from a start to one of the goals: along the roadmap and, where it does not lead there soon, with trees.
 
@@ -245,10 +248,8 @@ class SceneRoadmap:
             Default: 5 s.  Half of the time is the roadmap's, the rest the trees'.
         shorten : bool
             Whether the path is made shorter.
-        trees : bool or "first"
+        trees : bool
             Whether trees are tried, after 90 motions along the roadmap; else more of its links and all motions are.
-            With "first" they are before it for most of the budget, where capsules alone are asked: quicker as long as
-            nothing is known here.
 
         Returns
         -------
@@ -273,11 +274,7 @@ class SceneRoadmap:
         share = SHARE if follow or self._own is not None else 1.0
         limits = min(most, tried[1]) if follow else most, began + share * min(deadline - began, _LONG)
         order = GREED, 0.0 if follow else NEARBY
-        # Trees grow among capsules, in lanes.
-        alone = not self._dear and self._own is None and self.world.backend == "lanes"
-        at_once = trees == "first" and bool(follow) and alone
-        nothing = Asked(PAUSED, np.empty((0, len(first))), -1, 0, 0)
-        asked = nothing if at_once else self._ask(first, goals, *limits, links, *order)
+        asked = self._ask(first, goals, *limits, links, *order)
         if asked.ended in (NONE, CUT_OFF, SPENT) and follow and len(goals) == 1:
             soon = most if self._own is None else min(most, asked.motions + SOON)
             asked = self._by_ways_out(asked, first, goals, soon, limits[1], links)
@@ -303,16 +300,7 @@ class SceneRoadmap:
             attempt.motions_checked = asked.motions
         connection = Connection(asked.path, asked.goal, self._size, asked.milestones, asked.motions)
         if asked.goal < 0 and follow and attempt.left() is not None:
-            attempt.planner = "trees" if at_once else f"{PLANNER}, then trees"
-            share = FIRST_SHARE if at_once else 1.0
-            attempt.deadline = began + share * min(deadline - began, _LONG)
-            connection = self._by_trees(attempt, asked, max(int(share * most), 1))
-            attempt.deadline = deadline
-            if at_once and connection.goal < 0 and (rest := attempt.left()) is not None:
-                # Where trees lead nowhere in most of the budget, the roadmap may.
-                after = self.plan(first, goals, budget=rest, shorten=shorten)
-                if after.solved:
-                    return _after(attempt, connection, after)
+            connection = self._by_trees(attempt, asked)
         if connection.goal >= 0:
             result = connected(attempt, connection)
             assert result.path is not None
@@ -337,9 +325,10 @@ class SceneRoadmap:
             before = before[0] + asked.milestones, before[1] + asked.motions
         return replace(asked, milestones=before[0], motions=before[1])
 
-    def _by_trees(self, attempt: Attempt, asked: Asked, most: int) -> Connection:
-        """Return what trees find by so many motions, and learn it."""
-        grown = attempt.connect(self.world, most=most)
+    def _by_trees(self, attempt: Attempt, asked: Asked) -> Connection:
+        """Return what trees find, and learn it."""
+        attempt.planner = f"{PLANNER}, then trees"
+        grown = attempt.connect(self.world)
         if grown.goal >= 0:
             self.learned.append(grown.path)
             self._graph.learn(grown.path)
@@ -406,13 +395,3 @@ class SceneRoadmap:
         places = path.tolist()
         # Where nothing wraps the sum is the same, in a tenth of the time.
         return path_length(path, self.world.space) if self._wraps else sum(map(math.dist, places, places[1:]))
-
-
-def _after(attempt: Attempt, grown: Connection, after: PlanResult) -> PlanResult:
-    """Return a result with what was spent on trees before it."""
-    counts, seconds = dict(after.counts), dict(after.seconds)
-    counts["configurations_checked"] += attempt.checked + grown.configurations
-    counts["edges_checked"] += grown.motions
-    for what, spent in attempt.watch.seconds.items():
-        seconds[what] = seconds.get(what, 0.0) + spent
-    return replace(after, planner=f"trees, then {PLANNER}", counts=counts, seconds=seconds)
