@@ -70,7 +70,7 @@ class RobotRoadmap(KnownMotions):
     def plan(
         self, scene: Scene, start: Place, goal: Goal | Sequence[Goal], *, budget: Budget | None = None
     ) -> PlanResult:
-        """Plan one query in the day's scene: with trees, which are quicker as long as nothing is known there.
+        """Plan one query in the day's scene: with trees, whose slowest queries are the nearer ones in a new scene.
 
         For more queries, or to go along the roadmap, take :meth:`in_scene`; see :meth:`SceneRoadmap.plan` for the
         arguments.
