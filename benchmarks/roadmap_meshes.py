@@ -26,7 +26,7 @@ from tests_peers.engines.surface import shape_surface
 
 from benchmarks.arm_problems import REPORTING, TUNING, Pool, arm, problems, queries
 from benchmarks.clouds import triangles_of
-from benchmarks.robot_roadmap_queries import COPIES, QuickWorld, ratio_of_tails, timed
+from benchmarks.robot_roadmap_queries import COPIES, QuickWorld, in_new_scene, ratio_of_tails, timed
 from benchmarks.robot_roadmaps import table_of
 from evenroad.geometry import Mesh
 from evenroad.geometry.shapes import Shape, along_z
@@ -202,8 +202,7 @@ def among_triangles(pool: Pool, made: RobotRoadmap, seeds: range, options: argpa
                     "trees": [partial(ends, world)] * COPIES,
                     "trees, shortened as much": [partial(ends, quick)] * COPIES,
                     "roadmap, kept scene": [partial(k.plan, start, goal, budget=budget) for k in copies],
-                    "roadmap, new scene": [partial(made.plan, world.scene, start, goal, budget=budget)]
-                    * COPIES,
+                    "roadmap, new scene": [partial(in_new_scene, made, world.scene, start, goal)] * COPIES,
                 }
                 answers = {title: timed(some) for title, some in calls.items()}
                 solved = all(result.solved for _, result in answers.values())
