@@ -242,8 +242,9 @@ def test_the_network_is_judged_by_the_exact_star_discrepancy_on_request(run, tmp
     assert json.loads((tmp_path / "sets" / "request.json").read_text())["network"]["start"] == "kronecker"
 
 
-def test_orders_are_what_is_searched_for_the_star_discrepancy_of_the_plane(run, tmp_path):
-    line = ("train", "-n", 12, "-d", 2, "--objective", "star", "--sets", 2, "--jobs", 1)
+@pytest.mark.parametrize("star", ["star", " 1*star"])
+def test_orders_are_what_is_searched_for_the_star_discrepancy_of_the_plane(run, tmp_path, star):
+    line = ("train", "-n", 12, "-d", 2, "--objective", star, "--sets", 2, "--jobs", 1)
     code, out, _ = run(*line, "--steps", 200, "-o", "sets")
     assert code == 0
     best = min(star_discrepancy(load_points(tmp_path / "sets" / f"set-000{i}.npz")) for i in range(2))

@@ -80,7 +80,12 @@ class Train:
 
     @property
     def _chosen(self) -> str:
-        return self.method or ("order" if (self.d, self.objective) == (2, "star") else "anneal")
+        return self.method or ("order" if self._of_stars else "anneal")
+
+    @property
+    def _of_stars(self) -> bool:
+        """Whether what is made small is the star discrepancy of the plane, however it is written."""
+        return self.d == 2 and str(parse_objective(self.objective)) == "star"
 
     def _check(self) -> None:
         """Refuse bad options before anything is written, and those that the method would silently ignore."""
@@ -92,7 +97,7 @@ class Train:
         for name, given in of_network.items():
             if given and self._chosen != "mpmc":
                 raise InvalidValue(f"--{name} does not go with the method {self._chosen!r}")
-        if self._chosen == "order" and (self.d, self.objective) != (2, "star"):
+        if self._chosen == "order" and not self._of_stars:
             raise InvalidValue(
                 f"the method 'order' makes sets in d = 2 for --objective star,"
                 f" not in d = {self.d} for {shown(self.objective)}"
