@@ -44,6 +44,13 @@ def ball_points(dim: int) -> Floats:
 
 
 @cache
+def sphere_points(dim: int) -> Floats:
+    """Return 2048 directions of length 1 spread evenly, (2048, dim)."""
+    points = ball_points(dim)
+    return _read_only(points / np.linalg.norm(points, axis=1, keepdims=True))
+
+
+@cache
 def share_pairs() -> Floats:
     """Return the pairs of places, shares of a path's length, that shortening joins, (96, 2)."""
     return _read_only(reversed_halton(_PAIRS, 2))

@@ -16,7 +16,7 @@ from evenroad._compiled import compile_beside
 from evenroad.errors import InvalidValue
 from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.lane_world import LaneWorld
-from evenroad.robot.tree_sequences import ball_points, cube_points, share_pairs
+from evenroad.robot.tree_sequences import ball_points, cube_points, share_pairs, sphere_points
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch
 from evenroad.world.protocol import Connection
@@ -186,6 +186,36 @@ def shorten(
     return short, motions
 
 
+def tighten(world: PlansWithTrees, path: Floats, *, batches: int) -> tuple[Floats, int]:
+    """Return a path drawn tight, and how many motions were looked at: shorter than by `shorten`, at the same price.
+
+    Where waypoints have slid along what they touch every motion is proved free; where one is not, or the world's backend
+    is not the lanes, it is what `shorten` returns.
+
+    Parameters
+    ----------
+    world : PlansWithTrees
+        The robot in its scene.
+    path : float64 array, shape (p, dim), p >= 2
+        Waypoints; every motion is free in the world.
+    batches : int
+        After so many batches of sixteen checks nothing more is tried; what is left is proved.
+
+    Raises
+    ------
+    InvalidValue
+        If `path` is no such array.
+    """
+    if world.backend == "scalar" or len(path) < 3:
+        return shorten(world, path)
+    work = *_place(share_pairs), *_place(sphere_points, world.space.dim), batches
+    tight, motions = _tighten_path()(world.lanes, path, *work)
+    if len(tight):
+        return tight, motions
+    short, more = shorten(world, path, batches=batches)
+    return short, motions + more
+
+
 def _shortened(world: PlansWithTrees, path: Floats) -> tuple[Floats, int]:
     """Return a path that is not longer, and how many motions were looked at, without lanes: each motion by itself."""
     space = world.space
@@ -287,6 +317,13 @@ def _shorten_path() -> Callable[..., tuple[Floats, int]]:
     from evenroad.robot.kernel.shorten import shorten_path
 
     return shorten_path
+
+
+@cache
+def _tighten_path() -> Callable[..., tuple[Floats, int]]:
+    from evenroad.robot.kernel.tighten import tighten_path
+
+    return tighten_path
 
 
 def _with_more_room(block: Floats, begin: int, capacity: int, dim: int) -> Floats:

@@ -85,8 +85,8 @@ def _by_lanes(world: ArmWorld, day: ArmWorld, graph: KnownGraph, most_motions: i
         if now() >= deadline:
             ended = SPENT
             break
-    rows, milestones, motions, goal = report.tolist()
-    return Asked(ended, path[:rows][::-1].copy(), goal if ended == FOUND else -1, milestones, motions)
+    rows, milestones, motions, goal, batches = report.tolist()
+    return Asked(ended, path[:rows][::-1].copy(), goal if ended == FOUND else -1, milestones, motions, batches)
 
 
 def _one_by_one(world: Checks, day: Checks, graph: KnownGraph, most_motions: int, deadline: float) -> Asked:

@@ -61,13 +61,15 @@ class Checks(World, Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Asked:
-    """What a search ended with: a path, (p, dim), and its goal or -1; milestones and motions that were asked about."""
+    """What a search ended with: a path, (p, dim), and its goal or -1; milestones and motions that were asked about, and
+    how many batches of sixteen checks that took, where it is known."""
 
     ended: int
     path: Floats
     goal: int
     milestones: int
     motions: int
+    batches: int = 0
 
 
 class ProvesSoon(Checks, Protocol):

@@ -53,8 +53,9 @@ from evenroad.robot_roadmap.search_memory import (
 
 Ints = npt.NDArray[np.int64]
 
-ROWS, MILESTONES, MOTIONS, GOAL, REPORT = range(5)
-"""Of the report: waypoints written, milestones and motions that were asked about, the goal that was reached."""
+ROWS, MILESTONES, MOTIONS, GOAL, CHECKS, REPORT = range(6)
+"""Of the report: waypoints written, milestones and motions that were asked about, the goal that was reached, batches of
+sixteen checks."""
 
 TOLERANCE, MOST_BATCHES = 1e-6, 1024
 """Limits of the proof of a motion [m]."""
@@ -98,6 +99,7 @@ def find_way(
         if question == FOUND:
             if _is_proved(s, day, full):
                 counted[GOAL] = -s.entries[s.desk[PENDING], STATE] - 1
+                counted[CHECKS] += full.counts[BATCHES]
                 counted[ROWS] = way_back(s, matrix_at(path, (rows, s.desk[DIM])))
                 return FOUND
             begin(s)

@@ -20,7 +20,7 @@ from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.find_path import NO_POINTS, SECONDS, with_reasons
 from evenroad.roadmap.query import Query
 from evenroad.robot import ArmWorld, Robot, Scene, in_scene
-from evenroad.robot.trees import shorten
+from evenroad.robot.trees import shorten, tighten
 from evenroad.robot_roadmap.ask import Asked, Checks, ask
 from evenroad.robot_roadmap.cell import day_and_all, left_to_check, require_same_robot
 from evenroad.robot_roadmap.explored import explore
@@ -72,6 +72,7 @@ ENDS = 400
 EXPLORED_LINKS, EXPLORED_MOTIONS, EXPLORED_WORK = 20, 150, (20, 40, 120)
 """In an explored scene fewer links do, and what is left of the time goes into shortening."""
 
+WORK, LEAST = 180, 30
 _LONG = 1e8
 """Seconds that stand for no limit."""
 
@@ -319,11 +320,12 @@ class SceneRoadmap:
         out = learn_ways_out(self.world, self._graph, self.roadmap.weights, (start, goals[0]), left, deadline)
         self.learned += out.ways
         before = asked.milestones + out.configurations, asked.motions + out.motions
+        batches = asked.batches + 2 * out.motions
         if out.complete:
             rest = min(TRIED_MOTIONS, max(most - before[1], 0))
             asked = self._ask(start, goals, rest, deadline, links, only_known=True)
             before = before[0] + asked.milestones, before[1] + asked.motions
-        return replace(asked, milestones=before[0], motions=before[1])
+        return replace(asked, milestones=before[0], motions=before[1], batches=batches + asked.batches)
 
     def _by_trees(self, attempt: Attempt, asked: Asked) -> Connection:
         """Return what trees find, and learn it."""
@@ -348,11 +350,7 @@ class SceneRoadmap:
         )
         seconds = {"search": found - began}
         if shorter:
-            pairs, cuts, batches = EXPLORED_WORK
-            if not self._explored:
-                work = DEAR_WORK if self._dear else 2 if len(path) >= LONG_WAY else 1
-                pairs, cuts, batches = work * PAIRS, work * CUTS, work * BATCHES
-            path, counts["shortcut_motions"] = shorten(world, path, pairs=pairs, cuts=cuts, batches=batches)
+            path, counts["shortcut_motions"] = tighten(world, path, batches=max(LEAST, WORK - asked.batches))
             length, seconds["shortcut"] = self._length(path), now() - found
         to = f" to goal {asked.goal}" if len(goals) > 1 else ""
         return PlanResult(

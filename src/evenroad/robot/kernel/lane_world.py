@@ -61,6 +61,27 @@ class LaneWorld:
         given = checks, self.resolution, tables, by_joint, begin, begin + 8 * doubles
         return array[doubles : doubles + more], given
 
+    def wider(self, margin: float) -> int:
+        """Return the address of the tables' lengths with bodies larger by a margin [m], for obstacles alone.
+
+        Bodies beside each other may be nearer for good.
+        """
+        if margin not in self._wider:
+            header = self.tables[: at.HEADER].tolist()
+            floats = header[at.BLOCK_FLOATS] + at.BLOCK_FLOAT_ROW * header[at.BLOCKS]
+            table = self.tables[header[at.INTEGERS] :].view(np.float32)[:floats].copy()
+            capsules = table[header[at.CAPSULE_FLOATS] :][: at.CAPSULE_FLOAT_ROW * header[at.CAPSULES]]
+            capsules.reshape(-1, at.CAPSULE_FLOAT_ROW)[:, 6] += np.float32(margin)
+            bodies = table[header[at.BODY_FLOATS] :][: at.BODY_FLOAT_ROW * header[at.BODIES]]
+            bodies.reshape(-1, at.BODY_FLOAT_ROW)[:, 3:7] += np.float32(margin)
+            self._wider[margin] = table
+        return address(self._wider[margin])
+
+    @cached_property
+    def _wider(self) -> dict[float, npt.NDArray[np.float32]]:
+        """Tables that were enlarged, by their margin."""
+        return {}
+
     @cached_property
     def _places(self) -> tuple[int, int, int, int]:
         """Addresses of the checks and of the two arrays, and how much memory a program's checks need."""

@@ -10,6 +10,7 @@ from evenroad.robot.kernel.lane_world import LaneWorld
 from evenroad.robot.kernel.layout import program, quick, quick_inlined
 from evenroad.robot.kernel.motion import canonical, distance_and_way, enter
 from evenroad.robot.kernel.motion_checks import (
+    BOTH_ENDS,
     COARSE,
     Checks,
     checks_of,
@@ -101,56 +102,85 @@ def shorten_points(
             if not np.isfinite(points[i, k]):
                 return 0
         enter(points[i], checks.bounds, points[i])
-    size = _pass_by(points, size, checks)
-    _measure(points, places, size, way, checks)
+    size = pass_by(points, size, True, checks)
+    measure(points, places, size, way, checks)
     for row in range(count):
         if checks.counts[BATCHES_DONE] >= most_batches:
             break
-        low = min(pairs[row, 0], pairs[row, 1]) * places[size - 1]
-        high = max(pairs[row, 0], pairs[row, 1]) * places[size - 1]
-        size = _joined(points, places, size, low, high, WORTH_WHILE, ends, way, checks)
+        size = pair_joined(points, places, size, pairs[row], True, ends, way, checks)
+    size = cut_corners(points, places, size, most_cuts, most_batches, True, ends, way, checks)
+    if checks.counts[BATCHES_DONE] < most_batches:
+        size = pass_by(points, size, True, checks)
+    return size + _BESIDE * checks.counts[MOTIONS]
+
+
+@quick
+def pair_joined(
+    points: Floats,
+    places: Floats,
+    size: int,
+    pair: Floats,
+    proved: bool,
+    ends: Floats,
+    way: Floats,
+    checks: Checks,
+) -> int:
+    """Join two places, shares of the path's length, as `joined` does."""
+    length = places[size - 1]
+    low, high = min(pair[0], pair[1]) * length, max(pair[0], pair[1]) * length
+    return joined(points, places, size, low, high, WORTH_WHILE, proved, ends, way, checks)
+
+
+@quick
+def cut_corners(
+    points: Floats,
+    places: Floats,
+    size: int,
+    most_cuts: int,
+    most_batches: int,
+    proved: bool,
+    ends: Floats,
+    way: Floats,
+    checks: Checks,
+) -> int:
+    """Cut corners, one after the other and again while that gains anything; return the path's new size.
+
+    Of each the shorter side is cut off, or half of it, or a quarter.
+    """
     cuts, i, gained = 0, 1, places[size - 1]
-    # Corners, one after the other and again while that gains anything: the shorter side, half of it, a quarter.
     while cuts < most_cuts and i < size - 1 and checks.counts[BATCHES_DONE] < most_batches:
         reach = min(places[i] - places[i - 1], places[i + 1] - places[i])
         length = places[size - 1]
         for _ in range(3):
             cuts += 1
-            size = _joined(
-                points,
-                places,
-                size,
-                places[i] - reach,
-                places[i] + reach,
-                CUT_WORTH_WHILE,
-                ends,
-                way,
-                checks,
-            )
+            low, high = places[i] - reach, places[i] + reach
+            size = joined(points, places, size, low, high, CUT_WORTH_WHILE, proved, ends, way, checks)
             if places[size - 1] < length:
                 break
             reach *= 0.5
         i += 1
         if i >= size - 1 and places[size - 1] < gained * (1.0 - WORTH_WHILE):
             i, gained = 1, places[size - 1]
-    if checks.counts[BATCHES_DONE] < most_batches:
-        size = _pass_by(points, size, checks)
-    return size + _BESIDE * checks.counts[MOTIONS]
+    return size
 
 
 @quick
-def _joined(
+def joined(
     points: Floats,
     places: Floats,
     size: int,
     low: float,
     high: float,
     worth_while: float,
+    proved: bool,
     ends: Floats,
     way: Floats,
     checks: Checks,
 ) -> int:
-    """Join two places of a path by a straight motion where that is worth while and free; return its new size."""
+    """Join two places of a path by a straight motion where that is worth while and free; return its new size.
+
+    With `proved` the motion has to be proved as well, else it is free at its states.
+    """
     length = places[size - 1]
     # Places as near as this to a waypoint are taken for it.
     near = 1e-9 * length
@@ -169,31 +199,33 @@ def _joined(
     _place_at(points, places, first, low, ends[0], way, checks)
     _place_at(points, places, last, high, ends[1], way, checks)
     gain = high - low - distance_and_way(ends[0], ends[1], checks.bounds, way)
-    if gain < worth_while * length or not _is_shortcut(ends[0], ends[1], checks):
+    if gain < worth_while * length or not _is_shortcut(ends[0], ends[1], proved, checks):
         return size
     # What lies between goes, the two ends come in.
-    _splice(points, size, begin, end, ends)
+    splice(points, size, begin, end, ends)
     size += 2 - (end - begin)
-    _measure(points, places, size, way, checks)
+    measure(points, places, size, way, checks)
     return size
 
 
 @quick_inlined
-def _is_shortcut(a: Floats, b: Floats, checks: Checks) -> bool:
-    """Return whether the motion between two free configurations is free and proved."""
+def _is_shortcut(a: Floats, b: Floats, proved: bool, checks: Checks) -> bool:
+    """Return whether the motion between two free configurations is free and proved, or free at its states."""
+    if not proved:
+        return motion_free(a, b, BOTH_ENDS, checks)
     return motion_free(a, b, COARSE, checks) and motion_proved(a, b, TOLERANCE, BATCHES, checks)
 
 
 @quick
-def _pass_by(points: Floats, size: int, checks: Checks) -> int:
+def pass_by(points: Floats, size: int, proved: bool, checks: Checks) -> int:
     """Go from each waypoint straight to the farthest one that can be reached; return how many are left."""
     i = 0
     while i < size - 2:
         j = size - 1
         while j > i + 1:
-            if _is_shortcut(points[i], points[j], checks):
+            if _is_shortcut(points[i], points[j], proved, checks):
                 for row in range(j, size):
-                    _move(points, row, i + 1 + row - j)
+                    move(points, row, i + 1 + row - j)
                 size -= j - i - 1
                 break
             # One after the other where few are left, in larger strides along a path of hundreds.
@@ -203,7 +235,7 @@ def _pass_by(points: Floats, size: int, checks: Checks) -> int:
 
 
 @quick_inlined
-def _measure(points: Floats, places: Floats, size: int, way: Floats, checks: Checks) -> None:
+def measure(points: Floats, places: Floats, size: int, way: Floats, checks: Checks) -> None:
     """Write how far along the path each waypoint is."""
     places[0] = 0.0
     for i in range(1, size):
@@ -227,21 +259,21 @@ def _place_at(
 
 
 @quick
-def _splice(points: Floats, size: int, begin: int, end: int, ends: Floats) -> None:
+def splice(points: Floats, size: int, begin: int, end: int, ends: Floats) -> None:
     """Put the motion between `ends` in place of the waypoints from `begin` on, to before `end`."""
     grown = 2 - (end - begin)
     if grown > 0:
         for row in range(size - 1, end - 1, -1):
-            _move(points, row, row + grown)
+            move(points, row, row + grown)
     elif grown < 0:
         for row in range(end, size):
-            _move(points, row, row + grown)
+            move(points, row, row + grown)
     for k in range(points.shape[1]):
         points[begin, k], points[begin + 1, k] = ends[0, k], ends[1, k]
 
 
 @quick
-def _move(points: Floats, row: int, to: int) -> None:
+def move(points: Floats, row: int, to: int) -> None:
     """Copy a waypoint."""
     for k in range(points.shape[1]):
         points[to, k] = points[row, k]

@@ -1,0 +1,307 @@
+"""Paths drawn tight in compiled code: waypoints slide along what they touch, and what is left is proved free.
+
+Straight shortcuts leave a waypoint where it first touched something.  Here it moves on to the sides of its contact, and
+every motion is judged at its states alone, with bodies a little larger: only those of the last path are proved.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.robot.kernel.addresses import doubles_at, matrix_at
+from evenroad.robot.kernel.lane_world import LaneWorld
+from evenroad.robot.kernel.layout import LANES, program, quick
+from evenroad.robot.kernel.motion import canonical, distance_and_way, enter
+from evenroad.robot.kernel.motion_checks import (
+    BOTH_ENDS,
+    Checks,
+    blocked,
+    checks_of,
+    look_at,
+    motion_free,
+    motion_proved,
+)
+from evenroad.robot.kernel.motion_states import BATCHES, CONFIGURATIONS, COUNTS, MOTIONS
+from evenroad.robot.kernel.shorten import cut_corners, measure, move, pair_joined, pass_by
+
+Floats = npt.NDArray[np.float64]
+
+CLEARANCE = 1e-3
+"""So far from obstacles the states of what is put in are [m]: of motions free there nearly all are proved."""
+
+TOLERANCE, PROOF_BATCHES = 1e-6, 1024
+"""Limits of the proofs [m]."""
+
+SLIDES, PAIRS, LEAST_GAIN = 4, 1, 2e-3
+"""After so many slides so many shortcuts are tried, again and again until twice in a row the path becomes shorter by
+less than this share."""
+
+MOST_ROUNDS, MOST_CUTS = 64, 16
+"""So often at most; and so many cuts of corners after them."""
+
+PLACES, STATES = 5, 3
+"""So many places are tried at once for a waypoint, each with a state to both of its sides: fifteen of sixteen lanes."""
+
+BESIDE = 0.4
+"""Those states are so far towards the neighbours, as a share of the way."""
+
+SIZES = (0.2, 0.24, 0.3, 0.36, 0.44, 0.54, 0.66, 0.8)
+"""Places are so far away, as shares of the shorter motion to a neighbour, one after the other."""
+
+AHEAD = 0.3
+"""To a direction at random, of length 1, so much of the direction is added in which the path gets shorter soonest."""
+
+SLIDE_WORTH_WHILE = 1e-3
+"""The way from neighbour to neighbour becomes shorter by this share or more."""
+
+_HALF = LANES // 2
+_BESIDE = 1 << 32
+"""Two counts in one number: less to read after a call."""
+
+
+def tighten_path(
+    world: LaneWorld,
+    path: Floats,
+    pairs: int,
+    pair_count: int,
+    sphere: int,
+    sphere_count: int,
+    most_batches: int,
+) -> tuple[Floats, int]:
+    """Return a path drawn tight, without waypoints where its proof failed, and how many motions were looked at.
+
+    Parameters
+    ----------
+    world : LaneWorld
+        The robot in its scene.
+    path : float64 array, shape (p, dim), p >= 3
+        Waypoints, every motion free.
+    pairs, pair_count
+        Address of a float64 array, (pair_count, 2): shares of the path's length, from 0 to 1, between which places a
+        straight motion is tried.
+    sphere, sphere_count
+        Address of a float64 array, (sphere_count, dim): directions, of length 1, to be used in turn.
+    most_batches : int
+        After so many batches of sixteen checks no waypoint slides any more; cuts and proofs follow.
+    """
+    size, dim = path.shape
+    # A slide adds no waypoint, a shortcut or a cut one, the ends two.
+    rows = size + MOST_ROUNDS * PAIRS + MOST_CUTS + 8
+    room, arguments = world.arguments(COUNTS + rows * (dim + 1) + (PLACES + 5) * dim + PLACES)
+    points = room[-rows * dim :].reshape(rows, dim)
+    room[:COUNTS], points[:size] = 0.0, path
+    driven_by = pairs, pair_count, sphere, sphere_count, most_batches, world.wider(CLEARANCE)
+    motions, left = divmod(tighten_points(rows, size, dim, *driven_by, *arguments), _BESIDE)
+    return points[:left].copy(), motions
+
+
+@program
+def tighten_points(
+    rows: int,
+    size: int,
+    dim: int,
+    shares: int,
+    share_count: int,
+    sphere: int,
+    sphere_count: int,
+    most_batches: int,
+    wider: int,
+    check: int,
+    resolution: float,
+    tables: int,
+    by_joint: int,
+    memory: int,
+    room: int,
+) -> int:
+    """Do the work of `tighten_path` on the last `rows` of the memory; return how many are left, and 2^32 a motion.
+
+    0 are left where the path is not finite, or not proved.
+    """
+    checks = checks_of(check, resolution, tables, by_joint, memory, room)
+    own = room + 8 * COUNTS
+    ends, way, last = matrix_at(own, (2, dim)), doubles_at(own + 16 * dim, (dim,)), own + 24 * dim
+    tried, goal = matrix_at(last, (PLACES + 1, dim)), doubles_at(last + 8 * (PLACES + 1) * dim, (dim,))
+    lengths = last + 8 * (PLACES + 2) * dim
+    places = doubles_at(lengths + 8 * PLACES, (rows,))
+    begin = lengths + 8 * (PLACES + rows)
+    whole, pairs = matrix_at(begin, (rows, dim)), matrix_at(shares, (share_count, 2))
+    directions = matrix_at(sphere, (sphere_count, dim))
+    for i in range(size):
+        for k in range(dim):
+            if not np.isfinite(whole[i, k]):
+                return 0
+        enter(whole[i], checks.bounds, whole[i])
+    plain = look_at(wider, checks)
+    size, first, after = _left_behind(whole, size, goal, way, checks)
+    if size == 0:
+        return 0
+    points = matrix_at(begin + 8 * dim * first, (rows - first, dim))
+    size = pass_by(points, size - first, False, checks)
+    measure(points, places, size, way, checks)
+    little, pair = 0, 0
+    for turn in range(MOST_ROUNDS):
+        if size < 3 or little == 2 or checks.counts[BATCHES] >= most_batches:
+            break
+        before = places[size - 1]
+        for number in range(SLIDES * turn, SLIDES * (turn + 1)):
+            i = 1 + number % (size - 2)
+            _slide(points, i, directions, number, tried, doubles_at(lengths, (PLACES,)), way, checks)
+        measure(points, places, size, way, checks)
+        for _ in range(PAIRS):
+            size = pair_joined(points, places, size, pairs[pair], False, ends, way, checks)
+            pair = (pair + 1) % share_count
+        size = pass_by(points, size, False, checks)
+        measure(points, places, size, way, checks)
+        little = little + 1 if places[size - 1] > before * (1.0 - LEAST_GAIN) else 0
+    size = cut_corners(points, places, size, MOST_CUTS, 1 << 60, False, ends, way, checks)
+    size = first + pass_by(points, size, False, checks)
+    look_at(plain, checks)
+    if after:
+        for k in range(dim):
+            whole[size, k] = goal[k]
+        size += 1
+    for i in range(size - 1):
+        if not motion_proved(whole[i], whole[i + 1], TOLERANCE, PROOF_BATCHES, checks):
+            return _BESIDE * checks.counts[MOTIONS]
+    return size + _BESIDE * checks.counts[MOTIONS]
+
+
+@quick
+def _left_behind(
+    points: Floats, size: int, goal: Floats, way: Floats, checks: Checks
+) -> tuple[int, int, bool]:
+    """Leave ends that nearly touch something as they are, and what leads away from them.
+
+    Return the path's size, 0 where it does not lead away; 1 where its first motion is to stay, else 0; and whether its
+    goal was taken off, and is to come again.
+    """
+    dim = points.shape[1]
+    for side in range(2):
+        a, b = (points[0], points[1]) if side == 0 else (points[size - 1], points[size - 2])
+        distance_and_way(a, b, checks.bounds, way)
+        for lane in range(_HALF):
+            for k in range(dim):
+                checks.states[k * LANES + _HALF * side + lane] = a[k] + lane / _HALF * way[k]
+    touching = blocked(checks)
+    first, after = 0, False
+    for side in range(2):
+        near = touching >> (_HALF * side)
+        if near & 1 == 0:
+            continue
+        lane = 1
+        while lane < _HALF and (near >> lane) & 1:
+            lane += 1
+        if lane == _HALF:
+            return 0, 0, False
+        if side == 0:
+            for row in range(size - 1, 0, -1):
+                move(points, row, row + 1)
+            size, first, row = size + 1, 1, 1
+        else:
+            for k in range(dim):
+                goal[k] = points[size - 1, k]
+            after, row = True, size - 1
+        for k in range(dim):
+            points[row, k] = checks.states[k * LANES + _HALF * side + lane]
+        canonical(points[row], checks.bounds)
+    return size, first, after
+
+
+@quick
+def _slide(
+    points: Floats,
+    i: int,
+    directions: Floats,
+    number: int,
+    tried: Floats,
+    lengths: Floats,
+    way: Floats,
+    checks: Checks,
+) -> None:
+    """Move a waypoint to the best of some places around it by which the way is shorter, and free at its states."""
+    dim = points.shape[1]
+    a, here, b, ahead = points[i - 1], points[i], points[i + 1], tried[PLACES]
+    before, after = _write_ahead(a, here, b, ahead, way, checks)
+    least, inside = (before + after) * (1.0 - SLIDE_WORTH_WHILE), 0
+    for place in range(PLACES):
+        there, turn = tried[place], PLACES * number + place
+        direction, reach = directions[turn % len(directions)], SIZES[turn % len(SIZES)] * min(before, after)
+        along = 0.0
+        for k in range(dim):
+            along += direction[k] * ahead[k]
+        # Rather away from the contact than back.
+        side = -1.0 if along < 0.0 else 1.0
+        reach /= np.sqrt(1.0 + 2.0 * AHEAD * side * along + AHEAD * AHEAD)
+        for k in range(dim):
+            there[k] = here[k] + reach * (side * direction[k] + AHEAD * ahead[k])
+        within = enter(there, checks.bounds, there)
+        canonical(there, checks.bounds)
+        lengths[place] = distance_and_way(a, there, checks.bounds, way)
+        _write_states(a, there, way, STATES * place, checks)
+        lengths[place] += distance_and_way(b, there, checks.bounds, way)
+        for k in range(dim):
+            checks.states[k * LANES + STATES * place + 2] = there[k] - BESIDE * way[k]
+        inside |= int(within and lengths[place] <= least) << place
+    if inside == 0:
+        return
+    touching = blocked(checks)
+    checks.counts[CONFIGURATIONS] += LANES
+    # Sixteen states, as of a motion.
+    checks.counts[MOTIONS] += 1
+    for _ in range(PLACES):
+        best = -1
+        for place in range(PLACES):
+            seen = (touching >> (STATES * place)) & ((1 << STATES) - 1)
+            if (inside >> place) & 1 and seen == 0 and (best < 0 or lengths[place] < lengths[best]):
+                best = place
+        if best < 0:
+            return
+        inside &= ~(1 << best)
+        there = tried[best]
+        if (
+            _bend_free(a, there, b, way, checks)
+            and motion_free(a, there, BOTH_ENDS, checks)
+            and motion_free(there, b, BOTH_ENDS, checks)
+        ):
+            for k in range(dim):
+                here[k] = there[k]
+            return
+
+
+@quick
+def _write_states(a: Floats, there: Floats, way: Floats, lane: int, checks: Checks) -> None:
+    """Write a place, and a state towards the neighbour that a way comes from; lanes to spare repeat the place."""
+    for k in range(len(a)):
+        checks.states[k * LANES + lane] = checks.states[k * LANES + LANES - 1] = there[k]
+        checks.states[k * LANES + lane + 1] = there[k] - BESIDE * way[k]
+
+
+@quick
+def _write_ahead(
+    a: Floats, here: Floats, b: Floats, ahead: Floats, way: Floats, checks: Checks
+) -> tuple[float, float]:
+    """Write the direction in which a waypoint shortens the path soonest; return how far its neighbours are."""
+    before = max(distance_and_way(here, a, checks.bounds, way), 1e-9)
+    for k in range(len(here)):
+        ahead[k] = way[k] / before
+    after, squared = max(distance_and_way(here, b, checks.bounds, way), 1e-9), 1e-18
+    for k in range(len(here)):
+        ahead[k] += way[k] / after
+        squared += ahead[k] * ahead[k]
+    for k in range(len(here)):
+        ahead[k] /= np.sqrt(squared)
+    return before, after
+
+
+@quick
+def _bend_free(a: Floats, there: Floats, b: Floats, way: Floats, checks: Checks) -> bool:
+    """Return whether eight states of each of two motions are free."""
+    for side in range(2):
+        distance_and_way(there, a if side == 0 else b, checks.bounds, way)
+        for lane in range(_HALF):
+            share = (lane + 1.0) / (_HALF + 1.0)
+            for k in range(len(a)):
+                checks.states[k * LANES + _HALF * side + lane] = there[k] + share * way[k]
+    checks.counts[CONFIGURATIONS] += LANES
+    return blocked(checks) == 0
