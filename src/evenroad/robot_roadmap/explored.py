@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from evenroad._arrays import Floats, Ints
+from evenroad._arrays import Floats, Ints, Ints32
 from evenroad._clock import now
 from evenroad.robot import ArmWorld
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
@@ -41,8 +41,8 @@ AT_ONCE = 64
 _LONG = 1e8
 """Seconds that stand for no limit."""
 
-LANDMARKS = 24
-"""From so many milestones it is known how far all others are along free motions."""
+MOST_TOLD = 3000
+"""Of so many milestones at most it is worked out how far they are from each other: 72 MB."""
 
 CLOSE = 20
 """An end that none of its links joins is tried to be linked to so many milestones that are nearest in displacement."""
@@ -77,7 +77,7 @@ def explore(
             ways += learn_ways_out(world, graph, roadmap.weights, (end, goal[0]), OUT, now() + _LONG).ways
     settle(graph, world, day)
     _join(graph, world, len(roadmap.milestones))
-    graph.guide(_distances(graph), roadmap.weights, CLOSE)
+    graph.guide(*_distances(graph), roadmap.weights, CLOSE)
     return ways
 
 
@@ -134,28 +134,18 @@ def _known(graph: KnownGraph, lengths: Floats) -> csr_matrix:
     return csr_matrix((lengths[rows], (a[rows], b[rows])), shape=(n, n))
 
 
-def _distances(graph: KnownGraph) -> Floats:
-    """Return how far it is to each milestone from landmarks that are far from each other, (n, landmarks).
+def _distances(graph: KnownGraph) -> tuple[Floats, Ints32]:
+    """Return how far milestones are from each other, (n, n), and the next one on the way, as `guide` takes them.
 
     Of joints of several turns nothing is said: how far it is depends on the turns.
     """
     from scipy.sparse.csgraph import dijkstra
 
-    if graph.desk[at.LIFTING]:
-        return np.empty((0, 0))
+    if graph.desk[at.LIFTING] or graph.desk[at.NODES] > MOST_TOLD:
+        return np.empty((0, 0)), np.empty((0, 0), dtype=np.int32)
     a, _, _ = graph.motions()
     lengths = np.empty(len(a))
     made = int(graph.desk[at.HALVES_MADE])
     lengths[graph.halves[:made, at.NUMBER]] = np.maximum(graph.lengths[:made], 1e-9)
-    known = _known(graph, lengths)
-    mark = int(np.flatnonzero(graph.nodes[: known.shape[0]] >= FREE)[0])
-    nearest, rows = np.full(known.shape[0], np.inf), []
-    for number in range(LANDMARKS + 1):
-        away = dijkstra(known, directed=False, indices=mark)
-        away[~np.isfinite(away)] = 0.0
-        if number:
-            # The first one is anywhere.
-            rows.append(away)
-        nearest = np.minimum(nearest, away) if number else away
-        mark = int(np.argmax(nearest))
-    return np.stack(rows, axis=1)
+    far, steps = dijkstra(_known(graph, lengths), directed=False, return_predecessors=True)
+    return far, steps

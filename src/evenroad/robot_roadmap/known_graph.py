@@ -230,14 +230,16 @@ class KnownGraph:
         desk[at.EDGES_MADE] += more
         desk[at.HALVES_MADE] += 2 * more
 
-    def guide(self, far: Floats, weights: Floats, close: int) -> None:
-        """Guide searches by how far milestones are from landmarks along what is known to be free, (n, landmarks).
+    def guide(self, far: Floats, steps: Ints32, weights: Floats, close: int) -> None:
+        """Guide searches by how far milestones are from each other along what is known to be free, (n, n).
 
-        So many links of each end go by displacement, in the metric of such weights, (dim,).
+        On the way to the first of two, `steps` says which one comes after the second, (n, n).  So many links of each end
+        go by displacement, in the metric of such weights, (dim,).
         """
-        self._far, self.rules[at.WEIGHTS] = np.ascontiguousarray(far, dtype=np.float32), weights
-        desk = self.desk
-        desk[at.FAR], desk[[at.TOLD, at.LANDMARKS]], desk[at.CLOSE] = address(self._far), far.shape, close
+        self._far, self._steps = np.ascontiguousarray(far, np.float32), np.ascontiguousarray(steps, np.int32)
+        self.rules[at.WEIGHTS], desk = weights, self.desk
+        desk[[at.FAR, at.STEPS]] = address(self._far), address(self._steps)
+        desk[at.TOLD], desk[at.CLOSE] = len(far), close
 
     def _own_halves(self) -> None:
         """Share half edges no longer."""

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel.layout import quick
+from evenroad.robot_roadmap.known_ways import best_links, price_links, write_known_way
 from evenroad.robot_roadmap.search_memory import (
     AIM,
     AIMED_END,
@@ -32,6 +33,7 @@ from evenroad.robot_roadmap.search_memory import (
     LIFTED,
     LIFTING,
     LINKS,
+    LOOK_UP,
     MADE,
     MEASURED,
     NEARBY,
@@ -149,6 +151,9 @@ def step(s: Search) -> int:
     d = s.desk
     if d[PHASE] == ASK_STRAIGHT:
         d[PHASE] = ASK_GOALS
+        if d[TOLD] > 0 and s.rules[GREED, 0] > 1.0 and d[ONLY_KNOWN] == 0:
+            d[PHASE] = LOOK_UP
+            price_links(s)
         for end in range(1, d[ENDS]):
             if s.straight[end] == UNKNOWN:
                 d[TO], d[PHASE] = end, ASK_STRAIGHT
@@ -157,6 +162,12 @@ def step(s: Search) -> int:
                 return STRAIGHT
             if s.straight[end] >= FREE:
                 d[PHASE] = OPEN
+    if d[PHASE] == LOOK_UP:
+        question = _look_up(s)
+        if question != NONE:
+            return question
+        clear(s)
+        d[PHASE] = ASK_GOALS
     if d[PHASE] == ASK_GOALS:
         question = _goal_link(s)
         if question != NONE:
@@ -203,6 +214,27 @@ def step(s: Search) -> int:
             s.states[state, REACHED] = entry
             if not _expand(s, state, entry):
                 return FULL
+
+
+@quick
+def _look_up(s: Search) -> int:
+    """Return a question for a link of the shortest way that the table knows; FOUND where both are free, or NONE."""
+    d = s.desk
+    while True:
+        i, j, goal = best_links(s)
+        if i < 0:
+            return NONE
+        # The longer one first: it is rather blocked.
+        goal_first = s.away[goal * d[CAPACITY] + j] > s.away[i]
+        for side in range(2):
+            end, by = (goal, j) if goal_first == (side == 0) else (0, i)
+            if s.links[end, by] == UNKNOWN:
+                d[TO], d[BY] = end, by
+                for k in range(d[DIM]):
+                    s.asked[0, k] = s.ends[end, k]
+                write(s, by, s.turns[end, by], s.asked[1])
+                return LINK
+        return FOUND if write_known_way(s, i, j, goal) else NONE
 
 
 @quick

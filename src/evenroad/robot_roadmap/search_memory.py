@@ -39,7 +39,7 @@ PHASE, SIZE, MADE, WAITING, PENDING, TO, BY, AIM, AIMED_END = range(12, 21)
 """Desk: what the search has got to: states, entries, those in the queue, the one at hand; of a question the milestone
 or end, and the edge or the milestone it is linked to; the milestone by which a goal is approached, or -1, and which."""
 
-ASK_STRAIGHT, ASK_GOALS, OPEN, SEARCH = range(4)
+ASK_STRAIGHT, LOOK_UP, ASK_GOALS, OPEN, SEARCH = range(5)
 """Phases of a search."""
 
 KNOWN, GRAPH, RULES, QUERY = range(21, 25)
@@ -54,9 +54,10 @@ VERDICTS, LIFTING = 27, 28
 UNTURNED = 29
 """Desk: 1 where ends are linked to milestones as these are, 0 where these are turned to be near."""
 
-FAR, LANDMARKS, TOLD, HUB, CLOSE = range(30, 35)
-"""Desk, where a scene was explored: address of how far milestones are from some along motions known to be free, of how
-many, for how many milestones; the milestone that a goal is approached by, or -1; how many links by displacement."""
+FAR, STEPS, TOLD, HUB, CLOSE = range(30, 35)
+"""Desk, where a scene was explored: addresses of how far milestones are from each other along motions known to be free,
+and of the next one on the way, of how many; the milestone that a goal is approached by, or -1; how many links by
+displacement."""
 
 CLOSE_START, CLOSE_GOALS = range(35, 37)
 """Desk: more than 0 where start or goals may still be linked by displacement."""
@@ -95,8 +96,9 @@ class Search(NamedTuple):
     halves, leads, lengths, edges : arrays
         Half edges, (h, 3), their turns, packed, their lengths, verdicts of edges.
     rules : float64 array, shape (8, dim)
-    far : float32 array, shape (told, landmarks)
-        How far milestones are from landmarks along what is known to be free.
+    far, steps : float32 array, shape (told^2,), and int32 array, shape (told, told)
+        How far milestones are from each other along what is known to be free, inf where nothing leads; and on the way
+        to the first, which one comes after the second.
     ends, asked : float64 arrays, shapes (e + 1, dim) and (2, dim)
         Start, goals and a place that is learned; the two ends of the motion that is asked about.
     away, turns, links, near : arrays, shape (e + 1, capacity); the first in one piece
@@ -121,6 +123,7 @@ class Search(NamedTuple):
     edges: Bytes
     rules: Floats
     far: Singles
+    steps: Ints32
     ends: Floats
     asked: Floats
     away: Singles
@@ -189,7 +192,8 @@ def search_at(desk: int) -> Search:
         singles_at(leads + 8 * d[HALVES], (d[HALVES],)),
         bytes_at(d[VERDICTS], (d[EDGES],)),
         matrix_at(d[RULES], (RULE_ROWS, dim)),
-        singles_at(d[FAR], (d[TOLD] * d[LANDMARKS],)),
+        singles_at(d[FAR], (d[TOLD] * d[TOLD],)),
+        small_table_at(d[STEPS], (d[TOLD], d[TOLD])),
         matrix_at(d[QUERY], (ends, dim)),
         matrix_at(asked, (2, dim)),
         singles_at(links + 3 * row, (ends * capacity,)),

@@ -14,7 +14,6 @@ from evenroad.robot_roadmap.search_memory import (
     GREED,
     HIGH,
     HUB,
-    LANDMARKS,
     LEAST,
     LEFT,
     LIFTED,
@@ -36,7 +35,7 @@ from evenroad.robot_roadmap.search_memory import (
 from evenroad.robot_roadmap.search_metric import distance, write
 
 GUIDED = 2.0
-"""What landmarks say of the way to a goal is multiplied by where that is more than the bound: enough for a search that
+"""What the table says of the way to a goal is multiplied by where that is more than the bound: enough for a search that
 does not wander where obstacles lie between, and no more: a greedy one makes longer paths."""
 
 
@@ -70,10 +69,8 @@ def state_of(s: Search, node: int, packed: int) -> int:
                 # Where the goal's link would be, as it was measured.
                 least = min(least, s.away[end * d[CAPACITY] + node])
     s.bounds[state, LEFT], s.bounds[state, LEAST] = s.rules[GREED, 0] * least, np.inf
-    if d[HUB] >= 0 and node < d[TOLD]:
-        for mark in range(d[LANDMARKS]):
-            apart = s.far[node * d[LANDMARKS] + mark] - s.far[d[HUB] * d[LANDMARKS] + mark]
-            s.bounds[state, LEFT] = max(s.bounds[state, LEFT], GUIDED * abs(apart))
+    if d[HUB] >= 0 and node < d[TOLD] and s.far[d[HUB] * d[TOLD] + node] < np.inf:
+        s.bounds[state, LEFT] = max(s.bounds[state, LEFT], GUIDED * s.far[d[HUB] * d[TOLD] + node])
     if not inside:
         s.bounds[state, LEFT] = np.inf
     return state if inside else -1
