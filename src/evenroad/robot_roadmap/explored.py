@@ -11,6 +11,7 @@ from evenroad._arrays import Floats, Ints, Ints32
 from evenroad._clock import now
 from evenroad.robot import ArmWorld
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
+from evenroad.robot.trees import tighten
 from evenroad.robot_roadmap import search_memory as at
 from evenroad.robot_roadmap.ask import ask
 from evenroad.robot_roadmap.known_graph import KnownGraph
@@ -41,6 +42,12 @@ AT_ONCE = 64
 _LONG = 1e8
 """Seconds that stand for no limit."""
 
+TIGHT = 400
+"""Ways are drawn tight with so many batches of checks before it is learned where they bend."""
+
+THIN = 0.75
+"""Bends are learned that are farther than this from all that is known, as a share of how far milestones are apart."""
+
 MOST_TOLD = 3000
 """Of so many milestones at most it is worked out how far they are from each other: 72 MB."""
 
@@ -65,7 +72,8 @@ def explore(
     hubs = np.flatnonzero(graph.nodes[: len(roadmap.milestones)] >= FREE)
     if not len(hubs):
         return ways
-    for end in ends_between_obstacles(world, count, rng):
+    ends = ends_between_obstacles(world, count, rng)
+    for end in ends:
         goal = roadmap.milestones[rng.choice(hubs)][np.newaxis]
         asked = ask(
             world, day, graph, end, goal, links=LINKS, greed=GREED, most_motions=MOTIONS, deadline=math.inf
@@ -75,10 +83,52 @@ def explore(
                 graph.learn(asked.path[:2])
         else:
             ways += learn_ways_out(world, graph, roadmap.weights, (end, goal[0]), OUT, now() + _LONG).ways
-    settle(graph, world, day)
-    _join(graph, world, len(roadmap.milestones))
+    _settle_and_join(graph, world, day, len(roadmap.milestones))
     graph.guide(*_distances(graph), roadmap.weights, CLOSE)
+    if graph.desk[at.TOLD]:
+        known = int(graph.desk[at.NODES])
+        _learn_bends(graph, world, day, ends, roadmap.milestones[hubs], rng)
+        _settle_and_join(graph, world, day, known)
+        graph.guide(*_distances(graph), roadmap.weights, CLOSE)
     return ways
+
+
+def _learn_bends(
+    graph: KnownGraph, world: ArmWorld, day: ArmWorld, ends: Floats, hubs: Floats, rng: np.random.Generator
+) -> None:
+    """Learn where ways bend that were drawn tight, from each end to another one and to a milestone.
+
+    Others will bend there, too.
+    """
+    thin = THIN * _spacing(hubs)
+    for start in ends:
+        for others in (ends, hubs):
+            goal = others[rng.integers(len(others))][np.newaxis]
+            asked = ask(
+                world, day, graph, start, goal, links=LINKS, greed=GREED, most_motions=MOTIONS, deadline=math.inf
+            )
+            if asked.ended != FOUND:
+                continue
+            for bend in tighten(world, asked.path, batches=TIGHT)[0][1:-1]:
+                known = graph.milestones[: int(graph.desk[at.NODES])]
+                if np.linalg.norm(known - bend, axis=1).min() > thin:
+                    graph.learn(bend[np.newaxis])
+
+
+def _spacing(q: Floats) -> float:
+    """Return how far the nearest one of some milestones is: the median."""
+    away = np.concatenate(
+        [
+            np.partition(np.linalg.norm(q - some[:, np.newaxis], axis=2), 1, axis=1)[:, 1]
+            for some in np.array_split(q, -(-len(q) // AT_ONCE))
+        ]
+    )
+    return float(np.median(away))
+
+
+def _settle_and_join(graph: KnownGraph, world: ArmWorld, day: ArmWorld, first: int) -> None:
+    settle(graph, world, day)
+    _join(graph, world, first)
 
 
 def settle(graph: KnownGraph, world: ArmWorld, day: ArmWorld) -> None:

@@ -164,6 +164,9 @@ def step(s: Search) -> int:
                 d[PHASE] = OPEN
     if d[PHASE] == LOOK_UP:
         question = _look_up(s)
+        while question == NONE and _has_others(s):
+            price_links(s)
+            question = _look_up(s)
         if question != NONE:
             return question
         clear(s)
@@ -235,6 +238,24 @@ def _look_up(s: Search) -> int:
                 write(s, by, s.turns[end, by], s.asked[1])
                 return LINK
         return FOUND if write_known_way(s, i, j, goal) else NONE
+
+
+@quick
+def _has_others(s: Search) -> bool:
+    """Choose links by displacement for ends of which no link is free, once; return whether there are any."""
+    d, chosen = s.desk, False
+    for which in (CLOSE_START, CLOSE_GOALS):
+        first, last = (0, 1) if which == CLOSE_START else (1, d[ENDS])
+        free = False
+        for end in range(first, last):
+            for rank in range(d[LINKS]):
+                i = s.near[end, rank]
+                free |= i >= 0 and s.links[end, i] >= FREE
+        if d[which] > 0 and not free:
+            d[which], chosen = 0, True
+            for end in range(first, last):
+                _choose_close(s, end)
+    return chosen
 
 
 @quick

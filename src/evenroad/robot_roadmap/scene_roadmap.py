@@ -69,7 +69,7 @@ SOON = 5000
 ENDS = 400
 """Ends in narrow places that are tried where a scene is explored."""
 
-EXPLORED_LINKS, EXPLORED_MOTIONS = 40, 150
+EXPLORED_LINKS, EXPLORED_MOTIONS = 20, 150
 """In an explored scene fewer links do, and what is left of the time goes into shortening."""
 
 WORK, LEAST = 180, 30
