@@ -40,7 +40,7 @@ from evenroad.robot.kernel.lanes import (
 )
 from evenroad.robot.kernel.layout import LANES, inlined, inner
 
-PLANES = 4
+PLANES = 12
 """So many planes are tried for each two hulls before they are left to double precision."""
 _SLACK = np.float32(2e-6)
 """By how much, of the lengths that they come of, single precision may have distances wrong: thirty roundings."""
@@ -180,6 +180,13 @@ def _not_apart(pose: Singles, a: int, b: int, near: Any, asked: int, ints: Ints,
     third, shift = load_vector(pose, 6 * LANES), load_vector(pose, 9 * LANES)
     there = u, v, w
     way = minus(minus((x, y, z), shift), (dot(first, there), dot(second, there), dot(third, there)))
+    _, _, _, e, f, g = row(table, ball, 6)
+    half = row(table, other + 3, 3)
+    i, j, n = way
+    x, y, z = dot(absolute(first), half) + e, dot(absolute(second), half) + f, dot(absolute(third), half) + g
+    i, j, n = i / x, j / y, n / z
+    way = i * i * i / x, j * j * j / y, n * n * n / z
+    last, touching = way, 0
     for step in range(PLANES):
         i, j, n = times(way, spread(ONE) / square_root(larger(dot(way, way), _LEAST)))
         along = i, j, n
@@ -202,14 +209,44 @@ def _not_apart(pose: Singles, a: int, b: int, near: Any, asked: int, ints: Ints,
             break
         there = u, v, w
         corner_way = minus(minus((x, y, z), shift), (dot(first, there), dot(second, there), dot(third, there)))
-        # The nearest to the origin between what was the nearest so far and the new corner.
+        # The first corner; then the nearest to the origin between what was the nearest so far and the last two corners.
         if step == 0:
             way = corner_way
         else:
-            edge = minus(way, corner_way)
-            share = dot(way, edge) / larger(dot(edge, edge), _LEAST)
-            way = minus(way, times(edge, larger(smaller(share, ONE), ZERO)))
-    return asked
+            way = _nearest_of_three(way, last, corner_way)
+        last = corner_way
+        close = asked & below_zero(dot(way, way) - near * near)
+        touching |= close
+        asked &= ~close
+        if asked == 0:
+            break
+    return asked | touching
+
+
+@inlined
+def _nearest_of_three(a: Any, b: Any, c: Any) -> Any:
+    """Return points of triangles near the origin: the nearest of them all but for those between the first two."""
+    first, second = _nearest_of_two(a, c), _nearest_of_two(b, c)
+    x, y, z = first
+    u, v, w = second
+    d, e = dot(first, first), dot(second, second)
+    x, y, z = taken(e, d, u, x), taken(e, d, v, y), taken(e, d, w, z)
+    e, f = minus(b, a), minus(c, a)
+    ee, ef, ff, ae, af = dot(e, e), dot(e, f), dot(f, f), dot(a, e), dot(a, f)
+    one_by = spread(ONE) / larger(ee * ff - ef * ef, _LEAST)
+    s, t = (af * ef - ae * ff) * one_by, (ae * ef - af * ee) * one_by
+    inside = smaller(smaller(s, t), spread(ONE) - s - t)
+    u, v, w = plus(a, plus(times(e, s), times(f, t)))
+    zero = spread(ZERO)
+    return taken(zero, inside, u, x), taken(zero, inside, v, y), taken(zero, inside, w, z)
+
+
+@inlined
+def _nearest_of_two(a: Any, b: Any) -> Any:
+    """Return the points of segments that are nearest to the origin."""
+    edge = minus(a, b)
+    share = dot(a, edge) / larger(dot(edge, edge), _LEAST)
+    return minus(a, times(edge, larger(smaller(share, ONE), ZERO)))
 
 
 @intrinsic
