@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 from numba import types
+from numba.core import cgutils
 from numba.extending import intrinsic
 
 from evenroad._njit import cfunc
@@ -20,8 +21,8 @@ from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import ANY_LENGTH, doubles_at, integers_at, room_for, singles_at
 from evenroad.robot.kernel.hull_contact import DEEPEST, leaves_near, write_relative
 from evenroad.robot.kernel.lanes import (
-    LANES_TYPE,
     ONE,
+    VECTOR_TYPE,
     ZERO,
     absolute,
     below_zero,
@@ -151,94 +152,100 @@ def _write_relative(places: Singles, a: int, b: int, size: Any, pose: Singles) -
 
 @inlined
 def _boxes_near(pose: Singles, ball: int, other: int, near: Any, table: Singles) -> int:
-    """Return the mask of lanes in which no side of two boxes separates them."""
-    x, y, z, e, f, g = row(table, ball, 6)
-    u, v, w, h, k, m = row(table, other, 6)
-    a, b = load_vector(pose, 0), load_vector(pose, 3 * LANES)
-    c, t = load_vector(pose, 6 * LANES), load_vector(pose, 9 * LANES)
-    there, half, next_half = (u, v, w), (e, f, g), (h, k, m)
-    i, j, n = minus(minus((x, y, z), t), (dot(a, there), dot(b, there), dot(c, there)))
-    way = i, j, n
-    a_size, b_size, c_size = absolute(a), absolute(b), absolute(c)
-    x, y, z = minus(minus(absolute(way), half), (dot(a_size, next_half), dot(b_size, next_half), dot(c_size, next_half)))
-    u, v, w = minus(absolute(plus(plus(times(a, i), times(b, j)), times(c, n))), next_half)
-    more = plus(plus(times(a_size, spread(e)), times(b_size, spread(f))), times(c_size, spread(g)))
-    u, v, w = minus((u, v, w), more)
+    """Return the mask of lanes in which no side of the boxes of two nodes, rows of floats, separates them."""
+    way, turned, sizes, other_sizes = _boxes(pose, ball, other, table)
+    x, y, z = minus(absolute(way), sizes)
+    u, v, w = minus(absolute(turned), other_sizes)
     return below_zero(larger(larger(larger(x, y), larger(z, u)), larger(v, w)) - near)
 
 
 @inlined
+def _boxes(pose: Singles, ball: int, other: int, table: Singles) -> Any:
+    """Return the way from the middle of the second node's box to that of the first, as the first and as the second body
+    sees it, and the half extents of both boxes together along the axes of the first and of the second.
+    """
+    x, y, z, e, f, g = row(table, ball, 6)
+    u, v, w, h, k, m = row(table, other, 6)
+    half, other_half = (e, f, g), (h, k, m)
+    way = minus((x, y, z), _seen(pose, (u, v, w)))
+    a, b, c = load_vector(pose, 0), load_vector(pose, 3 * LANES), load_vector(pose, 6 * LANES)
+    a_size, b_size, c_size = absolute(a), absolute(b), absolute(c)
+    sizes = plus((dot(a_size, other_half), dot(b_size, other_half), dot(c_size, other_half)), half)
+    across = plus(plus(times(a_size, spread(e)), times(b_size, spread(f))), times(c_size, spread(g)))
+    return way, _turned_back(pose, way), sizes, plus(across, other_half)
+
+
+@inlined
+def _seen(pose: Singles, place: Any) -> Any:
+    """Return a place in the second body's frame as the first sees it."""
+    a, b, c = load_vector(pose, 0), load_vector(pose, 3 * LANES), load_vector(pose, 6 * LANES)
+    return plus(load_vector(pose, 9 * LANES), (dot(a, place), dot(b, place), dot(c, place)))
+
+
+@inlined
+def _turned_back(pose: Singles, direction: Any) -> Any:
+    """Return a direction in the first body's frame as the second sees it."""
+    x, y, z = direction
+    along = plus(times(load_vector(pose, 0), x), times(load_vector(pose, 3 * LANES), y))
+    return plus(along, times(load_vector(pose, 6 * LANES), z))
+
+
+@inlined
 def _not_apart(pose: Singles, a: int, b: int, near: Any, asked: int, ints: Ints, table: Singles) -> int:
-    """Return the mask of those lanes asked for in which none of some planes separates two hulls."""
+    """Return the mask of those lanes asked for in which none of some planes separates the hulls of two leaves."""
     ball, other = ints[at.NODE_FLOATS] + at.NODE_FLOAT_ROW * a, ints[at.NODE_FLOATS] + at.NODE_FLOAT_ROW * b
-    x, y, z, _, _, _, _, wide = row(table, ball, 8)
-    u, v, w, _, _, _, _, other_wide = row(table, other, 8)
+    (wide,) = row(table, ball + 7, 1)
+    (other_wide,) = row(table, other + 7, 1)
     _, _, p, p_end = row(ints, ints[at.NODE_INTS] + at.NODE_INT_ROW * a, 4)
     _, _, q, q_end = row(ints, ints[at.NODE_INTS] + at.NODE_INT_ROW * b, 4)
     near = near + (wide + other_wide)
-    first, second = load_vector(pose, 0), load_vector(pose, 3 * LANES)
-    third, shift = load_vector(pose, 6 * LANES), load_vector(pose, 9 * LANES)
-    there = u, v, w
-    way = minus(minus((x, y, z), shift), (dot(first, there), dot(second, there), dot(third, there)))
-    _, _, _, e, f, g = row(table, ball, 6)
-    half = row(table, other + 3, 3)
-    i, j, n = way
-    x, y, z = dot(absolute(first), half) + e, dot(absolute(second), half) + f, dot(absolute(third), half) + g
-    i, j, n = i / x, j / y, n / z
-    way = i * i * i / x, j * j * j / y, n * n * n / z
-    last, touching = way, 0
+    (x, y, z), _, (u, v, w), _ = _boxes(pose, ball, other, table)
+    # First across where the boxes are thin.
+    x, y, z = x / u, y / v, z / w
+    way = x * x * x / u, y * y * y / v, z * z * z / w
+    last, meeting = way, 0
     for step in range(PLANES):
-        i, j, n = times(way, spread(ONE) / square_root(larger(dot(way, way), _LEAST)))
-        along = i, j, n
-        least, most = spread(_FAR), spread(-_FAR)
-        x, y, z = spread(ZERO), spread(ZERO), spread(ZERO)
-        u, v, w = spread(ZERO), spread(ZERO), spread(ZERO)
-        for corner in range(p, p_end):
-            d, e, f = row(table, 3 * corner, 3)
-            here = dot(along, (d, e, f))
-            x, y, z = taken(here, least, spread(d), x), taken(here, least, spread(e), y), taken(here, least, spread(f), z)
-            least = smaller(here, least)
-        turned = plus(plus(times(first, i), times(second, j)), times(third, n))
-        for corner in range(q, q_end):
-            d, e, f = row(table, 3 * corner, 3)
-            here = dot(turned, (d, e, f))
-            u, v, w = taken(most, here, spread(d), u), taken(most, here, spread(e), v), taken(most, here, spread(f), w)
-            most = larger(here, most)
-        asked &= ~below_zero(near - (least - most - dot(along, shift)))
+        along = times(way, spread(ONE) / square_root(larger(dot(way, way), _LEAST)))
+        back, corner = _farthest(minus(ZERO, along), p, p_end, table)
+        on, other_corner = _farthest(_turned_back(pose, along), q, q_end, table)
+        asked &= ~below_zero(near + (back + on + dot(along, load_vector(pose, 9 * LANES))))
         if asked == 0:
             break
-        there = u, v, w
-        corner_way = minus(minus((x, y, z), shift), (dot(first, there), dot(second, there), dot(third, there)))
-        # The first corner; then the nearest to the origin between what was the nearest so far and the last two corners.
-        if step == 0:
-            way = corner_way
-        else:
-            way = _nearest_of_three(way, last, corner_way)
-        last = corner_way
-        close = asked & below_zero(dot(way, way) - near * near)
-        touching |= close
-        asked &= ~close
+        # On from the way between these corners; then from what of the last two and the way so far is nearest to 0.
+        corner = minus(corner, _seen(pose, other_corner))
+        way = corner if step == 0 else _nearest_of_three(way, last, corner)
+        last = corner
+        touching = asked & below_zero(dot(way, way) - near * near)
+        meeting |= touching
+        asked &= ~touching
         if asked == 0:
             break
-    return asked | touching
+    return asked | meeting
+
+
+@inlined
+def _farthest(along: Any, begin: int, end: int, table: Singles) -> Any:
+    """Return how far a hull reaches along directions, and its farthest corners."""
+    most, corner = spread(-_FAR), (spread(ZERO), spread(ZERO), spread(ZERO))
+    for i in range(begin, end):
+        x, y, z = row(table, 3 * i, 3)
+        here = dot(along, (x, y, z))
+        corner = taken(most, here, (spread(x), spread(y), spread(z)), corner)
+        most = larger(here, most)
+    return most, corner
 
 
 @inlined
 def _nearest_of_three(a: Any, b: Any, c: Any) -> Any:
-    """Return points of triangles near the origin: the nearest of them all but for those between the first two."""
+    """Return what of triangles is nearest to the origin, but for what is between the first two corners."""
     first, second = _nearest_of_two(a, c), _nearest_of_two(b, c)
-    x, y, z = first
-    u, v, w = second
-    d, e = dot(first, first), dot(second, second)
-    x, y, z = taken(e, d, u, x), taken(e, d, v, y), taken(e, d, w, z)
+    nearest = taken(dot(second, second), dot(first, first), second, first)
     e, f = minus(b, a), minus(c, a)
     ee, ef, ff, ae, af = dot(e, e), dot(e, f), dot(f, f), dot(a, e), dot(a, f)
     one_by = spread(ONE) / larger(ee * ff - ef * ef, _LEAST)
     s, t = (af * ef - ae * ff) * one_by, (ae * ef - af * ee) * one_by
-    inside = smaller(smaller(s, t), spread(ONE) - s - t)
-    u, v, w = plus(a, plus(times(e, s), times(f, t)))
-    zero = spread(ZERO)
-    return taken(zero, inside, u, x), taken(zero, inside, v, y), taken(zero, inside, w, z)
+    inside = smaller(smaller(s, t), ONE - s - t)
+    return taken(spread(ZERO), inside, plus(a, plus(times(e, s), times(f, t))), nearest)
 
 
 @inlined
@@ -251,9 +258,12 @@ def _nearest_of_two(a: Any, b: Any) -> Any:
 
 @intrinsic
 def taken(typing_context: Any, a: Any, b: Any, first: Any, second: Any) -> Any:
-    """Return the numbers of `first` where `a` is less than `b`, else those of `second`."""
+    """Return the vectors of `first` where `a` is less than `b`, else those of `second`."""
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        return builder.select(builder.fcmp_ordered("<", *args[:2]), *args[2:])
+        less = builder.fcmp_ordered("<", *args[:2])
+        vectors = (cgutils.unpack_tuple(builder, vector) for vector in args[2:])
+        axes = [builder.select(less, *axis) for axis in zip(*vectors, strict=True)]
+        return context.make_tuple(builder, VECTOR_TYPE, axes)
 
-    return LANES_TYPE(a, b, first, second), lower
+    return VECTOR_TYPE(a, b, first, second), lower
