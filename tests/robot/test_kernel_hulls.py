@@ -221,6 +221,25 @@ def test_stones_are_blocked_where_they_touch_and_hardly_before(stones):
         assert 0.0 < apart < 2e-4
 
 
+def test_parallel_plates_as_thin_as_paper_pass_each_other(tmp_path):
+    plate = "<collision><geometry><box size='0.3 0.2 0.00001'/></geometry></collision>"
+    wide = "<limit lower='-1' upper='1' velocity='2' effort='1'/>"
+    text = urdf(
+        link("a", plate), link("sled", ""), link("b", plate),
+        joint("along", "a", "sled", "prismatic", wide, "0.01 0 0", "1 0 0"),
+        joint("up", "sled", "b", "prismatic", wide, "0 0 0", "0 0 1"),
+        name="plates",
+    )  # fmt: skip
+    (tmp_path / "plates.urdf").write_text(text)
+    world = ArmWorld(load_robot(tmp_path / "plates.urdf"), EMPTY)
+    q = np.array(
+        [[x, z] for x in (-0.25, -0.01, 0.0, 0.15) for z in (-1e-3, -1e-4, -5e-6, 0.0, 5e-6, 1e-4, 1e-3)]
+    )
+    np.testing.assert_array_equal(world.valid(q), np.abs(q[:, 1]) > 5e-5)
+    beside = np.array([[0.35, 0.0], [-0.35, 0.0]])
+    assert world.valid(beside).all()
+
+
 def test_a_verdict_depends_neither_on_the_order_of_states_nor_on_their_neighbours(stones, fork_file):
     rng = np.random.default_rng(9)
     world = ArmWorld(stones[0], EMPTY)

@@ -46,6 +46,8 @@ PLANES = 12
 _SLACK = np.float32(2e-6)
 """By how much, of the lengths that they come of, single precision may have distances wrong: thirty roundings."""
 _FAR = np.float32(1e30)
+_THIN, _FLAT = np.float32(1e-4), np.float32(1e-7)
+"""Half extents of boxes [m], and squares of sines in triangles, are taken for at least that: so all stays finite."""
 _LEAST = np.float32(at.LEAST_SQUARE)
 
 Ints = npt.NDArray[np.int64]
@@ -200,8 +202,11 @@ def _not_apart(pose: Singles, a: int, b: int, near: Any, asked: int, ints: Ints,
     _, _, q, q_end = row(ints, ints[at.NODE_INTS] + at.NODE_INT_ROW * b, 4)
     near = near + (wide + other_wide)
     (x, y, z), _, (u, v, w), _ = _boxes(pose, ball, other, table)
-    # First across where the boxes are thin.
+    # First across where the boxes are thin; no step leaves the range of single precision.
+    u, v, w = larger(u, _THIN), larger(v, _THIN), larger(w, _THIN)
     x, y, z = x / u, y / v, z / w
+    most = larger(larger(absolute(x), absolute(y)), larger(absolute(z), _LEAST))
+    x, y, z = x / most, y / most, z / most
     way = x * x * x / u, y * y * y / v, z * z * z / w
     last, meeting = way, 0
     for step in range(PLANES):
@@ -242,7 +247,7 @@ def _nearest_of_three(a: Any, b: Any, c: Any) -> Any:
     nearest = taken(dot(second, second), dot(first, first), second, first)
     e, f = minus(b, a), minus(c, a)
     ee, ef, ff, ae, af = dot(e, e), dot(e, f), dot(f, f), dot(a, e), dot(a, f)
-    one_by = spread(ONE) / larger(ee * ff - ef * ef, _LEAST)
+    one_by = spread(ONE) / larger(larger(ee * ff - ef * ef, ee * ff * _FLAT), _LEAST)
     s, t = (af * ef - ae * ff) * one_by, (ae * ef - af * ee) * one_by
     inside = smaller(smaller(s, t), ONE - s - t)
     return taken(spread(ZERO), inside, plus(a, plus(times(e, s), times(f, t))), nearest)
