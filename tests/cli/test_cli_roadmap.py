@@ -79,6 +79,7 @@ def test_a_plan_along_it_is_that_of_python_and_proved(made):
         (["roadmap", "ur5", "-o", "."], "must end with a file name"),
         (["roadmap", "nobody"], "there is no robot file 'nobody'"),
         (["roadmap", "ur5", "--group", "left"], "unknown group 'left'"),
+        (["roadmap", "ur5", "--group", ""], "the group has no joint"),
         (["roadmap", "ur5", "--cell", "none.yaml"], "there is no scene file none.yaml"),
         (
             ["roadmap", "ur5", "--cell", "limits.yaml"],
