@@ -160,7 +160,10 @@ def defer_blas() -> None:
 
 
 def say_if_compiling(module: str, function: str, seconds: int) -> bool:
-    """Say that a first run takes so long, where a function is yet to be compiled; return whether that was said."""
+    """Have it said that a first run takes so long, once code is compiled, if a function is yet to be; return whether.
+
+    Not at once: bad input may be refused first.
+    """
     defer_blas()
     try:
         compiled = getattr(import_module(module), function)
@@ -169,11 +172,8 @@ def say_if_compiling(module: str, function: str, seconds: int) -> bool:
         return False
     if is_kept(compiled):
         return False
-    line = f"evenroad: compiling for this machine, once: about {seconds} s"
-    if sys.stderr.isatty():
-        from evenroad._njit import show_progress
+    from evenroad._njit import show_progress
 
-        show_progress(line)
-    else:
-        print(line, file=sys.stderr, flush=True)
+    line = f"evenroad: compiling for this machine, once: about {seconds} s"
+    show_progress(line, once=not sys.stderr.isatty())
     return True

@@ -135,10 +135,10 @@ _NUMBERS = {"int": numba.int64, "float": numba.float64}
 
 
 class _Progress(event.Listener):
-    """A line on the terminal that counts seconds while code is compiled, and goes when there is no more for now."""
+    """A line that counts seconds while code is compiled, and goes when there is no more for now; or is said once."""
 
-    def __init__(self, line: str) -> None:
-        self.line, self._depth, self._shown = line, 0, 0.0
+    def __init__(self) -> None:
+        self.line, self.once, self._depth, self._shown = "", False, 0, 0.0
         self._began = time.monotonic()
 
     def on_start(self, event: Any) -> None:
@@ -148,23 +148,27 @@ class _Progress(event.Listener):
     def on_end(self, event: Any) -> None:
         self._depth -= 1
         self._show()
-        if self._depth == 0:
+        if self._depth == 0 and not self.once:
             print("\r\x1b[K", end="", file=sys.stderr, flush=True)
             self._shown = 0.0
 
     def _show(self) -> None:
-        if (now := time.monotonic()) - self._shown > _BETWEEN_LINES:
+        if self.once:
+            if self.line:
+                print(self.line, file=sys.stderr, flush=True)
+            self.line = ""
+        elif (now := time.monotonic()) - self._shown > _BETWEEN_LINES:
             self._shown = now
             print(f"\r{self.line}; {now - self._began:.0f} s", end="", file=sys.stderr, flush=True)
 
 
-def show_progress(line: str) -> None:
-    """Show a line on the terminal, and what it takes so far, whenever code is compiled from now on."""
+def show_progress(line: str, once: bool = False) -> None:
+    """Show a line, and what it takes so far, whenever code is compiled from now on; or `once`, without that."""
     global _progress
     if _progress is None:
-        _progress = _Progress(line)
+        _progress = _Progress()
         event.register("numba:compile", _progress)
-    _progress.line = line
+    _progress.line, _progress.once = line, once
 
 
 _progress: _Progress | None = None

@@ -7,6 +7,7 @@ import json
 import os
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
+from errno import EINVAL
 from typing import Any
 
 import numpy as np
@@ -43,8 +44,8 @@ def reading(path: Path, kind: str, begins: bytes = b"") -> Iterator[None]:
     except Exception as error:
         # No list is complete: damaged headers alone give errors of the tokenizer, of memory and of overflow, and
         # zipfile has its own for every compression, encryption and version that it does not know.
-        # What cannot even be opened says why by itself.
-        if not begins or (isinstance(error, OSError) and error.errno is not None):
+        # What cannot even be opened says why by itself; a place before the beginning is what a damaged archive tells.
+        if not begins or (isinstance(error, OSError) and error.errno not in (None, EINVAL)):
             raise BrokenFile(f"{path} is not a readable {kind}: {shown(error)}") from error
         with open(path, "rb") as file:
             is_other = file.read(len(begins)) != begins

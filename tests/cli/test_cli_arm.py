@@ -132,15 +132,21 @@ def test_improving_does_not_go_with_points(run):
     assert "--improve goes without points" in err
 
 
-def test_what_is_compiled_is_said_once(run, monkeypatch, capsys):
+def test_what_is_compiled_is_said_once_and_only_when_it_is(run, monkeypatch, capsys):
+    from numba.core import event
+
     from evenroad import _compiled
 
+    def compiling():
+        with event.trigger_event("numba:compile"):
+            return capsys.readouterr().err
+
+    words = [str(word) for word in arm_arguments(out="a")] + ["--no-picture"]
     monkeypatch.setattr(_compiled, "is_kept", lambda function: False)
-    assert main([str(word) for word in arm_arguments(out="a")] + ["--no-picture"]) == 0
-    assert capsys.readouterr().err == "evenroad: compiling for this machine, once: about 10 s\n"
-    monkeypatch.setattr(_compiled, "is_kept", lambda function: True)
-    assert main([str(word) for word in arm_arguments(out="a")] + ["--no-picture"]) == 0
+    assert main(words) == 0
     assert capsys.readouterr().err == ""
+    assert compiling() == "evenroad: compiling for this machine, once: about 10 s\n"
+    assert compiling() == ""
 
 
 def test_a_urdf_of_ones_own_is_planned_for(run, desk):

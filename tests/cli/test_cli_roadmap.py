@@ -1,11 +1,15 @@
 """``evenroad roadmap``, and ``evenroad plan --roadmap``."""
 
 import json
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 
 import evenroad as er
+from evenroad._npz import digest
 from evenroad.cli import main
 
 CELL = """\
@@ -66,6 +70,21 @@ def test_a_plan_along_it_is_that_of_python_and_proved(made):
     ("words", "said"),
     [
         (["roadmap", "ur5", "-n", "0"], "n must be"),
+        (["roadmap", "ur5", "-n", "99999"], "n must be at most 32768"),
+        (["roadmap", "ur5", "-k", "0"], "k must be"),
+        (["roadmap", "ur5", "--gamma", "nan"], "gamma must be"),
+        (["roadmap", "ur5", "--resolution", "0"], "resolution must be"),
+        (["roadmap", "ur5", "--resolution", "1e-9"], "resolution must be larger"),
+        (["roadmap", "ur5", "--seed", "-1"], "--seed must be"),
+        (["roadmap", "ur5", "-o", "."], "must end with a file name"),
+        (["roadmap", "nobody"], "there is no robot file 'nobody'"),
+        (["roadmap", "ur5", "--group", "left"], "unknown group 'left'"),
+        (["roadmap", "ur5", "--group", ""], "the group has no joint"),
+        (["roadmap", "ur5", "--cell", "none.yaml"], "there is no scene file none.yaml"),
+        (
+            ["roadmap", "ur5", "--cell", "limits.yaml"],
+            "unknown joint in the limits of scene 'limits': 'knee'",
+        ),
         (["roadmap", "ur5", "-o", "no/where.roadmap"], "no"),
         (["roadmap", "ur5", "--cell", "cell.yaml", "-o", "cell.yaml"], "would overwrite"),
         (
@@ -79,11 +98,80 @@ def test_a_plan_along_it_is_that_of_python_and_proved(made):
         (["plan", "box-reach.yaml", "--roadmap", "x", "--robot-radius", "1", *ENDS], "not both"),
     ],
 )
-def test_bad_input_gets_one_line(folder, capsys, words, said):
+def test_bad_input_gets_one_line_and_nothing_is_written(folder, capsys, words, said):
+    (folder / "limits.yaml").write_text("obstacles: {}\nlimits: {knee: [0, 1]}\n")
     assert main(words) == 2
     error = error_of(capsys)
     assert error.count("\n") == 1
     assert said in error
+    assert {path.name for path in folder.iterdir()} <= {"cell.yaml", "limits.yaml", ".cache"}
+
+
+def test_bad_input_is_refused_before_anything_is_compiled(made):
+    (made / "today.yaml").write_text((made / "cell.yaml").read_text().replace("-0.025", "-0.03"))
+    (made / "limits.yaml").write_text("obstacles: {}\nlimits: {knee: [0, 1]}\n")
+    plan = [
+        "plan",
+        "cell.yaml",
+        "--roadmap",
+        "my.roadmap",
+        "--goal",
+        "1,-1.5,0,0,0,0",
+        "--no-picture",
+        "--start",
+    ]
+    free = "0,-1.5,0,0,0,0"
+    every = [
+        ["roadmap", "ur5", "-n", "0"],
+        ["roadmap", "ur5", "--gamma", "-1"],
+        ["roadmap", "ur5", "-o", "no/where.roadmap"],
+        ["roadmap", "ur5", "--cell", "limits.yaml"],
+        [*plan, "nowhere"],
+        [*plan, free, "--out", "no/where"],
+        [*plan, free, "--resolution", "0.1"],
+        [*plan, free, "-n", "0"],
+        ["plan", "today.yaml", *plan[2:], free],
+    ]
+    code = f"from evenroad.cli import main; print([main(words) for words in {every!r}])"
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(made / "compiled")}
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, env=environment, check=True
+    )
+    assert done.stdout == f"{[2] * len(every)}\n"
+    assert [line[:15] for line in done.stderr.splitlines()] == ["evenroad: error"] * len(every)
+    assert not list((made / "compiled").rglob("*.nbc"))
+
+
+def test_a_roadmap_that_is_no_more_what_was_written_gets_one_line(made, capsys):
+    whole = bytearray((made / "my.roadmap").read_bytes())
+    middle, last = len(whole) // 2, len(whole) - 5
+    with np.load("my.roadmap") as archive:
+        arrays = {name: archive[name] for name in archive.files if name != "digest"}
+
+    def kept(name, **changed):
+        changed = arrays | {key: np.asarray(value) for key, value in changed.items()}
+        np.savez(name, digest=digest(changed), **changed)
+        return (made / f"{name}.npz").read_bytes()
+
+    nothing = {"milestones": np.empty((0, 6)), "edges": np.empty((0, 2), np.int32)}
+    for content, said in (
+        (b"", "is empty"),
+        (b"hello", "is text"),
+        (whole[: len(whole) // 3], "damaged"),
+        (whole[:middle] + bytes([whole[middle] ^ 255]) + whole[middle + 1 :], "damaged"),
+        (whole[:last] + bytes([whole[last] ^ 255]) + whole[last + 1 :], "damaged"),
+        (kept("older", version="0.0.1"), "of evenroad 0.0.1"),
+        (kept("empty", **nothing, turns=np.empty((0, 6), np.int8)), "must have a milestone or more"),
+        (kept("robotless", robot="{}"), "lacks some of what a roadmap of a robot holds"),
+        (kept("coarse", settings='{"resolution": "a", "gamma": 4}'), "resolution must be"),
+    ):
+        (made / "other.roadmap").write_bytes(content)
+        assert main(["plan", "box-reach.yaml", "--roadmap", "other.roadmap", *ENDS, "--out", "a"]) == 2
+        error = error_of(capsys)
+        assert error.count("\n") == 1
+        assert "other.roadmap" in error
+        assert said in error
+    assert not (made / "a.json").exists()
 
 
 def error_of(capsys):

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import trimesh
 from scipy.optimize import linprog
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
@@ -163,6 +164,96 @@ def test_motions_that_are_proved_free_are_free_between_their_states(fork_file, b
     for first, second in zip(a[proved][:25], b[proved][:25], strict=True):
         for share in np.linspace(0, 1, 15):
             assert rod_gap(robot, first + share * (second - first)) > 0.0
+
+
+@pytest.fixture(scope="module")
+def stones(tmp_path_factory):
+    """A stone of 60 corners, and another that slides along x and turns about z and y; their corners."""
+    folder, rng = tmp_path_factory.mktemp("stones"), np.random.default_rng(6)
+    corners = []
+    for name in "ab":
+        points = rng.normal(size=(60, 3))
+        points *= [0.06, 0.2, 0.1] / np.linalg.norm(points, axis=1, keepdims=True)
+        trimesh.convex.convex_hull(points.astype(np.float32)).export(folder / f"{name}.stl")
+        corners.append(points.astype(np.float32).astype(float))
+    wide = "<limit lower='-3' upper='3' velocity='2' effort='1'/>"
+    bodies = [f"<collision><geometry><mesh filename='{name}.stl'/></geometry></collision>" for name in "ab"]
+    text = urdf(
+        link("a", bodies[0]), link("sled", ""), link("table", ""), link("b", bodies[1]),
+        joint("slide", "a", "sled", "prismatic", "<limit lower='0' upper='1' velocity='1' effort='1'/>", "0 0.02 0.01",
+              "1 0 0"),
+        joint("turn", "sled", "table", "revolute", wide, "0 0 0", "0 0 1"),
+        joint("tilt", "table", "b", "revolute", wide, "0 0 0", "0 1 0"),
+        name="stones",
+    )  # fmt: skip
+    (folder / "stones.urdf").write_text(text)
+    return load_robot(folder / "stones.urdf"), corners
+
+
+def stones_gap(robot, corners, q):
+    pose = link_poses(robot, q[np.newaxis])[0, robot.links.index("b")]
+    return gap(corners[1] @ pose[:3, :3].T + pose[:3, 3], corners[0])
+
+
+def at_the_edge(world, count):
+    """States that are free, and others that are not, as near to each other as numbers are."""
+    a = world.space.from_cube(np.random.default_rng(8).random((count, world.space.dim)))
+    b = a.copy()
+    a[:, 0], b[:, 0] = 1.0, 0.0
+    assert world.valid(a).all()
+    assert not world.valid(b).any()
+    for _ in range(60):
+        middle = 0.5 * (a + b)
+        ok = world.valid(middle)[:, np.newaxis]
+        a, b = np.where(ok, middle, a), np.where(ok, b, middle)
+    return a, b
+
+
+def test_stones_are_blocked_where_they_touch_and_hardly_before(stones):
+    robot, corners = stones
+    assert robot.pairs == (("a", "b"),)
+    world, plain = ArmWorld(robot, EMPTY), ArmWorld(robot, EMPTY, backend="scalar")
+    free, _ = at_the_edge(world, 64)
+    assert plain.valid(free).all(), "single precision is never freer than double"
+    for q in free:
+        apart = stones_gap(robot, corners, q)
+        # How far they can be pushed along the line of their middles is more than how far they are apart.
+        assert 0.0 < apart < 2e-4
+
+
+def test_parallel_plates_as_thin_as_paper_pass_each_other(tmp_path):
+    plate = "<collision><geometry><box size='0.3 0.2 0.00001'/></geometry></collision>"
+    wide = "<limit lower='-1' upper='1' velocity='2' effort='1'/>"
+    text = urdf(
+        link("a", plate), link("sled", ""), link("b", plate),
+        joint("along", "a", "sled", "prismatic", wide, "0.01 0 0", "1 0 0"),
+        joint("up", "sled", "b", "prismatic", wide, "0 0 0", "0 0 1"),
+        name="plates",
+    )  # fmt: skip
+    (tmp_path / "plates.urdf").write_text(text)
+    world = ArmWorld(load_robot(tmp_path / "plates.urdf"), EMPTY)
+    q = np.array(
+        [[x, z] for x in (-0.25, -0.01, 0.0, 0.15) for z in (-1e-3, -1e-4, -5e-6, 0.0, 5e-6, 1e-4, 1e-3)]
+    )
+    np.testing.assert_array_equal(world.valid(q), np.abs(q[:, 1]) > 5e-5)
+    beside = np.array([[0.35, 0.0], [-0.35, 0.0]])
+    assert world.valid(beside).all()
+
+
+def test_a_verdict_depends_neither_on_the_order_of_states_nor_on_their_neighbours(stones, fork_file):
+    rng = np.random.default_rng(9)
+    world = ArmWorld(stones[0], EMPTY)
+    edge = np.concatenate(at_the_edge(world, 50))
+    edge = np.concatenate([edge, edge + rng.normal(size=edge.shape) * 1e-6])
+    edge[:, 0] = np.clip(edge[:, 0], 0.0, 1.0)
+    other = ArmWorld(load_robot(fork_file), EMPTY)
+    for each, q in ((world, edge), (other, other.space.from_cube(rng.random((200, 2))))):
+        verdicts = each.valid(q)
+        assert 0 < verdicts.sum() < len(q)
+        for _ in range(3):
+            order = rng.permutation(len(q))
+            np.testing.assert_array_equal(each.valid(q[order]), verdicts[order])
+        np.testing.assert_array_equal(np.concatenate([each.valid(row[np.newaxis]) for row in q]), verdicts)
 
 
 def test_a_robot_with_hulls_comes_out_of_the_cache_as_it_was_made(fork_file):

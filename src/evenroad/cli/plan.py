@@ -113,7 +113,7 @@ class RobotOptions:
         """Return what `load_model` takes; the bodies that are fitted are said on standard error."""
         return {
             "srdf": self.srdf,
-            "group": ",".join(self.group) or None,
+            "group": ",".join(self.group) if self.group else None,
             "bodies": self.bodies,
             "use_visuals": self.use_visuals,
             "packages": _pairs("package", self.package),

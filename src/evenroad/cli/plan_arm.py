@@ -53,8 +53,12 @@ def plan_arm(plan: PlanArm) -> int:
     """
     # All that can be refused at once is, before anything is compiled.
     budget, asked_goals, scene = chosen_budget(plan), _goals(plan), load_scene(plan.world)
-    kept = None if plan.roadmap is None else kept_roadmap(plan)
     ways = _ways(plan)
+    of_robot = () if plan.robot is None else find_robot(plan.robot)
+    inputs = (find_scene(plan.world), *of_robot, plan.srdf, plan.bodies, plan.roadmap)
+    files = output_files(plan, [path for path in inputs if path is not None], ("json", "csv"), "file")
+    require_trajectory_options(plan, [path for path in inputs if path is not None], files.values())
+    kept = None if plan.roadmap is None else kept_roadmap(plan)
     if not wants_points(plan) and kept is None:
         prepare()
     _say_if_compiling(plan)
@@ -71,10 +75,6 @@ def plan_arm(plan: PlanArm) -> int:
     )
     known = None if kept is None else SceneRoadmap(kept, query.world.scene, query.world.robot)
     query = query if known is None else replace(query, world=known.world)
-    of_robot = () if plan.robot is None else find_robot(plan.robot)
-    inputs = (find_scene(plan.world), *of_robot, plan.srdf, plan.bodies, plan.roadmap)
-    files = output_files(plan, [path for path in inputs if path is not None], ("json", "csv"), "file")
-    require_trajectory_options(plan, [path for path in inputs if path is not None], files.values())
     world, start, goals = query.world, query.start, query.goals
     rule = chosen_rule(plan, default_rule(world.space).k)
     points = planned_points(plan, world.space.cube_dim) if wants_points(plan) else None
@@ -187,9 +187,9 @@ def _say_if_compiling(plan: PlanArm) -> None:
     kernel, points = "evenroad.robot.kernel", wants_points(plan)
     if plan.goal_pose or plan.straight or plan.upright:
         say_if_compiling(f"{kernel}.reach", "solve", 5)
-    said = say_if_compiling(f"{kernel}.batch", "check_configurations", 10)
-    if plan.roadmap is not None and lanes_failure() is None:
-        said = say_if_compiling("evenroad.robot_roadmap.lane_search", "find_way", 10) or said
-    # Where the lanes do not work, the trees are never compiled.
-    if not (said or points) and lanes_failure() is None:
+    said = say_if_compiling(f"{kernel}.batch", "check_configurations", 10 if plan.roadmap is None else 20)
+    # Where the lanes do not work, the search and the trees are never compiled; to find that out, other things are.
+    if said or points or lanes_failure() is not None:
+        return
+    if plan.roadmap is None or not say_if_compiling("evenroad.robot_roadmap.lane_search", "find_way", 10):
         say_if_compiling(f"{kernel}.trees", "grow", 5)

@@ -19,7 +19,7 @@ from evenroad.cli.sampler import require_seed
 from evenroad.errors import InvalidValue
 from evenroad.robot import Scene, find_robot, find_scene, load_model, load_scene
 from evenroad.robot_roadmap.file import load_robot_roadmap, save_robot_roadmap
-from evenroad.robot_roadmap.make import make_roadmap
+from evenroad.robot_roadmap.make import make_roadmap, require_settings
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
 
 
@@ -51,7 +51,9 @@ class MakeRoadmap(RobotOptions):
 
     def run(self) -> int:
         """Load, make, write, report; return 0."""
+        # All that can be refused at once is, before anything is read or compiled.
         require_seed(self.seed)
+        require_settings(self.n, self.k, self.gamma, self.resolution)
         inputs = [*find_robot(self.robot), self.srdf, self.bodies]
         inputs += [] if self.cell is None else [find_scene(self.cell)]
         out = Path(f"{Path(self.robot).stem}.roadmap") if self.out is None else self.out
@@ -60,9 +62,9 @@ class MakeRoadmap(RobotOptions):
         if out.resolve() in {path.resolve() for path in inputs if path is not None}:
             raise InvalidValue(f"--out {out} would overwrite one of the files that it is made from")
         require_writable_folder(out)
-        model = load_model(self.robot, **self.options())
         cell = Scene("nothing") if self.cell is None else load_scene(self.cell)
         say_if_compiling("evenroad.robot.kernel.batch", "check_configurations", 10)
+        model = load_model(self.robot, **self.options())
         began = time.perf_counter()
         with progress_shown("roadmap") as shown:
             roadmap = make_roadmap(

@@ -60,7 +60,7 @@ class PlansWithTrees(Protocol):
 def prepare() -> None:
     """Begin to compile what planning with trees takes, in processes beside this one, unless it is kept already."""
     # The last needed, and the longest, first: this process begins at the other end.
-    kernels = ("trees", "lane_check", "shorten", "motion_checks", "hull_contact")
+    kernels = ("trees", "lane_check", "shorten", "motion_checks", "hull_lanes")
     compile_beside(*(f"evenroad.robot.kernel.{kernel}" for kernel in kernels))
 
 

@@ -10,7 +10,7 @@ from evenroad._arrays import Floats
 from evenroad._clock import now
 from evenroad.robot import ArmWorld
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
-from evenroad.robot.kernel.addresses import address, matrix_at
+from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.layout import program
 from evenroad.robot.kernel.motion_states import COUNTS
 from evenroad.robot_roadmap import lazy_search as search
@@ -97,7 +97,7 @@ def _one_by_one(world: Checks, day: Checks, graph: KnownGraph, most_motions: int
     graph.ends[:] = world.space.interpolate(graph.ends, graph.ends, 0.0)
     question, verdict = -1, UNKNOWN
     while True:
-        question = _go_on(address(desk), question, verdict, address(path), len(path))
+        question = _next_question(address(desk), question, verdict, address(path), len(path))
         if question == FOUND:
             rows = int(desk[at.BY])
             return Asked(FOUND, path[:rows][::-1].copy(), int(desk[at.TO]) - 1, milestones, motions)
@@ -118,18 +118,11 @@ def _one_by_one(world: Checks, day: Checks, graph: KnownGraph, most_motions: int
 
 
 @program
-def _go_on(desk: int, answered: int, verdict: int, path: int, rows: int) -> int:
-    """Take the answer to a question, or begin where there was none, and return the next one.
-
-    Of a way that was found, its waypoints are written, and in place of a question its goal and how many they are.
-    """
+def _next_question(desk: int, answered: int, verdict: int, path: int, rows: int) -> int:
+    """Take the answer to a question, or begin where there was none, and return the next one; a way is told."""
     s = at.search_at(desk)
-    if answered < 0:
-        search.begin(s)
-    else:
-        search.answer(s, answered, verdict)
+    search.hear(s, answered, verdict)
     question = search.step(s)
     if question == FOUND:
-        s.desk[at.TO] = -s.entries[s.desk[at.PENDING], at.STATE]
-        s.desk[at.BY] = search.way_back(s, matrix_at(path, (rows, s.desk[at.DIM])))
+        search.tell(s, path, rows)
     return question

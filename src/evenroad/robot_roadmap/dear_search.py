@@ -14,7 +14,7 @@ import numpy as np
 from evenroad._arrays import Bools, Floats
 from evenroad._clock import now
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
-from evenroad.robot.kernel.addresses import address, matrix_at
+from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.layout import program, quick
 from evenroad.robot_roadmap import search_memory as at
 from evenroad.robot_roadmap.known_graph import KnownGraph
@@ -28,12 +28,11 @@ from evenroad.robot_roadmap.lazy_search import (
     NONE,
     SPENT,
     STRAIGHT,
-    answer,
-    begin,
     clear,
+    hear,
     question_of,
+    tell,
     verdict_of,
-    way_back,
     write_asked,
 )
 from evenroad.robot_roadmap.search_memory import BLOCKED, DOUBTED, FREE, UNKNOWN, Search
@@ -98,7 +97,8 @@ def ask_few(world: Checks, day: Checks, graph: KnownGraph, most_motions: int, de
             graph.doubt(end)
     question, verdict = -1, UNKNOWN
     while True:
-        question = _go_on(address(desk), question, verdict, NOT_ASKED, NOT_PROVED, address(path), len(path))
+        given = NOT_ASKED, NOT_PROVED, address(path), len(path)
+        question = _next_dear_question(address(desk), question, verdict, *given)
         if question == FOUND:
             rows, goal = int(desk[at.BY]), int(desk[at.TO]) - 1
             return Asked(FOUND, path[:rows][::-1].copy(), goal, milestones, motions)
@@ -121,17 +121,12 @@ def ask_few(world: Checks, day: Checks, graph: KnownGraph, most_motions: int, de
 
 
 @program
-def _go_on(
+def _next_dear_question(
     desk: int, answered: int, verdict: int, unknown: float, doubted: float, path: int, rows: int
 ) -> int:
-    """Take the answer to a question, or begin where there was none, and return the next one, plus DEARLY where the
-    motion was not proved soon; of a way that was found what ``ask._go_on`` writes.
-    """
+    """Do what ``ask._next_question`` does for this search; DEARLY is added where the motion was not proved soon."""
     s = at.search_at(desk)
-    if answered < 0:
-        begin(s)
-    else:
-        answer(s, answered, verdict)
+    hear(s, answered, verdict)
     d = s.desk
     d[at.AIM] = -1
     for end in range(1, d[at.ENDS]):
@@ -147,8 +142,7 @@ def _go_on(
     d[at.PENDING] = entry
     question = _first_open(s, entry)
     if question == FOUND:
-        d[at.TO] = -s.entries[entry, at.STATE]
-        d[at.BY] = way_back(s, matrix_at(path, (rows, d[at.DIM])))
+        tell(s, path, rows)
     return question
 
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from evenroad import __version__
+from evenroad._checks import require_positive
 from evenroad._npz import Arrays, Path, digest, read_json, read_npz, require_array, write_npz
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue
 from evenroad.geometry import Mesh, PointCloud, Pose, TriangleMesh
@@ -82,8 +83,10 @@ def load_robot_roadmap(path: Path, robot: Robot | None = None, cell: Scene | Non
         _check(path, made)
     except BrokenFile:
         raise
-    except (EvenroadError, TypeError, ValueError, KeyError, AttributeError) as error:
+    except EvenroadError as error:
         raise BrokenFile(f"{path}: {error}") from error
+    except (TypeError, ValueError, LookupError, AttributeError) as error:
+        raise BrokenFile(f"{path} lacks some of what a roadmap of a robot holds: {error!r}") from error
     if cell is not None:
         require_same_cell(made.cell, cell)
     if robot is not None:
@@ -98,9 +101,10 @@ def load_robot_roadmap(path: Path, robot: Robot | None = None, cell: Scene | Non
 
 def _check(path: Path, made: RobotRoadmap) -> None:
     """Raise BrokenFile unless milestones, edges and turns are what a roadmap of the robot can have."""
-    dim, n, m = made.world.space.dim, len(made.milestones), len(made.edges)
+    dim, n, m = len(made.robot.group), len(made.milestones), len(made.edges)
     if not n:
         raise BrokenFile(f"{path}: it must have a milestone or more")
+    require_positive("resolution", made.resolution)
     require_array(path, "milestones", made.milestones, np.float64, (n, dim))
     require_array(path, "edges", made.edges, np.int32, (m, 2))
     require_array(path, "turns", made.turns, np.int8, (m, dim))

@@ -7,6 +7,7 @@ from functools import cached_property
 
 from evenroad._arrays import Floats, Ints, Ints32
 from evenroad.robot import ArmWorld, Robot, Scene
+from evenroad.robot.known_robots import prepared
 from evenroad.robot_roadmap.known_graph import KnownGraph
 from evenroad.robot_roadmap.turns import OneTurn, one_turn, whole_turns
 
@@ -39,7 +40,8 @@ class KnownMotions:
     @cached_property
     def one_turn(self) -> OneTurn:
         """The ranges that the milestones are in."""
-        return one_turn(self.world.space, whole_turns(self.robot))
+        # Of the robot alone: for the world something has to be compiled.
+        return one_turn(prepared(self.robot)[0], whole_turns(self.robot))
 
     @cached_property
     def graph(self) -> KnownGraph:

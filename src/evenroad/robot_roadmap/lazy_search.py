@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from evenroad.robot.kernel.addresses import matrix_at
 from evenroad.robot.kernel.layout import quick
 from evenroad.robot_roadmap.known_ways import best_links, price_links, write_known_way
 from evenroad.robot_roadmap.search_memory import (
@@ -377,6 +378,22 @@ def answer(s: Search, question: int, verdict: int) -> None:
         s.links[to, by] = verdict
         if verdict >= FREE:
             s.nodes[by] = FREE
+
+
+@quick
+def hear(s: Search, answered: int, verdict: int) -> None:
+    """Take the answer to a question, or begin where there was none."""
+    if answered < 0:
+        begin(s)
+    else:
+        answer(s, answered, verdict)
+
+
+@quick
+def tell(s: Search, path: int, rows: int) -> None:
+    """Write the waypoints of the way that was found, and in place of a question its goal and how many they are."""
+    s.desk[TO] = -s.entries[s.desk[PENDING], STATE]
+    s.desk[BY] = way_back(s, matrix_at(path, (rows, s.desk[DIM])))
 
 
 @quick

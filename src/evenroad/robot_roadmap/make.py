@@ -75,10 +75,9 @@ def make_roadmap(
     InvalidValue
         If an argument is no such number, or the robot is never free in its cell; the text says what blocks.
     """
-    n, k = require_count("n", n), require_count("k", k)
+    require_settings(n, k, gamma, resolution)
+    n, k, gamma = int(n), int(k), float(gamma)
     ends = ends_for(robot) if ends is None else require_count("ends", ends, at_least=0)
-    if n > MOST:
-        raise InvalidValue(f"n must be at most {MOST}, got {n}")
     cell = Scene("nothing") if cell is None else cell
     robot = in_scene(robot, cell)
     cell = scene_seen_by(robot, cell)
@@ -90,7 +89,7 @@ def make_roadmap(
     if world.fixed_contact is not None:
         first, second = world.fixed_contact
         raise InvalidValue(f"the robot is never free in its cell: {first!r} always touches {second!r}")
-    recipe = Recipe(require_positive("gamma", gamma, or_zero=True), ends)
+    recipe = Recipe(gamma, ends)
     recipes = [recipe, *(recipe._replace(gamma=other) for other in GAMMAS if tune and other != gamma)]
     one = one_turn(world.space, whole_turns(robot))
     *streams, of_problems = generator(rng).spawn(4)
@@ -117,6 +116,16 @@ def make_roadmap(
         )
     progress("choosing and joining milestones", 0.0)
     return replace(made(recipe), tuned=said)
+
+
+def require_settings(n: int, k: int, gamma: float, resolution: float) -> None:
+    """Raise InvalidValue unless these numbers are what `make_roadmap` takes: what costs nothing to refuse."""
+    require_count("n", n)
+    if n > MOST:
+        raise InvalidValue(f"n must be at most {MOST}, got {n}")
+    require_count("k", k)
+    require_positive("gamma", gamma, or_zero=True)
+    require_positive("resolution", resolution)
 
 
 def joined(roadmap: RobotRoadmap, milestones: Floats, k: int) -> RobotRoadmap:

@@ -217,13 +217,11 @@ def _meeting_themselves(
                 if blocked == ALL or (blocked != 0 and enough == 1):
                     return blocked
         undecided &= ~blocked
-        while undecided != 0:
-            lane = lowest_bit(undecided)
-            undecided &= undecided - 1
-            if call_at(hulls, (scratch, lane, np.float64(table[margins + p]), p, ints, table)) != 0:
-                blocked |= 1 << lane
-                if enough == 1:
-                    return blocked
+        if undecided != 0:
+            margin = np.float64(table[margins + p])
+            blocked |= call_at(hulls, (scratch, undecided, enough, margin, p, ints, table))
+            if blocked == ALL or (blocked != 0 and enough == 1):
+                return blocked
     return blocked
 
 

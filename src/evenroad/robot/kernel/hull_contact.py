@@ -7,16 +7,13 @@ soon, calls bodies free that touch.  The search is that of E. Gilbert, D. Johnso
 from __future__ import annotations
 
 import math
-from functools import cache
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from numba import types
 
-from evenroad._njit import cfunc
 from evenroad.robot.kernel import layout as at
-from evenroad.robot.kernel.addresses import ANY_LENGTH, doubles_at, integers_at, room_for, singles_at
+from evenroad.robot.kernel.addresses import doubles_at, integers_at, room_for
 from evenroad.robot.kernel.layout import quick
 
 Floats = npt.NDArray[np.float64]
@@ -24,7 +21,7 @@ Ints = npt.NDArray[np.int64]
 
 APART = -1
 _MOST_STEPS = 40
-_DEEPEST = 96
+DEEPEST = 96
 """Pairs of nodes that may wait: at most the depths of both trees together."""
 _SAME = 1e-9
 """Lengths that differ by less are one [m]."""
@@ -37,28 +34,12 @@ def bodies_meet(places: Any, lane: int, lanes: int, margin: float, pair: int, in
     a = ints[at.BODY_INTS] + at.BODY_INT_ROW * ints[row]
     b = ints[at.BODY_INTS] + at.BODY_INT_ROW * ints[row + 1]
     pose = doubles_at(room_for(12), (12,))
-    _write_relative(places, 12 * lanes * ints[a] + lane, 12 * lanes * ints[b] + lane, lanes, pose)
+    write_relative(places, 12 * lanes * ints[a] + lane, 12 * lanes * ints[b] + lane, lanes, pose)
     return hulls_meet(ints[a + 3], ints[b + 3], pose, margin, ints, table) != APART
 
 
-@cache
-def meeting_address() -> int:
-    """Return the address, good for this process, of `bodies_meet` in lanes; compiled when first asked.
-
-    Few robots have hulls: those without do not wait for this to be compiled.
-    """
-    kind = types.int64(types.int64, types.int64, types.float64, *[types.int64] * 3)
-    return int(cfunc(kind, cache=True, error_model="numpy", _nrt=False)(_meeting).address)
-
-
-def _meeting(scratch: int, lane: int, margin: float, pair: int, ints: int, table: int) -> int:
-    places, floats = singles_at(scratch, (ANY_LENGTH,)), singles_at(table, (ANY_LENGTH,))
-    integers = integers_at(ints, (ANY_LENGTH,))
-    return 1 if bodies_meet(places, lane, at.LANES, margin, pair, integers, floats) else 0
-
-
 @quick
-def _write_relative(places: Any, a: int, b: int, step: int, pose: Floats) -> None:
+def write_relative(places: Any, a: int, b: int, step: int, pose: Floats) -> None:
     """Write the pose of one frame in another, whose numbers begin at `a` and `b`, a step apart."""
     for i in range(3):
         pose[9 + i] = 0.0
@@ -78,7 +59,7 @@ def hulls_meet(first: int, second: int, pose: Floats, margin: float, ints: Ints,
     `first` and `second` are the roots of their trees, numbers of nodes; `pose` is that of the second body in the
     frame of the first, (12,): rotation row by row, translation.
     """
-    waiting, way = integers_at(room_for(_DEEPEST), (_DEEPEST,)), doubles_at(room_for(3), (3,))
+    waiting, way = integers_at(room_for(DEEPEST), (DEEPEST,)), doubles_at(room_for(3), (3,))
     waiting[0], count = first << 32 | second, 1
     while count > 0:
         count -= 1
@@ -87,12 +68,7 @@ def hulls_meet(first: int, second: int, pose: Floats, margin: float, ints: Ints,
             ints[at.NODE_FLOATS] + at.NODE_FLOAT_ROW * a,
             ints[at.NODE_FLOATS] + at.NODE_FLOAT_ROW * b,
         )
-        squared = 0.0
-        for axis in range(3):
-            way[axis] = table[ball + axis] - pose[9 + axis]
-            for entry in range(3):
-                way[axis] -= pose[3 * axis + entry] * table[other + entry]
-            squared += way[axis] * way[axis]
+        squared = _write_way(ball, other, pose, way, table)
         near, next_near = table[ball + 6] + margin, table[other + 6] + margin
         if squared > (near + table[other + 6]) ** 2:
             continue
@@ -106,8 +82,7 @@ def hulls_meet(first: int, second: int, pose: Floats, margin: float, ints: Ints,
             continue
         row, next_row = ints[at.NODE_INTS] + at.NODE_INT_ROW * a, ints[at.NODE_INTS] + at.NODE_INT_ROW * b
         if ints[row] < 0 and ints[next_row] < 0:
-            widened = table[ball + 7] + table[other + 7] + margin
-            if squared == 0.0 or _hulls_near(row, next_row, way, pose, widened, ints, table):
+            if leaves_near(a, b, pose, margin, ints, table):
                 return a << 32 | b
         elif ints[next_row] < 0 or (ints[row] >= 0 and table[ball + 6] >= table[other + 6]):
             for child in range(2):
@@ -118,6 +93,29 @@ def hulls_meet(first: int, second: int, pose: Floats, margin: float, ints: Ints,
                 waiting[count] = a << 32 | ints[next_row + child]
                 count += 1
     return APART
+
+
+@quick
+def leaves_near(a: int, b: int, pose: Floats, margin: float, ints: Ints, table: Any) -> bool:
+    """Return whether the hulls of two leaves come within a margin; the pose is that of the second body in the first."""
+    ball, other = ints[at.NODE_FLOATS] + at.NODE_FLOAT_ROW * a, ints[at.NODE_FLOATS] + at.NODE_FLOAT_ROW * b
+    way = doubles_at(room_for(3), (3,))
+    if _write_way(ball, other, pose, way, table) == 0.0:
+        return True
+    row, other_row = ints[at.NODE_INTS] + at.NODE_INT_ROW * a, ints[at.NODE_INTS] + at.NODE_INT_ROW * b
+    return _hulls_near(row, other_row, way, pose, table[ball + 7] + table[other + 7] + margin, ints, table)
+
+
+@quick
+def _write_way(ball: int, other: int, pose: Floats, way: Floats, table: Any) -> float:
+    """Write the way from the middle of a node, whose row is at `other`, to that of another; return its square."""
+    squared = 0.0
+    for axis in range(3):
+        way[axis] = table[ball + axis] - pose[9 + axis]
+        for entry in range(3):
+            way[axis] -= pose[3 * axis + entry] * table[other + entry]
+        squared += way[axis] * way[axis]
+    return squared
 
 
 @quick

@@ -24,7 +24,7 @@ def check_address() -> int:
     It takes the addresses of scratch memory, where a first call with `enough` 0 has put what does not move, of states,
     sixteen numbers a coordinate, of integers and floats of the tables; and `enough`: 1 to stop at the first state that
     is blocked, 16 to find all.  It returns the mask of those that touch something, as ``contact.blocked_lanes`` does.
-    In place of states the first call takes the address of ``hull_contact.meeting_address``, 0 for robots without hulls.
+    In place of states the first call takes the address of ``hull_lanes.meeting_address``, 0 for robots without hulls.
     """
     compiled = cfunc(types.int64(*[types.int64] * 5), cache=True, error_model="numpy", _nrt=False)(_blocked)
     return int(compiled.address)

@@ -126,7 +126,7 @@ def check_addresses(with_hulls: bool) -> Ints:
 
     hulls = 0
     if with_hulls:
-        from evenroad.robot.kernel.hull_contact import meeting_address
+        from evenroad.robot.kernel.hull_lanes import meeting_address
 
         hulls = meeting_address()
     return np.array([motion_check_address(), check_address(), hulls])
