@@ -7,7 +7,7 @@ The UR5's links are meshes, 24 corners around each capsule, inside of it; so are
 every state, of trees and roadmap; `shapes` is what ``in_scene(scene, shapes)`` does, where coal is asked what the
 capsules do not tell; with `--thicker 0.01` these are so many metres thicker than the meshes, which the queries are free
 for.  Trees are OMPL's RRT-Connect through ``evenroad.adapters.ompl``, with the range of ours and the same checker, and
-both paths are shortened by our compiled shortener, equally much; with --triangles they are ours, as `plan` grows them.
+both paths are drawn tight by our compiled shortener, equally much; with --triangles they are ours, as `plan` grows them.
 Scenes and queries come from the seeds kept for reporting; times are of the processor, the first nine queries of a scene
 are left out.
 """
@@ -26,7 +26,7 @@ from tests_peers.engines.surface import shape_surface
 
 from benchmarks.arm_problems import REPORTING, TUNING, Pool, arm, problems, queries
 from benchmarks.clouds import triangles_of
-from benchmarks.robot_roadmap_queries import COPIES, QuickWorld, in_new_scene, ratio_of_tails, timed
+from benchmarks.robot_roadmap_queries import COPIES, TightWorld, in_new_scene, ratio_of_tails, timed
 from benchmarks.robot_roadmaps import table_of
 from evenroad.geometry import Mesh
 from evenroad.geometry.shapes import Shape, along_z
@@ -34,11 +34,11 @@ from evenroad.roadmap import Budget, PlanResult
 from evenroad.roadmap.find_path import find_path
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene
 from evenroad.robot.reference.coal_world import CoalWorld
-from evenroad.robot.trees import shorten
+from evenroad.robot.trees import tighten
 from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.own_shapes import OwnShapesWorld, SolidMeshes
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
-from evenroad.robot_roadmap.scene_roadmap import BATCHES, CUTS, DEAR_WORK, PAIRS, SceneRoadmap
+from evenroad.robot_roadmap.scene_roadmap import DEAR_WORK, SceneRoadmap
 from evenroad.space.path import path_length
 
 FIRST = 9
@@ -141,9 +141,7 @@ def by_trees(world: ArmWorld, checks: OnlyCoal | OwnShapesWorld) -> Query:
         path = solve(planner, start, goal, SECONDS)
         length = np.nan
         if path is not None:
-            path, _ = shorten(
-                world, path, pairs=DEAR_WORK * PAIRS, cuts=DEAR_WORK * CUTS, batches=DEAR_WORK * BATCHES
-            )
+            path, _ = tighten(world, path, batches=DEAR_WORK)
             length = path_length(path, world.space)
         return time.thread_time() - began, Counted.states - before, length
 
@@ -194,14 +192,20 @@ def among_triangles(pool: Pool, made: RobotRoadmap, seeds: range, options: argpa
             made_in.append(time.thread_time() - began)
             bodies = [obstacle.body for obstacle in world.scene.obstacles]
             sizes.append(sum(len(body.triangles.triangles) for body in bodies if isinstance(body, Mesh)))
-            quick = QuickWorld(world.robot, world.scene)
-            copies = [SceneRoadmap(made, world.scene) for _ in range(COPIES)]
+            alone, tight = (
+                [world_of(world.robot, world.scene) for _ in range(COPIES)]
+                for world_of in (ArmWorld, TightWorld)
+            )
+            copies, known = ([SceneRoadmap(made, world.scene) for _ in range(COPIES)] for _ in range(2))
+            for each in known:
+                each.explore()
             for number, (start, goal) in enumerate(pairs):
                 ends = partial(find_path, start=start, goal=goal, budget=budget)
                 calls: dict[str, list[Callable[[], PlanResult]]] = {
-                    "trees": [partial(ends, world)] * COPIES,
-                    "trees, shortened as much": [partial(ends, quick)] * COPIES,
+                    "trees": [partial(ends, w) for w in alone],
+                    "trees, drawn tight": [partial(ends, w) for w in tight],
                     "roadmap, kept scene": [partial(k.plan, start, goal, budget=budget) for k in copies],
+                    "roadmap, explored scene": [partial(k.plan, start, goal, budget=budget) for k in known],
                     "roadmap, new scene": [partial(in_new_scene, made, world.scene, start, goal)] * COPIES,
                 }
                 answers = {title: timed(some) for title, some in calls.items()}
@@ -224,7 +228,7 @@ def among_triangles(pool: Pool, made: RobotRoadmap, seeds: range, options: argpa
             print(
                 f"| {kind}, {len(table)} | {np.mean(sizes):.0f} | {title} | {1e3 * np.median(seconds):.3f} |"
                 f" {1e3 * seconds.mean():.3f} | {_interval(np.mean, seconds, trees[:, 0])} | {tails} |"
-                f" {motions.mean():.0f} | {np.mean(costs / trees[:, 2]):.3f} |",
+                f" {motions.mean():.0f} | {costs.sum() / trees[:, 2].sum():.3f} |",
                 flush=True,
             )
 

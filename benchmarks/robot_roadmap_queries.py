@@ -30,12 +30,12 @@ from evenroad.research.arms.scenes import GENERATORS
 from evenroad.roadmap import Budget, PlanResult
 from evenroad.roadmap.find_path import find_path
 from evenroad.robot import ArmWorld, Scene, with_limits
-from evenroad.robot.trees import shorten
+from evenroad.robot.trees import tighten
 from evenroad.robot_roadmap import scene_roadmap
 from evenroad.robot_roadmap.chance import chance_of_freedom
 from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
-from evenroad.robot_roadmap.scene_roadmap import CUTS, PAIRS, SceneRoadmap
+from evenroad.robot_roadmap.scene_roadmap import WORK, SceneRoadmap
 from evenroad.robot_roadmap.search_memory import NUMBER
 
 COPIES = 3
@@ -50,12 +50,12 @@ LIMIT = Budget(seconds=1.0)
 TURN = 2.0 * np.pi
 
 
-class QuickWorld(ArmWorld):
-    """An arm's world whose paths are shortened as little as those of roadmaps."""
+class TightWorld(ArmWorld):
+    """An arm's world whose paths are drawn tight as those of roadmaps are."""
 
     def shorten(self, path: np.ndarray) -> tuple[np.ndarray, int]:
         """Return a path that is not longer, and how many motions were looked at."""
-        return shorten(self, path, pairs=PAIRS, cuts=CUTS)
+        return tighten(self, path, batches=WORK)
 
 
 def timed(calls: list[Callable[[], PlanResult]]) -> tuple[float, PlanResult]:
@@ -74,19 +74,24 @@ def in_new_scene(made: RobotRoadmap, scene: Scene, start: np.ndarray, goal: np.n
 
 
 def costs(name: str, count: int, n: int, kinds: list[str], seeds: range = REPORTING) -> None:
-    """Print milliseconds, motions and lengths of queries, along a kept roadmap and with trees."""
+    """Print milliseconds, motions and lengths of queries, along a kept roadmap and with trees.
+
+    Trees have three copies of their world, as the roadmap has: none comes upon a warm cache.
+    """
     pool = Pool(arm(name))
     began = time.process_time()
     made = make_roadmap(pool.robot, table_of(next(problems(pool, REPORTING))), n)
     print(f"roadmap of {n} made in {time.process_time() - began:.1f} s of the processor")
-    print("| kind | planner | median ms | 95 % ms | 95 % / trees | motions | trees alone | length / trees |")
-    print("|---|" + "---|" * 7)
+    print("| kind | planner | median ms | 95 % ms | 95 % / trees | motions | trees alone | length / trees | all lengths / trees' |")
+    print("|---|" + "---|" * 8)
     for kind in kinds:
         rows: dict[str, list[tuple[float, float, float, float]]] = {}
         straight, unsolved, explored = [], 0, []
         for seed in seeds[:SCENES]:
             world, pairs = queries(pool, kind, seed, count)
-            quick = QuickWorld(world.robot, world.scene)
+            alone, tight = (
+                [of(world.robot, world.scene) for _ in range(COPIES)] for of in (ArmWorld, TightWorld)
+            )
             copies = [SceneRoadmap(made, world.scene) for _ in range(COPIES)]
             known = [SceneRoadmap(made, world.scene) for _ in range(COPIES)]
             for each in known:
@@ -96,8 +101,8 @@ def costs(name: str, count: int, n: int, kinds: list[str], seeds: range = REPORT
             for number, (start, goal) in enumerate(pairs):
                 ends = partial(find_path, start=start, goal=goal, budget=LIMIT)
                 calls = {
-                    "trees": [partial(ends, world)] * COPIES,
-                    "trees, shortened as much": [partial(ends, quick)] * COPIES,
+                    "trees": [partial(ends, w) for w in alone],
+                    "trees, drawn tight": [partial(ends, w) for w in tight],
                     "roadmap, kept scene": [partial(k.plan, start, goal, budget=LIMIT) for k in copies],
                     "roadmap, explored scene": [partial(k.plan, start, goal, budget=LIMIT) for k in known],
                     "roadmap, new scene": [partial(in_new_scene, made, world.scene, start, goal)] * COPIES,
@@ -118,13 +123,14 @@ def costs(name: str, count: int, n: int, kinds: list[str], seeds: range = REPORT
             table = np.array(values)
             ms = 1e3 * table[:, 0]
             ratio, low, high = ratio_of_tails(table[:, 0], trees[:, 0])
-            length = np.mean(table[:, 3] / trees[:, 3])
+            shares = table[:, 3] / trees[:, 3]
+            error, whole = shares.std(ddof=1) / np.sqrt(len(shares)), table[:, 3].sum() / trees[:, 3].sum()
             figures = (
                 f"{np.median(ms):.3f} | {np.quantile(ms, 0.95):.3f} | {ratio:.2f} ({low:.2f} .. {high:.2f})"
             )
             print(
                 f"| {kind} | {title} | {figures} | {table[:, 1].mean():.0f} | {100 * table[:, 2].mean():.0f} % |"
-                f" {length:.3f} |",
+                f" {shares.mean():.3f} ± {error:.3f} | {whole:.3f} |",
                 flush=True,
             )
         before, after = (

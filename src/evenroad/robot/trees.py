@@ -187,10 +187,10 @@ def shorten(
 
 
 def tighten(world: PlansWithTrees, path: Floats, *, batches: int) -> tuple[Floats, int]:
-    """Return a path drawn tight, and how many motions were looked at: shorter than by `shorten`, at the same price.
+    """Return a path drawn tight, and how many motions were looked at: shorter than `shorten`'s for the same checks.
 
-    Where waypoints have slid along what they touch every motion is proved free; where one is not, or the world's backend
-    is not the lanes, it is what `shorten` returns.
+    Its waypoints have slid along what they touch, and every motion is proved free.  Where one is not, or the world's
+    backend is not the lanes, it is what `shorten` returns.
 
     Parameters
     ----------

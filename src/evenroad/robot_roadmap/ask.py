@@ -17,8 +17,8 @@ from evenroad.robot_roadmap import lazy_search as search
 from evenroad.robot_roadmap import search_memory as at
 from evenroad.robot_roadmap.dear_search import Asked, Checks, ask_few
 from evenroad.robot_roadmap.known_graph import KnownGraph
-from evenroad.robot_roadmap.lazy_search import EDGE, ENDS_TAKEN, FOUND, FULL, NODE, PAUSED, SPENT, STRAIGHT
-from evenroad.robot_roadmap.search_memory import BLOCKED, PROVED, UNKNOWN
+from evenroad.robot_roadmap.lazy_search import ENDS_TAKEN, PAUSED, SPENT
+from evenroad.robot_roadmap.search_memory import BLOCKED, EDGE, FOUND, FULL, NODE, PROVED, STRAIGHT, UNKNOWN
 
 _SLICE = 1000
 """Batches of sixteen checks between two looks at the clock: about 10 ms."""
@@ -86,7 +86,9 @@ def _by_lanes(world: ArmWorld, day: ArmWorld, graph: KnownGraph, most_motions: i
             ended = SPENT
             break
     rows, milestones, motions, goal, batches = report.tolist()
-    return Asked(ended, path[:rows][::-1].copy(), goal if ended == FOUND else -1, milestones, motions, batches)
+    return Asked(
+        ended, path[:rows][::-1].copy(), goal if ended == FOUND else -1, milestones, motions, batches
+    )
 
 
 def _one_by_one(world: Checks, day: Checks, graph: KnownGraph, most_motions: int, deadline: float) -> Asked:

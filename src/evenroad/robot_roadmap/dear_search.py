@@ -19,15 +19,8 @@ from evenroad.robot.kernel.layout import program, quick
 from evenroad.robot_roadmap import search_memory as at
 from evenroad.robot_roadmap.known_graph import KnownGraph
 from evenroad.robot_roadmap.lazy_search import (
-    EDGE,
     ENDS_TAKEN,
-    FOUND,
-    FULL,
-    LINK,
-    NODE,
-    NONE,
     SPENT,
-    STRAIGHT,
     clear,
     hear,
     question_of,
@@ -35,7 +28,20 @@ from evenroad.robot_roadmap.lazy_search import (
     verdict_of,
     write_asked,
 )
-from evenroad.robot_roadmap.search_memory import BLOCKED, DOUBTED, FREE, UNKNOWN, Search
+from evenroad.robot_roadmap.search_memory import (
+    BLOCKED,
+    DOUBTED,
+    EDGE,
+    FOUND,
+    FREE,
+    FULL,
+    LINK,
+    NODE,
+    NONE,
+    STRAIGHT,
+    UNKNOWN,
+    Search,
+)
 from evenroad.robot_roadmap.search_metric import distance, write
 from evenroad.robot_roadmap.search_queue import pop, push, state_of
 from evenroad.world import World
@@ -61,7 +67,8 @@ class Checks(World, Protocol):
 @dataclass(frozen=True, eq=False)
 class Asked:
     """What a search ended with: a path, (p, dim), and its goal or -1; milestones and motions that were asked about, and
-    how many batches of sixteen checks that took, where it is known."""
+    how many batches of sixteen checks that took, where it is known.
+    """
 
     ended: int
     path: Floats

@@ -16,9 +16,8 @@ from evenroad.robot_roadmap import search_memory as at
 from evenroad.robot_roadmap.ask import ask
 from evenroad.robot_roadmap.known_graph import KnownGraph
 from evenroad.robot_roadmap.known_motions import KnownMotions
-from evenroad.robot_roadmap.lazy_search import FOUND
 from evenroad.robot_roadmap.narrow_places import ends_between_obstacles
-from evenroad.robot_roadmap.search_memory import BLOCKED, FREE, PROVED, UNKNOWN
+from evenroad.robot_roadmap.search_memory import BLOCKED, FOUND, FREE, PROVED, UNKNOWN
 from evenroad.robot_roadmap.ways_out import learn_ways_out
 
 if TYPE_CHECKING:
@@ -105,7 +104,15 @@ def _learn_bends(
         for others in (ends, hubs):
             goal = others[rng.integers(len(others))][np.newaxis]
             asked = ask(
-                world, day, graph, start, goal, links=LINKS, greed=GREED, most_motions=MOTIONS, deadline=math.inf
+                world,
+                day,
+                graph,
+                start,
+                goal,
+                links=LINKS,
+                greed=GREED,
+                most_motions=MOTIONS,
+                deadline=math.inf,
             )
             if asked.ended != FOUND:
                 continue

@@ -233,8 +233,8 @@ class KnownGraph:
     def guide(self, far: Floats, steps: Ints32, weights: Floats, close: int) -> None:
         """Guide searches by how far milestones are from each other along what is known to be free, (n, n).
 
-        On the way to the first of two, `steps` says which one comes after the second, (n, n).  So many links of each end
-        go by displacement, in the metric of such weights, (dim,).
+        On the way to the first of two, `steps` says which one comes after the second, (n, n).  So many links of each
+        end go by displacement, in the metric of such weights, (dim,).
         """
         self._far, self._steps = np.ascontiguousarray(far, np.float32), np.ascontiguousarray(steps, np.int32)
         self.rules[at.WEIGHTS], desk = weights, self.desk

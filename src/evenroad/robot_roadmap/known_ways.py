@@ -7,19 +7,37 @@ import numpy as np
 from evenroad.robot.kernel.layout import quick
 from evenroad.robot_roadmap.search_memory import (
     BLOCKED,
+    BY,
     CAPACITY,
+    CLOSE,
+    CLOSE_GOALS,
+    CLOSE_START,
+    DIM,
     ENDS,
+    FOUND,
     FREE,
+    LINK,
     LINKS,
     MADE,
     NEXT,
+    NODES,
+    NONE,
     NUMBER,
     OTHER,
     PENDING,
+    TO,
     TOLD,
+    UNKNOWN,
+    WEIGHTS,
     Search,
+    kept_in_order,
 )
+from evenroad.robot_roadmap.search_metric import write, write_distances
 from evenroad.robot_roadmap.search_queue import push, state_of
+
+CLOSE_ONWARD = 0.3
+"""The same of links by displacement, which find a way for most ends that see nothing, but lead round about."""
+
 
 @quick
 def price_links(s: Search) -> None:
@@ -46,7 +64,7 @@ def _price_row(s: Search, row: int) -> None:
 
 
 @quick
-def best_links(s: Search) -> tuple[int, int, int]:
+def _best_links(s: Search) -> tuple[int, int, int]:
     """Return the milestones that start and a goal are to be linked to for the shortest way, and the goal; -1 for none.
 
     What is known to be blocked is left out.
@@ -67,7 +85,7 @@ def best_links(s: Search) -> tuple[int, int, int]:
 
 
 @quick
-def write_known_way(s: Search, i: int, j: int, end: int) -> bool:
+def _write_way(s: Search, i: int, j: int, end: int) -> bool:
     """Write entries of the way by two milestones, the last one to be looked at; return whether there is one."""
     d, packed, cost = s.desk, s.turns[0, i], np.float64(s.away[i])
     state = state_of(s, i, packed)
@@ -87,3 +105,57 @@ def write_known_way(s: Search, i: int, j: int, end: int) -> bool:
     push(s, -end, d[MADE] - 1, -1, cost + s.away[end * d[CAPACITY] + j], 0.0)
     d[PENDING] = d[MADE] - 1
     return True
+
+
+@quick
+def look_up(s: Search) -> int:
+    """Return a question for a link of the shortest way that the table knows; FOUND where both are free, or NONE."""
+    d = s.desk
+    while True:
+        i, j, goal = _best_links(s)
+        if i < 0:
+            return NONE
+        # The longer one first: it is rather blocked.
+        goal_first = s.away[goal * d[CAPACITY] + j] > s.away[i]
+        for side in range(2):
+            end, by = (goal, j) if goal_first == (side == 0) else (0, i)
+            if s.links[end, by] == UNKNOWN:
+                d[TO], d[BY] = end, by
+                for k in range(d[DIM]):
+                    s.asked[0, k] = s.ends[end, k]
+                write(s, by, s.turns[end, by], s.asked[1])
+                return LINK
+        return FOUND if _write_way(s, i, j, goal) else NONE
+
+
+@quick
+def has_others(s: Search) -> bool:
+    """Choose links by displacement for ends of which no link is free, once; return whether there are any."""
+    d, chosen = s.desk, False
+    for which in (CLOSE_START, CLOSE_GOALS):
+        first, last = (0, 1) if which == CLOSE_START else (1, d[ENDS])
+        free = False
+        for end in range(first, last):
+            for rank in range(d[LINKS]):
+                i = s.near[end, rank]
+                free |= i >= 0 and s.links[end, i] >= FREE
+        if d[which] > 0 and not free:
+            d[which], chosen = 0, True
+            for end in range(first, last):
+                choose_close(s, end)
+    return chosen
+
+
+@quick
+def choose_close(s: Search, end: int) -> None:
+    """Choose other milestones that an end is tried to be linked to: free ones that are near in displacement."""
+    d, n, count = s.desk, s.desk[NODES], 0
+    write_distances(s, end, s.rules[WEIGHTS], s.costs[:n])
+    write_distances(s, 1 if end == 0 else 0, s.rules[WEIGHTS], s.keys[:n])
+    for i in range(n):
+        s.costs[i] += CLOSE_ONWARD * s.keys[i]
+    for i in range(n):
+        if s.nodes[i] >= FREE and s.links[end, i] != BLOCKED:
+            count = kept_in_order(s.keys, s.near[end], count, d[CLOSE], s.costs[i], i)
+    for rank in range(count, d[LINKS]):
+        s.near[end, rank] = -1

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import matrix_at
 from evenroad.robot.kernel.layout import quick
-from evenroad.robot_roadmap.known_ways import best_links, price_links, write_known_way
+from evenroad.robot_roadmap.known_ways import choose_close, has_others, look_up, price_links
 from evenroad.robot_roadmap.search_memory import (
     AIM,
     AIMED_END,
@@ -23,23 +23,30 @@ from evenroad.robot_roadmap.search_memory import (
     CLOSE,
     CLOSE_GOALS,
     CLOSE_START,
+    CUT_OFF,
     DIM,
+    EDGE,
     ENDS,
     ENTRIES,
+    FOUND,
     FREE,
+    FULL,
     GREED,
     HUB,
     LEAST,
     LEFT,
     LIFTED,
     LIFTING,
+    LINK,
     LINKS,
     LOOK_UP,
     MADE,
     MEASURED,
     NEARBY,
     NEXT,
+    NODE,
     NODES,
+    NONE,
     NUMBER,
     OF,
     ONLY_KNOWN,
@@ -54,33 +61,26 @@ from evenroad.robot_roadmap.search_memory import (
     SIZE,
     STATE,
     STATES,
+    STRAIGHT,
     TO,
     TOLD,
     UNKNOWN,
     VIA,
     WAITING,
-    WEIGHTS,
     Search,
     join,
     kept_in_order,
 )
-from evenroad.robot_roadmap.search_metric import distance, is_at, measure, write, write_distances
+from evenroad.robot_roadmap.search_metric import distance, is_at, measure, write
 from evenroad.robot_roadmap.search_queue import pop, push, state_of
 
 Floats = npt.NDArray[np.float64]
-
-NODE, EDGE, LINK, STRAIGHT, FOUND, NONE, CUT_OFF, FULL = range(8)
-"""What `step` ends with: a milestone, a motion of the roadmap, a link of an end or the motion straight to a goal to be
-asked about; a way, none, no free link of a goal, no room."""
 
 ENDS_TAKEN, SPENT, PAUSED = range(FULL + 1, FULL + 4)
 """What whoever answers ends with besides: start or goals not free, motions or time over, its slice used up."""
 
 ONWARD = 0.5
 """Links are tried in the order of their length and this share of what is left beyond them."""
-
-CLOSE_ONWARD = 0.3
-"""The same of links by displacement, which find a way for most ends that see nothing, but lead round about."""
 
 AIMED = 4
 """A goal of which so many links were blocked before a free one was found is approached by that one."""
@@ -123,21 +123,6 @@ def begin(s: Search) -> None:
 
 
 @quick
-def _choose_close(s: Search, end: int) -> None:
-    """Choose other milestones that an end is tried to be linked to: free ones that are near in displacement."""
-    d, n, count = s.desk, s.desk[NODES], 0
-    write_distances(s, end, s.rules[WEIGHTS], s.costs[:n])
-    write_distances(s, 1 if end == 0 else 0, s.rules[WEIGHTS], s.keys[:n])
-    for i in range(n):
-        s.costs[i] += CLOSE_ONWARD * s.keys[i]
-    for i in range(n):
-        if s.nodes[i] >= FREE and s.links[end, i] != BLOCKED:
-            count = kept_in_order(s.keys, s.near[end], count, d[CLOSE], s.costs[i], i)
-    for rank in range(count, d[LINKS]):
-        s.near[end, rank] = -1
-
-
-@quick
 def clear(s: Search) -> None:
     """Forget what the search has got to."""
     d = s.desk
@@ -164,10 +149,10 @@ def step(s: Search) -> int:
             if s.straight[end] >= FREE:
                 d[PHASE] = OPEN
     if d[PHASE] == LOOK_UP:
-        question = _look_up(s)
-        while question == NONE and _has_others(s):
+        question = look_up(s)
+        while question == NONE and has_others(s):
             price_links(s)
-            question = _look_up(s)
+            question = look_up(s)
         if question != NONE:
             return question
         clear(s)
@@ -186,7 +171,7 @@ def step(s: Search) -> int:
                 if d[SIZE] + d[CLOSE] > d[STATES] or d[MADE] + d[CLOSE] > d[ENTRIES]:
                     return FULL
                 d[CLOSE_START] = 0
-                _choose_close(s, 0)
+                choose_close(s, 0)
                 _open_links(s)
             if d[WAITING] == 0:
                 if d[AIM] < 0:
@@ -221,45 +206,6 @@ def step(s: Search) -> int:
 
 
 @quick
-def _look_up(s: Search) -> int:
-    """Return a question for a link of the shortest way that the table knows; FOUND where both are free, or NONE."""
-    d = s.desk
-    while True:
-        i, j, goal = best_links(s)
-        if i < 0:
-            return NONE
-        # The longer one first: it is rather blocked.
-        goal_first = s.away[goal * d[CAPACITY] + j] > s.away[i]
-        for side in range(2):
-            end, by = (goal, j) if goal_first == (side == 0) else (0, i)
-            if s.links[end, by] == UNKNOWN:
-                d[TO], d[BY] = end, by
-                for k in range(d[DIM]):
-                    s.asked[0, k] = s.ends[end, k]
-                write(s, by, s.turns[end, by], s.asked[1])
-                return LINK
-        return FOUND if write_known_way(s, i, j, goal) else NONE
-
-
-@quick
-def _has_others(s: Search) -> bool:
-    """Choose links by displacement for ends of which no link is free, once; return whether there are any."""
-    d, chosen = s.desk, False
-    for which in (CLOSE_START, CLOSE_GOALS):
-        first, last = (0, 1) if which == CLOSE_START else (1, d[ENDS])
-        free = False
-        for end in range(first, last):
-            for rank in range(d[LINKS]):
-                i = s.near[end, rank]
-                free |= i >= 0 and s.links[end, i] >= FREE
-        if d[which] > 0 and not free:
-            d[which], chosen = 0, True
-            for end in range(first, last):
-                _choose_close(s, end)
-    return chosen
-
-
-@quick
 def _goal_link(s: Search) -> int:
     """Return NONE where a free link of a goal is known; else the question for one, or CUT_OFF."""
     d = s.desk
@@ -288,7 +234,7 @@ def _goal_link(s: Search) -> int:
             return CUT_OFF
         d[CLOSE_GOALS] = 0
         for end in range(1, d[ENDS]):
-            _choose_close(s, end)
+            choose_close(s, end)
 
 
 @quick

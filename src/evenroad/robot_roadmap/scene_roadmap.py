@@ -20,16 +20,16 @@ from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.find_path import NO_POINTS, SECONDS, with_reasons
 from evenroad.roadmap.query import Query
 from evenroad.robot import ArmWorld, Robot, Scene, in_scene
-from evenroad.robot.trees import shorten, tighten
+from evenroad.robot.trees import tighten
 from evenroad.robot_roadmap.ask import Asked, Checks, ask
 from evenroad.robot_roadmap.cell import day_and_all, left_to_check, require_same_robot
 from evenroad.robot_roadmap.explored import explore
 from evenroad.robot_roadmap.known_motions import KnownMotions
-from evenroad.robot_roadmap.lazy_search import CUT_OFF, ENDS_TAKEN, NONE, SPENT
+from evenroad.robot_roadmap.lazy_search import ENDS_TAKEN, SPENT
 from evenroad.robot_roadmap.own_shapes import OwnShapesWorld
 from evenroad.robot_roadmap.places import Goal, Place, read_ends
 from evenroad.robot_roadmap.pockets import links_of
-from evenroad.robot_roadmap.search_memory import NODES
+from evenroad.robot_roadmap.search_memory import CUT_OFF, NODES, NONE
 from evenroad.robot_roadmap.ways_out import learn_ways_out
 from evenroad.space.path import path_length
 from evenroad.world.protocol import Connection
@@ -55,12 +55,12 @@ TRIED_LINKS, TRIED_MOTIONS = 40, 90
 """Where trees may follow, so many links of each end are tried, and so many motions: trees find ways out of narrow
 places with fewer checks than long links do."""
 
-PAIRS, CUTS, BATCHES, LONG_WAY = 16, 32, 100, 10
-"""What a path along the roadmap is shortened with, half of the work on trees' paths for half a percent of length, and
-twice that from so many waypoints on: those ways out led round about."""
+WORK, LEAST_WORK = 180, 30
+"""After so many batches of sixteen checks, those of the search among them, a path is not drawn tighter, but so many it
+has: more take time from the slowest queries, and the paths become shorter by ever less."""
 
-DEAR_LINKS, DEAR_WORK, MOST_LEARNED = 100, 4, 2000
-"""Where checks are dear: so many links of each end are tried, capsules shorten with so many times the work, and ends of
+DEAR_LINKS, DEAR_WORK, MOST_LEARNED = 100, 800, 2000
+"""Where checks are dear: so many links of each end are tried, paths are drawn tight with so many batches, and ends of
 queries are learned until there are so many milestones more."""
 
 SOON = 5000
@@ -70,9 +70,8 @@ ENDS = 400
 """Ends in narrow places that are tried where a scene is explored."""
 
 EXPLORED_LINKS, EXPLORED_MOTIONS = 20, 150
-"""In an explored scene fewer links do, and what is left of the time goes into shortening."""
+"""In an explored scene fewer links do."""
 
-WORK, LEAST = 180, 30
 _LONG = 1e8
 """Seconds that stand for no limit."""
 
@@ -350,7 +349,8 @@ class SceneRoadmap:
         )
         seconds = {"search": found - began}
         if shorter:
-            path, counts["shortcut_motions"] = tighten(world, path, batches=max(LEAST, WORK - asked.batches))
+            work = DEAR_WORK if self._dear else max(LEAST_WORK, WORK - asked.batches)
+            path, counts["shortcut_motions"] = tighten(world, path, batches=work)
             length, seconds["shortcut"] = self._length(path), now() - found
         to = f" to goal {asked.goal}" if len(goals) > 1 else ""
         return PlanResult(

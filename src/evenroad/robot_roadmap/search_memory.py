@@ -64,6 +64,10 @@ CLOSE_START, CLOSE_GOALS = range(35, 37)
 
 DESK = 37
 
+NODE, EDGE, LINK, STRAIGHT, FOUND, NONE, CUT_OFF, FULL = range(8)
+"""What `step` ends with: a milestone, a motion of the roadmap, a link of an end or the motion straight to a goal to be
+asked about; a way, none, no free link of a goal, no room."""
+
 OTHER, NEXT, NUMBER, HALF = range(4)
 """Of a half edge: where it leads, the next one of the same milestone or -1, its edge; how many things that is."""
 
