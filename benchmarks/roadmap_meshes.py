@@ -7,7 +7,8 @@ The UR5's links are meshes, 24 corners around each capsule, inside of it; so are
 every state, of trees and roadmap; `shapes` is what ``in_scene(scene, shapes)`` does, where coal is asked what the
 capsules do not tell; with `--thicker 0.01` these are so many metres thicker than the meshes, which the queries are free
 for.  Trees are OMPL's RRT-Connect through ``evenroad.adapters.ompl``, with the range of ours and the same checker, and
-both paths are drawn tight by our compiled shortener, equally much; with --triangles they are ours, as `plan` grows them.
+both paths are drawn tight by our compiled shortener, equally much; with --triangles they are ours, as `plan` grows
+them.
 Scenes and queries come from the seeds kept for reporting; times are of the processor, the first nine queries of a scene
 are left out.
 """

@@ -83,7 +83,7 @@ def costs(name: str, count: int, n: int, kinds: list[str], seeds: range = REPORT
     made = make_roadmap(pool.robot, table_of(next(problems(pool, REPORTING))), n)
     print(f"roadmap of {n} made in {time.process_time() - began:.1f} s of the processor")
     print(
-        "| kind | planner | median ms | 95 % ms | 95 % / trees | motions | trees alone | length / trees | all lengths / trees' |"
+        "| kind | planner | median ms | 95 % ms | 95 % / trees | motions | trees alone | length / trees | of all |"
     )
     print("|---|" + "---|" * 8)
     for kind in kinds:
