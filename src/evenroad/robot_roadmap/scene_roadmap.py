@@ -55,9 +55,10 @@ TRIED_LINKS, TRIED_MOTIONS = 40, 90
 """Where trees may follow, so many links of each end are tried, and so many motions: trees find ways out of narrow
 places with fewer checks than long links do."""
 
-WORK, LEAST_WORK = 180, 30
-"""After so many batches of sixteen checks, those of the search among them, a path is not drawn tighter, but so many it
-has: more take time from the slowest queries, and the paths become shorter by ever less."""
+WORK, AMONG_SURFACES, LEAST_WORK = 180, 60, 30
+"""After so many batches of sixteen checks, those of the search among them, a path is not drawn tighter; after fewer
+among clouds and triangles, where each takes longer; but so many it has.  With more the slowest queries take longer,
+and paths become shorter by ever less."""
 
 DEAR_LINKS, DEAR_WORK, MOST_LEARNED = 100, 800, 2000
 """Where checks are dear: so many links of each end are tried, paths are drawn tight with so many batches, and ends of
@@ -349,7 +350,8 @@ class SceneRoadmap:
         )
         seconds = {"search": found - began}
         if shorter:
-            work = DEAR_WORK if self._dear else max(LEAST_WORK, WORK - asked.batches)
+            most = WORK if world.lanes.surfaces is None else AMONG_SURFACES
+            work = DEAR_WORK if self._dear else max(LEAST_WORK, most - asked.batches)
             path, counts["shortcut_motions"] = tighten(world, path, batches=work)
             length, seconds["shortcut"] = self._length(path), now() - found
         to = f" to goal {asked.goal}" if len(goals) > 1 else ""
