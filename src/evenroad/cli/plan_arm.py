@@ -41,6 +41,7 @@ from evenroad.robot.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
 from evenroad.robot.straight import Straight
 from evenroad.robot.trees import prepare
 from evenroad.robot.upright import Upright
+from evenroad.robot_roadmap.ask import prepare as prepare_roadmap
 from evenroad.robot_roadmap.cell import day_and_all
 from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
 from evenroad.world import World
@@ -59,7 +60,9 @@ def plan_arm(plan: PlanArm) -> int:
     files = output_files(plan, [path for path in inputs if path is not None], ("json", "csv"), "file")
     require_trajectory_options(plan, [path for path in inputs if path is not None], files.values())
     kept = None if plan.roadmap is None else kept_roadmap(plan)
-    if not wants_points(plan) and kept is None:
+    if kept is not None:
+        prepare_roadmap()
+    elif not wants_points(plan):
         prepare()
     _say_if_compiling(plan)
     robot = kept.robot if kept is not None and plan.robot is None else plan.robot

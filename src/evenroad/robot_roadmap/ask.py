@@ -8,6 +8,7 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._clock import now
+from evenroad._compiled import compile_beside
 from evenroad.robot import ArmWorld
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
 from evenroad.robot.kernel.addresses import address
@@ -22,6 +23,18 @@ from evenroad.robot_roadmap.search_memory import BLOCKED, EDGE, FOUND, FULL, NOD
 
 _SLICE = 1000
 """Batches of sixteen checks between two looks at the clock: about 10 ms."""
+
+
+def prepare() -> None:
+    """Begin to compile what a plan along a roadmap takes, in processes beside this one, unless it is kept already."""
+    # The last needed, and the longest, first: this process begins at the other end.
+    compile_beside(
+        "evenroad.robot.kernel.tighten",
+        "evenroad.robot_roadmap.lane_search",
+        "evenroad.robot_roadmap.known_graph",
+        "evenroad.robot.kernel.lane_check",
+        "evenroad.robot.kernel.motion_checks",
+    )
 
 
 def ask(
