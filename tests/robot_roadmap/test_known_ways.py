@@ -167,6 +167,7 @@ def test_the_way_along_the_table_is_the_shortest_over_all_pairs_of_free_links(on
             continue
         found += 1
         assert answer.ended == FOUND
+        assert once._graph.desk[at.PHASE] == at.LOOK_UP
         # The table and links are in single precision.
         assert length_of(answer.path) == pytest.approx(expected, rel=1e-5)
         np.testing.assert_array_equal(answer.path[[0, -1]], [start, goal])
@@ -275,7 +276,7 @@ def test_start_and_goal_may_be_one_place(once, places):
 
 
 def test_an_end_that_sees_none_of_its_nearest_milestones_finds_another_by_displacement(roadmap, once, places):
-    without, blind, found = explored(roadmap), 0, 0
+    without, blind, found, looked_up = explored(roadmap), 0, 0, 0
     without._graph.desk[at.CLOSE] = 0
     q = once._graph.milestones[: int(once._graph.desk[at.NODES])]
     for links, (start, goal) in itertools.product((1, 2, 3), apart(once, places)):
@@ -292,7 +293,9 @@ def test_an_end_that_sees_none_of_its_nearest_milestones_finds_another_by_displa
                 assert not (q[first] == answer.path[side]).all(axis=1).any()
                 assert_free(once, answer.path)
                 found += 1
+                looked_up += once._graph.desk[at.PHASE] == at.LOOK_UP
     assert blind > found >= 5
+    assert looked_up >= 5
 
 
 def test_exploring_with_the_same_seed_tells_the_same_bits(roadmap, once, places):
