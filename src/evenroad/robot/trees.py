@@ -169,14 +169,7 @@ def shorten(
     InvalidValue
         If `path` is no such array.
     """
-    dim = world.space.dim
-    # An array as planners give it needs no look here; that it is finite compiled code sees.
-    if not (
-        type(path) is np.ndarray and path.dtype == np.float64 and path.ndim == 2 and path.shape[1] == dim
-    ):
-        path = as_batch("path", path, dim)
-    if len(path) < 2:
-        raise InvalidValue(f"a path must have 2 waypoints or more, got {len(path)}")
+    path, dim = _as_path(world, path), world.space.dim
     if world.backend == "scalar":
         return _shortened(world, as_batch("path", path, dim))
     places, count = _place(share_pairs)
@@ -186,7 +179,7 @@ def shorten(
     return short, motions
 
 
-def tighten(world: PlansWithTrees, path: Floats, *, batches: int) -> tuple[Floats, int]:
+def tighten(world: PlansWithTrees, path: npt.ArrayLike, *, batches: int) -> tuple[Floats, int]:
     """Return a path drawn tight, and how many motions were looked at: shorter than `shorten`'s for the same checks.
 
     Its waypoints have slid along what they touch, and every motion is proved free.  Where one is not, or the world's
@@ -196,7 +189,7 @@ def tighten(world: PlansWithTrees, path: Floats, *, batches: int) -> tuple[Float
     ----------
     world : PlansWithTrees
         The robot in its scene.
-    path : float64 array, shape (p, dim), p >= 2
+    path : array_like, shape (p, dim), p >= 2
         Waypoints; every motion is free in the world.
     batches : int
         After so many batches of sixteen checks nothing more is tried; what is left is proved.
@@ -206,6 +199,7 @@ def tighten(world: PlansWithTrees, path: Floats, *, batches: int) -> tuple[Float
     InvalidValue
         If `path` is no such array.
     """
+    path = _as_path(world, path)
     if world.backend == "scalar" or len(path) < 3:
         return shorten(world, path)
     work = *_place(share_pairs), *_place(sphere_points, world.space.dim), batches
@@ -214,6 +208,18 @@ def tighten(world: PlansWithTrees, path: Floats, *, batches: int) -> tuple[Float
         return tight, motions
     short, more = shorten(world, path, batches=batches)
     return short, motions + more
+
+
+def _as_path(world: PlansWithTrees, path: npt.ArrayLike) -> Floats:
+    """Return a path, (p, dim); of an array as planners give it compiled code sees whether it is finite."""
+    dim = world.space.dim
+    if not (
+        type(path) is np.ndarray and path.dtype == np.float64 and path.ndim == 2 and path.shape[1] == dim
+    ):
+        path = as_batch("path", path, dim)
+    if len(path) < 2:
+        raise InvalidValue(f"a path must have 2 waypoints or more, got {len(path)}")
+    return path
 
 
 def _shortened(world: PlansWithTrees, path: Floats) -> tuple[Floats, int]:

@@ -123,7 +123,9 @@ def _learn_bends(
 
 
 def _spacing(q: Floats) -> float:
-    """Return how far the nearest one of some milestones is: the median."""
+    """Return how far the nearest one of some milestones is: the median, inf for a single one."""
+    if len(q) < 2:
+        return math.inf
     away = np.concatenate(
         [
             np.partition(np.linalg.norm(q - some[:, np.newaxis], axis=2), 1, axis=1)[:, 1]

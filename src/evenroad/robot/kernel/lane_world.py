@@ -66,16 +66,22 @@ class LaneWorld:
 
         Bodies beside each other may be nearer for good.
         """
-        if margin not in self._wider:
-            header = self.tables[: at.HEADER].tolist()
-            floats = header[at.BLOCK_FLOATS] + at.BLOCK_FLOAT_ROW * header[at.BLOCKS]
-            table = self.tables[header[at.INTEGERS] :].view(np.float32)[:floats].copy()
-            capsules = table[header[at.CAPSULE_FLOATS] :][: at.CAPSULE_FLOAT_ROW * header[at.CAPSULES]]
-            capsules.reshape(-1, at.CAPSULE_FLOAT_ROW)[:, 6] += np.float32(margin)
-            bodies = table[header[at.BODY_FLOATS] :][: at.BODY_FLOAT_ROW * header[at.BODIES]]
-            bodies.reshape(-1, at.BODY_FLOAT_ROW)[:, 3:7] += np.float32(margin)
-            self._wider[margin] = table
-        return address(self._wider[margin])
+        # Of several threads one makes them: what another was given must last.
+        with _enlarging:
+            if margin not in self._wider:
+                self._wider[margin] = self._enlarged(margin)
+            return address(self._wider[margin])
+
+    def _enlarged(self, margin: float) -> npt.NDArray[np.float32]:
+        """Return what `wider` tells the address of."""
+        header = self.tables[: at.HEADER].tolist()
+        floats = header[at.BLOCK_FLOATS] + at.BLOCK_FLOAT_ROW * header[at.BLOCKS]
+        table = self.tables[header[at.INTEGERS] :].view(np.float32)[:floats].copy()
+        capsules = table[header[at.CAPSULE_FLOATS] :][: at.CAPSULE_FLOAT_ROW * header[at.CAPSULES]]
+        capsules.reshape(-1, at.CAPSULE_FLOAT_ROW)[:, 6] += np.float32(margin)
+        bodies = table[header[at.BODY_FLOATS] :][: at.BODY_FLOAT_ROW * header[at.BODIES]]
+        bodies.reshape(-1, at.BODY_FLOAT_ROW)[:, 3:7] += np.float32(margin)
+        return table
 
     @cached_property
     def _wider(self) -> dict[float, npt.NDArray[np.float32]]:
@@ -112,6 +118,7 @@ class _Memory(threading.local):
 
 
 _memory = _Memory()
+_enlarging = threading.Lock()
 
 
 @cache
