@@ -182,8 +182,8 @@ def shorten(
 def tighten(world: PlansWithTrees, path: npt.ArrayLike, *, batches: int) -> tuple[Floats, int]:
     """Return a path drawn tight, and how many motions were looked at: shorter than `shorten`'s for the same checks.
 
-    Its waypoints have slid along what they touch, and every motion is proved free.  Where one is not, or the world's
-    backend is not the lanes, it is what `shorten` returns.
+    Its waypoints have slid along what they touch.  Every motion is proved free; where one is not the path is shortened
+    by straight motions alone.  Without lanes it is what `shorten` returns.
 
     Parameters
     ----------
@@ -204,10 +204,9 @@ def tighten(world: PlansWithTrees, path: npt.ArrayLike, *, batches: int) -> tupl
         return shorten(world, path)
     work = *_place(share_pairs), *_place(sphere_points, world.space.dim), batches
     tight, motions = _tighten_path()(world.lanes, path, *work)
-    if len(tight):
-        return tight, motions
-    short, more = shorten(world, path, batches=batches)
-    return short, motions + more
+    if not len(tight):
+        as_batch("path", path, world.space.dim)
+    return tight, motions
 
 
 def _as_path(world: PlansWithTrees, path: npt.ArrayLike) -> Floats:

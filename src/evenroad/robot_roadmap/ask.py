@@ -34,6 +34,9 @@ def prepare() -> None:
         "evenroad.robot_roadmap.known_graph",
         "evenroad.robot.kernel.lane_check",
         "evenroad.robot.kernel.motion_checks",
+        # What ways out take.
+        "evenroad.robot.kernel.trees",
+        "evenroad.robot.kernel.shorten",
     )
 
 

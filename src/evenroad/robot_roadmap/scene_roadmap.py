@@ -21,7 +21,7 @@ from evenroad.roadmap.find_path import NO_POINTS, SECONDS, with_reasons
 from evenroad.roadmap.query import Query
 from evenroad.robot import ArmWorld, Robot, Scene, in_scene
 from evenroad.robot.trees import tighten
-from evenroad.robot_roadmap.ask import Asked, Checks, ask
+from evenroad.robot_roadmap.ask import Asked, Checks, ask, prepare
 from evenroad.robot_roadmap.cell import day_and_all, left_to_check, require_same_robot
 from evenroad.robot_roadmap.explored import explore
 from evenroad.robot_roadmap.known_motions import KnownMotions
@@ -152,6 +152,7 @@ class SceneRoadmap:
         """Compile, or load, what a query takes before a clock runs; nothing is checked but the ends."""
         backend, roadmap = self._asked[0].backend, self.roadmap
         if backend not in _ready:
+            prepare()
             first = int(np.argmax(self._asked[0].valid(roadmap.milestones[:_SOME])))
             end = roadmap.milestones[first : first + 1]
             asked = self._ask(end[0], end, 0, math.inf, 1)

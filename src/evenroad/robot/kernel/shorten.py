@@ -275,5 +275,11 @@ def splice(points: Floats, size: int, begin: int, end: int, ends: Floats) -> Non
 @quick
 def move(points: Floats, row: int, to: int) -> None:
     """Copy a waypoint."""
-    for k in range(points.shape[1]):
-        points[to, k] = points[row, k]
+    move_to(points[row], points[to])
+
+
+@quick
+def move_to(q: Floats, into: Floats) -> None:
+    """Copy a configuration."""
+    for k in range(len(q)):
+        into[k] = q[k]

@@ -23,7 +23,7 @@ from evenroad.robot.kernel.motion_checks import (
     motion_proved,
 )
 from evenroad.robot.kernel.motion_states import BATCHES, CONFIGURATIONS, COUNTS, MOTIONS
-from evenroad.robot.kernel.shorten import cut_corners, measure, move, pair_joined, pass_by
+from evenroad.robot.kernel.shorten import cut_corners, measure, move, move_to, pair_joined, pass_by
 
 Floats = npt.NDArray[np.float64]
 
@@ -37,8 +37,8 @@ SLIDES, PAIRS, LEAST_GAIN = 4, 1, 2e-3
 """After so many slides so many shortcuts are tried, again and again until twice in a row the path becomes shorter by
 less than this share."""
 
-MOST_ROUNDS, MOST_CUTS = 64, 16
-"""So often at most; and so many cuts of corners after them."""
+MOST_ROUNDS, MOST_CUTS, SPARE_PAIRS = 64, 16, 20
+"""So often at most; so many cuts of corners after them; and so many shortcuts where nothing of it is proved."""
 
 PLACES, STATES = 5, 3
 """So many places are tried at once for a waypoint, each with a state to both of its sides: fifteen of sixteen lanes."""
@@ -69,7 +69,7 @@ def tighten_path(
     sphere_count: int,
     most_batches: int,
 ) -> tuple[Floats, int]:
-    """Return a path drawn tight, without waypoints where its proof failed, and how many motions were looked at.
+    """Return a path drawn tight, without waypoints where it is not finite, and how many motions were looked at.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def tighten_path(
     size, dim = path.shape
     # A slide adds no waypoint, a shortcut or a cut one, the ends two.
     rows = size + MOST_ROUNDS * PAIRS + MOST_CUTS + 8
-    room, arguments = world.arguments(COUNTS + rows * (dim + 1) + (PLACES + 5) * dim + PLACES)
+    room, arguments = world.arguments(COUNTS + rows * (dim + 1) + (PLACES + 5 + size) * dim + PLACES)
     points = room[-rows * dim :].reshape(rows, dim)
     room[:COUNTS], points[:size] = 0.0, path
     driven_by = pairs, pair_count, sphere, sphere_count, most_batches, world.wider(CLEARANCE)
@@ -116,7 +116,8 @@ def tighten_points(
 ) -> int:
     """Do the work of `tighten_path` on the last `rows` of the memory; return how many are left, and 2^32 a motion.
 
-    0 are left where the path is not finite, or not proved.
+    0 are left where the path is not finite.  Where what was drawn tight is not proved the path is shortened as it was
+    given, each motion proved before it is put in.
     """
     checks = checks_of(check, resolution, tables, by_joint, memory, room)
     own = room + 8 * COUNTS
@@ -124,47 +125,60 @@ def tighten_points(
     tried, goal = matrix_at(last, (PLACES + 1, dim)), doubles_at(last + 8 * (PLACES + 1) * dim, (dim,))
     lengths = last + 8 * (PLACES + 2) * dim
     places = doubles_at(lengths + 8 * PLACES, (rows,))
-    begin = lengths + 8 * (PLACES + rows)
+    given = lengths + 8 * (PLACES + rows)
+    kept, begin = matrix_at(given, (size, dim)), given + 8 * size * dim
     whole, pairs = matrix_at(begin, (rows, dim)), matrix_at(shares, (share_count, 2))
-    directions = matrix_at(sphere, (sphere_count, dim))
+    directions, slides = matrix_at(sphere, (sphere_count, dim)), doubles_at(lengths, (PLACES,))
     for i in range(size):
         for k in range(dim):
             if not np.isfinite(whole[i, k]):
                 return 0
         enter(whole[i], checks.bounds, whole[i])
-    plain = look_at(wider, checks)
+        move_to(whole[i], kept[i])
+    before, plain = size, look_at(wider, checks)
     size, first, after = _left_behind(whole, size, goal, way, checks)
-    if size == 0:
-        return 0
-    points = matrix_at(begin + 8 * dim * first, (rows - first, dim))
-    size = pass_by(points, size - first, False, checks)
-    measure(points, places, size, way, checks)
-    little, pair = 0, 0
-    for turn in range(MOST_ROUNDS):
-        if size < 3 or little == 2 or checks.counts[BATCHES] >= most_batches:
-            break
-        before = places[size - 1]
-        for number in range(SLIDES * turn, SLIDES * (turn + 1)):
-            i = 1 + number % (size - 2)
-            _slide(points, i, directions, number, tried, doubles_at(lengths, (PLACES,)), way, checks)
+    if size > 0:
+        points = matrix_at(begin + 8 * dim * first, (rows - first, dim))
+        size = pass_by(points, size - first, False, checks)
         measure(points, places, size, way, checks)
-        for _ in range(PAIRS):
-            size = pair_joined(points, places, size, pairs[pair], False, ends, way, checks)
-            pair = (pair + 1) % share_count
-        size = pass_by(points, size, False, checks)
-        measure(points, places, size, way, checks)
-        little = little + 1 if places[size - 1] > before * (1.0 - LEAST_GAIN) else 0
-    size = cut_corners(points, places, size, MOST_CUTS, 1 << 60, False, ends, way, checks)
-    size = first + pass_by(points, size, False, checks)
+        little = pair = turn = 0
+        while turn < MOST_ROUNDS and size > 2 and little < 2 and checks.counts[BATCHES] < most_batches:
+            length = places[size - 1]
+            for number in range(SLIDES * turn, SLIDES * (turn + 1)):
+                _slide(points, 1 + number % (size - 2), directions, number, tried, slides, way, checks)
+            measure(points, places, size, way, checks)
+            for _ in range(PAIRS):
+                size = pair_joined(points, places, size, pairs[pair], False, ends, way, checks)
+                pair = (pair + 1) % share_count
+            size = pass_by(points, size, False, checks)
+            measure(points, places, size, way, checks)
+            little = little + 1 if places[size - 1] > length * (1.0 - LEAST_GAIN) else 0
+            turn += 1
+        size = cut_corners(points, places, size, MOST_CUTS, 1 << 60, False, ends, way, checks)
+        size = first + pass_by(points, size, False, checks)
+        if after:
+            move_to(goal, whole[size])
+            size += 1
     look_at(plain, checks)
-    if after:
-        for k in range(dim):
-            whole[size, k] = goal[k]
-        size += 1
-    for i in range(size - 1):
-        if not motion_proved(whole[i], whole[i + 1], TOLERANCE, PROOF_BATCHES, checks):
-            return _BESIDE * checks.counts[MOTIONS]
+    if size == 0 or not _is_proved(whole, size, checks):
+        size, most = before, checks.counts[BATCHES] + most_batches
+        for i in range(size):
+            move_to(kept[i], whole[i])
+        size = pass_by(whole, size, True, checks)
+        measure(whole, places, size, way, checks)
+        for row in range(SPARE_PAIRS):
+            size = pair_joined(whole, places, size, pairs[row], True, ends, way, checks)
+        size = cut_corners(whole, places, size, MOST_CUTS, most, True, ends, way, checks)
     return size + _BESIDE * checks.counts[MOTIONS]
+
+
+@quick
+def _is_proved(points: Floats, size: int, checks: Checks) -> bool:
+    """Return whether every motion of a path is proved free."""
+    i = 0
+    while i < size - 1 and motion_proved(points[i], points[i + 1], TOLERANCE, PROOF_BATCHES, checks):
+        i += 1
+    return i == size - 1
 
 
 @quick
@@ -173,7 +187,7 @@ def _left_behind(
 ) -> tuple[int, int, bool]:
     """Leave ends that nearly touch something as they are, and what leads away from them.
 
-    Return the path's size, 0 where it does not lead away; 1 where its first motion is to stay, else 0; and whether its
+    Return the path's size, 0 where nothing leads away; 1 where its first motion is to stay, else 0; and whether its
     goal was taken off, and is to come again.
     """
     dim = points.shape[1]
@@ -199,8 +213,7 @@ def _left_behind(
                 move(points, row, row + 1)
             size, first, row = size + 1, 1, 1
         else:
-            for k in range(dim):
-                goal[k] = points[size - 1, k]
+            move_to(points[size - 1], goal)
             after, row = True, size - 1
         for k in range(dim):
             points[row, k] = checks.states[k * LANES + _HALF * side + lane]
@@ -264,8 +277,7 @@ def _slide(
             and motion_free(a, there, BOTH_ENDS, checks)
             and motion_free(there, b, BOTH_ENDS, checks)
         ):
-            for k in range(dim):
-                here[k] = there[k]
+            move_to(there, here)
             return
 
 
