@@ -200,7 +200,7 @@ def tighten(world: PlansWithTrees, path: npt.ArrayLike, *, batches: int) -> tupl
         If `path` is no such array.
     """
     path = _as_path(world, path)
-    if world.backend == "scalar" or len(path) < 3:
+    if world.backend == "scalar":
         return shorten(world, path)
     work = *_place(share_pairs), *_place(sphere_points, world.space.dim), batches
     tight, motions = _tighten_path()(world.lanes, path, *work)
