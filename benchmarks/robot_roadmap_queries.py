@@ -35,7 +35,7 @@ from evenroad.robot_roadmap import scene_roadmap
 from evenroad.robot_roadmap.chance import chance_of_freedom
 from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
-from evenroad.robot_roadmap.scene_roadmap import WORK, SceneRoadmap
+from evenroad.robot_roadmap.scene_roadmap import AMONG_SURFACES, WORK, SceneRoadmap
 from evenroad.robot_roadmap.search_memory import NUMBER
 
 COPIES = 3
@@ -54,11 +54,11 @@ TURN = 2.0 * np.pi
 
 
 class TightWorld(ArmWorld):
-    """An arm's world whose paths are drawn tight as those of roadmaps are."""
+    """An arm's world whose paths are drawn tight as those of roadmaps are, whatever the trees have taken."""
 
     def shorten(self, path: np.ndarray) -> tuple[np.ndarray, int]:
         """Return a path that is not longer, and how many motions were looked at."""
-        return tighten(self, path, batches=WORK)
+        return tighten(self, path, batches=WORK if self.lanes.surfaces is None else AMONG_SURFACES)
 
 
 def timed(calls: list[Callable[[], PlanResult]]) -> tuple[float, PlanResult]:

@@ -89,3 +89,9 @@ def test_a_mesh_scaled_flat_is_refused(tmp_path):
     shape = next(shape for shape in read_urdf(path).shapes if shape.link == "fork")
     with pytest.raises(InvalidValue, match=r"scale of mesh fork\.stl must not be 0"):
         replace(shape, scale=(1.0, 0.0, 1.0))
+
+
+def test_capsules_that_are_given_as_shapes_lie_where_they_lie_on_the_robot():
+    robot = ur5()
+    assert sound_shapes(robot, robot.capsules) == capsule_shapes(robot)
+    assert sound_shapes(robot, capsule_shapes(robot)) == capsule_shapes(robot)

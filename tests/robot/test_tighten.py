@@ -5,6 +5,7 @@ import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -188,6 +189,39 @@ def test_a_path_that_cannot_be_proved_is_shortened(detour):
     assert not world.motion_certified(through[:-1], through[1:], 1e-6).all()
     tight, _ = tighten(world, through, batches=BATCHES)
     np.testing.assert_array_equal(tight, shorten(world, through, batches=BATCHES)[0])
+
+
+def test_where_a_given_motion_cannot_be_proved_no_other_is_put_in_unproved(detour):
+    world, _ = detour
+    # To and fro beside the box, then through its wall.
+    seen = world.space.from_cube(np.random.default_rng(3).random((200, 5)))
+    seen = seen[world.motion_certified(np.broadcast_to(START, seen.shape).copy(), seen, 1e-6)]
+    assert len(seen) > 10
+    for place in seen[:10]:
+        given = np.stack([START, place, 0.95 * START + 0.05 * place, GOAL])
+        tight, _ = tighten(world, given, batches=BATCHES)
+        np.testing.assert_array_equal(tight[[0, -1]], given[[0, -1]])
+        assert length(world, tight) < length(world, given)
+        unproved = [motion for motion in pairwise(tight) if not proved(world, np.stack(motion))]
+        assert unproved
+        for a, b in unproved:
+            assert any(on_motion(a, *motion) and on_motion(b, *motion) for motion in pairwise(given))
+
+
+def on_motion(q, a, b):
+    """Whether a configuration lies on a motion."""
+    share = np.clip((q - a) @ (b - a) / ((b - a) @ (b - a)), 0.0, 1.0)
+    return np.linalg.norm(a + share * (b - a) - q) < 1e-9
+
+
+def test_straight_paths_need_no_other_program():
+    code = (
+        "import numpy as np\nfrom evenroad.robot.trees import tighten\n"
+        "from evenroad.robot.kernel import shorten\nfrom tests.robot.test_trees import START, box_world\n"
+        "tighten(box_world(), np.stack([START, START + 0.1]), batches=9)\nprint(len(shorten.shorten_points.overloads))"
+    )
+    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert answer.stdout == "0\n"
 
 
 @pytest.mark.parametrize(

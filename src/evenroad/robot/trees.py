@@ -182,8 +182,8 @@ def shorten(
 def tighten(world: PlansWithTrees, path: npt.ArrayLike, *, batches: int) -> tuple[Floats, int]:
     """Return a path drawn tight, and how many motions were looked at: shorter than `shorten`'s for the same checks.
 
-    Its waypoints have slid along what they touch.  Every motion is proved free; where one is not the path is shortened
-    by straight motions alone.  Without lanes it is what `shorten` returns.
+    Its waypoints have slid along what they touch, and every motion is proved free.  Where one cannot be, the path is
+    shortened as it was given, by straight motions alone, as `shorten` does.  Without lanes it is what that returns.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ def tighten(world: PlansWithTrees, path: npt.ArrayLike, *, batches: int) -> tupl
     path : array_like, shape (p, dim), p >= 2
         Waypoints; every motion is free in the world.
     batches : int
-        After so many batches of sixteen checks nothing more is tried; what is left is proved.
+        After so many batches of sixteen checks no waypoint slides any more; cuts of corners and the proof follow.
 
     Raises
     ------
@@ -200,7 +200,7 @@ def tighten(world: PlansWithTrees, path: npt.ArrayLike, *, batches: int) -> tupl
         If `path` is no such array.
     """
     path = _as_path(world, path)
-    if world.backend == "scalar" or len(path) < 3:
+    if world.backend == "scalar":
         return shorten(world, path)
     work = *_place(share_pairs), *_place(sphere_points, world.space.dim), batches
     tight, motions = _tighten_path()(world.lanes, path, *work)

@@ -36,7 +36,8 @@ from evenroad.robot_roadmap.search_metric import write, write_distances
 from evenroad.robot_roadmap.search_queue import push, state_of
 
 CLOSE_ONWARD = 0.3
-"""The same of links by displacement, which find a way for most ends that see nothing, but lead round about."""
+"""Links by displacement are tried in the order of it and this share of what is left beyond them: they find a way for
+most ends that see nothing, but lead round about."""
 
 
 @quick

@@ -251,7 +251,8 @@ class SceneRoadmap:
         shorten : bool
             Whether the path is made shorter.
         trees : bool
-            Whether trees are tried, after 90 motions along the roadmap; else more of its links and all motions are.
+            Whether trees are tried, after 90 motions along the roadmap or 150 in an explored scene; else more of its
+            links and all motions are.
 
         Returns
         -------

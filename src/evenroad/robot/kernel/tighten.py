@@ -75,7 +75,7 @@ def tighten_path(
     ----------
     world : LaneWorld
         The robot in its scene.
-    path : float64 array, shape (p, dim), p >= 3
+    path : float64 array, shape (p, dim), p >= 2
         Waypoints, every motion free.
     pairs, pair_count
         Address of a float64 array, (pair_count, 2): shares of the path's length, from 0 to 1, between which places a
@@ -135,6 +135,8 @@ def tighten_points(
                 return 0
         enter(whole[i], checks.bounds, whole[i])
         move_to(whole[i], kept[i])
+    if size < 3:
+        return size
     before, plain = size, look_at(wider, checks)
     size, first, after = _left_behind(whole, size, goal, way, checks)
     if size > 0:

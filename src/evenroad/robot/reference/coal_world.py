@@ -16,7 +16,7 @@ from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import require_extra
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.mesh import TriangleMesh
-from evenroad.geometry.shapes import Mesh, PointCloud, Shape, along_z
+from evenroad.geometry.shapes import Capsule, Mesh, PointCloud, Shape, along_z
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot.known_robots import joint_space
 from evenroad.robot.load import find_robot, read_robot
@@ -271,7 +271,9 @@ def sound_shapes(robot: Robot, shapes: Sequence[Shape] | None) -> tuple[Shape, .
     Raises InvalidValue if there is none, one is of a link that is not there, or a link with capsules has none: its
     checks would all pass.
     """
-    chosen = capsule_shapes(robot) if shapes is None else tuple(shapes)
+    given = robot.capsules if shapes is None else shapes
+    # Coal has capsules along z alone: of another one only length and radius would be seen.
+    chosen = tuple(along_z(shape) if isinstance(shape, Capsule) else shape for shape in given)
     links = {shape.link for shape in chosen}
     unknown = sorted(links - set(robot.links))
     bare = sorted({capsule.link for capsule in robot.capsules} - links)
