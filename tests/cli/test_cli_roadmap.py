@@ -163,6 +163,7 @@ def test_a_roadmap_that_is_no_more_what_was_written_gets_one_line(made, capsys):
         (kept("older", version="0.0.1"), "of evenroad 0.0.1"),
         (kept("empty", **nothing, turns=np.empty((0, 6), np.int8)), "must have a milestone or more"),
         (kept("robotless", robot="{}"), "lacks some of what a roadmap of a robot holds"),
+        (kept("nested", robot="[" * 100_000), "lacks some of what a roadmap of a robot holds"),
         (kept("coarse", settings='{"resolution": "a", "gamma": 4}'), "resolution must be"),
     ):
         (made / "other.roadmap").write_bytes(content)
