@@ -128,6 +128,8 @@ def test_bad_input_is_refused_before_anything_is_compiled(made):
         ["roadmap", "ur5", "--cell", "limits.yaml"],
         [*plan, "nowhere"],
         [*plan, free, "--out", "no/where"],
+        [*plan, free, "--goal", "99,-1.5,0,0,0,0"],
+        [*plan, free, "--goal", "1,-1.5"],
         [*plan, free, "--resolution", "0.1"],
         [*plan, free, "-n", "0"],
         ["plan", "today.yaml", *plan[2:], free],
