@@ -2,6 +2,7 @@
 
 import gzip
 import json
+import os
 import sqlite3
 from pathlib import Path
 
@@ -10,7 +11,7 @@ import pytest
 import yaml
 from PIL import Image
 
-from evenroad._files import looks_like, not_a, read_json_file
+from evenroad._files import atomic_write, looks_like, not_a, read_json_file
 from evenroad._yaml import read_mapping
 from evenroad.errors import BrokenFile
 from evenroad.points.npz import read_points
@@ -121,3 +122,13 @@ def test_an_array_of_python_objects_is_never_unpacked(tmp_path):
     np.save(tmp_path / "a.npy", np.array([{}, 1], dtype=object), allow_pickle=True)
     with pytest.raises(BrokenFile, match=r"a\.npy is not a readable \.npy array .*: .* holds Python objects"):
         read_points(tmp_path / "a.npy")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes with names are of POSIX")
+def test_no_file_takes_the_place_of_a_device_or_a_pipe(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    says = "pipe: it is a device or a pipe, not a file"
+    with pytest.raises(BrokenFile, match=says), atomic_write(tmp_path / "pipe") as file:
+        file.write(b"x")
+    assert (tmp_path / "pipe").is_fifo()
+    assert [path.name for path in tmp_path.iterdir()] == ["pipe"]

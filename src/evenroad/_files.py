@@ -144,13 +144,16 @@ def require_writable_folder(path: str | os.PathLike[str]) -> None:
     if not folder.is_dir():
         raise BrokenFile(f"cannot write {target}: the folder {folder} does not exist")
     try:
-        is_folder = stat.S_ISDIR(target.stat().st_mode)
+        mode = target.stat().st_mode
     except FileNotFoundError:
-        is_folder = False
+        mode = stat.S_IFREG
     except OSError as error:
         raise _cannot_write(target, error) from error
-    if is_folder:
+    if stat.S_ISDIR(mode):
         raise BrokenFile(f"cannot write {target}: it is a folder")
+    # A file that is moved onto a device takes its place, for everybody, where one may write there.
+    if not stat.S_ISREG(mode):
+        raise BrokenFile(f"cannot write {target}: it is a device or a pipe, not a file")
     try:
         tempfile.TemporaryFile(dir=folder).close()
     except OSError as error:

@@ -128,6 +128,8 @@ def test_bad_input_is_refused_before_anything_is_compiled(made):
         ["roadmap", "ur5", "--cell", "limits.yaml"],
         [*plan, "nowhere"],
         [*plan, free, "--out", "no/where"],
+        [*plan, free, "--goal", "99,-1.5,0,0,0,0"],
+        [*plan, free, "--goal", "1,-1.5"],
         [*plan, free, "--resolution", "0.1"],
         [*plan, free, "-n", "0"],
         ["plan", "today.yaml", *plan[2:], free],
@@ -163,6 +165,7 @@ def test_a_roadmap_that_is_no_more_what_was_written_gets_one_line(made, capsys):
         (kept("older", version="0.0.1"), "of evenroad 0.0.1"),
         (kept("empty", **nothing, turns=np.empty((0, 6), np.int8)), "must have a milestone or more"),
         (kept("robotless", robot="{}"), "lacks some of what a roadmap of a robot holds"),
+        (kept("nested", robot="[" * 100_000), "lacks some of what a roadmap of a robot holds"),
         (kept("coarse", settings='{"resolution": "a", "gamma": 4}'), "resolution must be"),
     ):
         (made / "other.roadmap").write_bytes(content)

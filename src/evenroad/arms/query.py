@@ -106,11 +106,15 @@ def arm_query(
         robot = with_group(robot, robot.group, {**robot.held, **held})
     scene = scene_seen_by(robot, scene)
     first = _configuration(robot, scene, "start", start, degrees)
-    world = ArmWorld(robot, scene, resolution=resolution)
 
     def read(place: Place) -> Floats:
         return _configuration(robot, scene, "goal", place, degrees)
 
+    # What is no configuration is refused before a world is compiled.
+    for place in goals:
+        if not isinstance(place, Pose | PoseGoal):
+            read(place)
+    world = ArmWorld(robot, scene, resolution=resolution)
     given = goals_of(world, first, goals, read, tip, frame)
     return ArmQuery(world, first, given.configurations, given, source, model)
 

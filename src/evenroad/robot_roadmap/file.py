@@ -85,7 +85,7 @@ def load_robot_roadmap(path: Path, robot: Robot | None = None, cell: Scene | Non
         raise
     except EvenroadError as error:
         raise BrokenFile(f"{path}: {error}") from error
-    except (TypeError, ValueError, LookupError, AttributeError) as error:
+    except (TypeError, ValueError, LookupError, AttributeError, RecursionError) as error:
         raise BrokenFile(f"{path} lacks some of what a roadmap of a robot holds: {error!r}") from error
     if cell is not None:
         require_same_cell(made.cell, cell)
