@@ -158,6 +158,7 @@ class SceneRoadmap:
             asked = self._ask(end[0], end, 0, math.inf, 1)
             self._graph.learn(roadmap.milestones[:0])
             self._graph.around(roadmap.weights, 0.0, 1)
+            tighten(self.world, np.repeat(end, 2, axis=0), batches=0)
             if asked.ended != ENDS_TAKEN:
                 _ready.add(backend)
 
