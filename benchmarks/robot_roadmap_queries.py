@@ -46,9 +46,6 @@ FIRST = 9
 SCENES_AT_RANDOM = 400
 """By which the chance that an edge is free is measured."""
 
-ALL = 3000
-"""After so many batches of checks no path becomes shorter."""
-
 LIMIT = Budget(seconds=1.0)
 TURN = 2.0 * np.pi
 
@@ -97,8 +94,7 @@ def costs(name: str, count: int, n: int, kinds: list[str], seeds: range = REPORT
             alone, tight = (
                 [of(world.robot, world.scene) for _ in range(COPIES)] for of in (ArmWorld, TightWorld)
             )
-            copies = [SceneRoadmap(made, world.scene) for _ in range(COPIES)]
-            known = [SceneRoadmap(made, world.scene) for _ in range(COPIES)]
+            copies, known = ([SceneRoadmap(made, world.scene) for _ in range(COPIES)] for _ in range(2))
             for each in known:
                 began = time.process_time()
                 each.explore()
@@ -223,7 +219,7 @@ def floor(name: str, count: int, kinds: list[str]) -> None:
                 if first.solved and first.cost:
                     long = find_path(world, start, goal, budget=Budget(seconds=0.5), improve=True)
                     assert long.path is not None
-                    tight, _ = tighten(world, long.path, batches=ALL)
+                    tight, _ = tighten(world, long.path, batches=3000)
                     least = world.space.distance(tight[:-1], tight[1:]).sum()
                     best.append((first.cost, long.cost, least, long.counts.get("rounds", 0)))
         table = np.array(best)
