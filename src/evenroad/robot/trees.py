@@ -179,7 +179,9 @@ def shorten(
     return short, motions
 
 
-def tighten(world: PlansWithTrees, path: npt.ArrayLike, *, batches: int) -> tuple[Floats, int]:
+def tighten(
+    world: PlansWithTrees, path: npt.ArrayLike, *, batches: int, proved: bool = True
+) -> tuple[Floats, int]:
     """Return a path drawn tight, and how many motions were looked at: shorter than `shorten`'s for the same checks.
 
     Its waypoints have slid along what they touch, and every motion is proved free.  Where one cannot be, the path is
@@ -193,6 +195,9 @@ def tighten(world: PlansWithTrees, path: npt.ArrayLike, *, batches: int) -> tupl
         Waypoints; every motion is free in the world.
     batches : int
         After so many batches of sixteen checks no waypoint slides any more; cuts of corners and the proof follow.
+    proved : bool
+        Whether the path is, as it was given.  Where it is not, and what was drawn tight cannot be, there are no
+        waypoints: (0, dim).
 
     Raises
     ------
@@ -202,7 +207,7 @@ def tighten(world: PlansWithTrees, path: npt.ArrayLike, *, batches: int) -> tupl
     path = _as_path(world, path)
     if world.backend == "scalar":
         return shorten(world, path)
-    work = *_place(share_pairs), *_place(sphere_points, world.space.dim), batches
+    work = *_place(share_pairs), *_place(sphere_points, world.space.dim), batches, proved
     tight, motions = _tighten_path()(world.lanes, path, *work)
     if not len(tight):
         as_batch("path", path, world.space.dim)

@@ -52,6 +52,7 @@ def ask(
     nearby: float = 0.0,
     only_known: bool = False,
     unturned: bool = False,
+    proved: bool = True,
     most_motions: int,
     deadline: float,
 ) -> Asked:
@@ -60,7 +61,8 @@ def ask(
     Of what the roadmap knows to be free of robot and cell, `day` is asked; of the rest the whole world.  `greed` and
     `nearby` are as `KnownGraph.prepare` has them.  With `only_known` the query is the last one, and nothing is gone
     along but what is known to be free by now.  With `unturned` ends are linked to milestones as these are, not turned
-    to be near.
+    to be near.  Motions of the way are proved; unless `proved` is False and they are to be drawn tight: then, in lanes,
+    those of a way by milestones are free at their states.
     """
     if isinstance(world, ArmWorld) and world.fixed_contact is not None:
         # Of what no joint moves compiled code is told nothing.
@@ -69,7 +71,7 @@ def ask(
     while True:
         graph.prepare(start, goals, links, greed, nearby, room, only_known=only_known, unturned=unturned)
         if _by_one_program(world) and _by_one_program(day):
-            asked = _by_lanes(world, day, graph, most_motions, deadline)
+            asked = _by_lanes(world, day, graph, most_motions, deadline, proved)
         elif isinstance(world, ArmWorld):
             asked = _one_by_one(world, day, graph, most_motions, deadline)
         else:
@@ -83,7 +85,9 @@ def _by_one_program(world: Checks) -> TypeGuard[ArmWorld]:
     return isinstance(world, ArmWorld) and world.backend == "lanes"
 
 
-def _by_lanes(world: ArmWorld, day: ArmWorld, graph: KnownGraph, most_motions: int, deadline: float) -> Asked:
+def _by_lanes(
+    world: ArmWorld, day: ArmWorld, graph: KnownGraph, most_motions: int, deadline: float, proved: bool
+) -> Asked:
     # Imported late: where the vector type cannot even be defined, all else still works.
     from evenroad.robot_roadmap import lane_search as lanes
 
@@ -94,7 +98,7 @@ def _by_lanes(world: ArmWorld, day: ArmWorld, graph: KnownGraph, most_motions: i
     given = address(graph.desk), address(path), len(path), address(report)
     fresh = 1
     while True:
-        ended = lanes.find_way(*given, fresh, most_motions, _SLICE, *own, *arguments)
+        ended = lanes.find_way(*given, fresh, most_motions, _SLICE, proved, *own, *arguments)
         fresh = 0
         if ended != PAUSED:
             break
@@ -102,9 +106,8 @@ def _by_lanes(world: ArmWorld, day: ArmWorld, graph: KnownGraph, most_motions: i
             ended = SPENT
             break
     rows, milestones, motions, goal, batches = report.tolist()
-    return Asked(
-        ended, path[:rows][::-1].copy(), goal if ended == FOUND else -1, milestones, motions, batches
-    )
+    goal = goal if ended == FOUND else -1
+    return Asked(ended, path[:rows][::-1].copy(), goal, milestones, motions, batches, proved)
 
 
 def _one_by_one(world: Checks, day: Checks, graph: KnownGraph, most_motions: int, deadline: float) -> Asked:

@@ -67,7 +67,8 @@ class Checks(World, Protocol):
 @dataclass(frozen=True, eq=False)
 class Asked:
     """What a search ended with: a path, (p, dim), and its goal or -1; milestones and motions that were asked about, and
-    how many batches of sixteen checks that took, where it is known.
+    how many batches of sixteen checks that took, where it is known; and whether every motion is proved, else free at its
+    states.
     """
 
     ended: int
@@ -76,6 +77,7 @@ class Asked:
     milestones: int
     motions: int
     batches: int = 0
+    proved: bool = True
 
 
 class ProvesSoon(Checks, Protocol):

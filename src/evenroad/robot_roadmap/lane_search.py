@@ -70,6 +70,7 @@ def find_way(
     fresh: int,
     most_motions: int,
     slice_batches: int,
+    prove: int,
     day_checks: int,
     day_tables: int,
     day_by_joint: int,
@@ -81,10 +82,11 @@ def find_way(
     memory: int,
     room: int,
 ) -> int:
-    """Search until there is a way that is proved free, and return how the call ended.
+    """Search until there is a way that is free, and return how the call ended.
 
     `desk` is that of `search_at`; `path`, (rows, dim), takes the way from the goal back to the start, `report` what was
-    counted.  `fresh` is 1 for a new query, 0 to go on.  The four that follow are of the day's obstacles alone.
+    counted.  `fresh` is 1 for a new query, 0 to go on.  With `prove` 1 every motion of the way is proved, with 0 only that
+    of a way straight to a goal.  The four that follow are of the day's obstacles alone.
     """
     full = checks_of(checks, resolution, tables, by_joint, memory, room)
     day = checks_of(day_checks, resolution, day_tables, day_by_joint, day_memory, room)
@@ -97,7 +99,8 @@ def find_way(
     while True:
         question = step(s)
         if question == FOUND:
-            if _is_proved(s, day, full):
+            straight = s.entries[s.desk[PENDING], PARENT] < 0
+            if (prove == 0 and not straight) or _is_proved(s, day, full):
                 counted[GOAL] = -s.entries[s.desk[PENDING], STATE] - 1
                 counted[CHECKS] += full.counts[BATCHES]
                 counted[ROWS] = way_back(s, matrix_at(path, (rows, s.desk[DIM])))

@@ -278,7 +278,7 @@ class SceneRoadmap:
         share = SHARE if follow or self._own is not None else 1.0
         limits = min(most, tried[1]) if follow else most, began + share * min(deadline - began, _LONG)
         order = GREED, 0.0 if follow else NEARBY
-        asked = self._ask(first, goals, *limits, links, *order)
+        asked = self._ask(first, goals, *limits, links, *order, proved=not shorten)
         if asked.ended in (NONE, CUT_OFF, SPENT) and follow and len(goals) == 1:
             soon = most if self._own is None else min(most, asked.motions + SOON)
             asked = self._by_ways_out(asked, first, goals, soon, limits[1], links)
@@ -287,8 +287,13 @@ class SceneRoadmap:
             before, left = asked.motions, limits[0] - asked.motions
             asked = self._ask(first, goals, left, limits[1], links, *order, unturned=True)
             asked = replace(asked, motions=asked.motions + before)
-        if asked.goal >= 0:
-            return self._solved(asked, first, goals, shorten, began)
+        while asked.goal >= 0:
+            if (result := self._solved(asked, first, goals, shorten, began)) is not None:
+                return result
+            # What was drawn tight could not be proved: the way itself has to be.
+            before = asked.motions
+            asked = self._ask(first, goals, max(limits[0] - before, 0), limits[1], links, *order)
+            asked = replace(asked, motions=asked.motions + before)
         if self._own is not None:
             budget = budget.rest(deadline, asked.motions)
             return self._own.plan(first, goals, budget=budget, shorten=shorten, trees=trees)
@@ -340,8 +345,10 @@ class SceneRoadmap:
         checked = asked.milestones + grown.configurations, asked.motions + grown.motions
         return replace(grown, configurations=checked[0], motions=checked[1])
 
-    def _solved(self, asked: Asked, start: Floats, goals: Floats, shorter: bool, began: float) -> PlanResult:
-        """Return the result of a query that the roadmap answered."""
+    def _solved(
+        self, asked: Asked, start: Floats, goals: Floats, shorter: bool, began: float
+    ) -> PlanResult | None:
+        """Return the result of a query that the roadmap answered; None where nothing of it is proved."""
         world, path, found = self.world, asked.path, now()
         if self._dear:
             self._learn_ends(path)
@@ -355,7 +362,9 @@ class SceneRoadmap:
         if shorter:
             most = WORK if world.lanes.surfaces is None else AMONG_SURFACES
             work = DEAR_WORK if self._dear else max(LEAST_WORK, most - asked.batches)
-            path, counts["shortcut_motions"] = tighten(world, path, batches=work)
+            path, counts["shortcut_motions"] = tighten(world, path, batches=work, proved=asked.proved)
+            if not len(path):
+                return None
             length, seconds["shortcut"] = self._length(path), now() - found
         to = f" to goal {asked.goal}" if len(goals) > 1 else ""
         return PlanResult(

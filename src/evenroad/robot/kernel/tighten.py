@@ -68,6 +68,7 @@ def tighten_path(
     sphere: int,
     sphere_count: int,
     most_batches: int,
+    proved: bool,
 ) -> tuple[Floats, int]:
     """Return a path drawn tight, without waypoints where it is not finite, and how many motions were looked at.
 
@@ -84,6 +85,8 @@ def tighten_path(
         Address of a float64 array, (sphere_count, dim): directions, of length 1, to be used in turn.
     most_batches : int
         After so many batches of sixteen checks no waypoint slides any more; cuts and proofs follow.
+    proved : bool
+        Whether the path is, as it was given: where not, there may be no waypoints at all.
     """
     size, dim = path.shape
     # A slide adds no waypoint, a shortcut or a cut one, the ends two.
@@ -91,7 +94,7 @@ def tighten_path(
     room, arguments = world.arguments(COUNTS + rows * (dim + 1) + (PLACES + 5 + size) * dim + PLACES)
     points = room[-rows * dim :].reshape(rows, dim)
     room[:COUNTS], points[:size] = 0.0, path
-    driven_by = pairs, pair_count, sphere, sphere_count, most_batches, world.wider(CLEARANCE)
+    driven_by = pairs, pair_count, sphere, sphere_count, most_batches, int(proved), world.wider(CLEARANCE)
     motions, left = divmod(tighten_points(rows, size, dim, *driven_by, *arguments), _BESIDE)
     return points[:left].copy(), motions
 
@@ -106,6 +109,7 @@ def tighten_points(
     sphere: int,
     sphere_count: int,
     most_batches: int,
+    proved: int,
     wider: int,
     check: int,
     resolution: float,
@@ -116,8 +120,8 @@ def tighten_points(
 ) -> int:
     """Do the work of `tighten_path` on the last `rows` of the memory; return how many are left, and 2^32 a motion.
 
-    0 are left where the path is not finite.  Where what was drawn tight is not proved the path is shortened as it was
-    given, each motion proved before it is put in.
+    0 are left where the path is not finite.  Where what was drawn tight is not proved, the path is shortened as it was
+    given, each motion proved before it is put in; if that is not proved either, as `proved` says, 0 are left.
     """
     checks = checks_of(check, resolution, tables, by_joint, memory, room)
     own = room + 8 * COUNTS
@@ -163,6 +167,8 @@ def tighten_points(
             size += 1
     look_at(plain, checks)
     if size == 0 or not _is_proved(whole, size, checks):
+        if proved == 0:
+            return _BESIDE * checks.counts[MOTIONS]
         size, most = before, checks.counts[BATCHES] + most_batches
         for i in range(size):
             move_to(kept[i], whole[i])
