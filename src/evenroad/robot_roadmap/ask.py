@@ -62,7 +62,7 @@ def ask(
     `nearby` are as `KnownGraph.prepare` has them.  With `only_known` the query is the last one, and nothing is gone
     along but what is known to be free by now.  With `unturned` ends are linked to milestones as these are, not turned
     to be near.  Motions of the way are proved; unless `proved` is False and they are to be drawn tight: then, in lanes,
-    those of a way by milestones are free at their states.
+    those of a way by milestones are free at their states where its ends are not about to touch something.
     """
     if isinstance(world, ArmWorld) and world.fixed_contact is not None:
         # Of what no joint moves compiled code is told nothing.
@@ -89,6 +89,7 @@ def _by_lanes(
     world: ArmWorld, day: ArmWorld, graph: KnownGraph, most_motions: int, deadline: float, proved: bool
 ) -> Asked:
     # Imported late: where the vector type cannot even be defined, all else still works.
+    from evenroad.robot.kernel.tighten import CLEARANCE
     from evenroad.robot_roadmap import lane_search as lanes
 
     path, report = graph.path, np.zeros(lanes.REPORT, dtype=np.int64)
@@ -96,9 +97,9 @@ def _by_lanes(
     _, arguments = world.lanes.arguments(COUNTS + (end - begin) // 8)
     own = day_checks, day_tables, day_by_joint, arguments[-1] + 8 * COUNTS
     given = address(graph.desk), address(path), len(path), address(report)
-    fresh = 1
+    fresh, wider = 1, 0 if proved else world.lanes.wider(CLEARANCE)
     while True:
-        ended = lanes.find_way(*given, fresh, most_motions, _SLICE, proved, *own, *arguments)
+        ended = lanes.find_way(*given, fresh, most_motions, _SLICE, wider, *own, *arguments)
         fresh = 0
         if ended != PAUSED:
             break

@@ -67,8 +67,8 @@ class Checks(World, Protocol):
 @dataclass(frozen=True, eq=False)
 class Asked:
     """What a search ended with: a path, (p, dim), and its goal or -1; milestones and motions that were asked about, and
-    how many batches of sixteen checks that took, where it is known; and whether every motion is proved, else free at its
-    states.
+    how many batches of sixteen checks that took, where it is known; and whether every motion is proved, or free at
+    its states alone.
     """
 
     ended: int

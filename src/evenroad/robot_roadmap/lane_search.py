@@ -14,6 +14,7 @@ from evenroad.robot.kernel.motion_checks import (
     Checks,
     blocked,
     checks_of,
+    look_at,
     motion_free,
     motion_proved,
 )
@@ -57,6 +58,9 @@ ROWS, MILESTONES, MOTIONS, GOAL, CHECKS, REPORT = range(6)
 """Of the report: waypoints written, milestones and motions that were asked about, the goal that was reached, batches of
 sixteen checks."""
 
+FIRST, LAST, ALL = 1, 2, 4
+"""Which motions of a way are proved: of its start, of its goal, all."""
+
 TOLERANCE, MOST_BATCHES = 1e-6, 1024
 """Limits of the proof of a motion [m]."""
 
@@ -70,7 +74,7 @@ def find_way(
     fresh: int,
     most_motions: int,
     slice_batches: int,
-    prove: int,
+    wider: int,
     day_checks: int,
     day_tables: int,
     day_by_joint: int,
@@ -85,8 +89,9 @@ def find_way(
     """Search until there is a way that is free, and return how the call ended.
 
     `desk` is that of `search_at`; `path`, (rows, dim), takes the way from the goal back to the start, `report` what was
-    counted.  `fresh` is 1 for a new query, 0 to go on.  With `prove` 1 every motion of the way is proved, with 0 only that
-    of a way straight to a goal.  The four that follow are of the day's obstacles alone.
+    counted.  `fresh` is 1 for a new query, 0 to go on.  Every motion of the way is proved; where `wider`, which is
+    `LaneWorld.wider`, is not 0, only one straight to a goal, and those of ends that nearly touch something.  The four
+    that follow are of the day's obstacles alone.
     """
     full = checks_of(checks, resolution, tables, by_joint, memory, room)
     day = checks_of(day_checks, resolution, day_tables, day_by_joint, day_memory, room)
@@ -99,8 +104,7 @@ def find_way(
     while True:
         question = step(s)
         if question == FOUND:
-            straight = s.entries[s.desk[PENDING], PARENT] < 0
-            if (prove == 0 and not straight) or _is_proved(s, day, full):
+            if _is_proved(s, _to_be_proved(s, wider, full), day, full):
                 counted[GOAL] = -s.entries[s.desk[PENDING], STATE] - 1
                 counted[CHECKS] += full.counts[BATCHES]
                 counted[ROWS] = way_back(s, matrix_at(path, (rows, s.desk[DIM])))
@@ -158,12 +162,31 @@ def _is_old(s: Search, question: int) -> bool:
 
 
 @quick
-def _is_proved(s: Search, day: Checks, full: Checks) -> bool:
-    """Return whether every motion of the way that was found is proved free; one that is not is blocked from now on."""
+def _to_be_proved(s: Search, wider: int, full: Checks) -> int:
+    """Return which motions of the way that was found are to be proved now."""
+    goal = s.desk[PENDING]
+    if wider == 0 or s.entries[goal, PARENT] < 0:
+        return ALL
+    for k in range(s.desk[DIM]):
+        for lane in range(LANES):
+            end = 0 if lane < LANES // 2 else -s.entries[goal, STATE]
+            full.states[k * LANES + lane] = s.ends[end, k]
+    before = look_at(wider, full)
+    touching = blocked(full)
+    look_at(before, full)
+    return (touching & 1) * FIRST + (touching >> (LANES - 1)) * LAST
+
+
+@quick
+def _is_proved(s: Search, which: int, day: Checks, full: Checks) -> bool:
+    """Return whether motions of the way that was found are proved free; one that is not is blocked from now on."""
     entry = s.desk[PENDING]
     while entry >= 0:
         question = question_of(s, entry)
-        if verdict_of(s, question) != PROVED:
+        asked = which == ALL
+        if question == LINK:
+            asked |= which & (LAST if s.entries[entry, STATE] < 0 else FIRST) != 0
+        if asked and verdict_of(s, question) != PROVED:
             write_asked(s, entry, question)
             whole = day if _is_old(s, question) else full
             proved = motion_proved(s.asked[0], s.asked[1], TOLERANCE, MOST_BATCHES, whole)

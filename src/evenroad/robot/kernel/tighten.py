@@ -37,11 +37,17 @@ SLIDES, PAIRS, LEAST_GAIN = 4, 1, 2e-3
 """After so many slides so many shortcuts are tried, again and again until twice in a row the path becomes shorter by
 less than this share."""
 
+PASSED_BY = 3
+"""After every third time it is tried to pass by waypoints."""
+
 MOST_ROUNDS, MOST_CUTS, SPARE_PAIRS = 64, 16, 20
 """So often at most; so many cuts of corners after them; and so many shortcuts where nothing of it is proved."""
 
 PLACES, STATES = 5, 3
 """So many places are tried at once for a waypoint, each with a state to both of its sides: fifteen of sixteen lanes."""
+
+TRIED = 2
+"""So many of the places that are free are looked at closely, the one with the shortest way first."""
 
 BESIDE = 0.4
 """Those states are so far towards the neighbours, as a share of the way."""
@@ -54,6 +60,12 @@ AHEAD = 0.3
 
 SLIDE_WORTH_WHILE = 1e-3
 """The way from neighbour to neighbour becomes shorter by this share or more."""
+
+OF_PROOF = 6
+"""The proof of a motion takes about so many batches, which slides leave to it."""
+
+BEND = 0.01
+"""A waypoint at which the way is no longer than straight by this share does not slide."""
 
 _HALF = LANES // 2
 _BESIDE = 1 << 32
@@ -148,7 +160,9 @@ def tighten_points(
         size = pass_by(points, size - first, False, checks)
         measure(points, places, size, way, checks)
         little = pair = turn = 0
-        while turn < MOST_ROUNDS and size > 2 and little < 2 and checks.counts[BATCHES] < most_batches:
+        while turn < MOST_ROUNDS and size > 2 and little < 2:
+            if checks.counts[BATCHES] + OF_PROOF * (size - 1) >= most_batches:
+                break
             length = places[size - 1]
             for number in range(SLIDES * turn, SLIDES * (turn + 1)):
                 _slide(points, 1 + number % (size - 2), directions, number, tried, slides, way, checks)
@@ -156,18 +170,21 @@ def tighten_points(
             for _ in range(PAIRS):
                 size = pair_joined(points, places, size, pairs[pair], False, ends, way, checks)
                 pair = (pair + 1) % share_count
-            size = pass_by(points, size, False, checks)
-            measure(points, places, size, way, checks)
+            if turn % PASSED_BY == PASSED_BY - 1:
+                size = pass_by(points, size, False, checks)
+                measure(points, places, size, way, checks)
             little = little + 1 if places[size - 1] > length * (1.0 - LEAST_GAIN) else 0
             turn += 1
         size = cut_corners(points, places, size, MOST_CUTS, 1 << 60, False, ends, way, checks)
-        size = first + pass_by(points, size, False, checks)
+        size += first
         if after:
             move_to(goal, whole[size])
             size += 1
     look_at(plain, checks)
     if size == 0 or not _is_proved(whole, size, checks):
-        if proved == 0:
+        if proved == 0 and not (
+            _is_proved(kept[:2], 2, checks) and _is_proved(kept[before - 2 :], 2, checks)
+        ):
             return _BESIDE * checks.counts[MOTIONS]
         size, most = before, checks.counts[BATCHES] + most_batches
         for i in range(size):
@@ -177,6 +194,8 @@ def tighten_points(
         for row in range(SPARE_PAIRS):
             size = pair_joined(whole, places, size, pairs[row], True, ends, way, checks)
         size = cut_corners(whole, places, size, MOST_CUTS, most, True, ends, way, checks)
+        if proved == 0 and not _is_proved(whole, size, checks):
+            return _BESIDE * checks.counts[MOTIONS]
     return size + _BESIDE * checks.counts[MOTIONS]
 
 
@@ -244,6 +263,8 @@ def _slide(
     dim = points.shape[1]
     a, here, b, ahead = points[i - 1], points[i], points[i + 1], tried[PLACES]
     before, after = _write_ahead(a, here, b, ahead, way, checks)
+    if distance_and_way(a, b, checks.bounds, way) > (before + after) * (1.0 - BEND):
+        return
     least, inside = (before + after) * (1.0 - SLIDE_WORTH_WHILE), 0
     for place in range(PLACES):
         there, turn = tried[place], PLACES * number + place
@@ -270,7 +291,7 @@ def _slide(
     checks.counts[CONFIGURATIONS] += LANES
     # Sixteen states, as of a motion.
     checks.counts[MOTIONS] += 1
-    for _ in range(PLACES):
+    for _ in range(TRIED):
         best = -1
         for place in range(PLACES):
             seen = (touching >> (STATES * place)) & ((1 << STATES) - 1)
