@@ -9,14 +9,7 @@ from evenroad.robot.kernel.addresses import doubles_at, matrix_at
 from evenroad.robot.kernel.lane_world import LaneWorld
 from evenroad.robot.kernel.layout import program, quick, quick_inlined
 from evenroad.robot.kernel.motion import canonical, distance_and_way, enter
-from evenroad.robot.kernel.motion_checks import (
-    BOTH_ENDS,
-    COARSE,
-    Checks,
-    checks_of,
-    motion_free,
-    motion_proved,
-)
+from evenroad.robot.kernel.motion_checks import BOTH_ENDS, SHORTCUT, Checks, checks_of, motion_is
 from evenroad.robot.kernel.motion_states import BATCHES as BATCHES_DONE
 from evenroad.robot.kernel.motion_states import COUNTS, MOTIONS
 
@@ -211,9 +204,7 @@ def joined(
 @quick_inlined
 def _is_shortcut(a: Floats, b: Floats, proved: bool, checks: Checks) -> bool:
     """Return whether the motion between two free configurations is free and proved, or free at its states."""
-    if not proved:
-        return motion_free(a, b, BOTH_ENDS, checks)
-    return motion_free(a, b, COARSE, checks) and motion_proved(a, b, TOLERANCE, BATCHES, checks)
+    return motion_is(a, b, SHORTCUT if proved else BOTH_ENDS, TOLERANCE, BATCHES, checks)
 
 
 @quick
