@@ -16,7 +16,7 @@ from evenroad._terminal import print_table, progress_shown
 from evenroad.cli.plan import PlanArm, RobotOptions
 from evenroad.cli.plan_parts import wants_points
 from evenroad.cli.sampler import require_seed
-from evenroad.errors import InvalidValue
+from evenroad.errors import InvalidValue, counted
 from evenroad.robot import Scene, find_robot, find_scene, load_model, load_scene
 from evenroad.robot_roadmap.file import load_robot_roadmap, save_robot_roadmap
 from evenroad.robot_roadmap.make import make_roadmap, require_settings
@@ -83,8 +83,9 @@ class MakeRoadmap(RobotOptions):
         n, m = len(roadmap.milestones), len(roadmap.edges)
         robot = roadmap.robot
         wraps = [name for name, lifts in zip(robot.group, roadmap.one_turn.lifts, strict=True) if lifts]
+        size = f"{counted(n, 'milestone')} and {counted(m, 'motion')}"
         rows = [
-            ("roadmap", f"{n} milestones and {m} motions, free of {robot.name!r} and its cell {cell.name!r}"),
+            ("roadmap", f"{size}, free of {robot.name!r} and its cell {cell.name!r}"),
             ("joints", ", ".join(robot.group)),
             *([("turn on", ", ".join(wraps))] if wraps else []),
             *([("tuned", roadmap.tuned)] if roadmap.tuned else []),
