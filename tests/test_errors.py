@@ -1,4 +1,5 @@
-from evenroad.errors import SHOWN, UnknownName, counted, shown
+from evenroad._checks import counted
+from evenroad.errors import SHOWN, UnknownName, shown
 
 
 def test_a_short_value_is_shown_whole_and_a_long_one_by_its_ends():

@@ -9,11 +9,6 @@ SHOWN = 80
 """Characters of a value that an error's text repeats."""
 
 
-def counted(number: int, thing: str) -> str:
-    """Return so many of a thing in words."""
-    return f"{number} {thing}{'' if number == 1 else 's'}"
-
-
 def shown(value: object) -> str:
     """Return ``repr(value)`` for an error's text, its middle left out where it has more than 80 characters."""
     text = repr(value)

@@ -10,9 +10,9 @@ from typing import Annotated, Any
 
 import tyro
 
-from evenroad._checks import as_row, require_count, require_positive
+from evenroad._checks import as_row, counted, require_count, require_positive
 from evenroad._terminal import print_table
-from evenroad.errors import InvalidValue, counted, shown
+from evenroad.errors import InvalidValue, shown
 from evenroad.points.npz import read_points
 from evenroad.roadmap import Certificate, KNearest, Radius, Rule, certify, default_rule
 from evenroad.space import Box

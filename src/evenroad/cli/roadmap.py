@@ -10,13 +10,14 @@ from typing import Annotated
 
 import tyro
 
+from evenroad._checks import counted
 from evenroad._compiled import say_if_compiling
 from evenroad._files import require_writable_folder
 from evenroad._terminal import print_table, progress_shown
 from evenroad.cli.plan import PlanArm, RobotOptions
 from evenroad.cli.plan_parts import wants_points
 from evenroad.cli.sampler import require_seed
-from evenroad.errors import InvalidValue, counted
+from evenroad.errors import InvalidValue
 from evenroad.robot import Scene, find_robot, find_scene, load_model, load_scene
 from evenroad.robot_roadmap.file import load_robot_roadmap, save_robot_roadmap
 from evenroad.robot_roadmap.make import make_roadmap, require_settings

@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad._checks import require_count
+from evenroad._checks import counted, require_count
 from evenroad._clock import now
 from evenroad._rng import RngLike, generator
-from evenroad.errors import counted
 from evenroad.geometry.shapes import Shape
 from evenroad.roadmap import Budget, PlanResult, Status
 from evenroad.roadmap.answer import connected, gave_up, refusal
