@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -58,7 +58,7 @@ class TightWorld(ArmWorld):
         return tighten(self, path, batches=WORK if self.lanes.surfaces is None else AMONG_SURFACES)
 
 
-def timed(calls: list[Callable[[], PlanResult]]) -> tuple[float, PlanResult]:
+def timed(calls: Sequence[Callable[[], PlanResult]]) -> tuple[float, PlanResult]:
     """Return the least time of some calls that all do the same, and the first result."""
     seconds, results = [], []
     for call in calls:
@@ -118,6 +118,7 @@ def costs(name: str, count: int, n: int, kinds: list[str], seeds: range = REPORT
                 for title, (seconds, result) in answers.items():
                     motions = sum(result.counts.get(c, 0) for c in ("edges_checked", "shortcut_motions"))
                     helped = result.planner.endswith("then trees")
+                    assert result.cost is not None
                     rows.setdefault(title, []).append((seconds, motions, helped, result.cost))
         trees = np.array(rows["trees"])
         for title, values in rows.items():
@@ -299,7 +300,7 @@ def solved(made: RobotRoadmap, some: list[Problem]) -> np.ndarray:
     for problem in some:
         known = SceneRoadmap(made, problem.scene)
         result = known.plan(problem.start, problem.goal, shorten=False, trees=False)
-        verdicts.append(result.solved and bool(known.world.recheck(result.path).all()))
+        verdicts.append(result.path is not None and bool(known.world.recheck(result.path).all()))
     return np.array(verdicts, dtype=float)
 
 

@@ -1,3 +1,4 @@
+from evenroad._checks import counted
 from evenroad.errors import SHOWN, UnknownName, shown
 
 
@@ -15,3 +16,7 @@ def test_an_unknown_name_is_shown_in_short():
     error = UnknownName.among("sampler", "x" * 5000, ("uniform", "even"))
     assert str(error).endswith("; known: even, uniform")
     assert len(str(error)) < 200
+
+
+def test_one_thing_is_no_several():
+    assert [counted(n, "milestone") for n in (0, 1, 2)] == ["0 milestones", "1 milestone", "2 milestones"]

@@ -227,3 +227,21 @@ def test_progress_is_one_line_that_goes_when_code_is_compiled(program):
     assert done.stderr.startswith(b"\rcompiling; ")
     assert done.stderr.endswith(b" s\r\x1b[K")
     assert b"\n" not in done.stderr
+
+
+def test_what_only_compiled_code_calls_is_compiled_into_its_callers_and_no_further():
+    options = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    part, raw = (_njit.njit(lambda x: 2 * x, **options, **more) for more in ({}, {"_nrt": False}))
+
+    @_njit.njit
+    def caller(x):
+        return part(x) + raw(x)
+
+    assert caller(3) == 12
+    for inner in (part, raw):
+        ((_, result),) = inner.overloads.items()
+        name = result.fndesc.llvm_func_name
+        assert result.library.get_function(name) is not None
+        assert not _njit.JITCodeLibrary.codegen.fget(result.library)._engine.is_symbol_defined(name)
+    ((_, result),) = caller.overloads.items()
+    assert result.library.codegen._engine.is_symbol_defined(result.fndesc.llvm_func_name)

@@ -22,6 +22,11 @@ FARTHEST = 1e9
 """Lengths and places of bodies [m]: their squares and cubes then are numbers, in single precision, too."""
 
 
+def counted(number: int, thing: str) -> str:
+    """Return so many of a thing in words."""
+    return f"{number} {thing}{'' if number == 1 else 's'}"
+
+
 def require_count(name: str, value: object, at_least: int = 1) -> int:
     """Return `value` as an int >= `at_least`, or raise InvalidValue naming it (`n`, `d`, `k`, ...)."""
     if isinstance(value, bool) or not isinstance(value, _WHOLE) or value < at_least:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import atexit
+import gc
 import os
 import sys
 from importlib import import_module
@@ -172,6 +173,8 @@ def say_if_compiling(module: str, function: str, seconds: int) -> bool:
         return False
     if is_kept(compiled):
         return False
+    # Compiling makes very many objects and little garbage.
+    gc.set_threshold(100_000, 50, 50)
     from evenroad._njit import show_progress
 
     line = f"evenroad: compiling for this machine, once: about {seconds} s"

@@ -27,6 +27,8 @@ from llvmlite import binding
 from numba.core import event
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile
 from numba.core.ccallback import CFunc
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
 
 _ROOT = os.path.dirname(os.path.abspath(__file__))
 _IMPORT = re.compile(
@@ -72,9 +74,59 @@ def _claim(name: str) -> bool:
     return True
 
 
+class _Part(JITCodeLibrary):
+    """Code that is only ever put into other code, which numba makes ready to run by itself all the same: here not."""
+
+    def get_pointer_to_function(self, name: str) -> int:
+        self._ensure_finalized()
+        return 0
+
+    def _finalize_final_module(self) -> None:
+        self._finalize_dynamic_globals()
+        self._finalized = True
+
+    @property
+    def codegen(self) -> Any:
+        """What would be told where the Python objects of running code are: this does not run."""
+        return _Nobody
+
+
+class _RawPart(_Part):
+    """Not even optimized by itself: that is done where it is put."""
+
+    def _optimize_final_module(self) -> None:
+        return
+
+
+class _Nobody:
+    @staticmethod
+    def set_env(name: str, env: object) -> None:
+        """Do nothing."""
+
+
+class _PartCompiler(Compiler):
+    """Numba's compiler, for parts of the checks, which are to be as quick as they can be."""
+
+    library: ClassVar[type[_Part]] = _Part
+
+    def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
+        super().__init__(typing, target, library or self.library(target.codegen(), "part"), *rest)
+
+
+class _RawPartCompiler(_PartCompiler):
+    """For parts of planners, which spend their time in checks that they call: what is compiled sooner is better."""
+
+    library = _RawPart
+
+
 def njit(*function: Callable[..., Any], **options: Any) -> Any:
-    """Return what ``numba.njit`` does, kept as this module says where `cache` is asked for."""
+    """Return what ``numba.njit`` does, kept as this module says where `cache` is asked for.
+
+    What Python cannot call is compiled as a part of what calls it, in half of the time.
+    """
     if not options.pop("cache", False):
+        if options.get("no_cpython_wrapper"):
+            options["pipeline_class"] = _PartCompiler if options.get("_nrt", True) else _RawPartCompiler
         return numba.njit(*function, **options)
     compiler = numba.njit(**options)
 

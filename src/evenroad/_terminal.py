@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import shutil
 import sys
-import time
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 
@@ -58,16 +57,23 @@ def leave_output() -> None:
 
 
 class LineProgress:
-    """A ``callback(step, steps[, best])`` that hands a line to `report` now and then, at the pace since it was made."""
+    """A ``callback(step, steps[, best])`` that hands a line to `report` now and then, at the pace since it was made.
+
+    What compiling took is not counted.
+    """
 
     def __init__(self, title: str, report: Callable[[str], object], every: float = 10.0) -> None:
         self.title, self.report, self.every = title, report, every
-        self.began = self.last = time.monotonic()
+        # Imported late: it loads numba.
+        from evenroad._clock import now
+
+        self.now = now
+        self.began = self.last = now()
         self.first_step: int | None = None
 
     def __call__(self, step: int, steps: int, best: float | None = None) -> None:
         """Take note of `step` of `steps`, counted over all sets."""
-        now = time.monotonic()
+        now = self.now()
         if self.first_step is None:
             # Work that was resumed has steps behind it which say nothing about today's pace.
             self.first_step = step

@@ -75,6 +75,20 @@ def test_what_is_wrong_with_a_goal_pose_is_said_in_one_line(run, tmp_path, optio
     assert not list(tmp_path.glob("box-reach*"))
 
 
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--tip", "hand"), "unknown link of 'ur5': 'hand'"),
+        (("--tip", "base_link"), "moves the link 'base_link'"),
+        (("--frame", "hand"), "unknown link of 'ur5': 'hand'"),
+        (("--frame", "wrist_1_link"), "must stand still"),
+    ],
+)
+def test_a_link_that_cannot_be_is_refused_before_a_world_is_made(run, monkeypatch, options, said):
+    monkeypatch.setattr("evenroad.arms.query.ArmWorld", lambda *_, **__: pytest.fail("a world was made"))
+    assert said in run(*plan(*POSE, *options))[2]
+
+
 def test_what_the_scene_attaches_is_held_and_said(run, tmp_path):
     (tmp_path / "pick.yaml").write_text(
         "obstacles:\n  table: {shape: box, size: [1, 1, 0.1], xyz: [0.3, 0, -0.05]}\n"

@@ -198,3 +198,8 @@ def test_what_contradicts_the_roadmap_gets_one_line(made, capsys):
         error = error_of(capsys)
         assert error.count("\n") == 1
         assert said in error
+
+
+def test_one_milestone_is_said_to_be_one(folder, capsys):
+    assert main(["roadmap", "ur5", "-n", "1", "--gamma", "0", "-o", "one.roadmap"]) == 0
+    assert "1 milestone and 0 motions, free" in " ".join(capsys.readouterr().out.split())

@@ -3,7 +3,21 @@ import pytest
 
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.geometry import Box, Capsule, PointCloud, Pose
-from evenroad.robot import ArmWorld, Obstacle, Scene, link_poses, load_robot
+from evenroad.robot import (
+    ArmWorld,
+    Obstacle,
+    Scene,
+    at_states,
+    configuration,
+    in_scene,
+    link_poses,
+    load_robot,
+    named_states,
+    with_group,
+    with_limits,
+)
+from evenroad.robot_roadmap.file import load_robot_roadmap
+from evenroad.robot_roadmap.make import make_roadmap
 from tests.robot.urdf_texts import joint, link, urdf, write
 
 UR5 = load_robot("ur5")
@@ -103,3 +117,22 @@ def test_a_rigid_tool_is_loaded_like_a_robot(tmp_path):
 def test_a_rigid_tool_is_capsules_as_they_are():
     rod = Capsule((0, 0, 0), (0, 0, 0.2), 0.01)
     assert UR5.with_tool([rod], at="tool0").capsules[-1] == Capsule(rod.a, rod.b, 0.01, link="tool")
+
+
+@pytest.mark.parametrize(
+    "called",
+    [
+        lambda robot: ArmWorld(robot, Scene("nothing")),
+        lambda robot: make_roadmap(robot, None, 8),
+        lambda robot: load_robot_roadmap("some.roadmap", robot),
+        lambda robot: in_scene(robot, Scene("nothing")),
+        lambda robot: with_limits(robot, {}),
+        lambda robot: with_group(robot, ()),
+        lambda robot: named_states(robot),
+        lambda robot: at_states(robot, ["home"]),
+        lambda robot: configuration(robot, "home"),
+    ],
+)
+def test_a_name_in_place_of_a_robot_is_refused(called):
+    with pytest.raises(InvalidValue, match=r"robot must be a Robot, as load_robot.* gives it, got 'ur5'"):
+        called("ur5")

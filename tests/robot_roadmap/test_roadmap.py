@@ -300,6 +300,7 @@ def test_a_damaged_file_and_one_of_another_version_are_broken(roadmap, tmp_path,
         ("weights", lambda a: -a, "weights must be"),
         ("milestones", lambda a: a[:, :2], "milestones must be float64 of shape"),
         ("milestones", lambda a: a[:0], "a milestone or more"),
+        ("resolution", lambda a: 1e-300, r"arm\.roadmap: resolution must be larger"),
     ],
 )
 def test_content_that_no_roadmap_has_is_broken(roadmap, tmp_path, field, value, said):

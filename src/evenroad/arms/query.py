@@ -27,7 +27,7 @@ from evenroad.robot import (
     load_scene,
     scene_seen_by,
 )
-from evenroad.robot.goals import Goals, goals_of
+from evenroad.robot.goals import Goals, goals_of, require_tips
 from evenroad.robot.load import RobotOptions
 from evenroad.robot.pose_goal import PoseGoal
 from evenroad.robot.reference.recheck import MeshCheck, has_meshes, recheck, unseen_pairs
@@ -114,6 +114,7 @@ def arm_query(
     for place in goals:
         if not isinstance(place, Pose | PoseGoal):
             read(place)
+    require_tips(robot, goals, tip, frame)
     world = ArmWorld(robot, scene, resolution=resolution)
     given = goals_of(world, first, goals, read, tip, frame)
     return ArmQuery(world, first, given.configurations, given, source, model)

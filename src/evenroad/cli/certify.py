@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import tyro
 
-from evenroad._checks import as_row, require_count, require_positive
+from evenroad._checks import as_row, counted, require_count, require_positive
 from evenroad._terminal import print_table
 from evenroad.errors import InvalidValue, shown
 from evenroad.points.npz import read_points
@@ -84,7 +84,9 @@ class Certify:
         n = len(roadmap.milestones)
         record = {"file": str(file), "n": n, "d": len(roadmap.weights), "robot": roadmap.robot.name}
         record |= {"joints_per_metre": per_metre, "allowance": allowance}
-        title = f"{file}: {n} milestones of {roadmap.robot.name!r} in its cell {roadmap.cell.name!r}"
+        title = (
+            f"{file}: {counted(n, 'milestone')} of {roadmap.robot.name!r} in its cell {roadmap.cell.name!r}"
+        )
         return self._show(title, record, certificate, per_metre, allowance, " m")
 
     def _rule(self, d: int) -> Rule:

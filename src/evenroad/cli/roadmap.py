@@ -10,6 +10,7 @@ from typing import Annotated
 
 import tyro
 
+from evenroad._checks import counted
 from evenroad._compiled import say_if_compiling
 from evenroad._files import require_writable_folder
 from evenroad._terminal import print_table, progress_shown
@@ -83,8 +84,9 @@ class MakeRoadmap(RobotOptions):
         n, m = len(roadmap.milestones), len(roadmap.edges)
         robot = roadmap.robot
         wraps = [name for name, lifts in zip(robot.group, roadmap.one_turn.lifts, strict=True) if lifts]
+        size = f"{counted(n, 'milestone')} and {counted(m, 'motion')}"
         rows = [
-            ("roadmap", f"{n} milestones and {m} motions, free of {robot.name!r} and its cell {cell.name!r}"),
+            ("roadmap", f"{size}, free of {robot.name!r} and its cell {cell.name!r}"),
             ("joints", ", ".join(robot.group)),
             *([("turn on", ", ".join(wraps))] if wraps else []),
             *([("tuned", roadmap.tuned)] if roadmap.tuned else []),

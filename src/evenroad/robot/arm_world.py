@@ -23,7 +23,7 @@ from evenroad.robot.kernel.selftest import lanes_failure
 from evenroad.robot.kernel.surface_scalar import fixed_contact, scalar_check_address
 from evenroad.robot.known_robots import prepared
 from evenroad.robot.locked import locked_by
-from evenroad.robot.robot import Robot
+from evenroad.robot.robot import Robot, require_robot
 from evenroad.robot.scene import Scene
 from evenroad.robot.tree_sequences import shifted_cube_points
 from evenroad.robot.trees import MOST_MOTIONS, SECONDS, connect, shorten
@@ -92,6 +92,7 @@ class ArmWorld:
     lanes: LaneWorld = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
+        require_robot(self.robot)
         object.__setattr__(self, "resolution", require_positive("resolution", self.resolution))
         for held in self.scene.attached:
             if held.name not in self.robot.holds:

@@ -11,9 +11,10 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._clock import now
 from evenroad.geometry.pose import Pose
-from evenroad.robot.chain import default_tip
+from evenroad.robot.chain import chain_of, default_tip, frame_pose
 from evenroad.robot.inverse_kinematics import Checks, Reached, misses, reach, task_of
 from evenroad.robot.pose_goal import PoseGoal, as_pose_goal
+from evenroad.robot.robot import Robot
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +45,15 @@ class Goals:
     def records(self, world: Checks, end: Floats | None) -> list[dict[str, Any]]:
         """Return the poses as plain values; `end`, (dim,), is where a path ends: by how much it misses them."""
         return [_record(world, goal, reached, end) for goal, reached in self.poses]
+
+
+def require_tips(robot: Robot, places: Sequence[Any], tip: str = "", frame: str = "") -> None:
+    """Raise what `goals_of` would where a pose is of a link, or in a frame, that cannot be: a world is dear to make."""
+    for place in places:
+        if isinstance(place, Pose | PoseGoal):
+            goal = as_pose_goal(place, tip, frame)
+            chain_of(robot, goal.tip or default_tip(robot))
+            frame_pose(robot, goal.frame)
 
 
 def goals_of(

@@ -10,7 +10,7 @@ import numpy as np
 from evenroad._arrays import set_fields
 from evenroad._checks import require_known
 from evenroad._fingerprint import fingerprint_of
-from evenroad.errors import InvalidValue
+from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.fit import fit_capsules
 from evenroad.geometry.hulls import Hull, Piece, piece_of
 from evenroad.geometry.pose import IDENTITY, Pose
@@ -247,12 +247,19 @@ class RobotModel:
         return tuple(link for link in self.robot.links if link not in bodied)
 
 
+def require_robot(robot: object) -> None:
+    """Raise InvalidValue unless this is a Robot: names and files are read by ``load_robot``."""
+    if not isinstance(robot, Robot):
+        raise InvalidValue(f"robot must be a Robot, as load_robot(name or file) gives it, got {shown(robot)}")
+
+
 def with_group(robot: Robot, group: Sequence[str], held: Mapping[str, float] | None = None) -> Robot:
     """Return the robot with another group; the other movable joints are held at `held`, else at 0 or nearest to it.
 
     Raises UnknownName if a joint is not one that moves freely; InvalidValue if one is held that is in the group, or
     outside of its limits.
     """
+    require_robot(robot)
     free = {joint.name: joint for joint in robot.joints if joint.kind != "fixed" and joint.mimic is None}
     held = dict(held or {})
     for name in (*group, *held):
@@ -273,6 +280,7 @@ def in_scene(robot: Robot, scene: Scene) -> Robot:
     Raises UnknownName if the scene names a joint or a link that the robot does not have; InvalidValue if no value is
     within both ranges, or the robot holds something else of the same name.
     """
+    require_robot(robot)
     for held in scene.attached:
         if held.name in robot.holds:
             if not same_bodies(robot, held):
@@ -299,6 +307,7 @@ def with_limits(robot: Robot, limits: Mapping[str, tuple[float, float]]) -> Robo
     A continuous joint that gets limits becomes a revolute one; limits of a mimic narrow those of its leader.  Raises
     UnknownName if a joint is not there; InvalidValue if lower is not below upper.
     """
+    require_robot(robot)
     names = [joint.name for joint in robot.joints]
     for name, (lower, upper) in limits.items():
         require_known("joint", name, names)

@@ -13,7 +13,7 @@ from evenroad._checks import require_known
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.robot.joint import Joint, require_within
 from evenroad.robot.kinematics import held_values
-from evenroad.robot.robot import Robot, with_group
+from evenroad.robot.robot import Robot, require_robot, with_group
 from evenroad.robot.scene import Scene
 
 _PAIR = re.compile(r"[\s,]*([^=,]*?)\s*=\s*([^\s,=]*)")
@@ -24,6 +24,7 @@ _SLACK = 1e-6
 
 def named_states(robot: Robot, scene: Scene | None = None) -> dict[str, dict[str, float]]:
     """Return the named states of robot and scene, joint -> value; the scene's where both have one of a name."""
+    require_robot(robot)
     states = {name: dict(values) for name, values in robot.states.items()}
     return states | {name: dict(values) for name, values in (scene.states if scene else {}).items()}
 
@@ -104,6 +105,7 @@ def configuration(robot: Robot, text: str, scene: Scene | None = None, *, degree
     group elsewhere than where the robot holds it, which would be another posture: see :func:`at_states`.  UnknownName
     if there is no such state, or no such joint in the group.
     """
+    require_robot(robot)
     if not text.replace(",", " ").split():
         raise InvalidValue(f"a configuration of {robot.name!r} must not be empty")
     states = named_states(robot, scene)

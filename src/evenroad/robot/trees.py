@@ -146,7 +146,6 @@ def shorten(
     *,
     pairs: int = 1 << 30,
     cuts: int = 64,
-    batches: int = 1 << 30,
 ) -> tuple[Floats, int]:
     """Return a path that is not longer, and how many motions were looked at.
 
@@ -161,8 +160,6 @@ def shorten(
         Waypoints; every motion is free in the world.
     pairs, cuts : int
         So many motions between places along the path are tried at most, by the lanes so many cuts of corners, too.
-    batches : int
-        After so many batches of sixteen checks the lanes try no more.
 
     Raises
     ------
@@ -173,7 +170,7 @@ def shorten(
     if world.backend == "scalar":
         return _shortened(world, as_batch("path", path, dim))
     places, count = _place(share_pairs)
-    short, motions = _shorten_path()(world.lanes, path, places, min(pairs, count), cuts, batches)
+    short, motions = _shorten_path()(world.lanes, path, places, min(pairs, count), cuts)
     if not len(short):
         as_batch("path", path, dim)
     return short, motions

@@ -17,9 +17,12 @@ from evenroad.errors import BrokenFile, EvenroadError, InvalidValue
 from evenroad.geometry import Mesh, PointCloud, Pose, TriangleMesh
 from evenroad.robot import Obstacle, Robot, Scene
 from evenroad.robot.cache import robot_of
+from evenroad.robot.known_robots import prepared
+from evenroad.robot.robot import require_robot
 from evenroad.robot_roadmap.cell import require_same_cell, require_same_robot
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
 from evenroad.robot_roadmap.turns import TURN
+from evenroad.world.bisection import require_few_segments
 
 FORMAT = 2
 _SETTINGS = ("resolution", "gamma", "ends", "tuned")
@@ -65,6 +68,8 @@ def load_robot_roadmap(path: Path, robot: Robot | None = None, cell: Scene | Non
     InvalidValue
         If it was made for another robot, tool, group or cell; the text says what differs.
     """
+    if robot is not None:
+        require_robot(robot)
     arrays = read_npz(path, "roadmap of a robot", _NAMES)
     expected = str(arrays.pop("digest"))
     if digest(arrays) != expected:
@@ -105,6 +110,7 @@ def _check(path: Path, made: RobotRoadmap) -> None:
     if not n:
         raise BrokenFile(f"{path}: it must have a milestone or more")
     require_positive("resolution", made.resolution)
+    require_few_segments(made.resolution, prepared(made.robot).longest / made.resolution)
     require_array(path, "milestones", made.milestones, np.float64, (n, dim))
     require_array(path, "edges", made.edges, np.int32, (m, 2))
     require_array(path, "turns", made.turns, np.int8, (m, dim))

@@ -13,6 +13,7 @@ from evenroad._rng import RngLike, generator
 from evenroad.errors import InvalidValue
 from evenroad.roadmap.neighbours import nearest
 from evenroad.robot import ArmWorld, Robot, Scene, in_scene, scene_seen_by
+from evenroad.robot.robot import require_robot
 from evenroad.robot_roadmap.recipe import GAMMA, Recipe, chosen, ends_for, known_of
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
 from evenroad.robot_roadmap.tuning import EASY, GAMMAS, tune_recipe
@@ -75,6 +76,7 @@ def make_roadmap(
     InvalidValue
         If an argument is no such number, or the robot is never free in its cell; the text says what blocks.
     """
+    require_robot(robot)
     require_settings(n, k, gamma, resolution)
     n, k, gamma = int(n), int(k), float(gamma)
     ends = ends_for(robot) if ends is None else require_count("ends", ends, at_least=0)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad._checks import require_count
+from evenroad._checks import counted, require_count
 from evenroad._clock import now
 from evenroad._rng import RngLike, generator
 from evenroad.geometry.shapes import Shape
@@ -316,7 +316,7 @@ class SceneRoadmap:
             return replace(result, proof=self._proof(result.path))
         failed = gave_up(attempt, connection)
         if not follow and asked.ended != SPENT:
-            text = f"the roadmap of {self._size} milestones does not lead from start to goal today"
+            text = f"the roadmap of {counted(self._size, 'milestone')} does not lead from start to goal today"
             failed = replace(failed, status=Status.NOT_CONNECTED, message=text)
         return with_reasons(self._asked[0], failed)
 

@@ -67,11 +67,9 @@ NODE_FLOAT_ROW = 8
 """Centre (3) and half extents (3) of a box around all below, in the body's frame; radius of a ball about the same
 centre around all below; by how much a leaf's hull is widened."""
 
-OBSTACLE_INT_ROW = 1
-"""Kind, one of the following."""
-
 ALIGNED, ROTATED, CYLINDER = range(3)
-"""Kinds: a box along the axes with its edges rounded (also a sphere), the same turned, a cylinder."""
+"""Kinds of obstacles, an integer each: a box along the axes with its edges rounded (also a sphere), the same turned, a
+cylinder."""
 
 FRAME_FLOAT_ROW = 16
 """Rotation (9) and translation (3) in the parent frame, multiplier, offset, and what single precision cuts off

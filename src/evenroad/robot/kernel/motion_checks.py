@@ -30,10 +30,10 @@ from evenroad.robot.kernel.motion_states import COUNTS, MOTIONS, Motion, World, 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
-NO_END, START, BOTH_ENDS, COARSE, PROOF, STATES = range(6)
+NO_END, START, BOTH_ENDS, COARSE, SHORTCUT, PROOF, STATES = range(7)
 """What a motion is checked for: that its states are free where neither end, its start or both are known to be; that no
-more than sixteen states between free ends are, which before a proof is enough; that it is free throughout.  The last is
-for no motion but sixteen states."""
+more than sixteen states between free ends are, which before a proof is enough; that they are, and then that it is free
+throughout; that alone.  The last is for no motion but sixteen states."""
 
 
 class Checks(NamedTuple):
@@ -131,6 +131,12 @@ def motion_proved(a: Floats, b: Floats, tolerance: float, most_batches: int, c: 
     return call_at(c.address, (a, b, PROOF, tolerance, most_batches, c.resolution, c.desk)) != 0
 
 
+@quick_inlined
+def motion_is(a: Floats, b: Floats, kind: int, tolerance: float, most_batches: int, c: Checks) -> bool:
+    """Return whether the motion from `a` to `b` is what one of the kinds above says, in one call for all of them."""
+    return call_at(c.address, (a, b, kind, tolerance, most_batches, c.resolution, c.desk)) != 0
+
+
 @cache
 def motion_check_address() -> int:
     """Return the address, good for this process, of the check of a motion; compiled when first asked."""
@@ -177,14 +183,17 @@ def _motion_check(
         m.start[k], m.end[k] = begin[k], end[k]
     segments = span(m.start, m.end, w.bounds, resolution, m.way)
     w.counts[MOTIONS] += 1
-    if kind == PROOF:
-        return 1 if is_proved(m, tolerance, most_batches, w) else 0
-    exchanged = False
-    for k in range(dim):
-        exchanged |= m.start[k] != begin[k]
-    first_state, last_state = 0, segments
-    if kind >= BOTH_ENDS or (kind == START and not exchanged):
-        first_state = 1
-    if kind >= BOTH_ENDS or (kind == START and exchanged):
-        last_state = segments - 1
-    return 1 if are_free(m, segments, first_state, last_state, kind == COARSE, w) else 0
+    if kind != PROOF:
+        exchanged = False
+        for k in range(dim):
+            exchanged |= m.start[k] != begin[k]
+        first_state, last_state = 0, segments
+        if kind >= BOTH_ENDS or (kind == START and not exchanged):
+            first_state = 1
+        if kind >= BOTH_ENDS or (kind == START and exchanged):
+            last_state = segments - 1
+        free = are_free(m, segments, first_state, last_state, kind >= COARSE, w)
+        if kind != SHORTCUT or not free:
+            return 1 if free else 0
+        w.counts[MOTIONS] += 1
+    return 1 if is_proved(m, tolerance, most_batches, w) else 0

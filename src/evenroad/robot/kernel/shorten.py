@@ -9,14 +9,7 @@ from evenroad.robot.kernel.addresses import doubles_at, matrix_at
 from evenroad.robot.kernel.lane_world import LaneWorld
 from evenroad.robot.kernel.layout import program, quick, quick_inlined
 from evenroad.robot.kernel.motion import canonical, distance_and_way, enter
-from evenroad.robot.kernel.motion_checks import (
-    BOTH_ENDS,
-    COARSE,
-    Checks,
-    checks_of,
-    motion_free,
-    motion_proved,
-)
+from evenroad.robot.kernel.motion_checks import BOTH_ENDS, SHORTCUT, Checks, checks_of, motion_is
 from evenroad.robot.kernel.motion_states import BATCHES as BATCHES_DONE
 from evenroad.robot.kernel.motion_states import COUNTS, MOTIONS
 
@@ -33,8 +26,8 @@ CUT_WORTH_WHILE = 1e-3
 _BESIDE = 1 << 32
 """Two counts in one number: less to read after a call."""
 
-MOST_CUTS, MOST_BATCHES = 64, 1 << 30
-"""So many cuts of corners are tried at most, and so many batches checked, where nothing else is said."""
+MOST_CUTS, _NO_LIMIT = 64, 1 << 60
+"""So many cuts of corners are tried at most where nothing else is said; and of batches."""
 
 
 def shorten_path(
@@ -43,7 +36,6 @@ def shorten_path(
     pairs: int,
     count: int,
     most_cuts: int = MOST_CUTS,
-    most_batches: int = MOST_BATCHES,
 ) -> tuple[Floats, int]:
     """Return a path that is no longer, without waypoints where it is not finite, and how many motions were looked at.
 
@@ -58,17 +50,13 @@ def shorten_path(
         straight motion is tried.
     most_cuts : int
         So many cuts of corners are tried at most.
-    most_batches : int
-        After so many batches of sixteen checks nothing more is tried.
     """
     size, dim = path.shape
     rows = size + count + most_cuts + 4
     room, arguments = world.arguments(COUNTS + rows * (dim + 1) + 3 * dim)
     points = room[-rows * dim :].reshape(rows, dim)
     room[:COUNTS], points[:size] = 0.0, path
-    motions, left = divmod(
-        shorten_points(rows, size, dim, pairs, count, most_cuts, most_batches, *arguments), _BESIDE
-    )
+    motions, left = divmod(shorten_points(rows, size, dim, pairs, count, most_cuts, *arguments), _BESIDE)
     return points[:left].copy(), motions
 
 
@@ -80,7 +68,6 @@ def shorten_points(
     shares: int,
     count: int,
     most_cuts: int,
-    most_batches: int,
     check: int,
     resolution: float,
     tables: int,
@@ -105,12 +92,9 @@ def shorten_points(
     size = pass_by(points, size, True, checks)
     measure(points, places, size, way, checks)
     for row in range(count):
-        if checks.counts[BATCHES_DONE] >= most_batches:
-            break
         size = pair_joined(points, places, size, pairs[row], True, ends, way, checks)
-    size = cut_corners(points, places, size, most_cuts, most_batches, True, ends, way, checks)
-    if checks.counts[BATCHES_DONE] < most_batches:
-        size = pass_by(points, size, True, checks)
+    size = cut_corners(points, places, size, most_cuts, _NO_LIMIT, True, ends, way, checks)
+    size = pass_by(points, size, True, checks)
     return size + _BESIDE * checks.counts[MOTIONS]
 
 
@@ -211,9 +195,7 @@ def joined(
 @quick_inlined
 def _is_shortcut(a: Floats, b: Floats, proved: bool, checks: Checks) -> bool:
     """Return whether the motion between two free configurations is free and proved, or free at its states."""
-    if not proved:
-        return motion_free(a, b, BOTH_ENDS, checks)
-    return motion_free(a, b, COARSE, checks) and motion_proved(a, b, TOLERANCE, BATCHES, checks)
+    return motion_is(a, b, SHORTCUT if proved else BOTH_ENDS, TOLERANCE, BATCHES, checks)
 
 
 @quick
