@@ -35,6 +35,9 @@ OUT = 5000
 JOINED = 30
 """What was learned is joined to so many of the nearest that it reaches."""
 
+FEW = 10
+"""What is joined to fewer lies in a narrow place: it is joined to all that it reaches, near or far."""
+
 AT_ONCE = 64
 """Of so many it is found out at once which are nearest: tables of all would take gigabytes."""
 
@@ -44,7 +47,7 @@ _LONG = 1e8
 TIGHT = 400
 """Ways are drawn tight with so many batches of checks before it is learned where they bend."""
 
-THIN = 0.75
+THIN = 0.6
 """Bends are learned that are farther than this from all that is known, as a share of how far milestones are apart."""
 
 MOST_TOLD = 3000
@@ -136,8 +139,19 @@ def _spacing(q: Floats) -> float:
 
 
 def _settle_and_join(graph: KnownGraph, world: ArmWorld, day: ArmWorld, first: int) -> None:
+    """Settle what is open, and join the milestones from the first one on to near ones, and those in narrow places."""
     settle(graph, world, day)
-    _join(graph, world, first)
+    free = np.flatnonzero(graph.nodes[: int(graph.desk[at.NODES])] >= FREE)
+    new = free[free >= first]
+    if len(new):
+        some = np.array_split(new, -(-len(new) // AT_ONCE))
+        near = np.concatenate([_nearest(graph.milestones, each, free) for each in some])
+        _join(graph, world, np.repeat(new, near.shape[1]), near.ravel())
+    a, b, _ = graph.motions()
+    known = graph.edges[: len(a)] >= FREE
+    joined = np.bincount(np.concatenate([a[known], b[known]]), minlength=len(graph.nodes))
+    narrow = free[joined[free] < FEW]
+    _join(graph, world, np.repeat(narrow, len(free)), np.tile(free, len(narrow)))
 
 
 def settle(graph: KnownGraph, world: ArmWorld, day: ArmWorld) -> None:
@@ -161,17 +175,13 @@ def settle(graph: KnownGraph, world: ArmWorld, day: ArmWorld) -> None:
     graph.groups[:n] = np.unique(groups, return_index=True)[1][groups]
 
 
-def _join(graph: KnownGraph, world: ArmWorld, first: int) -> None:
-    """Join the milestones from the first one on to the nearest ones that they reach."""
-    free = np.flatnonzero(graph.nodes[: int(graph.desk[at.NODES])] >= FREE)
-    new, q = free[free >= first], graph.milestones
-    if not len(new):
-        return
-    near = np.concatenate([_nearest(q, some, free) for some in np.array_split(new, -(-len(new) // AT_ONCE))])
-    pairs = np.sort(np.stack([np.repeat(new, near.shape[1]), near.ravel()], axis=1), axis=1)
-    pairs = np.unique(pairs, axis=0)
-    n, (a, b, _) = len(q), graph.motions()
-    pairs = pairs[~np.isin(pairs @ (n, 1), np.minimum(a, b) * n + np.maximum(a, b))]
+def _join(graph: KnownGraph, world: ArmWorld, a: Ints, b: Ints) -> None:
+    """Join pairs of free milestones, where there is no edge yet and the motion is free."""
+    # Each pair is one number.
+    n, q, (known, others, _) = len(graph.nodes), graph.milestones, graph.motions()
+    pairs = np.unique(np.minimum(a, b)[a != b] * n + np.maximum(a, b)[a != b])
+    pairs = pairs[~np.isin(pairs, np.minimum(known, others) * n + np.maximum(known, others))]
+    pairs = np.stack(np.divmod(pairs, n), axis=1)
     pairs = pairs[world.motion_certified(q[pairs[:, 0]], q[pairs[:, 1]], RECHECK_TOLERANCE)]
     graph.join(pairs, world.space.distance(q[pairs[:, 0]], q[pairs[:, 1]]))
 

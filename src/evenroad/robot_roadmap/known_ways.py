@@ -35,9 +35,9 @@ from evenroad.robot_roadmap.search_memory import (
 from evenroad.robot_roadmap.search_metric import write, write_distances
 from evenroad.robot_roadmap.search_queue import push, state_of
 
-CLOSE_ONWARD = 0.3
-"""Links by displacement are tried in the order of it and this share of what is left beyond them: they find a way for
-most ends that see nothing, but lead round about."""
+CLOSE_ONWARD = 0.13
+"""Links by displacement are tried in the order of it and this share of the way by them, with the link twice: they find
+a way for most ends that see nothing, but lead round about."""
 
 
 @quick
@@ -150,13 +150,31 @@ def has_others(s: Search) -> bool:
 @quick
 def choose_close(s: Search, end: int) -> None:
     """Choose other milestones that an end is tried to be linked to: free ones that are near in displacement."""
-    d, n, count = s.desk, s.desk[NODES], 0
+    d, n, count, squared = s.desk, s.desk[NODES], 0, 0.0
+    other = 1 if end == 0 else 0
     write_distances(s, end, s.rules[WEIGHTS], s.costs[:n])
-    write_distances(s, 1 if end == 0 else 0, s.rules[WEIGHTS], s.keys[:n])
+    for k in range(d[DIM]):
+        squared += s.rules[WEIGHTS, k] ** 2 / d[DIM]
+    # Joint values as displacement.
+    share, by = CLOSE_ONWARD * np.sqrt(squared), _seen_by(s, other)
     for i in range(n):
-        s.costs[i] += CLOSE_ONWARD * s.keys[i]
+        onward = s.far[by * d[TOLD] + i] if by >= 0 and i < d[TOLD] else s.away[other * d[CAPACITY] + i]
+        s.costs[i] += share * (2.0 * s.away[end * d[CAPACITY] + i] + onward)
     for i in range(n):
         if s.nodes[i] >= FREE and s.links[end, i] != BLOCKED:
             count = kept_in_order(s.keys, s.near[end], count, d[CLOSE], s.costs[i], i)
     for rank in range(count, d[LINKS]):
         s.near[end, rank] = -1
+
+
+@quick
+def _seen_by(s: Search, end: int) -> int:
+    """Return the first milestone that an end is known to be linked to, else the first to be tried; -1 for none."""
+    first = -1
+    for rank in range(s.desk[LINKS]):
+        i = s.near[end, rank]
+        if 0 <= i < s.desk[TOLD]:
+            if s.links[end, i] >= FREE:
+                return i
+            first = i if first < 0 else first
+    return first
