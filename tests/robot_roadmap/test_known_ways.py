@@ -13,9 +13,9 @@ from evenroad.robot import ArmWorld, Scene, with_limits
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
 from evenroad.robot_roadmap import explored as exploring
 from evenroad.robot_roadmap import search_memory as at
-from evenroad.robot_roadmap.lazy_search import ONWARD
 from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.scene_roadmap import EXPLORED_LINKS, GREED, SceneRoadmap
+from evenroad.robot_roadmap.search_links import ONWARD
 from evenroad.robot_roadmap.search_memory import BLOCKED, FOUND, FREE
 from tests.robot.kernel_arms import box_scene, ur5
 from tests.robot.oracle import clearance
@@ -93,11 +93,7 @@ def asked(known, start, goals, links=EXPLORED_LINKS, most=10**6):
 
 def tried(known, end):
     """The milestones that an end of the last query was tried to be linked to, nearest first, as memory has them."""
-    graph = known._graph
-    ends, capacity = int(graph.desk[at.ENDS]) + 1, int(graph.desk[at.CAPACITY])
-    begin = (ends + 2) * int(graph.desk[at.DIM]) + 2 * ends * capacity
-    rows = graph._query[begin : begin + ends * capacity].view(np.int64).reshape(ends, capacity)
-    near = rows[end, : int(graph.desk[at.LINKS])]
+    near = known._graph.near[end, : int(known._graph.desk[at.LINKS])]
     return near[near >= 0]
 
 

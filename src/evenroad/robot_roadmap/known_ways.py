@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from evenroad.robot.kernel.layout import quick
+from evenroad.robot_roadmap.search_links import choose_close
 from evenroad.robot_roadmap.search_memory import (
     BLOCKED,
     BY,
     CAPACITY,
-    CLOSE,
     CLOSE_GOALS,
     CLOSE_START,
     DIM,
@@ -20,7 +20,6 @@ from evenroad.robot_roadmap.search_memory import (
     LINKS,
     MADE,
     NEXT,
-    NODES,
     NONE,
     NUMBER,
     OTHER,
@@ -28,16 +27,10 @@ from evenroad.robot_roadmap.search_memory import (
     TO,
     TOLD,
     UNKNOWN,
-    WEIGHTS,
     Search,
-    kept_in_order,
 )
-from evenroad.robot_roadmap.search_metric import write, write_distances
+from evenroad.robot_roadmap.search_metric import write
 from evenroad.robot_roadmap.search_queue import push, state_of
-
-CLOSE_ONWARD = 0.3
-"""Links by displacement are tried in the order of it and this share of what is left beyond them: they find a way for
-most ends that see nothing, but lead round about."""
 
 
 @quick
@@ -145,18 +138,3 @@ def has_others(s: Search) -> bool:
             for end in range(first, last):
                 choose_close(s, end)
     return chosen
-
-
-@quick
-def choose_close(s: Search, end: int) -> None:
-    """Choose other milestones that an end is tried to be linked to: free ones that are near in displacement."""
-    d, n, count = s.desk, s.desk[NODES], 0
-    write_distances(s, end, s.rules[WEIGHTS], s.costs[:n])
-    write_distances(s, 1 if end == 0 else 0, s.rules[WEIGHTS], s.keys[:n])
-    for i in range(n):
-        s.costs[i] += CLOSE_ONWARD * s.keys[i]
-    for i in range(n):
-        if s.nodes[i] >= FREE and s.links[end, i] != BLOCKED:
-            count = kept_in_order(s.keys, s.near[end], count, d[CLOSE], s.costs[i], i)
-    for rank in range(count, d[LINKS]):
-        s.near[end, rank] = -1
