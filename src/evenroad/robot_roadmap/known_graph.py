@@ -163,8 +163,7 @@ class KnownGraph:
         desk[at.ONLY_KNOWN], desk[at.UNTURNED] = only_known, unturned
         self.ends[0], self.ends[1:] = start, goals
         if not only_known:
-            self._links.fill(UNKNOWN)
-            self._straight.fill(UNKNOWN)
+            self._verdicts.fill(UNKNOWN)
             desk[at.MEASURED] = 0
 
     def _take_room(self, ends: int, room: int) -> None:
@@ -177,17 +176,17 @@ class KnownGraph:
         desk[at.QUERY] = address(self._query)
         # The last end is a place that is learned.
         begin, row = (ends + 3) * dim, (ends + 1) * capacity
-        behind = begin + 3 * row
+        heads = begin + 3 * row + ends + 1
         self.ends = self._query[: ends * dim].reshape(ends, dim)
         self.asked = self._query[(ends + 1) * dim : begin].reshape(2, dim)
         self.near = self._query[begin + row :][:row].view(np.int64).reshape(ends + 1, capacity)
-        links = self._query[begin + 2 * row :].view(np.uint8)[4 * (row + capacity) :][:row]
-        self._links = links.reshape(ends + 1, capacity)
-        self._straight = self._query[behind : behind + ends].view(np.int64)
-        heads = behind + 2 * (ends + 1)
+        behind = self._query[begin + 2 * row : begin + 3 * row].view(np.uint8)
+        self._verdicts = behind[4 * (row + capacity) :][: row + ends]
+        self._links, self._straight = self._verdicts[:row].reshape(ends + 1, capacity), self._verdicts[row:]
         self._query[heads : heads + capacity].view(np.int64)[:] = -1
-        self.path = np.empty((2 * room * capacity + 2, dim))
-        self.places = address(desk), address(self.path), len(self.path)
+        self.path, self.report = np.empty((2 * room * capacity + 2, dim)), np.zeros(at.REPORT, np.int64)
+        # Worked out once: that takes longer than the rest.
+        self.places = address(desk), address(self.path), len(self.path), address(self.report)
 
     def doubt(self, end: int) -> None:
         """Take it that no motion of an end of the query is proved soon."""
@@ -243,8 +242,8 @@ class KnownGraph:
     def guide(self, far: Floats, steps: Ints32, weights: Floats, close: int) -> None:
         """Guide searches by how far milestones are from each other along what is known to be free, (n, n).
 
-        On the way to the first of two, `steps` says which one comes after the second, (n, n).  So many links of each
-        end go by displacement, in the metric of such weights, (dim,).
+        On the way to the first of two, `steps` says which one comes after the second, (n, n), n < 65536.  So many links
+        of each end go by displacement, in the metric of such weights, (dim,).
         """
         self._far, self._steps = np.ascontiguousarray(far, np.float32), steps.astype(np.uint16)
         self.rules[at.WEIGHTS], desk = weights, self.desk

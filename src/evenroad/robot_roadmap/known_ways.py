@@ -36,23 +36,34 @@ from evenroad.robot_roadmap.search_queue import push, state_of
 @quick
 def price_links(s: Search) -> None:
     """Write what the shortest way by each link of a goal costs, and which link of the start it begins with."""
-    for row in range((s.desk[ENDS] - 1) * s.desk[LINKS]):
+    d = s.desk
+    for rank in range(d[LINKS]):
+        i = s.near[0, rank]
+        s.costs[rank] = s.away[i] if _is_told(s, 0, i) else np.inf
+    for row in range((d[ENDS] - 1) * d[LINKS]):
         _price_row(s, row)
+
+
+@quick
+def _is_told(s: Search, end: int, i: int) -> bool:
+    """Return whether the table knows a milestone, and its link to an end is not known to be blocked."""
+    return 0 <= i < s.desk[TOLD] and s.links[end, i] != BLOCKED and s.nodes[i] != BLOCKED
 
 
 @quick
 def _price_row(s: Search, row: int) -> None:
     """Do so for one link of a goal; inf where nothing leads there."""
     d, links = s.desk, s.desk[LINKS]
-    end, least, best = 1 + row // links, np.inf, 0
+    end, told, least, best = 1 + row // links, d[TOLD], np.inf, 0
     j = s.near[end, row % links]
-    if 0 <= j < d[TOLD] and s.links[end, j] != BLOCKED and s.nodes[j] != BLOCKED:
+    if _is_told(s, end, j):
+        far = s.far[j * told : (j + 1) * told]
         for rank in range(links):
-            i = s.near[0, rank]
-            if 0 <= i < d[TOLD] and s.links[0, i] != BLOCKED and s.nodes[i] != BLOCKED:
-                cost = s.away[i] + s.far[j * d[TOLD] + i]
-                if cost < least:
-                    least, best = cost, rank
+            # What does not count, as it is inf, is looked up somewhere.
+            i = min(max(s.near[0, rank], 0), told - 1)
+            cost = np.float32(s.costs[rank]) + far[i]
+            if cost < least:
+                least, best = cost, rank
         least += s.away[end * d[CAPACITY] + j]
     s.keys[row], s.items[row] = least, best
 
@@ -71,9 +82,11 @@ def _best_links(s: Search) -> tuple[int, int, int]:
                 least, row = s.keys[other], other
         if row < 0:
             return -1, -1, -1
-        end, i = 1 + row // links, s.near[0, s.items[row]]
-        j = s.near[end, row % links]
-        if s.links[end, j] != BLOCKED and s.links[0, i] != BLOCKED:
+        end, rank = 1 + row // links, s.items[row]
+        i, j = s.near[0, rank], s.near[end, row % links]
+        if s.links[0, i] == BLOCKED:
+            s.costs[rank] = np.inf
+        elif s.links[end, j] != BLOCKED:
             return i, j, end
         _price_row(s, row)
 

@@ -32,7 +32,7 @@ CLOSE_ONWARD = 0.3
 most ends that see nothing, but lead round about."""
 
 HALVINGS = 12
-"""So often it is tried to find what few more than the wanted ones are less than."""
+"""So often at most an interval is halved, until no more than twice the wanted ones are below: they are sorted."""
 
 
 @quick
@@ -44,8 +44,9 @@ def choose_links(s: Search, end: int) -> None:
     if same >= 0:
         count, s.near[end, 0], s.links[end, same] = 1, same, PROVED
     else:
-        _write_wants(s, end, away)
-        count = _least(s, s.wants[:n], d[LINKS], s.near[end])
+        wants = s.away[(d[ENDS] + 1) * d[CAPACITY] :][:n]
+        _write_wants(s, end, away, wants)
+        count = _least(s, wants, d[LINKS], s.near[end])
     s.radius[end] = 0.0
     for rank in range(count):
         s.radius[end] = max(s.radius[end], away[s.near[end, rank]])
@@ -67,10 +68,9 @@ def _milestone_at(s: Search, end: int, away: Singles) -> int:
 
 
 @quick
-def _write_wants(s: Search, end: int, away: Singles) -> None:
-    """Write how long the way by each milestone may be, none where there is no link, inf where there cannot be one."""
-    d, n, wants, links = s.desk, len(away), s.wants, s.links[end]
-    # Without branches, for many at a time.
+def _write_wants(s: Search, end: int, away: Singles, wants: Singles) -> None:
+    """Write keys, the least first: inf for what is blocked, 0 for free links of an explored scene."""
+    d, n, links = s.desk, len(away), s.links[end]
     beyond = s.away[d[CAPACITY] : d[CAPACITY] + n] if end == 0 else s.away[:n]
     for i in range(n):
         wants[i] = beyond[i]

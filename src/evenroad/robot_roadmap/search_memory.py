@@ -89,6 +89,11 @@ STATE, PARENT, VIA = range(3)
 """Of an entry: a state, or a goal as minus its row; the entry before, or -1; and the edge, or -1 of a link."""
 
 
+ROWS, MILESTONES, MOTIONS, GOAL, CHECKS, REPORT = range(6)
+"""Of the report of a query: waypoints written, milestones and motions that were asked about, the goal that was reached,
+batches of sixteen checks; and how many things that is."""
+
+
 class Search(NamedTuple):
     """A roadmap in a scene, and a query in it, as compiled code reads them.
 
@@ -109,12 +114,11 @@ class Search(NamedTuple):
     ends, asked : float64 arrays, shapes (e + 1, dim) and (2, dim)
         Start, goals and a place that is learned; the two ends of the motion that is asked about.
     turns, near, away : arrays, shape (e + 1, capacity); the last in one piece
-        Of each end: after which turns milestones are nearest, which are to be tried, and how far all are.
-    wants : float32 array, shape (capacity,)
-        By what those to be tried are chosen.
+        Of each end: after which turns milestones are nearest, which are to be tried, and how far all are; behind
+        these is a row to work in.
     links : uint8 array, shape (e + 1, capacity)
         Verdicts of links.
-    straight, radius : arrays, shape (e + 1,)
+    straight, radius : uint8 and float64 arrays, shape (e + 1,)
         Verdicts of the motions straight to the goals, and how far the farthest milestone is that is to be tried.
     heads : int64 array, shape (capacity,)
         The first state of each milestone, or -1: of all that no state is of.
@@ -140,9 +144,8 @@ class Search(NamedTuple):
     turns: Ints
     near: Ints
     away: Singles
-    wants: Singles
     links: Bytes
-    straight: Ints
+    straight: Bytes
     radius: Floats
     heads: Ints
     states: Ints
@@ -167,11 +170,7 @@ def query_room(desk: Ints) -> int:
     """Return how many doubles a query needs."""
     ends, capacity, dim = int(desk[ENDS]) + 1, int(desk[CAPACITY]), int(desk[DIM])
     return (
-        (ends + 2) * dim
-        + 2 * ends
-        + (3 * ends + 1) * capacity
-        + 6 * int(desk[STATES])
-        + 6 * int(desk[ENTRIES])
+        (ends + 2) * dim + ends + (3 * ends + 1) * capacity + 6 * int(desk[STATES]) + 6 * int(desk[ENTRIES])
     )
 
 
@@ -187,11 +186,10 @@ def search_at(desk: int) -> Search:
     turns = asked + 8 * 2 * dim
     row = 8 * ends * capacity
     away = turns + 2 * row
-    # These and the two that follow take no more than a third row.
-    wants = away + row // 2
-    links = wants + 4 * capacity
-    straight = away + row
-    heads = straight + 16 * ends
+    # These, with a row to work in, and the two that follow take no more than a third row.
+    links = away + row // 2 + 4 * capacity
+    radius = away + row
+    heads = radius + 8 * ends
     found = heads + 8 * capacity
     bounds = found + 8 * 4 * states
     made = bounds + 8 * 2 * states
@@ -214,11 +212,10 @@ def search_at(desk: int) -> Search:
         matrix_at(asked, (2, dim)),
         table_at(turns, (ends, capacity)),
         table_at(turns + row, (ends, capacity)),
-        singles_at(away, (ends * capacity,)),
-        singles_at(wants, (capacity,)),
+        singles_at(away, ((ends + 1) * capacity,)),
         byte_table_at(links, (ends, capacity)),
-        integers_at(straight, (ends,)),
-        doubles_at(straight + 8 * ends, (ends,)),
+        bytes_at(links + ends * capacity, (ends,)),
+        doubles_at(radius, (ends,)),
         integers_at(heads, (capacity,)),
         table_at(found, (states, 4)),
         matrix_at(bounds, (states, 2)),
