@@ -194,6 +194,21 @@ def test_links_are_tried_to_the_milestones_that_are_nearest_and_on_the_way(once,
     assert compared >= 15
 
 
+def test_links_come_in_order_however_many_there_are_and_however_many_goals(once, places):
+    n = int(once._graph.desk[at.NODES])
+    q, free_ones = once._graph.milestones[:n], np.flatnonzero(once._graph.nodes[:n] != BLOCKED)
+    for links, count in itertools.product((1, 7, 20, 60, 10_000), (1, 3)):
+        start, goals = places[0], places[count : 2 * count]
+        once._ask(start, goals, 0, np.inf, links)
+        away = np.linalg.norm(q - np.concatenate([start[np.newaxis], goals])[:, np.newaxis], axis=2)
+        for end, beyond in enumerate([away[1:].min(axis=0), *[away[0]] * count]):
+            key, near = away[end] + ONWARD * beyond, tried(once, end)
+            assert len(near) == len(set(near.tolist())) == min(links, len(free_ones))
+            assert np.isin(near, free_ones).all()
+            # In memory they are in single precision.
+            np.testing.assert_allclose(key[near], np.sort(key[free_ones])[: len(near)], rtol=0.0, atol=1e-5)
+
+
 def test_plans_along_the_table_are_proved_with_trees_and_without(roadmap, places):
     known, found = explored(roadmap), 0
     for start, goal in list(apart(known, places))[:12]:

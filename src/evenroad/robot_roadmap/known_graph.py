@@ -179,7 +179,8 @@ class KnownGraph:
         heads = begin + 3 * row + ends + 1
         self.ends = self._query[: ends * dim].reshape(ends, dim)
         self.asked = self._query[(ends + 1) * dim : begin].reshape(2, dim)
-        self.near = self._query[begin + row :][:row].view(np.int64).reshape(ends + 1, capacity)
+        turns_and_near = self._query[begin:][: 2 * row].view(np.int64)
+        self.turns, self.near = turns_and_near.reshape(2, ends + 1, capacity)
         behind = self._query[begin + 2 * row : begin + 3 * row].view(np.uint8)
         self._verdicts = behind[4 * (row + capacity) :][: row + ends]
         self._links, self._straight = self._verdicts[:row].reshape(ends + 1, capacity), self._verdicts[row:]
