@@ -13,9 +13,9 @@ from evenroad.robot import ArmWorld, Scene, with_limits
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
 from evenroad.robot_roadmap import explored as exploring
 from evenroad.robot_roadmap import search_memory as at
-from evenroad.robot_roadmap.lazy_search import ONWARD
 from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.scene_roadmap import EXPLORED_LINKS, GREED, SceneRoadmap
+from evenroad.robot_roadmap.search_links import ONWARD
 from evenroad.robot_roadmap.search_memory import BLOCKED, FOUND, FREE
 from tests.robot.kernel_arms import box_scene, ur5
 from tests.robot.oracle import clearance
@@ -93,11 +93,7 @@ def asked(known, start, goals, links=EXPLORED_LINKS, most=10**6):
 
 def tried(known, end):
     """The milestones that an end of the last query was tried to be linked to, nearest first, as memory has them."""
-    graph = known._graph
-    ends, capacity = int(graph.desk[at.ENDS]) + 1, int(graph.desk[at.CAPACITY])
-    begin = (ends + 2) * int(graph.desk[at.DIM]) + 2 * ends * capacity
-    rows = graph._query[begin : begin + ends * capacity].view(np.int64).reshape(ends, capacity)
-    near = rows[end, : int(graph.desk[at.LINKS])]
+    near = known._graph.near[end, : int(known._graph.desk[at.LINKS])]
     return near[near >= 0]
 
 
@@ -196,6 +192,21 @@ def test_links_are_tried_to_the_milestones_that_are_nearest_and_on_the_way(once,
             np.testing.assert_array_equal(np.sort(near), np.sort(order[~refused][:EXPLORED_LINKS]))
             compared += 1
     assert compared >= 15
+
+
+def test_links_come_in_order_however_many_there_are_and_however_many_goals(once, places):
+    n = int(once._graph.desk[at.NODES])
+    q, free_ones = once._graph.milestones[:n], np.flatnonzero(once._graph.nodes[:n] != BLOCKED)
+    for links, count in itertools.product((1, 7, 20, 60, 10_000), (1, 3)):
+        start, goals = places[0], places[count : 2 * count]
+        once._ask(start, goals, 0, np.inf, links)
+        away = np.linalg.norm(q - np.concatenate([start[np.newaxis], goals])[:, np.newaxis], axis=2)
+        for end, beyond in enumerate([away[1:].min(axis=0), *[away[0]] * count]):
+            key, near = away[end] + ONWARD * beyond, tried(once, end)
+            assert len(near) == len(set(near.tolist())) == min(links, len(free_ones))
+            assert np.isin(near, free_ones).all()
+            # In memory they are in single precision.
+            np.testing.assert_allclose(key[near], np.sort(key[free_ones])[: len(near)], rtol=0.0, atol=1e-5)
 
 
 def test_plans_along_the_table_are_proved_with_trees_and_without(roadmap, places):

@@ -138,7 +138,7 @@ def test_what_leads_to_the_goal_within_one_turn_is_not_lost_where_joints_turn_tw
     known = SceneRoadmap(wide, Scene("nothing"))
     for unturned in (False, True):
         known._ask(start, goal, 0, np.inf, 24, unturned=unturned)
-        assert known._graph._links[3:5].any() == (not unturned)
+        assert known._graph.turns[:2].any() == (not unturned)
     known = SceneRoadmap(narrow, box_scene())
     q = known.world.space.from_cube(np.random.default_rng(1).random((400, 3)))
     q = q[known.world.valid(q)]

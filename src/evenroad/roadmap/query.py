@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TypeAlias
@@ -140,7 +141,10 @@ def _finite(value: npt.ArrayLike) -> Floats:
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError):
         return np.empty((0, 0))
-    return array if np.isfinite(array).all() else np.empty((0, 0))
+    # The squares of most are finite, too, which is known sooner.
+    if math.isfinite(np.vdot(array, array)) or np.isfinite(array).all():
+        return array
+    return np.empty((0, 0))
 
 
 def edge_costs(space: Space, q: Floats, edges: Ints32, cost: EdgeCost | None = None) -> Floats:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache
 from typing import TypeGuard
 
 import numpy as np
@@ -11,7 +13,6 @@ from evenroad._clock import now
 from evenroad._compiled import compile_beside
 from evenroad.robot import ArmWorld
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
-from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.layout import program
 from evenroad.robot.kernel.motion_states import COUNTS
 from evenroad.robot_roadmap import lazy_search as search
@@ -88,27 +89,32 @@ def _by_one_program(world: Checks) -> TypeGuard[ArmWorld]:
 def _by_lanes(
     world: ArmWorld, day: ArmWorld, graph: KnownGraph, most_motions: int, deadline: float, proved: bool
 ) -> Asked:
-    # Imported late: where the vector type cannot even be defined, all else still works.
-    from evenroad.robot.kernel.tighten import CLEARANCE
-    from evenroad.robot_roadmap import lane_search as lanes
-
-    path, report = graph.path, np.zeros(lanes.REPORT, dtype=np.int64)
-    day_checks, _, day_tables, day_by_joint, begin, end = day.lanes.arguments(0)[1]
-    _, arguments = world.lanes.arguments(COUNTS + (end - begin) // 8)
+    path, (day_checks, day_tables, day_by_joint, doubles) = graph.path, day.lanes.places
+    _, arguments = world.lanes.arguments(COUNTS + doubles)
     own = day_checks, day_tables, day_by_joint, arguments[-1] + 8 * COUNTS
-    given = address(graph.desk), address(path), len(path), address(report)
-    fresh, wider = 1, 0 if proved else world.lanes.wider(CLEARANCE)
+    (find_way, clearance), fresh = _find_way(), 1
+    wider = 0 if proved else world.lanes.wider(clearance)
     while True:
-        ended = lanes.find_way(*given, fresh, most_motions, _SLICE, wider, *own, *arguments)
+        ended = find_way(*graph.places, fresh, most_motions, _SLICE, wider, *own, *arguments)
         fresh = 0
         if ended != PAUSED:
             break
         if now() >= deadline:
             ended = SPENT
             break
-    rows, milestones, motions, goal, batches = report.tolist()
-    goal = goal if ended == FOUND else -1
-    return Asked(ended, path[:rows][::-1].copy(), goal, milestones, motions, batches, proved)
+    rows, milestones, motions, goal, batches = graph.report.tolist()
+    found = path[:rows][::-1].copy()
+    return Asked(ended, found, goal if ended == FOUND else -1, milestones, motions, batches, proved)
+
+
+@cache
+def _find_way() -> tuple[Callable[..., int], float]:
+    """Return the program, and how far ends are from obstacles whose links may wait for their proof [m]."""
+    # Imported late: where the vector type cannot even be defined, all else still works.
+    from evenroad.robot.kernel.tighten import CLEARANCE
+    from evenroad.robot_roadmap.lane_search import find_way
+
+    return find_way, CLEARANCE
 
 
 def _one_by_one(world: Checks, day: Checks, graph: KnownGraph, most_motions: int, deadline: float) -> Asked:
@@ -117,9 +123,10 @@ def _one_by_one(world: Checks, day: Checks, graph: KnownGraph, most_motions: int
     if not world.valid(graph.ends).all():
         return Asked(ENDS_TAKEN, nothing, -1, 0, 0)
     graph.ends[:] = world.space.interpolate(graph.ends, graph.ends, 0.0)
+    memory, way, most_rows, _ = graph.places
     question, verdict = -1, UNKNOWN
     while True:
-        question = _next_question(address(desk), question, verdict, address(path), len(path))
+        question = _next_question(memory, question, verdict, way, most_rows)
         if question == FOUND:
             rows = int(desk[at.BY])
             return Asked(FOUND, path[:rows][::-1].copy(), int(desk[at.TO]) - 1, milestones, motions)

@@ -6,15 +6,13 @@ is: so it goes along what is known, and asks about short motions that lead there
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Protocol, TypeGuard
+from typing import NamedTuple, Protocol, TypeGuard
 
 import numpy as np
 
 from evenroad._arrays import Bools, Floats
 from evenroad._clock import now
 from evenroad.robot.arm_world import RECHECK_TOLERANCE
-from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.layout import program, quick
 from evenroad.robot_roadmap import search_memory as at
 from evenroad.robot_roadmap.known_graph import KnownGraph
@@ -64,8 +62,7 @@ class Checks(World, Protocol):
         """Return which motions, (m, dim) each, are free: (m,)."""
 
 
-@dataclass(frozen=True, eq=False)
-class Asked:
+class Asked(NamedTuple):
     """What a search ended with: a path, (p, dim), and its goal or -1; milestones and motions that were asked about, and
     how many batches of sixteen checks that took, where it is known; and whether every motion is proved, or free at
     its states alone.
@@ -104,13 +101,14 @@ def ask_few(world: Checks, day: Checks, graph: KnownGraph, most_motions: int, de
     if _proves_soon(world):
         for end in np.flatnonzero(~world.proved(graph.ends)).tolist():
             graph.doubt(end)
+    memory, way, rows, _ = graph.places
     question, verdict = -1, UNKNOWN
     while True:
-        given = NOT_ASKED, NOT_PROVED, address(path), len(path)
-        question = _next_dear_question(address(desk), question, verdict, *given)
+        given = NOT_ASKED, NOT_PROVED, way, rows
+        question = _next_dear_question(memory, question, verdict, *given)
         if question == FOUND:
-            rows, goal = int(desk[at.BY]), int(desk[at.TO]) - 1
-            return Asked(FOUND, path[:rows][::-1].copy(), goal, milestones, motions)
+            found, goal = path[: desk[at.BY]][::-1].copy(), int(desk[at.TO]) - 1
+            return Asked(FOUND, found, goal, milestones, motions)
         dearly, question = divmod(question, DEARLY)
         if question > STRAIGHT:
             return Asked(question, nothing, -1, milestones, motions)

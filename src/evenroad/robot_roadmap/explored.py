@@ -51,7 +51,7 @@ THIN = 0.6
 """Bends are learned that are farther than this from all that is known, as a share of how far milestones are apart."""
 
 MOST_TOLD = 3000
-"""Of so many milestones at most it is worked out how far they are from each other: 72 MB."""
+"""Of so many milestones at most it is worked out how far they are from each other: 54 MB."""
 
 CLOSE = 20
 """An end that none of its links joins is tried to be linked to so many milestones that are nearest in displacement."""

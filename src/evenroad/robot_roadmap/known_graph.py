@@ -112,8 +112,9 @@ class KnownGraph:
         desk[[at.KNOWN, at.GRAPH, at.RULES, at.VERDICTS]] = [address(part) for part in parts]
         self.milestones = self._known[: dim * capacity].reshape(capacity, dim)
         self.columns = self._known[dim * capacity :].view(np.float32)[: dim * capacity].reshape(dim, capacity)
-        known = self._known[-3 * capacity :].view(np.int64)
-        self.nodes, self.first, self.groups = known.reshape(3, capacity)
+        behind = (dim + (dim + 1) // 2) * capacity
+        self.first, self.groups = self._known[behind:][: 2 * capacity].view(np.int64).reshape(2, capacity)
+        self.nodes = self._known[behind + 2 * capacity :].view(np.uint8)[:capacity]
         count = int(desk[at.HALVES])
         split = at.HALF * count // 2
         self.halves = graph[:split].view(np.int32).reshape(count, at.HALF)
@@ -153,31 +154,40 @@ class KnownGraph:
         With `only_known` it is the last query, whose links are known; where these are forgotten, it is a new one.  With
         `unturned` ends are linked to milestones in their one turn.
         """
-        desk, e, self.rules[at.GREED], self.rules[at.NEARBY] = self.desk, 1 + len(goals), greed, nearby
-        dim, capacity = int(desk[at.DIM]), int(desk[at.CAPACITY])
-        desk[at.LINKS] = min(links, desk[at.NODES])
+        desk, e = self.desk, 1 + len(goals)
+        self.rules[at.GREED, 0], self.rules[at.NEARBY, 0] = greed, nearby
         if self._shape != (e, room):
-            self._shape, only_known = (e, room), False
-            desk[at.ENDS], desk[at.STATES] = e, 2 * room * capacity
-            desk[at.ENTRIES] = room * (desk[at.HALVES] + (2 + e) * capacity)
-            self._query = np.empty(at.query_room(desk))
-            desk[at.QUERY] = address(self._query)
-            # The last end is a place that is learned.
-            begin = (e + 3) * dim
-            behind = begin + 4 * (e + 1) * capacity
-            self.ends = self._query[: e * dim].reshape(e, dim)
-            self.asked = self._query[(e + 1) * dim : begin].reshape(2, dim)
-            rows = self._query[begin : begin + 2 * (e + 1) * capacity].view(np.int64)
-            self._links = rows.reshape(2 * (e + 1), capacity)
-            self._links[:] = 0
-            self._straight = self._query[behind : behind + e].view(np.int64)
-            self.path = np.empty((2 * room * capacity + 2, dim))
-        self.ends[0], self.ends[1:] = start, goals
+            self._take_room(e, room)
+            only_known = False
+        desk[at.LINKS] = min(links, int(desk[at.NODES]))
         desk[at.ONLY_KNOWN], desk[at.UNTURNED] = only_known, unturned
+        self.ends[0], self.ends[1:] = start, goals
         if not only_known:
-            # Verdicts of the links, and behind them the turns of those that do not turn.
-            self._links[:, : desk[at.NODES]] = 0
-            self._straight[:], desk[at.MEASURED] = UNKNOWN, 0
+            self._verdicts.fill(UNKNOWN)
+            desk[at.MEASURED] = 0
+
+    def _take_room(self, ends: int, room: int) -> None:
+        """Take memory for a query of so many ends, in which nothing is written yet."""
+        desk, dim, capacity = self.desk, int(self.desk[at.DIM]), int(self.desk[at.CAPACITY])
+        self._shape = ends, room
+        desk[at.ENDS], desk[at.STATES], desk[at.SIZE] = ends, 2 * room * capacity, 0
+        desk[at.ENTRIES] = room * (desk[at.HALVES] + (2 + ends) * capacity)
+        self._query = np.zeros(at.query_room(desk))
+        desk[at.QUERY] = address(self._query)
+        # The last end is a place that is learned.
+        begin, row = (ends + 3) * dim, (ends + 1) * capacity
+        heads = begin + 3 * row + ends + 1
+        self.ends = self._query[: ends * dim].reshape(ends, dim)
+        self.asked = self._query[(ends + 1) * dim : begin].reshape(2, dim)
+        turns_and_near = self._query[begin:][: 2 * row].view(np.int64)
+        self.turns, self.near = turns_and_near.reshape(2, ends + 1, capacity)
+        behind = self._query[begin + 2 * row : begin + 3 * row].view(np.uint8)
+        self._verdicts = behind[4 * (row + capacity) :][: row + ends]
+        self._links, self._straight = self._verdicts[:row].reshape(ends + 1, capacity), self._verdicts[row:]
+        self._query[heads : heads + capacity].view(np.int64)[:] = -1
+        self.path, self.report = np.empty((2 * room * capacity + 2, dim)), np.zeros(at.REPORT, np.int64)
+        # Worked out once: that takes longer than the rest.
+        self.places = address(desk), address(self.path), len(self.path), address(self.report)
 
     def doubt(self, end: int) -> None:
         """Take it that no motion of an end of the query is proved soon."""
@@ -233,10 +243,10 @@ class KnownGraph:
     def guide(self, far: Floats, steps: Ints32, weights: Floats, close: int) -> None:
         """Guide searches by how far milestones are from each other along what is known to be free, (n, n).
 
-        On the way to the first of two, `steps` says which one comes after the second, (n, n).  So many links of each
-        end go by displacement, in the metric of such weights, (dim,).
+        On the way to the first of two, `steps` says which one comes after the second, (n, n), n < 65536.  So many links
+        of each end go by displacement, in the metric of such weights, (dim,).
         """
-        self._far, self._steps = np.ascontiguousarray(far, np.float32), np.ascontiguousarray(steps, np.int32)
+        self._far, self._steps = np.ascontiguousarray(far, np.float32), steps.astype(np.uint16)
         self.rules[at.WEIGHTS], desk = weights, self.desk
         desk[[at.FAR, at.STEPS]] = address(self._far), address(self._steps)
         desk[at.TOLD], desk[at.CLOSE] = len(far), close
@@ -275,13 +285,13 @@ def _around(desk: int, weights: int, onward: float, most: int, into: int, counts
     s, found, main = search_at(desk), integers_at(counts, (2,)), 0
     n, dim = s.desk[at.NODES], s.desk[at.DIM]
     for i in range(n):
-        s.heads[i] = 0
+        s.items[i] = 0
     for i in range(n):
         if s.nodes[i] == FREE:
             group = group_of(s, i)
-            s.heads[group] += 1
-            main = group if s.heads[group] > s.heads[main] else main
-    few = s.heads[main] < LEAST
+            s.items[group] += 1
+            main = group if s.items[group] > s.items[main] else main
+    few = s.items[main] < LEAST
     for end in range(2):
         found[end] = 0
         for i in range(n):

@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from evenroad._arrays import Floats, Ints, Ints32
-from evenroad.robot import ArmWorld, Robot, Scene
+from evenroad.robot import ArmWorld, Robot, Scene, in_scene
 from evenroad.robot.known_robots import prepared
+from evenroad.robot_roadmap.cell import day_and_all, require_same_robot
 from evenroad.robot_roadmap.known_graph import KnownGraph
 from evenroad.robot_roadmap.turns import OneTurn, one_turn, whole_turns
 
@@ -47,3 +48,11 @@ class KnownMotions:
     def graph(self) -> KnownGraph:
         """The roadmap by node, for the compiled search."""
         return KnownGraph(self.milestones, self.edges, self.turns, self.one_turn)
+
+
+def world_of(roadmap: KnownMotions, scene: Scene, robot: Robot | None = None) -> tuple[ArmWorld, Scene]:
+    """Return the robot in its cell among the obstacles of a day, and these alone; raises as ``SceneRoadmap``."""
+    day, everything = day_and_all(roadmap.cell, scene)
+    robot = in_scene(roadmap.robot if robot is None else robot, everything)
+    require_same_robot(roadmap.robot, roadmap.cell, robot.empty_handed())
+    return ArmWorld(robot, everything, resolution=roadmap.resolution), day

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from evenroad.robot.kernel.layout import quick
+from evenroad.robot_roadmap.search_links import choose_close
 from evenroad.robot_roadmap.search_memory import (
     BLOCKED,
     BY,
     CAPACITY,
-    CLOSE,
     CLOSE_GOALS,
     CLOSE_START,
     DIM,
@@ -20,7 +20,6 @@ from evenroad.robot_roadmap.search_memory import (
     LINKS,
     MADE,
     NEXT,
-    NODES,
     NONE,
     NUMBER,
     OTHER,
@@ -28,38 +27,43 @@ from evenroad.robot_roadmap.search_memory import (
     TO,
     TOLD,
     UNKNOWN,
-    WEIGHTS,
     Search,
-    kept_in_order,
 )
-from evenroad.robot_roadmap.search_metric import write, write_distances
+from evenroad.robot_roadmap.search_metric import write
 from evenroad.robot_roadmap.search_queue import push, state_of
-
-CLOSE_ONWARD = 0.13
-"""Links by displacement are tried in the order of it and this share of the way by them, with the link twice: they find
-a way for most ends that see nothing, but lead round about."""
 
 
 @quick
 def price_links(s: Search) -> None:
     """Write what the shortest way by each link of a goal costs, and which link of the start it begins with."""
-    for row in range((s.desk[ENDS] - 1) * s.desk[LINKS]):
+    d = s.desk
+    for rank in range(d[LINKS]):
+        i = s.near[0, rank]
+        s.costs[rank] = s.away[i] if _is_told(s, 0, i) else np.inf
+    for row in range((d[ENDS] - 1) * d[LINKS]):
         _price_row(s, row)
+
+
+@quick
+def _is_told(s: Search, end: int, i: int) -> bool:
+    """Return whether the table knows a milestone, and its link to an end is not known to be blocked."""
+    return 0 <= i < s.desk[TOLD] and s.links[end, i] != BLOCKED and s.nodes[i] != BLOCKED
 
 
 @quick
 def _price_row(s: Search, row: int) -> None:
     """Do so for one link of a goal; inf where nothing leads there."""
     d, links = s.desk, s.desk[LINKS]
-    end, least, best = 1 + row // links, np.inf, 0
+    end, told, least, best = 1 + row // links, d[TOLD], np.inf, 0
     j = s.near[end, row % links]
-    if 0 <= j < d[TOLD] and s.links[end, j] != BLOCKED and s.nodes[j] != BLOCKED:
+    if _is_told(s, end, j):
+        far = s.far[j * told : (j + 1) * told]
         for rank in range(links):
-            i = s.near[0, rank]
-            if 0 <= i < d[TOLD] and s.links[0, i] != BLOCKED and s.nodes[i] != BLOCKED:
-                cost = s.away[i] + s.far[j * d[TOLD] + i]
-                if cost < least:
-                    least, best = cost, rank
+            # What does not count, as it is inf, is looked up somewhere.
+            i = min(max(s.near[0, rank], 0), told - 1)
+            cost = np.float32(s.costs[rank]) + far[i]
+            if cost < least:
+                least, best = cost, rank
         least += s.away[end * d[CAPACITY] + j]
     s.keys[row], s.items[row] = least, best
 
@@ -78,9 +82,11 @@ def _best_links(s: Search) -> tuple[int, int, int]:
                 least, row = s.keys[other], other
         if row < 0:
             return -1, -1, -1
-        end, i = 1 + row // links, s.near[0, s.items[row]]
-        j = s.near[end, row % links]
-        if s.links[end, j] != BLOCKED and s.links[0, i] != BLOCKED:
+        end, rank = 1 + row // links, s.items[row]
+        i, j = s.near[0, rank], s.near[end, row % links]
+        if s.links[0, i] == BLOCKED:
+            s.costs[rank] = np.inf
+        elif s.links[end, j] != BLOCKED:
             return i, j, end
         _price_row(s, row)
 
@@ -145,36 +151,3 @@ def has_others(s: Search) -> bool:
             for end in range(first, last):
                 choose_close(s, end)
     return chosen
-
-
-@quick
-def choose_close(s: Search, end: int) -> None:
-    """Choose other milestones that an end is tried to be linked to: free ones that are near in displacement."""
-    d, n, count, squared = s.desk, s.desk[NODES], 0, 0.0
-    other = 1 if end == 0 else 0
-    write_distances(s, end, s.rules[WEIGHTS], s.costs[:n])
-    for k in range(d[DIM]):
-        squared += s.rules[WEIGHTS, k] ** 2 / d[DIM]
-    # Joint values as displacement.
-    share, by = CLOSE_ONWARD * np.sqrt(squared), _seen_by(s, other)
-    for i in range(n):
-        onward = s.far[by * d[TOLD] + i] if by >= 0 and i < d[TOLD] else s.away[other * d[CAPACITY] + i]
-        s.costs[i] += share * (2.0 * s.away[end * d[CAPACITY] + i] + onward)
-    for i in range(n):
-        if s.nodes[i] >= FREE and s.links[end, i] != BLOCKED:
-            count = kept_in_order(s.keys, s.near[end], count, d[CLOSE], s.costs[i], i)
-    for rank in range(count, d[LINKS]):
-        s.near[end, rank] = -1
-
-
-@quick
-def _seen_by(s: Search, end: int) -> int:
-    """Return the first milestone that an end is known to be linked to, else the first to be tried; -1 for none."""
-    first = -1
-    for rank in range(s.desk[LINKS]):
-        i = s.near[end, rank]
-        if 0 <= i < s.desk[TOLD]:
-            if s.links[end, i] >= FREE:
-                return i
-            first = i if first < 0 else first
-    return first

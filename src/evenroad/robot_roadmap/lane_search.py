@@ -35,16 +35,22 @@ from evenroad.robot_roadmap.search_memory import (
     BASE,
     BLOCKED,
     BY,
+    CHECKS,
     DIM,
     EDGE,
     ENDS,
     FOUND,
     FREE,
+    GOAL,
     LINK,
+    MILESTONES,
+    MOTIONS,
     NODE,
     PARENT,
     PENDING,
     PROVED,
+    REPORT,
+    ROWS,
     STATE,
     STRAIGHT,
     UNKNOWN,
@@ -53,10 +59,6 @@ from evenroad.robot_roadmap.search_memory import (
 )
 
 Ints = npt.NDArray[np.int64]
-
-ROWS, MILESTONES, MOTIONS, GOAL, CHECKS, REPORT = range(6)
-"""Of the report: waypoints written, milestones and motions that were asked about, the goal that was reached, batches of
-sixteen checks."""
 
 FIRST, LAST, ALL = 1, 2, 4
 """Which motions of a way are proved: of its start, of its goal, all."""
@@ -98,6 +100,8 @@ def find_way(
     s, counted = search_at(desk), integers_at(report, (REPORT,))
     full.counts[BATCHES] = 0
     if fresh != 0:
+        for row in range(REPORT):
+            counted[row] = 0
         if not _ends_free(s, full):
             return ENDS_TAKEN
         begin(s)

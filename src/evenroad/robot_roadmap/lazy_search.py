@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import matrix_at
 from evenroad.robot.kernel.layout import quick
-from evenroad.robot_roadmap.known_ways import choose_close, has_others, look_up, price_links
+from evenroad.robot_roadmap.known_ways import has_others, look_up, price_links
+from evenroad.robot_roadmap.search_links import choose_close, choose_links
 from evenroad.robot_roadmap.search_memory import (
     AIM,
     AIMED_END,
@@ -55,7 +56,6 @@ from evenroad.robot_roadmap.search_memory import (
     PARENT,
     PENDING,
     PHASE,
-    PROVED,
     REACHED,
     SEARCH,
     SIZE,
@@ -69,18 +69,14 @@ from evenroad.robot_roadmap.search_memory import (
     WAITING,
     Search,
     join,
-    kept_in_order,
 )
-from evenroad.robot_roadmap.search_metric import distance, is_at, measure, write
+from evenroad.robot_roadmap.search_metric import distance, measure, write
 from evenroad.robot_roadmap.search_queue import pop, push, state_of
 
 Floats = npt.NDArray[np.float64]
 
 ENDS_TAKEN, SPENT, PAUSED = range(FULL + 1, FULL + 4)
 """What whoever answers ends with besides: start or goals not free, motions or time over, its slice used up."""
-
-ONWARD = 0.5
-"""Links are tried in the order of their length and this share of what is left beyond them."""
 
 AIMED = 4
 """A goal of which so many links were blocked before a free one was found is approached by that one."""
@@ -89,34 +85,12 @@ AIMED = 4
 @quick
 def begin(s: Search) -> None:
     """Measure how far milestones are from the ends, and choose those that each is tried to be linked to."""
-    d, capacity = s.desk, s.desk[CAPACITY]
+    d = s.desk
     for end in range(d[ENDS]):
         measure(s, end, d[MEASURED])
     d[MEASURED] = d[NODES]
     for end in range(d[ENDS]):
-        count, last, s.radius[end] = 0, np.inf, 0.0
-        for i in range(d[NODES]):
-            beyond = s.away[i]
-            if end == 0:
-                beyond = s.away[capacity + i]
-                for other in range(2, d[ENDS]):
-                    beyond = min(beyond, s.away[other * capacity + i])
-            away = s.away[end * capacity + i]
-            if away == 0.0 and s.nodes[i] == FREE and is_at(s, end, i):
-                # An end that is a milestone needs no other.
-                count, s.near[end, 0], s.links[end, i] = 1, i, PROVED
-                break
-            key = away + np.float32(ONWARD) * beyond
-            if d[CLOSE] > 0 and s.links[end, i] >= FREE:
-                key = np.float32(0.0)
-            if key >= last or s.nodes[i] == BLOCKED or s.links[end, i] == BLOCKED:
-                continue
-            count = kept_in_order(s.keys, s.near[end], count, d[LINKS], key, i)
-            last = s.keys[count - 1] if count == d[LINKS] else np.inf
-        for rank in range(count):
-            s.radius[end] = max(s.radius[end], s.away[end * capacity + s.near[end, rank]])
-        for rank in range(count, d[LINKS]):
-            s.near[end, rank] = -1
+        choose_links(s, end)
     clear(s)
     d[AIM], d[AIMED_END], d[HUB], d[PHASE] = -1, -1, -1, ASK_STRAIGHT
     d[CLOSE_START] = d[CLOSE_GOALS] = d[CLOSE]
@@ -126,9 +100,9 @@ def begin(s: Search) -> None:
 def clear(s: Search) -> None:
     """Forget what the search has got to."""
     d = s.desk
+    for state in range(d[SIZE]):
+        s.heads[s.states[state, OF]] = -1
     d[SIZE], d[MADE], d[WAITING], d[PENDING] = 0, 0, 0, -1
-    for i in range(d[NODES]):
-        s.heads[i] = -1
 
 
 @quick

@@ -12,10 +12,10 @@ from evenroad.geometry.shapes import Shape
 from evenroad.roadmap import Budget, PlanResult
 from evenroad.roadmap.find_path import find_path
 from evenroad.robot import Scene
-from evenroad.robot_roadmap.known_motions import KnownMotions
+from evenroad.robot_roadmap.known_motions import KnownMotions, world_of
 from evenroad.robot_roadmap.learned import with_paths
 from evenroad.robot_roadmap.places import Goal, Place, read_ends
-from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap, world_of
+from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
 
 
 @dataclass(frozen=True, eq=False)

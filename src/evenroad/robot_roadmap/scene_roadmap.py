@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -19,12 +18,12 @@ from evenroad.roadmap.answer import connected, gave_up, refusal
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.find_path import NO_POINTS, SECONDS, with_reasons
 from evenroad.roadmap.query import Query
-from evenroad.robot import ArmWorld, Robot, Scene, in_scene
+from evenroad.robot import ArmWorld, Robot, Scene
 from evenroad.robot.trees import tighten
 from evenroad.robot_roadmap.ask import Asked, Checks, ask, prepare
-from evenroad.robot_roadmap.cell import day_and_all, left_to_check, require_same_robot
+from evenroad.robot_roadmap.cell import left_to_check
 from evenroad.robot_roadmap.explored import explore
-from evenroad.robot_roadmap.known_motions import KnownMotions
+from evenroad.robot_roadmap.known_motions import KnownMotions, world_of
 from evenroad.robot_roadmap.lazy_search import ENDS_TAKEN, SPENT
 from evenroad.robot_roadmap.own_shapes import OwnShapesWorld
 from evenroad.robot_roadmap.places import Goal, Place, read_ends
@@ -73,6 +72,8 @@ ENDS = 400
 EXPLORED_LINKS, EXPLORED_MOTIONS = 20, 150
 """In an explored scene fewer links do."""
 
+_BUDGET = Budget(seconds=SECONDS)
+
 _LONG = 1e8
 """Seconds that stand for no limit."""
 
@@ -81,14 +82,6 @@ _SOME = 64
 
 _ready: set[str] = set()
 """Backends whose programs are compiled."""
-
-
-def world_of(roadmap: KnownMotions, scene: Scene, robot: Robot | None = None) -> tuple[ArmWorld, Scene]:
-    """Return the robot in its cell among the obstacles of a day, and these alone; raises as `SceneRoadmap`."""
-    day, everything = day_and_all(roadmap.cell, scene)
-    robot = in_scene(roadmap.robot if robot is None else robot, everything)
-    require_same_robot(roadmap.robot, roadmap.cell, robot.empty_handed())
-    return ArmWorld(robot, everything, resolution=roadmap.resolution), day
 
 
 class SceneRoadmap:
@@ -190,7 +183,9 @@ class SceneRoadmap:
         links: int,
         greed: float = GREED,
         nearby: float = 0.0,
-        **flags: Any,
+        *,
+        only_known: bool = False,
+        unturned: bool = False,
     ) -> Asked:
         return ask(
             *self._asked,
@@ -200,9 +195,10 @@ class SceneRoadmap:
             links=links,
             greed=greed,
             nearby=nearby,
+            only_known=only_known,
+            unturned=unturned,
             most_motions=most,
             deadline=deadline,
-            **flags,
         )
 
     @property
@@ -268,7 +264,7 @@ class SceneRoadmap:
         ends = read_ends(self.world, start, goal)
         if isinstance(ends, PlanResult):
             return ends
-        (first, goals), budget = ends, Budget(seconds=SECONDS) if budget is None else budget
+        (first, goals), budget = ends, budget or _BUDGET
         began, deadline = now(), budget.deadline()
         most = 2**31 - 1 if budget.motions is None else budget.motions
         # Trees grow among what is free for the capsules.
@@ -286,14 +282,14 @@ class SceneRoadmap:
             # What leads to the goal within one turn is not to be lost.
             before, left = asked.motions, limits[0] - asked.motions
             asked = self._ask(first, goals, left, limits[1], links, *order, unturned=True)
-            asked = replace(asked, motions=asked.motions + before)
+            asked = asked._replace(motions=asked.motions + before)
         while asked.goal >= 0:
             if (result := self._solved(asked, first, goals, shorten, began)) is not None:
                 return result
             # What was drawn tight could not be proved: the way itself has to be.
             before = asked.motions
             asked = self._ask(first, goals, max(limits[0] - before, 0), limits[1], links, *order)
-            asked = replace(asked, motions=asked.motions + before)
+            asked = asked._replace(motions=asked.motions + before)
         if self._own is not None:
             budget = budget.rest(deadline, asked.motions)
             return self._own.plan(first, goals, budget=budget, shorten=shorten, trees=trees)
@@ -333,7 +329,7 @@ class SceneRoadmap:
             rest = min(TRIED_MOTIONS, max(most - before[1], 0))
             asked = self._ask(start, goals, rest, deadline, links, only_known=True)
             before = before[0] + asked.milestones, before[1] + asked.motions
-        return replace(asked, milestones=before[0], motions=before[1], batches=batches + asked.batches)
+        return asked._replace(milestones=before[0], motions=before[1], batches=batches + asked.batches)
 
     def _by_trees(self, attempt: Attempt, asked: Asked) -> Connection:
         """Return what trees find, and learn it."""

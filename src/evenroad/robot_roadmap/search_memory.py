@@ -8,10 +8,12 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import (
+    byte_table_at,
     bytes_at,
     doubles_at,
     integers_at,
     matrix_at,
+    short_table_at,
     singles_at,
     small_table_at,
     table_at,
@@ -22,6 +24,7 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 Ints32 = npt.NDArray[np.int32]
 Bytes = npt.NDArray[np.uint8]
+Shorts = npt.NDArray[np.uint16]
 Singles = npt.NDArray[np.float32]
 
 UNKNOWN, BLOCKED, DOUBTED, FREE, PROVED = range(5)
@@ -86,6 +89,11 @@ STATE, PARENT, VIA = range(3)
 """Of an entry: a state, or a goal as minus its row; the entry before, or -1; and the edge, or -1 of a link."""
 
 
+ROWS, MILESTONES, MOTIONS, GOAL, CHECKS, REPORT = range(6)
+"""Of the report of a query: waypoints written, milestones and motions that were asked about, the goal that was reached,
+batches of sixteen checks; and how many things that is."""
+
+
 class Search(NamedTuple):
     """A roadmap in a scene, and a query in it, as compiled code reads them.
 
@@ -95,22 +103,25 @@ class Search(NamedTuple):
         Counts and addresses.
     milestones, columns : float64 array, shape (capacity, dim), and float32 array, shape (dim capacity,)
         The same by coordinate.
-    nodes, first, groups : int64 arrays, shape (capacity,)
+    nodes, first, groups : uint8 array and int64 arrays, shape (capacity,)
         Verdicts of milestones, their first half edges, and another one that free motions lead to, or itself.
     halves, leads, lengths, edges : arrays
         Half edges, (h, 3), their turns, packed, their lengths, verdicts of edges.
     rules : float64 array, shape (8, dim)
-    far, steps : float32 array, shape (told^2,), and int32 array, shape (told, told)
+    far, steps : float32 array, shape (told^2,), and uint16 array, shape (told, told)
         How far milestones are from each other along what is known to be free, inf where nothing leads; and on the way
         to the first, which one comes after the second.
     ends, asked : float64 arrays, shapes (e + 1, dim) and (2, dim)
         Start, goals and a place that is learned; the two ends of the motion that is asked about.
-    away, turns, links, near : arrays, shape (e + 1, capacity); the first in one piece
-        Of each end: how far milestones are, after which turns, verdicts of links, and the milestones to be tried.
-    straight, radius : arrays, shape (e + 1,)
+    turns, near, away : arrays, shape (e + 1, capacity); the last in one piece
+        Of each end: after which turns milestones are nearest, which are to be tried, and how far all are; behind
+        these is a row to work in.
+    links : uint8 array, shape (e + 1, capacity)
+        Verdicts of links.
+    straight, radius : uint8 and float64 arrays, shape (e + 1,)
         Verdicts of the motions straight to the goals, and how far the farthest milestone is that is to be tried.
     heads : int64 array, shape (capacity,)
-        The first state of each milestone, or -1.
+        The first state of each milestone, or -1: of all that no state is of.
     states, bounds, entries, costs, keys, items : arrays
         What the search has got to, and its queue.
     """
@@ -118,7 +129,7 @@ class Search(NamedTuple):
     desk: Ints
     milestones: Floats
     columns: Singles
-    nodes: Ints
+    nodes: Bytes
     first: Ints
     groups: Ints
     halves: Ints32
@@ -127,14 +138,14 @@ class Search(NamedTuple):
     edges: Bytes
     rules: Floats
     far: Singles
-    steps: Ints32
+    steps: Shorts
     ends: Floats
     asked: Floats
-    away: Singles
     turns: Ints
-    links: Ints
     near: Ints
-    straight: Ints
+    away: Singles
+    links: Bytes
+    straight: Bytes
     radius: Floats
     heads: Ints
     states: Ints
@@ -147,7 +158,7 @@ class Search(NamedTuple):
 
 def known_room(capacity: int, dim: int) -> int:
     """Return how many doubles milestones need."""
-    return (dim + (dim + 1) // 2 + 3) * capacity
+    return (dim + (dim + 1) // 2 + 2) * capacity + (capacity + 7) // 8
 
 
 def graph_room(halves: int) -> int:
@@ -159,11 +170,7 @@ def query_room(desk: Ints) -> int:
     """Return how many doubles a query needs."""
     ends, capacity, dim = int(desk[ENDS]) + 1, int(desk[CAPACITY]), int(desk[DIM])
     return (
-        (ends + 2) * dim
-        + 2 * ends
-        + (4 * ends + 1) * capacity
-        + 6 * int(desk[STATES])
-        + 6 * int(desk[ENTRIES])
+        (ends + 2) * dim + ends + (3 * ends + 1) * capacity + 6 * int(desk[STATES]) + 6 * int(desk[ENTRIES])
     )
 
 
@@ -173,13 +180,16 @@ def search_at(desk: int) -> Search:
     d = integers_at(desk, (DESK,))
     capacity, dim, ends, states, entries = d[CAPACITY], d[DIM], d[ENDS] + 1, d[STATES], d[ENTRIES]
     columns = d[KNOWN] + 8 * dim * capacity
-    nodes = columns + 8 * ((dim + 1) // 2) * capacity
+    first = columns + 8 * ((dim + 1) // 2) * capacity
     leads = d[GRAPH] + 4 * HALF * d[HALVES]
     asked = d[QUERY] + 8 * ends * dim
-    links = asked + 8 * 2 * dim
+    turns = asked + 8 * 2 * dim
     row = 8 * ends * capacity
-    straight = links + 4 * row
-    heads = straight + 16 * ends
+    away = turns + 2 * row
+    # These, with a row to work in, and the two that follow take no more than a third row.
+    links = away + row // 2 + 4 * capacity
+    radius = away + row
+    heads = radius + 8 * ends
     found = heads + 8 * capacity
     bounds = found + 8 * 4 * states
     made = bounds + 8 * 2 * states
@@ -188,24 +198,24 @@ def search_at(desk: int) -> Search:
         d,
         matrix_at(d[KNOWN], (capacity, dim)),
         singles_at(columns, (dim * capacity,)),
-        integers_at(nodes, (capacity,)),
-        integers_at(nodes + 8 * capacity, (capacity,)),
-        integers_at(nodes + 16 * capacity, (capacity,)),
+        bytes_at(first + 16 * capacity, (capacity,)),
+        integers_at(first, (capacity,)),
+        integers_at(first + 8 * capacity, (capacity,)),
         small_table_at(d[GRAPH], (d[HALVES], HALF)),
         integers_at(leads, (d[HALVES],)),
         singles_at(leads + 8 * d[HALVES], (d[HALVES],)),
         bytes_at(d[VERDICTS], (d[EDGES],)),
         matrix_at(d[RULES], (RULE_ROWS, dim)),
         singles_at(d[FAR], (d[TOLD] * d[TOLD],)),
-        small_table_at(d[STEPS], (d[TOLD], d[TOLD])),
+        short_table_at(d[STEPS], (d[TOLD], d[TOLD])),
         matrix_at(d[QUERY], (ends, dim)),
         matrix_at(asked, (2, dim)),
-        singles_at(links + 3 * row, (ends * capacity,)),
-        table_at(links + row, (ends, capacity)),
-        table_at(links, (ends, capacity)),
-        table_at(links + 2 * row, (ends, capacity)),
-        integers_at(straight, (ends,)),
-        doubles_at(straight + 8 * ends, (ends,)),
+        table_at(turns, (ends, capacity)),
+        table_at(turns + row, (ends, capacity)),
+        singles_at(away, ((ends + 1) * capacity,)),
+        byte_table_at(links, (ends, capacity)),
+        bytes_at(links + ends * capacity, (ends,)),
+        doubles_at(radius, (ends,)),
         integers_at(heads, (capacity,)),
         table_at(found, (states, 4)),
         matrix_at(bounds, (states, 2)),

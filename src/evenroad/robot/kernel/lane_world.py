@@ -53,7 +53,7 @@ class LaneWorld:
 
         The memory is this thread's, for the next call of a program only.
         """
-        checks, tables, by_joint, doubles = self._places
+        checks, tables, by_joint, doubles = self.places
         array, begin = _memory.array, _memory.address
         if len(array) < doubles + more:
             array = _memory.array = np.empty(doubles + more)
@@ -89,7 +89,7 @@ class LaneWorld:
         return {}
 
     @cached_property
-    def _places(self) -> tuple[int, int, int, int]:
+    def places(self) -> tuple[int, int, int, int]:
         """Addresses of the checks and of the two arrays, and how much memory a program's checks need."""
         header = self.tables[: at.HEADER].tolist()
         dim, things = header[at.COORDINATES], header[at.CAPSULES] + header[at.PAIRS]

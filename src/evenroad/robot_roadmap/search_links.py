@@ -1,0 +1,154 @@
+"""Which milestones the ends of a query are tried to be linked to, in compiled code."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad.robot.kernel.layout import quick
+from evenroad.robot_roadmap.search_memory import (
+    BLOCKED,
+    CAPACITY,
+    CLOSE,
+    DIM,
+    ENDS,
+    FREE,
+    LINKS,
+    NODES,
+    PROVED,
+    TOLD,
+    WEIGHTS,
+    Search,
+    kept_in_order,
+)
+from evenroad.robot_roadmap.search_metric import is_at, write_distances
+
+Ints = npt.NDArray[np.int64]
+Singles = npt.NDArray[np.float32]
+
+ONWARD = 0.5
+"""Links are tried in the order of their length and this share of what is left beyond them."""
+
+CLOSE_ONWARD = 0.13
+"""Links by displacement are tried in the order of it and this share of the way by them, with the link twice: they find
+a way for most ends that see nothing, but lead round about."""
+
+HALVINGS = 12
+"""So often at most an interval is halved, until no more than twice the wanted ones are below: they are sorted."""
+
+
+@quick
+def choose_links(s: Search, end: int) -> None:
+    """Choose those that are near, or on the way to the other ends; an end that is a milestone needs no other."""
+    d, n = s.desk, s.desk[NODES]
+    away = s.away[end * d[CAPACITY] : end * d[CAPACITY] + n]
+    same = _milestone_at(s, end, away)
+    if same >= 0:
+        count, s.near[end, 0], s.links[end, same] = 1, same, PROVED
+    else:
+        wants = s.away[(d[ENDS] + 1) * d[CAPACITY] :][:n]
+        _write_wants(s, end, away, wants)
+        count = _least(s, wants, d[LINKS], s.near[end])
+    s.radius[end] = 0.0
+    for rank in range(count):
+        s.radius[end] = max(s.radius[end], away[s.near[end, rank]])
+    for rank in range(count, d[LINKS]):
+        s.near[end, rank] = -1
+
+
+@quick
+def _milestone_at(s: Search, end: int, away: Singles) -> int:
+    """Return the first free milestone that an end is, or -1."""
+    some = False
+    for i in range(len(away)):
+        some |= away[i] == np.float32(0.0)
+    if some:
+        for i in range(len(away)):
+            if away[i] == 0.0 and s.nodes[i] == FREE and is_at(s, end, i):
+                return i
+    return -1
+
+
+@quick
+def _write_wants(s: Search, end: int, away: Singles, wants: Singles) -> None:
+    """Write keys, the least first: inf for what is blocked, 0 for free links of an explored scene."""
+    d, n, links = s.desk, len(away), s.links[end]
+    beyond = s.away[d[CAPACITY] : d[CAPACITY] + n] if end == 0 else s.away[:n]
+    for i in range(n):
+        wants[i] = beyond[i]
+    if end == 0:
+        for other in range(2, d[ENDS]):
+            beyond = s.away[other * d[CAPACITY] : other * d[CAPACITY] + n]
+            for i in range(n):
+                wants[i] = beyond[i] if beyond[i] < wants[i] else wants[i]
+    sooner = FREE if d[CLOSE] > 0 else PROVED + 1
+    for i in range(n):
+        want = away[i] + np.float32(ONWARD) * wants[i]
+        want = np.float32(0.0) if links[i] >= sooner else want
+        blocked = (s.nodes[i] == BLOCKED) | (links[i] == BLOCKED)
+        wants[i] = np.float32(np.inf) if blocked else want
+
+
+@quick
+def _least(s: Search, wants: Singles, most: int, into: Ints) -> int:
+    """Write the milestones that are wanted most, in order, of equal ones the first; return how many."""
+    limit, count = _limit(wants, most), 0
+    for i in range(len(wants)):
+        if wants[i] <= limit:
+            count = kept_in_order(s.keys, into, count, most, wants[i], i)
+    return count
+
+
+@quick
+def _limit(wants: Singles, most: int) -> np.float32:
+    """Return a number that so many wants are not greater than, and few others; the largest where there are fewer."""
+    low, high, found = np.float32(0.0), np.float32(0.0), 0
+    for i in range(min(2 * most, len(wants))):
+        if wants[i] < np.inf:
+            high, found = max(high, wants[i]), found + 1
+    if found < most:
+        return np.float32(np.finfo(np.float32).max)
+    for _ in range(HALVINGS):
+        middle, found = np.float32(0.5) * (low + high), 0
+        for i in range(len(wants)):
+            found += wants[i] <= middle
+        if found < most:
+            low = middle
+        else:
+            high = middle
+            if found < 2 * most:
+                break
+    return high
+
+
+@quick
+def choose_close(s: Search, end: int) -> None:
+    """Choose other milestones that an end is tried to be linked to: free ones that are near in displacement."""
+    d, n, count, squared = s.desk, s.desk[NODES], 0, 0.0
+    other = 1 if end == 0 else 0
+    write_distances(s, end, s.rules[WEIGHTS], s.costs[:n])
+    for k in range(d[DIM]):
+        squared += s.rules[WEIGHTS, k] ** 2 / d[DIM]
+    # Joint values as displacement.
+    share, by = CLOSE_ONWARD * np.sqrt(squared), _seen_by(s, other)
+    for i in range(n):
+        onward = s.far[by * d[TOLD] + i] if by >= 0 and i < d[TOLD] else s.away[other * d[CAPACITY] + i]
+        s.costs[i] += share * (2.0 * s.away[end * d[CAPACITY] + i] + onward)
+    for i in range(n):
+        if s.nodes[i] >= FREE and s.links[end, i] != BLOCKED:
+            count = kept_in_order(s.keys, s.near[end], count, d[CLOSE], s.costs[i], i)
+    for rank in range(count, d[LINKS]):
+        s.near[end, rank] = -1
+
+
+@quick
+def _seen_by(s: Search, end: int) -> int:
+    """Return the first milestone that an end is known to be linked to, else the first to be tried; -1 for none."""
+    first = -1
+    for rank in range(s.desk[LINKS]):
+        i = s.near[end, rank]
+        if 0 <= i < s.desk[TOLD]:
+            if s.links[end, i] >= FREE:
+                return i
+            first = i if first < 0 else first
+    return first
