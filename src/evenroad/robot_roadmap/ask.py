@@ -47,15 +47,15 @@ def ask(
     graph: KnownGraph,
     start: Floats,
     goals: Floats,
-    *,
+    most_motions: int,
+    deadline: float,
     links: int,
     greed: float,
     nearby: float = 0.0,
+    *,
     only_known: bool = False,
     unturned: bool = False,
     proved: bool = True,
-    most_motions: int,
-    deadline: float,
 ) -> Asked:
     """Search for a way from a start, (dim,), to one of some goals, (g, dim), each tried to be linked to so many.
 

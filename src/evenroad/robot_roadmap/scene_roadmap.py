@@ -183,23 +183,10 @@ class SceneRoadmap:
         links: int,
         greed: float = GREED,
         nearby: float = 0.0,
-        *,
-        only_known: bool = False,
-        unturned: bool = False,
+        **flags: bool,
     ) -> Asked:
-        return ask(
-            *self._asked,
-            self._graph,
-            start,
-            goals,
-            links=links,
-            greed=greed,
-            nearby=nearby,
-            only_known=only_known,
-            unturned=unturned,
-            most_motions=most,
-            deadline=deadline,
-        )
+        world, day = self._asked
+        return ask(world, day, self._graph, start, goals, most, deadline, links, greed, nearby, **flags)
 
     @property
     def _size(self) -> int:
