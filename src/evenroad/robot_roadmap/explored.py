@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 LINKS, MOTIONS, GREED = 40, 90, 3.0
 """From each end a way to some milestone is searched with so many links and motions, as for a query."""
 
-SOON = 20
+SOON = 12
 """An end that leads there by fewer motions need not be known: too many ends beside each other make ways longer."""
 
 OUT = 5000
@@ -47,7 +47,7 @@ _LONG = 1e8
 TIGHT = 400
 """Ways are drawn tight with so many batches of checks before it is learned where they bend."""
 
-THIN = 0.6
+THIN = 0.8
 """Bends are learned that are farther than this from all that is known, as a share of how far milestones are apart."""
 
 MOST_TOLD = 3000

@@ -66,7 +66,7 @@ queries are learned until there are so many milestones more."""
 SOON = 5000
 """So many motions ways out may take before shapes are asked: some milliseconds."""
 
-ENDS = 400
+ENDS = 700
 """Ends in narrow places that are tried where a scene is explored."""
 
 EXPLORED_LINKS, EXPLORED_MOTIONS = 20, 150
