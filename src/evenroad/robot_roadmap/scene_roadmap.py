@@ -54,7 +54,7 @@ TRIED_LINKS, TRIED_MOTIONS = 40, 90
 """Where trees may follow, so many links of each end are tried, and so many motions: trees find ways out of narrow
 places with fewer checks than long links do."""
 
-WORK, AMONG_SURFACES, LEAST_WORK = 180, 60, 30
+WORK, AMONG_SURFACES, LEAST_WORK = 200, 50, 30
 """After so many batches of sixteen checks, those of the search among them, a path is not drawn tighter; after fewer
 among clouds and triangles, where each takes longer; but so many it has.  With more the slowest queries take longer,
 and paths become shorter by ever less."""
