@@ -336,7 +336,7 @@ def lane_verdicts(world, q, table):
     """Which configurations touch nothing, by sixteen lanes that read the lengths at an address."""
     lanes = world.lanes
     check = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_int64] * 5)(int(check_addresses(False)[1]))
-    _, tables, _, _ = lanes._places
+    _, tables, _, _ = lanes.places
     header = lanes.tables[: at.HEADER]
     room = np.zeros(header[at.SCRATCH] + 64, dtype=np.float32)
     states = np.empty(world.space.dim * at.LANES + 8)
@@ -369,7 +369,7 @@ def test_larger_bodies_keep_so_far_from_obstacles_and_as_near_to_each_other(kind
     near = np.clip(near + shift, world.space.low, world.space.high)
     some = np.concatenate([near, others, q[:800]])
     some = some[: len(some) // 16 * 16]
-    plain = world.lanes._places[1] + 8 * int(world.lanes.tables[at.INTEGERS])
+    plain = world.lanes.places[1] + 8 * int(world.lanes.tables[at.INTEGERS])
     obstacles = clearance(replace(robot, pairs=()), scene, some)
     itself = clearance(robot, Scene("nothing"), some)
     for grown, table in ((0.0, plain), (margin, world.lanes.wider(margin))):

@@ -355,7 +355,6 @@ def _trees(
 
 
 @cache
-@cache
 def _place(points: Callable[..., Floats], *dim: int) -> tuple[int, int]:
     """Return the address of points that are kept for good, and how many they are."""
     return address(points(*dim)), len(points(*dim))
