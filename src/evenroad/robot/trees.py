@@ -193,8 +193,8 @@ def tighten(
     batches : int
         After so many batches of sixteen checks no waypoint slides any more; cuts of corners and the proof follow.
     proved : bool
-        Whether the path is, as it was given.  Where it is not, and what was drawn tight cannot be, there are no
-        waypoints: (0, dim).
+        Whether the path is, as it was given; a single motion has to be, and all of them without lanes.  Where it is
+        not, and neither what was drawn tight nor what was shortened is, there are no waypoints: (0, dim).
 
     Raises
     ------
