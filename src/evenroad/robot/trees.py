@@ -191,7 +191,8 @@ def tighten(
     path : array_like, shape (p, dim), p >= 2
         Waypoints; every motion is free in the world.
     batches : int
-        After so many batches of sixteen checks no waypoint slides any more; cuts of corners and the proof follow.
+        After so many batches of sixteen checks, of which some are left for the proof, no waypoint slides any more; cuts
+        of corners and the proof follow.
     proved : bool
         Whether the path is, as it was given; a single motion has to be, and all of them without lanes.  Where it is
         not, and neither what was drawn tight nor what was shortened is, there are no waypoints: (0, dim).

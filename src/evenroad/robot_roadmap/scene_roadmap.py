@@ -55,9 +55,9 @@ TRIED_LINKS, TRIED_MOTIONS = 40, 90
 places with fewer checks than long links do."""
 
 WORK, AMONG_SURFACES, LEAST_WORK = 200, 50, 30
-"""After so many batches of sixteen checks, those of the search among them, a path is not drawn tighter; after fewer
-among clouds and triangles, where each takes longer; but so many it has.  With more the slowest queries take longer,
-and paths become shorter by ever less."""
+"""After so many batches of sixteen checks, those of search and proof among them, a path is not drawn tighter; after
+fewer among clouds and triangles, where each takes longer; but so many it has.  With more the slowest queries take
+longer, and paths become shorter by ever less."""
 
 DEAR_LINKS, DEAR_WORK, MOST_LEARNED = 100, 800, 2000
 """Where checks are dear: so many links of each end are tried, paths are drawn tight with so many batches, and ends of

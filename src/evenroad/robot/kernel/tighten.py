@@ -96,7 +96,8 @@ def tighten_path(
     sphere, sphere_count
         Address of a float64 array, (sphere_count, dim): directions, of length 1, to be used in turn.
     most_batches : int
-        After so many batches of sixteen checks no waypoint slides any more; cuts and proofs follow.
+        After so many batches of sixteen checks, `OF_PROOF` a motion less, no waypoint slides any more; cuts and proofs
+        follow.
     proved : bool
         Whether the path is, as it was given; a single motion has to be.  Where it is not, there are no waypoints if
         nothing shorter is proved either.
