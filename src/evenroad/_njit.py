@@ -75,7 +75,7 @@ def _claim(name: str) -> bool:
 
 
 class _Part(JITCodeLibrary):
-    """Code that is only ever put into other code, which numba makes ready to run by itself all the same: here not."""
+    """Code that is only ever put into other code: numba would make it ready to run by itself, too."""
 
     def get_pointer_to_function(self, name: str) -> int:
         self._ensure_finalized()
@@ -92,13 +92,15 @@ class _Part(JITCodeLibrary):
 
 
 class _RawPart(_Part):
-    """Not even optimized by itself: that is done where it is put."""
+    """Such code that is not even optimized by itself: that is done where it is put."""
 
     def _optimize_final_module(self) -> None:
         return
 
 
 class _Nobody:
+    """Stands for who runs code, of code that does not run."""
+
     @staticmethod
     def set_env(name: str, env: object) -> None:
         """Do nothing."""
@@ -122,7 +124,8 @@ class _RawPartCompiler(_PartCompiler):
 def njit(*function: Callable[..., Any], **options: Any) -> Any:
     """Return what ``numba.njit`` does, kept as this module says where `cache` is asked for.
 
-    What Python cannot call is compiled as a part of what calls it, in half of the time.
+    What Python cannot call is compiled as a part of what calls it, in half of the time; a part of planners where
+    `_nrt` is False, as of ``layout.quick``.
     """
     if not options.pop("cache", False):
         if options.get("no_cpython_wrapper"):

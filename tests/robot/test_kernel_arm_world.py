@@ -242,7 +242,7 @@ def test_a_world_can_be_sent_to_another_process():
     for sent in (pickle.loads(pickle.dumps(world)), copy.deepcopy(world)):
         # Compiled code is given addresses: those of the world that was sent are not good for what arrives.
         assert address(sent.lanes.tables) != address(world.lanes.tables)
-        assert sent.lanes._places[1:3] == (address(sent.lanes.tables), address(sent.lanes.by_joint))
+        assert sent.lanes.places[1:3] == (address(sent.lanes.tables), address(sent.lanes.by_joint))
         np.testing.assert_array_equal(sent.valid(q), expected)
 
 

@@ -1,6 +1,7 @@
 """Paths drawn tight: shorter than shortcuts make them, proved free by double precision, and the same each time."""
 
 import ctypes
+import itertools
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -17,6 +18,8 @@ from evenroad.robot.certified import CertifiedWorld
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.lane_world import check_addresses
+from evenroad.robot.kernel.motion_states import BATCHES as DONE
+from evenroad.robot.kernel.motion_states import COUNTS
 from evenroad.robot.kernel.tighten import CLEARANCE
 from evenroad.robot.tree_sequences import ball_points, sphere_points
 from evenroad.robot.trees import connect, shorten, tighten
@@ -208,6 +211,56 @@ def test_where_a_given_motion_cannot_be_proved_no_other_is_put_in_unproved(detou
             assert any(on_motion(a, *motion) and on_motion(b, *motion) for motion in pairwise(given))
 
 
+def test_of_a_path_that_nobody_proved_nothing_is_returned_that_is_not_proved():
+    # States so far apart that many a motion is free at them, and cannot be proved.
+    world = replace(box_world(), resolution=1.0)
+    q = world.space.from_cube(np.random.default_rng(5).random((4000, world.space.dim)))
+    q = q[world.valid(q)]
+    a, b = q[0::2][: len(q) // 2], q[1::2]
+    q = np.stack([a, b], axis=1)[world.motion_valid(a, b)]
+    sure = world.motion_certified(q[:, 0], q[:, 1], 1e-6)
+    doubtful, certain = q[~sure], q[sure]
+    empty = left = 0
+    for first, then in zip(doubtful[:60], certain, strict=False):
+        for joined in itertools.permutations([*first, then[1]]):
+            given = np.stack(joined)
+            free = world.motion_valid(given[:-1], given[1:])
+            if not free.all() or proved(world, given):
+                continue
+            tight, motions = tighten(world, given, batches=BATCHES, proved=False)
+            assert motions > 0
+            if not len(tight):
+                assert tight.shape == (0, world.space.dim)
+                empty += 1
+                continue
+            left += 1
+            assert proved(world, tight)
+            np.testing.assert_array_equal(tight[[0, -1]], given[[0, -1]])
+    assert min(empty, left) >= 5
+
+
+def test_a_proved_path_is_drawn_as_tight_where_nobody_says_that_it_is(paths):  # noqa: F811
+    world, found = paths
+    for path in found[:8]:
+        expected, _ = tighten(world, path, batches=BATCHES)
+        np.testing.assert_array_equal(tighten(world, path, batches=BATCHES, proved=False)[0], expected)
+
+
+def test_work_heeds_the_limit_of_batches():
+    world = ArmWorld(ur5(np.pi), random_scene(5))
+    found, most = searched(world, 30, 8), {}
+    for batches in (0, 100, 2000):
+        used = []
+        for path in found:
+            tighten(world, path, batches=batches)
+            room, _ = world.lanes.arguments(COUNTS)
+            used.append(int(room[:COUNTS].view(np.int64)[DONE]))
+        most[batches] = max(used)
+    # Cuts and the proof come on top, and what was begun is ended.
+    assert most[0] < most[100] <= 200
+    assert most[2000] > 400
+
+
 def on_motion(q, a, b):
     """Whether a configuration lies on a motion."""
     share = np.clip((q - a) @ (b - a) / ((b - a) @ (b - a)), 0.0, 1.0)
@@ -336,7 +389,7 @@ def lane_verdicts(world, q, table):
     """Which configurations touch nothing, by sixteen lanes that read the lengths at an address."""
     lanes = world.lanes
     check = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_int64] * 5)(int(check_addresses(False)[1]))
-    _, tables, _, _ = lanes._places
+    _, tables, _, _ = lanes.places
     header = lanes.tables[: at.HEADER]
     room = np.zeros(header[at.SCRATCH] + 64, dtype=np.float32)
     states = np.empty(world.space.dim * at.LANES + 8)
@@ -369,7 +422,7 @@ def test_larger_bodies_keep_so_far_from_obstacles_and_as_near_to_each_other(kind
     near = np.clip(near + shift, world.space.low, world.space.high)
     some = np.concatenate([near, others, q[:800]])
     some = some[: len(some) // 16 * 16]
-    plain = world.lanes._places[1] + 8 * int(world.lanes.tables[at.INTEGERS])
+    plain = world.lanes.places[1] + 8 * int(world.lanes.tables[at.INTEGERS])
     obstacles = clearance(replace(robot, pairs=()), scene, some)
     itself = clearance(robot, Scene("nothing"), some)
     for grown, table in ((0.0, plain), (margin, world.lanes.wider(margin))):

@@ -9,6 +9,7 @@ import pytest
 from evenroad.errors import InvalidValue
 from evenroad.roadmap import Status
 from evenroad.robot import Obstacle, Scene, link_poses, with_limits
+from evenroad.robot_roadmap import explored as exploring
 from evenroad.robot_roadmap import search_memory as at
 from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.narrow_places import ends_between_obstacles
@@ -94,6 +95,25 @@ def test_motions_that_exploring_takes_for_free_are_free_and_what_it_blocks_is_no
     assert not world.motion_certified(
         graph.milestones[one[blocked]], graph.milestones[other[blocked]], 1e-6
     ).any()
+
+
+def test_what_few_motions_join_is_joined_to_all_that_it_reaches(roadmap, monkeypatch):
+    left = []
+    for few in (exploring.FEW, 0):
+        monkeypatch.setattr(exploring, "FEW", few)
+        known = explored(roadmap)
+        graph, (a, b, _) = known._graph, known._graph.motions()
+        free = np.flatnonzero(graph.nodes[: int(graph.desk[at.NODES])] >= FREE)
+        pairs = np.stack([a, b])[:, graph.edges[: len(a)] >= FREE]
+        lonely = free[np.bincount(pairs.ravel(), minlength=len(graph.nodes))[free] < 10]
+        assert len(lonely) >= 5
+        left.append(0)
+        for node in lonely:
+            joined = pairs[:, (pairs == node).any(axis=0)]
+            others = np.setdiff1d(free, [node, *joined.ravel()])
+            here = np.broadcast_to(graph.milestones[node], (len(others), 5)).copy()
+            left[-1] += known.world.motion_certified(here, graph.milestones[others], 1e-6).sum()
+    assert left[0] == 0 < left[1]
 
 
 def test_exploring_again_finds_the_same_and_another_seed_something_else(roadmap, ends):

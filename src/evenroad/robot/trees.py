@@ -191,10 +191,11 @@ def tighten(
     path : array_like, shape (p, dim), p >= 2
         Waypoints; every motion is free in the world.
     batches : int
-        After so many batches of sixteen checks no waypoint slides any more; cuts of corners and the proof follow.
+        After so many batches of sixteen checks, of which some are left for the proof, no waypoint slides any more; cuts
+        of corners and the proof follow.
     proved : bool
-        Whether the path is, as it was given.  Where it is not, and what was drawn tight cannot be, there are no
-        waypoints: (0, dim).
+        Whether the path is, as it was given; a single motion has to be, and all of them without lanes.  Where it is
+        not, and neither what was drawn tight nor what was shortened is, there are no waypoints: (0, dim).
 
     Raises
     ------
@@ -354,7 +355,6 @@ def _trees(
     )
 
 
-@cache
 @cache
 def _place(points: Callable[..., Floats], *dim: int) -> tuple[int, int]:
     """Return the address of points that are kept for good, and how many they are."""

@@ -62,8 +62,8 @@ def ask(
     Of what the roadmap knows to be free of robot and cell, `day` is asked; of the rest the whole world.  `greed` and
     `nearby` are as `KnownGraph.prepare` has them.  With `only_known` the query is the last one, and nothing is gone
     along but what is known to be free by now.  With `unturned` ends are linked to milestones as these are, not turned
-    to be near.  Motions of the way are proved; unless `proved` is False and they are to be drawn tight: then, in lanes,
-    those of a way by milestones are free at their states where its ends are not about to touch something.
+    to be near.  All motions of the way are proved.  Where `proved` is False, as before a path is drawn tight, lanes
+    prove a straight motion and links of ends that nearly touch something; others are free at their states.
     """
     if isinstance(world, ArmWorld) and world.fixed_contact is not None:
         # Of what no joint moves compiled code is told nothing.

@@ -63,9 +63,8 @@ class Checks(World, Protocol):
 
 
 class Asked(NamedTuple):
-    """What a search ended with: a path, (p, dim), and its goal or -1; milestones and motions that were asked about, and
-    how many batches of sixteen checks that took, where it is known; and whether every motion is proved, or free at
-    its states alone.
+    """What a search ended with: a path, (p, dim), and its goal or -1; milestones and motions that were asked about; how
+    many batches of sixteen checks that took, where it is known; and whether every motion had to be proved.
     """
 
     ended: int

@@ -61,7 +61,7 @@ from evenroad.robot_roadmap.search_memory import (
 Ints = npt.NDArray[np.int64]
 
 FIRST, LAST, ALL = 1, 2, 4
-"""Which motions of a way are proved: of its start, of its goal, all."""
+"""Which motions of a way are proved: the link of its start, that of its goal, all."""
 
 TOLERANCE, MOST_BATCHES = 1e-6, 1024
 """Limits of the proof of a motion [m]."""
@@ -91,9 +91,9 @@ def find_way(
     """Search until there is a way that is free, and return how the call ended.
 
     `desk` is that of `search_at`; `path`, (rows, dim), takes the way from the goal back to the start, `report` what was
-    counted.  `fresh` is 1 for a new query, 0 to go on.  Every motion of the way is proved; where `wider`, which is
-    `LaneWorld.wider`, is not 0, only one straight to a goal, and those of ends that nearly touch something.  The four
-    that follow are of the day's obstacles alone.
+    counted.  `fresh` is 1 for a new query, 0 to go on.  Every motion of the way is proved; where `wider`, an address of
+    `LaneWorld.wider`, is not 0, only one straight to a goal, and links of ends at which such bodies touch something.
+    The four that follow are of the day's obstacles alone.
     """
     full = checks_of(checks, resolution, tables, by_joint, memory, room)
     day = checks_of(day_checks, resolution, day_tables, day_by_joint, day_memory, room)
@@ -183,7 +183,7 @@ def _to_be_proved(s: Search, wider: int, full: Checks) -> int:
 
 @quick
 def _is_proved(s: Search, which: int, day: Checks, full: Checks) -> bool:
-    """Return whether motions of the way that was found are proved free; one that is not is blocked from now on."""
+    """Return whether these motions of the way that was found are proved; one that is not is blocked from now on."""
     entry = s.desk[PENDING]
     while entry >= 0:
         question = question_of(s, entry)

@@ -55,9 +55,9 @@ TRIED_LINKS, TRIED_MOTIONS = 40, 90
 places with fewer checks than long links do."""
 
 WORK, AMONG_SURFACES, LEAST_WORK = 200, 50, 30
-"""After so many batches of sixteen checks, those of the search among them, a path is not drawn tighter; after fewer
-among clouds and triangles, where each takes longer; but so many it has.  With more the slowest queries take longer,
-and paths become shorter by ever less."""
+"""After so many batches of sixteen checks, those of search and proof among them, a path is not drawn tighter; after
+fewer among clouds and triangles, where each takes longer; but so many it has.  With more the slowest queries take
+longer, and paths become shorter by ever less."""
 
 DEAR_LINKS, DEAR_WORK, MOST_LEARNED = 100, 800, 2000
 """Where checks are dear: so many links of each end are tried, paths are drawn tight with so many batches, and ends of
@@ -241,7 +241,8 @@ class SceneRoadmap:
         Returns
         -------
         PlanResult
-            Every motion of its path is proved free.
+            Every motion of `path` is proved free, of the robot's own shapes free at states where `proof` says so.  Of
+            `milestone_path`, where `shorten`, motions may be free at states alone.
 
         Raises
         ------
@@ -267,16 +268,14 @@ class SceneRoadmap:
             asked = self._by_ways_out(asked, first, goals, soon, limits[1], links)
         elif asked.ended in (NONE, CUT_OFF) and not follow and self.roadmap.one_turn.lifts.any():
             # What leads to the goal within one turn is not to be lost.
-            before, left = asked.motions, limits[0] - asked.motions
-            asked = self._ask(first, goals, left, limits[1], links, *order, unturned=True)
-            asked = asked._replace(motions=asked.motions + before)
+            before, left = asked, limits[0] - asked.motions
+            asked = _with(before, self._ask(first, goals, left, limits[1], links, *order, unturned=True))
         while asked.goal >= 0:
             if (result := self._solved(asked, first, goals, shorten, began)) is not None:
                 return result
             # What was drawn tight could not be proved: the way itself has to be.
-            before = asked.motions
-            asked = self._ask(first, goals, max(limits[0] - before, 0), limits[1], links, *order)
-            asked = asked._replace(motions=asked.motions + before)
+            before, left = asked, max(limits[0] - asked.motions, 0)
+            asked = _with(before, self._ask(first, goals, left, limits[1], links, *order))
         if self._own is not None:
             budget = budget.rest(deadline, asked.motions)
             return self._own.plan(first, goals, budget=budget, shorten=shorten, trees=trees)
@@ -331,7 +330,7 @@ class SceneRoadmap:
     def _solved(
         self, asked: Asked, start: Floats, goals: Floats, shorter: bool, began: float
     ) -> PlanResult | None:
-        """Return the result of a query that the roadmap answered; None where nothing of it is proved."""
+        """Return the result of a query that the roadmap answered; None where it was not proved and cannot be."""
         world, path, found = self.world, asked.path, now()
         if self._dear:
             self._learn_ends(path)
@@ -390,3 +389,9 @@ class SceneRoadmap:
         places = path.tolist()
         # Where nothing wraps the sum is the same, in a tenth of the time.
         return path_length(path, self.world.space) if self._wraps else sum(map(math.dist, places, places[1:]))
+
+
+def _with(before: Asked, asked: Asked) -> Asked:
+    """Return a search with what was asked about in the one before it, too."""
+    checked = asked.milestones + before.milestones, asked.motions + before.motions
+    return asked._replace(milestones=checked[0], motions=checked[1])

@@ -39,7 +39,7 @@ HALVINGS = 12
 
 @quick
 def choose_links(s: Search, end: int) -> None:
-    """Choose those that are near, or on the way to the other ends; an end that is a milestone needs no other."""
+    """Choose milestones that are near, or on the way to the other ends; an end that is one needs no other."""
     d, n = s.desk, s.desk[NODES]
     away = s.away[end * d[CAPACITY] : end * d[CAPACITY] + n]
     same = _milestone_at(s, end, away)
@@ -71,7 +71,7 @@ def _milestone_at(s: Search, end: int, away: Singles) -> int:
 
 @quick
 def _write_wants(s: Search, end: int, away: Singles, wants: Singles) -> None:
-    """Write keys, the least first: inf for what is blocked, 0 for free links of an explored scene."""
+    """Write keys, the less the sooner: inf for what is blocked, 0 for free links of an explored scene."""
     d, n, links = s.desk, len(away), s.links[end]
     beyond = s.away[d[CAPACITY] : d[CAPACITY] + n] if end == 0 else s.away[:n]
     for i in range(n):
@@ -101,7 +101,7 @@ def _least(s: Search, wants: Singles, most: int, into: Ints) -> int:
 
 @quick
 def _limit(wants: Singles, most: int) -> np.float32:
-    """Return a number that so many wants are not greater than, and few others; the largest where there are fewer."""
+    """Return a number that so many wants, and few others, are not greater than; the largest where few are finite."""
     low, high, found = np.float32(0.0), np.float32(0.0), 0
     for i in range(min(2 * most, len(wants))):
         if wants[i] < np.inf:

@@ -88,7 +88,6 @@ LEFT, LEAST = range(2)
 STATE, PARENT, VIA = range(3)
 """Of an entry: a state, or a goal as minus its row; the entry before, or -1; and the edge, or -1 of a link."""
 
-
 ROWS, MILESTONES, MOTIONS, GOAL, CHECKS, REPORT = range(6)
 """Of the report of a query: waypoints written, milestones and motions that were asked about, the goal that was reached,
 batches of sixteen checks; and how many things that is."""

@@ -38,10 +38,10 @@ SLIDES, PAIRS, LEAST_GAIN = 4, 1, 2e-3
 less than this share."""
 
 PASSED_BY = 3
-"""After every third time it is tried to pass by waypoints."""
+"""After every third of these rounds it is tried to pass by waypoints."""
 
 MOST_ROUNDS, MOST_CUTS, SPARE_PAIRS = 64, 16, 20
-"""So often at most; so many cuts of corners after them; and so many shortcuts where nothing of it is proved."""
+"""So many rounds at most; so many cuts of corners after them; and so many shortcuts where it is not proved."""
 
 PLACES, STATES = 5, 3
 """So many places are tried at once for a waypoint, each with a state to both of its sides: fifteen of sixteen lanes."""
@@ -65,7 +65,7 @@ OF_PROOF = 6
 """The proof of a motion takes about so many batches, which slides leave to it."""
 
 BEND = 0.01
-"""A waypoint at which the way is no longer than straight by this share does not slide."""
+"""A waypoint does not slide where the way by it is longer than the straight one by less than this share."""
 
 _HALF = LANES // 2
 _BESIDE = 1 << 32
@@ -96,9 +96,11 @@ def tighten_path(
     sphere, sphere_count
         Address of a float64 array, (sphere_count, dim): directions, of length 1, to be used in turn.
     most_batches : int
-        After so many batches of sixteen checks no waypoint slides any more; cuts and proofs follow.
+        After so many batches of sixteen checks, `OF_PROOF` a motion less, no waypoint slides any more; cuts and proofs
+        follow.
     proved : bool
-        Whether the path is, as it was given: where not, there may be no waypoints at all.
+        Whether the path is, as it was given; a single motion has to be.  Where it is not, there are no waypoints if
+        nothing shorter is proved either.
     """
     size, dim = path.shape
     # A slide adds no waypoint, a shortcut or a cut one, the ends two.
@@ -133,7 +135,7 @@ def tighten_points(
     """Do the work of `tighten_path` on the last `rows` of the memory; return how many are left, and 2^32 a motion.
 
     0 are left where the path is not finite.  Where what was drawn tight is not proved, the path is shortened as it was
-    given, each motion proved before it is put in; if that is not proved either, as `proved` says, 0 are left.
+    given, each motion proved before it is put in; 0 are left where `proved` is 0 and that is not proved either.
     """
     checks = checks_of(check, resolution, tables, by_joint, memory, room)
     own = room + 8 * COUNTS
