@@ -72,7 +72,7 @@ class PlanResult:
     path : ndarray, shape (p, dim), or None
         Waypoints after shortcutting, from start to goal, in the units of the space.
     milestone_path : ndarray, shape (q, dim), or None
-        The shortest path along the roadmap, before shortcutting.
+        The shortest path along the roadmap, before shortcutting: of a shortened one not each motion need be proved.
     proof : str or None
         What is shown of the motions of `path`: ``exact`` (no gap, up to rounding), ``certified`` (no gap), or
         ``resolution`` (free at states close together); None without a path.
