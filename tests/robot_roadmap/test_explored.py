@@ -1,6 +1,8 @@
 """Scenes that are explored before queries come: what is learned there is free, the same again, and of use."""
 
 import math
+import pickle
+from copy import deepcopy
 from dataclasses import replace
 
 import numpy as np
@@ -187,6 +189,39 @@ def test_joints_of_several_turns_can_be_explored(roadmap):
         result = known.plan(start, goal)
         assert result.solved
         assert known.world.recheck(result.path).all()
+
+
+@pytest.mark.parametrize("copied", [deepcopy, lambda known: pickle.loads(pickle.dumps(known))])
+def test_a_copy_of_an_explored_scene_answers_alike_from_memory_of_its_own(roadmap, ends, copied):
+    known = explored(roadmap)
+    before = [known.plan(*pair).path for pair in ends[:5]]
+    copy = copied(known)
+    for place in (at.KNOWN, at.GRAPH, at.RULES, at.VERDICTS, at.FAR, at.STEPS):
+        assert copy._graph.desk[place] != known._graph.desk[place]
+    again = [[one.plan(*pair).path for pair in ends[:10]] for one in (known, copy)]
+    # What the other learns is not seen.
+    assert all(path is not None for path in before)
+    for own, others in zip(*again, strict=True):
+        np.testing.assert_array_equal(own, others)
+
+
+def test_motions_that_join_milestones_take_no_room_of_milestones(roadmap):
+    graph = SceneRoadmap(roadmap, box_scene())._graph
+    made, room = int(graph.desk[at.EDGES_MADE]), len(graph.nodes)
+    pairs = np.tile([[0, 1]], (20_000, 1))
+    graph.join(pairs, np.ones(len(pairs)))
+    assert len(graph.nodes) < 2 * room
+    assert (graph.edges[made : made + len(pairs)] == PROVED).all()
+    assert graph.desk[at.EDGES_MADE] == made + len(pairs)
+
+
+def test_of_very_many_milestones_none_is_tried_to_be_joined_to_all(roadmap, monkeypatch):
+    monkeypatch.setattr(exploring, "MOST_TOLD", 50)
+    tried = []
+    monkeypatch.setattr(exploring, "_join", lambda graph, world, a, b: tried.append(len(a)))
+    known = explored(roadmap)
+    learned = int(known._graph.desk[at.NODES]) - len(roadmap.milestones)
+    assert sum(tried) <= learned * exploring.JOINED
 
 
 @pytest.mark.parametrize("bad", [{"ends": 0}, {"ends": 2.5}, {"rng": "x"}, {"rng": -1}])

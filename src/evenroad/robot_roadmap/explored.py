@@ -51,7 +51,8 @@ THIN = 0.8
 """Bends are learned that are farther than this from all that is known, as a share of how far milestones are apart."""
 
 MOST_TOLD = 3000
-"""Of so many milestones at most it is worked out how far they are from each other: 54 MB."""
+"""Of so many milestones at most it is worked out how far they are from each other: 54 MB.  Of more free ones none is
+joined to all: there are millions of pairs."""
 
 CLOSE = 20
 """An end that none of its links joins is tried to be linked to so many milestones that are nearest in displacement."""
@@ -147,6 +148,8 @@ def _settle_and_join(graph: KnownGraph, world: ArmWorld, day: ArmWorld, first: i
         some = np.array_split(new, -(-len(new) // AT_ONCE))
         near = np.concatenate([_nearest(graph.milestones, each, free) for each in some])
         _join(graph, world, np.repeat(new, near.shape[1]), near.ravel())
+    if len(free) > MOST_TOLD:
+        return
     a, b, _ = graph.motions()
     known = graph.edges[: len(a)] >= FREE
     joined = np.bincount(np.concatenate([a[known], b[known]]), minlength=len(graph.nodes))

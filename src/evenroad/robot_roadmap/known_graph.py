@@ -64,6 +64,7 @@ class KnownGraph:
         self.rules[at.WEIGHTS] = 1.0
         self.desk[at.DIM], self.desk[at.LIFTING] = dim, one.lifts.any()
         self._query, self._shape = np.empty(0), (0, 0)
+        self._far, self._steps = np.empty(0, np.float32), np.empty(0, np.uint16)
         self._make_room(n, count, len(edges))
         self.desk[[at.NODES, at.HALVES_MADE, at.EDGES_MADE, at.BASE]] = n, count, len(edges), len(edges)
         self.milestones[:n], self.columns[:, :n] = milestones, milestones.T
@@ -96,6 +97,16 @@ class KnownGraph:
             fresh.nodes[:n] = np.where((~lifts & ((q < low) | (q > high))).any(axis=1), BLOCKED, UNKNOWN)
         return fresh
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what a copy is made of, here or in another process: it finds out for itself where its arrays are."""
+        kept = "desk", "rules", "edges", "_known", "_graph", "_shares", "_far", "_steps"
+        return {name: vars(self)[name] for name in kept}
+
+    def __setstate__(self, kept: dict[str, Any]) -> None:
+        """Make a copy of it, in which no query is written yet."""
+        vars(self).update(kept, _query=np.empty(0), _shape=(0, 0))
+        self._lay_out()
+
     def _make_room(self, nodes: int, halves: int, edges: int) -> None:
         """Take memory for so many and some more."""
         desk, dim, more = self.desk, int(self.desk[at.DIM]), ROOM * (JOINED + 2)
@@ -108,8 +119,8 @@ class KnownGraph:
     def _lay_out(self) -> None:
         """Write where things lie in the memory."""
         desk, dim, capacity = self.desk, int(self.desk[at.DIM]), int(self.desk[at.CAPACITY])
-        parts, graph = (self._known, self._graph, self.rules, self.edges), self._graph
-        desk[[at.KNOWN, at.GRAPH, at.RULES, at.VERDICTS]] = [address(part) for part in parts]
+        parts, graph = (self._known, self._graph, self.rules, self.edges, self._far, self._steps), self._graph
+        desk[[at.KNOWN, at.GRAPH, at.RULES, at.VERDICTS, at.FAR, at.STEPS]] = [address(a) for a in parts]
         self.milestones = self._known[: dim * capacity].reshape(capacity, dim)
         self.columns = self._known[dim * capacity :].view(np.float32)[: dim * capacity].reshape(dim, capacity)
         behind = (dim + (dim + 1) // 2) * capacity
@@ -121,10 +132,10 @@ class KnownGraph:
         self.leads = graph[split : split + count].view(np.int64)
         self.lengths = graph[split + count :].view(np.float32)
 
-    def _grow(self) -> None:
-        """Take more memory, and copy what there is."""
+    def _grow(self, edges: int = 0) -> None:
+        """Take more memory, for so many edges and some more, and copy what there is."""
         old = self._arrays()
-        self._make_room(len(self.nodes), len(self.halves), len(self.edges))
+        self._make_room(len(self.nodes), len(self.halves) + 2 * edges, len(self.edges) + edges)
         self._query, self._shape = np.empty(0), (0, 0)
         new = self._arrays()
         for before, after in zip(old, new, strict=True):
@@ -204,9 +215,7 @@ class KnownGraph:
         """
         found, counts = np.empty((2, most, len(weights))), np.empty(2, dtype=np.int64)
         _around(address(self.desk), address(weights), onward, most, address(found), address(counts))
-        return [
-            None if count < 0 else rows[:count] for rows, count in zip(found, counts.tolist(), strict=True)
-        ]
+        return [None if n < 0 else rows[:n] for rows, n in zip(found, counts.tolist(), strict=True)]
 
     def motions(self) -> tuple[Ints, Ints, Bools]:
         """Return from which milestone to which the edges lead, (m,) each, and which of them after turns."""
@@ -225,11 +234,9 @@ class KnownGraph:
         """Take motions between milestones, (m, 2), of such lengths, (m,), for edges that are proved free today."""
         self._own_halves()
         desk, more = self.desk, len(pairs)
-        while (
-            desk[at.EDGES_MADE] + more > desk[at.EDGES] or desk[at.HALVES_MADE] + 2 * more > desk[at.HALVES]
-        ):
-            self._grow()
         edge, first = int(desk[at.EDGES_MADE]), int(desk[at.HALVES_MADE])
+        if edge + more > desk[at.EDGES] or first + 2 * more > desk[at.HALVES]:
+            self._grow(more)
         self.edges[edge : edge + more] = PROVED
         new = slice(first, first + 2 * more)
         self.halves[new, at.OTHER] = pairs[:, ::-1].T.ravel()
@@ -247,9 +254,9 @@ class KnownGraph:
         of each end go by displacement, in the metric of such weights, (dim,).
         """
         self._far, self._steps = np.ascontiguousarray(far, np.float32), steps.astype(np.uint16)
-        self.rules[at.WEIGHTS], desk = weights, self.desk
-        desk[[at.FAR, at.STEPS]] = address(self._far), address(self._steps)
-        desk[at.TOLD], desk[at.CLOSE] = len(far), close
+        self.rules[at.WEIGHTS] = weights
+        self.desk[[at.TOLD, at.CLOSE]] = len(far), close
+        self._lay_out()
 
     def _own_halves(self) -> None:
         """Share half edges no longer."""
@@ -284,8 +291,7 @@ def _around(desk: int, weights: int, onward: float, most: int, into: int, counts
     """Write what `KnownGraph.around` returns."""
     s, found, main = search_at(desk), integers_at(counts, (2,)), 0
     n, dim = s.desk[at.NODES], s.desk[at.DIM]
-    for i in range(n):
-        s.items[i] = 0
+    s.items[:n] = 0
     for i in range(n):
         if s.nodes[i] == FREE:
             group = group_of(s, i)
