@@ -21,6 +21,8 @@ _FEW = 64
 """A hull of more corners is thinned."""
 _THINNED, _SHARE = 3e-4, 5e-3
 """Thinned away is what sticks out of a hull by no more [m], or by no more in parts of its extent."""
+_MOST_CORNERS = 2048
+"""A convex mesh of more keeps the hull that it got first: a nearer one would take gigabytes."""
 _SIDES_TRIED = 8
 _ROUNDING = 1e-9
 _AS_LARGE = 1e-4
@@ -168,7 +170,7 @@ def halves(piece: Piece) -> tuple[Piece, ...]:
 
     It is the piece itself where nothing of it can be left away.
     """
-    if len(piece.parts) == 1 and len(piece.hull.points) < len(piece.parts[0]):
+    if len(piece.parts) == 1 and len(piece.hull.points) < len(piece.parts[0]) <= _MOST_CORNERS:
         points, beyond = _thinned(piece.parts[0], 0.25 * piece.hull.radius)
         return (Piece(hull_around(points, beyond, piece.hull.link), piece.parts),)
     corners = divided(piece.parts) if piece.parts.shape[1] == 3 else piece.parts[:0]
