@@ -58,6 +58,22 @@ def test_many_corners_become_few_that_contain_the_others_by_little():
     assert beyond(TURNED.apply(ball.vertices), hull) <= 0.0
 
 
+def test_a_closed_convex_mesh_is_one_solid_whose_hull_comes_nearer_in_place_of_being_split():
+    drum = trimesh.creation.cylinder(radius=0.1, height=0.3, sections=400)
+    piece = piece_of(mesh(drum))
+    assert piece.parts.shape == (1, 800, 3)
+    radii = [piece.hull.radius]
+    while (nearer := halves(piece)) != (piece,):
+        (piece,) = nearer
+        radii.append(piece.hull.radius)
+        assert beyond(TURNED.apply(drum.vertices), piece.hull) <= 0.0
+    assert len(radii) > 2
+    assert (np.diff(radii) < 0.0).all()
+    assert radii[-1] < 1e-8
+    without_a_triangle = trimesh.Trimesh(drum.vertices, drum.faces[1:])
+    assert len(halves(piece_of(mesh(without_a_triangle)))) == 2
+
+
 def test_halves_contain_all_triangles_of_a_fork_and_less_than_its_hull():
     pieces = [piece_of(mesh(fork()))]
     whole = ConvexHull(pieces[0].hull.points).volume

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+import trimesh
 
 from evenroad.geometry.distance import segment_distance
 from evenroad.robot import ArmWorld, Scene, load_model, load_robot, with_group
@@ -225,6 +226,39 @@ def test_a_pair_that_touches_only_where_another_joint_is_held_comes_back_when_th
     assert ArmWorld(lifted, Scene("empty", ())).valid(np.zeros((1, 2))).all()
     assert ("base", "arm") in with_group(robot, ("lift", "turn", "nod")).pairs
     assert ("base", "arm") in load_model(path).robot.pairs
+
+
+def _crossing(tmp_path, outer):
+    """The world of a block of 4 cm that slides through a link with a mesh, 1 m to either side and up and down."""
+    outer.export(tmp_path / "outer.stl")
+    trimesh.creation.box((0.04, 0.04, 0.04)).export(tmp_path / "block.stl")
+    slide = "<limit lower='-1' upper='1' velocity='1' effort='1'/>"
+    mesh = "<collision><geometry><mesh filename='{}.stl'/></geometry></collision>"
+    text = urdf(
+        link("outer", mesh.format("outer")), link("rod", _ball(0.02, "0 0 3")), link("block", mesh.format("block")),
+        joint("across", "outer", "rod", "prismatic", slide, "0 0 0", "1 0 0"),
+        joint("up", "rod", "block", "prismatic", slide, "0 0 0", "0 0 1"),
+    )  # fmt: skip
+    return ArmWorld(load_model(write(tmp_path, text)).robot, Scene("empty", ()))
+
+
+BESIDE = np.stack(np.meshgrid(np.linspace(-0.9, 0.9, 37), np.linspace(-0.9, 0.9, 37)), axis=-1).reshape(-1, 2)
+
+
+def test_a_link_wholly_inside_the_closed_convex_mesh_of_another_is_not_free(tmp_path):
+    world = _crossing(tmp_path, trimesh.creation.box((0.5, 0.5, 0.5)))
+    apart = np.abs(BESIDE).max(axis=1) - 0.27
+    assert (apart < -0.1).sum() > 20, "wholly inside, far from the surface"
+    np.testing.assert_array_equal(world.valid(BESIDE), apart > 0.0)
+
+
+def test_a_link_in_an_open_bin_is_free(tmp_path):
+    box = trimesh.creation.box((0.5, 0.5, 0.5))
+    lidless = trimesh.Trimesh(box.vertices, box.faces[box.face_normals[:, 2] < 0.5])
+    world = _crossing(tmp_path, lidless)
+    inside = (np.abs(BESIDE) < 0.1).all(axis=1)
+    assert inside.sum() > 5
+    assert world.valid(BESIDE[inside]).mean() > 0.5
 
 
 def test_pairs_of_a_hundred_bodies_are_soon_judged(tmp_path):

@@ -122,12 +122,15 @@ def counts_of(connection):
     return connection.nodes, connection.motions, connection.configurations
 
 
-def test_a_budget_of_motions_is_kept(world):
-    few = connect(world, START, [GOAL], most_motions=3)
-    assert few.goal == -1
-    assert few.path.shape == (0, 5)
-    # The round that was begun is ended.
-    assert 3 <= few.motions < 200
+def test_a_budget_of_motions_is_kept_to_the_last_and_changes_nothing_within_it(world, found, split):
+    for most in range(1, found.motions):
+        few = connect(world, START, [GOAL], most_motions=most)
+        assert (few.goal, few.path.shape, few.motions) == (-1, (0, 5), most)
+    enough = connect(world, START, [GOAL], most_motions=found.motions)
+    assert enough.path.tobytes() == found.path.tobytes()
+    assert counts_of(enough) == counts_of(found)
+    # Between the plate's two sides eight steps at once are offered for long.
+    assert all(connect(split, ABOVE, [BELOW], most_motions=most).motions == most for most in range(500, 540))
 
 
 def test_a_budget_of_time_is_kept(split):

@@ -12,6 +12,7 @@ from evenroad._arrays import Floats, set_fields
 from evenroad.errors import InvalidValue
 from evenroad.geometry.fit import best_cut, divided
 from evenroad.geometry.fit_points import extreme
+from evenroad.geometry.mesh import TriangleMesh, closed_parts
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
 
 SIDES = 32
@@ -20,8 +21,12 @@ _FEW = 64
 """A hull of more corners is thinned."""
 _THINNED, _SHARE = 3e-4, 5e-3
 """Thinned away is what sticks out of a hull by no more [m], or by no more in parts of its extent."""
+_MOST_CORNERS = 2048
+"""A convex mesh of more keeps the hull that it got first: a nearer one would take gigabytes."""
 _SIDES_TRIED = 8
 _ROUNDING = 1e-9
+_AS_LARGE = 1e-4
+"""By no larger share of its hull's volume a mesh differs from that where it is convex."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,11 +64,13 @@ def hull_around(points: Floats, radius: float, link: str) -> Hull:
     return Hull(points, radius + _ROUNDING * (1.0 + float(np.abs(points).max())), link)
 
 
-def _thinned(corners: Floats) -> tuple[Floats, float]:
-    """Return some of a hull's corners, (n, 3), and a length that no other is farther away from their hull [m]."""
+def _thinned(corners: Floats, little: float) -> tuple[Floats, float]:
+    """Return some of a hull's corners, (n, 3), and a length that no other is farther away from their hull [m].
+
+    No other is beyond one of its sides by more than `little` [m].
+    """
     from scipy.spatial import ConvexHull, QhullError
 
-    little = max(_THINNED, _SHARE * float(np.ptp(corners, axis=0).max()))
     kept = np.unique((corners @ _directions(_FEW // 2).T).argmax(axis=0))
     while True:
         few = corners[kept]
@@ -109,8 +116,8 @@ def _distances(points: Floats, sides: Floats) -> Floats:
 class Piece:
     """A hull, and what it is around: convex `parts`, (k, corners, 3) [m], widened by `radius`.
 
-    Parts are the triangles of a mesh, or the one part that another shape is.  A cylinder's is a prism inside of it, its
-    hull one around it.
+    Parts are the triangles of a mesh, or the one part that another shape is, or a mesh that is closed and convex.  A
+    cylinder's is a prism inside of it, its hull one around it.
     """
 
     hull: Hull
@@ -134,15 +141,38 @@ def piece_of(shape: Shape) -> Piece:
         points = np.concatenate([np.c_[ring, np.full(SIDES, end)] for end in ends])
     elif isinstance(shape, Mesh):
         mesh = shape.triangles
-        return _piece_around(shape.pose.apply(mesh.vertices)[mesh.triangles], shape.link)
+        piece = _piece_around(shape.pose.apply(mesh.vertices)[mesh.triangles], shape.link)
+        if not _is_convex(mesh):
+            return piece
+        # Split, it would lose its inside, and gain nothing.
+        return Piece(piece.hull, extreme(piece.parts.reshape(-1, 3))[np.newaxis])
     else:
         raise InvalidValue(f"no hull is made around a {shape}")
     hull = hull_around(shape.pose.apply(points * (outward, outward, 1.0)), radius, shape.link)
     return Piece(hull, shape.pose.apply(points)[np.newaxis], radius)
 
 
+def _is_convex(mesh: TriangleMesh) -> bool:
+    """Return whether a mesh is closed and, but for a ten-thousandth of its volume, its own hull."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    corners = mesh.vertices[mesh.triangles]
+    try:
+        whole = float(ConvexHull(corners.reshape(-1, 3)).volume)
+    except QhullError:
+        return False
+    own = abs(float(np.linalg.det(corners - corners.mean(axis=(0, 1))).sum())) / 6.0
+    return abs(own - whole) <= _AS_LARGE * whole and bool(closed_parts(mesh)[0].all())
+
+
 def halves(piece: Piece) -> tuple[Piece, ...]:
-    """Return two pieces of a mesh in place of one; the piece itself where it cannot be split."""
+    """Return two pieces of a mesh in place of one, of a convex one a piece with more of its corners.
+
+    It is the piece itself where nothing of it can be left away.
+    """
+    if len(piece.parts) == 1 and len(piece.hull.points) < len(piece.parts[0]) <= _MOST_CORNERS:
+        points, beyond = _thinned(piece.parts[0], 0.25 * piece.hull.radius)
+        return (Piece(hull_around(points, beyond, piece.hull.link), piece.parts),)
     corners = divided(piece.parts) if piece.parts.shape[1] == 3 else piece.parts[:0]
     below = best_cut(corners, _box_volume) if len(corners) > 1 else None
     if below is None:
@@ -153,7 +183,7 @@ def halves(piece: Piece) -> tuple[Piece, ...]:
 def _piece_around(corners: Floats, link: str) -> Piece:
     points, beyond = extreme(corners.reshape(-1, 3)), 0.0
     if len(points) > _FEW:
-        points, beyond = _thinned(points)
+        points, beyond = _thinned(points, max(_THINNED, _SHARE * float(np.ptp(points, axis=0).max())))
     return Piece(hull_around(points, beyond, link), corners)
 
 

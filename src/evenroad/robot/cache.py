@@ -21,7 +21,7 @@ from evenroad.robot.joint import Joint, Mimic
 from evenroad.robot.robot import LinkBody, Robot, RobotModel
 from evenroad.robot.urdf import Urdf
 
-_FORMAT = 10
+_FORMAT = 11
 """Counted up when the same files would give another robot, or the files of this cache look different."""
 
 

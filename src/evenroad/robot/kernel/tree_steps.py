@@ -99,9 +99,19 @@ def memory_of(room: int, bounds: Floats) -> Memory:
 
 @quick_inlined
 def candidates(
-    trees: Trees, tree: int, state: Ints, sequence: Floats, ball: Floats, memory: Memory, checks: Checks
+    trees: Trees,
+    tree: int,
+    state: Ints,
+    sequence: Floats,
+    ball: Floats,
+    most: int,
+    memory: Memory,
+    checks: Checks,
 ) -> int:
-    """Write where the tree may go next and return how many candidates these are: one extension, or ball steps."""
+    """Write where the tree may go next and return how many candidates these are: one extension, or ball steps.
+
+    At most so many steps are offered, all eight but where the budget ends.
+    """
     dim, bounds = trees.nodes.shape[2], checks.bounds
     number, shift = state[NEXT_SAMPLE] % len(sequence), state[NEXT_SAMPLE] // len(sequence)
     state[NEXT_SAMPLE] += 1
@@ -123,7 +133,7 @@ def candidates(
         canonical(memory.targets[0], bounds)
         memory.origins[0] = closest
         return 1
-    for candidate in range(STEPS_AT_ONCE):
+    for candidate in range(most):
         origin = closest if candidate % 2 else least_tried(trees, tree)
         tried[origin] += 1
         memory.origins[candidate] = origin
@@ -138,9 +148,9 @@ def candidates(
             checks.states[k * LANES + 2 * candidate] = here[k] + 0.5 * memory.way[k]
             checks.states[k * LANES + 2 * candidate + 1] = target[k]
     touching = blocked(checks)
-    state[CONFIGURATIONS] += LANES
+    state[CONFIGURATIONS] += 2 * most
     kept = 0
-    for candidate in range(STEPS_AT_ONCE):
+    for candidate in range(most):
         if (touching >> (2 * candidate)) & 3:
             # A motion that was asked for, and is blocked.
             state[MOTIONS] += 1

@@ -111,7 +111,7 @@ def grow(
     steps, steps_count
         Float64 array, (m, dim): points of the unit ball, used in turn.
     most_motions
-        After so many motions the budget is spent.
+        After so many motions, proofs among them, the budget is spent.
     slice_batches
         After about so many batches of sixteen checks the call returns, for the caller to look at the clock.
     check, resolution, tables, by_joint, memory, room
@@ -154,19 +154,22 @@ def grow(
             if sizes[tree] > sizes[1 - tree]:
                 tree = 1 - tree
             state[GROWING] = tree
-            many = candidates(trees, tree, state, sequence, ball, own, checks)
+            some = min(STEPS_AT_ONCE, most_motions - state[MOTIONS])
+            many = candidates(trees, tree, state, sequence, ball, some, own, checks)
             found, other = -1, -1
         # A goal straight on is a round of its own, without a candidate.
         for candidate in range(-1 if found >= 0 else 0, many):
             if candidate >= 0:
+                if state[MOTIONS] >= most_motions:
+                    return SPENT
                 found = _extended(trees, tree, own.origins[candidate], own.targets[candidate], checks)
                 if found < 0:
                     continue
                 other = nearest(trees, 1 - tree, trees.nodes[tree, found], own.lanes)
-            met = _reach(trees, tree, found, other, own, checks)
+            met = _reach(trees, tree, found, other, most_motions, own, checks)
             if met >= 0:
                 state[START_NODE + tree], state[GOAL_NODE - tree] = met, other
-                if _is_proved(trees, state, checks):
+                if _is_proved(trees, state, most_motions, checks):
                     columns = kept + 8 * (STATE + 2 + count * dim + (2 * dim + 8) * capacity)
                     _write_path(trees, state, matrix_at(columns, (2 * capacity, dim)))
                     return SOLVED
@@ -211,10 +214,12 @@ def _extended(trees: Trees, tree: int, origin: int, target: Floats, checks: Chec
 
 
 @quick_inlined
-def _reach(trees: Trees, tree: int, found: int, other: int, memory: Memory, checks: Checks) -> int:
+def _reach(
+    trees: Trees, tree: int, found: int, other: int, most_motions: int, memory: Memory, checks: Checks
+) -> int:
     """Go from a node towards one of the other tree in equal steps, each a new node, until one is blocked.
 
-    Return the node from which the last step led to the other, or -1.
+    Return the node from which the last step led to the other, or -1, also once the budget is spent.
     """
     here, there, target, way = memory.here, memory.there, memory.target, memory.way
     for k in range(len(here)):
@@ -224,6 +229,8 @@ def _reach(trees: Trees, tree: int, found: int, other: int, memory: Memory, chec
         for k in range(len(here)):
             target[k] = there[k] if step == steps else here[k] + step / steps * way[k]
         canonical(target, checks.bounds)
+        if checks.counts[MOTIONS] >= most_motions:
+            return -1
         if not motion_free(trees.nodes[tree, found], target, BOTH_ENDS if step == steps else START, checks):
             return -1
         if step == steps:
@@ -251,11 +258,13 @@ def _write_path(trees: Trees, state: Ints, path: Floats) -> None:
 
 
 @quick
-def _is_proved(trees: Trees, state: Ints, checks: Checks) -> bool:
+def _is_proved(trees: Trees, state: Ints, most_motions: int, checks: Checks) -> bool:
     """Return whether every motion of the path that was found is proved free; remove from the trees those that are not.
 
-    A motion that was proved once is not looked at again.
+    A motion that was proved once is not looked at again; nor is any once the budget is spent.
     """
+    if state[MOTIONS] >= most_motions:
+        return False
     # The motion between the trees first: it is the only one that can go without taking nodes along.
     a, b = trees.nodes[0, state[START_NODE]], trees.nodes[1, state[GOAL_NODE]]
     proved = motion_proved(a, b, PROOF_TOLERANCE, PROOF_BATCHES, checks)
@@ -265,6 +274,8 @@ def _is_proved(trees: Trees, state: Ints, checks: Checks) -> bool:
         while trees.links[PARENT, tree, node] >= 0:
             parent = trees.links[PARENT, tree, node]
             if trees.links[PROVED, tree, node] == 0:
+                if state[MOTIONS] >= most_motions:
+                    return False
                 a, b = trees.nodes[tree, parent], trees.nodes[tree, node]
                 if motion_proved(a, b, PROOF_TOLERANCE, PROOF_BATCHES, checks):
                     trees.links[PROVED, tree, node] = 1
