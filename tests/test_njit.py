@@ -238,10 +238,14 @@ def test_what_only_compiled_code_calls_is_compiled_into_its_callers_and_no_furth
         return part(x) + raw(x)
 
     assert caller(3) == 12
+
+    def compiled(function):
+        (result,) = (each._asdict() for each in function.overloads.values())
+        return result["library"], result["fndesc"].llvm_func_name
+
     for inner in (part, raw):
-        ((_, result),) = inner.overloads.items()
-        name = result.fndesc.llvm_func_name
-        assert result.library.get_function(name) is not None
-        assert not _njit.JITCodeLibrary.codegen.fget(result.library)._engine.is_symbol_defined(name)
-    ((_, result),) = caller.overloads.items()
-    assert result.library.codegen._engine.is_symbol_defined(result.fndesc.llvm_func_name)
+        code, name = compiled(inner)
+        assert code.get_function(name) is not None
+        assert not _njit.JITCodeLibrary.codegen.fget(code)._engine.is_symbol_defined(name)
+    code, name = compiled(caller)
+    assert code.codegen._engine.is_symbol_defined(name)

@@ -109,16 +109,16 @@ class _Nobody:
 class _PartCompiler(Compiler):
     """Numba's compiler, for parts of the checks, which are to be as quick as they can be."""
 
-    library: ClassVar[type[_Part]] = _Part
+    part: ClassVar[type[_Part]] = _Part
 
     def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
-        super().__init__(typing, target, library or self.library(target.codegen(), "part"), *rest)
+        super().__init__(typing, target, library or self.part(target.codegen(), "part"), *rest)
 
 
 class _RawPartCompiler(_PartCompiler):
     """For parts of planners, which spend their time in checks that they call: what is compiled sooner is better."""
 
-    library = _RawPart
+    part = _RawPart
 
 
 def njit(*function: Callable[..., Any], **options: Any) -> Any:
