@@ -19,6 +19,7 @@ from evenroad.robot_roadmap.known_motions import KnownMotions
 from evenroad.robot_roadmap.narrow_places import ends_between_obstacles
 from evenroad.robot_roadmap.search_memory import BLOCKED, FOUND, FREE, PROVED, UNKNOWN
 from evenroad.robot_roadmap.ways_out import learn_ways_out
+from evenroad.space.path import path_length
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
@@ -44,10 +45,13 @@ AT_ONCE = 64
 _LONG = 1e8
 """Seconds that stand for no limit."""
 
+BESIDE = 1500
+"""So many motions trees may take for such a way beside that of the roadmap."""
+
 TIGHT = 400
 """Ways are drawn tight with so many batches of checks before it is learned where they bend."""
 
-THIN = 0.8
+THIN = 0.5
 """Bends are learned that are farther than this from all that is known, as a share of how far milestones are apart."""
 
 MOST_TOLD = 3000
@@ -101,7 +105,7 @@ def _learn_bends(
 ) -> None:
     """Learn where ways bend that were drawn tight, from each end to another one and to a milestone.
 
-    Others will bend there, too.
+    Others will bend there, too.  Between two ends trees know ways that the roadmap does not: the shorter one counts.
     """
     thin = THIN * _spacing(hubs)
     for start in ends:
@@ -118,10 +122,18 @@ def _learn_bends(
                 most_motions=MOTIONS,
                 deadline=math.inf,
             )
-            if asked.ended != FOUND:
+            ways = [asked.path] if asked.ended == FOUND else []
+            if others is ends:
+                grown = world.connect(start, goal, most_motions=BESIDE, seconds=_LONG)
+                ways += [grown.path] if grown.goal >= 0 else []
+            if not ways:
                 continue
-            for bend in tighten(world, asked.path, batches=TIGHT)[0][1:-1]:
+            tight = [tighten(world, way, batches=TIGHT)[0] for way in ways]
+            best = min(tight, key=lambda way: path_length(way, world.space))
+            for bend in best[1:-1]:
                 known = graph.milestones[: int(graph.desk[at.NODES])]
+                if len(known) == MOST_TOLD:
+                    return
                 if np.linalg.norm(known - bend, axis=1).min() > thin:
                     graph.learn(bend[np.newaxis])
 

@@ -11,16 +11,16 @@ from evenroad.geometry.shapes import Capsule
 from evenroad.robot import ArmWorld, Joint, Robot, Scene
 from evenroad.robot_roadmap.chance import Surroundings
 from evenroad.robot_roadmap.pockets import tips_of
-from evenroad.robot_roadmap.turns import TURN
 
-POOL = 40_000
-"""Configurations that are drawn, of which the ends are those that are closed in most."""
+AT_ONCE, POOLS = 40_000, 10
+"""So many configurations are drawn at once, and so often at most, until enough are closed in."""
+
+CLOSED = 8
+"""A tip is closed in where so many of fourteen ways are blocked, more than half.  Ends that are closed in more are not
+chosen rather: queries hardly ask for the corners of a place."""
 
 FAR = 0.3
 """A place is closed in where one does not get so far from it, as a share of the reach."""
-
-ROUNDS, BESIDE, AWAY = 2, 8, 1 / 16
-"""So often, so many are drawn beside each of the best, away by a deviation of this share of a joint's range or turn."""
 
 BALL = 0.01
 """Radius of what goes there [m]."""
@@ -36,30 +36,26 @@ _WAYS = np.array(
 
 
 def ends_between_obstacles(world: ArmWorld, count: int, rng: np.random.Generator) -> Floats:
-    """Return `count` free configurations, fewer where hardly any is free, whose tip is closed in most by obstacles."""
-    q = world.space.from_cube(rng.random((POOL, world.space.dim)))
-    q = q[world.valid(q)]
-    if not len(q):
-        return q
-    reach = Surroundings.of(world.robot, q).reach
-    closed = _closed(world, q, FAR * reach)
-    low, high = np.array(world.space.low), np.array(world.space.high)
-    away = AWAY * np.minimum(high - low, TURN)
-    for _ in range(ROUNDS):
-        best = np.argsort(-closed, kind="stable")[:count]
-        q, closed = q[best], closed[best]
-        more = np.repeat(q, BESIDE, axis=0)
-        more = np.clip(more + rng.normal(0.0, 1.0, more.shape) * away, low, high)
+    """Return `count` free configurations, fewer where hardly any is free, whose tip is closed in by obstacles.
+
+    They are drawn evenly from all that are; where these are too few, others follow that are closed in less.
+    """
+    q, closed, far = np.empty((0, world.space.dim)), np.empty(0), 0.0
+    for _ in range(POOLS):
+        more = world.space.from_cube(rng.random((AT_ONCE, world.space.dim)))
         more = more[world.valid(more)]
-        q, closed = np.concatenate([q, more]), np.concatenate([closed, _closed(world, more, FAR * reach)])
-    return q[np.argsort(-closed, kind="stable")[:count]]
+        if not len(more):
+            continue
+        far = far or FAR * Surroundings.of(world.robot, more).reach
+        q, closed = np.concatenate([q, more]), np.concatenate([closed, _closed(world, more, far)])
+        if np.count_nonzero(closed >= CLOSED) >= count:
+            break
+    return q[np.argsort(-np.minimum(closed, CLOSED), kind="stable")[:count]]
 
 
 def _closed(world: ArmWorld, q: Floats, far: float) -> Floats:
     """Return in how many directions a tip does not get far: (n,)."""
     closed = np.zeros(len(q))
-    if not len(q):
-        return closed
     tips = tips_of(world.robot, q)
     for tip in range(tips.shape[1]):
         closed = np.maximum(closed, _closed_in(world.scene, tips[:, tip], far))

@@ -66,11 +66,11 @@ queries are learned until there are so many milestones more."""
 SOON = 5000
 """So many motions ways out may take before shapes are asked: some milliseconds."""
 
-ENDS = 700
+ENDS = 400
 """Ends in narrow places that are tried where a scene is explored."""
 
-EXPLORED_LINKS, EXPLORED_MOTIONS = 20, 150
-"""In an explored scene fewer links do."""
+EXPLORED_LINKS, EXPLORED_MOTIONS, EXPLORED_WORK = 20, 150, 250
+"""In an explored scene fewer links do, and the slowest queries leave time to draw paths tighter."""
 
 _BUDGET = Budget(seconds=SECONDS)
 
@@ -342,7 +342,8 @@ class SceneRoadmap:
         )
         seconds = {"search": found - began}
         if shorter:
-            most = WORK if world.lanes.surfaces is None else AMONG_SURFACES
+            most = EXPLORED_WORK if self._explored else WORK
+            most = most if world.lanes.surfaces is None else AMONG_SURFACES
             work = DEAR_WORK if self._dear else max(LEAST_WORK, most - asked.batches)
             path, counts["shortcut_motions"] = tighten(world, path, batches=work, proved=asked.proved)
             if not len(path):
