@@ -205,34 +205,32 @@ def counts_in_suite(name: str, count: int, n: int, draws: int) -> None:
         )
 
 
-def floor(name: str, count: int, kinds: list[str]) -> None:
-    """Print how much shorter than those of trees paths become that are planned anew for half a second, by kind.
-
-    The second number is of the best of these drawn tight for as long as that gains anything.
-    """
+def floor(name: str, count: int, n: int, kinds: list[str]) -> None:
+    """Print what is left of the trees' length after half a second of plans, drawn tight, too, and by the roadmap."""
     pool = Pool(arm(name))
+    made = make_roadmap(pool.robot, table_of(next(problems(pool, REPORTING))), n)
     for kind in kinds:
         best = []
         for seed in REPORTING[:SCENES]:
             world, pairs = queries(pool, kind, seed, FIRST + count)
+            known = SceneRoadmap(made, world.scene)
+            known.explore()
             for start, goal in pairs[FIRST:]:
                 first = find_path(world, start, goal, budget=LIMIT)
-                if first.solved and first.cost:
+                along = known.plan(start, goal, budget=LIMIT)
+                if first.solved and first.cost and along.solved:
                     long = find_path(world, start, goal, budget=Budget(seconds=0.5), improve=True)
                     assert long.path is not None
                     tight, _ = tighten(world, long.path, batches=3000)
                     least = world.space.distance(tight[:-1], tight[1:]).sum()
-                    best.append((first.cost, long.cost, least, long.counts.get("rounds", 0)))
+                    best.append((first.cost, long.cost, least, along.cost, long.counts.get("rounds", 0)))
         table = np.array(best)
-        shares = table[:, 1:3] / table[:, :1]
+        shares, whole = table[:, 1:4] / table[:, :1], table[:, 1:4].sum(axis=0) / table[:, 0].sum()
         means, errors = shares.mean(axis=0), shares.std(axis=0, ddof=1) / np.sqrt(len(shares))
-        whole = table[:, 1:3].sum(axis=0) / table[:, 0].sum()
-        print(
-            f"{kind}: {means[0]:.3f} ± {errors[0]:.3f} of the trees' length, drawn tight {means[1]:.3f} ±"
-            f" {errors[1]:.3f}, of all {whole[0]:.3f} and {whole[1]:.3f}; {len(table)} queries, median of"
-            f" {np.median(table[:, 3]):.0f} rounds",
-            flush=True,
-        )
+        for i, title in enumerate(("planned anew", "the best of these drawn tight", "the roadmap")):
+            share = f"{means[i]:.3f} ± {errors[i]:.3f}"
+            print(f"{kind}: {title} {share} of the trees' length, of all {whole[i]:.3f}")
+        print(f"{kind}: {len(table)} queries, median of {np.median(table[:, 4]):.0f} rounds", flush=True)
 
 
 def prices(name: str, count: int, n: int) -> None:
@@ -391,7 +389,7 @@ def main() -> None:
     if options.remember:
         remember(options.robot, options.remember, options.n or 256, options.draws)
     if options.floor:
-        floor(options.robot, options.floor, options.kinds)
+        floor(options.robot, options.floor, options.n or 1024, options.kinds)
     if options.prices:
         prices(options.robot, options.prices, options.n or 1024)
 

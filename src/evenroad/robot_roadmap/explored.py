@@ -132,7 +132,7 @@ def _learn_bends(
             best = min(tight, key=lambda way: path_length(way, world.space))
             for bend in best[1:-1]:
                 known = graph.milestones[: int(graph.desk[at.NODES])]
-                if len(known) == MOST_TOLD:
+                if len(known) >= MOST_TOLD:
                     return
                 if np.linalg.norm(known - bend, axis=1).min() > thin:
                     graph.learn(bend[np.newaxis])
