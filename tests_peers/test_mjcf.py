@@ -124,7 +124,7 @@ def test_what_is_read_otherwise_is_said(tmp_path):
     assert model.drawn_only == ("camera",)
     assert model.notes == (
         "joint 'float' of 'base', free, is fixed",
-        "the plane of 'world' is left out: the scene says what stands around the robot",
+        "the plane of 'world' is left out: a scene says what is around the robot",
         "the ellipsoid of 'arm' is taken as the box around it",
         "joint 'run' with the limits -1e+06, 1e+06 slides without end: it is held, unless a scene limits it and --group"
         " names it",

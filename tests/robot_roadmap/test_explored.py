@@ -1,5 +1,6 @@
 """Scenes that are explored before queries come: what is learned there is free, the same again, and of use."""
 
+import itertools
 import math
 import pickle
 from copy import deepcopy
@@ -12,14 +13,16 @@ from evenroad.errors import InvalidValue
 from evenroad.roadmap import Status
 from evenroad.robot import Obstacle, Scene, link_poses, with_limits
 from evenroad.robot_roadmap import explored as exploring
+from evenroad.robot_roadmap import narrow_places
 from evenroad.robot_roadmap import search_memory as at
+from evenroad.robot_roadmap.chance import Surroundings
 from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.narrow_places import ends_between_obstacles
 from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
 from evenroad.robot_roadmap.search_memory import BLOCKED, FREE, PROVED, UNKNOWN
 from evenroad.space.path import subdivide
-from tests.robot.kernel_arms import box_scene, ur5
-from tests.robot.oracle import clearance
+from tests.robot.kernel_arms import TABLE, box_scene, ur5
+from tests.robot.oracle import clearance, obstacle_distance
 
 ENDS = 150
 
@@ -164,6 +167,70 @@ def test_ends_have_the_tip_where_obstacles_close_it_in(roadmap):
     anywhere = world.space.from_cube(np.random.default_rng(1).random((20_000, 5)))
     usual = in_box(world.robot, anywhere[world.valid(anywhere)]).mean()
     assert in_box(world.robot, q).mean() > max(0.3, 10.0 * usual)
+
+
+def closed_in(world, q, far):
+    """In how many of fourteen directions a ball of a centimetre at the tool does not get so far: every 5 mm."""
+    ways = [w for w in itertools.product((-1.0, 0.0, 1.0), repeat=3) if sum(map(abs, w)) in (1.0, 3.0)]
+    steps = np.linspace(0.0, far, int(far / 0.005) + 1)[:, None]
+    tool = link_poses(world.robot, q[np.newaxis])[0, -1, :3, 3]
+
+    def meets(points):
+        return min(obstacle_distance(points, each).min() for each in world.scene.obstacles) < 0.01
+
+    return sum(meets(tool + steps * np.array(w) / np.linalg.norm(w)) for w in ways)
+
+
+def test_ends_are_closed_in_on_more_than_half_of_fourteen_sides_and_drawn_evenly(roadmap):
+    world = SceneRoadmap(roadmap, box_scene()).world
+    q = ends_between_obstacles(world, 20, np.random.default_rng(0))
+    rng = np.random.default_rng(0)
+    blocks = [
+        world.space.from_cube(rng.random((narrow_places.AT_ONCE, 5))) for _ in range(narrow_places.POOLS)
+    ]
+    blocks = [block[world.valid(block)] for block in blocks]
+    far, drawn = narrow_places.FAR * Surroundings.of(world.robot, blocks[0]).reach, np.concatenate(blocks)
+    sides = np.array([closed_in(world, row, far) for row in q])
+    # Steps of the ball are not those of the oracle.
+    assert (sides >= 8).mean() > 0.95
+    assert sides.min() >= 7
+    # As they were drawn: none is preferred for being closed in more.
+    rows = [int(np.flatnonzero((drawn == row).all(axis=1))[0]) for row in q]
+    assert rows == sorted(rows)
+    passed = [closed_in(world, row, far) for row in drawn[np.setdiff1d(np.arange(rows[-1])[:400], rows)]]
+    assert np.mean(np.array(passed) < 8) > 0.99
+
+
+def test_where_hardly_any_end_is_closed_in_those_that_are_most_follow(roadmap):
+    world = SceneRoadmap(roadmap, TABLE).world
+    q = ends_between_obstacles(world, 40, np.random.default_rng(0))
+    assert len(q) == 40
+    reach = Surroundings.of(world.robot, q).reach
+    anywhere = world.space.from_cube(np.random.default_rng(1).random((400, 5)))
+    anywhere = anywhere[world.valid(anywhere)][:40]
+    most, usual = (
+        np.mean([closed_in(world, row, narrow_places.FAR * reach) for row in some]) for some in (q, anywhere)
+    )
+    assert most > 2.0 * usual
+
+
+def test_ways_of_trees_make_those_of_the_roadmap_shorter(roadmap, ends, monkeypatch):
+    def lengths(known):
+        return np.array(
+            [known.plan(*pair, trees=False, shorten=False).cost for pair in ends[:20]], dtype=float
+        )
+
+    after = lengths(explored(roadmap))
+    monkeypatch.setattr(exploring, "BESIDE", 1)
+    before = lengths(explored(roadmap))
+    assert np.nanmean(after / before) < 0.99
+
+
+def test_no_more_bends_are_learned_than_the_table_tells_of(roadmap, monkeypatch):
+    full = int(explored(roadmap)._graph.desk[at.NODES])
+    monkeypatch.setattr(exploring, "MOST_TOLD", full - 5)
+    desk = explored(roadmap)._graph.desk
+    assert desk[at.NODES] == desk[at.TOLD] == full - 5
 
 
 def test_a_scene_with_nothing_in_it_can_be_explored(roadmap, ends):

@@ -48,7 +48,8 @@ def ends_between_obstacles(world: ArmWorld, count: int, rng: np.random.Generator
             continue
         far = far or FAR * Surroundings.of(world.robot, more).reach
         q, closed = np.concatenate([q, more]), np.concatenate([closed, _closed(world, more, far)])
-        if np.count_nonzero(closed >= CLOSED) >= count:
+        # Where none is, hardly any follows.
+        if not 0 < np.count_nonzero(closed >= CLOSED) < count:
             break
     return q[np.argsort(-np.minimum(closed, CLOSED), kind="stable")[:count]]
 
