@@ -5,7 +5,7 @@
     python -m benchmarks.robot_roadmap_queries --suite 150
     python -m benchmarks.robot_roadmap_queries --turns 40
     python -m benchmarks.robot_roadmap_queries --remember 40
-    python -m benchmarks.robot_roadmap_queries --floor 8
+    python -m benchmarks.robot_roadmap_queries --floor 12
     python -m benchmarks.robot_roadmap_queries --prices 40
 
 Scenes and problems come from the seeds kept for reporting.  Times are of the processor, the best of three: three copies
@@ -51,7 +51,7 @@ TURN = 2.0 * np.pi
 
 
 class TightWorld(ArmWorld):
-    """An arm's world whose paths are drawn tight as those of roadmaps are, whatever the trees have taken."""
+    """An arm's world whose paths are drawn tight as those of a kept roadmap are, whatever the trees have taken."""
 
     def shorten(self, path: np.ndarray) -> tuple[np.ndarray, int]:
         """Return a path that is not longer, and how many motions were looked at."""
@@ -206,7 +206,7 @@ def counts_in_suite(name: str, count: int, n: int, draws: int) -> None:
 
 
 def floor(name: str, count: int, n: int, kinds: list[str]) -> None:
-    """Print what is left of the trees' length after half a second of plans, drawn tight, too, and by the roadmap."""
+    """Print shares of the trees' length: of the best plan in half a second, the same drawn tight, the roadmap's."""
     pool = Pool(arm(name))
     made = make_roadmap(pool.robot, table_of(next(problems(pool, REPORTING))), n)
     for kind in kinds:

@@ -13,14 +13,15 @@ from evenroad.errors import InvalidValue
 from evenroad.roadmap import Status
 from evenroad.robot import Obstacle, Scene, link_poses, with_limits
 from evenroad.robot_roadmap import explored as exploring
-from evenroad.robot_roadmap import narrow_places
+from evenroad.robot_roadmap import narrow_places, scene_roadmap
 from evenroad.robot_roadmap import search_memory as at
 from evenroad.robot_roadmap.chance import Surroundings
+from evenroad.robot_roadmap.known_graph import KnownGraph
 from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.narrow_places import ends_between_obstacles
 from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
 from evenroad.robot_roadmap.search_memory import BLOCKED, FREE, PROVED, UNKNOWN
-from evenroad.space.path import subdivide
+from evenroad.space.path import path_length, subdivide
 from tests.robot.kernel_arms import TABLE, box_scene, ur5
 from tests.robot.oracle import clearance, obstacle_distance
 
@@ -181,7 +182,7 @@ def closed_in(world, q, far):
     return sum(meets(tool + steps * np.array(w) / np.linalg.norm(w)) for w in ways)
 
 
-def test_ends_are_closed_in_on_more_than_half_of_fourteen_sides_and_drawn_evenly(roadmap):
+def test_ends_are_closed_in_on_more_than_half_of_fourteen_sides_and_none_of_them_is_preferred(roadmap):
     world = SceneRoadmap(roadmap, box_scene()).world
     q = ends_between_obstacles(world, 20, np.random.default_rng(0))
     rng = np.random.default_rng(0)
@@ -201,17 +202,70 @@ def test_ends_are_closed_in_on_more_than_half_of_fourteen_sides_and_drawn_evenly
     assert np.mean(np.array(passed) < 8) > 0.99
 
 
-def test_where_hardly_any_end_is_closed_in_those_that_are_most_follow(roadmap):
+def test_where_no_end_is_closed_in_those_that_are_most_are_taken(roadmap):
     world = SceneRoadmap(roadmap, TABLE).world
     q = ends_between_obstacles(world, 40, np.random.default_rng(0))
     assert len(q) == 40
-    reach = Surroundings.of(world.robot, q).reach
-    anywhere = world.space.from_cube(np.random.default_rng(1).random((400, 5)))
-    anywhere = anywhere[world.valid(anywhere)][:40]
+    anywhere = world.space.from_cube(np.random.default_rng(1).random((narrow_places.AT_ONCE, 5)))
+    anywhere = anywhere[world.valid(anywhere)]
+    reach, anywhere = Surroundings.of(world.robot, anywhere).reach, anywhere[:40]
     most, usual = (
         np.mean([closed_in(world, row, narrow_places.FAR * reach) for row in some]) for some in (q, anywhere)
     )
     assert most > 2.0 * usual
+
+
+def test_where_too_few_ends_are_closed_in_others_follow_that_nearly_are(roadmap, monkeypatch):
+    world = SceneRoadmap(roadmap, box_scene()).world
+    monkeypatch.setattr(narrow_places, "POOLS", 2)
+    q = ends_between_obstacles(world, 60, np.random.default_rng(0))
+    first = world.space.from_cube(np.random.default_rng(0).random((narrow_places.AT_ONCE, 5)))
+    far = narrow_places.FAR * Surroundings.of(world.robot, first[world.valid(first)]).reach
+    sides = np.array([closed_in(world, row, far) for row in q])
+    assert len(q) == 60
+    # The ball's steps are not those of the oracle: one way more or less.
+    assert sides[:25].min() >= 7
+    assert sides[45:].max() <= 8
+    assert sides[:25].mean() > sides[45:].mean() + 1.0
+
+
+def test_of_two_ways_drawn_tight_the_bends_of_the_shorter_one_are_learned(roadmap, monkeypatch):
+    ways, bends, tighten, learn = [], [], exploring.tighten, KnownGraph.learn
+
+    def drawn(world, way, batches):
+        ways.append(tighten(world, way, batches=batches)[0])
+        return ways[-1], 0
+
+    def learned(graph, path):
+        bends.extend(path if len(path) == 1 else [])
+        learn(graph, path)
+
+    monkeypatch.setattr(exploring, "tighten", drawn)
+    monkeypatch.setattr(KnownGraph, "learn", learned)
+    space, pairs = explored(roadmap).world.space, 0
+    for bend in bends:
+        (way,) = [w for w in ways if (w[1:-1] == bend).all(axis=1).any()]
+        others = [w for w in ways if w is not way and (w[[0, -1]] == way[[0, -1]]).all()]
+        assert all(path_length(way, space) <= path_length(w, space) for w in others)
+        pairs += len(others)
+    assert pairs > 10
+
+
+def test_in_an_explored_scene_paths_are_drawn_tight_with_more_checks(roadmap, ends, monkeypatch):
+    spent, tighten = [], scene_roadmap.tighten
+
+    def drawn(world, path, batches, **how):
+        spent.append(batches)
+        return tighten(world, path, batches=batches, **how)
+
+    monkeypatch.setattr(scene_roadmap, "tighten", drawn)
+    most = []
+    for known in (SceneRoadmap(roadmap, box_scene()), explored(roadmap)):
+        spent.clear()
+        for pair in ends[:20]:
+            known.plan(*pair)
+        most.append(max(spent))
+    assert most[0] <= scene_roadmap.WORK < most[1] <= scene_roadmap.EXPLORED_WORK
 
 
 def test_ways_of_trees_make_those_of_the_roadmap_shorter(roadmap, ends, monkeypatch):

@@ -45,18 +45,18 @@ AT_ONCE = 64
 _LONG = 1e8
 """Seconds that stand for no limit."""
 
-BESIDE = 1500
-"""So many motions trees may take for such a way beside that of the roadmap."""
-
 TIGHT = 400
 """Ways are drawn tight with so many batches of checks before it is learned where they bend."""
+
+BESIDE = 1500
+"""For a way from one end to another, beside that of the roadmap, trees may take so many motions."""
 
 THIN = 0.5
 """Bends are learned that are farther than this from all that is known, as a share of how far milestones are apart."""
 
 MOST_TOLD = 3000
-"""Of so many milestones at most it is worked out how far they are from each other: 54 MB.  Of more free ones none is
-joined to all: there are millions of pairs."""
+"""Of so many milestones at most it is worked out how far they are from each other: 54 MB; no more bends are learned
+then.  Of more free ones none is joined to all: there are millions of pairs."""
 
 CLOSE = 20
 """An end that none of its links joins is tried to be linked to so many milestones that are nearest in displacement."""
@@ -105,7 +105,8 @@ def _learn_bends(
 ) -> None:
     """Learn where ways bend that were drawn tight, from each end to another one and to a milestone.
 
-    Others will bend there, too.  Between two ends trees know ways that the roadmap does not: the shorter one counts.
+    Others will bend there, too.  Between two ends trees find ways that the roadmap does not have: bends are those of
+    the shorter one.
     """
     thin = THIN * _spacing(hubs)
     for start in ends:

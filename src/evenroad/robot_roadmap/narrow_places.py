@@ -13,11 +13,12 @@ from evenroad.robot_roadmap.chance import Surroundings
 from evenroad.robot_roadmap.pockets import tips_of
 
 AT_ONCE, POOLS = 40_000, 10
-"""So many configurations are drawn at once, and so often at most, until enough are closed in."""
+"""So many configurations are drawn at once, and so often at most, until enough are closed in; on tables and boxes too
+few are."""
 
 CLOSED = 8
-"""A tip is closed in where so many of fourteen ways are blocked, more than half.  Ends that are closed in more are not
-chosen rather: queries hardly ask for the corners of a place."""
+"""A tip is closed in where so many of fourteen ways are blocked, more than half.  Those closed in more are not
+preferred: they lie in the corners of a place, where queries hardly go."""
 
 FAR = 0.3
 """A place is closed in where one does not get so far from it, as a share of the reach."""
@@ -38,7 +39,7 @@ _WAYS = np.array(
 def ends_between_obstacles(world: ArmWorld, count: int, rng: np.random.Generator) -> Floats:
     """Return `count` free configurations, fewer where hardly any is free, whose tip is closed in by obstacles.
 
-    They are drawn evenly from all that are; where these are too few, others follow that are closed in less.
+    They are drawn uniformly from all that are; where these are too few, the rest are those closed in next to that.
     """
     q, closed, far = np.empty((0, world.space.dim)), np.empty(0), 0.0
     for _ in range(POOLS):

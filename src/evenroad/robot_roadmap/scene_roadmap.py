@@ -196,12 +196,13 @@ class SceneRoadmap:
         """Find out beforehand what many queries here would; see docs/robot-roadmaps.md for when it pays.
 
         Everything the roadmap has is asked about, and ways are learned to ends in narrow places: free configurations
-        with a tip closed in by obstacles, which know no task.  The same `ends` and `rng` give the same answers.
+        whose tip is closed in by obstacles, and others closed in less where these are too few; they know no task.  The
+        same `ends` and `rng` give the same answers.
 
         Parameters
         ----------
         ends : int
-            How many are tried, >= 1.
+            How many are tried, >= 1.  Beyond 3000 milestones, with what was learned, ways are searched, not looked up.
         rng : int, SeedSequence or Generator
             Where they are drawn from.
 
