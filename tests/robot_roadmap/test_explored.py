@@ -287,6 +287,15 @@ def test_no_more_bends_are_learned_than_the_table_tells_of(roadmap, monkeypatch)
     assert desk[at.NODES] == desk[at.TOLD] == full - 5
 
 
+def test_exploring_again_keeps_the_table_where_there_is_room_for_few_more(roadmap, monkeypatch):
+    known = explored(roadmap)
+    nodes = int(known._graph.desk[at.NODES])
+    monkeypatch.setattr(exploring, "MOST_TOLD", nodes + 3)
+    for rng in (1, 2):
+        known.explore(ENDS, rng=rng)
+        assert nodes <= known._graph.desk[at.TOLD] == known._graph.desk[at.NODES] <= nodes + 3
+
+
 def test_a_scene_with_nothing_in_it_can_be_explored(roadmap, ends):
     known = explored(roadmap, Scene("nothing"))
     assert known.plan(*ends[0]).solved

@@ -58,6 +58,9 @@ MOST_TOLD = 3000
 """Of so many milestones at most it is worked out how far they are from each other: 54 MB; no more bends are learned
 then.  Of more free ones none is joined to all: there are millions of pairs."""
 
+OF_A_WAY = 60
+"""A way out has fewer waypoints: with no room for it no more are learned, or there would be no table."""
+
 CLOSE = 20
 """An end that none of its links joins is tried to be linked to so many milestones that are nearest in displacement."""
 
@@ -75,12 +78,14 @@ def explore(
     Of what the roadmap knows to be free of robot and cell, `day` is asked.
     """
     settle(graph, world, day)
-    ways: list[Floats] = []
+    before, ways = int(graph.desk[at.NODES]), list[Floats]()
     hubs = np.flatnonzero(graph.nodes[: len(roadmap.milestones)] >= FREE)
     if not len(hubs):
         return ways
     ends = ends_between_obstacles(world, count, rng)
     for end in ends:
+        if before <= MOST_TOLD < graph.desk[at.NODES] + OF_A_WAY:
+            break
         goal = roadmap.milestones[rng.choice(hubs)][np.newaxis]
         asked = ask(
             world, day, graph, end, goal, links=LINKS, greed=GREED, most_motions=MOTIONS, deadline=math.inf

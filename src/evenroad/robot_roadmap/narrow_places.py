@@ -16,6 +16,9 @@ AT_ONCE, POOLS = 40_000, 10
 """So many configurations are drawn at once, and so often at most, until enough are closed in; on tables and boxes too
 few are."""
 
+FEW_TIPS = 4
+"""With more links that carry no other than this, fewer are drawn, in proportion: each is looked at by itself."""
+
 CLOSED = 8
 """A tip is closed in where so many of fourteen ways are blocked, more than half.  Those closed in more are not
 preferred: they lie in the corners of a place, where queries hardly go."""
@@ -42,7 +45,8 @@ def ends_between_obstacles(world: ArmWorld, count: int, rng: np.random.Generator
     They are drawn uniformly from all that are; where these are too few, the rest are those closed in next to that.
     """
     q, closed, far = np.empty((0, world.space.dim)), np.empty(0), 0.0
-    for _ in range(POOLS):
+    moved = {joint.child for joint in world.robot.joints} - {joint.parent for joint in world.robot.joints}
+    for _ in range(max(1, min(POOLS, POOLS * FEW_TIPS // max(len(moved), 1)))):
         more = world.space.from_cube(rng.random((AT_ONCE, world.space.dim)))
         more = more[world.valid(more)]
         if not len(more):

@@ -202,7 +202,8 @@ class SceneRoadmap:
         Parameters
         ----------
         ends : int
-            How many are tried, >= 1.  Beyond 3000 milestones, with what was learned, ways are searched, not looked up.
+            How many are tried, >= 1; none any more once there are nearly 3000 milestones.  In a roadmap of more, ways
+            are searched, not looked up.
         rng : int, SeedSequence or Generator
             Where they are drawn from.
 
