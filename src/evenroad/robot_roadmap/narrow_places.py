@@ -10,7 +10,7 @@ from evenroad._arrays import Floats
 from evenroad.geometry.shapes import Capsule
 from evenroad.robot import ArmWorld, Joint, Robot, Scene
 from evenroad.robot_roadmap.chance import Surroundings
-from evenroad.robot_roadmap.pockets import tips_of
+from evenroad.robot_roadmap.pockets import last_links, tips_of
 
 AT_ONCE, POOLS = 40_000, 10
 """So many configurations are drawn at once, and so often at most, until enough are closed in; on tables and boxes too
@@ -45,8 +45,8 @@ def ends_between_obstacles(world: ArmWorld, count: int, rng: np.random.Generator
     They are drawn uniformly from all that are; where these are too few, the rest are those closed in next to that.
     """
     q, closed, far = np.empty((0, world.space.dim)), np.empty(0), 0.0
-    moved = {joint.child for joint in world.robot.joints} - {joint.parent for joint in world.robot.joints}
-    for _ in range(max(1, min(POOLS, POOLS * FEW_TIPS // max(len(moved), 1)))):
+    most = POOLS * FEW_TIPS // max(FEW_TIPS, len(last_links(world.robot)))
+    for _ in range(max(1, most)):
         more = world.space.from_cube(rng.random((AT_ONCE, world.space.dim)))
         more = more[world.valid(more)]
         if not len(more):

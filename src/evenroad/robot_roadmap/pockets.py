@@ -159,14 +159,18 @@ def _seen(world: ArmWorld, inside: ArmWorld, pool: Floats, scaled: Floats, end: 
     return joined_to(world, inside, pool, end, rows)
 
 
+def last_links(robot: Robot) -> list[int]:
+    """Return the numbers of the links that carry no other."""
+    carrying = {joint.parent for joint in robot.joints}
+    return [i for i, link in enumerate(robot.links) if link not in carrying]
+
+
 def tips_of(robot: Robot, pool: Floats) -> Floats:
     """Return the places of the links that carry no other and move, (n, tips, 3) [m]."""
-    carrying = {joint.parent for joint in robot.joints}
     places = np.concatenate(
         [link_poses(robot, q)[..., :3, 3] for q in np.array_split(pool, -(-len(pool) // 10_000))]
     )
-    ends = [i for i, link in enumerate(robot.links) if link not in carrying]
-    return places[:, [i for i in ends if np.ptp(places[:, i], axis=0).max() > STILL]]
+    return places[:, [i for i in last_links(robot) if np.ptp(places[:, i], axis=0).max() > STILL]]
 
 
 def body_of(robot: Robot, pool: Floats) -> tuple[Floats, Floats]:
