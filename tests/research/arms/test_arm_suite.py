@@ -1,6 +1,7 @@
 """The suite of arms: its tasks, its rows and what they say."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from evenroad.research.bench.execute import run_task
 from evenroad.research.bench.runner import run_tasks
 from evenroad.research.bench.store import open_store, read_rows
 from evenroad.research.bench.task import Outcome, Task
-from evenroad.research.report.arms import draw_costs
+from evenroad.research.report.arms import draw_costs, summary_tables
 from evenroad.research.workers import in_process
 
 SMALL = dict(runs=2, only=["scara"], draws=1, counts=[16], samplers=["sobol scrambled", "roadmap", "trees"])
@@ -138,3 +139,45 @@ def test_costs_are_drawn_of_the_smallest_a_middle_and_the_largest_roadmap(tmp_pa
         "roadmap, 256": [25.0, 50.0, 75.0],
         "roadmap, 512": [25.0, 50.0, 75.0, 100.0],
     }
+
+
+def _table(tables, name):
+    return [[entry.text for entry in row] for row in next(t for t in tables if t.name == name).rows]
+
+
+def test_a_mean_over_robots_is_there_where_all_of_them_were_run(tmp_path):
+    outcomes = [
+        (replace(_task("roadmap", i, 0, n), problem=f"arm-{robot}-shelf"), i < solved)
+        for robot, n, solved in (("scara", 64, 1), ("arm7", 64, 4), ("arm7", 128, 4))
+        for i in range(4)
+    ]
+    lines = arm_lines(_rows(tmp_path / "a.db", outcomes))
+    assert _table(summary_tables(lines), "arms-samplers") == [["10", "roadmap", "62.5", "–"]]
+
+
+def test_samplers_that_no_n_has_for_all_robots_are_left_out_of_the_mean(tmp_path):
+    outcomes = [
+        (replace(_task(sampler, 0, 0), problem=f"arm-{robot}-shelf"), True)
+        for robot, sampler in (("scara", "roadmap"), ("ur5", "roadmap"), ("ur5", "mpmc"))
+    ]
+    lines = arm_lines(_rows(tmp_path / "a.db", outcomes))
+    assert [row[1] for row in _table(summary_tables(lines), "arms-samplers")] == ["roadmap"]
+
+
+def test_gains_on_points_of_the_box_and_on_the_control_and_certain_losses_are_listed(tmp_path):
+    success = {
+        (s, i, 0): s == "control" for s in ("sobol scrambled", "control", "roadmap") for i in range(20)
+    }
+    tables = summary_tables(arm_lines(_store(tmp_path / "a.db", success)))
+    assert _table(tables, "arms-gains") == [
+        ["scara", "10", "owen", "+0.0 ± 0.0"],
+        ["scara", "10", "control", "-100.0 ± 0.0"],
+    ]
+    assert _table(tables, "arms-losses") == [["scara", "10", "64", "control", "shelf", "-100.0 ± 0.0"]]
+    losses = next(table for table in tables if table.name == "arms-losses")
+    assert losses.notes[0].startswith("Of 2 comparisons by generator 0 are gains and 1 losses")
+
+
+def test_without_points_nothing_is_summed_up(tmp_path):
+    trees = Task("arm-scara-shelf", 0, "trees", 0, "-", "trees", 0, 1)
+    assert summary_tables(arm_lines(_rows(tmp_path / "a.db", [(trees, True)]))) == ()

@@ -16,7 +16,7 @@ from evenroad.errors import BrokenFile
 from evenroad.research.bench import rows as rows_module
 from evenroad.research.bench import store as store_module
 from evenroad.research.bench import task as task_module
-from evenroad.research.bench.store import leave_rows, open_store, read_rows, read_sessions
+from evenroad.research.bench.store import joined, leave_rows, open_store, read_rows, read_sessions
 from evenroad.research.bench.store_file import COLUMNS, SCHEMA
 from evenroad.research.bench.task import PROTOCOL, Outcome, Task
 
@@ -128,6 +128,37 @@ def test_a_selection_of_rows_keeps_their_columns_together(path):
     assert not rows.valid.flags.writeable
     with pytest.raises(ValueError, match="read-only"):
         rows.sampler.codes[0] = 1
+
+
+def test_stores_of_several_machines_are_read_as_one(path, tmp_path):
+    tasks = [
+        replace(TASK, problem=problem, n=n, run=run)
+        for problem in ("maze-1", "maze-2")
+        for n in (64, 128)
+        for run in range(3)
+    ]
+    outcomes = [(task, replace(SOLVED, valid=place)) for place, task in enumerate(tasks)]
+    _write(path, outcomes)
+    _write(tmp_path / "here.db", outcomes[1::2])
+    # Its names come in another order, and with others.
+    _write(
+        tmp_path / "there.db", [(replace(TASK, problem="a maze"), NOT_CONNECTED), *reversed(outcomes[::2])]
+    )
+    together = joined([read_rows(tmp_path / "there.db"), read_rows(tmp_path / "here.db")])
+    assert together.problem[0] == "a maze"
+    whole, rest = read_rows(path), together.where(np.arange(1, len(together)))
+    for name in asdict(TASK) | asdict(SOLVED):
+        values, expected = getattr(rest, name), getattr(whole, name)
+        assert [values[i] for i in range(len(rest))] == [expected[i] for i in range(len(whole))], name
+
+
+def test_of_a_task_with_rows_in_two_stores_that_of_the_first_counts(path, tmp_path):
+    _write(path, [(TASK, NOT_CONNECTED), (replace(TASK, run=1), SOLVED)])
+    _write(tmp_path / "b.db", [(TASK, SOLVED)])
+    one, other = read_rows(path), read_rows(tmp_path / "b.db")
+    assert joined([one, other]).solved.tolist() == [False, True]
+    assert joined([other, one]).solved.tolist() == [True, True]
+    assert len(joined([one.where(np.zeros(2, dtype=np.bool_))])) == 0
 
 
 def test_a_new_store_is_empty(path):

@@ -71,10 +71,10 @@ def is_of_arms(problem: str) -> bool:
 def arm_lines(rows: Rows) -> tuple[Line, ...]:
     """Return all lines of a store: by robot, k, n and sampler, each generator and then all of them."""
     of_arms = np.array([is_of_arms(name) for name in rows.problem.names], dtype=np.bool_)
-    rows = rows.where(of_arms[rows.problem.codes] & ~rows.problem.is_in([]))
+    rows = rows.where(of_arms[rows.problem.codes])
     if not len(rows):
         return ()
-    unit, generator = _units(rows)
+    runs, generator = _runs(rows)
     ways = _ways(rows)
     references = {(way.robot, way.k, way.n): of for way, of in ways.items() if way.sampler == REFERENCE}
     found: list[Line] = []
@@ -84,7 +84,7 @@ def arm_lines(rows: Rows) -> tuple[Line, ...]:
         for name in (*GENERATORS, ALL):
             here = mine if name == ALL else mine[generator[mine] == list(GENERATORS).index(name)]
             if len(here):
-                found.append(_line(rows, way, name, here, _sums(rows, unit, theirs, here)))
+                found.append(_line(runs, way, name, here, _sums(runs, theirs, here)))
     tested = [i for i, line in enumerate(found) if not np.isnan(line.p)]
     corrected = holm([found[i].p for i in tested]).tolist()
     for i, p in zip(tested, corrected, strict=True):
@@ -92,11 +92,23 @@ def arm_lines(rows: Rows) -> tuple[Line, ...]:
     return tuple(found)
 
 
-def _units(rows: Rows) -> tuple[Ints, Ints]:
-    """Return a code for the problem of each row, and the number of its generator."""
+class _Runs(NamedTuple):
+    """What every line asks of all rows, looked up once: the problem of each as a number, and what makes a pair."""
+
+    rows: Rows
+    unit: Ints
+    pair: Ints
+    solved: Bools
+    answered: Bools
+
+
+def _runs(rows: Rows) -> tuple[_Runs, Ints]:
+    """Return the rows, ready for lines, and the number of the generator of each."""
     of_name = np.array([list(GENERATORS).index(robot_and_generator(name)[1]) for name in rows.problem.names])
     unit = rows.problem.codes.astype(np.int64) * (int(rows.instance.max()) + 1) + rows.instance
-    return unit, of_name[rows.problem.codes]
+    _, seeds = np.unique(rows.seed, return_inverse=True)
+    pair = (unit * (int(rows.run.max()) + 1) + rows.run) * (int(seeds.max()) + 1) + seeds
+    return _Runs(rows, unit, pair, rows.solved, rows.answered), of_name[rows.problem.codes]
 
 
 def _ways(rows: Rows) -> dict[Way, Ints]:
@@ -121,33 +133,32 @@ def _place(way: Way) -> tuple[object, ...]:
     return way.robot, int(way.k) if way.k.isdigit() else -1, way.n, place, way.search == KEPT
 
 
-def _sums(rows: Rows, unit: Ints, theirs: Ints, mine: Ints) -> tuple[Ints, Ints]:
+def _sums(runs: _Runs, theirs: Ints, mine: Ints) -> tuple[Ints, Ints]:
     """Return the differences of solved runs by problem, and the pairs; a run without its like is left out."""
     if not len(theirs):
         return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
-    solved = rows.solved.astype(np.int64)
-    _, seeds = np.unique(rows.seed, return_inverse=True)
-    key = (unit * (int(rows.run.max()) + 1) + rows.run) * (int(seeds.max()) + 1) + seeds
-    theirs = theirs[np.argsort(key[theirs])]
-    place = np.minimum(np.searchsorted(key[theirs], key[mine]), len(theirs) - 1)
-    paired = key[theirs[place]] == key[mine]
-    apart = solved[theirs[place[paired]]] - solved[mine[paired]]
-    _, which = np.unique(unit[mine[paired]], return_inverse=True)
+    pair, solved = runs.pair, runs.solved
+    theirs = theirs[np.argsort(pair[theirs])]
+    place = np.minimum(np.searchsorted(pair[theirs], pair[mine]), len(theirs) - 1)
+    paired = pair[theirs[place]] == pair[mine]
+    apart = solved[theirs[place[paired]]].astype(np.int64) - solved[mine[paired]]
+    _, which = np.unique(runs.unit[mine[paired]], return_inverse=True)
     return np.bincount(which, weights=apart).astype(np.int64), np.bincount(which)
 
 
-def _line(rows: Rows, way: Way, generator: str, here: Ints, paired: tuple[Ints, Ints]) -> Line:
+def _line(runs: _Runs, way: Way, generator: str, here: Ints, paired: tuple[Ints, Ints]) -> Line:
     sums, counts = paired
     gain, error, p = np.nan, np.nan, np.nan
     if len(sums) > 1:
         shares = sums / counts
         gain, error = float(shares.mean()), float(shares.std(ddof=1) / np.sqrt(len(shares)))
         p = sign_flip_test(sums)
-    solved: Bools = rows.solved[here]
-    problems = len(np.unique(rows.instance[here] + (rows.problem.codes[here].astype(np.int64) << 32)))
+    problems, rows = len(np.unique(runs.unit[here])), runs.rows
     asked: list[Floats | Ints] = [rows.valid[here], rows.edges_checked[here], 1e3 * rows.seconds[here]]
-    medians = [float(np.nanmedian(column)) if rows.answered[here].any() else np.nan for column in asked]
-    return Line(*way, generator, problems, len(here), float(solved.mean()), gain, error, p, p, *medians)
+    medians = [float(np.nanmedian(column)) if runs.answered[here].any() else np.nan for column in asked]
+    return Line(
+        *way, generator, problems, len(here), float(runs.solved[here].mean()), gain, error, p, p, *medians
+    )
 
 
 def csv_of(lines: Sequence[Line]) -> list[tuple[object, ...]]:

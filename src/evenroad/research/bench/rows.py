@@ -147,6 +147,27 @@ def _record(row: tuple[Any, ...]) -> tuple[Any, ...]:
     )
 
 
+def joined(parts: Sequence[Rows]) -> Rows:
+    """Return the rows of several stores as of one, at least one store; of a task with several rows the first store's.
+
+    So the same suite may be run on several machines, each with a store of its own.
+    """
+    columns = {
+        name: _labels_below([getattr(part, name) for part in parts])
+        if isinstance(first, Labels)
+        else np.concatenate([getattr(part, name) for part in parts])
+        for name, first in vars(parts[0]).items()
+    }
+    rows = _in_order(columns)
+    is_new = np.zeros(len(rows), dtype=np.bool_)
+    is_new[:1] = True
+    for name in Task.__annotations__:
+        column = getattr(rows, name)
+        values = column.codes if isinstance(column, Labels) else column
+        is_new[1:] |= values[1:] != values[:-1]
+    return rows.where(is_new)
+
+
 class Session(NamedTuple):
     """One time that a store was written to: when, and by what."""
 
@@ -174,8 +195,21 @@ def _rows_from(table: npt.NDArray[Any], texts: dict[int, str]) -> Rows:
     columns: dict[str, Any] = {
         name: _labels(table[name], texts) if name in NAMED else table[name] for name in Rows.__annotations__
     }
+    return _in_order(columns)
+
+
+def _in_order(columns: dict[str, Any]) -> Rows:
+    """Return rows sorted by the fields of the task; those of one task stay as they come."""
     keys = [getattr(columns[name], "codes", columns[name]) for name in Task.__annotations__]
     return Rows(**columns).where(np.lexsort(keys[::-1]))
+
+
+def _labels_below(parts: Sequence[Labels]) -> Labels:
+    """Return columns of texts one below the other."""
+    names = sorted({name for part in parts for name in part.names})
+    places = {name: place for place, name in enumerate(names)}
+    codes = [np.array([places[name] for name in part.names], dtype=np.int32)[part.codes] for part in parts]
+    return Labels(np.concatenate(codes), tuple(names))
 
 
 def _labels(numbers: npt.NDArray[np.generic], texts: dict[int, str]) -> Labels:

@@ -19,6 +19,7 @@ from evenroad._files import atomic_write, require_writable_folder
 from evenroad.errors import BrokenFile
 from evenroad.research.bench.rows import FAILURES
 from evenroad.research.bench.rows import Session as Session
+from evenroad.research.bench.rows import joined as joined
 from evenroad.research.bench.rows import read_rows as read_rows
 from evenroad.research.bench.rows import read_sessions as read_sessions
 from evenroad.research.bench.store_file import (

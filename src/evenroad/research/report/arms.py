@@ -1,4 +1,4 @@
-"""The arms' part of a report: a table for each robot, and pictures of success over points and over what it costs."""
+"""The arms' part of a report: tables of all robots and of each, pictures of success over points and over its cost."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad.research.arms.execute import KEPT, TREES
 from evenroad.research.arms.results import (
+    ALL,
     REFERENCE,
     TABLE_HEADER,
     Line,
@@ -38,6 +39,78 @@ STYLES = {
 
 CURVES = ("sobol scrambled", "control", REFERENCE)
 """Samplers whose costs are drawn, beside trees."""
+
+OTHERS = ("owen", "control")
+"""What gains are listed for, as tables call it: points of the joint box, and the fair control."""
+
+LEVEL = 0.05
+"""Of the tests behind wins and losses, after correction."""
+
+
+def summary_tables(lines: Sequence[Line]) -> tuple[Table, ...]:
+    """Return what all robots say together: success by sampler, what the roadmap gains, and where it loses."""
+    lines = [line for line in lines if line.n]
+    return (_samplers_table(lines), _gains_table(lines), _losses_table(lines)) if lines else ()
+
+
+def _samplers_table(lines: Sequence[Line]) -> Table:
+    robots = {line.robot for line in lines}
+    counts = sorted({line.n for line in lines})
+    shares: dict[tuple[int, int, str], dict[int, list[float]]] = {}
+    for line in lines:
+        if line.generator == ALL:
+            way = (int(line.k), list(STYLES).index(line.sampler), title_of(line))
+            shares.setdefault(way, {}).setdefault(line.n, []).append(line.success)
+    whole = {
+        (k, title): {n: f"{100 * np.mean(found):.1f}" for n, found in by.items() if len(found) == len(robots)}
+        for (k, _, title), by in sorted(shares.items())
+    }
+    return Table(
+        name="arms-samplers",
+        title=f"success [%], mean of {len(robots)} robot{'s' if len(robots) > 1 else ''}",
+        header=("k", "points", *(f"N = {n}" for n in counts)),
+        rows=[row(*way, *(by.get(n, "–") for n in counts)) for way, by in whole.items() if by],
+        labels=2,
+        notes=("Each robot counts as much as another; – where one of them was not run.",),
+    )
+
+
+def _gains_table(lines: Sequence[Line]) -> Table:
+    counts = sorted({line.n for line in lines})
+    gains: dict[tuple[str, str, str], dict[int, str]] = {}
+    for line in lines:
+        if line.generator == ALL and title_of(line) in OTHERS and not np.isnan(line.gain):
+            text = f"{100 * line.gain:+.1f} ± {100 * line.error:.1f}"
+            gains.setdefault((line.robot, line.k, title_of(line)), {})[line.n] = text
+    return Table(
+        name="arms-gains",
+        title="success of the roadmap minus that of others [points], all generators",
+        header=("robot", "k", "points", *(f"N = {n}" for n in counts)),
+        rows=[row(*way, *(by.get(n, "–") for n in counts)) for way, by in gains.items()],
+        labels=3,
+        notes=("Paired by problem, with standard errors over problems.",),
+    )
+
+
+def _losses_table(lines: Sequence[Line]) -> Table:
+    tested = [line for line in lines if line.generator != ALL and not np.isnan(line.p)]
+    certain = [line for line in tested if line.p_corrected < LEVEL]
+    losses = [line for line in certain if line.gain < 0.0]
+    return Table(
+        name="arms-losses",
+        title="where the roadmap solves less",
+        header=("robot", "k", "N", "points", "generator", "roadmap - this [points]"),
+        rows=[
+            row(line.robot, line.k, line.n, title_of(line), line.generator, gain)
+            for line in losses
+            for gain in [f"{100 * line.gain:+.1f} ± {100 * line.error:.1f}"]
+        ],
+        labels=2,
+        notes=(
+            f"Of {len(tested)} comparisons by generator {len(certain) - len(losses)} are gains and {len(losses)} losses"
+            f" at {LEVEL:g} after Holm's correction over all; the others are not certain.",
+        ),
+    )
 
 
 def arm_tables(lines: Sequence[Line]) -> tuple[Table, ...]:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from matplotlib.figure import Figure
 
 from evenroad.research.report.analysis import Analysis
-from evenroad.research.report.arms import arm_pictures, arm_tables
+from evenroad.research.report.arms import arm_pictures, arm_tables, summary_tables
 from evenroad.research.report.cells import Cell
 from evenroad.research.report.charts import (
     as_png,
@@ -100,7 +100,8 @@ def _fair(analysis: Analysis) -> Section:
 
 def _arms(analysis: Analysis) -> Section:
     pictures = tuple(_picture(*each) for each in arm_pictures(analysis.arm_rows, analysis.arms))
-    return Section("arms", "Arms: roadmaps made for one robot", "", pictures, arm_tables(analysis.arms))
+    tables = (*summary_tables(analysis.arms), *arm_tables(analysis.arms))
+    return Section("arms", "Arms: roadmaps made for one robot", "", pictures, tables)
 
 
 def _setting(analysis: Analysis, setting: Setting) -> Section:
