@@ -354,6 +354,25 @@ def test_of_very_many_milestones_none_is_tried_to_be_joined_to_all(roadmap, monk
     assert sum(tried) <= learned * exploring.JOINED
 
 
+def test_of_many_narrow_places_those_that_are_joined_to_fewest_are_joined_to_all(roadmap, monkeypatch):
+    known = explored(roadmap)
+    graph, (a, b, _) = known._graph, known._graph.motions()
+    nodes = int(graph.desk[at.NODES])
+    free = np.flatnonzero(graph.nodes[:nodes] >= FREE)
+    pairs = np.stack([a, b])[:, graph.edges[: len(a)] >= FREE]
+    degree = np.bincount(pairs.ravel(), minlength=nodes)
+    tried = []
+    monkeypatch.setattr(exploring, "_join", lambda graph, world, a, b: tried.append((a, b)))
+    monkeypatch.setattr(exploring, "FEW", nodes)
+    monkeypatch.setattr(exploring, "MOST_PAIRS", 7 * len(free) + 1)
+    exploring._settle_and_join(graph, known.world, known._day, nodes)
+    ((chosen, others),) = tried
+    assert (len(chosen), len(set(chosen))) == (7 * len(free), 7)
+    np.testing.assert_array_equal(np.unique(others), free)
+    rest = np.setdiff1d(free, chosen)
+    assert degree[np.unique(chosen)].max() <= degree[rest].min()
+
+
 @pytest.mark.parametrize("bad", [{"ends": 0}, {"ends": 2.5}, {"rng": "x"}, {"rng": -1}])
 def test_what_is_no_number_of_ends_or_seed_is_refused(roadmap, bad):
     with pytest.raises(InvalidValue, match="must be an? int"):

@@ -39,6 +39,10 @@ JOINED = 30
 FEW = 10
 """What is joined to fewer lies in a narrow place: it is joined to all that it reaches, near or far."""
 
+MOST_PAIRS = 500_000
+"""Of narrow places so many motions are asked about at most, of those that are joined to fewest first: about a second.
+Where milestones have few neighbours nearly all would count as narrow."""
+
 AT_ONCE = 64
 """Of so many it is found out at once which are nearest: tables of all would take gigabytes."""
 
@@ -172,6 +176,7 @@ def _settle_and_join(graph: KnownGraph, world: ArmWorld, day: ArmWorld, first: i
     known = graph.edges[: len(a)] >= FREE
     joined = np.bincount(np.concatenate([a[known], b[known]]), minlength=len(graph.nodes))
     narrow = free[joined[free] < FEW]
+    narrow = narrow[np.argsort(joined[narrow], kind="stable")][: MOST_PAIRS // max(len(free), 1)]
     _join(graph, world, np.repeat(narrow, len(free)), np.tile(free, len(narrow)))
 
 

@@ -26,8 +26,8 @@ CUT_WORTH_WHILE = 1e-3
 _BESIDE = 1 << 32
 """Two counts in one number: less to read after a call."""
 
-MOST_CUTS, _NO_LIMIT = 64, 1 << 60
-"""So many cuts of corners are tried at most where nothing else is said; and of batches."""
+MOST_CUTS, NO_LIMIT = 64, 1 << 60
+"""So many cuts of corners are tried at most where nothing else is said; so many batches where there is no limit."""
 
 
 def shorten_path(
@@ -93,7 +93,7 @@ def shorten_points(
     measure(points, places, size, way, checks)
     for row in range(count):
         size = pair_joined(points, places, size, pairs[row], True, ends, way, checks)
-    size = cut_corners(points, places, size, most_cuts, _NO_LIMIT, True, ends, way, checks)
+    size = cut_corners(points, places, size, most_cuts, NO_LIMIT, True, ends, way, checks)
     size = pass_by(points, size, True, checks)
     return size + _BESIDE * checks.counts[MOTIONS]
 

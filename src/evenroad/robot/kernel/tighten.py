@@ -23,7 +23,7 @@ from evenroad.robot.kernel.motion_checks import (
     motion_proved,
 )
 from evenroad.robot.kernel.motion_states import BATCHES, CONFIGURATIONS, COUNTS, MOTIONS
-from evenroad.robot.kernel.shorten import cut_corners, measure, move, move_to, pair_joined, pass_by
+from evenroad.robot.kernel.shorten import NO_LIMIT, cut_corners, measure, move, move_to, pair_joined, pass_by
 
 Floats = npt.NDArray[np.float64]
 
@@ -177,7 +177,7 @@ def tighten_points(
                 measure(points, places, size, way, checks)
             little = little + 1 if places[size - 1] > length * (1.0 - LEAST_GAIN) else 0
             turn += 1
-        size = cut_corners(points, places, size, MOST_CUTS, 1 << 60, False, ends, way, checks)
+        size = cut_corners(points, places, size, MOST_CUTS, NO_LIMIT, False, ends, way, checks)
         size += first
         if after:
             move_to(goal, whole[size])
