@@ -1,10 +1,11 @@
-"""The tables and pictures of docs/robot-roadmaps.md and arm-suite.md out of stores of `evenroad bench arms`.
+"""The tables and pictures of docs/robot-roadmaps.md and arm-suite.md, of what runs of `evenroad bench arms` solved.
 
-    python -m benchmarks.arm_tables results.db --docs docs
-    python -m benchmarks.arm_tables here.db there.db --docs docs
+    python -m benchmarks.arm_tables                     # of docs/data/arms_solved.npz alone
+    python -m benchmarks.arm_tables here.db there.db    # what these stores have takes the place of what was kept
 
 Between ``<!-- table NAME -->`` and ``<!-- end -->`` the pages get the table NAME as it stands in the report's
-`tables.md`; data/arms.csv and the picture of the UR5 of five joints are written anew, that of costs by
+`tables.md`.  data/arms_solved.npz keeps which draw solved which problem, so that a sampler that is run later is paired
+with all others.  It, data/arms.csv and the picture of the UR5 of five joints are written anew, the picture of costs by
 `python -m benchmarks.arm_ompl --store`.
 """
 
@@ -12,16 +13,61 @@ from __future__ import annotations
 
 import argparse
 import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from evenroad.research.arms.results import HEADER, arm_lines, csv_of
+import numpy as np
+
+from evenroad.research.arms.outcomes import Outcomes, Way, outcomes_of, paired, read_outcomes, write_outcomes
+from evenroad.research.arms.results import ALL, HEADER, REFERENCE, Line, csv_of, lines_of
+from evenroad.research.arms.scenes import GENERATORS
 from evenroad.research.bench.store import joined, read_rows
 from evenroad.research.report.arms import arm_tables, draw_success, summary_tables
-from evenroad.research.report.tables import as_markdown
+from evenroad.research.report.tables import Table, as_markdown, row
 from evenroad.research.report.write import csv_text
 
 PAGES = ("robot-roadmaps.md", "arm-suite.md")
 PLACE = re.compile(r"(<!-- table (\S+) -->\n).*?(<!-- end -->)", re.DOTALL)
+
+
+FEW, MANY, K = 64, 256, "10"
+"""Milestones of the roadmap, and of the others it is compared with."""
+
+
+def few_table(outcomes: Mapping[Way, Outcomes]) -> Table:
+    """Return what few milestones made for a robot solve more than many of others, by robot and generator."""
+    ways = {(way.robot, way.n, way.sampler): way for way in outcomes if way.k == K and way.search == "kept"}
+    rows = []
+    for robot, n, sampler in sorted(ways):
+        if (robot, FEW, REFERENCE) not in ways or n != MANY or sampler not in ("sobol scrambled", "control"):
+            continue
+        pairs = paired(outcomes[ways[robot, FEW, REFERENCE]], outcomes[ways[robot, n, sampler]])
+        shares = pairs.more / pairs.pairs
+        groups = [*(shares[pairs.generator == which] for which in range(len(GENERATORS))), shares]
+        texts = [f"{100 * of.mean():+.1f} ± {100 * of.std(ddof=1) / np.sqrt(len(of)):.1f}" for of in groups]
+        rows.append(row(robot, f"{n} of {'owen' if sampler.startswith('sobol') else sampler}", *texts))
+    return Table(
+        "arms-few", f"{FEW} made minus others", ("robot", "against", *GENERATORS, ALL), rows, labels=2
+    )
+
+
+def all_tables(outcomes: Mapping[Way, Outcomes], lines: Sequence[Line]) -> dict[str, Table]:
+    """Return every table by its name."""
+    made = (few_table(outcomes), *summary_tables(lines), *arm_tables(lines))
+    return {table.name: table for table in made}
+
+
+def with_tables(page: str, tables: Mapping[str, Table]) -> str:
+    """Return a page with its tables filled in anew."""
+
+    def filled(match: re.Match[str]) -> str:
+        begin, name, end = match.groups()
+        if name not in tables:
+            raise SystemExit(f"there is no table {name!r}; there are {', '.join(tables)}")
+        _, _, rest = as_markdown(tables[name]).partition("\n")
+        return f"{begin}{rest.partition('Success [%]')[0].strip()}\n{end}"
+
+    return PLACE.sub(filled, page)
 
 
 def main() -> None:
@@ -29,21 +75,18 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("stores", type=Path, nargs="+")
+    parser.add_argument("stores", type=Path, nargs="*")
     parser.add_argument("--docs", type=Path, default=Path("docs"))
     options = parser.parse_args()
-    lines = arm_lines(joined([read_rows(store) for store in options.stores]))
-    tables = {table.name: table for table in (*summary_tables(lines), *arm_tables(lines))}
-
-    def filled(match: re.Match[str]) -> str:
-        begin, name, end = match.groups()
-        if name not in tables:
-            raise SystemExit(f"the stores have no table {name!r}; they have {', '.join(tables)}")
-        _, _, rest = as_markdown(tables[name]).partition("\n")
-        return f"{begin}{rest.partition('Success [%]')[0].strip()}\n{end}"
-
+    kept = options.docs / "data" / "arms_solved.npz"
+    outcomes = read_outcomes(kept) if kept.exists() else {}
+    if options.stores:
+        outcomes |= outcomes_of(joined([read_rows(store) for store in options.stores]))
+        write_outcomes(kept, outcomes)
+    lines = lines_of(outcomes)
+    tables = all_tables(outcomes, lines)
     for page in [options.docs / name for name in PAGES]:
-        page.write_text(PLACE.sub(filled, page.read_text()))
+        page.write_text(with_tables(page.read_text(), tables))
     (options.docs / "data" / "arms.csv").write_bytes(csv_text(" ".join(HEADER), csv_of(lines)))
     draw_success(lines, "ur5-5", "10").savefig(options.docs / "arms_ur5.png", dpi=100)
 

@@ -15,7 +15,8 @@ import numpy as np
 
 from evenroad._arrays import Floats
 from evenroad._rng import generator
-from evenroad.research.arms.results import Line, arm_lines, is_of_arms
+from evenroad.research.arms.outcomes import is_of_arms
+from evenroad.research.arms.results import Line, arm_lines
 from evenroad.research.bench.rows import Rows
 from evenroad.research.report.cells import Cell, cells_of
 from evenroad.research.report.comparisons import Comparison, comparisons_of, holm_of_tested

@@ -10,12 +10,12 @@ from matplotlib.figure import Figure
 
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad.research.arms.execute import KEPT, TREES
+from evenroad.research.arms.outcomes import is_of_arms
 from evenroad.research.arms.results import (
     ALL,
     REFERENCE,
     TABLE_HEADER,
     Line,
-    is_of_arms,
     robots_and_k,
     table_rows,
     title_of,

@@ -1,0 +1,132 @@
+"""What ways of planning solved, kept in one small file, and the tables of the pages that are made of it."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from benchmarks.arm_tables import PAGES, all_tables, with_tables
+
+from evenroad.errors import BrokenFile
+from evenroad.research.arms.outcomes import Way, outcomes_of, paired, read_outcomes, write_outcomes
+from evenroad.research.arms.results import lines_of
+from evenroad.research.bench.store import open_store, read_rows
+from evenroad.research.bench.task import Outcome, Task
+
+DOCS = Path(__file__).parents[3] / "docs"
+TASK = Task("arm-scara-shelf", 0, "uniform", 64, "k=10 ends=64", "kept", 0, 1)
+UNIFORM = Way("scara", "10", 64, "uniform", "k=10 ends=64", "kept")
+
+
+def _outcomes(path, runs):
+    """Return the outcomes of (task, outcome)."""
+    with open_store(path) as store:
+        for task, outcome in runs:
+            store.add("arms", task, outcome, "here")
+    return outcomes_of(read_rows(path))
+
+
+def _answer(solved, valid=0):
+    return Outcome("solved" if solved else "not_connected", valid=valid, edges_checked=2 * valid, seconds=0.5)
+
+
+def _random_runs(seed=0):
+    """Return made-up runs of two samplers, of which a third is missing."""
+    rng = np.random.default_rng(seed)
+    return [
+        (replace(TASK, problem=f"arm-scara-{kind}", instance=i, sampler=sampler, run=run, seed=s), solved)
+        for sampler in ("uniform", "roadmap")
+        for kind in ("cage", "shelf")
+        for i in range(7)
+        for run in range(3)
+        for s in (1, 5)
+        for solved in [bool(rng.random() < 0.5)]
+        if rng.random() < 0.67
+    ]
+
+
+def test_every_run_has_its_place_by_problem_and_draw(tmp_path):
+    other = replace(TASK, problem="arm-scara-cage", instance=5, run=2)
+    runs = [(TASK, _answer(True)), (replace(TASK, run=2), _answer(False)), (other, _answer(True))]
+    outcomes = _outcomes(tmp_path / "a.db", runs)
+    assert list(outcomes) == [UNIFORM]
+    found = outcomes[UNIFORM]
+    assert found.problems.tolist() == [[0, 0], [4, 5]]
+    assert found.draws.tolist() == [[1, 0], [1, 2]]
+    assert found.ran.tolist() == [[True, True], [False, True]]
+    assert found.solved.tolist() == [[True, False], [False, True]]
+
+
+def test_costs_are_medians_over_answers_by_generator_and_over_all(tmp_path):
+    runs = [(replace(TASK, run=run), _answer(False, valid)) for run, valid in enumerate((1, 2, 9))]
+    runs += [(replace(TASK, problem="arm-scara-cage"), _answer(True, 30))]
+    runs += [(replace(TASK, problem="arm-scara-cage", run=1), Outcome("timeout", error="too long"))]
+    costs = _outcomes(tmp_path / "a.db", runs)[UNIFORM].costs
+    assert costs[0].tolist() == [2.0, 4.0, 500.0]
+    assert costs[4].tolist() == [30.0, 60.0, 500.0]
+    assert costs[5].tolist() == [5.5, 11.0, 500.0]
+    assert np.isnan(costs[1:4]).all()
+
+
+def test_pairs_are_the_runs_that_both_ways_have(tmp_path):
+    runs = _random_runs()
+    outcomes = _outcomes(tmp_path / "a.db", [(task, _answer(solved)) for task, solved in runs])
+    solved = {(t.sampler, t.problem, t.instance, t.run, t.seed): yes for t, yes in runs}
+    more, pairs = {}, {}
+    for (sampler, *rest), yes in solved.items():
+        if sampler == "roadmap" and ("uniform", *rest) in solved:
+            unit = tuple(rest[:2])
+            more[unit] = more.get(unit, 0) + yes - solved["uniform", *rest]
+            pairs[unit] = pairs.get(unit, 0) + 1
+    found = paired(outcomes[UNIFORM._replace(sampler="roadmap")], outcomes[UNIFORM])
+    units = sorted(more, key=lambda unit: (unit[0] == "arm-scara-cage", unit[1]))
+    assert found.generator.tolist() == [4 * (problem == "arm-scara-cage") for problem, _ in units]
+    assert found.more.tolist() == [more[unit] for unit in units]
+    assert found.pairs.tolist() == [pairs[unit] for unit in units]
+
+
+def test_rows_of_other_suites_are_passed_over(tmp_path):
+    maze = replace(TASK, problem="maze-1")
+    assert list(_outcomes(tmp_path / "a.db", [(maze, _answer(True)), (TASK, _answer(True))])) == [UNIFORM]
+    assert _outcomes(tmp_path / "b.db", [(maze, _answer(True))]) == {}
+    assert lines_of({}) == ()
+
+
+def test_outcomes_come_back_as_they_were_written(tmp_path):
+    runs = _random_runs()
+    outcomes = _outcomes(tmp_path / "a.db", [(task, _answer(solved)) for task, solved in runs])
+    # Other draws, more than eight of them.
+    more = [(replace(TASK, sampler="even", run=run), _answer(run % 2 == 0)) for run in range(20)]
+    outcomes |= _outcomes(tmp_path / "b.db", more)
+    write_outcomes(tmp_path / "o.npz", outcomes)
+    again = read_outcomes(tmp_path / "o.npz")
+    assert list(again) == list(outcomes)
+    assert str(lines_of(again)) == str(lines_of(outcomes))
+    even = UNIFORM._replace(sampler="even")
+    assert again[even].solved[again[even].ran].tolist() == [run % 2 == 0 for run in range(20)]
+
+
+@pytest.mark.parametrize("harm", ["cut", "flipped", "other"])
+def test_a_damaged_file_of_outcomes_is_refused(tmp_path, harm):
+    path = tmp_path / "o.npz"
+    write_outcomes(path, _outcomes(tmp_path / "a.db", [(TASK, _answer(True))]))
+    if harm == "cut":
+        path.write_bytes(path.read_bytes()[:-40])
+    elif harm == "other":
+        np.savez(path, points=np.zeros((2, 2)))
+    else:
+        with np.load(path) as archive:
+            arrays = dict(archive)
+        np.savez(path, **(arrays | {"solved": ~arrays["solved"]}))
+    with pytest.raises(BrokenFile, match=r"o\.npz"):
+        read_outcomes(path)
+
+
+def test_the_tables_of_the_pages_are_those_of_the_kept_outcomes():
+    outcomes = read_outcomes(DOCS / "data" / "arms_solved.npz")
+    assert {len(each.problems) for each in outcomes.values()} == {1500}
+    tables = all_tables(outcomes, lines_of(outcomes))
+    for name in PAGES:
+        page = (DOCS / name).read_text()
+        assert page.count("<!-- table") > 1
+        assert with_tables(page, tables) == page
