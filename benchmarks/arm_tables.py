@@ -4,9 +4,9 @@
     python -m benchmarks.arm_tables here.db there.db    # what these stores have takes the place of what was kept
 
 Between ``<!-- table NAME -->`` and ``<!-- end -->`` the pages get the table NAME as it stands in the report's
-`tables.md`.  data/arms_solved.npz keeps which draw solved which problem, so that a sampler that is run later is paired
-with all others.  It, data/arms.csv and the picture of the UR5 of five joints are written anew, the picture of costs by
-`python -m benchmarks.arm_ompl --store`.
+`tables.md`; data/arms.csv and the picture of the UR5 of five joints are written anew, the picture of costs by
+`python -m benchmarks.arm_ompl --store`.  data/arms_solved.npz keeps which draw solved which problem, so that a sampler
+that is run later is paired with all others.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
+from evenroad._arrays import Floats
 from evenroad.research.arms.outcomes import Outcomes, Way, outcomes_of, paired, read_outcomes, write_outcomes
 from evenroad.research.arms.results import ALL, HEADER, REFERENCE, Line, csv_of, lines_of
 from evenroad.research.arms.scenes import GENERATORS
@@ -31,7 +32,7 @@ PLACE = re.compile(r"(<!-- table (\S+) -->\n).*?(<!-- end -->)", re.DOTALL)
 
 
 FEW, MANY, K = 64, 256, "10"
-"""Milestones of the roadmap, and of the others it is compared with."""
+"""Milestones of the roadmap, those of the others it is compared with, and neighbours of both."""
 
 
 def few_table(outcomes: Mapping[Way, Outcomes]) -> Table:
@@ -42,13 +43,20 @@ def few_table(outcomes: Mapping[Way, Outcomes]) -> Table:
         if (robot, FEW, REFERENCE) not in ways or n != MANY or sampler not in ("sobol scrambled", "control"):
             continue
         pairs = paired(outcomes[ways[robot, FEW, REFERENCE]], outcomes[ways[robot, n, sampler]])
-        shares = pairs.more / pairs.pairs
+        shares = 100 * pairs.more / pairs.pairs
         groups = [*(shares[pairs.generator == which] for which in range(len(GENERATORS))), shares]
-        texts = [f"{100 * of.mean():+.1f} ± {100 * of.std(ddof=1) / np.sqrt(len(of)):.1f}" for of in groups]
-        rows.append(row(robot, f"{n} of {'owen' if sampler.startswith('sobol') else sampler}", *texts))
-    return Table(
-        "arms-few", f"{FEW} made minus others", ("robot", "against", *GENERATORS, ALL), rows, labels=2
-    )
+        rows.append(
+            row(robot, f"{n} of {'owen' if sampler.startswith('sobol') else sampler}", *map(_mean, groups))
+        )
+    title = f"success of {FEW} milestones of the roadmap minus that of {MANY} others [percentage points]"
+    return Table("arms-few", title, ("robot", "against", *GENERATORS, ALL), rows, labels=2)
+
+
+def _mean(shares: Floats) -> str:
+    """Return the mean over problems and its standard error."""
+    if len(shares) < 2:
+        return "–"
+    return f"{shares.mean():+.1f} ± {shares.std(ddof=1) / np.sqrt(len(shares)):.1f}"
 
 
 def all_tables(outcomes: Mapping[Way, Outcomes], lines: Sequence[Line]) -> dict[str, Table]:
@@ -79,14 +87,21 @@ def main() -> None:
     parser.add_argument("--docs", type=Path, default=Path("docs"))
     options = parser.parse_args()
     kept = options.docs / "data" / "arms_solved.npz"
+    if not kept.exists() and not options.stores:
+        raise SystemExit(f"there is no {kept} yet: name a store")
     outcomes = read_outcomes(kept) if kept.exists() else {}
-    if options.stores:
-        outcomes |= outcomes_of(joined([read_rows(store) for store in options.stores]))
-        write_outcomes(kept, outcomes)
+    new = outcomes_of(joined([read_rows(store) for store in options.stores])) if options.stores else {}
+    for way in outcomes.keys() & new.keys():
+        if new[way].ran.sum() < outcomes[way].ran.sum():
+            raise SystemExit(f"the stores have fewer runs than were kept of {way}")
+    outcomes |= new
     lines = lines_of(outcomes)
     tables = all_tables(outcomes, lines)
-    for page in [options.docs / name for name in PAGES]:
-        page.write_text(with_tables(page.read_text(), tables))
+    pages = {path: with_tables(path.read_text(), tables) for path in (options.docs / name for name in PAGES)}
+    if new:
+        write_outcomes(kept, outcomes)
+    for path, page in pages.items():
+        path.write_text(page)
     (options.docs / "data" / "arms.csv").write_bytes(csv_text(" ".join(HEADER), csv_of(lines)))
     draw_success(lines, "ur5-5", "10").savefig(options.docs / "arms_ur5.png", dpi=100)
 

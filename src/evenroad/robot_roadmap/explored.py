@@ -37,11 +37,11 @@ JOINED = 30
 """What was learned is joined to so many of the nearest that it reaches."""
 
 FEW = 10
-"""What is joined to fewer lies in a narrow place: it is joined to all that it reaches, near or far."""
+"""What is joined to fewer lies in a narrow place: it is joined to all that it reaches, if there are not too many."""
 
 MOST_PAIRS = 500_000
-"""Of narrow places so many motions are asked about at most, of those that are joined to fewest first: about a second.
-Where milestones have few neighbours nearly all would count as narrow."""
+"""Milestones in narrow places are tried with all others, those with the fewest edges first, until so many pairs are
+used up: about a second.  In a roadmap of few neighbours nearly all would count as narrow."""
 
 AT_ONCE = 64
 """Of so many it is found out at once which are nearest: tables of all would take gigabytes."""

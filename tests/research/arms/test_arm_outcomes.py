@@ -5,13 +5,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from benchmarks.arm_tables import PAGES, all_tables, with_tables
+from benchmarks.arm_tables import PAGES, all_tables, few_table, with_tables
 
-from evenroad.errors import BrokenFile
+from evenroad._npz import digest
+from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.research.arms.outcomes import Way, outcomes_of, paired, read_outcomes, write_outcomes
-from evenroad.research.arms.results import lines_of
+from evenroad.research.arms.results import HEADER, csv_of, lines_of
 from evenroad.research.bench.store import open_store, read_rows
 from evenroad.research.bench.task import Outcome, Task
+from evenroad.research.report.write import csv_text
 
 DOCS = Path(__file__).parents[3] / "docs"
 TASK = Task("arm-scara-shelf", 0, "uniform", 64, "k=10 ends=64", "kept", 0, 1)
@@ -95,21 +97,97 @@ def test_rows_of_other_suites_are_passed_over(tmp_path):
 def test_outcomes_come_back_as_they_were_written(tmp_path):
     runs = _random_runs()
     outcomes = _outcomes(tmp_path / "a.db", [(task, _answer(solved)) for task, solved in runs])
-    # Other draws, more than eight of them.
-    more = [(replace(TASK, sampler="even", run=run), _answer(run % 2 == 0)) for run in range(20)]
+    # Other draws, more than eight of them, and the largest seed.
+    more = [
+        (replace(TASK, sampler="even", run=run, seed=2**32 - 1), _answer(run % 2 == 0)) for run in range(20)
+    ]
     outcomes |= _outcomes(tmp_path / "b.db", more)
     write_outcomes(tmp_path / "o.npz", outcomes)
     again = read_outcomes(tmp_path / "o.npz")
     assert list(again) == list(outcomes)
+    for way, each in outcomes.items():
+        back = again[way]
+        np.testing.assert_array_equal(back.problems, each.problems)
+        np.testing.assert_array_equal(back.costs, each.costs)
+        # Draws that only others have did not run.
+        at = [back.draws.tolist().index(draw) for draw in each.draws.tolist()]
+        np.testing.assert_array_equal(back.ran[:, at], each.ran)
+        np.testing.assert_array_equal(back.solved[:, at], each.solved)
+        assert back.ran.sum() == each.ran.sum()
     assert str(lines_of(again)) == str(lines_of(outcomes))
-    even = UNIFORM._replace(sampler="even")
-    assert again[even].solved[again[even].ran].tolist() == [run % 2 == 0 for run in range(20)]
+
+
+def test_the_two_streams_of_problems_are_kept_apart(tmp_path):
+    tuning = replace(TASK, problem="tune-arm-scara-shelf")
+    outcomes = _outcomes(tmp_path / "a.db", [(TASK, _answer(True)), (tuning, _answer(False))])
+    assert [way.robot for way in outcomes] == ["scara", "scara (tune)"]
+    assert [each.solved.tolist() for each in outcomes.values()] == [[[True]], [[False]]]
+
+
+def test_no_runs_are_not_written(tmp_path):
+    with pytest.raises(InvalidValue, match="no runs"):
+        write_outcomes(tmp_path / "o.npz", {})
+
+
+def _written(tmp_path, **changed):
+    """Write a file of two ways, with arrays that are something else, and the hash that fits them."""
+    path = tmp_path / "o.npz"
+    runs = [
+        (replace(TASK, sampler=s, instance=i), _answer(i > 0)) for s in ("even", "uniform") for i in range(2)
+    ]
+    write_outcomes(path, _outcomes(tmp_path / "a.db", runs))
+    with np.load(path) as archive:
+        arrays = dict(archive)
+    del arrays["hash"]
+    for name, change in changed.items():
+        arrays[name] = np.asarray(change(arrays[name]))
+    np.savez(path, **arrays, hash=np.array(digest(arrays)))
+    return path
+
+
+WRONG = {
+    "protocol": lambda a: a + 1,
+    "generators": lambda a: a[::-1],
+    "ways": lambda a: np.array([a[0], a[0]]),
+    "sizes": lambda a: np.array([-1, 5]),
+    "problems": lambda a: a[::-1],
+    "draws": lambda a: np.array(1),
+    "solved": lambda a: a.astype(np.int64),
+    "ran": np.zeros_like,
+    "costs": lambda a: -a,
+}
+
+
+@pytest.mark.parametrize(("name", "change"), WRONG.items(), ids=WRONG)
+def test_a_file_of_outcomes_that_cannot_be_is_refused(tmp_path, name, change):
+    with pytest.raises(BrokenFile, match=r"o\.npz"):
+        read_outcomes(_written(tmp_path, **{name: change}))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda ways: ways[:, :5],
+        lambda ways: np.array("ways"),
+        lambda ways: np.char.replace(ways, "64", "many"),
+        lambda ways: np.zeros((2, 6), dtype=np.int64),
+    ],
+)
+def test_ways_of_planning_that_cannot_be_are_refused(tmp_path, change):
+    with pytest.raises(BrokenFile, match=r"o\.npz: ways"):
+        read_outcomes(_written(tmp_path, ways=change))
+
+
+def test_a_generator_that_is_none_and_a_draw_that_comes_twice_are_refused(tmp_path):
+    with pytest.raises(BrokenFile, match="a generator that is none"):
+        read_outcomes(_written(tmp_path, problems=lambda a: a + np.array([9, 0])))
+    with pytest.raises(BrokenFile, match="draws out of order"):
+        read_outcomes(_written(tmp_path, draws=lambda a: np.repeat(a, 2, axis=0)))
 
 
 @pytest.mark.parametrize("harm", ["cut", "flipped", "other"])
 def test_a_damaged_file_of_outcomes_is_refused(tmp_path, harm):
-    path = tmp_path / "o.npz"
-    write_outcomes(path, _outcomes(tmp_path / "a.db", [(TASK, _answer(True))]))
+    path = _written(tmp_path)
     if harm == "cut":
         path.write_bytes(path.read_bytes()[:-40])
     elif harm == "other":
@@ -122,11 +200,33 @@ def test_a_damaged_file_of_outcomes_is_refused(tmp_path, harm):
         read_outcomes(path)
 
 
+def test_few_made_milestones_are_compared_with_many_others_by_generator(tmp_path):
+    def task(sampler, n, instance, kind="shelf"):
+        return replace(TASK, problem=f"arm-scara-{kind}", sampler=sampler, n=n, instance=instance)
+
+    runs = [(task("roadmap", 64, i), _answer(i != 0)) for i in range(4)]
+    runs += [(task("control", 256, i), _answer(i == 0)) for i in range(4)]
+    runs += [(task(s, n, 0, "cage"), _answer(True)) for s, n in (("roadmap", 64), ("control", 256))]
+    (row,) = few_table(_outcomes(tmp_path / "a.db", runs)).rows
+    shares = [-100.0, 100.0, 100.0, 100.0]
+    error = np.std(shares, ddof=1) / 2.0
+    assert [entry.text for entry in row] == [
+        "scara",
+        "256 of control",
+        f"+50.0 ± {error:.1f}",
+        *"–––",
+        "–",
+        f"+40.0 ± {np.std([*shares, 0.0], ddof=1) / np.sqrt(5.0):.1f}",
+    ]
+
+
 def test_the_tables_of_the_pages_are_those_of_the_kept_outcomes():
     outcomes = read_outcomes(DOCS / "data" / "arms_solved.npz")
     assert {len(each.problems) for each in outcomes.values()} == {1500}
-    tables = all_tables(outcomes, lines_of(outcomes))
+    lines = lines_of(outcomes)
+    tables = all_tables(outcomes, lines)
     for name in PAGES:
         page = (DOCS / name).read_text()
         assert page.count("<!-- table") > 1
         assert with_tables(page, tables) == page
+    assert csv_text(" ".join(HEADER), csv_of(lines)) == (DOCS / "data" / "arms.csv").read_bytes()

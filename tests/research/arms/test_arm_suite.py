@@ -161,7 +161,24 @@ def test_samplers_that_no_n_has_for_all_robots_are_left_out_of_the_mean(tmp_path
         for robot, sampler in (("scara", "roadmap"), ("ur5", "roadmap"), ("ur5", "mpmc"))
     ]
     lines = arm_lines(_rows(tmp_path / "a.db", outcomes))
-    assert [row[1] for row in _table(summary_tables(lines), "arms-samplers")] == ["roadmap"]
+    tables = summary_tables(lines)
+    assert [row[1] for row in _table(tables, "arms-samplers")] == ["roadmap"]
+    assert tables[0].notes[0].endswith("Not run for all robots: mpmc.")
+
+
+def test_robots_are_counted_and_not_their_rules(tmp_path):
+    outcomes = [
+        (replace(_task("roadmap", 0, 0, n), problem=f"arm-{robot}-shelf", rule=f"k=10 ends={ends}"), True)
+        for robot, n, ends in (("scara", 64, 64), ("scara", 64, 100), ("ur5", 128, 128), ("scara", 128, 128))
+    ]
+    lines = arm_lines(_rows(tmp_path / "a.db", outcomes))
+    assert _table(summary_tables(lines), "arms-samplers") == [["10", "roadmap", "–", "100.0"]]
+
+
+def test_samplers_and_rules_that_the_suite_does_not_know_are_in_the_tables(tmp_path):
+    lattice = replace(_task("lattice", 0, 0), rule="radius 0.5", search="connect")
+    tables = summary_tables(arm_lines(_rows(tmp_path / "a.db", [(lattice, True)])))
+    assert _table(tables, "arms-samplers") == [["radius", "lattice, ends k", "100.0"]]
 
 
 def test_gains_on_points_of_the_box_and_on_the_control_and_certain_losses_are_listed(tmp_path):
@@ -175,7 +192,7 @@ def test_gains_on_points_of_the_box_and_on_the_control_and_certain_losses_are_li
     ]
     assert _table(tables, "arms-losses") == [["scara", "10", "64", "control", "shelf", "-100.0 ± 0.0"]]
     losses = next(table for table in tables if table.name == "arms-losses")
-    assert losses.notes[0].startswith("Of 2 comparisons by generator 0 are gains and 1 losses")
+    assert "Of 2 comparisons by generator the roadmap solves more in 0 and less in 1," in losses.notes[0]
 
 
 def test_without_points_nothing_is_summed_up(tmp_path):

@@ -161,6 +161,22 @@ def test_of_a_task_with_rows_in_two_stores_that_of_the_first_counts(path, tmp_pa
     assert len(joined([one.where(np.zeros(2, dtype=np.bool_))])) == 0
 
 
+def test_an_answer_in_one_store_counts_before_a_failure_in_another(path, tmp_path):
+    _write(path, [(TASK, FAILED)])
+    _write(tmp_path / "b.db", [(TASK, SOLVED)])
+    assert joined([read_rows(path), read_rows(tmp_path / "b.db")]).solved.tolist() == [True]
+    assert joined([read_rows(path)]).status[0] == "failed"
+
+
+@pytest.mark.parametrize("field", Task.__annotations__)
+def test_tasks_that_differ_in_one_field_are_two(path, tmp_path, field):
+    value = getattr(TASK, field)
+    other = replace(TASK, **{field: value + 1 if isinstance(value, int) else f"{value}x"})
+    _write(path, [(TASK, SOLVED)])
+    _write(tmp_path / "b.db", [(other, SOLVED)])
+    assert len(joined([read_rows(path), read_rows(tmp_path / "b.db")])) == 2
+
+
 def test_a_new_store_is_empty(path):
     _write(path, [])
     rows = read_rows(path)

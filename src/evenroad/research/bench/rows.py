@@ -148,17 +148,19 @@ def _record(row: tuple[Any, ...]) -> tuple[Any, ...]:
 
 
 def joined(parts: Sequence[Rows]) -> Rows:
-    """Return the rows of several stores as of one, at least one store; of a task with several rows the first store's.
+    """Return the rows of several stores as those of one.
 
-    So the same suite may be run on several machines, each with a store of its own.
+    Where several have a row of the same task, an answer counts before a failure of a run, and then the first store's.
+    So a suite may be run on several machines, each with a store of its own.  `parts` must not be empty.
     """
-    columns = {
+    columns: dict[str, Any] = {
         name: _labels_below([getattr(part, name) for part in parts])
         if isinstance(first, Labels)
         else np.concatenate([getattr(part, name) for part in parts])
         for name, first in vars(parts[0]).items()
     }
-    rows = _in_order(columns)
+    rows = Rows(**columns)
+    rows = _in_order(vars(rows.where(np.argsort(~rows.answered, kind="stable"))))
     is_new = np.zeros(len(rows), dtype=np.bool_)
     is_new[:1] = True
     for name in Task.__annotations__:
@@ -205,7 +207,7 @@ def _in_order(columns: dict[str, Any]) -> Rows:
 
 
 def _labels_below(parts: Sequence[Labels]) -> Labels:
-    """Return columns of texts one below the other."""
+    """Return one column of texts: those of all parts, one after the other."""
     names = sorted({name for part in parts for name in part.names})
     places = {name: place for place, name in enumerate(names)}
     codes = [np.array([places[name] for name in part.names], dtype=np.int32)[part.codes] for part in parts]

@@ -44,7 +44,7 @@ OTHERS = ("owen", "control")
 """What gains are listed for, as tables call it: points of the joint box, and the fair control."""
 
 LEVEL = 0.05
-"""Of the tests behind wins and losses, after correction."""
+"""A gain or loss counts as certain where the corrected p is below this."""
 
 
 def summary_tables(lines: Sequence[Line]) -> tuple[Table, ...]:
@@ -56,22 +56,25 @@ def summary_tables(lines: Sequence[Line]) -> tuple[Table, ...]:
 def _samplers_table(lines: Sequence[Line]) -> Table:
     robots = {line.robot for line in lines}
     counts = sorted({line.n for line in lines})
-    shares: dict[tuple[int, int, str], dict[int, list[float]]] = {}
+    shares: dict[tuple[str, str], dict[int, dict[str, float]]] = {}
     for line in lines:
         if line.generator == ALL:
-            way = (int(line.k), list(STYLES).index(line.sampler), title_of(line))
-            shares.setdefault(way, {}).setdefault(line.n, []).append(line.success)
+            by_robot = shares.setdefault((line.k, title_of(line)), {}).setdefault(line.n, {})
+            by_robot[line.robot] = line.success
     whole = {
-        (k, title): {n: f"{100 * np.mean(found):.1f}" for n, found in by.items() if len(found) == len(robots)}
-        for (k, _, title), by in sorted(shares.items())
+        way: {n: f"{100 * np.mean(list(of.values())):.1f}" for n, of in by.items() if set(of) == robots}
+        for way, by in shares.items()
     }
+    note = "Each robot counts as much as another; – where one of them was not run."
+    if missing := [title for _, title in dict.fromkeys(way for way, by in whole.items() if not by)]:
+        note += f" Not run for all robots: {', '.join(dict.fromkeys(missing))}."
     return Table(
         name="arms-samplers",
         title=f"success [%], mean of {len(robots)} robot{'s' if len(robots) > 1 else ''}",
         header=("k", "points", *(f"N = {n}" for n in counts)),
         rows=[row(*way, *(by.get(n, "–") for n in counts)) for way, by in whole.items() if by],
         labels=2,
-        notes=("Each robot counts as much as another; – where one of them was not run.",),
+        notes=(note,),
     )
 
 
@@ -84,7 +87,7 @@ def _gains_table(lines: Sequence[Line]) -> Table:
             gains.setdefault((line.robot, line.k, title_of(line)), {})[line.n] = text
     return Table(
         name="arms-gains",
-        title="success of the roadmap minus that of others [points], all generators",
+        title="success of the roadmap minus that of others [percentage points], all generators",
         header=("robot", "k", "points", *(f"N = {n}" for n in counts)),
         rows=[row(*way, *(by.get(n, "–") for n in counts)) for way, by in gains.items()],
         labels=3,
@@ -95,20 +98,21 @@ def _gains_table(lines: Sequence[Line]) -> Table:
 def _losses_table(lines: Sequence[Line]) -> Table:
     tested = [line for line in lines if line.generator != ALL and not np.isnan(line.p)]
     certain = [line for line in tested if line.p_corrected < LEVEL]
+    gains = [line for line in certain if line.gain > 0.0]
     losses = [line for line in certain if line.gain < 0.0]
     return Table(
         name="arms-losses",
         title="where the roadmap solves less",
-        header=("robot", "k", "N", "points", "generator", "roadmap - this [points]"),
+        header=("robot", "k", "N", "points", "generator", "roadmap - this [percentage points]"),
         rows=[
             row(line.robot, line.k, line.n, title_of(line), line.generator, gain)
             for line in losses
             for gain in [f"{100 * line.gain:+.1f} ± {100 * line.error:.1f}"]
         ],
-        labels=2,
+        labels=5,
         notes=(
-            f"Of {len(tested)} comparisons by generator {len(certain) - len(losses)} are gains and {len(losses)} losses"
-            f" at {LEVEL:g} after Holm's correction over all; the others are not certain.",
+            f"Of {len(tested)} comparisons by generator the roadmap solves more in {len(gains)} and less in"
+            f" {len(losses)}, at {LEVEL:g} after Holm's correction over all; the others are not certain.",
         ),
     )
 
