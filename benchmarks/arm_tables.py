@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import argparse
 import re
+import textwrap
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -73,9 +74,14 @@ def with_tables(page: str, tables: Mapping[str, Table]) -> str:
         if name not in tables:
             raise SystemExit(f"there is no table {name!r}; there are {', '.join(tables)}")
         _, _, rest = as_markdown(tables[name]).partition("\n")
-        return f"{begin}{rest.partition('Success [%]')[0].strip()}\n{end}"
+        table = rest.partition("Success [%]")[0].strip().splitlines()
+        return "\n".join([begin.strip(), *(_wrapped(line) for line in table), end])
 
     return PLACE.sub(filled, page)
+
+
+def _wrapped(line: str) -> str:
+    return line if line.startswith("|") else textwrap.fill(line, 118, break_on_hyphens=False)
 
 
 def main() -> None:
