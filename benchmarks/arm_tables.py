@@ -31,7 +31,6 @@ from evenroad.research.report.write import csv_text
 PAGES = ("robot-roadmaps.md", "arm-suite.md")
 PLACE = re.compile(r"(<!-- table (\S+) -->\n).*?(<!-- end -->)", re.DOTALL)
 
-
 FEW, MANY, K = 64, 256, "10"
 """Milestones of the roadmap, those of the others it is compared with, and neighbours of both."""
 

@@ -39,9 +39,9 @@ JOINED = 30
 FEW = 10
 """What is joined to fewer lies in a narrow place: it is joined to all that it reaches, if there are not too many."""
 
-MOST_PAIRS = 500_000
+MOST_PAIRS = 1_000_000
 """Milestones in narrow places are tried with all others, those with the fewest edges first, until so many pairs are
-used up: about a second.  In a roadmap of few neighbours nearly all would count as narrow."""
+used up: a second or two.  In a roadmap of few neighbours nearly all would count as narrow."""
 
 AT_ONCE = 64
 """Of so many it is found out at once which are nearest: tables of all would take gigabytes."""

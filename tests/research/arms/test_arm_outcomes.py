@@ -1,5 +1,6 @@
 """What ways of planning solved, kept in one small file, and the tables of the pages that are made of it."""
 
+import csv
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,7 +14,6 @@ from evenroad.research.arms.outcomes import Way, outcomes_of, paired, read_outco
 from evenroad.research.arms.results import HEADER, csv_of, lines_of
 from evenroad.research.bench.store import open_store, read_rows
 from evenroad.research.bench.task import Outcome, Task
-from evenroad.research.report.write import csv_text
 
 DOCS = Path(__file__).parents[3] / "docs"
 TASK = Task("arm-scara-shelf", 0, "uniform", 64, "k=10 ends=64", "kept", 0, 1)
@@ -229,4 +229,11 @@ def test_the_tables_of_the_pages_are_those_of_the_kept_outcomes():
         page = (DOCS / name).read_text()
         assert page.count("<!-- table") > 1
         assert with_tables(page, tables) == page
-    assert csv_text(" ".join(HEADER), csv_of(lines)) == (DOCS / "data" / "arms.csv").read_bytes()
+    with (DOCS / "data" / "arms.csv").open(newline="") as file:
+        header, *kept = csv.reader(file)
+    assert header == list(HEADER)
+    for texts, values in zip(kept, csv_of(lines), strict=True):
+        assert texts[:9] == [str(value) for value in values[:9]]
+        # Last bits are another processor's.
+        numbers = [float(text or "nan") for text in texts[9:]]
+        np.testing.assert_allclose(numbers, values[9:], rtol=1e-9, atol=1e-12)
