@@ -20,11 +20,12 @@ from pathlib import Path
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad.research.arms.execute import KEPT
 from evenroad.research.arms.outcomes import Outcomes, Way, outcomes_of, paired, read_outcomes, write_outcomes
-from evenroad.research.arms.results import ALL, HEADER, REFERENCE, Line, csv_of, lines_of
+from evenroad.research.arms.results import ALL, HEADER, REFERENCE, TITLES, Line, csv_of, lines_of
 from evenroad.research.arms.scenes import GENERATORS
 from evenroad.research.bench.store import joined, read_rows
-from evenroad.research.report.arms import arm_tables, draw_success, summary_tables
+from evenroad.research.report.arms import OTHERS, arm_tables, draw_success, summary_tables
 from evenroad.research.report.tables import Table, as_markdown, row
 from evenroad.research.report.write import csv_text
 
@@ -37,17 +38,15 @@ FEW, MANY, K = 64, 256, "10"
 
 def few_table(outcomes: Mapping[Way, Outcomes]) -> Table:
     """Return what few milestones made for a robot solve more than many of others, by robot and generator."""
-    ways = {(way.robot, way.n, way.sampler): way for way in outcomes if way.k == K and way.search == "kept"}
+    ways = {(way.robot, way.n, way.sampler): way for way in outcomes if way.k == K and way.search == KEPT}
     rows = []
     for robot, n, sampler in sorted(ways):
-        if (robot, FEW, REFERENCE) not in ways or n != MANY or sampler not in ("sobol scrambled", "control"):
+        if (robot, FEW, REFERENCE) not in ways or n != MANY or TITLES.get(sampler, sampler) not in OTHERS:
             continue
         pairs = paired(outcomes[ways[robot, FEW, REFERENCE]], outcomes[ways[robot, n, sampler]])
         shares = 100 * pairs.more / pairs.pairs
         groups = [*(shares[pairs.generator == which] for which in range(len(GENERATORS))), shares]
-        rows.append(
-            row(robot, f"{n} of {'owen' if sampler.startswith('sobol') else sampler}", *map(_mean, groups))
-        )
+        rows.append(row(robot, f"{n} of {TITLES.get(sampler, sampler)}", *map(_mean, groups)))
     title = f"success of {FEW} milestones of the roadmap minus that of {MANY} others [percentage points]"
     return Table("arms-few", title, ("robot", "against", *GENERATORS, ALL), rows, labels=2)
 
