@@ -287,7 +287,7 @@ def test_start_and_goal_may_be_one_place(once, places):
 
 
 def test_an_end_that_sees_none_of_its_nearest_milestones_finds_another_by_displacement(roadmap, once, places):
-    without, blind, found, looked_up = explored(roadmap), 0, 0, 0
+    without, blind, anew, found, looked_up = explored(roadmap), 0, 0, 0, 0
     without._graph.desk[at.CLOSE] = 0
     q = once._graph.milestones[: int(once._graph.desk[at.NODES])]
     for links, (start, goal) in itertools.product((1, 2, 3), apart(once, places)):
@@ -298,7 +298,11 @@ def test_an_end_that_sees_none_of_its_nearest_milestones_finds_another_by_displa
             if free(once, here, q[first]).any():
                 continue
             blind += 1
-            assert asked(without, start, goal[np.newaxis], links).ended != FOUND
+            if asked(without, start, goal[np.newaxis], links).ended == FOUND:
+                # A link was free at sixteen states and is not proved: then others are chosen.
+                assert not np.isin(tried(without, int(side < 0)), first).all()
+                anew += 1
+                continue
             answer = asked(once, start, goal[np.newaxis], links)
             if answer.ended == FOUND:
                 assert not (q[first] == answer.path[side]).all(axis=1).any()
@@ -306,6 +310,7 @@ def test_an_end_that_sees_none_of_its_nearest_milestones_finds_another_by_displa
                 found += 1
                 looked_up += once._graph.desk[at.PHASE] == at.LOOK_UP
     assert blind > found >= 5
+    assert anew <= 2
     assert looked_up >= 5
 
 

@@ -33,8 +33,9 @@ SOON = 12
 OUT = 5000
 """So many motions a way out may take."""
 
-JOINED = 30
-"""What was learned is joined to so many of the nearest that it reaches."""
+JOINED, IN_A_SEARCH = 300, 30
+"""What was learned is joined to those of so many of the nearest that it reaches; to fewer where ways are searched, not
+looked up, and each edge costs time."""
 
 FEW = 10
 """What is joined to fewer lies in a narrow place: it is joined to all that it reaches, if there are not too many."""
@@ -55,7 +56,7 @@ TIGHT = 400
 BESIDE = 1500
 """For a way from one end to another, beside that of the roadmap, trees may take so many motions."""
 
-THIN = 0.5
+THIN = 0.4
 """Bends are learned that are farther than this from all that is known, as a share of how far milestones are apart."""
 
 MOST_TOLD = 3000
@@ -168,7 +169,9 @@ def _settle_and_join(graph: KnownGraph, world: ArmWorld, day: ArmWorld, first: i
     new = free[free >= first]
     if len(new):
         some = np.array_split(new, -(-len(new) // AT_ONCE))
-        near = np.concatenate([_nearest(graph.milestones, each, free) for each in some])
+        searched = graph.desk[at.LIFTING] or len(free) > MOST_TOLD
+        most = IN_A_SEARCH if searched else JOINED
+        near = np.concatenate([_nearest(graph.milestones, each, free, most) for each in some])
         _join(graph, world, np.repeat(new, near.shape[1]), near.ravel())
     if len(free) > MOST_TOLD:
         return
@@ -212,10 +215,10 @@ def _join(graph: KnownGraph, world: ArmWorld, a: Ints, b: Ints) -> None:
     graph.join(pairs, world.space.distance(q[pairs[:, 0]], q[pairs[:, 1]]))
 
 
-def _nearest(q: Floats, some: Ints, free: Ints) -> Ints:
-    """Return the numbers of the free milestones that are nearest to some of them, without the first: itself."""
+def _nearest(q: Floats, some: Ints, free: Ints, most: int) -> Ints:
+    """Return the numbers of so many free milestones that are nearest to some of them, without the first: itself."""
     apart = np.linalg.norm(q[some][:, np.newaxis] - q[free], axis=2)
-    return free[np.argsort(apart, axis=1, kind="stable")[:, 1 : JOINED + 1]]
+    return free[np.argsort(apart, axis=1, kind="stable")[:, 1 : most + 1]]
 
 
 def _known(graph: KnownGraph, lengths: Floats) -> csr_matrix:

@@ -233,19 +233,19 @@ class KnownGraph:
     def join(self, pairs: Ints, lengths: Floats) -> None:
         """Take motions between milestones, (m, 2), of such lengths, (m,), for edges that are proved free today."""
         self._own_halves()
-        desk, more = self.desk, len(pairs)
+        desk, more, own = self.desk, len(pairs), pairs.T.ravel()
         edge, first = int(desk[at.EDGES_MADE]), int(desk[at.HALVES_MADE])
         if edge + more > desk[at.EDGES] or first + 2 * more > desk[at.HALVES]:
             self._grow(more)
         self.edges[edge : edge + more] = PROVED
-        new = slice(first, first + 2 * more)
-        self.halves[new, at.OTHER] = pairs[:, ::-1].T.ravel()
-        self.halves[new, at.NUMBER] = np.tile(np.arange(edge, edge + more), 2)
-        self.lengths[new], self.leads[new] = np.tile(lengths, 2), 0
-        for half, node in enumerate(pairs.T.ravel().tolist(), first):
+        # Those of a milestone lie side by side, to be gone through soon.
+        new, order = slice(first, first + 2 * more), np.argsort(own, kind="stable")
+        pair = order % max(more, 1)
+        self.halves[new, at.OTHER], self.halves[new, at.NUMBER] = own[order - more], edge + pair
+        self.lengths[new], self.leads[new] = lengths[pair], 0
+        for half, node in enumerate(own[order].tolist(), first):
             self.halves[half, at.NEXT], self.first[node] = self.first[node], half
-        desk[at.EDGES_MADE] += more
-        desk[at.HALVES_MADE] += 2 * more
+        desk[[at.EDGES_MADE, at.HALVES_MADE]] += more, 2 * more
 
     def guide(self, far: Floats, steps: Ints32, weights: Floats, close: int) -> None:
         """Guide searches by how far milestones are from each other along what is known to be free, (n, n).

@@ -54,7 +54,7 @@ TRIED_LINKS, TRIED_MOTIONS = 40, 90
 """Where trees may follow, so many links of each end are tried, and so many motions: trees find ways out of narrow
 places with fewer checks than long links do."""
 
-WORK, AMONG_SURFACES, LEAST_WORK = 200, 50, 30
+WORK, AMONG_SURFACES, LEAST_WORK = 170, 50, 30
 """After so many batches of sixteen checks, those of search and proof among them, a path is not drawn tighter; after
 fewer among clouds and triangles, where each takes longer; but so many it has.  With more the slowest queries take
 longer, and paths become shorter by ever less."""
@@ -66,10 +66,10 @@ queries are learned until there are so many milestones more."""
 SOON = 5000
 """So many motions ways out may take before shapes are asked: some milliseconds."""
 
-ENDS = 400
+ENDS = 600
 """Ends in narrow places that are tried where a scene is explored."""
 
-EXPLORED_LINKS, EXPLORED_MOTIONS, EXPLORED_WORK = 20, 150, 250
+EXPLORED_LINKS, EXPLORED_MOTIONS, EXPLORED_WORK = 14, 150, 220
 """In an explored scene fewer links do, and the slowest queries leave time to draw paths tighter."""
 
 _BUDGET = Budget(seconds=SECONDS)

@@ -66,11 +66,13 @@ class LaneWorld:
 
         Bodies beside each other may be nearer for good.
         """
-        # Of several threads one makes them: what another was given must last.
-        with _enlarging:
-            if margin not in self._wider:
-                self._wider[margin] = self._enlarged(margin)
-            return address(self._wider[margin])
+        if (known := self._wider.get(margin)) is None:
+            # Of several threads one makes them: what another was given must last.
+            with _enlarging:
+                if (known := self._wider.get(margin)) is None:
+                    table = self._enlarged(margin)
+                    known = self._wider[margin] = table, address(table)
+        return known[1]
 
     def _enlarged(self, margin: float) -> npt.NDArray[np.float32]:
         """Return what `wider` tells the address of."""
@@ -84,8 +86,8 @@ class LaneWorld:
         return table
 
     @cached_property
-    def _wider(self) -> dict[float, npt.NDArray[np.float32]]:
-        """Tables that were enlarged, by their margin."""
+    def _wider(self) -> dict[float, tuple[npt.NDArray[np.float32], int]]:
+        """Tables that were enlarged, by their margin, and where they are."""
         return {}
 
     @cached_property

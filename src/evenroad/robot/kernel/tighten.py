@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import doubles_at, matrix_at
 from evenroad.robot.kernel.lane_world import LaneWorld
-from evenroad.robot.kernel.layout import LANES, program, quick
+from evenroad.robot.kernel.layout import LANES, program, quick, quick_inlined
 from evenroad.robot.kernel.motion import canonical, distance_and_way, enter
 from evenroad.robot.kernel.motion_checks import (
     BOTH_ENDS,
@@ -20,28 +20,35 @@ from evenroad.robot.kernel.motion_checks import (
     checks_of,
     look_at,
     motion_free,
-    motion_proved,
 )
 from evenroad.robot.kernel.motion_states import BATCHES, CONFIGURATIONS, COUNTS, MOTIONS
-from evenroad.robot.kernel.shorten import NO_LIMIT, cut_corners, measure, move, move_to, pair_joined, pass_by
+from evenroad.robot.kernel.path_proof import MOST_BENT, is_proved, proved_or_bent
+from evenroad.robot.kernel.shorten import (
+    MOST_CUTS,
+    NO_LIMIT,
+    cut_corners,
+    measure,
+    move,
+    move_to,
+    pair_joined,
+    pass_by,
+)
 
 Floats = npt.NDArray[np.float64]
 
-CLEARANCE = 1e-3
-"""So far from obstacles the states of what is put in are [m]: of motions free there nearly all are proved."""
+CLEARANCE, LITTLE = 1e-3, 1e-4
+"""So far from obstacles the states of what is put in are [m]: of motions free there nearly all are proved.  The second
+where an end is nearer, and the motion that leads away from it."""
 
-TOLERANCE, PROOF_BATCHES = 1e-6, 1024
-"""Limits of the proofs [m]."""
-
-SLIDES, PAIRS, LEAST_GAIN = 4, 1, 2e-3
-"""After so many slides so many shortcuts are tried, again and again until twice in a row the path becomes shorter by
-less than this share."""
+SLIDES, PAIRS, LEAST_GAIN, IN_A_ROW = 12, 2, 2e-3, 4
+"""After so many slides so many shortcuts are tried, again and again until the path becomes shorter by less than this
+share, so many times in a row."""
 
 PASSED_BY = 3
 """After every third of these rounds it is tried to pass by waypoints."""
 
-MOST_ROUNDS, MOST_CUTS, SPARE_PAIRS = 64, 16, 20
-"""So many rounds at most; so many cuts of corners after them; and so many shortcuts where it is not proved."""
+MOST_ROUNDS, SPARE_PAIRS = 64, 20
+"""So many rounds at most; so many shortcuts where what was drawn tight is not proved."""
 
 PLACES, STATES = 5, 3
 """So many places are tried at once for a waypoint, each with a state to both of its sides: fifteen of sixteen lanes."""
@@ -55,7 +62,7 @@ BESIDE = 0.4
 SIZES = (0.2, 0.24, 0.3, 0.36, 0.44, 0.54, 0.66, 0.8)
 """Places are so far away, as shares of the shorter motion to a neighbour, one after the other."""
 
-AHEAD = 0.3
+AHEAD = 0.2
 """To a direction at random, of length 1, so much of the direction is added in which the path gets shorter soonest."""
 
 SLIDE_WORTH_WHILE = 1e-3
@@ -103,12 +110,13 @@ def tighten_path(
         nothing shorter is proved either.
     """
     size, dim = path.shape
-    # A slide adds no waypoint, a shortcut or a cut one, the ends two.
-    rows = size + MOST_ROUNDS * PAIRS + MOST_CUTS + 8
+    # A slide adds no waypoint; a shortcut, a cut or a bend one, the ends two.
+    rows = size + MOST_ROUNDS * PAIRS + MOST_CUTS + MOST_BENT + 8
     room, arguments = world.arguments(COUNTS + rows * (dim + 1) + (PLACES + 5 + size) * dim + PLACES)
     points = room[-rows * dim :].reshape(rows, dim)
     room[:COUNTS], points[:size] = 0.0, path
-    driven_by = pairs, pair_count, sphere, sphere_count, most_batches, int(proved), world.wider(CLEARANCE)
+    margins = world.wider(CLEARANCE), world.wider(LITTLE)
+    driven_by = pairs, pair_count, sphere, sphere_count, most_batches, int(proved), *margins
     motions, left = divmod(tighten_points(rows, size, dim, *driven_by, *arguments), _BESIDE)
     return points[:left].copy(), motions
 
@@ -125,6 +133,7 @@ def tighten_points(
     most_batches: int,
     proved: int,
     wider: int,
+    little_wider: int,
     check: int,
     resolution: float,
     tables: int,
@@ -157,17 +166,27 @@ def tighten_points(
         return size
     before, plain = size, look_at(wider, checks)
     size, first, after = _left_behind(whole, size, goal, way, checks)
+    if size == 0:
+        wider, size = little_wider, before
+        for i in range(size):
+            move_to(kept[i], whole[i])
+        look_at(wider, checks)
+        size, first, after = _left_behind(whole, size, goal, way, checks)
     if size > 0:
         points = matrix_at(begin + 8 * dim * first, (rows - first, dim))
         size = pass_by(points, size - first, False, checks)
         measure(points, places, size, way, checks)
         little = pair = turn = 0
-        while turn < MOST_ROUNDS and size > 2 and little < 2:
-            if checks.counts[BATCHES] + OF_PROOF * (size - 1) >= most_batches:
-                break
+        while (
+            turn < MOST_ROUNDS
+            and size > 2
+            and little < IN_A_ROW
+            and _is_work_left(size, most_batches, checks)
+        ):
             length = places[size - 1]
             for number in range(SLIDES * turn, SLIDES * (turn + 1)):
-                _slide(points, 1 + number % (size - 2), directions, number, tried, slides, way, checks)
+                if _is_work_left(size, most_batches, checks):
+                    _slide(points, 1 + number % (size - 2), directions, number, tried, slides, way, checks)
             measure(points, places, size, way, checks)
             for _ in range(PAIRS):
                 size = pair_joined(points, places, size, pairs[pair], False, ends, way, checks)
@@ -183,10 +202,10 @@ def tighten_points(
             move_to(goal, whole[size])
             size += 1
     look_at(plain, checks)
-    if size == 0 or not _is_proved(whole, size, checks):
-        if proved == 0 and not (
-            _is_proved(kept[:2], 2, checks) and _is_proved(kept[before - 2 :], 2, checks)
-        ):
+    if size > 0:
+        size = proved_or_bent(whole, size, wider, directions, tried[0], way, checks)
+    if size == 0:
+        if proved == 0 and not (is_proved(kept[:2], 2, checks) and is_proved(kept[before - 2 :], 2, checks)):
             return _BESIDE * checks.counts[MOTIONS]
         size, most = before, checks.counts[BATCHES] + most_batches
         for i in range(size):
@@ -196,18 +215,15 @@ def tighten_points(
         for row in range(SPARE_PAIRS):
             size = pair_joined(whole, places, size, pairs[row], True, ends, way, checks)
         size = cut_corners(whole, places, size, MOST_CUTS, most, True, ends, way, checks)
-        if proved == 0 and not _is_proved(whole, size, checks):
+        if proved == 0 and not is_proved(whole, size, checks):
             return _BESIDE * checks.counts[MOTIONS]
     return size + _BESIDE * checks.counts[MOTIONS]
 
 
-@quick
-def _is_proved(points: Floats, size: int, checks: Checks) -> bool:
-    """Return whether every motion of a path is proved free."""
-    i = 0
-    while i < size - 1 and motion_proved(points[i], points[i + 1], TOLERANCE, PROOF_BATCHES, checks):
-        i += 1
-    return i == size - 1
+@quick_inlined
+def _is_work_left(size: int, most_batches: int, checks: Checks) -> bool:
+    """Return whether waypoints may slide on, and the proof has what it takes."""
+    return checks.counts[BATCHES] + OF_PROOF * (size - 1) < most_batches
 
 
 @quick
@@ -303,11 +319,7 @@ def _slide(
             return
         inside &= ~(1 << best)
         there = tried[best]
-        if (
-            _bend_free(a, there, b, way, checks)
-            and motion_free(a, there, BOTH_ENDS, checks)
-            and motion_free(there, b, BOTH_ENDS, checks)
-        ):
+        if motion_free(a, there, BOTH_ENDS, checks) and motion_free(there, b, BOTH_ENDS, checks):
             move_to(there, here)
             return
 
@@ -335,16 +347,3 @@ def _write_ahead(
     for k in range(len(here)):
         ahead[k] /= np.sqrt(squared)
     return before, after
-
-
-@quick
-def _bend_free(a: Floats, there: Floats, b: Floats, way: Floats, checks: Checks) -> bool:
-    """Return whether eight states of each of two motions are free."""
-    for side in range(2):
-        distance_and_way(there, a if side == 0 else b, checks.bounds, way)
-        for lane in range(_HALF):
-            share = (lane + 1.0) / (_HALF + 1.0)
-            for k in range(len(a)):
-                checks.states[k * LANES + _HALF * side + lane] = there[k] + share * way[k]
-    checks.counts[CONFIGURATIONS] += LANES
-    return blocked(checks) == 0
