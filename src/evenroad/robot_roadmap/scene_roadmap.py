@@ -69,7 +69,7 @@ SOON = 5000
 ENDS = 600
 """Ends in narrow places that are tried where a scene is explored."""
 
-EXPLORED_LINKS, EXPLORED_MOTIONS, EXPLORED_WORK = 14, 150, 220
+EXPLORED_LINKS, EXPLORED_MOTIONS, EXPLORED_WORK = 14, 150, 205
 """In an explored scene fewer links do, and the slowest queries leave time to draw paths tighter."""
 
 _BUDGET = Budget(seconds=SECONDS)
