@@ -181,8 +181,9 @@ def tighten(
 ) -> tuple[Floats, int]:
     """Return a path drawn tight, and how many motions were looked at: shorter than `shorten`'s for the same checks.
 
-    Its waypoints have slid along what they touch, and every motion is proved free.  Where one cannot be, the path is
-    shortened as it was given, by straight motions alone, as `shorten` does.  Without lanes it is what that returns.
+    Its waypoints have slid along what they touch, and every motion is proved free, one or two after they were bent a
+    little.  Where that fails, too, the path is shortened as it was given, by straight motions alone, as `shorten` does.
+    Without lanes it is what that returns.
 
     Parameters
     ----------
