@@ -353,10 +353,8 @@ def test_motions_that_join_milestones_take_no_room_of_milestones(roadmap):
 
 def test_motions_that_join_a_milestone_lie_side_by_side_and_lead_to_all_its_neighbours(roadmap):
     graph = SceneRoadmap(roadmap, box_scene())._graph
-    before, made = [
-        set(map(tuple, np.sort(graph.motions()[:2], axis=0).T.tolist())),
-        int(graph.desk[at.HALVES_MADE]),
-    ]
+    before = {*map(tuple, np.sort(graph.motions()[:2], axis=0).T.tolist())}
+    made = int(graph.desk[at.HALVES_MADE])
     rng = np.random.default_rng(3)
     pairs = np.stack([rng.permutation(40)[:2] for _ in range(30)])
     pairs = np.unique(np.sort(pairs, axis=1), axis=0)
