@@ -12,7 +12,7 @@ import evenroad
 ROOT = Path(evenroad.__file__).parent
 
 BASE = {
-    *("errors", "_checks", "_rng", "_files", "_npz", "_yaml"),
+    *("errors", "_checks", "_rng", "_files", "_seal", "_npz", "_yaml"),
     *("_arrays", "_clock", "_terminal", "_compiled", "_fingerprint", "_njit", "_threads"),
 }
 MAY_IMPORT = {

@@ -138,6 +138,54 @@ def test_two_that_save_at_once_for_other_arguments_do_not_take_each_others_place
     assert (load().twice(21), load().twice(1.5)) == (42, 3.0)
 
 
+def flipped(content, at):
+    return content[:at] + bytes([content[at] ^ 4]) + content[at + 1 :]
+
+
+DAMAGE = {
+    "empty": lambda content: b"",
+    "cut in the seal": lambda content: content[:40],
+    "cut in half": lambda content: content[: len(content) // 2],
+    "without its last byte": lambda content: content[:-1],
+    "zeroed": lambda content: bytes(len(content)),
+    **{
+        f"flipped at {at}/8": lambda content, at=at: flipped(content, at * len(content) // 8)
+        for at in range(8)
+    },
+}
+
+
+@pytest.mark.parametrize("kind", [".nbi", ".nbc"])
+def test_of_damaged_compiled_code_nothing_is_run_and_one_line_is_said(program, kind, caplog):
+    """Machine code with a flipped bit would end the process; a cut index was a traceback."""
+    folder, _, load = program
+    assert load().twice(21) == 42
+    (file,) = (folder / "__pycache__").glob(f"*{kind}")
+    for damage in DAMAGE.values():
+        content = file.read_bytes()
+        file.write_bytes(damage(content))
+        caplog.clear()
+        module = load()
+        assert module.twice(21) == 42
+        assert sum(module.twice.stats.cache_hits.values()) == 0
+        assert caplog.messages == [f"evenroad: compiled code kept in {file} was damaged, and is made again"]
+        assert load().twice(21) == 42, "what was kept again is whole"
+    assert sum(load().twice.stats.cache_hits.values()) == 0
+    again = load()
+    again.twice(21)
+    assert sum(again.twice.stats.cache_hits.values()) == 1
+
+
+@pytest.mark.parametrize("kind", [".nbi", ".nbc"])
+def test_a_file_that_can_be_neither_read_nor_written_only_costs_time(program, kind):
+    folder, _, load = program
+    load().twice(21)
+    (file,) = (folder / "__pycache__").glob(f"*{kind}")
+    file.unlink()
+    file.mkdir()
+    assert load().twice(21) == 42
+
+
 @pytest.fixture
 def shared(tmp_path, monkeypatch):
     """A folder in which processes say what they compile; this one shares it, without helpers so far."""

@@ -2,7 +2,8 @@
 
 Numba names what it keeps after the function, and sees changes in the function's own file only.  Here the name has a
 digest of this file and all that it imports of evenroad, and one of numba and the processor: what is stale, or another
-machine's, is never found, and two processes that save at once do not take each other's place.
+machine's, is never found, and two processes that save at once do not take each other's place.  Each file is sealed by
+a digest: machine code with a flipped bit would not fail, but end the process or compute something else.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import hashlib
 import inspect
 import os
+import pickle
 import platform
 import re
 import sys
@@ -29,6 +31,8 @@ from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataC
 from numba.core.ccallback import CFunc
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
+
+from evenroad._seal import read_sealed, sealed
 
 _ROOT = os.path.dirname(os.path.abspath(__file__))
 _IMPORT = re.compile(
@@ -230,12 +234,34 @@ _progress: _Progress | None = None
 
 
 class _Files(IndexDataCacheFile):
-    """Names data by what it is for, not by number, and writes it before the index that tells of it."""
+    """Names data by what it is for, not by number, and writes it before the index that tells of it; all sealed."""
 
     def save(self, key: Any, data: Any) -> None:
         name = self._data_name(int(hashlib.sha256(repr(key).encode()).hexdigest()[:12], 16))
         self._save_data(name, data)
         self._save_index({**self._load_index(), key: name})
+
+    def _load_index(self) -> dict[Any, str]:
+        stamp, names = self._read(self._index_name) or (None, {})
+        return names if stamp == self._source_stamp else {}
+
+    def _save_index(self, names: dict[Any, str]) -> None:
+        self._write(self._index_name, (self._source_stamp, names))
+
+    def _load_data(self, name: str) -> Any:
+        return self._read(name)
+
+    def _save_data(self, name: str, data: Any) -> None:
+        self._write(name, data)
+
+    def _read(self, name: str) -> Any:
+        """Return what is kept in a file; None where there is none, or it was damaged."""
+        content = read_sealed(self._data_path(name), name, "compiled code")
+        return None if content is None else pickle.loads(content)
+
+    def _write(self, name: str, value: Any) -> None:
+        with self._open_for_write(self._data_path(name)) as file:
+            file.write(sealed(self._dump(value), name))
 
 
 class _Named(CompileResultCacheImpl):
@@ -285,8 +311,12 @@ class KernelCache(FunctionCache):
         return super().load_overload(sig, target_context)
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep compiled code, and remove what was kept of earlier sources."""
-        super().save_overload(sig, data)
+        """Keep compiled code where that can be written, and remove what was kept of earlier sources."""
+        try:
+            super().save_overload(sig, data)
+        except OSError:
+            # A full disk, or a file that is not ours: the next run compiles again, and that is all.
+            return
         own = self._impl.filename_base + "."
         for path in glob(self._impl.any_source, root_dir=self._cache_path):
             if not path.startswith(own):

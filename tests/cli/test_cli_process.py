@@ -158,6 +158,36 @@ def test_a_folder_of_the_users_choice_is_used_in_silence(read_only, tmp_path):
     assert list(kept.rglob("*.nbi"))
 
 
+def test_a_damaged_cache_of_compiled_code_is_no_answer(tmp_path):
+    """Exit code 1 is for "no path": it came from the traceback of a cut file."""
+    kept = {"NUMBA_CACHE_DIR": str(tmp_path)}
+    assert python("-c", LOAD_COMPILED, **kept).stdout == "(1, 1, 2)\n"
+    files = [*tmp_path.rglob("*.nb?")]
+    for file in files:
+        file.write_bytes(file.read_bytes()[:-50])
+    done = python("-c", LOAD_COMPILED, **kept)
+    assert (done.returncode, done.stdout) == (0, "(1, 1, 2)\n")
+    assert 1 <= done.stderr.count("\n") == done.stderr.count("was damaged, and is made again") <= len(files)
+    done = python("-c", LOAD_COMPILED, **kept)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "(1, 1, 2)\n", "")
+
+
+def test_an_error_of_our_own_is_never_exit_code_1():
+    code = """
+import evenroad.cli.verbs
+def run(arguments):
+    raise KeyError("slip")
+evenroad.cli.verbs.run = run
+raise SystemExit(evenroad.cli.main())
+"""
+    done = python("-c", code)
+    assert done.returncode == 70
+    assert done.stderr.startswith("Traceback")
+    assert done.stderr.endswith(
+        "KeyError: 'slip'\nevenroad: internal error: please report the lines above; this is no answer\n"
+    )
+
+
 def test_two_first_runs_at_once_both_work_and_leave_what_the_third_loads(tmp_path):
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
     both = [

@@ -3,6 +3,7 @@ import os
 import re
 import subprocess
 import sys
+from dataclasses import replace
 from importlib import resources
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 import trimesh
 
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
-from evenroad.robot import load_model, load_robot, with_group, with_limits
+from evenroad.robot import load, load_model, load_robot, with_group, with_limits
 from evenroad.robot.robot import in_scene
 from evenroad.robot.scene import Scene
 from tests.robot.urdf_texts import joint, link, two_joints, urdf, write
@@ -281,7 +282,63 @@ def test_a_cached_robot_waits_for_no_library_of_meshes_or_fits(tmp_path):
 def test_the_record_in_the_cache_is_plain_json():
     load_robot("arm7")
     (kept,) = (tmp_path_of_cache() / "robots").iterdir()
-    assert json.loads(kept.read_text())["robot"]["name"] == "arm7"
+    seal, _, record = kept.read_text().partition("\n")
+    assert seal.startswith("evenroad-kept:")
+    assert json.loads(record)["robot"]["name"] == "arm7"
+
+
+def damaged(content, rng):
+    """Yield what may become of a file: cut off anywhere, bits flipped, bytes lost, zeroed or appended."""
+    yield from (
+        b"",
+        content[:1],
+        content[:-1],
+        content + b" ",
+        content[1:],
+        content * 2,
+        b"\0" * len(content),
+    )
+    yield from (content[:at] for at in rng.integers(len(content), size=100))
+    for at in rng.integers(8 * len(content), size=300):
+        flipped = bytearray(content)
+        flipped[at // 8] ^= 1 << at % 8
+        yield bytes(flipped)
+    for at in rng.integers(len(content), size=50):
+        yield content[:at] + bytes(512) + content[at + 512 :]
+        yield content[:at] + content[at + 7 :]
+
+
+def test_of_a_damaged_cache_comes_the_right_robot_and_one_line(tmp_path, monkeypatch, caplog):
+    path = write(tmp_path, two_joints())
+    right = load_model(path)
+    (kept,) = (tmp_path_of_cache() / "robots").iterdir()
+    content, made = kept.read_bytes(), []
+    monkeypatch.setattr(
+        load, "_build", lambda *arguments: made.append(arguments) or replace(right, file=None)
+    )
+    broken = [each for each in damaged(content, np.random.default_rng(1)) if each != content]
+    for i, each in enumerate(broken):
+        kept.write_bytes(each)
+        assert load_model(path) == right
+        assert len(made) == len(caplog.messages) == i + 1
+        assert kept.read_bytes() == content, "it is kept again, whole"
+    assert len(broken) > 450
+    assert {line.replace(str(kept), "FILE") for line in caplog.messages} == {
+        "evenroad: the robot kept in FILE was damaged, and is made again"
+    }
+
+
+def test_a_robot_that_is_kept_under_the_name_of_another_is_not_taken(tmp_path):
+    first, second = (
+        write(tmp_path, two_joints()),
+        write(tmp_path, urdf(link("x"), link("y"), joint("a", "x", "y")), "b.urdf"),
+    )
+    load_model(first)
+    (kept,) = (tmp_path_of_cache() / "robots").iterdir()
+    right = load_model(second)
+    (other,) = {*(tmp_path_of_cache() / "robots").iterdir()} - {kept}
+    other.write_bytes(kept.read_bytes())
+    assert load_model(second) == right
 
 
 def test_altering_a_robot_leaves_the_robot_as_it_was():

@@ -13,12 +13,18 @@ from types import TracebackType
 
 INTERRUPTED = 130
 """Exit code after Ctrl-C."""
+INTERNAL_ERROR = 70
+"""Exit code after an error of evenroad itself; Python's own would be 1, which is an answer here."""
 SOON = 0.05
 """Seconds after which an interrupt that was dropped comes again."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run ``evenroad`` and return its exit code: 0 solved, 1 any other answer, 2 bad input, 130 interrupted."""
+    """Run ``evenroad`` and return its exit code: 0 solved, 1 any other answer, 2 bad input, 130 interrupted.
+
+    Called without arguments, as by the command, it returns 70 after an error that is evenroad's own fault, and prints
+    its traceback; else that is raised.
+    """
     if arguments is not None:
         try:
             return _run(arguments)
@@ -36,7 +42,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (KeyboardInterrupt, Exception) as error:
         # A compiler that was interrupted in a callback goes on without what the callback was to do.
         if not isinstance(error, KeyboardInterrupt) and not hook.interrupted:
-            raise
+            return _internal_error(error)
         # This process is leaving: one more Ctrl-C could only break that, with a traceback.
         try:
             signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -56,6 +62,12 @@ def _run(arguments: Sequence[str]) -> int:
 def _interrupted() -> int:
     print("evenroad: interrupted; what was finished is kept", file=sys.stderr)
     return INTERRUPTED
+
+
+def _internal_error(error: BaseException) -> int:
+    sys.__excepthook__(type(error), error, error.__traceback__)
+    print("evenroad: internal error: please report the lines above; this is no answer", file=sys.stderr)
+    return INTERNAL_ERROR
 
 
 def _print_unless_interrupted(

@@ -46,7 +46,7 @@ DESCRIPTION = f"""usage: evenroad [-h] [--version [-v]] [--tyro-print-completion
 
 evenroad {__version__}: point sets that make sampling-based motion planners need fewer samples.
 
-Exit codes: 0 solved / done, 1 any other answer (no path), 2 bad input, 130 interrupted.
+Exit codes: 0 solved / done, 1 any other answer (no path), 2 bad input, 70 internal error, 130 interrupted.
 
 verbs (evenroad VERB --help tells of its options):
 """

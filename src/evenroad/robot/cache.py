@@ -1,4 +1,7 @@
-"""Robots kept between runs: fitting capsules to meshes and sampling contacts takes seconds."""
+"""Robots kept between runs: fitting capsules to meshes and sampling contacts takes seconds.
+
+What is kept is sealed by a digest, as a flipped bit is as likely in a radius as in a bracket.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +17,7 @@ import numpy as np
 
 from evenroad import __version__
 from evenroad._files import atomic_write, cache_folder
+from evenroad._seal import read_sealed, sealed
 from evenroad.errors import BrokenFile
 from evenroad.geometry.hulls import Hull
 from evenroad.geometry.shapes import Capsule, Mesh
@@ -21,7 +25,7 @@ from evenroad.robot.joint import Joint, Mimic
 from evenroad.robot.robot import LinkBody, Robot, RobotModel
 from evenroad.robot.urdf import Urdf
 
-_FORMAT = 11
+_FORMAT = 12
 """Counted up when the same files would give another robot, or the files of this cache look different."""
 
 
@@ -45,10 +49,12 @@ def key_of(urdf: Urdf, others: Iterable[tuple[str, Path | None]], group: str | S
 
 
 def cached(key: str) -> RobotModel | None:
-    """Return the robot kept under this key; None when there is none, or it is damaged and to be made again."""
-    with suppress(OSError, ValueError, KeyError, TypeError):
-        return _model(json.loads(_file(key).read_text(encoding="utf-8")))
-    return None
+    """Return the robot kept under this key; None when there is none, or it is damaged and to be made again.
+
+    Of a damaged one it is said so, in one line of the log.
+    """
+    content = read_sealed(_file(key), key, "the robot")
+    return None if content is None else _model(json.loads(content))
 
 
 def keep(key: str, model: RobotModel) -> None:
@@ -57,7 +63,7 @@ def keep(key: str, model: RobotModel) -> None:
     with suppress(OSError):
         file.parent.mkdir(parents=True, exist_ok=True)
         with atomic_write(file) as stream:
-            stream.write(json.dumps(asdict(model), default=np.ndarray.tolist).encode())
+            stream.write(sealed(json.dumps(asdict(model), default=np.ndarray.tolist).encode(), key))
 
 
 def _file(key: str) -> Path:
