@@ -9,12 +9,15 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
+from evenroad.geometry.pose import Pose
+from evenroad.geometry.shapes import Box
 from evenroad.roadmap import Budget
 from evenroad.roadmap.find_path import find_path
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.robot.joint import Joint
-from evenroad.robot.robot import with_limits
+from evenroad.robot.kinematics import link_poses
+from evenroad.robot.robot import Robot, with_limits
 from evenroad.robot.scene import Obstacle, Scene
 from evenroad.robot.tree_sequences import ball_points, cube_points, reversed_halton
 from evenroad.robot.trees import connect, grown_trees, shorten
@@ -237,6 +240,57 @@ def test_fourteen_joints_are_not_too_many():
     assert clearance(long, world.scene, dense_states(world, connection.path)).min() > 0.0
 
 
+def two_arms(apart=0.7):
+    """Two arms of seven joints side by side, 14 joints in all, tested against each other."""
+    seven = seven_joint_arm()
+    links, joints, capsules, pairs, group = ["torso"], [], [], [], []
+    for side, y in (("left ", 0.5 * apart), ("right ", -0.5 * apart)):
+        joints.append(Joint(side + "mount", "fixed", "torso", side + "base", (0.0, y, 0.0), STRAIGHT))
+        for joint in seven.joints:
+            names = {what: side + getattr(joint, what) for what in ("name", "parent", "child")}
+            joints.append(replace(joint, **names))
+        links += [side + link for link in seven.links]
+        capsules += [replace(capsule, link=side + capsule.link) for capsule in seven.capsules]
+        pairs += [(side + first, side + second) for first, second in seven.pairs]
+        group += [side + joint for joint in seven.group]
+    pairs += [
+        ("left " + a, "right " + b) for a in seven.links for b in seven.links if (a, b) != ("base", "base")
+    ]
+    return Robot("two arms", tuple(links), tuple(joints), tuple(capsules), tuple(pairs), tuple(group))
+
+
+def sleeves(robot, q, gap=0.04):
+    """Four plates around either hand, open at both ends: any long step from there touches one."""
+    hands = [robot.links.index(side + "link7") for side in ("left ", "right ")]
+    half, obstacles = 0.059 + gap, []
+    for side, hand in zip("lr", link_poses(robot, q[np.newaxis])[0, hands], strict=True):
+        for number, (x, y) in enumerate(((1, 0), (-1, 0), (0, 1), (0, -1))):
+            at = hand[:3, :3] @ [half * x, half * y, 0.03] + hand[:3, 3]
+            sides = (0.02, 2.0 * half, 0.16) if x else (2.0 * half, 0.02, 0.16)
+            pose = Pose(tuple(at), tuple(hand[:3, :3].ravel()))
+            obstacles.append(Obstacle(f"{side}{number}", Box(sides, pose=pose)))
+    return Scene("sleeves", tuple(obstacles))
+
+
+def test_two_arms_get_both_hands_out_of_their_sleeves():
+    # With steps of the full length alone, as 14 dimensions have them, none of these is solved.
+    robot = two_arms()
+    alone = ArmWorld(robot, Scene("nothing"))
+    q = alone.space.from_cube(np.random.default_rng(1).random((1000, 14)))
+    q, solved = q[alone.valid(q)], 0
+    for start, goal in zip(q[0:200:2], q[1:200:2], strict=True):
+        world = ArmWorld(robot, sleeves(robot, start))
+        if not world.valid(np.array([start, goal])).all():
+            continue
+        connection = connect(world, start, [goal], most_motions=50_000, seconds=30)
+        assert connection.goal == 0
+        assert clearance(robot, world.scene, dense_states(world, connection.path)[::20]).min() > 0.0
+        solved += 1
+        if solved == 6:
+            return
+    pytest.fail("too few problems whose ends are free")
+
+
 def test_a_sequence_of_the_callers_leads_elsewhere_and_goes_on_behind_its_end(split):
     three = np.random.default_rng(0).random((3, 6))
     counts = {
@@ -265,8 +319,8 @@ def test_arguments_that_make_no_sense_are_refused(world, change, text):
         connect(world, arguments.pop("start"), arguments.pop("goals"), **arguments)
 
 
-def test_points_in_the_ball_are_spread_evenly():
-    for dim in (1, 2, 6, 14):
+def test_points_in_a_ball_of_few_dimensions_are_spread_evenly():
+    for dim in (1, 2, 6, 7):
         points = ball_points(dim)
         radii = np.linalg.norm(points, axis=1)
         assert radii.max() <= 1.0 + 1e-12
@@ -274,6 +328,18 @@ def test_points_in_the_ball_are_spread_evenly():
         # The r-th part of the volume holds the r-th part of the points.
         assert np.mean(radii**dim < 0.5) == pytest.approx(0.5, abs=0.01)
         np.testing.assert_allclose((points**2).mean(axis=0), 1.0 / (dim + 2), rtol=0.1)
+
+
+def test_in_many_dimensions_steps_of_all_lengths_lead_everywhere():
+    for dim in (8, 14):
+        points = ball_points(dim)
+        lengths = np.linalg.norm(points, axis=1)
+        # As many from .1 to .2 as from .5 to 1.
+        np.testing.assert_allclose(np.quantile(lengths, [0.0, 0.5, 1.0]), [0.1, 0.1**0.5, 1.0], rtol=0.01)
+        assert np.mean(lengths < 0.2) == pytest.approx(np.mean(lengths > 0.5), abs=0.01)
+        directions = points / lengths[:, np.newaxis]
+        np.testing.assert_allclose(directions.mean(axis=0), 0.0, atol=0.03)
+        np.testing.assert_allclose((directions**2).mean(axis=0), 1.0 / dim, rtol=0.1)
 
 
 def test_halton_points_are_those_of_the_definition():

@@ -12,6 +12,10 @@ _PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 6
 _SAMPLES = 2048
 _STEPS = 2048
 _PAIRS = 96
+_MANY = 8
+"""From so many dimensions on nearly all of a ball lies at its surface: lengths are spread otherwise."""
+_SHORTEST = 0.1
+"""Of these lengths, as a share of the radius."""
 
 
 @cache
@@ -32,7 +36,11 @@ def shifted_cube_points(dim: int, shift: int) -> Floats:
 
 @cache
 def ball_points(dim: int) -> Floats:
-    """Return 2048 points spread evenly in the unit ball, (2048, dim)."""
+    """Return 2048 points in the unit ball, (2048, dim): the steps that trees try around their nodes.
+
+    Directions are spread evenly.  So is the ball's volume in up to 7 dimensions; in more, where hardly a point of such a
+    ball would be near its centre, the logarithm of the length is, from .1 to 1.
+    """
     even = reversed_halton(_STEPS, 2 * (-(-dim // 2)) + 1)
     radius, others = even[:, :1], even[:, 1:]
     # Two normal numbers of two even ones (Box and Muller); their direction is even on the sphere.
@@ -40,7 +48,8 @@ def ball_points(dim: int) -> Floats:
     angle = 2.0 * np.pi * others[:, 1::2]
     normal = np.concatenate([size * np.cos(angle), size * np.sin(angle)], axis=1)[:, :dim]
     direction = normal / np.linalg.norm(normal, axis=1, keepdims=True)
-    return _read_only(np.ascontiguousarray(direction * radius ** (1.0 / dim)))
+    length = radius ** (1.0 / dim) if dim < _MANY else _SHORTEST ** (1.0 - radius)
+    return _read_only(np.ascontiguousarray(direction * length))
 
 
 @cache
