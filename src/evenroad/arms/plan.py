@@ -61,7 +61,7 @@ def plan_arm(
         A scene file, or the name of a shipped one (``box-reach``, ...).
     start : str or array_like, shape (dim,)
         Numbers in the order of the group [rad or m], or a text: the name of a state, ``0,-1.57,...`` or ``name=value``.
-        A value that is outside of its joint's limits by no more than 1e-6 is brought to the limit.
+        A value may exceed its joint's limits by 1e-5, as five printed decimals do, and stays what it is.
     goal : str, array_like, Pose, PoseGoal, or a sequence of such
         As `start`, or where a link is to be: all configurations that are known to bring it there are goals.  Of several
         the path ends at a cheap one, with points or `improve` at the cheapest.

@@ -32,7 +32,6 @@ from evenroad.robot.load import RobotOptions
 from evenroad.robot.pose_goal import PoseGoal
 from evenroad.robot.reference.recheck import MeshCheck, has_meshes, recheck, unseen_pairs
 from evenroad.robot.robot import with_group
-from evenroad.robot.states import clipped
 from evenroad.robot.urdf_xml import RobotFile
 
 PathLike = str | os.PathLike[str]
@@ -163,4 +162,4 @@ def _configuration(robot: Robot, scene: Scene, name: str, place: Place, degrees:
         q = np.empty(0)
     if q.shape != (dim,) or not np.isfinite(q).all():
         raise InvalidValue(f"{name} must be {dim} finite numbers, {','.join(robot.group)}, got {place!r}")
-    return clipped(robot, q)
+    return q

@@ -25,16 +25,22 @@ PROVED = "proved: there is no path; start and goal lie in two components of the 
 
 
 def refusal(attempt: Attempt) -> PlanResult | None:
-    """Return the result if the start or all goals are in collision; else None, and the attempt knows the free goals."""
+    """Return the result if the start or all goals are not free; else None, and the attempt knows the free goals."""
     places, world = attempt.query.start_and_goals, attempt.world
     free = attempt.valid_ends()
     if free[0] and attempt.goals.size:
         return None
-    row, status, name = (1, Status.GOAL_INVALID, "goal") if free[0] else (0, Status.START_INVALID, "start")
+    row = int(free[0])
     reason = f": {world.explain(places[row])}" if isinstance(world, Explains) else ""
+    within = world.space.contains(places[1:] if row else places[:1])
+    if within.any():
+        status = (Status.START_INVALID, Status.GOAL_INVALID)[row]
+        where = "in collision" if within.all() else "in collision or outside the limits"
+    else:
+        status, where = (Status.START_OUTSIDE_LIMITS, Status.GOAL_OUTSIDE_LIMITS)[row], "outside the limits"
     if row and len(places) > 2:
-        return _result(attempt, status, f"all {len(places) - 1} goals are in collision; the first{reason}")
-    return _result(attempt, status, f"the {name} is in collision{reason}")
+        return _result(attempt, status, f"all {len(places) - 1} goals are {where}; the first{reason}")
+    return _result(attempt, status, f"the {('start', 'goal')[row]} is {where}{reason}")
 
 
 def answer(

@@ -17,6 +17,8 @@ class Status(StrEnum):
     SOLVED = "solved"
     START_INVALID = "start_invalid"
     GOAL_INVALID = "goal_invalid"
+    START_OUTSIDE_LIMITS = "start_outside_limits"
+    GOAL_OUTSIDE_LIMITS = "goal_outside_limits"
     GOAL_UNREACHABLE = "goal_unreachable"
     NOT_CONNECTED = "not_connected"
     BUDGET_SPENT = "budget_spent"
@@ -60,7 +62,8 @@ class PlanResult:
     Attributes
     ----------
     status : Status
-        ``goal_invalid``: all goals are.  ``goal_unreachable``: no configuration was found for a pose.
+        ``goal_invalid``: all goals are.  ``start_outside_limits``, ``goal_outside_limits``: outside of the space, by a
+        joint's limits or a map's; the message says whose.  ``goal_unreachable``: no configuration was found for a pose.
         ``mesh_collision``: the path is free in its world, but the robot's meshes touch something.  ``not_certified``: a
         proof was asked for, and the path is free only at states tested.
     message : str

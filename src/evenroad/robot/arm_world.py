@@ -23,12 +23,13 @@ from evenroad.robot.kernel.selftest import lanes_failure
 from evenroad.robot.kernel.surface_scalar import fixed_contact, scalar_check_address
 from evenroad.robot.known_robots import prepared
 from evenroad.robot.locked import locked_by
-from evenroad.robot.robot import Robot, require_robot
-from evenroad.robot.scene import Scene
+from evenroad.robot.robot import Robot, within_scene
+from evenroad.robot.scene import Scene, limits_in_words
 from evenroad.robot.tree_sequences import shifted_cube_points
 from evenroad.robot.trees import MOST_MOTIONS, SECONDS, connect, shorten
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch, as_batch_pair
+from evenroad.space.joints import SLACK
 from evenroad.world.bisection import require_few_segments
 from evenroad.world.protocol import Connection
 
@@ -55,7 +56,7 @@ class ArmWorld:
     Parameters
     ----------
     robot, scene : Robot, Scene
-        The robot, and what stands around it.
+        The robot, and what stands around it; where the scene has narrower ranges to plan in, the robot keeps to these.
     resolution : float
         Largest Euclidean distance between neighbouring states of a motion, > 0 [rad].
     backend : {"auto", "lanes", "scalar"}
@@ -92,7 +93,7 @@ class ArmWorld:
     lanes: LaneWorld = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        require_robot(self.robot)
+        object.__setattr__(self, "robot", within_scene(self.robot, self.scene))
         object.__setattr__(self, "resolution", require_positive("resolution", self.resolution))
         for held in self.scene.attached:
             if held.name not in self.robot.holds:
@@ -143,7 +144,7 @@ class ArmWorld:
         return sum(len(capsule.cover.places) for capsule in self.robot_tables.capsules)
 
     def valid(self, q: Floats) -> Bools:
-        """Return which configurations, (n, dim), are within the limits and touch nothing: (n,).
+        """Return which configurations, (n, dim), are within the limits, up to 1e-5, and touch nothing: (n,).
 
         Raises InvalidValue if `q` has another shape or an entry that is not finite.
         """
@@ -253,6 +254,9 @@ class ArmWorld:
         True says nothing.  Takes a tenth of a second.  See :mod:`evenroad.robot.locked`.
         """
         ends = as_batch("a and b", np.array([a, b]), self._space.dim)
+        # Its cells end at the limits, which an end may exceed by a little: by less than its slack.
+        low, high, period = self.bounds
+        ends = np.where(np.isfinite(period), ends, np.clip(ends, low, high))
         return not locked_by(lambda robot: replace(self, robot=robot).valid, self.robot, *ends)
 
     def shorten(self, path: Floats) -> tuple[Floats, int]:
@@ -272,9 +276,10 @@ class ArmWorld:
         # To itself: brings wrapping joints into their ranges.
         row = self._space.interpolate(batch, batch, 0.0)[0]
         for name, value, low, high, period in zip(self.robot.group, row, *self.bounds, strict=True):
-            if math.isinf(period) and not low <= value <= high:
+            if math.isinf(period) and not low - SLACK <= value <= high + SLACK:
                 beyond = max(low - value, value - high)
-                return f"joint {name!r} is at {value:g}, {beyond:.3g} outside its limits [{low:g}, {high:g}]"
+                limits = limits_in_words(self.scene, name, low, high)
+                return f"joint {name!r} is at {value:g}, {beyond:.3g} outside {limits}"
         bodies = self.fixed_contact or self._touching(row)
         return "it is free" if bodies is None else f"{bodies[0]!r} touches {bodies[1]!r}"
 

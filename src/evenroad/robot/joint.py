@@ -9,6 +9,7 @@ from typing import Literal
 
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.pose import Pose
+from evenroad.space.joints import SLACK
 
 Kind = Literal["revolute", "continuous", "prismatic", "fixed"]
 _ROUNDING = 1e-9
@@ -57,17 +58,20 @@ class Joint:
         return float(min(max(0.0, self.lower), self.upper))
 
 
-def require_within(joint: Joint, value: float, what: str) -> None:
-    """Raise InvalidValue unless a joint can have a value [rad or m]; `what` is said to have put it there."""
+def require_within(joint: Joint, value: float, what: str, limits: str = "") -> None:
+    """Raise InvalidValue unless a joint can have a value [rad or m], up to 1e-5; `what` is said to have put it there.
+
+    `limits` are the limits in words, where they are not the joint's own.
+    """
     if not math.isfinite(value):
         raise InvalidValue(f"{what} puts joint {joint.name!r} at {value!r}; it must be a finite number")
-    if joint.lower <= value <= joint.upper:
+    if joint.lower - SLACK <= value <= joint.upper + SLACK:
         return
     unit = "m" if joint.kind == "prismatic" else "rad"
     beyond = max(joint.lower - value, value - joint.upper)
+    limits = limits or f"its limits [{joint.lower:.6g}, {joint.upper:.6g}]"
     raise InvalidValue(
-        f"{what} puts joint {joint.name!r} at {value:.6g} {unit}, {beyond:.3g} {unit} outside its limits"
-        f" [{joint.lower:.6g}, {joint.upper:.6g}]"
+        f"{what} puts joint {joint.name!r} at {value:.6g} {unit}, {beyond:.3g} {unit} outside {limits}"
     )
 
 

@@ -290,15 +290,22 @@ def in_scene(robot: Robot, scene: Scene) -> Robot:
                 )
             continue
         robot = robot.holding(held)
-    if not scene.limits:
-        # The same robot: what is known of it need not be looked up by all of its values.
-        return robot
-    joints = {joint.name: joint for joint in robot.joints}
+    return within_scene(robot, scene)
+
+
+def within_scene(robot: Robot, scene: Scene) -> Robot:
+    """Return the robot with the scene's ranges to plan in, itself where none is narrower.  Raises as `in_scene`."""
+    require_robot(robot)
     limits = {}
+    joints = {joint.name: joint for joint in robot.joints} if scene.limits else {}
     for name, (lower, upper) in scene.limits.items():
         require_known(f"joint in the limits of scene {scene.name!r}:", name, joints)
-        limits[name] = (max(lower, joints[name].lower), min(upper, joints[name].upper))
-    return with_limits(robot, limits)
+        own = joints[name].lower, joints[name].upper
+        narrowed = max(lower, own[0]), min(upper, own[1])
+        if narrowed != own:
+            limits[name] = narrowed
+    # The same robot: what is known of it need not be looked up by all of its values.
+    return with_limits(robot, limits) if limits else robot
 
 
 def with_limits(robot: Robot, limits: Mapping[str, tuple[float, float]]) -> Robot:

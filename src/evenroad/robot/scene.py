@@ -126,7 +126,7 @@ class Scene:
     `allowed` are contacts that are not tested, (link, obstacle), e.g. of the base with its table; `states` are named
     configurations, joint -> value, in which joints that are not planned for are held; `limits` are ranges to plan in,
     joint -> (lower, upper) [rad or m]; `attached` is what the robot holds, no two of one name (InvalidValue).
-    :func:`evenroad.robot.in_scene` takes over both.
+    :func:`evenroad.robot.in_scene` takes over both; a world keeps to the limits by itself.
     """
 
     name: str
@@ -180,3 +180,11 @@ class Scene:
             obstacles=tuple(obstacle for obstacle in self.obstacles if obstacle.name not in names),
             allowed=frozenset((link, name) for link, name in self.allowed if name not in names),
         )
+
+
+def limits_in_words(scene: Scene | None, joint: str, lower: float, upper: float) -> str:
+    """Return what to call the limits of a joint: those of the scene where it has one of them, else its own."""
+    whose = "its limits"
+    if scene is not None and {lower, upper}.intersection(scene.limits.get(joint, ())):
+        whose = f"the limits of scene {scene.name!r}"
+    return f"{whose} [{lower:.6g}, {upper:.6g}]"

@@ -14,12 +14,11 @@ from evenroad.errors import InvalidValue, UnknownName
 from evenroad.robot.joint import Joint, require_within
 from evenroad.robot.kinematics import held_values
 from evenroad.robot.robot import Robot, require_robot, with_group
-from evenroad.robot.scene import Scene
+from evenroad.robot.scene import Scene, limits_in_words
+from evenroad.space.joints import SLACK
 
 _PAIR = re.compile(r"[\s,]*([^=,]*?)\s*=\s*([^\s,=]*)")
 """``name=value``, the name with whatever blanks it has."""
-_SLACK = 1e-6
-"""Values that files write differ by rounding [rad or m]."""
 
 
 def named_states(robot: Robot, scene: Scene | None = None) -> dict[str, dict[str, float]]:
@@ -41,9 +40,9 @@ def at_states(robot: Robot, texts: Iterable[str], scene: Scene | None = None) ->
     held: dict[str, float] = {}
     said: dict[str, str] = {}
     for name in (text.strip() for text in texts):
-        for joint, written in _outside_group(robot, name, states.get(name, {})).items():
-            value = _within_limits(joints[joint], written, name)
-            if held.setdefault(joint, value) != value:
+        for joint, value in _outside_group(robot, name, states.get(name, {})).items():
+            _require_within(joints[joint], value, f"the state {name!r}", scene)
+            if abs(held.setdefault(joint, value) - value) > SLACK:
                 raise InvalidValue(
                     f"joint {joint!r} is not planned for, so it cannot go from {held[joint]:.6g} in the state"
                     f" {said[joint]!r} to {value:.6g} in {name!r}; the group is {','.join(robot.group)}"
@@ -64,7 +63,7 @@ def state_values(robot: Robot, name: str, scene: Scene | None = None) -> Floats:
         raise InvalidValue(f"the state {name!r} has no value for {', '.join(missing)}")
     held = held_values(robot)
     for joint, value in _outside_group(robot, name, values).items():
-        if abs(value - held[joint]) > _SLACK:
+        if abs(value - held[joint]) > SLACK:
             raise InvalidValue(
                 f"the state {name!r} has joint {joint!r} at {value:.6g}, where {robot.name!r} holds it at"
                 f" {held[joint]:.6g}: to hold it as the state does, see evenroad.robot.at_states"
@@ -72,12 +71,9 @@ def state_values(robot: Robot, name: str, scene: Scene | None = None) -> Floats:
     return np.array([values[joint] for joint in robot.group], dtype=np.float64)
 
 
-def _within_limits(joint: Joint, value: float, state: str) -> float:
-    """Return the value, brought to a limit that it exceeds by no more than rounding."""
-    nearest = min(max(value, joint.lower), joint.upper)
-    if abs(value - nearest) > _SLACK:
-        require_within(joint, value, f"the state {state!r}")
-    return nearest
+def _require_within(joint: Joint, value: float, what: str, scene: Scene | None) -> None:
+    """Raise InvalidValue as `require_within`; the text names the scene where it is the scene that narrows."""
+    require_within(joint, value, what, limits_in_words(scene, joint.name, joint.lower, joint.upper))
 
 
 def _outside_group(robot: Robot, name: str, values: Mapping[str, float]) -> dict[str, float]:
@@ -101,9 +97,9 @@ def configuration(robot: Robot, text: str, scene: Scene | None = None, *, degree
         Angles in `text` are degrees; lengths stay metres, and named states what they are.
 
     Raises InvalidValue if a number is not one, there are too many or too few, a joint is given twice, or a value is
-    outside the joint's limits: the text says which joint, and by how much; or if a state has a joint outside of the
-    group elsewhere than where the robot holds it, which would be another posture: see :func:`at_states`.  UnknownName
-    if there is no such state, or no such joint in the group.
+    outside the joint's limits by more than 1e-5: the text says which joint, and by how much; or if a state has a joint
+    outside of the group elsewhere than where the robot holds it, which would be another posture: see :func:`at_states`.
+    UnknownName if there is no such state, or no such joint in the group.
     """
     require_robot(robot)
     if not text.replace(",", " ").split():
@@ -116,22 +112,10 @@ def configuration(robot: Robot, text: str, scene: Scene | None = None, *, degree
         q = _from_pairs(robot, text, degrees)
     else:
         q = _from_list(robot, text, states, degrees)
-    q = clipped(robot, q)
     joints = {joint.name: joint for joint in robot.joints}
     for joint, value in zip(robot.group, q.tolist(), strict=True):
-        require_within(joints[joint], value, repr(text))
+        _require_within(joints[joint], value, repr(text), scene)
     return q
-
-
-def clipped(robot: Robot, q: Floats) -> Floats:
-    """Return a configuration of the group, (dim,), with what exceeds a limit by up to 1e-6 brought to it [rad or m].
-
-    Joint values that are read from a robot, or written with few digits, often do; all others stay as they are.
-    """
-    joints = {joint.name: joint for joint in robot.joints}
-    low, high = np.array([(joints[name].lower, joints[name].upper) for name in robot.group]).T
-    nearest = np.clip(q, low, high)
-    return np.where(np.abs(q - nearest) <= _SLACK, nearest, q)
 
 
 def _from_pairs(robot: Robot, text: str, degrees: bool) -> Floats:

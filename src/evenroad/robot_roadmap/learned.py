@@ -27,6 +27,9 @@ def with_paths(
     a, b, by = [edges[:, 0].astype(np.int64)], [edges[:, 1].astype(np.int64)], [turns.astype(np.int64)]
     for number, path in enumerate(paths):
         way = as_batch(f"path {number}", path, world.space.dim)
+        # Milestones are within the limits, which an end may exceed by a little.
+        low, high, period = world.bounds
+        way = np.where(np.isfinite(period), way, np.clip(way, low, high))
         free = world.motion_certified(way[:-1], way[1:], RECHECK_TOLERANCE)
         if not free.all():
             raise InvalidValue(

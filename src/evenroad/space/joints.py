@@ -14,6 +14,9 @@ from evenroad.space.batch import as_batch, as_batch_pair, as_bounds, as_cube_bat
 from evenroad.space.flat import FlatMetric
 from evenroad.space.protocol import Space
 
+SLACK = 1e-5
+"""A joint's value may exceed a limit by so much, and stays what it is: those of five printed decimals do [rad or m]."""
+
 
 class FlatSpace(Space):
     """Base of the spaces whose axes are ranges, each bounded or wrapping; a subclass calls `_set_axes`.
@@ -130,10 +133,10 @@ class Circle(FlatSpace):
 class JointSpace(FlatSpace):
     """Bounded and wrapping joints in one vector, with the weighted Euclidean metric.
 
-    A revolute joint that can turn on and on wraps; one with stops does not, even where its range exceeds a
-    full turn: the two ends of such a range are far apart.  A wrapping joint repeats after ``high - low``, so in radians
-    these are 2 pi apart; `wrapping` says which joints wrap, one bool stands for all.  `low`, `high` and `weights` are
-    as for :class:`Box`; InvalidValue for any other value.
+    A revolute joint that can turn on and on wraps; one with stops does not, even where its range exceeds a full turn:
+    the two ends of such a range are far apart. A wrapping joint repeats after ``high - low``, so in radians these are
+    2 pi apart; `wrapping` says which joints wrap, one bool stands for all. A value may exceed a bound by 1e-5. `low`,
+    `high` and `weights` are as for :class:`Box`; InvalidValue for any other value.
     """
 
     low: Sequence[float]
@@ -147,6 +150,12 @@ class JointSpace(FlatSpace):
         weights = as_weights(self.weights, len(low))
         set_fields(self, low=low, high=high, wrapping=wrapping, weights=weights)
         self._set_axes(low, high, wrapping, weights)
+
+    def contains(self, q: Floats) -> Bools:
+        """Return for each row of `q`, (n, dim), whether bounded joints are within their bounds, up to 1e-5: (n,)."""
+        batch = as_batch("q", q, self.dim)
+        within = (self._low - SLACK <= batch) & (batch <= self._high + SLACK)
+        return np.logical_and.reduce(within | self._flat.wrapping, axis=1)
 
 
 def _as_bools(wrapping: bool | Sequence[bool], length: int) -> tuple[bool, ...]:

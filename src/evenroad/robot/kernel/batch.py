@@ -17,6 +17,7 @@ from evenroad.robot.kernel.motion_checks import (
     motion_proved,
 )
 from evenroad.robot.kernel.motion_states import COUNTS
+from evenroad.space.joints import SLACK
 
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
@@ -74,7 +75,7 @@ def check_configurations(
                 value = rows[first + min(lane, count - 1), k]
                 if period != np.inf:
                     value = wrapped(value, low, high, period)
-                within = low <= value <= high
+                within = low - SLACK <= value <= high + SLACK
                 outside |= (1 - within) << lane
                 # What is out of bounds may be too large for single precision.
                 states[lane] = value if within else low

@@ -8,13 +8,15 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad.robot.kernel.layout import inlined, quick_inlined
+from evenroad.space.joints import SLACK
 
 Floats = npt.NDArray[np.float64]
 
 
 @quick_inlined
 def enter(q: Floats, bounds: Floats, into: Floats) -> bool:
-    """Write `q` with its wrapping coordinates in their ranges and return whether the others are within theirs.
+    """Write `q` with its wrapping coordinates in their ranges and return whether the others are within theirs, up to
+    `SLACK`.
 
     `bounds`, (3, dim), are low, high and period of each coordinate; a period of inf where it does not wrap.
     """
@@ -22,7 +24,7 @@ def enter(q: Floats, bounds: Floats, into: Floats) -> bool:
     for k in range(len(q)):
         value, low, high, period = q[k], bounds[0, k], bounds[1, k], bounds[2, k]
         if period == np.inf:
-            inside &= low <= value <= high
+            inside &= low - SLACK <= value <= high + SLACK
         else:
             value = wrapped(value, low, high, period)
         into[k] = value

@@ -14,6 +14,7 @@ from evenroad.geometry.hulls import Hull
 from evenroad.geometry.shapes import Capsule
 from evenroad.robot.kernel.moving_tree import MovingFrame, MovingTree
 from evenroad.robot.robot import Robot
+from evenroad.space.joints import SLACK
 
 Floats = npt.NDArray[np.float64]
 
@@ -227,4 +228,4 @@ def largest_value(frame: MovingFrame, robot: Robot) -> float:
 
 def _longest_slide(frame: MovingFrame, robot: Robot) -> float:
     """Return how far a frame's origin can slide from where it is at value 0; nothing where it turns."""
-    return largest_value(frame, robot) if frame.slides else 0.0
+    return largest_value(frame, robot) + abs(frame.multiplier) * SLACK if frame.slides else 0.0

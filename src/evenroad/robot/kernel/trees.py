@@ -188,7 +188,9 @@ def _begin(ends: Floats, trees: Trees, memory: Memory, checks: Checks) -> None:
             # Lanes to spare repeat the last row.
             if enter(ends[first + min(lane, some - 1)], checks.bounds, memory.here):
                 inside |= 1 << lane
-            canonical(memory.here, checks.bounds)
+            else:
+                # What is out of bounds may be too large for single precision.
+                canonical(memory.here, checks.bounds)
             for k in range(dim):
                 checks.states[k * LANES + lane] = memory.here[k]
         free = inside & ~blocked(checks)
@@ -228,7 +230,9 @@ def _reach(
     for step in range(1, min(steps, MOST_STEPS) + 1):
         for k in range(len(here)):
             target[k] = there[k] if step == steps else here[k] + step / steps * way[k]
-        canonical(target, checks.bounds)
+        if step < steps:
+            # The other tree's node stays as it is: a root may exceed a limit by the slack.
+            canonical(target, checks.bounds)
         if checks.counts[MOTIONS] >= most_motions:
             return -1
         if not motion_free(trees.nodes[tree, found], target, BOTH_ENDS if step == steps else START, checks):
