@@ -90,7 +90,7 @@ def test_coal_agrees_on_random_boxes_and_rectangles(seed):
         if random.random() < 0.4:
             half[random.integers(3)] = 0.0
         return OrientedBox(
-            random.uniform(-reach, reach, 3), half, rotation_from_quaternion(random.normal(size=4))
+            random.uniform(-reach, reach, 3), half, rotation_from_quaternion(xyzw=random.normal(size=4))
         )
 
     body, obstacles = [some_box(1.0) for _ in range(3)], [some_box(6.0) for _ in range(40)]
@@ -104,7 +104,7 @@ ELL = [
     OrientedBox.spanning((0.6, 0, -0.2), (1, 1, 0.2)),
 ]
 CRATES = [
-    OrientedBox(centre, half, rotation_from_quaternion(turn), name=f"crate {i}")
+    OrientedBox(centre, half, rotation_from_quaternion(xyzw=turn), name=f"crate {i}")
     for i, (centre, half, turn) in enumerate(
         zip(
             np.random.default_rng(1).uniform(0, 10, (25, 3)),

@@ -352,7 +352,7 @@ def test_bad_input_gets_one_line_and_exit_code_2_and_nothing_is_written(case, ru
         ("map.yaml", ROOM),
         (
             "turned.yaml",
-            "obstacles: {ball: {shape: sphere, radius: 1, quaternion: [0, 0, 0, 0]}}\nstates: {left: {a: 0, b: 0}}\n",
+            "obstacles: {ball: {shape: sphere, radius: 1, xyzw: [0, 0, 0, 0]}}\nstates: {left: {a: 0, b: 0}}\n",
         ),
         ("turned.scene", "s\n* ball\n1\nsphere\n1\n0 0 0\n0 0 0 0\n0 0 0 0\n.\n"),
         ("mesh.scene", "s\n* cup\n1\nmesh\n3 1\n0 0 0\n0 0 0 1\n0 0 0 0\n.\n"),

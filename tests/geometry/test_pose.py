@@ -21,10 +21,12 @@ def test_roll_pitch_and_yaw_are_about_fixed_axes(rpy):
     np.testing.assert_allclose(np.reshape(rotation_from_rpy(*rpy), (3, 3)), expected, atol=1e-15)
 
 
-def test_quaternions_have_w_first_and_any_norm():
-    expected = Rotation.from_quat(QUATERNIONS[:, [1, 2, 3, 0]]).as_matrix()
-    np.testing.assert_allclose(rotations_from_quaternions(QUATERNIONS), expected, atol=1e-15)
-    one_by_one = [np.reshape(rotation_from_quaternion(q), (3, 3)) for q in QUATERNIONS]
+def test_quaternions_have_the_order_of_scipy_and_any_norm():
+    expected = Rotation.from_quat(QUATERNIONS).as_matrix()
+    np.testing.assert_allclose(
+        rotations_from_quaternions(np.roll(QUATERNIONS, 1, axis=1)), expected, atol=1e-15
+    )
+    one_by_one = [np.reshape(rotation_from_quaternion(xyzw=q), (3, 3)) for q in QUATERNIONS]
     np.testing.assert_allclose(one_by_one, expected, atol=1e-15)
 
 
@@ -55,9 +57,24 @@ def test_the_right_one_of_two_composed_poses_comes_first():
 
 def test_a_quaternion_and_rpy_give_the_same_pose():
     turn = math.radians(30)
-    by_quaternion = Pose.from_quaternion((1, 2, 3), (math.cos(turn / 2), 0, 0, math.sin(turn / 2)))
+    by_quaternion = Pose.from_quaternion((1, 2, 3), xyzw=(0, 0, math.sin(turn / 2), math.cos(turn / 2)))
     by_rpy = Pose.from_rpy((1, 2, 3), (0, 0, turn))
     np.testing.assert_allclose(by_quaternion.matrix, by_rpy.matrix, atol=1e-15)
+
+
+def test_a_quarter_about_y_of_scipy_is_a_quarter_about_y():
+    turn = Rotation.from_euler("y", 90, degrees=True)
+    pose = Pose.from_quaternion((0, 0, 0), xyzw=turn.as_quat())
+    np.testing.assert_allclose(pose.rotation_matrix, turn.as_matrix(), atol=1e-15)
+
+
+def test_a_quaternion_whose_order_one_could_guess_is_refused():
+    for guess in (
+        lambda: Pose.from_quaternion((0, 0, 0), (0, 0, 0, 1)),
+        lambda: rotation_from_quaternion((1, 0, 0, 0)),
+    ):
+        with pytest.raises(InvalidValue, match=r"xyzw=\(x, y, z, w\), by its keyword: others have w first"):
+            guess()
 
 
 STRETCHED = np.diag([2.0, 1.0, 1.0, 1.0])
@@ -75,8 +92,8 @@ MIRRORED = np.diag([-1.0, 1.0, 1.0, 1.0])
         (lambda: Pose.from_matrix(np.eye(3)), "4x4 matrix with the last row 0, 0, 0, 1"),
         (lambda: Pose.from_matrix(np.full((4, 4), 0.5)), "last row"),
         (lambda: Pose.from_matrix("pose"), "4x4 matrix of numbers, got 'pose'"),
-        (lambda: Pose.from_quaternion((0, 0, 0), (0, 0, 0, 0)), "norm > 0"),
-        (lambda: Pose.from_quaternion((0, 0, 0), (1, 0, 0)), "4 finite"),
+        (lambda: Pose.from_quaternion((0, 0, 0), xyzw=(0, 0, 0, 0)), "norm > 0"),
+        (lambda: Pose.from_quaternion((0, 0, 0), xyzw=(1, 0, 0)), "4 finite"),
         (lambda: Pose.from_rpy((0, 0, 0), (0, math.nan, 0)), "rpy must be 3 finite"),
         (lambda: rotation_from_z((0, 0, 0)), "must be a direction"),
     ],

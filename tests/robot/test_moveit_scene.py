@@ -91,7 +91,7 @@ def test_a_planning_scene_has_quaternions_with_w_last_and_cylinders_with_their_h
     can, shelf, ball = scene.obstacles
     assert (scene.name, can.name, shelf.name, ball.name) == ("bench", "Can1", "shelf/0", "shelf/1")
     assert (can.shape, can.size) == ("cylinder", (0.05, 0.2))
-    quarter = Pose.from_quaternion((1, 2, 3), (1, 0, 0, 1))
+    quarter = Pose.from_quaternion((1, 2, 3), xyzw=(0, 0, 1, 1))
     assert can.body.pose == quarter
     np.testing.assert_allclose(shelf.xyz, (0, 0, 0), atol=1e-15)
     assert (ball.shape, ball.size) == ("sphere", (0.1,))

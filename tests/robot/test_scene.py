@@ -65,7 +65,7 @@ BROKEN = {
     "an unknown key of an obstacle": (
         "obstacles: {a: {shape: sphere, radius: 1, size: 2}}",
         UnknownName,
-        "key of obstacle 'a' in .*'size'; known: cell, quaternion, radius, rpy, shape, xyz",
+        "key of obstacle 'a' in .*'size'; known: cell, radius, rpy, shape, xyz, xyzw",
     ),
     "an unknown shape": (
         "obstacles: {a: {shape: cone}}",
@@ -262,7 +262,7 @@ def test_a_scene_with_and_without_an_obstacle_is_another_scene():
     "pose",
     [
         Pose.from_matrix(QUARTER),
-        Pose.from_quaternion((1, 2, 3), (1, 0, 0, 1)),
+        Pose.from_quaternion((1, 2, 3), xyzw=(0, 0, 1, 1)),
         Pose.from_rpy((1, 2, 3), (0, 0, np.pi / 2)),
     ],
     ids=["matrix", "quaternion", "rpy"],
@@ -273,12 +273,14 @@ def test_an_obstacle_takes_its_pose_as_people_have_it(pose):
     np.testing.assert_allclose(np.reshape(post.rotation, (3, 3)), np.array(QUARTER)[:3, :3], atol=1e-15)
 
 
-def test_a_quaternion_in_a_file_has_w_first_and_stands_in_the_place_of_rpy(tmp_path):
-    text = "obstacles: {a: {shape: box, size: [1, 2, 3], quaternion: [1, 0, 0, 1]%s}}"
+def test_a_quaternion_in_a_file_has_w_last_and_stands_in_the_place_of_rpy(tmp_path):
+    text = "obstacles: {a: {shape: box, size: [1, 2, 3], xyzw: [0, 0, 1, 1]%s}}"
     (a,) = load_scene(write(tmp_path, text % "", "a.yaml")).obstacles
     np.testing.assert_allclose(a.rotation, rotation_from_rpy(0, 0, np.pi / 2), atol=1e-15)
-    with pytest.raises(InvalidValue, match="obstacle 'a' in .* must have one of rpy and quaternion"):
+    with pytest.raises(InvalidValue, match="obstacle 'a' in .* must have one of rpy and xyzw"):
         load_scene(write(tmp_path, text % ", rpy: [0, 0, 1]", "a.yaml"))
+    with pytest.raises(UnknownName, match=r"obstacle 'a' in .* as xyzw: \[x, y, z, w\], in this order"):
+        load_scene(write(tmp_path, text.replace("xyzw", "quaternion") % "", "a.yaml"))
 
 
 def test_a_capsule_as_an_obstacle_is_along_z_whatever_its_ends():

@@ -1,7 +1,8 @@
 """Rotations and poses: one convention for the whole package.
 
-A rotation is the nine numbers of its matrix, row by row (four in the plane).  Quaternions are (w, x, y, z), angles
-radians, lengths metres.  A pose takes points of its own frame to the frame that it is given in.
+A rotation is the nine numbers of its matrix, row by row (four in the plane).  Quaternions are (x, y, z, w), as
+SciPy and ROS have them, angles radians, lengths metres.  A pose takes points of its own frame to the frame that it is
+given in.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ Vector = tuple[float, float, float]
 NO_ROTATION = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 _ORTHONORMAL = 1e-6
 """How far products of rows may be from those of a rotation: room for matrices read from text."""
+_BY_KEYWORD = "a quaternion must be given as xyzw=(x, y, z, w), by its keyword: others have w first"
 
 
 def rotation_from_rpy(roll: float, pitch: float, yaw: float) -> tuple[float, ...]:
@@ -44,21 +46,23 @@ def rotation_from_heading(heading: float) -> tuple[float, ...]:
     return (math.cos(angle), -math.sin(angle), math.sin(angle), math.cos(angle))
 
 
-def rotation_from_quaternion(quaternion: Sequence[float]) -> tuple[float, ...]:
-    """Return the rotation of a quaternion (w, x, y, z), which need not be of norm 1, as (9,) rows.
+def rotation_from_quaternion(*guessed: object, xyzw: Sequence[float] = ()) -> tuple[float, ...]:
+    """Return the rotation of a quaternion `xyzw`, which need not be of norm 1, as (9,) rows.
 
-    Raises InvalidValue if it is not four finite numbers, or its norm is 0.
+    It goes by its keyword, since others have w first.  Raises InvalidValue if it does not, is not four finite numbers
+    x, y, z, w, or its norm is 0.
     """
-    row = as_row("quaternion", quaternion, 4)
-    norm = math.hypot(*row)
+    if guessed:
+        raise InvalidValue(_BY_KEYWORD)
+    x, y, z, w = as_row("quaternion xyzw", xyzw, 4)
+    norm = math.hypot(w, x, y, z)
     if norm == 0.0:
         raise InvalidValue("quaternion must have a norm > 0, got zeros")
-    w, x, y, z = (number / norm for number in row)
-    return _of_unit_quaternion(w, x, y, z)
+    return _of_unit_quaternion(w / norm, x / norm, y / norm, z / norm)
 
 
 def rotations_from_quaternions(quaternions: Floats) -> Floats:
-    """Return the matrices, (n, 3, 3), of quaternions (n, 4), w first and of any norm > 0."""
+    """Return the matrices, (n, 3, 3), of rows of SO3, (n, 4): quaternions with w first, here of any norm > 0."""
     w, x, y, z = (quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)).T
     return np.stack(_of_unit_quaternion(w, x, y, z), axis=1).reshape(-1, 3, 3)
 
@@ -141,9 +145,18 @@ class Pose:
         return cls._made(xyz, rotation_from_rpy(roll, pitch, yaw))
 
     @classmethod
-    def from_quaternion(cls, xyz: Sequence[float], quaternion: Sequence[float]) -> Pose:
-        """Return the pose of an origin [m] and a quaternion (w, x, y, z) of any norm > 0."""
-        return cls._made(xyz, rotation_from_quaternion(quaternion))
+    def from_quaternion(cls, xyz: Sequence[float], *guessed: object, xyzw: Sequence[float] = ()) -> Pose:
+        """Return the pose of an origin [m] and a quaternion `xyzw`, by its keyword, of any norm > 0.
+
+        The order is that of SciPy and ROS.  Raises as :func:`rotation_from_quaternion`.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.Pose.from_quaternion((0, 0, 1), xyzw=(0, 0, 1, 1)).apply((1, 0, 0)).round(6).tolist()
+        [0.0, 1.0, 1.0]
+        """
+        return cls._made(xyz, rotation_from_quaternion(*guessed, xyzw=xyzw))
 
     @classmethod
     def from_matrix(cls, matrix: npt.ArrayLike) -> Pose:

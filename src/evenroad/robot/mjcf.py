@@ -102,7 +102,7 @@ class _Reader:
         if reference and kind == "revolute":
             half = -0.5 * reference
             origin = origin @ Pose.from_quaternion(
-                (0, 0, 0), (math.cos(half), *(math.sin(half) * part for part in (x, y, z)))
+                (0, 0, 0), xyzw=(*(math.sin(half) * part for part in (x, y, z)), math.cos(half))
             )
         elif reference:
             origin = origin @ Pose((-reference * x, -reference * y, -reference * z))
@@ -160,4 +160,5 @@ def _name(element: Any, what: str) -> str:
 
 
 def _pose(xyz: Floats, quaternion: Floats) -> Pose:
-    return Pose.from_quaternion(xyz.tolist(), quaternion.tolist())
+    # MuJoCo has w first.
+    return Pose.from_quaternion(xyz.tolist(), xyzw=np.roll(quaternion, -1).tolist())

@@ -184,8 +184,7 @@ def _pose(entry: object, name: str, path: Path) -> Pose:
 
 
 def _from_xyzw(xyz: Numbers, quaternion: Numbers, where: str) -> Pose:
-    x, y, z, w = quaternion
     try:
-        return Pose.from_quaternion(xyz, (w, x, y, z))
+        return Pose.from_quaternion(xyz, xyzw=quaternion)
     except EvenroadError as error:
         raise InvalidValue(f"{where}: {error}") from None

@@ -123,7 +123,7 @@ def pose_of(text: str, *, degrees: bool = False) -> tuple[Pose, bool]:
                 f"the quaternion qx qy qz qw of a goal pose must be of norm 1, got {norm:.6g} in {shown(text)}: it is"
                 " no rotation"
             )
-        return Pose.from_quaternion(xyz, (rest[3], *rest[:3])), True
+        return Pose.from_quaternion(xyz, xyzw=rest), True
     return Pose((row[0], row[1], row[2])), False
 
 

@@ -21,7 +21,7 @@ from evenroad.robot.scene import MARGIN, Obstacle, Scene, Seen
 SCENES = ("box-reach", "box-reach-narrow")
 """Names of the shipped scenes."""
 _SECTIONS = ("name", "allowed", "states", "limits", "attach")
-_OPTIONAL = ("xyz", "rpy", "quaternion", "cell")
+_OPTIONAL = ("xyz", "rpy", "xyzw", "cell")
 _OF_A_CLOUD = ("seen_at", "margin")
 
 
@@ -63,8 +63,8 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
         attach:                                   # what the robot holds: a shape in the frame of a link
           crate: {shape: box, size: [0.1, 0.1, 0.2], link: tool0, xyz: [0, 0, 0.1], touches: [wrist_3_link, table]}
 
-    The length of a capsule is without its caps; ``quaternion: [w, x, y, z]`` may stand for ``rpy``; ``cell: true``
-    marks what belongs to the fixed cell.  Files of clouds (:func:`evenroad.geometry.load_cloud`) and meshes
+    The length of a capsule is without its caps; ``xyzw: [x, y, z, w]``, a quaternion, may stand for ``rpy``; ``cell:
+    true`` marks what belongs to the fixed cell.  Files of clouds (:func:`evenroad.geometry.load_cloud`) and meshes
     (:func:`evenroad.geometry.load_mesh`) are looked for beside the scene; points within `margin` of the robot, where it
     stood when it was `seen_at`, are left out when one plans.  MoveIt's scenes are read, too
     (:mod:`evenroad.robot.moveit_scene`).
@@ -133,6 +133,10 @@ def _attached(
 
 def _obstacle(name: str, entry: dict[str, Any], path: Path, where: str = "") -> Obstacle:
     where = where or f"obstacle {name!r} in {path}"
+    if "quaternion" in entry:
+        raise UnknownName(
+            f"{where} must have its quaternion as xyzw: [x, y, z, w], in this order, not as quaternion"
+        )
     shape = entry.get("shape")
     kinds = (*PRIMITIVES, PointCloud.kind, Mesh.kind)
     if not isinstance(shape, str) or shape not in kinds:
@@ -185,12 +189,12 @@ def _file(entry: dict[str, Any], path: Path, where: str) -> Path:
 def _pose(entry: dict[str, Any], where: str) -> Pose:
     """Return the pose that an entry has."""
     xyz = numbers(entry.get("xyz", [0, 0, 0]), 3, f"xyz of {where}")
-    if "rpy" in entry and "quaternion" in entry:
-        raise InvalidValue(f"{where} must have one of rpy and quaternion, got both")
-    if "quaternion" in entry:
-        quaternion = numbers(entry["quaternion"], 4, f"quaternion of {where}")
+    if "rpy" in entry and "xyzw" in entry:
+        raise InvalidValue(f"{where} must have one of rpy and xyzw, got both")
+    if "xyzw" in entry:
+        quaternion = numbers(entry["xyzw"], 4, f"the quaternion xyzw of {where}")
         try:
-            return Pose.from_quaternion(xyz, quaternion)
+            return Pose.from_quaternion(xyz, xyzw=quaternion)
         except InvalidValue as error:
             raise InvalidValue(f"{where}: {error}") from None
     return Pose.from_rpy(xyz, numbers(entry.get("rpy", [0, 0, 0]), 3, f"rpy of {where}"))

@@ -17,7 +17,7 @@ from evenroad.world import FunctionWorld
 
 
 def a_turn(random):
-    return rotation_from_quaternion(random.normal(size=4))
+    return rotation_from_quaternion(xyzw=random.normal(size=4))
 
 
 def some_boxes(random, m, dim, flat=()):
@@ -71,7 +71,7 @@ def pose_of(q, dim):
     """Translation and matrix of a configuration."""
     if len(q) == dim:
         return q, np.eye(dim)
-    turn = rotation_from_heading(q[2]) if dim == 2 else rotation_from_quaternion(q[3:])
+    turn = rotation_from_heading(q[2]) if dim == 2 else rotation_from_quaternion(xyzw=np.roll(q[3:], -1))
     return q[:dim], np.array(turn).reshape(dim, dim)
 
 
@@ -214,7 +214,7 @@ def test_boxes_that_are_none_are_refused():
     with pytest.raises(InvalidValue, match="low must not exceed high"):
         OrientedBox.spanning((0, 0), (1, -1))
     with pytest.raises(InvalidValue, match="norm"):
-        rotation_from_quaternion([0, 0, 0, 0])
+        rotation_from_quaternion(xyzw=[0, 0, 0, 0])
     with pytest.raises(InvalidValue, match="shell"):
         shell(FLAT_ELL[0])
 

@@ -201,7 +201,8 @@ def places_far_apart(dim: int, a: Floats, b: Floats) -> Bools:
 def _random_rotation(dim: int, rng: np.random.Generator) -> tuple[float, ...]:
     if dim == 2:
         return rotation_from_heading(float(rng.uniform(-np.pi, np.pi)))
-    return rotation_from_quaternion(rng.standard_normal(4).tolist())
+    w, x, y, z = rng.standard_normal(4).tolist()
+    return rotation_from_quaternion(xyzw=(x, y, z, w))
 
 
 DIFFICULTIES = (25, 50, 75)

@@ -140,7 +140,7 @@ def _draw_body(axes: Axes3D, body: Iterable[OrientedBox], poses: Floats) -> None
     for number, (pose, shade) in enumerate(zip(poses, between, strict=True)):
         rotation, place = np.eye(3), pose[:3]
         if len(pose) == 7:
-            rotation = np.array(rotation_from_quaternion(pose[3:].tolist())).reshape(3, 3)
+            rotation = np.array(rotation_from_quaternion(xyzw=np.roll(pose[3:], -1).tolist())).reshape(3, 3)
         faces = np.concatenate([_faces(box.corners @ rotation.T + place) for box in boxes])
         alpha, width = (0.95, 0.4) if number in ends else (0.55, 0.15)
         _add_faces(axes, faces, (ends.get(number, shade), "black"), alpha=alpha, linewidths=width)
