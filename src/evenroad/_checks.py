@@ -70,9 +70,9 @@ def as_row(
     except (TypeError, ValueError):
         row = ()
     if len(row) == 0 or (length is not None and len(row) != length) or not all(map(math.isfinite, row)):
-        raise InvalidValue(f"{name} must be {wanted}, got {values!r}")
+        raise InvalidValue(f"{name} must be {wanted}, got {shown(values)}")
     if max(map(abs, row)) > within:
-        raise InvalidValue(f"{name} must lie between -{within:g} and {within:g}, got {values!r}")
+        raise InvalidValue(f"{name} must lie between -{within:g} and {within:g}, got {shown(values)}")
     return row
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import os
+import zipfile
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from errno import EINVAL
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +20,8 @@ from evenroad.errors import BrokenFile, shown
 
 Path = str | os.PathLike[str]
 Arrays = dict[str, npt.NDArray[Any]]
+_ROOM, _MOST_TIMES = 1 << 22, 50
+"""Most bytes that an archive may unpack to: so many, or so many times its own; of ours it is 1 to 10 times."""
 
 
 def write_npz(path: Path, arrays: Mapping[str, npt.ArrayLike], *, compressed: bool = False) -> None:
@@ -63,17 +67,51 @@ def read_npz(path: Path, what: str, *layouts: Collection[str]) -> Arrays:
     arrays = {}
     # Opened here, not by NumPy, which leaves the handle open when the archive is broken.
     with reading(path, f".npz {what}", b"PK"), open(path, "rb") as file:
-        archive = np.load(file, allow_pickle=False)
-        if not isinstance(archive, np.lib.npyio.NpzFile):
+        if file.read(6) == np.lib.format.MAGIC_PREFIX:
             raise BrokenFile(f"{path} is a plain array, not a .npz {what}")
-        if set(archive.files) not in map(set, layouts):
-            raise BrokenFile(f"{path} holds {shown(sorted(archive.files))}, a {what} {sorted(layouts[0])}")
-        for name in archive.files:
-            arrays[name] = archive[name]
-            if not isinstance(arrays[name], np.ndarray):
-                # NumPy hands out a member without the magic of an array as bytes.
-                raise BrokenFile(f"{path}: {name} is no array")
+        with zipfile.ZipFile(file) as archive:
+            require_unpackable(path, archive)
+            members = {info.filename.removesuffix(".npy"): info for info in archive.infolist()}
+            if set(members) not in map(set, layouts):
+                raise BrokenFile(f"{path} holds {shown(sorted(members))}, a {what} {sorted(layouts[0])}")
+            for name, info in members.items():
+                with archive.open(info) as member:
+                    if member.read(6) != np.lib.format.MAGIC_PREFIX:
+                        raise BrokenFile(f"{path}: {name} is no array")
+                    member.seek(0)
+                    arrays[name] = read_array(member, info.file_size)
     return arrays
+
+
+def read_array(file: IO[bytes], size: int) -> npt.NDArray[Any]:
+    """Return the array of an open .npy file of `size` bytes, or raise ValueError if it announces another.
+
+    Before it is made: a header of a hundred bytes can announce any number of them.
+    """
+    version = np.lib.format.read_magic(file)
+    if version not in _HEADERS:
+        raise ValueError(f"a .npy file of version {version}")
+    shape, _, dtype = _HEADERS[version](file)
+    announced, there = math.prod(shape) * dtype.itemsize, size - file.tell()
+    if not dtype.hasobject and announced != there:
+        raise ValueError(f"it is damaged or cut off: {announced} bytes were announced, {there} are there")
+    file.seek(0)
+    return np.lib.format.read_array(file, allow_pickle=False)
+
+
+_HEADERS = {
+    (1, 0): np.lib.format.read_array_header_1_0,
+    (2, 0): np.lib.format.read_array_header_2_0,
+    (3, 0): np.lib.format.read_array_header_2_0,
+}
+"""Of 3.0, names of fields are in UTF-8, which changes no size."""
+
+
+def require_unpackable(path: Path, archive: zipfile.ZipFile) -> None:
+    """Raise BrokenFile if an archive would unpack to far more than its own size; nothing is unpacked to find out."""
+    packed, unpacked = os.path.getsize(path), sum(info.file_size for info in archive.infolist())
+    if unpacked > max(_ROOM, _MOST_TIMES * packed):
+        raise BrokenFile(f"{path} has {packed} bytes and would unpack to {unpacked}: it is not read")
 
 
 def read_json(path: Path, name: str, array: npt.NDArray[Any], keys: Collection[str]) -> dict[str, Any]:

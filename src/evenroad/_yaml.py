@@ -12,12 +12,15 @@ import yaml
 
 from evenroad._checks import require_known
 from evenroad._files import not_a
-from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.errors import BrokenFile, InvalidValue, shown
 
 # libyaml where PyYAML was built with it: ten times as fast.
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _DEEPEST = 100
-_MERGE = "tag:yaml.org,2002:merge"
+_LARGEST, _LARGEST_SHARE = 1_000_000, 10
+"""Most characters and entries of a file with its aliases written out: so many, and so many a character of it."""
+_MERGE, _INTEGER = "tag:yaml.org,2002:merge", "tag:yaml.org,2002:int"
+_MOST_DIGITS = 1000
 
 
 def read_mapping(path: Path, what: str) -> dict[str, Any]:
@@ -28,7 +31,7 @@ def read_mapping(path: Path, what: str) -> dict[str, Any]:
     """
     try:
         text = path.read_text(encoding="utf-8")
-        _require_shallow(text, path)
+        _require_bounded(text, path)
         document = _document(text, path)
     except BrokenFile:
         raise
@@ -49,13 +52,42 @@ def _why(error: Exception) -> str:
     return f"line {mark.line + 1}, column {mark.column + 1}: {error.problem}"  # type: ignore[attr-defined]
 
 
-def _require_shallow(text: str, path: Path) -> None:
-    """Refuse what is nested deeper than anybody writes: libyaml would overflow the stack, and the process die of it."""
-    depth = 0
+def _require_bounded(text: str, path: Path) -> None:
+    """Refuse what is deeper, or with its aliases written out larger, than anybody writes.
+
+    Of the depth libyaml would overflow the stack, and the process die of it; nine lists of nine aliases each, one of
+    the other, are a file of 300 characters and a text of gigabytes.
+    """
+    allowed = _LARGEST + _LARGEST_SHARE * len(text)
+    known: dict[str, tuple[int, int]] = {}
+    # Of the collections that are open: anchor, size and depth of what is inside so far.
+    waiting: list[tuple[str | None, int, int]] = [(None, 0, 0)]
     for event in yaml.parse(text, Loader=_Loader):
-        depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
-        if depth > _DEEPEST:
+        if isinstance(event, yaml.CollectionStartEvent):
+            waiting.append((event.anchor, 1, 0))
+            size, depth = 0, 0
+        elif isinstance(event, yaml.CollectionEndEvent):
+            anchor, size, depth = waiting.pop()
+            depth += 1
+            known |= {anchor: (size, depth)} if anchor else {}
+        elif isinstance(event, yaml.ScalarEvent):
+            size, depth = 1 + len(event.value), 0
+            known |= {event.anchor: (size, depth)} if event.anchor else {}
+        elif isinstance(event, yaml.AliasEvent):
+            if any(event.anchor == each[0] for each in waiting):
+                raise BrokenFile(f"{path} has an alias *{event.anchor} inside of what it stands for")
+            # The reader says where one stands for nothing.
+            size, depth = known.get(str(event.anchor), (1, 0))
+        else:
+            continue
+        anchor, around, below = waiting[-1]
+        waiting[-1] = anchor, around + size, max(below, depth)
+        if len(waiting) - 1 + waiting[-1][2] > _DEEPEST:
             raise BrokenFile(f"{path} is nested more than {_DEEPEST} levels deep")
+        if waiting[-1][1] > allowed:
+            raise BrokenFile(
+                f"{path} has {len(text)} characters and with its aliases written out more than {allowed}"
+            )
 
 
 def _document(text: str, path: Path) -> object:
@@ -66,19 +98,24 @@ def _document(text: str, path: Path) -> object:
             return None
         # Before anything is made of the nodes: PyYAML keeps the last of equal keys in silence, and merging (<<)
         # makes equal ones that are meant.
-        _require_distinct_keys(loader, root, path)
+        _require_sound(loader, root, path)
         return loader.construct_document(root)
     finally:
         loader.dispose()
 
 
-def _require_distinct_keys(loader: Any, root: yaml.Node, path: Path) -> None:
+def _require_sound(loader: Any, root: yaml.Node, path: Path) -> None:
     pending, seen = [root], set()
     while pending:
         node = pending.pop()
         if id(node) in seen:
             continue
         seen.add(id(node))
+        if node.tag == _INTEGER and len(node.value) > _MOST_DIGITS:
+            # Python neither writes it, in an error, nor makes it in a time in proportion.
+            raise BrokenFile(
+                f"{path} has a number of {len(node.value)} digits in line {node.start_mark.line + 1}"
+            )
         if isinstance(node, yaml.SequenceNode):
             pending.extend(node.value)
         elif isinstance(node, yaml.MappingNode):
@@ -116,8 +153,8 @@ def numbers(value: object, count: int, what: str) -> tuple[float, ...]:
         if len(entries) == count == len(row) and all(map(math.isfinite, row)):
             return row
     allowed = "a finite number" if count == 1 else f"a list of {count} finite numbers"
-    shown = entries[0] if count == 1 and len(entries) == 1 else value
+    given = entries[0] if count == 1 and len(entries) == 1 else value
     hint = ""
     if any(isinstance(entry, str) for entry in entries):
         hint = " (text; YAML reads an exponent only after a decimal point: 1.0e-2, not 1e-2)"
-    raise InvalidValue(f"{what} must be {allowed}, got {shown!r}{hint}")
+    raise InvalidValue(f"{what} must be {allowed}, got {shown(given)}{hint}")

@@ -5,13 +5,27 @@ Every error we raise on purpose is an :class:`EvenroadError` and also the builti
 allowed.  "No path" is not here: it is an answer (see ``evenroad.roadmap.PlanResult.status``).
 """
 
+import reprlib
+
 SHOWN = 80
 """Characters of a value that an error's text repeats."""
+LONGEST = 600
+"""Most characters of an error's text: input that was pasted by mistake is not shown in full."""
+_MOST_PARTS = 1000
+"""Of a value that is written out as a whole, before its middle is left out."""
 
 
 def shown(value: object) -> str:
-    """Return ``repr(value)`` for an error's text, its middle left out where it has more than 80 characters."""
-    text = repr(value)
+    """Return ``repr(value)`` for an error's text, its middle left out where it has more than 80 characters.
+
+    Of lists in lists of more than 1000 parts only the beginnings are written: one that names another again and again
+    can be exponentially long.
+    """
+    try:
+        text = repr(value) if _has_few_parts(value) else _BRIEF.repr(value)
+    except ValueError:
+        # Python does not write integers of more than 4300 digits.
+        return f"a number of type {type(value).__name__} with very many digits"
     if len(text) <= SHOWN:
         return text
     mark = f" ... ({len(text)} characters) ... "
@@ -19,8 +33,39 @@ def shown(value: object) -> str:
     return text[: SHOWN - len(mark) - end] + mark + text[-end:]
 
 
+def in_one_line(text: str) -> str:
+    """Return a text in one line, without its middle where it is too long: what is wrong, and what is allowed, stay."""
+    line = text if text.isprintable() else " ".join(text.split())
+    if len(line) <= LONGEST:
+        return line
+    half = (LONGEST - len(_GAP)) // 2
+    return f"{line[:half]}{_GAP}{line[-half:]}"
+
+
+_GAP = " ... "
+_BRIEF = reprlib.Repr()
+_BRIEF.maxlevel, _BRIEF.maxstring, _BRIEF.maxother = 2, SHOWN, SHOWN
+
+
+def _has_few_parts(value: object) -> bool:
+    """Return whether lists, tuples, sets and mappings in each other have few parts in all, however often each."""
+    waiting, parts = [value], 0
+    while waiting:
+        each = waiting.pop()
+        inside = [*each.keys(), *each.values()] if isinstance(each, dict) else each
+        if isinstance(inside, list | tuple | set | frozenset):
+            parts += len(inside)
+            if parts > _MOST_PARTS:
+                return False
+            waiting.extend(inside)
+    return True
+
+
 class EvenroadError(Exception):
-    """Base of every error that evenroad raises on purpose."""
+    """Base of every error that evenroad raises on purpose; its text is one line of at most 600 characters."""
+
+    def __init__(self, *arguments: object) -> None:
+        super().__init__(*(in_one_line(each) if isinstance(each, str) else each for each in arguments))
 
 
 class InvalidValue(EvenroadError, ValueError):

@@ -9,12 +9,10 @@ from textwrap import fill
 
 from evenroad import __version__
 from evenroad._terminal import leave_output, table_width
-from evenroad.errors import EvenroadError, UnknownName
+from evenroad.errors import EvenroadError, UnknownName, in_one_line
 
 DONE = 0
 BAD_INPUT = 2
-LONGEST = 600
-"""Most characters of an error: input that was pasted by mistake is not shown in full."""
 
 VERBS = {
     "plan": ("evenroad.cli.plan:PlanDisk", "a path for a disk on a map, or for an arm in a scene (--robot)"),
@@ -63,7 +61,7 @@ def run(arguments: Sequence[str]) -> int:
         return DONE
     except (EvenroadError, MemoryError, OSError) as error:
         kind = "not enough memory: " if isinstance(error, MemoryError) else ""
-        print(f"evenroad: error: {kind}{_in_one_line(str(error))}", file=sys.stderr)
+        print(f"evenroad: error: {kind}{in_one_line(str(error))}", file=sys.stderr)
         return BAD_INPUT
 
 
@@ -112,11 +110,3 @@ def _kind(verb: str, words: Sequence[str]) -> type:
     # Of `plan` there are two: one for each kind of robot.
     kind: type = home.plan_type(words) if verb == "plan" else getattr(home, name)
     return kind
-
-
-def _in_one_line(text: str) -> str:
-    """Return a text in one line, without its middle where it is too long: what is wrong, and what is allowed, stay."""
-    line = " ".join(text.split())
-    if len(line) <= LONGEST:
-        return line
-    return f"{line[: LONGEST // 2]} ... {line[-LONGEST // 2 :]}"

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats
-from evenroad._npz import reading
-from evenroad.errors import BrokenFile, UnknownName
+from evenroad._npz import read_array, reading
+from evenroad.errors import BrokenFile, UnknownName, shown
 
 _PLY_TYPES = {
     "char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2", "ushort": "u2",
@@ -32,8 +32,8 @@ def load_cloud(path: str | os.PathLike[str]) -> Floats:
     Raises
     ------
     BrokenFile
-        If the file is missing, damaged or cut off, has no points, or one that is not finite; or is a .pcd with
-        compressed data.
+        If the file is missing, damaged or cut off, or holds more or fewer points than it says; has no points, or one
+        that is not finite; or is a .pcd with compressed data.
     UnknownName
         If the suffix is another.
     """
@@ -54,7 +54,8 @@ def load_cloud(path: str | os.PathLike[str]) -> Floats:
 
 
 def _read_npy(file: Path) -> npt.NDArray[np.generic]:
-    array = np.load(file, allow_pickle=False)
+    with file.open("rb") as stream:
+        array = read_array(stream, file.stat().st_size)
     if array.dtype.names:
         return _columns(array)
     if np.iscomplexobj(array):
@@ -76,18 +77,26 @@ def _read_ply(file: Path) -> Floats:
         raise ValueError("it does not begin with 'ply'")
     kind = next(words[1] for words in header if words[0] == "format")
     order = _PLY_ORDERS[kind]
-    before, count, fields, element = 0, 0, [], ""
+    elements = [
+        (words[1], _count("element " + words[1], words[2])) for words in header if words[0] == "element"
+    ]
+    first, count = next(((name, count) for name, count in elements if count or name == "vertex"), ("", 0))
+    if first != "vertex":
+        raise ValueError("its first element is not 'vertex'")
+    fields, element = [], ""
     for words in header:
         if words[0] == "element":
-            if element == "vertex":
-                break
-            element, count = words[1], int(words[2])
-            before += count if element != "vertex" else 0
+            element = words[1]
         elif words[0] == "property" and element == "vertex":
             fields.append((words[2], order + _PLY_TYPES[words[1]]))
-    if element != "vertex" or before > 0:
-        raise ValueError("its first element is not 'vertex'")
-    return _rows(data, count, fields, kind == "ascii")
+    # Of the elements behind the points, an ascii file has a line each; of binary ones only a reader of lists can tell.
+    behind = sum(count for _, count in elements) - count
+    if behind and kind == "ascii":
+        lines = [line for line in data.splitlines() if line.strip()]
+        if len(lines) != count + behind:
+            raise ValueError(f"{count + behind} lines were announced, {len(lines)} are there")
+        data = b"\n".join(lines[:count])
+    return _rows(data, count, fields, kind == "ascii", may_go_on=behind > 0)
 
 
 def _read_pcd(file: Path) -> Floats:
@@ -100,16 +109,30 @@ def _read_pcd(file: Path) -> Floats:
         )
     if kind not in ("ascii", "binary"):
         raise ValueError(f"its data are {kind!r}, not ascii or binary")
-    counts = map(int, said.get("COUNT", ["1"] * len(said["FIELDS"])))
-    rows = zip(said["FIELDS"], said["TYPE"], said["SIZE"], counts, strict=True)
+    names, count = said["FIELDS"], _count("POINTS", said["POINTS"][0])
+    width, height = (_count(key, said.get(key, ["1"])[0]) for key in ("WIDTH", "HEIGHT"))
+    if "WIDTH" in said and width * height != count:
+        raise ValueError(f"it has {width} x {height} points by WIDTH and HEIGHT, and {count} by POINTS")
+    counts = [_count("COUNT", word) for word in said.get("COUNT", ["1"] * len(names))]
+    if sum(counts) * count > len(data):
+        raise ValueError(f"it is cut off: {count} points of {sum(counts)} numbers were announced")
     fields = []
-    for i, (name, letter, size, many) in enumerate(rows):
+    for i, (name, letter, size, many) in enumerate(
+        zip(names, said["TYPE"], said["SIZE"], counts, strict=True)
+    ):
         # Names may repeat: '_' is what PCL calls gaps.
-        for k in range(many):
+        for k in range(many if count else 1):
             own = name if many == 1 and name != "_" else f"{name} {i} {k}"
             fields.append((own, "<" + _PCD_TYPES[letter] + size))
-    points = _rows(data, int(said["POINTS"][0]), fields, kind == "ascii")
+    points = _rows(data, count, fields, kind == "ascii")
     return points[~np.isnan(points).all(axis=1)]
+
+
+def _count(what: str, word: str) -> int:
+    """Return what a header says that there is of something, or raise ValueError."""
+    if not (word.isdecimal() and len(word) < 16):
+        raise ValueError(f"its {what} must be a number >= 0, got {shown(word)}")
+    return int(word)
 
 
 def _header(content: bytes, last: bytes) -> tuple[list[list[str]], bytes]:
@@ -127,21 +150,28 @@ def _header(content: bytes, last: bytes) -> tuple[list[list[str]], bytes]:
     raise ValueError(f"its header has no {last.decode()!r}")
 
 
-def _rows(data: bytes, count: int, fields: list[tuple[str, str]], ascii_rows: bool) -> Floats:
-    """Return x, y and z of so many rows, (n, 3)."""
+def _rows(
+    data: bytes, count: int, fields: list[tuple[str, str]], ascii_rows: bool, *, may_go_on: bool = False
+) -> Floats:
+    """Return x, y and z of so many rows, (n, 3); after them comes nothing, unless it `may_go_on`."""
     kind = np.dtype(fields)
     if ascii_rows:
         words = data.split()
-        if len(words) < count * len(fields):
-            raise ValueError(f"it is cut off: {count} points were announced")
-        table = np.array(words[: count * len(fields)], dtype=np.float64).reshape(count, len(fields))
+        there, whole = divmod(len(words), len(fields))
+        if there != count or whole:
+            raise ValueError(_of_announced(count, there))
+        table = np.array(list(map(float, words))).reshape(count, len(fields))
         names = [name for name, _ in fields]
         return np.stack([table[:, names.index(name)] for name in "xyz"], axis=1)
-    if count < 0 or len(data) < count * kind.itemsize:
-        raise ValueError(
-            f"it is cut off: {count} points were announced, {len(data) // kind.itemsize} are there"
-        )
+    there = len(data) // kind.itemsize
+    if there < count or (there > count and not may_go_on):
+        raise ValueError(_of_announced(count, there))
     return _columns(np.frombuffer(data, dtype=kind, count=count))
+
+
+def _of_announced(count: int, there: int) -> str:
+    cut = "it is cut off: " if there < count else ""
+    return f"{cut}{count} points were announced, {there} are there"
 
 
 def _columns(table: npt.NDArray[np.void]) -> Floats:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+import os
 from dataclasses import asdict
 from typing import get_args, get_type_hints
 
 import numpy as np
 
-from evenroad._files import atomic_write, not_a
-from evenroad._npz import Arrays, Path, read_json, read_npz, reading, write_npz
+from evenroad._files import atomic_write
+from evenroad._npz import Arrays, Path, read_array, read_json, read_npz, reading, write_npz
 from evenroad.errors import BrokenFile, shown
 from evenroad.points.pointset import Origin, PointSet
 
@@ -39,9 +40,7 @@ def read_points(path: Path) -> PointSet:
     if str(path).endswith(".npz"):
         return load_points(path)
     with reading(path, ".npy array of shape (n, d)", b"\x93NUMPY"), open(path, "rb") as file:
-        array = np.load(file, allow_pickle=False)
-        if not isinstance(array, np.ndarray):
-            raise not_a("a .npy array of shape (n, d)", path)
+        array = read_array(file, os.path.getsize(path))
     return PointSet(array)
 
 

@@ -22,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._checks import require_known
+from evenroad._npz import read_array
 from evenroad.errors import BrokenFile, NotAvailable, shown
 from evenroad.points.pointset import PointSet
 
@@ -150,10 +151,11 @@ def _parse_index(path: Path, mtime_ns: int) -> dict[str, Any]:
 @lru_cache(maxsize=32)
 def _load_checked(path: Path, shape: tuple[int, ...], hashes: tuple[str, ...]) -> npt.NDArray[np.float32]:
     try:
-        sets = np.load(path, allow_pickle=False)
+        with open(path, "rb") as file:
+            sets = read_array(file, path.stat().st_size)
     except Exception as error:  # no list is complete: see evenroad._npz
         raise BrokenFile(f"the bank's file {path} cannot be read: {shown(error)}") from error
-    if not isinstance(sets, np.ndarray) or sets.dtype != np.float32 or sets.shape != shape:
+    if sets.dtype != np.float32 or sets.shape != shape:
         raise BrokenFile(f"the bank's file {path} is not a float32 array of shape {shape}")
     for replica, expected in enumerate(hashes):
         if PointSet(sets[replica]).hash != expected:
