@@ -1,4 +1,4 @@
-"""What a file costs is bounded by its size: whatever it announces, it is refused at once, in one line and little memory.
+"""What a file costs is bounded by its size: whatever it announces, it is refused at once, in one short line.
 
 Each entry is a file of at most a megabyte, and who reads it.
 """
