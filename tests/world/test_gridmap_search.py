@@ -8,6 +8,7 @@ from scipy import ndimage
 
 from evenroad.errors import InvalidValue
 from evenroad.world import ConnectsItself, GridMap, MapFrame, Separates
+from evenroad.world.gridmap.components import find_gates, label_components
 
 FINE = 12
 """Points a pixel of the picture that decides what hangs together."""
@@ -34,6 +35,17 @@ def fine_components(world):
     y, x = (np.indices((rows * FINE, cols * FINE)) + 0.5) / FINE
     free = world.valid(np.column_stack([x.ravel(), y.ravel()])).reshape(x.shape)
     return ndimage.label(free)[0]
+
+
+def test_what_is_known_of_narrow_passages_is_in_proportion_to_the_pixels():
+    """Every cell of a passage of one pixel is at a gate; a million of them took 2 GB, at 2 kB each."""
+    world = GridMap(np.zeros((1, 20_000), dtype=bool)).world(0.3)
+    a, b = np.array([0.4, 0.5]), np.array([19_999.6, 0.5])
+    assert world.may_connect(a, b)
+    gates = find_gates(world._tables.cells)
+    assert gates.sum() == 20_000
+    assert sum(array.nbytes for array in label_components(world._tables, gates)) < 70 * 20_000
+    assert world.cells_of(world.component(a)).all()
 
 
 def test_the_world_follows_both_protocols():

@@ -6,7 +6,7 @@ The grid is the padded one (see `cells`), whose ring is blocked.
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -77,65 +77,115 @@ def _flood(
     return end
 
 
+class Components(NamedTuple):
+    """Which places hang together; arrays over the padded grid, (rows + 2, cols + 2), and over its g cells at gates."""
+
+    cells: Ints32
+    """The component of each cell, 0 where no disk is free and at gates."""
+    number: Ints32
+    """The number of each cell among those at gates, or -1."""
+    opened: npt.NDArray[np.uint16]
+    """Which parts of a cell at a gate may have a free point, (g, PARTS): a bit a part, a number a row."""
+    first: Ints
+    """Where the pieces of each cell at a gate begin, (g + 1,): what of its parts hangs together inside of it."""
+    pieces: Ints32
+    """The component of each piece."""
+
+
 @njit(cache=True, nogil=True)
-def label_components(disk: DiskTables, gates: Bools) -> tuple[Ints32, Ints32, Ints]:
-    """Return the component of each cell and, at gates, of each part of a cell; 0 where no disk is free.
+def label_components(disk: DiskTables, gates: Bools) -> tuple[Ints32, Ints32, Any, Ints, Ints32]:
+    """Return the `Components` of a disk on a map, as a tuple.
 
     Cells that are not surely blocked hang together over their sides, and so do the parts of a cell at a gate.  A disk
     whose centre goes over a corner touches all four there, so none of them is blocked: two components are apart for
     certain.  What is in one component need not hang together, where a gate is hardly wider or narrower than the disk.
 
-    The labels are those of the cells, (rows, cols), 0 at gates; of the parts, (g, PARTS, PARTS), of the g cells at
-    gates; and the number of each cell among those, or -1, (rows, cols).
+    Of the parts of a cell only a bit each is kept: on a map of narrow passages every cell is at a gate.
     """
     rows, cols = gates.shape
-    number = np.full((rows, cols), -1, np.int64)
+    number = np.full((rows, cols), -1, np.int32)
     count = 0
     for row in range(rows):
         for col in range(cols):
             if gates[row, col]:
                 number[row, col] = count
                 count += 1
-    first = rows * cols + number * PARTS * PARTS
-    parent = np.full(rows * cols + count * PARTS * PARTS, -1, np.int32)
+    opened = np.zeros((count, PARTS), np.uint16)
+    first = np.zeros(count + 1, np.int64)
+    here, there = np.empty((PARTS, PARTS), np.int16), np.empty((PARTS, PARTS), np.int16)
     for row in range(rows):
         for col in range(cols):
-            if number[row, col] >= 0:
-                _open_parts(row, col, first[row, col], parent, disk)
-            elif disk.cells[row, col] != BLOCKED:
+            k = number[row, col]
+            if k >= 0:
+                _open_parts(row, col, opened[k], disk)
+                first[k + 1] = first[k] + pieces_of(opened[k], here)
+    first += rows * cols
+    parent = np.full(first[count], -1, np.int32)
+    for row in range(rows):
+        for col in range(cols):
+            if number[row, col] < 0 and disk.cells[row, col] != BLOCKED:
                 parent[row * cols + col] = row * cols + col
+    for i in range(rows * cols, first[count]):
+        parent[i] = i
     for row in range(1, rows - 1):
         for col in range(1, cols - 1):
-            here = first[row, col]
+            of_here = number[row, col]
+            if of_here >= 0:
+                pieces_of(opened[of_here], here)
             for down in range(2):
                 to_row, to_col = row + down, col + 1 - down
-                there = first[to_row, to_col]
+                of_there = number[to_row, to_col]
                 a, b = row * cols + col, to_row * cols + to_col
-                if number[row, col] < 0 and number[to_row, to_col] < 0:
+                if of_here < 0 and of_there < 0:
                     _unite(a, b, parent)
                     continue
+                if of_there >= 0:
+                    pieces_of(opened[of_there], there)
                 for k in range(PARTS):
-                    if number[row, col] >= 0:
-                        a = here + ((PARTS - 1) * PARTS + k if down else k * PARTS + PARTS - 1)
-                    if number[to_row, to_col] >= 0:
-                        b = there + (k if down else k * PARTS)
-                    _unite(a, b, parent)
-            if number[row, col] >= 0:
-                for k in range(PARTS * PARTS):
-                    if k % PARTS < PARTS - 1:
-                        _unite(here + k, here + k + 1, parent)
-                    if k < PARTS * (PARTS - 1):
-                        _unite(here + k, here + k + PARTS, parent)
-    labels = np.zeros(len(parent), np.int32)
+                    if of_here >= 0:
+                        piece = here[PARTS - 1, k] if down else here[k, PARTS - 1]
+                        a = first[of_here] + piece if piece >= 0 else -1
+                    if of_there >= 0:
+                        piece = there[0, k] if down else there[k, 0]
+                        b = first[of_there] + piece if piece >= 0 else -1
+                    if a >= 0 and b >= 0:
+                        _unite(a, b, parent)
+    # A parent never comes after its child: whose is done is final.
     for i in range(len(parent)):
         if parent[i] >= 0:
-            labels[i] = _root(i, parent) + 1
-    of_cells = labels[: rows * cols].reshape(rows, cols)
-    return of_cells, labels[rows * cols :].reshape(count, PARTS, PARTS), number
+            parent[i] = parent[parent[i]]
+    parent += 1
+    of_cells = parent[: rows * cols].reshape(rows, cols)
+    return of_cells, number, opened, first - rows * cols, parent[rows * cols :]
 
 
 @njit(cache=True, nogil=True)
-def _open_parts(row: int, col: int, first: int, parent: Any, disk: DiskTables) -> None:
+def pieces_of(opened: Any, pieces: Any) -> int:
+    """Write which piece of a cell each of its parts belongs to, (PARTS, PARTS), -1 of none; return how many."""
+    pieces[:] = -1
+    waiting = np.empty(PARTS * PARTS, np.int16)
+    count = 0
+    for seed in range(PARTS * PARTS):
+        r, c = divmod(seed, PARTS)
+        if pieces[r, c] >= 0 or not opened[r] >> c & 1:
+            continue
+        pieces[r, c], waiting[0], size = count, seed, 1
+        while size > 0:
+            size -= 1
+            r, c = divmod(waiting[size], PARTS)
+            for k in range(4):
+                to_r, to_c = r + (k == 0) - (k == 1), c + (k == 2) - (k == 3)
+                inside = 0 <= to_r < PARTS and 0 <= to_c < PARTS
+                if inside and opened[to_r] >> to_c & 1 and pieces[to_r, to_c] < 0:
+                    pieces[to_r, to_c] = count
+                    waiting[size] = to_r * PARTS + to_c
+                    size += 1
+        count += 1
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _open_parts(row: int, col: int, opened: Any, disk: DiskTables) -> None:
     """Open the parts of a cell that may have a free point: all but those whose middle is too near by their size."""
     coarse = PARTS // 4
     for i in range(16):
@@ -148,7 +198,7 @@ def _open_parts(row: int, col: int, first: int, parent: Any, disk: DiskTables) -
             for c in range(left, left + coarse):
                 is_open = distance >= disk.radius + reach
                 if is_open or _distance(row, col, r, c, 1, disk) + math.sqrt(0.5) / PARTS >= disk.radius:
-                    parent[first + r * PARTS + c] = first + r * PARTS + c
+                    opened[r] |= np.uint16(1 << c)
 
 
 @njit(cache=True, nogil=True)

@@ -10,13 +10,13 @@ from typing import ClassVar
 
 import numpy as np
 
-from evenroad._arrays import Bools, Floats, Ints, Ints32, set_fields
+from evenroad._arrays import Bools, Floats, set_fields
 from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue
 from evenroad.space import Rectangle
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.gridmap.cells import DiskTables, classify, vertical_runs
-from evenroad.world.gridmap.components import PARTS, find_gates, label_components
+from evenroad.world.gridmap.components import PARTS, Components, find_gates, label_components, pieces_of
 from evenroad.world.gridmap.frame import MapFrame
 from evenroad.world.gridmap.kernel import (
     motions_are_free,
@@ -192,16 +192,21 @@ class DiskWorld:
         if not (0.0 < column < cols and 0.0 < row < rows):
             return 0
         cell = int(row) + 1, int(column) + 1
-        of_cells, of_parts, number = self._components
-        if number[cell] < 0:
+        of_cells, number, opened, first, of_pieces = self._components
+        gate = number[cell]
+        if gate < 0:
             return int(of_cells[cell])
-        return int(of_parts[number[cell], int(PARTS * (row % 1.0)), int(PARTS * (column % 1.0))])
+        pieces = np.empty((PARTS, PARTS), np.int16)
+        pieces_of(opened[gate], pieces)
+        piece = pieces[int(PARTS * (row % 1.0)), int(PARTS * (column % 1.0))]
+        return 0 if piece < 0 else int(of_pieces[first[gate] + piece])
 
     def cells_of(self, component: int) -> Bools:
         """Return the cells of the map, (rows, cols), that have a part in a component."""
-        of_cells, of_parts, number = self._components
+        of_cells, number, _, first, of_pieces = self._components
         inside = of_cells == component
-        inside[number >= 0] = (of_parts == component).any(axis=(1, 2))
+        gates = np.repeat(np.arange(len(first) - 1), np.diff(first))[of_pieces == component]
+        inside[number >= 0] = np.bincount(gates, minlength=len(first) - 1) > 0
         return inside[1:-1, 1:-1]
 
     @cached_property
@@ -209,8 +214,8 @@ class DiskWorld:
         return find_gates(self._tables.cells)
 
     @cached_property
-    def _components(self) -> tuple[Ints32, Ints32, Ints]:
-        return label_components(self._tables, self._gates)
+    def _components(self) -> Components:
+        return Components(*label_components(self._tables, self._gates))
 
     def connect(
         self, start: Floats, goals: Floats, *, most_motions: int = 2**31 - 1, seconds: float = math.inf
