@@ -4,6 +4,8 @@ Each entry is a file of at most a megabyte, and who reads it.
 """
 
 import io
+import json
+import struct
 import time
 import tracemalloc
 import zipfile
@@ -12,16 +14,18 @@ import pytest
 
 from evenroad._files import read_json_file
 from evenroad._yaml import read_mapping
-from evenroad.errors import LONGEST, EvenroadError, InvalidValue, shown
-from evenroad.geometry import load_cloud
+from evenroad.errors import LONGEST, BrokenFile, EvenroadError, InvalidValue, shown
+from evenroad.geometry import load_cloud, load_mesh
 from evenroad.points.npz import read_points
 from evenroad.roadmap.npz import load_roadmap
-from evenroad.robot import load_scene
+from evenroad.robot import load_robot, load_scene
 from evenroad.robot_roadmap.file import load_robot_roadmap
 from evenroad.space import Box as BoxSpace
 
+pytest.importorskip("trimesh")
+# Loaded before, so that its own time and memory are not a file's.
 MOST_BYTES = 40e6
-MOST_SECONDS = 3.0
+MOST_SECONDS = 4.0
 
 
 def laughs(levels, times, leaf="lol", front="", behind=""):
@@ -54,7 +58,45 @@ VAST = npy(header((10**12, 2)), bytes(160))
 """A header of terabytes, behind which there are ten rows."""
 ROADMAP = ("format", "origin", "rule", "configurations", "edges", "digest")
 
+DRAWN = """<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit meter="1"/></asset>
+<library_nodes><node id="n0"/>{}</library_nodes>
+<library_visual_scenes><visual_scene id="s"><node><instance_node url="#n7"/></node></visual_scene>
+</library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>"""
+PARTS = "".join(
+    f'<node id="n{i}">' + f'<instance_node url="#n{i - 1}"/>' * 9 + "</node>" for i in range(1, 8)
+)
+
+
+def glb(count):
+    """A triangle whose corners are not in the file, so many of them: by the rules of glTF they are zeros."""
+    text = json.dumps(
+        dict(
+            asset=dict(version="2.0"),
+            scenes=[dict(nodes=[0])],
+            nodes=[dict(mesh=0)],
+            meshes=[dict(primitives=[dict(attributes=dict(POSITION=0))])],
+            accessors=[dict(componentType=5126, count=count, type="VEC3")],
+        )
+    ).encode()
+    text += b" " * (-len(text) % 4)
+    return b"glTF" + struct.pack("<IIII", 2, 20 + len(text), len(text), 0x4E4F534A) + text
+
+
+def entities(levels, times):
+    rows = [f"<!ENTITY a{i} '{f'&a{i - 1};' * times}'>" for i in range(1, levels)]
+    return f"<!DOCTYPE robot [<!ENTITY a0 'lol'>{''.join(rows)}]><robot name='&a{levels - 1};'/>".encode()
+
+
 HOSTILE = {
+    "entities.urdf": (load_robot, entities(9, 9)),
+    "parts.dae": (load_mesh, DRAWN.format(PARTS).encode()),
+    "zeros.glb": (load_mesh, glb(100_000_000)),
+    "bomb.3mf": (load_mesh, npz(model=b" " * 90_000_000)),
+    "bomb.stl.gz": (load_mesh, b"\x1f\x8b"),
+    "many.stl": (load_mesh, bytes(80) + struct.pack("<I", 10**9) + bytes(100)),
+    "many.off": (load_mesh, b"OFF\n999999999 999999999 0\n0 0 0\n"),
     "laughs.yaml": (lambda path: read_mapping(path, "map"), laughs(9, 9)),
     "scene.yaml": (load_scene, laughs(9, 9, front="name: x\n", behind="obstacles: *a8\n")),
     "long.yaml": (load_scene, laughs(4, 20, leaf="l" * 1000, behind="obstacles: *a3\n")),
@@ -116,6 +158,16 @@ def test_a_hostile_file_is_refused_at_once_in_one_short_line(name, tmp_path):
     assert text.isprintable()
     assert name in text or "obstacles" in text
     assert len(text) <= LONGEST
+
+
+@pytest.mark.parametrize("faces", [0, 1, 3])
+def test_a_mesh_whose_header_counts_other_faces_than_there_are_is_refused(faces, tmp_path):
+    head = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    head += f"element face {faces}\n"
+    rows = "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 2 1\n"
+    (tmp_path / "a.ply").write_text(head + rows)
+    with pytest.raises(BrokenFile, match=r"a\.ply is (cut off|empty)"):
+        load_mesh(tmp_path / "a.ply")
 
 
 def test_a_scene_may_name_again_what_it_has_named(tmp_path):

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import as_batch, as_row, require_positive
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
+from evenroad.geometry.mesh_bounds import require_bounded, require_few_triangles
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,22 +188,27 @@ def load_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> TriangleMe
     try:
         import trimesh
 
+        require_bounded(file)
         mesh = trimesh.load_mesh(file, process=False)
         unit = 1.0 if mesh.units is None else trimesh.units.unit_conversion(mesh.units, "meters")
         if isinstance(mesh, trimesh.Scene):
+            parts = [mesh.graph[node][1] for node in mesh.graph.nodes_geometry]
+            require_few_triangles(sum(len(mesh.geometry[part].faces) for part in parts), file.stat().st_size)
             mesh = mesh.to_mesh()
         vertices, triangles = np.array(mesh.vertices, dtype=float), np.array(mesh.faces, dtype=np.int64)
     except ImportError as error:
         raise NotAvailable(
             f"reading {file} needs the extra: pip install 'evenroad[mesh]', in a clone '.[mesh]' ({error})"
         ) from error
+    except BrokenFile:
+        raise
     # trimesh's readers raise whatever their parsers do, down to struct.error and KeyError.
     except Exception as error:
         raise BrokenFile(f"cannot read the mesh {file}: {error}") from error
     if len(triangles) == 0:
         raise BrokenFile(f"the mesh {file} is empty or cut off: a body without triangles would never collide")
     if file.suffix.lower() == ".ply" and _is_cut_off(file.read_bytes(), len(triangles)):
-        raise BrokenFile(f"the mesh {file} is cut off: its header announces more than there is")
+        raise BrokenFile(f"the mesh {file} is cut off, or its header does not announce what there is")
     if not (math.isfinite(unit) and unit > 0.0):
         raise BrokenFile(f"the mesh {file} must have a unit of a finite length > 0, got {unit:g} m")
     try:
@@ -212,9 +218,9 @@ def load_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> TriangleMe
 
 
 def _is_cut_off(ply: bytes, triangles: int) -> bool:
-    """Return whether a .ply in ascii, of which so many triangles were read, lacks rows that its header announces.
+    """Return whether a .ply in ascii, of which so many triangles were read, has not the rows that its header announces.
 
-    trimesh takes what there is of these; of binary ones it knows the length.
+    trimesh takes what there is of these, and passes over more; of binary ones it knows the length.
     """
     header, _, rows = ply.partition(b"end_header")
     words = [line.split() for line in header.splitlines()]
@@ -222,4 +228,4 @@ def _is_cut_off(ply: bytes, triangles: int) -> bool:
         return False
     counts = {row[1]: int(row[2]) for row in words if row[:1] == [b"element"]}
     there = sum(bool(row.strip()) for row in rows.splitlines())
-    return there < sum(counts.values()) or triangles < counts.get(b"face", 0)
+    return there != sum(counts.values()) or triangles < counts.get(b"face", 0)
