@@ -5,7 +5,16 @@ import subprocess
 import sys
 from pathlib import Path
 
-HELPERS = {"__init__", "__main__", "arm_problems", "chain_rrt", "nested_k", "ompl_peer", "robot_truth"}
+HELPERS = {
+    "__init__",
+    "__main__",
+    "arm_problems",
+    "chain_rrt",
+    "mjcf_truth",
+    "nested_k",
+    "ompl_peer",
+    "robot_truth",
+}
 DECISIONS = {"decide_even", "fair_calibrate"}
 """They chose what is in the package; run by name when that is to be chosen again."""
 ASKED = {"arm_bias", "arm_tables", "neural_sequence", "sequences", "sequences_rrt"}

@@ -174,17 +174,17 @@ def measured(file: Path, rng: np.random.Generator) -> dict[str, object]:
         "free_that_collide": int((free & collides).sum()),
     }
     if free.any() and not free.all():
-        edge = _at_contact(world, q[free], q[~free], COUNT, rng)
+        edge = at_contact(world, q[free], q[~free], COUNT, rng)
         row["at_contact"] = len(edge)
         row["at_contact_that_collide"] = int(truth.touching(edge)[:, counted].any(axis=1).sum())
     if free.sum() > 1:
-        states = _path_states(world, q[free])
+        states = path_states(world, q[free])
         row["path_states"] = len(states)
         row["path_states_that_collide"] = int(truth.touching(states)[:, counted].any(axis=1).sum())
     return row
 
 
-def _at_contact(
+def at_contact(
     world: ArmWorld, free: np.ndarray, blocked: np.ndarray, count: int, rng: np.random.Generator
 ) -> np.ndarray:
     """Return free configurations within a billionth of the way of blocked ones."""
@@ -197,7 +197,7 @@ def _at_contact(
     return a[world.valid(a)]
 
 
-def _path_states(world: ArmWorld, free: np.ndarray) -> np.ndarray:
+def path_states(world: ArmWorld, free: np.ndarray) -> np.ndarray:
     """Return states of shortened paths between free configurations."""
     found = []
     for k in range(min(PATHS, len(free) - 1)):

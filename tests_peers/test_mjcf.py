@@ -1,13 +1,16 @@
 """MuJoCo compiles an MJCF; links and bodies are where it puts them, to 1e-9 m."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
 
 from evenroad.arms import plan_arm
-from evenroad.errors import BrokenFile
+from evenroad.errors import BrokenFile, InvalidValue
+from evenroad.geometry import Box, Pose
 from evenroad.geometry.shapes import Capsule, Mesh
-from evenroad.robot import Scene, joint_values, link_poses, load_model, load_robot
+from evenroad.robot import ArmWorld, Obstacle, Scene, joint_values, link_poses, load_model, load_robot
 from evenroad.robot.mjcf import read_mjcf
 from evenroad.robot.urdf_xml import RobotFile
 
@@ -124,8 +127,8 @@ def test_what_is_read_otherwise_is_said(tmp_path):
     assert model.drawn_only == ("camera",)
     assert model.notes == (
         "joint 'float' of 'base', free, is fixed",
-        "the plane of 'world' is left out: a scene says what is around the robot",
         "the ellipsoid of 'arm' is taken as the box around it",
+        "the plane 'plane_0' stands in every scene, as a box of 200 x 200 m, 100 m deep",
         "joint 'run' with the limits -1e+06, 1e+06 slides without end: it is held, unless a scene limits it and --group"
         " names it",
     )
@@ -142,6 +145,264 @@ def test_an_arm_of_an_mjcf_is_planned_for(tmp_path):
     assert result.solved
 
 
+FORK = (
+    "<body name='base'><geom type='box' size='.05 .05 .05'/>"
+    "<body name='left' pos='0 .2 .3'><joint name='l' axis='1 0 0' range='-90 90'/>"
+    "<geom name='left' {left} pos='0 0 .15'/></body>"
+    "<body name='right' pos='0 -.2 .3'><joint name='r' axis='1 0 0' range='-90 90'/>"
+    "<geom name='right' {right} pos='0 0 .15'/></body></body>"
+)
+BAR = "type='capsule' size='.03 .1'"
+
+
+def pairs_of(path):
+    return set(map(frozenset, load_model(path).robot.pairs))
+
+
+def contacts(path, q, deeper=1e-6):
+    """What MuJoCo says of each configuration: whether any two bodies are deeper in each other than that [m]."""
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(model)
+    found = []
+    for row in q:
+        data.qpos[:] = row
+        mujoco.mj_forward(model, data)
+        found.append(any(contact.dist < -deeper for contact in data.contact))
+    return np.array(found)
+
+
+def near_contact(world, count=300):
+    """Free configurations, half of them bisected to where we begin to find contact."""
+    q = world.space.from_cube(np.random.default_rng(3).random((count, world.space.cube_dim)))
+    free, blocked = q[world.valid(q)], q[~world.valid(q)]
+    assert len(free)
+    assert len(blocked), "nothing to be told apart"
+    a, b = free[: len(blocked)].copy(), blocked[: len(free)].copy()
+    for _ in range(40):
+        middle = 0.5 * (a + b)
+        ok = world.valid(middle)[:, np.newaxis]
+        a, b = np.where(ok, middle, a), np.where(ok, b, middle)
+    return np.concatenate([free, a]), b
+
+
+def hook(folder):
+    """A mesh like an L, whose hull fills the corner."""
+    arms = trimesh.creation.box((0.3, 0.04, 0.04)), trimesh.creation.box((0.04, 0.04, 0.3))
+    arms[0].apply_translation((0.13, 0, 0))
+    arms[1].apply_translation((0, 0, 0.13))
+    trimesh.util.concatenate(arms).export(folder / "hook.stl")
+
+
+ROBOTS = {
+    "meshes": (
+        "<body name='a'><joint name='j1' axis='0 1 0' range='-170 170'/><geom type='mesh' mesh='hook'/>"
+        "<body name='link' pos='.28 0 .02'><joint name='j2' axis='0 1 0' range='-170 170'/>"
+        "<inertial mass='1' pos='0 0 0' diaginertia='1 1 1'/>"
+        "<body name='b' pos='0 0 .2'><joint name='j3' axis='0 1 0' range='-170 170'/><geom type='mesh' mesh='hook'/>"
+        "</body></body></body>",
+        "<asset><mesh name='hook' file='hook.stl'/></asset>",
+    ),
+    "boxes with margins": (FORK.format(left="type='box' size='.03 .04 .2' margin='.01'", right=BAR), ""),
+    "a plane, tilted": (
+        "<geom name='floor' type='plane' size='1 1 1' euler='10 20 0' pos='0 0 -.3'/>"
+        + FORK.format(left=BAR, right=BAR),
+        "",
+    ),
+    "a mesh without a file": (
+        FORK.format(left="type='mesh' mesh='wedge'", right="type='cylinder' size='.05 .1'"),
+        "<asset><mesh name='wedge' vertex='0 0 0 .2 0 0 0 .2 0 0 0 .2 .2 .2 .2'/></asset>",
+    ),
+    "an ellipsoid": (FORK.format(left=BAR, right="type='ellipsoid' size='.05 .06 .1'"), ""),
+}
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_what_is_free_has_no_contact_in_mujoco(tmp_path, name):
+    hook(tmp_path)
+    world = ArmWorld(load_robot(path := write(tmp_path, *ROBOTS[name])), Scene("empty"))
+    free, blocked = near_contact(world)
+    assert not contacts(path, free).any()
+    # And not much less is free: what is blocked a billionth of the way further is in contact, or nearly.
+    if name in ("meshes", "a plane, tilted"):
+        assert (
+            contacts(path, blocked, deeper=-2e-3).mean() > 0.9 or contacts(path, blocked + 0.02).mean() > 0.4
+        )
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "meet"),
+    [
+        ("", "", True),
+        ("contype='2'", "", True),
+        ("contype='2' conaffinity='4'", "", False),
+        ("contype='2' conaffinity='4'", "contype='4' conaffinity='0'", True),
+        ("contype='0' conaffinity='4'", "contype='0' conaffinity='4'", False),
+        ("contype='0' conaffinity='0'", "", False),
+    ],
+)
+def test_bodies_are_tested_where_type_and_affinity_have_a_bit_in_common(tmp_path, left, right, meet):
+    path = write(tmp_path, FORK.format(left=f"{BAR} {left}", right=f"{BAR} {right}"))
+    assert ({"left", "right"} in pairs_of(path)) == meet
+    q = np.radians([[45.0, -45.0], [-45.0, 45.0]])
+    assert contacts(path, np.concatenate([q, [[0.0, 0.0]]])).any() == meet
+
+
+def test_excluded_bodies_are_not_tested_and_named_pairs_are_whatever_else_is_said(tmp_path):
+    excluded = "<contact><exclude body1='left' body2='right'/></contact>"
+    path = write(tmp_path, FORK.format(left=BAR, right=BAR), excluded)
+    assert pairs_of(path) == {frozenset({"base", "left"}), frozenset({"base", "right"})}
+    assert ("left", "right", "excluded in the MJCF") in load_model(path).dropped
+    no = f"{BAR} contype='0' conaffinity='0'"
+    named = "<contact><pair geom1='left' geom2='right' margin='.02'/></contact>"
+    path = write(tmp_path, FORK.format(left=no, right=no), named)
+    assert pairs_of(path) == {frozenset({"left", "right"})}
+
+
+def test_a_parent_and_its_child_are_tested_only_where_the_parent_stands_in_the_world(tmp_path):
+    child = "<body name='{0}' pos='0 0 .3'><joint axis='1 0 0' range='-170 170'/><geom size='.05'/>{1}</body>"
+    arm = f"<body name='base'><geom size='.05'/>{child.format('a', child.format('b', ''))}</body>"
+    assert pairs_of(write(tmp_path, arm)) == {frozenset({"base", "a"}), frozenset({"base", "b"})}
+    every = "<option><flag filterparent='disable'/></option>"
+    assert frozenset({"a", "b"}) in pairs_of(write(tmp_path, arm, every))
+
+
+def test_geoms_of_one_body_that_collide_with_others_are_links_of_their_own(tmp_path):
+    two = "contype='2' conaffinity='2'"
+    tip = f"<geom name='tip' size='.04' {two} pos='0 0 .4'/>"
+    fork = FORK.replace("</body></body>", f"{tip}</body></body>")
+    path = write(tmp_path, fork.format(left=f"{BAR} {two}", right=BAR))
+    assert pairs_of(path) == {frozenset({"base", "right"}), frozenset({"right/tip", "left"})}
+
+
+def test_a_robot_of_which_nothing_collides_by_its_file_says_so(tmp_path):
+    no = f"{BAR} contype='0'"
+    path = write(tmp_path, FORK.format(left=no, right=no).replace("'base'><geom", "'base'><geom contype='0'"))
+    assert load_model(path).notes == (
+        "by contype, conaffinity and excludes of the file no two of its bodies ever collide",
+    )
+
+
+def test_a_plane_stands_in_every_scene_and_what_stands_still_may_touch_it(tmp_path):
+    plane = "<geom name='floor' type='plane' size='1 1 1'/>"
+    robot = load_robot(write(tmp_path, plane + FORK.format(left=BAR, right=BAR)))
+    assert ("base", "floor") in ArmWorld(robot, Scene("empty")).scene.allowed
+    # A box that stands on the floor, and a file that says what the planner knows.
+    scene = Scene("box", (Obstacle("box", Box((0.1, 0.1, 0.1), pose=Pose((0, 0, 0.6)))),))
+    world = ArmWorld(robot, scene)
+    assert [obstacle.name for obstacle in world.scene.obstacles] == ["box", "floor"]
+    assert ArmWorld(robot, world.scene).scene == world.scene
+    assert load_robot(tmp_path / "robot.xml") == robot, "as it comes out of the cache"
+    assert load_robot(tmp_path / "robot.xml").fingerprint() == robot.fingerprint()
+    assert replace(robot, planes=()).fingerprint() != robot.fingerprint()
+    with pytest.raises(InvalidValue, match="'floor', which is the name of a plane in the robot's"):
+        ArmWorld(robot, Scene("box", (Obstacle("floor", Box((1.0, 1.0, 0.1))),)))
+
+
+LOOP = (
+    "<body name='a'><joint name='j' axis='0 1 0'/><geom size='.1'/><body name='b' pos='1 0 0'>"
+    "<joint name='k' axis='0 1 0'/><geom size='.1'/></body></body>"
+    "<body name='c' pos='2 0 0'><joint name='i' axis='0 1 0'/>"
+    "<geom size='.1'/></body><body name='hand' mocap='true'/>"
+)
+
+
+@pytest.mark.parametrize(
+    ("equality", "said"),
+    [
+        (
+            "<connect body1='b' body2='c' anchor='0 0 0'/>",
+            "closes a loop: the connect of 'b' with 'c'; links must",
+        ),
+        ("<weld body1='b' body2='c'/>", "closes a loop: the weld of 'b' with 'c'"),
+        ("<weld body1='b'/>", "closes a loop: the weld of 'b' with 'world'"),
+        ("<joint joint1='j' joint2='k' polycoef='0 1 2 0 0'/>", "its equality of joint 'j' is not linear"),
+        ("<joint joint1='j' joint2='k'/><joint joint1='j'/>", "its equality of joint 'j' is its second"),
+    ],
+)
+def test_closed_loops_and_what_is_no_mimic_are_refused_in_one_line(tmp_path, equality, said):
+    path = write(tmp_path, LOOP, f"<equality>{equality}</equality>")
+    with pytest.raises(BrokenFile, match=said) as error:
+        load_model(path)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("equality", "note"),
+    [
+        (
+            "<weld body1='b' body2='hand'/>",
+            "the weld of 'b' with 'hand' is left out: a body of motion capture goes",
+        ),
+        (
+            "<weld body1='b' body2='c' active='false'/>",
+            "the weld of 'b' with 'c' is left out: it is not active",
+        ),
+    ],
+)
+def test_equalities_that_close_no_loop_are_noted(tmp_path, equality, note):
+    model = load_model(write(tmp_path, LOOP, f"<equality>{equality}</equality>"))
+    assert model.robot.group == ("j", "k", "i")
+    assert any(said.startswith(note) for said in model.notes)
+
+
+def test_an_equality_of_one_joint_locks_it(tmp_path):
+    robot = load_robot(
+        write(tmp_path, LOOP, "<equality><joint joint1='k' polycoef='.3 0 0 0 0'/></equality>")
+    )
+    assert robot.group == ("j", "i")
+    assert joint_values(robot, np.zeros((1, 2)))["k"] == 0.3
+
+
+def test_a_file_is_read_from_wherever_its_path_begins(tmp_path, monkeypatch):
+    hook(tmp_path)
+    (tmp_path / "arm" / "meshes").mkdir(parents=True)
+    (tmp_path / "hook.stl").rename(tmp_path / "arm" / "meshes" / "hook.stl")
+    world, assets = ROBOTS["meshes"]
+    path = write(tmp_path / "arm", world, f"<compiler meshdir='meshes'/>{assets}")
+    monkeypatch.chdir(tmp_path)
+    assert load_robot("arm/robot.xml").hulls == load_robot(path).hulls
+
+
+def test_what_is_drawn_is_a_body_only_where_there_is_no_other(tmp_path):
+    drawn = "<geom name='seen' size='.3' contype='0' conaffinity='0'/>"
+    bare = f"<body name='bare' pos='1 0 0'><joint axis='0 1 0' range='-1 1'/>{drawn}</body>"
+    path = write(tmp_path, FORK.format(left=BAR, right=f"{BAR}/>{drawn.replace('seen', 'too')[:-2]}") + bare)
+    links = [body.link for body in load_model(path, use_visuals=True).bodies]
+    assert links == ["base", "left", "right", "bare"]
+    assert frozenset({"bare", "left"}) in {
+        frozenset(pair) for pair in load_robot(path, use_visuals=True).pairs
+    }
+    assert load_model(path, use_visuals=True).notes == ("what is drawn of a link is its body: bare",)
+    sizes = [
+        shape.size for shape in read_mjcf(RobotFile(path, as_drawn=True)).shapes if shape.link == "right"
+    ]
+    assert sizes == [(0.3,)], "what is seen of a link, without what collides"
+
+
+def test_a_flat_mesh_that_is_only_drawn_is_a_thin_body(tmp_path):
+    sheet = "<mesh name='sheet' inertia='shell' vertex='0 0 0 .2 0 0 0 .2 0 .2 .2 0' face='0 1 2 1 3 2'/>"
+    seen = "type='mesh' mesh='sheet' contype='0' conaffinity='0' mass='1'"
+    path = write(tmp_path, FORK.format(left=BAR, right=seen), f"<asset>{sheet}</asset>")
+    (shape,) = [each for each in read_mjcf(RobotFile(path, use_visuals=True)).shapes if each.link == "right"]
+    assert sorted(np.ptp(shape.triangles.vertices, axis=0)) == pytest.approx((1e-6, 0.2, 0.2), abs=2e-6)
+    assert frozenset({"left", "right"}) in map(frozenset, load_robot(path, use_visuals=True).pairs)
+
+
+def test_a_robot_whose_mesh_changes_is_another(tmp_path):
+    world, assets = ROBOTS["a mesh without a file"]
+    first = load_robot(write(tmp_path, world, assets))
+    assert load_robot(write(tmp_path, world, assets.replace(".2 .2 .2'", ".2 .2 .201'"))).hulls != first.hulls
+
+
 def test_a_file_that_mujoco_does_not_take_is_refused(tmp_path):
     with pytest.raises(BrokenFile, match=r"MuJoCo cannot read .*robot\.xml"):
         load_model(write(tmp_path, "<body><joint/></body>"))
+
+
+def test_bodies_that_rest_on_each_other_by_their_makers_drawing_are_no_contact_in_every_state(tmp_path):
+    # A ball that lies on its pedestal touches it to the last digit, or does not.
+    ball = "<geom name='left' size='.07'/><geom type='capsule' size='.02' fromto='0 0 .05 .1 0 .3'/>"
+    turn = f"<body name='turn' pos='0 0 .12'><joint axis='0 0 1' range='-90 90'/>{ball}</body>"
+    path = write(tmp_path, f"<body name='base'><geom type='cylinder' size='.05 .05'/>{turn}</body>")
+    model = load_model(path)
+    assert model.dropped == (("base", "turn", "touch in every sample"),)

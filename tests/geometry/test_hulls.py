@@ -8,6 +8,7 @@ from scipy.spatial import ConvexHull
 from evenroad.errors import InvalidValue
 from evenroad.geometry import Box, Capsule, Cylinder, Mesh, PointCloud, Pose, Sphere, TriangleMesh
 from evenroad.geometry.hulls import Hull, halves, piece_of
+from evenroad.geometry.mesh import convex_hull
 from tests.robot.mesh_arms import fork
 
 TURNED = Pose((0.1, -0.2, 0.3), (0.0, -1.0, 0.0, 0.6, 0.0, -0.8, 0.8, 0.0, 0.6))
@@ -96,3 +97,23 @@ def test_hulls_are_equal_by_value():
     assert first != Hull(2 * np.eye(3), 0.1, "a")
     with pytest.raises(ValueError, match="read-only"):
         first.points[0] = 1.0
+
+
+def test_the_hull_of_points_is_convex_faces_outward_and_holds_them_all():
+    rng = np.random.default_rng(0)
+    points = rng.normal(size=(200, 3))
+    for grown in (0.0, 0.1):
+        hull = convex_hull(points, "cloud", grown)
+        a, b, c = hull.vertices[hull.triangles].swapaxes(0, 1)
+        normals = np.cross(b - a, c - a)
+        beyond = np.einsum("tpi,ti->tp", points - a[:, np.newaxis], normals)
+        depth = beyond / np.linalg.norm(normals, axis=1)[:, np.newaxis]
+        assert depth.max() <= 1e-12 - grown, "grown by a cube, a ball of that radius is inside"
+        assert len(piece_of(Mesh(hull)).parts) == 1, "solid"
+
+
+def test_the_hull_of_a_flat_mesh_is_a_micrometre_thick_and_of_one_place_refused():
+    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 0]], dtype=float)
+    assert np.ptp(convex_hull(square).vertices, axis=0) == pytest.approx((1.0, 1.0, 1e-6), abs=1.1e-6)
+    with pytest.raises(InvalidValue, match="the mesh nothing has no convex hull: 0 points"):
+        convex_hull(np.zeros((0, 3)), "nothing")

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import os
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
@@ -17,6 +19,9 @@ from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import as_batch, as_row, require_positive
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 from evenroad.geometry.mesh_bounds import require_bounded, require_few_triangles
+
+_FLAT = 5e-7
+"""Half of what a flat mesh is made thick, where its hull is asked for [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,6 +106,32 @@ def volume_of(mesh: TriangleMesh) -> float:
         return float(ConvexHull(corners.reshape(-1, 3)).volume)
     except QhullError:
         return 0.0
+
+
+def convex_hull(points: Floats, name: str = "", grown: float = 0.0) -> TriangleMesh:
+    """Return the surface of the convex hull of points, (n, 3), each made a cube that reaches `grown` to its sides [m].
+
+    Triangles face outward.  Points of one plane, whose hull has no inside, get cubes that reach half a micrometre.
+    Raises InvalidValue if there are none, or they lie too far apart for that.
+    """
+    from scipy.spatial import ConvexHull, QhullError
+
+    corners = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
+    for reach in (grown, max(grown, _FLAT)):
+        every = (points[:, np.newaxis] + reach * corners[: 8 if reach else 1]).reshape(-1, 3)
+        with suppress(QhullError, ValueError):
+            hull = ConvexHull(every)
+            break
+    else:
+        raise InvalidValue(
+            f"the mesh {name} has no convex hull: {len(points)} points, all at about one place"
+        )
+    number = np.zeros(len(every), dtype=np.int64)
+    number[hull.vertices] = np.arange(len(hull.vertices))
+    a, b, c = every[hull.simplices].swapaxes(0, 1)
+    inward = np.einsum("ti,ti->t", np.cross(b - a, c - a), hull.equations[:, :3]) < 0.0
+    triangles = np.where(inward[:, np.newaxis], hull.simplices[:, ::-1], hull.simplices)
+    return TriangleMesh(every[hull.vertices], number[triangles], name)
 
 
 def height_map(heights: npt.ArrayLike, spacing: float, low: Sequence[float] = (0.0, 0.0)) -> TriangleMesh:

@@ -23,6 +23,7 @@ from evenroad.robot.kernel.selftest import lanes_failure
 from evenroad.robot.kernel.surface_scalar import fixed_contact, scalar_check_address
 from evenroad.robot.known_robots import prepared
 from evenroad.robot.locked import locked_by
+from evenroad.robot.planes import with_planes
 from evenroad.robot.robot import Robot, within_scene
 from evenroad.robot.scene import Scene, limits_in_words
 from evenroad.robot.tree_sequences import shifted_cube_points
@@ -101,6 +102,7 @@ class ArmWorld:
                     f"scene {self.scene.name!r} attaches {held.name!r}, which the robot does not hold: give the world"
                     " in_scene(robot, scene)"
                 )
+        object.__setattr__(self, "scene", with_planes(self.scene, self.robot.planes, self.robot.links))
         space, longest, of_robot, by_joint, bounds, by_joint_at = prepared(self.robot)
         require_few_segments(self.resolution, longest / self.resolution)
         tested = tested_contacts(of_robot.capsules, self.robot.links, self.scene)

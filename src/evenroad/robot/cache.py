@@ -17,11 +17,14 @@ import numpy as np
 
 from evenroad import __version__
 from evenroad._files import atomic_write, cache_folder
+from evenroad._fingerprint import fingerprint_of
 from evenroad._seal import read_sealed, sealed
 from evenroad.errors import BrokenFile
 from evenroad.geometry.hulls import Hull
+from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.shapes import Capsule, Mesh
 from evenroad.robot.joint import Joint, Mimic
+from evenroad.robot.planes import Plane
 from evenroad.robot.robot import LinkBody, Robot, RobotModel
 from evenroad.robot.urdf import Urdf
 
@@ -37,6 +40,8 @@ def key_of(urdf: Urdf, others: Iterable[tuple[str, Path | None]], group: str | S
     """
     digest = hashlib.sha256(f"{_FORMAT}|{__version__}|{urdf!r}|{group!r}".encode())
     sources = [shape.source for shape in urdf.shapes if isinstance(shape, Mesh)]
+    # What a long array says of itself leaves numbers out.
+    digest.update(fingerprint_of([each for each in sources if isinstance(each, TriangleMesh)]).encode())
     meshes = [("mesh", source) for source in sources if isinstance(source, Path)]
     for what, path in (*meshes, *others):
         try:
@@ -80,11 +85,13 @@ def robot_of(record: dict[str, Any]) -> Robot:
     """Return the robot that ``asdict`` made this record of, read back from JSON."""
     joints = [joint | {"mimic": joint["mimic"] and Mimic(**joint["mimic"])} for joint in record.pop("joints")]
     hulls = [Hull(each["points"], each["radius"], each["link"]) for each in record.pop("hulls")]
+    planes = [Plane(**_with_tuples(each)) for each in record.pop("planes", ())]
     capsules = [(each["a"], each["b"], each["radius"], each["link"]) for each in record.pop("capsules")]
     return Robot(
         joints=tuple(Joint(**_with_tuples(joint)) for joint in joints),
         capsules=tuple(Capsule(a, b, radius, link=link) for a, b, radius, link in capsules),
         hulls=tuple(hulls),
+        planes=tuple(planes),
         **_with_tuples(record),
     )
 

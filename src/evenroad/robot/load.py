@@ -168,17 +168,21 @@ def _build(
         pairs=(),
         group=chosen,
         states={} if srdf is None else chosen_states(srdf, chosen, group),
+        planes=urdf.planes,
     )
-    disabled = None if srdf is None or not srdf.disabled else srdf.disabled
-    pairs = self_pairs(robot, _pieces(urdf, given), disabled)
+    # Of those that a robot's own file lets touch, each has its reason; those of an SRDF have one for all.
+    untested = {frozenset((a, b)): why for a, b, why in urdf.untested or ()}
+    by_srdf = srdf is not None and bool(srdf.disabled)
+    if srdf is not None:
+        untested = dict.fromkeys(srdf.disabled, "disabled in the SRDF") | untested
+    said = by_srdf or urdf.untested is not None
+    pairs = self_pairs(robot, _pieces(urdf, given), untested if said else None, drop_touching=not by_srdf)
     links = tuple(_link_body(urdf, link, capsules[link], link in given) for link in capsules)
     drawn_only = tuple(link for link in urdf.drawn_only if link not in capsules)
     return RobotModel(
-        replace(
-            robot, pairs=pairs.tested, hulls=pairs.hulls, pairs_given=disabled is not None, resting=pairs.held
-        ),
+        replace(robot, pairs=pairs.tested, hulls=pairs.hulls, pairs_given=by_srdf, resting=pairs.held),
         links,
-        "computed" if disabled is None else "SRDF",
+        "SRDF" if by_srdf else "computed" if urdf.untested is None else "MJCF",
         pairs.dropped,
         drawn_only,
         pairs.always,

@@ -25,6 +25,8 @@ _MOST_HULLS = 128
 _ROUNDS = 12
 _LOOKED_AT = 400
 """Samples, of all of these, by which hulls are judged."""
+_RESTING = 1e-5
+"""Shapes nearer to each other than this touch, where they do so in all samples [m]."""
 _FEW = 0.003
 """Share of them in which hulls of a pair may touch though what is inside does not."""
 Pieces = Mapping[str, Sequence[Piece]]
@@ -49,15 +51,18 @@ class SelfPairs:
 
 
 def self_pairs(
-    robot: KinematicTree, pieces: Pieces, disabled: Collection[frozenset[str]] | None = None
+    robot: KinematicTree,
+    pieces: Pieces,
+    untested: Mapping[frozenset[str], str] | None = None,
+    drop_touching: bool = True,
 ) -> SelfPairs:
     """Return the pairs of links with bodies that are tested, and hulls that hardly touch where the shapes do not.
 
-    Dropped are pairs that no joint moves on each other; of an SRDF those that it disables; without one (None)
-    neighbours in the tree (links without bodies between them do not count where only one joint between them moves) and
-    pairs whose shapes touch in every one of 1000 configurations drawn uniformly within the limits of all joints, and
-    of as many where the joints outside of the group are held.  Pairs that never touch are kept: a sample cannot prove
-    that.
+    Dropped are pairs that no joint moves on each other; those in `untested`, as an SRDF or an MJCF gives them, each
+    with its reason; without these (None) neighbours in the tree (links without bodies between them do not count where
+    only one joint between them moves).  With `drop_touching` those are, too, whose shapes touch in every one of 1000
+    configurations drawn uniformly within the limits of all joints, and of as many where the joints outside of the group
+    are held.  Pairs that never touch are kept: a sample cannot prove that.
     """
     order = [link for link in robot.links if link in pieces]
     rigid, above = rigid_links(robot), bodied_above(robot, pieces)
@@ -65,14 +70,14 @@ def self_pairs(
     for first, second in combinations(order, 2):
         if rigid[first] == rigid[second]:
             reasons[first, second] = "fixed to each other"
-        elif disabled is not None and frozenset((first, second)) in disabled:
-            reasons[first, second] = "disabled in the SRDF"
-        elif disabled is None and above[second] == (first, 1):
+        elif untested is not None and frozenset((first, second)) in untested:
+            reasons[first, second] = untested[frozenset((first, second))]
+        elif untested is None and above[second] == (first, 1):
             reasons[first, second] = "neighbours"
     samples = _Samples(robot, {link: list(pieces[link]) for link in order})
     candidates = [pair for pair in combinations(order, 2) if pair not in reasons]
     always = samples.judge(candidates)
-    if disabled is None:
+    if drop_touching:
         reasons |= always
     every = list(combinations(order, 2))
     tested = tuple(pair for pair in every if pair not in reasons)
@@ -119,7 +124,11 @@ class _Samples:
         self.looked_at = np.arange(0)
         poses = _sampled_poses(robot)
         self._poses = {link: poses[:, robot.links.index(link)] for link in pieces}
-        self._parts = hull_trees({link: [(p.parts, p.radius) for p in of] for link, of in pieces.items()})
+        # What rests on another body touches it, though rounding may part the two.
+        self._parts, self._resting = (
+            hull_trees({link: [(p.parts, p.radius + more) for p in of] for link, of in pieces.items()})
+            for more in (0.0, 0.5 * _RESTING)
+        )
 
     def judge(self, pairs: Sequence[tuple[str, str]]) -> dict[tuple[str, str], str]:
         """Return the pairs whose shapes touch in all samples, or all of the group, each with which of the two it is.
@@ -144,10 +153,11 @@ class _Samples:
             inside = self._touching(self._parts, first, second, rows)
             self.touching[first, second] = rows[inside]
             wrong[first, second] = rows[~inside]
-            if np.isin(self.looked_at, rows[inside]).all():
-                touching = self._touching(self._parts, first, second, every)
+            if np.isin(self.looked_at, rows).all():
+                touching = self._touching(self._resting, first, second, every)
                 if touching[of_group].all():
                     always[first, second] = TOUCHING if touching.all() else HELD_TOUCHING
+                    wrong[first, second] = rows[:0]
         for _ in range(_ROUNDS):
             wrong = self._split({pair: rows for pair, rows in wrong.items() if len(rows) > _FEW * len(some)})
         return always

@@ -19,6 +19,7 @@ from evenroad.robot.held import HeldObject, held_parts, same_bodies
 from evenroad.robot.joint import Joint, require_within, within_limits_of_mimics
 from evenroad.robot.kinematics import held_values
 from evenroad.robot.pairs import self_pairs
+from evenroad.robot.planes import Plane
 from evenroad.robot.scene import Scene
 from evenroad.robot.urdf_xml import RobotFile
 
@@ -37,7 +38,8 @@ class Robot:
     tightly than capsules: where capsules of a pair touch, these decide; links without any are their capsules.
     `pairs_given` says whether the pairs were given by somebody, as by an SRDF; else those in `resting` are left out,
     which touch whatever the group does as long as the others are held where they are.  `holds` are links that are
-    bodies which the robot carries for a while, see :meth:`holding`.
+    bodies which the robot carries for a while, see :meth:`holding`.  `planes` are half spaces that its file has around
+    it, obstacles of every scene.
     """
 
     name: str
@@ -52,6 +54,7 @@ class Robot:
     pairs_given: bool = True
     resting: tuple[tuple[str, str], ...] = ()
     holds: tuple[str, ...] = ()
+    planes: tuple[Plane, ...] = ()
 
     def __post_init__(self) -> None:
         # The kernel takes the ends as they are: a capsule with a pose of its own gets them in its link's frame.
@@ -59,8 +62,11 @@ class Robot:
 
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of what decides verdicts; the names of the robot and its states do not."""
-        names = (each.name for each in fields(self) if each.name not in ("name", "states", "holds"))
-        return fingerprint_of(*(getattr(self, name) for name in names))
+        # Planes only where there are any: robots without keep the fingerprints that they always had.
+        left_out = {"name", "states", "holds", *(() if self.planes else ("planes",))}
+        return fingerprint_of(
+            *(getattr(self, each.name) for each in fields(self) if each.name not in left_out)
+        )
 
     def with_tool(
         self, tool: Robot | Sequence[Shape], at: str, *, pose: Pose = IDENTITY, prefix: str = ""

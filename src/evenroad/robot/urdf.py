@@ -17,6 +17,7 @@ from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import PRIMITIVES, Mesh, Shape, shape_of
 from evenroad.robot.joint import Joint, Kind, Mimic, with_direct_mimics, within_limits_of_mimics
+from evenroad.robot.planes import Plane
 from evenroad.robot.urdf_xml import RobotFile, drawn_only, find_mesh, read_urdf_xml
 
 _KINDS = ("revolute", "continuous", "prismatic", "fixed")
@@ -33,7 +34,8 @@ class Urdf:
     ``links[i + 1]``, and a mimic follows a joint that is no mimic, with limits that keep the mimic within its own.
     `order` are the joints' names as the file lists them: the order of configurations.  `shapes` are the collision
     geometry, each in its link's frame; `drawn_only` are links that are drawn and have none; `notes` say what was read
-    otherwise than it stands in the file.
+    otherwise than it stands in the file.  `untested` are pairs of links that the file itself lets touch, each with the
+    reason; None where it does not say, as no URDF does.  `planes` are half spaces that it has around the robot.
     """
 
     name: str
@@ -43,6 +45,8 @@ class Urdf:
     shapes: tuple[Shape, ...]
     drawn_only: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    untested: tuple[tuple[str, str, str], ...] | None = None
+    planes: tuple[Plane, ...] = ()
 
     @property
     def free(self) -> frozenset[str]:

@@ -20,6 +20,7 @@ from evenroad.geometry.shapes import Capsule, Mesh, PointCloud, Shape, along_z
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot.known_robots import joint_space
 from evenroad.robot.load import find_robot, read_robot
+from evenroad.robot.planes import with_planes
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Scene
 from evenroad.robot.urdf_xml import RobotFile
@@ -49,7 +50,8 @@ class EngineWorld(TestedAtStates, ABC):
     def __post_init__(self) -> None:
         shapes = sound_shapes(self.robot, self.shapes)
         states = FunctionWorld(joint_space(self.robot), self._free, self.resolution)
-        set_fields(self, shapes=shapes, _shapes=shapes, _states=states)
+        scene = with_planes(self.scene, self.robot.planes, self.robot.links)
+        set_fields(self, scene=scene, shapes=shapes, _shapes=shapes, _states=states)
 
     @property
     def space(self) -> JointSpace:

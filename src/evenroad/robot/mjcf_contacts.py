@@ -1,0 +1,80 @@
+"""Which geoms of a compiled MJCF collide with which, by MuJoCo's own rules, and by how much they are grown."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from evenroad._arrays import Bools, Floats
+
+_ALL = 0xFFFFFFFF
+"""The mask of what is drawn only and taken for a body: it collides with all that collide."""
+
+
+@dataclass(frozen=True, eq=False)
+class Contacts:
+    """What collides: for geoms, (n, n), `collide`, and why others do not.
+
+    `grown` is by how much every geom is larger than its size, (n,) [m]: margins of two add up.
+    """
+
+    collide: Bools
+    parents: Bools
+    excluded: Bools
+    grown: Floats
+
+    def why_not(self, first: int, second: int) -> str:
+        """Return why two geoms do not collide."""
+        if self.parents[first, second]:
+            return "neighbours"
+        if self.excluded[first, second]:
+            return "excluded in the MJCF"
+        return "contype and conaffinity of the MJCF"
+
+
+def contacts_of(mujoco: Any, model: Any, drawn: Sequence[int]) -> Contacts:
+    """Return which geoms collide; those in `drawn`, which do with none, as if they were of every kind.
+
+    Of one body, or of bodies without a joint between them, none do; nor those of a body and its parent, unless that
+    stands in the world; nor bodies that are excluded, nor types and affinities that have no bit in common.  What the
+    file names as a pair does, whatever else it says.
+    """
+    body = model.geom_bodyid
+    types, affinities = (
+        np.array(masks, dtype=np.int64) & _ALL for masks in (model.geom_contype, model.geom_conaffinity)
+    )
+    types[list(drawn)] = affinities[list(drawn)] = _ALL
+    meet = (types[:, np.newaxis] & affinities) != 0
+    weld = model.body_weldid[body]
+    above = model.body_weldid[model.body_parentid[weld]]
+    parents = (above[:, np.newaxis] == weld) & (weld != 0) & (weld[:, np.newaxis] != 0)
+    if int(model.opt.disableflags) & int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT):
+        parents[:] = False
+    excluded = np.zeros_like(meet)
+    for signature in model.exclude_signature.tolist():
+        excluded[np.ix_(body == signature >> 16, body == signature & 0xFFFF)] = True
+    rigid = weld[:, np.newaxis] == weld
+    parents, excluded = (parents | parents.T) & ~rigid, excluded | excluded.T
+    collide = (meet | meet.T) & ~rigid & ~parents & ~excluded
+    grown = np.array(model.geom_margin, dtype=np.float64)
+    for k in range(model.npair):
+        pair = [int(model.pair_geom1[k]), int(model.pair_geom2[k])]
+        collide[pair, pair[::-1]] = not rigid[pair[0], pair[1]]
+        grown[pair] = np.maximum(grown[pair], 0.5 * model.pair_margin[k])
+    return Contacts(collide, parents, excluded, grown)
+
+
+def untested_pairs(
+    contacts: Contacts, geoms: Mapping[str, Sequence[int]]
+) -> tuple[tuple[str, str, str], ...]:
+    """Return the pairs of links none of whose geoms collide, each with the reason; `geoms` are those of every link."""
+    links = list(geoms)
+    return tuple(
+        (first, second, contacts.why_not(geoms[first][0], geoms[second][0]))
+        for i, first in enumerate(links)
+        for second in links[i + 1 :]
+        if not contacts.collide[np.ix_(geoms[first], geoms[second])].any()
+    )
