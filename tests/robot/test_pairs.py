@@ -182,7 +182,10 @@ def test_two_links_that_an_srdf_lets_be_tested_block_the_arm_where_they_are_held
     srdf = "<robot name='arm'><disable_collisions link1='arm' link2='hand'/></robot>"
     path = write(tmp_path, _gripper(opening=0.03))
     robot = load_model(path, srdf=write(tmp_path, srdf, "arm.srdf"), group="j,w").robot
-    assert ArmWorld(robot, Scene("empty", ())).fixed_contact == ("left", "right")
+    closed = with_group(robot, robot.group, {"l": 0.0, "r": 0.0})
+    assert ArmWorld(closed, Scene("empty", ())).fixed_contact == ("left", "right")
+    # Where nobody says how, they are held open.
+    assert ArmWorld(robot, Scene("empty", ())).fixed_contact is None
 
 
 def test_a_robot_of_which_no_configuration_is_free_says_so_and_names_the_pair_that_blocks_most(tmp_path):

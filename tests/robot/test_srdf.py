@@ -1,14 +1,17 @@
 """An SRDF that is read, and one that is written, which says what is known and is read again to the same robot."""
 
+import re
+
 import numpy as np
 import pytest
 
 from evenroad.arms import plan_arm
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
 from evenroad.robot import ArmWorld, Scene, configuration, held_values, load_model, load_robot
-from evenroad.robot.srdf import chains, choose_group, read_srdf, srdf_text
+from evenroad.robot.groups import chains, choose_group, group_notes
+from evenroad.robot.srdf import read_srdf, srdf_text
 from evenroad.robot.urdf import read_urdf
-from tests.robot.urdf_texts import LIMIT, joint, link, urdf, write
+from tests.robot.urdf_texts import LIMIT, SPHERE, joint, link, urdf, write
 
 ARM = urdf(
     *(link(name) for name in ("base", "upper", "lower", "hand", "left", "right")),
@@ -99,21 +102,6 @@ def test_a_joint_locked_by_its_limits_is_in_no_group(tmp_path):
 
 
 BROKEN = {
-    "a passive joint that is not there": (
-        "<passive_joint name='knee'/>",
-        UnknownName,
-        "unknown joint in .*: 'knee'; known: elbow, flange",
-    ),
-    "a joint that is not there": (
-        "<group name='g'><joint name='knee'/></group>",
-        UnknownName,
-        "unknown joint in .*: 'knee'; known: elbow, flange",
-    ),
-    "a link that is not there": (
-        "<group name='g'><link name='leg'/></group>",
-        UnknownName,
-        "'leg'; known: base",
-    ),
     "a group that is not there": ("<group name='g'><group name='h'/></group>", UnknownName, "'h'; known: g"),
     "groups in a circle": (
         "<group name='g'><group name='h'/></group><group name='h'><group name='g'/></group>",
@@ -131,7 +119,6 @@ BROKEN = {
         InvalidValue,
         "joint 'elbow' of a state in .* must be a finite number, got 'much'",
     ),
-    "a pair of nobody": ("<disable_collisions link1='base' link2='moon'/>", UnknownName, "'moon'"),
     "a pair of one": (
         "<disable_collisions link1='base'/>",
         BrokenFile,
@@ -146,6 +133,44 @@ def test_what_is_wrong_in_an_srdf_is_named(case, read):
     with pytest.raises(EvenroadError, match=says) as caught:
         read(inside)
     assert isinstance(caught.value, kind)
+
+
+LACKING = {
+    "<passive_joint name='knee'/>": "joints that the robot lacks, which are skipped: knee",
+    "<group name='h'><joint name='knee'/><joint name='grip'/></group>": "joints .*: knee",
+    "<group name='h'><link name='leg'/><joint name='grip'/></group>": "links .*: leg",
+    "<group name='h'><chain base_link='base' tip_link='toe'/><joint name='grip'/></group>": "links .*: toe",
+    "<group_state name='s' group='g'><joint name='knee' value='1'/></group_state>": "joints .*: knee",
+    "<disable_collisions link1='moon' link2='sun'/>": "links .*: moon, sun",
+}
+
+
+@pytest.mark.parametrize("inside", LACKING)
+def test_what_the_robot_lacks_is_noted_and_skipped(inside, read):
+    _, srdf = read("<group name='g'><joint name='elbow'/></group>" + inside)
+    (note,) = srdf.notes
+    assert re.fullmatch("the SRDF names " + LACKING[inside], note) or re.search(LACKING[inside], note)
+    assert srdf.groups["g"] == ("elbow",)
+    assert srdf.groups.get("h", ("grip",)) == ("grip",)
+    assert not srdf.disabled
+    assert not srdf.passive
+    assert all(values == {} for values in srdf.states.values())
+
+
+def test_a_note_on_what_the_robot_lacks_is_one_short_line(tmp_path):
+    pairs = "".join(f"<disable_collisions link1='base' link2='{'moon' * 100}{i}'/>" for i in range(500))
+    model = load_model(
+        write(tmp_path, ARM), srdf=write(tmp_path, f"<robot name='arm'>{pairs}</robot>", "arm.srdf")
+    )
+    (note,) = (note for note in model.notes if "SRDF" in note)
+    assert note.endswith("and 492 more")
+    assert len(note) < 800
+    assert "\n" not in note
+
+
+def test_a_group_of_which_the_robot_has_nothing_is_not_chosen(read):
+    arm, srdf = read("<group name='whole'><joint name='other/elbow'/></group>")
+    assert choose_group(arm, srdf, None) == ("shoulder", "elbow", "grip")
 
 
 def test_an_srdf_that_is_no_xml_or_missing_is_named(tmp_path):
@@ -223,7 +248,6 @@ def test_two_groups_plan_together_in_the_order_of_the_wish(tmp_path):
         ("elbow,flange", InvalidValue, "'flange' cannot be planned for: it is fixed"),
         ("elbow,elbow", InvalidValue, "named twice"),
         ("h", InvalidValue, "group 'h' has no joint"),
-        (None, InvalidValue, "several groups, say which one is planned for: g, h"),
         ([], InvalidValue, "no joint"),
     ],
 )
@@ -231,6 +255,97 @@ def test_a_group_that_cannot_be_planned_for_is_refused(read, wanted, kind, says)
     arm, srdf = read("<group name='g'><joint name='elbow'/></group><group name='h'/>")
     with pytest.raises(kind, match=says):
         choose_group(arm, srdf, wanted)
+
+
+@pytest.mark.parametrize(
+    ("groups", "joints"),
+    [
+        # The arm, its hand, and both: the chain that is no gripper's.
+        ({"both": "shoulder elbow grip", "arm": "shoulder elbow", "hand": "grip"}, ("shoulder", "elbow")),
+        (
+            {"forearm": "elbow", "arm": "shoulder elbow", "manipulator": "shoulder elbow"},
+            ("shoulder", "elbow"),
+        ),
+        ({"both": "shoulder grip", "hand": "grip"}, ("grip",)),
+    ],
+)
+def test_of_several_groups_the_longest_chain_is_the_arm(read, groups, joints):
+    inside = "".join(
+        f"<group name='{name}'>{''.join(f'<joint name={each!r}/>' for each in members.split())}</group>"
+        for name, members in groups.items()
+    )
+    arm, srdf = read(inside)
+    assert choose_group(arm, srdf, None) == joints
+    (note,) = group_notes(arm, srdf, None)
+    assert all(name in note for name in (*groups, "--group"))
+    assert group_notes(arm, srdf, "grip") == ()
+
+
+@pytest.mark.parametrize("groups", [("shoulder", "elbow"), ("shoulder elbow grip", "elbow grip")])
+def test_where_no_group_is_the_arm_the_option_is_named(read, groups):
+    inside = "".join(
+        f"<group name='g{i}'>{''.join(f'<joint name={each!r}/>' for each in members.split())}</group>"
+        for i, members in enumerate(groups)
+    )
+    arm, srdf = read(inside)
+    with pytest.raises(InvalidValue, match=r"several groups.*--group.*: g0, g1"):
+        choose_group(arm, srdf, None)
+
+
+def fingers(lower, upper):
+    """An arm of two joints with two fingers that meet where their joint is at 0."""
+    limit = f"<limit lower='{lower}' upper='{upper}' velocity='1' effort='1'/>"
+    thumb = limit + "<mimic joint='grip' multiplier='-1'/>"
+    return urdf(
+        *(link(name, SPHERE.replace("0.05", "0.02")) for name in ("base", "upper", "hand", "left", "right")),
+        joint("shoulder", "base", "upper", xyz="0 0 0.3"),
+        joint("elbow", "upper", "hand", xyz="0 0 0.3"),
+        joint("grip", "hand", "left", "prismatic", limit, xyz="0 0.02 0.1", axis="0 1 0"),
+        joint("follower", "hand", "right", "prismatic", thumb, xyz="0 -0.0199 0.1", axis="0 1 0"),
+    )
+
+
+@pytest.mark.parametrize(
+    ("limits", "grip"), [((0.0, 0.04), 0.02), ((-0.01, 0.0), 0.0), ((-0.01, 0.04), 0.005)]
+)
+def test_fingers_that_are_held_stand_where_they_do_not_touch(tmp_path, limits, grip):
+    path, pair = write(tmp_path, fingers(*limits)), "<disable_collisions link1='base' link2='upper'/>"
+    srdf = write(tmp_path, f"<robot name='arm'>{pair}</robot>", "arm.srdf")
+    robot = load_model(path, srdf=srdf, group="shoulder,elbow").robot
+    # Where they touch wherever they stand, they stay; the mimic's limits are the joint's.
+    assert held_values(robot) == {"grip": grip}
+
+
+def test_the_srdf_of_an_arm_with_a_hand_is_read_again_and_planned_with(tmp_path):
+    path = write(tmp_path, fingers(0.0, 0.04))
+    srdf = write(tmp_path, srdf_text(load_model(path)), "arm.srdf")
+    model = load_model(path, srdf=srdf)
+    assert model.robot.group == ("shoulder", "elbow")
+    assert not model.always_touching
+    assert any("planned for is the group 'hand'" in note for note in model.notes)
+    assert plan_arm(path, Scene("nothing"), "home", "0.5,0.5", srdf=srdf).solved
+    everything = load_model(path, srdf=srdf, group="planned").robot
+    home = configuration(everything, "home")
+    np.testing.assert_array_equal(home, [0.0, 0.0, 0.02])
+    assert ArmWorld(everything, Scene("nothing")).valid(home[np.newaxis]).all()
+
+
+def test_pairs_that_always_touch_are_disabled_in_what_is_written(tmp_path):
+    # The two lie in each other, and this SRDF does not say so.
+    text = urdf(
+        *map(link, "wxyz"),
+        joint("a", "w", "x", xyz="0 0 0.5"),
+        joint("b", "x", "y", xyz="0 0 0.02"),
+        joint("c", "y", "z", xyz="0 0 0.02"),
+    )
+    path = write(tmp_path, text)
+    adjacent = "".join(f"<disable_collisions link1='{a}' link2='{b}'/>" for a, b in ("wx", "xy", "yz"))
+    first = load_model(path, srdf=write(tmp_path, f"<robot name='r'>{adjacent}</robot>", "first.srdf"))
+    assert first.always_touching == (("x", "z"),)
+    again = load_model(path, srdf=write(tmp_path, srdf_text(first), "again.srdf"))
+    assert not again.always_touching
+    assert ("x", "z") not in again.robot.pairs
+    assert ("w", "z") in again.robot.pairs
 
 
 TWO_ARMS = urdf(
@@ -248,7 +363,7 @@ TWO_ARMS = urdf(
 
 def test_groups_are_the_chains_without_a_branch_and_grippers_apart(tmp_path):
     robot = load_model(write(tmp_path, TWO_ARMS)).robot
-    found = {name: [joint.name for joint in joints] for name, joints in chains(robot).items()}
+    found = {name: [joint.name for joint in joints] for name, joints in chains(robot.joints).items()}
     assert found == {"left2": ["l1", "l2"], "finger": ["grip"], "right2": ["r1", "r2"]}
 
 

@@ -99,7 +99,8 @@ class RobotOptions:
     """Its SRDF, with groups, named states and pairs of links that need no test."""
     group: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
     """Groups of the SRDF, or joints, with commas between them, planned for together in this order; may be given more
-    than once.  The others are held where the named states of start and goal have them, else at 0."""
+    than once.  The others are held where the named states of start and goal have them, else at 0, or where they
+  do not touch."""
     bodies: Path | None = None
     """A YAML file of capsules and spheres in place of the robot's collision geometry."""
     use_visuals: bool = False

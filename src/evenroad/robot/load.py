@@ -16,11 +16,13 @@ from evenroad.geometry.fit import fit_capsules
 from evenroad.geometry.fit_points import union_volume
 from evenroad.geometry.hulls import Piece, piece_of
 from evenroad.geometry.shapes import Capsule, Mesh
+from evenroad.robot.apart import held_apart
 from evenroad.robot.cache import cached, keep, key_of
+from evenroad.robot.groups import choose_group, chosen_states, group_notes
 from evenroad.robot.mjcf import read_mjcf
-from evenroad.robot.pairs import self_pairs
+from evenroad.robot.pairs import pairs_of, self_pairs
 from evenroad.robot.robot import LinkBody, Robot, RobotModel
-from evenroad.robot.srdf import choose_group, chosen_states, read_srdf
+from evenroad.robot.srdf import read_srdf
 from evenroad.robot.urdf import Urdf, read_urdf
 from evenroad.robot.urdf_xml import RobotFile
 
@@ -86,7 +88,8 @@ def load_model(
         Its SRDF: groups, named states, pairs that need no test.  ``ur5`` has one of its own.
     group : str or sequence of str, optional
         Groups of the SRDF and joints (one text: with commas), which are planned for in this order.  Default: the
-        SRDF's only group, else every joint that moves and is no mimic, in the order of the file.
+        SRDF's only group, or the longest chain among several, else every joint that moves and is no mimic, in the order
+        of the file.
     bodies : str or path-like, optional
         YAML file of capsules and spheres, in place of those fitted (see :func:`read_bodies`).
     use_visuals : bool
@@ -176,7 +179,11 @@ def _build(
     if srdf is not None:
         untested = dict.fromkeys(srdf.disabled, "disabled in the SRDF") | untested
     said = by_srdf or urdf.untested is not None
-    pairs = self_pairs(robot, _pieces(urdf, given), untested if said else None, drop_touching=not by_srdf)
+    pieces = _pieces(urdf, given)
+    if by_srdf:
+        # Elsewhere pairs that touch where they are held are not tested as long as they are held there.
+        robot = replace(robot, held=held_apart(robot, pieces, pairs_of(robot, pieces, untested)))
+    pairs = self_pairs(robot, pieces, untested if said else None, drop_touching=not by_srdf)
     links = tuple(_link_body(urdf, link, capsules[link], link in given) for link in capsules)
     drawn_only = tuple(link for link in urdf.drawn_only if link not in capsules)
     return RobotModel(
@@ -187,7 +194,7 @@ def _build(
         drawn_only,
         pairs.always,
         pairs.never_free,
-        urdf.notes,
+        (*urdf.notes, *(() if srdf is None else srdf.notes), *group_notes(urdf, srdf, group)),
     )
 
 

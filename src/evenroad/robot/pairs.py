@@ -65,15 +65,7 @@ def self_pairs(
     are held.  Pairs that never touch are kept: a sample cannot prove that.
     """
     order = [link for link in robot.links if link in pieces]
-    rigid, above = rigid_links(robot), bodied_above(robot, pieces)
-    reasons: dict[tuple[str, str], str] = {}
-    for first, second in combinations(order, 2):
-        if rigid[first] == rigid[second]:
-            reasons[first, second] = "fixed to each other"
-        elif untested is not None and frozenset((first, second)) in untested:
-            reasons[first, second] = untested[frozenset((first, second))]
-        elif untested is None and above[second] == (first, 1):
-            reasons[first, second] = "neighbours"
+    reasons = _untested(robot, pieces, untested)
     samples = _Samples(robot, {link: list(pieces[link]) for link in order})
     candidates = [pair for pair in combinations(order, 2) if pair not in reasons]
     always = samples.judge(candidates)
@@ -89,6 +81,32 @@ def self_pairs(
         _unless_round(piece.hull for link in order for piece in samples.pieces[link]),
         samples.never_free(tested),
     )
+
+
+def pairs_of(
+    robot: KinematicTree, pieces: Pieces, untested: Mapping[frozenset[str], str] | None = None
+) -> tuple[tuple[str, str], ...]:
+    """Return the pairs that would be tested if none touched in every configuration, in the order of the links."""
+    order = [link for link in robot.links if link in pieces]
+    reasons = _untested(robot, pieces, untested)
+    return tuple(pair for pair in combinations(order, 2) if pair not in reasons)
+
+
+def _untested(
+    robot: KinematicTree, pieces: Pieces, untested: Mapping[frozenset[str], str] | None
+) -> dict[tuple[str, str], str]:
+    """Return the pairs that are not tested whatever they touch, each with the reason."""
+    order = [link for link in robot.links if link in pieces]
+    rigid, above = rigid_links(robot), bodied_above(robot, pieces)
+    reasons: dict[tuple[str, str], str] = {}
+    for first, second in combinations(order, 2):
+        if rigid[first] == rigid[second]:
+            reasons[first, second] = "fixed to each other"
+        elif untested is not None and frozenset((first, second)) in untested:
+            reasons[first, second] = untested[frozenset((first, second))]
+        elif untested is None and above[second] == (first, 1):
+            reasons[first, second] = "neighbours"
+    return reasons
 
 
 def _unless_round(hulls: Iterable[Hull]) -> tuple[Hull, ...]:

@@ -1,0 +1,90 @@
+"""Where joints stand that are not planned for, so that the bodies they carry do not touch each other."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+import numpy as np
+
+from evenroad._arrays import Bools, Floats
+from evenroad._rng import generator
+from evenroad.robot.joint import Joint
+from evenroad.robot.kernel.hull_trees import contacts, hull_trees
+from evenroad.robot.kinematics import KinematicTree, held_values, poses_at, with_mimics
+from evenroad.robot.pairs import Pieces
+
+_SHARES = (0.5, 0.25, 0.75, 1.0)
+"""How far joints are tried to go from where they are to either limit, as shares; half open first."""
+_SAMPLES = 200
+"""So many places of all of them at random are tried then."""
+
+
+def held_apart(robot: KinematicTree, pieces: Pieces, pairs: Collection[tuple[str, str]]) -> dict[str, float]:
+    """Return where held joints are to stand for fewest of these pairs to touch, joint -> value [rad or m].
+
+    Only joints between bodies that touch where the robot holds them are named: a gripper closed at 0 is opened half.
+    What touches wherever the held joints stand, or depends on joints of the group, changes nothing.
+    """
+    movable = {joint.name: joint for joint in robot.joints if joint.kind != "fixed" and joint.mimic is None}
+    held = held_values(robot)
+    between = {
+        pair: joints & set(held)
+        for pair in pairs
+        if (joints := _joints_between(robot, *pair)) and not joints & set(robot.group)
+    }
+    bodied = {link: pieces[link] for link in {link for pair in between for link in pair}}
+    between = {pair: joints for pair, joints in between.items() if joints}
+    if not between:
+        return {}
+    every = list(between)
+    values = {name: np.array([value]) for name, value in held.items()}
+    first = _touching(robot, bodied, every, values)[0]
+    moved = sorted(set().union(*(between[pair] for pair, touch in zip(every, first, strict=True) if touch)))
+    if not moved:
+        return {}
+    tried = _places([movable[name] for name in moved], [held[name] for name in moved])
+    values = {name: np.full(len(tried), value) for name, value in held.items()}
+    values |= dict(zip(moved, tried.T, strict=True))
+    count = _touching(robot, bodied, every, values).sum(axis=1)
+    best = int(np.argmin(count))
+    if count[best] == count[0]:
+        return {}
+    return dict(zip(moved, tried[best].tolist(), strict=True))
+
+
+def _joints_between(robot: KinematicTree, first: str, second: str) -> set[str]:
+    """Return the joints that move two links on each other, for mimics those that they follow."""
+    above = {joint.child: joint for joint in robot.joints}
+
+    def way(link: str) -> set[Joint]:
+        joints = set()
+        while link in above:
+            joints.add(above[link])
+            link = above[link].parent
+        return joints
+
+    moving = (joint for joint in way(first) ^ way(second) if joint.kind != "fixed")
+    return {joint.name if joint.mimic is None else joint.mimic.joint for joint in moving}
+
+
+def _places(joints: Sequence[Joint], values: Sequence[float]) -> Floats:
+    """Return where joints may stand, (n, joints): where they are first, then farther, then anywhere."""
+    now = np.array(values)
+    circle = np.where([joint.kind == "continuous" for joint in joints], np.pi, np.inf)
+    low = np.maximum([joint.lower for joint in joints], -circle)
+    high = np.minimum([joint.upper for joint in joints], circle)
+    farther = [now + share * (end - now) for share in _SHARES for end in (high, low)]
+    return np.array([now, *farther, *(low + generator(0).random((_SAMPLES, len(now))) * (high - low))])
+
+
+def _touching(
+    robot: KinematicTree, pieces: Pieces, pairs: Sequence[tuple[str, str]], values: dict[str, Floats]
+) -> Bools:
+    """Return which pairs touch, (n, pairs), where the joints have these values, joint -> (n,); others are at 0."""
+    count = len(next(iter(values.values())))
+    others = {name: np.zeros(count) for name in robot.group}
+    poses = poses_at(robot, with_mimics(robot, others | values), count)
+    of_link = {link: np.ascontiguousarray(poses[:, robot.links.index(link)]) for link in pieces}
+    trees = hull_trees({link: [(piece.parts, piece.radius) for piece in of] for link, of in pieces.items()})
+    found = [contacts(trees, a, b, of_link[a], of_link[b])[:, 0] >= 0 for a, b in pairs]
+    return np.stack(found, axis=1)
