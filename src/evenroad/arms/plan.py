@@ -20,6 +20,7 @@ from evenroad.roadmap.plan import plan
 from evenroad.robot import Robot, Scene
 from evenroad.robot.load import RobotOptions
 from evenroad.robot.reference.recheck import MeshCheck
+from evenroad.robot.scan import allowed_everywhere
 from evenroad.robot.straight import Straight
 from evenroad.robot.trees import prepare
 from evenroad.robot.upright import Upright
@@ -165,6 +166,9 @@ def finished(
     if name and len(query.goals) > 1:
         to = f"to goal {result.goal_index}"
         result = replace(result, message=result.message.replace(to, f"{to} ({name})", 1))
+    if result.path is not None and (pairs := allowed_everywhere(query.world.robot, query.world.scene)):
+        untested = ", ".join(f"{link!r} against the whole cloud {cloud!r}" for link, cloud in pairs)
+        result = replace(result, message=f"{result.message}; not tested, as the scene allows: {untested}")
     if certified:
         result = require_certified(query.world, result)
     if not result.solved or result.path is None:

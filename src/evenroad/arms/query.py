@@ -32,6 +32,7 @@ from evenroad.robot.load import RobotOptions
 from evenroad.robot.pose_goal import PoseGoal
 from evenroad.robot.reference.recheck import MeshCheck, has_meshes, recheck, unseen_pairs
 from evenroad.robot.robot import with_group
+from evenroad.robot.scan import allowed_near_ends, open_everywhere
 from evenroad.robot.urdf_xml import RobotFile
 
 PathLike = str | os.PathLike[str]
@@ -114,8 +115,12 @@ def arm_query(
         if not isinstance(place, Pose | PoseGoal):
             read(place)
     require_tips(robot, goals, tip, frame)
-    world = ArmWorld(robot, scene, resolution=resolution)
+    # Where a goal pose is reached is known only once it is: till then what is allowed near the ends is allowed.
+    world = ArmWorld(robot, open_everywhere(scene), resolution=resolution)
     given = goals_of(world, first, goals, read, tip, frame)
+    if scene.near_ends and not given.unreached:
+        ends = np.concatenate([first[np.newaxis], given.configurations])
+        world = ArmWorld(robot, allowed_near_ends(robot, scene, ends), resolution=resolution)
     return ArmQuery(world, first, given.configurations, given, source, model)
 
 

@@ -50,6 +50,8 @@ class Robot(RobotOptions):
         model = load_model(self.robot, **self.options())
         say_if_compiling("evenroad.robot.kernel.batch", "check_configurations", 10)
         scene = Scene("empty space", ()) if self.scene is None else load_scene(self.scene)
+        # No path, no ends: contacts that are allowed near them are none here.
+        scene = replace(scene, near_ends=frozenset())
         world = ArmWorld(in_scene(model.robot, scene), scene)
         if self.write_srdf is not None:
             with atomic_write(self.write_srdf) as file:

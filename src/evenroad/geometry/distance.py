@@ -5,6 +5,31 @@ from __future__ import annotations
 import numpy as np
 
 from evenroad._arrays import Floats
+from evenroad.errors import InvalidValue
+from evenroad.geometry.shapes import PRIMITIVES, Box, Capsule, Cylinder, Shape, Sphere
+
+
+def point_distance(shape: Shape, points: Floats) -> Floats:
+    """Return how far points, (n, 3), are from a box, sphere, cylinder or capsule in its pose, 0 inside of it: (n,) [m].
+
+    Raises InvalidValue for another shape.
+    """
+    own = shape.pose.local(points)
+    match shape:
+        case Box():
+            return np.linalg.norm(np.maximum(np.abs(own) - 0.5 * np.array(shape.extents), 0.0), axis=1)
+        case Sphere():
+            return np.maximum(np.linalg.norm(own, axis=1) - shape.radius, 0.0)
+        case Cylinder():
+            aside = np.maximum(np.hypot(own[:, 0], own[:, 1]) - shape.radius, 0.0)
+            return np.hypot(aside, np.maximum(np.abs(own[:, 2]) - 0.5 * shape.length, 0.0))
+        case Capsule():
+            a, along = np.array(shape.a), np.subtract(shape.b, shape.a)
+            share = _clamped((own - a) @ along, np.full(len(own), along @ along))
+            apart = own - a - share[:, np.newaxis] * along
+            return np.maximum(np.linalg.norm(apart, axis=1) - shape.radius, 0.0)
+        case _:
+            raise InvalidValue(f"a region must be one of {', '.join(PRIMITIVES)}, got a {shape}")
 
 
 def segment_distance(first: Floats, second: Floats) -> Floats:

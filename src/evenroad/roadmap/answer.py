@@ -19,7 +19,7 @@ from evenroad.roadmap.search import BLOCKED, FREE, EdgeStates, components
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.space import Space
 from evenroad.space.path import path_length
-from evenroad.world import Connection, Explains, Rechecks, Separates, Shortens, World
+from evenroad.world import Connection, Explains, ExplainsStarts, Rechecks, Separates, Shortens, World
 
 PROVED = "proved: there is no path; start and goal lie in two components of the free space"
 
@@ -32,6 +32,8 @@ def refusal(attempt: Attempt) -> PlanResult | None:
         return None
     row = int(free[0])
     reason = f": {world.explain(places[row])}" if isinstance(world, Explains) else ""
+    if not row and isinstance(world, ExplainsStarts):
+        reason = f": {world.explain_start(places[0])}"
     within = world.space.contains(places[1:] if row else places[:1])
     if within.any():
         status = (Status.START_INVALID, Status.GOAL_INVALID)[row]

@@ -20,8 +20,12 @@ from evenroad.robot.robot import RobotModel as RobotModel
 from evenroad.robot.robot import in_scene as in_scene
 from evenroad.robot.robot import with_group as with_group
 from evenroad.robot.robot import with_limits as with_limits
+from evenroad.robot.scan import allowed_near_ends as allowed_near_ends
+from evenroad.robot.scan import allowed_within as allowed_within
 from evenroad.robot.scan import scene_seen_by as scene_seen_by
 from evenroad.robot.scan import without_robot as without_robot
+from evenroad.robot.scan import without_shapes as without_shapes
+from evenroad.robot.scene import Cut as Cut
 from evenroad.robot.scene import Obstacle as Obstacle
 from evenroad.robot.scene import Scene as Scene
 from evenroad.robot.scene import Seen as Seen

@@ -12,6 +12,7 @@ from evenroad._arrays import Bools, Floats, Ints
 from evenroad._checks import require_positive
 from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue, NotAvailable, UnknownName
+from evenroad.geometry.shapes import PointCloud
 from evenroad.robot.kernel import scalar
 from evenroad.robot.kernel.certify import motions_certified
 from evenroad.robot.kernel.lane_world import LaneWorld
@@ -103,6 +104,11 @@ class ArmWorld:
                     " in_scene(robot, scene)"
                 )
         object.__setattr__(self, "scene", with_planes(self.scene, self.robot.planes, self.robot.links))
+        if self.scene.near_ends:
+            raise InvalidValue(
+                f"scene {self.scene.name!r} allows contacts near the ends, which a world does not know: plan_arm does,"
+                " or give it allowed_near_ends(robot, scene, ends)"
+            )
         space, longest, of_robot, by_joint, bounds, by_joint_at = prepared(self.robot)
         require_few_segments(self.resolution, longest / self.resolution)
         tested = tested_contacts(of_robot.capsules, self.robot.links, self.scene)
@@ -284,6 +290,17 @@ class ArmWorld:
                 return f"joint {name!r} is at {value:g}, {beyond:.3g} outside {limits}"
         bodies = self.fixed_contact or self._touching(row)
         return "it is free" if bodies is None else f"{bodies[0]!r} touches {bodies[1]!r}"
+
+    def explain_start(self, q: Floats) -> str:
+        """Return as `explain` why a robot cannot start from one configuration, (dim,); of a scan what helps."""
+        reason = self.explain(q)
+        clouds = (each.name for each in self.scene.obstacles if isinstance(each.body, PointCloud))
+        if not any(reason.endswith(f" touches {name!r}") for name in clouds):
+            return reason
+        return (
+            f"the robot stands in its scan, {reason}: seen_at, with where it stood, takes its own points out of a"
+            " cloud, and cut those of what it holds"
+        )
 
     @cached_property
     def fixed_contact(self) -> tuple[str, str] | None:

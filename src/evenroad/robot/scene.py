@@ -37,18 +37,36 @@ class Seen:
 
 
 @dataclass(frozen=True)
+class Cut:
+    """Something attached that is to be taken out of a cloud, since the camera saw it where it is grasped.
+
+    Balls of the cloud whose centres come within `grow` [m], >= 0, of what is `attached` by that name are taken out,
+    with the robot standing `at`, as :func:`evenroad.robot.configuration` takes it.
+    """
+
+    attached: str
+    at: str
+    grow: float = MARGIN
+
+    def __post_init__(self) -> None:
+        require_positive("by how much a cut grows", self.grow, or_zero=True)
+
+
+@dataclass(frozen=True)
 class Obstacle:
     """A body that does not move, by a name that is unique in its scene.
 
     `body` is a box, sphere, cylinder, capsule, mesh, or cloud of radius > 0, with its pose in the frame of the robot's
     root link; others, and what is fixed to a link, are refused (InvalidValue).  `cell` says whether it is part of the
-    fixed cell, the same for every task of this installation; `seen`, where the robot stands that is in a cloud itself.
+    fixed cell, the same for every task of this installation; `seen`, where the robot stands that is in a cloud itself;
+    `cuts`, what else is taken out of the cloud.
     """
 
     name: str
     body: Shape
     cell: bool = False
     seen: Seen | None = None
+    cuts: tuple[Cut, ...] = ()
     row: bytes = field(init=False, repr=False, compare=False)
     """Sixteen doubles, as compiled code reads obstacles, see ``kernel/obstacles.py``; none for clouds and meshes."""
 
@@ -126,7 +144,9 @@ class Scene:
     `allowed` are contacts that are not tested, (link, obstacle), e.g. of the base with its table; `states` are named
     configurations, joint -> value, in which joints that are not planned for are held; `limits` are ranges to plan in,
     joint -> (lower, upper) [rad or m]; `attached` is what the robot holds, no two of one name (InvalidValue).
-    :func:`evenroad.robot.in_scene` takes over both; a world keeps to the limits by itself.
+    :func:`evenroad.robot.in_scene` takes over both; a world keeps to the limits by itself.  `near_ends` are contacts,
+    (link, cloud, distance), that are not tested with points within the distance [m] of where the link's body is at the
+    start or a goal; :func:`evenroad.robot.allowed_near_ends` makes allowed contacts of them.
     """
 
     name: str
@@ -135,6 +155,7 @@ class Scene:
     states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     attached: tuple[HeldObject, ...] = ()
+    near_ends: frozenset[tuple[str, str, float]] = frozenset()
 
     def __post_init__(self) -> None:
         held = [each.name for each in self.attached]
@@ -161,7 +182,7 @@ class Scene:
             # Zeros of both signs are one number.
             content = (fingerprint_of(each.body),) if each.shape not in PRIMITIVES else ()
             rows.add((each.name, each.shape, *(number + 0.0 for number in numbers), *content))
-        return fingerprint_of(rows, self.allowed)
+        return fingerprint_of(rows, self.allowed, *sorted(self.near_ends))
 
     def with_(self, *obstacles: Obstacle, allowed: Sequence[tuple[str, str]] = ()) -> Scene:
         """Return the scene with more obstacles, of new names, and more (link, obstacle) contacts left untested."""
@@ -179,6 +200,7 @@ class Scene:
             self,
             obstacles=tuple(obstacle for obstacle in self.obstacles if obstacle.name not in names),
             allowed=frozenset((link, name) for link, name in self.allowed if name not in names),
+            near_ends=frozenset(each for each in self.near_ends if each[1] not in names),
         )
 
 

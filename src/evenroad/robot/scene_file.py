@@ -4,25 +4,27 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from evenroad._checks import require_known, require_positive
 from evenroad._yaml import numbers, read_mapping, require_keys
-from evenroad.errors import BrokenFile, InvalidValue, UnknownName
+from evenroad.errors import BrokenFile, InvalidValue, UnknownName, shown
 from evenroad.geometry.cloud_file import load_cloud
 from evenroad.geometry.pose import Pose
-from evenroad.geometry.shapes import PRIMITIVES, Mesh, PointCloud, shape_of
+from evenroad.geometry.shapes import PRIMITIVES, Mesh, PointCloud, Shape, shape_of
 from evenroad.robot.held import HeldObject
 from evenroad.robot.load import DATA
 from evenroad.robot.moveit_scene import read_planning_scene, read_scene_text
-from evenroad.robot.scene import MARGIN, Obstacle, Scene, Seen
+from evenroad.robot.scan import allowed_within, without_shapes
+from evenroad.robot.scene import MARGIN, Cut, Obstacle, Scene, Seen
 
 SCENES = ("box-reach", "box-reach-narrow")
 """Names of the shipped scenes."""
 _SECTIONS = ("name", "allowed", "states", "limits", "attach")
 _OPTIONAL = ("xyz", "rpy", "xyzw", "cell")
-_OF_A_CLOUD = ("seen_at", "margin")
+_OF_A_CLOUD = ("seen_at", "margin", "cut")
 
 
 def is_scene(path: str | os.PathLike[str]) -> bool:
@@ -56,6 +58,9 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
           shelf: {shape: mesh, file: shelf.stl, scale: 0.001, xyz: [0.8, 0, 0]}    # also .obj, .ply, .dae
         allowed:                                  # contacts that are not tested
           table: [base_link]
+          scan:                                   # of a cloud: near the start and the goal, and within a region [m]
+            - {link: crate, near_ends: 0.02}
+            - {link: crate, within: {shape: box, size: [0.2, 0.2, 0.1], xyz: [0.5, 0, 0]}, grow: 0.01}
         states:                                   # named configurations, joint by joint
           home: {joint_1: 0.0, joint_2: -1.57}
         limits:                                   # ranges to plan in, within the robot's own
@@ -66,7 +71,9 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
     The length of a capsule is without its caps; ``xyzw: [x, y, z, w]``, a quaternion, may stand for ``rpy``; ``cell:
     true`` marks what belongs to the fixed cell.  Files of clouds (:func:`evenroad.geometry.load_cloud`) and meshes
     (:func:`evenroad.geometry.load_mesh`) are looked for beside the scene; points within `margin` of the robot, where it
-    stood when it was `seen_at`, are left out when one plans.  MoveIt's scenes are read, too
+    stood when it was `seen_at`, are left out when one plans.  So are those that a cloud's ``cut`` names, a list of
+    shapes, ``{shape: box, size: [0.1, 0.1, 0.2], xyz: [0.5, 0, 0.1], grow: 0.01}``, and of what is attached where the
+    robot stands, ``{attached: crate, at: grasp, grow: 0.01}``.  MoveIt's scenes are read, too
     (:mod:`evenroad.robot.moveit_scene`).
 
     Raises BrokenFile if the file is missing, not YAML, lacks something, or has a key twice; UnknownName for a key, a
@@ -89,13 +96,15 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
         for name, entry in entries.items()
     )
     allowed: set[tuple[str, str]] = set()
+    parts: list[tuple[str, str, dict[str, Any]]] = []
     for obstacle, links in _mapping(document.get("allowed"), f"allowed in {path}").items():
         require_known(f"obstacle in 'allowed' of {path}:", obstacle, entries)
-        if not isinstance(links, list) or not all(isinstance(link, str) for link in links):
+        if not isinstance(links, list) or not all(isinstance(link, str | dict) for link in links):
             raise InvalidValue(
                 f"allowed contacts of {obstacle!r} in {path} must be a list of links, got {links!r}"
             )
-        allowed.update((link, obstacle) for link in links)
+        allowed.update((link, obstacle) for link in links if isinstance(link, str))
+        parts += [_part(obstacle, each, path) for each in links if isinstance(each, dict)]
     states: dict[str, dict[str, float]] = {}
     for name, values in _mapping(document.get("states"), f"states in {path}").items():
         states[name] = {}
@@ -113,7 +122,46 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
         attached.append(held)
         allowed.update((name, obstacle) for obstacle in obstacles_touched)
     name = str(document.get("name", path.stem))
-    return Scene(name, obstacles, frozenset(allowed), states, limits, tuple(attached))
+    scene = Scene(name, obstacles, frozenset(allowed), states, limits, tuple(attached))
+    return _with_parts(scene, parts, path)
+
+
+def _part(cloud: str, entry: dict[str, Any], path: Path) -> tuple[str, str, dict[str, Any]]:
+    """Return link and cloud of a contact that is allowed with a part of the cloud, and which part."""
+    where = f"what is allowed to touch {cloud!r} in {path}"
+    require_keys(entry, ("link",), ("near_ends", "within", "grow"), where)
+    if not isinstance(entry["link"], str) or ("near_ends" in entry) == ("within" in entry):
+        raise InvalidValue(f"{where} must have a link and one of near_ends and within, got {shown(entry)}")
+    return entry["link"], cloud, entry
+
+
+def _with_parts(scene: Scene, parts: list[tuple[str, str, dict[str, Any]]], path: Path) -> Scene:
+    """Return a scene with contacts that are allowed with parts of clouds."""
+    near = set()
+    for link, cloud, entry in parts:
+        where = f"what is allowed to touch {cloud!r} in {path}"
+        if not any(
+            isinstance(each.body, PointCloud) for each in scene.obstacles if each.name.startswith(cloud)
+        ):
+            raise InvalidValue(f"{where} must be a link: a part can be allowed of a cloud alone")
+        if "near_ends" in entry:
+            (distance,) = numbers(entry["near_ends"], 1, f"near_ends of {where}")
+            near.add((link, cloud, require_positive(f"near_ends of {where}", distance, or_zero=True)))
+        else:
+            scene = allowed_within(
+                scene, link, cloud, *_region(entry["within"], entry, f"within of {where}", path)
+            )
+    return replace(scene, near_ends=frozenset(near))
+
+
+def _region(entry: object, more: dict[str, Any], where: str, path: Path) -> tuple[Shape, float]:
+    """Return a region, and by how much it grows as `more` says."""
+    region = _mapping(entry, where)
+    require_known(f"shape of {where}:", str(region.get("shape")), PRIMITIVES)
+    (grow,) = numbers(more.get("grow", 0.0), 1, f"grow of {where}")
+    return _obstacle("region", region, path, where).body, require_positive(
+        f"grow of {where}", grow, or_zero=True
+    )
 
 
 def _attached(
@@ -176,7 +224,22 @@ def _cloud(name: str, entry: dict[str, Any], path: Path, cell: bool) -> Obstacle
         raise InvalidValue(f"margin of {where} goes with seen_at: where the robot stood")
     seen = None if seen_at is None else Seen(seen_at, margin)
     body = PointCloud(load_cloud(_file(entry, path, where)), radius, pose=_pose(entry, where))
-    return Obstacle(name, body, cell, seen)
+    cuts, rows = [], entry.get("cut", [])
+    if not isinstance(rows, list):
+        raise InvalidValue(f"cut of {where} must be a list of what is taken out, got {shown(rows)}")
+    for row in rows:
+        cut = _mapping(row, f"cut of {where}")
+        if "attached" in cut:
+            require_keys(cut, ("attached", "at"), ("grow",), f"cut of {where}")
+            (grow,) = numbers(cut.get("grow", MARGIN), 1, f"grow in cut of {where}")
+            cuts.append(Cut(str(cut["attached"]), str(cut["at"]), grow))
+            continue
+        shape, grow = _region({key: cut[key] for key in cut if key != "grow"}, cut, f"cut of {where}", path)
+        left = without_shapes(body, [shape], grow)
+        if left is None:
+            raise InvalidValue(f"cut of {where} leaves nothing of the cloud")
+        body = left
+    return Obstacle(name, body, cell, seen, tuple(cuts))
 
 
 def _file(entry: dict[str, Any], path: Path, where: str) -> Path:

@@ -40,6 +40,14 @@ class Explains(Protocol):
 
 
 @runtime_checkable
+class ExplainsStarts(Explains, Protocol):
+    """A world that knows more of why a robot cannot start."""
+
+    def explain_start(self, q: Floats) -> str:
+        """Return as `explain` why a start, (dim,), is not free, and what to do about it."""
+
+
+@runtime_checkable
 class Rechecks(Protocol):
     """A world whose verdicts on motions have gaps, and that can look closer at the path that is handed out."""
 
