@@ -181,3 +181,17 @@ def test_states_texts_and_the_command_take_such_values_alike(tmp_path, monkeypat
     line = ["plan", "desk.yaml", "--robot", str(path), "--start=0,0", "--goal", "3.141592654,-3.141592654"]
     assert main([*line, "--no-picture", "--out", "p"]) == 0
     assert json.loads((tmp_path / "p.json").read_text())["path"][-1] == [3.141592654, -3.141592654]
+
+
+def test_an_endless_joint_that_a_scene_ends_at_pi_as_it_is_written_takes_pi():
+    # As benchmarks have it of the Fetch: its endless joints within 3.14159, and goals at pi.
+    robot = ur5()
+    joints = tuple(
+        replace(each, kind="continuous", lower=-math.inf, upper=math.inf) if "wrist" in each.name else each
+        for each in robot.joints
+    )
+    scene = Scene("problem", limits={f"wrist_{k}_joint": (-WRITTEN, WRITTEN) for k in (1, 2, 3)})
+    goal = np.array([0.5, -1.2, 0.5, math.pi, -math.pi, 3.1415927])
+    result = er.plan_arm(replace(robot, joints=joints, pairs=()), scene, FREE, goal)
+    assert result.solved, result.message
+    assert result.path[-1].tolist() == goal.tolist()
