@@ -13,7 +13,7 @@ ROOT = Path(evenroad.__file__).parent
 
 BASE = {
     *("errors", "_checks", "_rng", "_files", "_seal", "_npz", "_yaml"),
-    *("_arrays", "_clock", "_terminal", "_compiled", "_fingerprint", "_njit", "_threads"),
+    *("_arrays", "_clock", "_terminal", "_compiled", "_fingerprint", "_njit", "_shared", "_threads"),
 }
 MAY_IMPORT = {
     "points": BASE,

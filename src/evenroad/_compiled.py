@@ -7,6 +7,7 @@ import gc
 import os
 import sys
 from importlib import import_module
+from threading import Lock
 from types import ModuleType
 from typing import Any
 
@@ -90,6 +91,7 @@ def is_kept(function: Any) -> bool:
 
 
 MOST_HELPERS = 3
+_beginning = Lock()
 
 
 def compile_beside(*modules: str) -> None:
@@ -98,15 +100,21 @@ def compile_beside(*modules: str) -> None:
     Each process takes what nobody has begun, this one what it needs next; it waits for what another has begun.  Nothing
     happens where the first module's programs are kept or no interpreter can be started.
     """
-    from evenroad._njit import HELPERS, compile_all, is_missing, share
+    from evenroad._njit import HELPERS, is_missing
 
     free = min(processors() - 1, MOST_HELPERS)
     python = os.path.basename(sys.executable or "").startswith("python")
-    if free < 1 or not python or HELPERS or not is_missing(modules[0]):
-        return
+    with _beginning:
+        if free > 0 and python and not HELPERS and is_missing(modules[0]):
+            _start_helpers(free, modules)
+
+
+def _start_helpers(free: int, modules: tuple[str, ...]) -> None:
     import shutil
     import subprocess
     import tempfile
+
+    from evenroad._njit import HELPERS, compile_all, share
 
     try:
         folder = tempfile.mkdtemp(prefix="evenroad-compiling-")

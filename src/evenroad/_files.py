@@ -6,6 +6,7 @@ import json
 import os
 import stat
 import tempfile
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -19,6 +20,7 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
+_asking = threading.Lock()
 _PREFIX, _SUFFIX = ".evenroad-", ".part"
 """Of the names of temporary files."""
 _BEGINNINGS = {
@@ -165,6 +167,8 @@ def _cannot_write(target: Path, error: OSError) -> BrokenFile:
 
 
 def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
+    # Of two threads at once the second would read what the first has set, and set that for good.
+    with _asking:
+        mask = os.umask(0)
+        os.umask(mask)
     return mask

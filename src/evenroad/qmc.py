@@ -5,6 +5,8 @@
 (10, 3)
 >>> Korobov(d=3, n=64, rng=1).random(10).shape
 (10, 3)
+
+Threads may share an engine: each point is handed out once, in its order, to whoever asks first.
 """
 
 from __future__ import annotations
@@ -17,6 +19,7 @@ from scipy.stats.qmc import QMCEngine
 from evenroad._arrays import Floats
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator
+from evenroad._shared import OwnLock
 from evenroad.errors import Exhausted, InvalidValue
 from evenroad.points.pointset import PointSet
 from evenroad.points.randomise import randomise
@@ -32,7 +35,33 @@ def _started(given: RngLike | None, old: RngLike | None) -> np.random.Generator:
     return np.random.default_rng() if rng is None else generator(rng)
 
 
-class SequenceEngine(QMCEngine):
+class _SharedEngine(QMCEngine):
+    """An engine that hands out each point once, whichever thread asks."""
+
+    _lock: OwnLock
+
+    def random(self, n: Any = 1, *, workers: Any = 1) -> Floats:
+        """Return the next n points, (n, d)."""
+        with self._lock:
+            return np.asarray(super().random(n, workers=workers))
+
+    def reset(self) -> Any:
+        """Start again."""
+        with self._lock:
+            return super().reset()
+
+    def fast_forward(self, n: object) -> Any:
+        """Skip the next n points; raises as :meth:`random` does."""
+        with self._lock:
+            self.num_generated += self._count(n)
+            return self
+
+    def _count(self, n: object) -> int:
+        """Return how many points are asked for, or raise Exhausted where fewer are left."""
+        raise NotImplementedError
+
+
+class SequenceEngine(_SharedEngine):
     """An engine over a sequence; a subclass names the ``family``, a name of ``SAMPLERS`` that takes ``start``.
 
     ``random(n)`` hands out the next n points: those of ``draw(family, n, d, rng=rng, start=num_generated)``, so two
@@ -53,16 +82,12 @@ class SequenceEngine(QMCEngine):
         d = require_count("d", d)
         given = rng if rng is not None else seed
         random = _started(rng, seed)
+        self._lock = OwnLock()
         super().__init__(d=d, optimization=optimization, rng=random)
         self._init_quad = {"d": d, "optimization": optimization}
         # What `draw` takes is the same for every call; an int goes through, so that the points are those of `draw`.
         is_seed = given is not None and not isinstance(given, np.random.Generator)
         self._drawn_with: RngLike = given if is_seed else int(self.rng.integers(2**62))  # type: ignore[assignment]
-
-    def fast_forward(self, n: object) -> SequenceEngine:
-        """Skip the next n points; raises as :meth:`random` does."""
-        self.num_generated += self._count(n)
-        return self
 
     def _random(self, n: object = 1, *, workers: object = 1) -> Floats:
         """Return the next n points, (n, d), which SciPy's ``random`` counts; raises Exhausted past the end."""
@@ -80,7 +105,7 @@ class SequenceEngine(QMCEngine):
         return count
 
 
-class FamilyEngine(QMCEngine):
+class FamilyEngine(_SharedEngine):
     """An engine over one set of a family; a subclass names the ``family``, any name of ``SAMPLERS``.
 
     The set, ``points``, is drawn from the family and then randomised by every move that keeps its quality
@@ -108,6 +133,7 @@ class FamilyEngine(QMCEngine):
     ) -> None:
         d, self.n = require_count("d", d), require_count("n", n)
         random = _started(rng, seed)
+        self._lock = OwnLock()
         super().__init__(d=d, optimization=optimization, rng=random)
         # What qmc_quad builds its further engines from.
         self._init_quad = {"d": d, "n": n, "optimization": optimization, **options}
@@ -115,22 +141,16 @@ class FamilyEngine(QMCEngine):
         drawn = sampler.draw(self.n, d, rng=self.rng)
         self.points: PointSet = randomise(drawn, sampler.symmetries, rng=self.rng)
 
-    def fast_forward(self, n: object) -> FamilyEngine:
-        """Skip the next n points; raises as :meth:`random` does."""
-        self.num_generated = self._end_of_next(n)
-        return self
-
     def _random(self, n: object = 1, *, workers: object = 1) -> Floats:
         """Return the next n points, (n, d), which SciPy's ``random`` counts; raises Exhausted if fewer are left."""
-        return self.points.points[self.num_generated : self._end_of_next(n)].copy()
+        return self.points.points[self.num_generated :][: self._count(n)].copy()
 
-    def _end_of_next(self, n: object) -> int:
-        """Return the index after the next n points, or raise Exhausted where there are not that many."""
+    def _count(self, n: object) -> int:
         count, left = require_count("n", n, at_least=0), self.n - self.num_generated
         if count > left:
             text = f"asked for {count} more points, but {left} of the {self.n} are left: a set has an end; "
             raise Exhausted(text + "make an engine with a larger n, or reset() to start again")
-        return self.num_generated + count
+        return count
 
 
 class Growing(SequenceEngine):

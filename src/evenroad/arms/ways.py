@@ -10,6 +10,7 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad.roadmap import PlanResult, Status
 from evenroad.roadmap.find_path import NO_POINTS
+from evenroad.roadmap.result import require_ends
 from evenroad.robot import ArmWorld
 from evenroad.robot.chain import Chain, chain_of, default_tip
 from evenroad.robot.straight import Line, Straight, line_from
@@ -154,7 +155,7 @@ def _with_path(
     cost, raw_cost = (path_length(way, world.space) for way in (path, raw))
     to = f" to goal {result.goal_index}" if len(result.goals) > 1 else ""
     off = ", ".join(f"{name.replace('_', ' [')}] {value:.2g}" for name, value in deviation.items())
-    return replace(
+    changed = replace(
         result,
         path=path,
         milestone_path=raw,
@@ -163,3 +164,4 @@ def _with_path(
         deviation=deviation,
         message=f"path of length {cost:.6g} with {len(path)} waypoints{to}; largest deviations: {off}",
     )
+    return require_ends(world.space, changed)

@@ -14,7 +14,7 @@ from evenroad.points.measures.rank_one import least_neighbours
 from evenroad.points.measures.short_vectors import MOST_AXES, lattice_basis
 from evenroad.roadmap.attempt import Attempt, Searched
 from evenroad.roadmap.neighbours import flat_metric
-from evenroad.roadmap.result import PlanResult, SearchedGraph, Status
+from evenroad.roadmap.result import PlanResult, SearchedGraph, Status, require_ends
 from evenroad.roadmap.search import BLOCKED, FREE, EdgeStates, components
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.space import Space
@@ -143,7 +143,7 @@ def _with_path(
             length = float(np.sum(measure(path[:-1], path[1:])))
     named = "length" if cost is None else "cost"
     to = f" to goal {goal}" if len(query.goals) > 1 else ""
-    return _result(
+    result = _result(
         attempt,
         Status.SOLVED,
         f"path of {named} {length:.6g} with {len(path)} waypoints{to}",
@@ -155,6 +155,7 @@ def _with_path(
         milestone_cost=raw_cost,
         counts=counts,
     )
+    return require_ends(world.space, result)
 
 
 def _reach(attempt: Attempt, searched: Searched, counts: dict[str, int]) -> tuple[str, str]:

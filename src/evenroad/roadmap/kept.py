@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
@@ -12,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats, Ints, Ints32
+from evenroad._shared import OwnLock
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import PointSet
 from evenroad.roadmap.answer import answer, connected, proved_apart, refusal
@@ -144,7 +144,7 @@ class WorldRoadmap:
     ) -> None:
         self.roadmap, self.world, self.lazy_milestones = roadmap, world, lazy_milestones
         self._edge_cost = edge_cost
-        self._lock = threading.Lock()
+        self._lock = OwnLock()
         # Of milestones and edges first; behind them there is room for the start, the goals and their links.
         self._configurations, self._edges = roadmap.configurations, roadmap.edges
         self._weights: Ints | None = None
@@ -155,12 +155,6 @@ class WorldRoadmap:
         if not lazy_milestones:
             states = EdgeStates(world, self._configurations, self._edges, known=self._known)
             states.ask_nodes(np.arange(len(self._configurations)))
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in self.__dict__.items() if name != "_lock"}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__ |= state | {"_lock": threading.Lock()}
 
     @property
     def states(self) -> tuple[npt.NDArray[np.int8], npt.NDArray[np.int8]]:

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from enum import StrEnum
+
+import numpy as np
 
 from evenroad._arrays import Floats, Ints32
 from evenroad.points.pointset import Origin
 from evenroad.roadmap.certificate import Certificate
 from evenroad.roadmap.notebook import as_html
+from evenroad.space import Space
+
+NEAR = 1e-6
+"""An end of a path that is no farther from what was asked than this, for numbers of 1, is there but for rounding."""
 
 
 class Status(StrEnum):
@@ -149,3 +156,26 @@ class PlanResult:
             rows |= {"cost": f"{self.cost:.6g}", "proved": str(self.proof)}
         rows["time"] = f"{1e3 * sum(self.seconds.values()):.1f} ms"
         return as_html(rows, self.path)
+
+
+def require_ends(space: Space, result: PlanResult) -> PlanResult:
+    """Return a result whose paths lead from its start to its goal: every one that has a path is made with this.
+
+    Coordinates that wrap may differ by whole turns.  AssertionError for anything else, which is evenroad's own fault:
+    whatever found the path, a robot is not to drive it.
+    """
+    for path in (result.path, result.milestone_path):
+        if path is None:
+            continue
+        for name, place, asked in (("start", path[0], result.start), ("end", path[-1], result.goal)):
+            # Most are the same numbers, which is known in a tenth of the time.
+            if place.tolist() == asked.tolist():
+                continue
+            finite = np.isfinite(place).all()
+            away = float(space.distance(place[np.newaxis], asked[np.newaxis])[0]) if finite else math.inf
+            if not away <= NEAR * max(1.0, float(np.abs(asked).max())):
+                raise AssertionError(
+                    f"the path that was found does not {name} where it was asked to, but {away:.3g} away:"
+                    " this is a fault of evenroad's, please report it"
+                )
+    return result

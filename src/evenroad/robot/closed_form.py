@@ -14,8 +14,8 @@ _kept: dict[int, tuple[Chain, Any]] = {}
 
 def closed_form(chain: Chain) -> Any | None:
     """Return EAIK's robot for a chain; None where there is none: not installed, or not of such joints."""
-    if id(chain) in _kept:
-        return _kept[id(chain)][1]
+    if (known := _kept.get(id(chain))) is not None:
+        return known[1]
     if len(_kept) >= 32:
         _kept.clear()
     robot = _made(chain)

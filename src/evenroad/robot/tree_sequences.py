@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 import numpy.typing as npt
+
+from evenroad._shared import once
 
 Floats = npt.NDArray[np.float64]
 _PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89, 97)
@@ -18,7 +18,7 @@ _SHORTEST = 0.1
 """Of these lengths, as a share of the radius."""
 
 
-@cache
+@once
 def cube_points(dim: int) -> Floats:
     """Return the points, (2048, dim) in the unit cube, that trees grow towards."""
     return _read_only(reversed_halton(_SAMPLES, dim))
@@ -34,7 +34,7 @@ def shifted_cube_points(dim: int, shift: int) -> Floats:
     return _read_only(moved)
 
 
-@cache
+@once
 def ball_points(dim: int) -> Floats:
     """Return 2048 points in the unit ball, (2048, dim): the steps that trees try around their nodes.
 
@@ -52,14 +52,14 @@ def ball_points(dim: int) -> Floats:
     return _read_only(np.ascontiguousarray(direction * length))
 
 
-@cache
+@once
 def sphere_points(dim: int) -> Floats:
     """Return 2048 directions of length 1 spread evenly, (2048, dim)."""
     points = ball_points(dim)
     return _read_only(points / np.linalg.norm(points, axis=1, keepdims=True))
 
 
-@cache
+@once
 def share_pairs() -> Floats:
     """Return the pairs of places, shares of a path's length, that shortening joins, (96, 2)."""
     return _read_only(reversed_halton(_PAIRS, 2))

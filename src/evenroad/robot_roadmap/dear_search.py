@@ -75,6 +75,11 @@ class Asked(NamedTuple):
     batches: int = 0
     proved: bool = True
 
+    def after(self, before: Asked) -> Asked:
+        """Return this search with what was asked about in one before it, too."""
+        checked = self.milestones + before.milestones, self.motions + before.motions
+        return self._replace(milestones=checked[0], motions=checked[1])
+
 
 class ProvesSoon(Checks, Protocol):
     """A world that can say for little of some motions that they are free."""

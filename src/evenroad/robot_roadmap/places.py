@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
 import numpy.typing as npt
 
 from evenroad._arrays import Floats
@@ -45,6 +46,11 @@ def read_ends(
         planner="none",
         seconds={"goals": given.seconds},
     )
+
+
+def ends_free(world: ArmWorld, start: Floats, goals: Floats) -> bool:
+    """Return whether a start, (dim,), and one of the goals, (g, dim), are free."""
+    return bool(world.valid(start[np.newaxis])[0] and world.valid(goals).any())
 
 
 def _place(world: ArmWorld, place: Place) -> npt.ArrayLike:

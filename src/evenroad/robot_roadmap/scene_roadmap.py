@@ -12,12 +12,14 @@ from evenroad._arrays import Floats
 from evenroad._checks import counted, require_count
 from evenroad._clock import now
 from evenroad._rng import RngLike, generator
+from evenroad._shared import OwnLock, one_at_a_time
 from evenroad.geometry.shapes import Shape
 from evenroad.roadmap import Budget, PlanResult, Status
 from evenroad.roadmap.answer import connected, gave_up, refusal
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.find_path import NO_POINTS, SECONDS, with_reasons
 from evenroad.roadmap.query import Query
+from evenroad.roadmap.result import require_ends
 from evenroad.robot import ArmWorld, Robot, Scene
 from evenroad.robot.trees import tighten
 from evenroad.robot_roadmap.ask import Asked, Checks, ask, prepare
@@ -26,7 +28,7 @@ from evenroad.robot_roadmap.explored import explore
 from evenroad.robot_roadmap.known_motions import KnownMotions, world_of
 from evenroad.robot_roadmap.lazy_search import ENDS_TAKEN, SPENT
 from evenroad.robot_roadmap.own_shapes import OwnShapesWorld
-from evenroad.robot_roadmap.places import Goal, Place, read_ends
+from evenroad.robot_roadmap.places import Goal, Place, ends_free, read_ends
 from evenroad.robot_roadmap.pockets import links_of
 from evenroad.robot_roadmap.search_memory import CUT_OFF, NODES, NONE
 from evenroad.robot_roadmap.ways_out import learn_ways_out
@@ -72,8 +74,6 @@ ENDS = 600
 EXPLORED_LINKS, EXPLORED_MOTIONS, EXPLORED_WORK = 14, 150, 205
 """In an explored scene fewer links do, and the slowest queries leave time to draw paths tighter."""
 
-_BUDGET = Budget(seconds=SECONDS)
-
 _LONG = 1e8
 """Seconds that stand for no limit."""
 
@@ -85,7 +85,12 @@ _ready: set[str] = set()
 
 
 class SceneRoadmap:
-    """A robot's roadmap in one scene, with what earlier queries found out there; of one thread.
+    """A robot's roadmap in one scene, with what earlier queries found out there.
+
+    Threads may share it: their queries are answered one after the other.  Each is answered with what those before it
+    found out, so that the same queries in the same order have the same answers; in another order, as of threads, paths
+    may be others, each proved as ever.  Threads with a roadmap in the scene each, or a copy of one that is explored,
+    wait for nobody, and their answers depend on their own queries alone.
 
     Parameters
     ----------
@@ -138,7 +143,7 @@ class SceneRoadmap:
         self._graph = roadmap.graph.within(np.array(self.world.space.low), np.array(self.world.space.high))
         self._wraps = bool(np.any(self.world.space.wrapping))
         self.learned: list[Floats] = []
-        self._explored = False
+        self._explored, self._lock = False, OwnLock()
         self._make_ready()
 
     def _make_ready(self) -> None:
@@ -155,6 +160,7 @@ class SceneRoadmap:
             if asked.ended != ENDS_TAKEN:
                 _ready.add(backend)
 
+    @one_at_a_time
     def connect(
         self,
         start: Floats,
@@ -192,6 +198,7 @@ class SceneRoadmap:
     def _size(self) -> int:
         return len(self.roadmap.milestones)
 
+    @one_at_a_time
     def explore(self, ends: int = ENDS, *, rng: RngLike = 0) -> None:
         """Find out beforehand what many queries here would; see docs/robot-roadmaps.md for when it pays.
 
@@ -216,6 +223,7 @@ class SceneRoadmap:
         self.learned += explore(self.roadmap, self.world, self._day, self._graph, ends, generator(rng))
         self._explored = True
 
+    @one_at_a_time
     def plan(
         self,
         start: Place,
@@ -254,11 +262,11 @@ class SceneRoadmap:
         ends = read_ends(self.world, start, goal)
         if isinstance(ends, PlanResult):
             return ends
-        (first, goals), budget = ends, budget or _BUDGET
+        (first, goals), budget = ends, budget or Budget(seconds=SECONDS)
         began, deadline = now(), budget.deadline()
         most = 2**31 - 1 if budget.motions is None else budget.motions
         # Trees grow among what is free for the capsules.
-        follow = trees and (not self._dear or self._capsules_free(first, goals))
+        follow = trees and (not self._dear or ends_free(self.world, first, goals))
         tried = (EXPLORED_LINKS, EXPLORED_MOTIONS) if self._explored else (TRIED_LINKS, TRIED_MOTIONS)
         links = (DEAR_LINKS if self._dear else tried[0]) if follow else links_of(self._size)
         share = SHARE if follow or self._own is not None else 1.0
@@ -271,13 +279,13 @@ class SceneRoadmap:
         elif asked.ended in (NONE, CUT_OFF) and not follow and self.roadmap.one_turn.lifts.any():
             # What leads to the goal within one turn is not to be lost.
             before, left = asked, limits[0] - asked.motions
-            asked = _with(before, self._ask(first, goals, left, limits[1], links, *order, unturned=True))
+            asked = self._ask(first, goals, left, limits[1], links, *order, unturned=True).after(before)
         while asked.goal >= 0:
             if (result := self._solved(asked, first, goals, shorten, began)) is not None:
                 return result
             # What was drawn tight could not be proved: the way itself has to be.
             before, left = asked, max(limits[0] - asked.motions, 0)
-            asked = _with(before, self._ask(first, goals, left, limits[1], links, *order))
+            asked = self._ask(first, goals, left, limits[1], links, *order).after(before)
         if self._own is not None:
             budget = budget.rest(deadline, asked.motions)
             return self._own.plan(first, goals, budget=budget, shorten=shorten, trees=trees)
@@ -352,7 +360,7 @@ class SceneRoadmap:
                 return None
             length, seconds["shortcut"] = self._length(path), now() - found
         to = f" to goal {asked.goal}" if len(goals) > 1 else ""
-        return PlanResult(
+        result = PlanResult(
             status=Status.SOLVED,
             message=f"path of length {length:.6g} with {len(path)} waypoints{to}",
             start=start,
@@ -369,6 +377,7 @@ class SceneRoadmap:
             counts=counts,
             seconds=seconds,
         )
+        return require_ends(world.space, result)
 
     def _learn_ends(self, path: Floats) -> None:
         """Make milestones of the ends of a path: links to them are shorter for the next query."""
@@ -381,9 +390,6 @@ class SceneRoadmap:
         """Whether others than the capsules are asked."""
         return not isinstance(self._asked[0], ArmWorld)
 
-    def _capsules_free(self, start: Floats, goals: Floats) -> bool:
-        return bool(self.world.valid(start[np.newaxis])[0] and self.world.valid(goals).any())
-
     def _proof(self, path: Floats) -> str:
         """Return what a path is known by: states alone where the capsules do not prove all of it."""
         return "resolution" if self._dear and not self.world.recheck(path).all() else self.world.proof
@@ -392,9 +398,3 @@ class SceneRoadmap:
         places = path.tolist()
         # Where nothing wraps the sum is the same, in a tenth of the time.
         return path_length(path, self.world.space) if self._wraps else sum(map(math.dist, places, places[1:]))
-
-
-def _with(before: Asked, asked: Asked) -> Asked:
-    """Return a search with what was asked about in the one before it, too."""
-    checked = asked.milestones + before.milestones, asked.motions + before.motions
-    return asked._replace(milestones=checked[0], motions=checked[1])

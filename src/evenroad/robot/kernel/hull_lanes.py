@@ -7,7 +7,6 @@ depend on its neighbours.
 
 from __future__ import annotations
 
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -17,6 +16,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from evenroad._njit import cfunc
+from evenroad._shared import once
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import ANY_LENGTH, doubles_at, integers_at, room_for, singles_at
 from evenroad.robot.kernel.hull_contact import DEEPEST, leaves_near, write_relative
@@ -54,7 +54,7 @@ Ints = npt.NDArray[np.int64]
 Singles = npt.NDArray[np.float32]
 
 
-@cache
+@once
 def meeting_address() -> int:
     """Return the address, good for this process, of `bodies_meeting`; compiled when first asked.
 

@@ -6,18 +6,17 @@ function of it that checks something, would cost seconds.  Called by its address
 
 from __future__ import annotations
 
-from functools import cache
-
 from numba import types
 
 from evenroad._njit import cfunc
+from evenroad._shared import once
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import ANY_LENGTH, doubles_at, integers_at, singles_at
 from evenroad.robot.kernel.contact import blocked_lanes
 from evenroad.robot.kernel.forward_kinematics import place_fixed, place_moving
 
 
-@cache
+@once
 def check_address() -> int:
     """Return the address, good for this process, of the check of sixteen configurations; compiled when first asked.
 

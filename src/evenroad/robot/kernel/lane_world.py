@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import threading
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._shared import once, once_property
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import address
 from evenroad.robot.kernel.layout import DESK, LANES, MOST_WAITING
@@ -85,12 +86,12 @@ class LaneWorld:
         bodies.reshape(-1, at.BODY_FLOAT_ROW)[:, 3:7] += np.float32(margin)
         return table
 
-    @cached_property
+    @once_property
     def _wider(self) -> dict[float, tuple[npt.NDArray[np.float32], int]]:
         """Tables that were enlarged, by their margin, and where they are."""
         return {}
 
-    @cached_property
+    @once_property
     def places(self) -> tuple[int, int, int, int]:
         """Addresses of the checks and of the two arrays, and how much memory a program's checks need."""
         header = self.tables[: at.HEADER].tolist()
@@ -103,7 +104,7 @@ class LaneWorld:
             tables = address(self._with_surfaces)
         return checks, tables, by_joint, doubles
 
-    @cached_property
+    @once_property
     def _with_surfaces(self) -> Ints:
         """The tables with the addresses of clouds and meshes, where there are any."""
         assert self.surfaces is not None
@@ -123,7 +124,7 @@ _memory = _Memory()
 _enlarging = threading.Lock()
 
 
-@cache
+@once
 def check_addresses(with_hulls: bool) -> Ints:
     """Return the addresses of the checks of a motion, of sixteen configurations and of hulls, good for this process.
 

@@ -5,7 +5,6 @@ What `lane_check` says of the check of sixteen configurations holds for a motion
 
 from __future__ import annotations
 
-from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +12,7 @@ import numpy.typing as npt
 from numba import types
 
 from evenroad._njit import cfunc
+from evenroad._shared import once
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel.addresses import (
     ANY_LENGTH,
@@ -137,7 +137,7 @@ def motion_is(a: Floats, b: Floats, kind: int, tolerance: float, most_batches: i
     return call_at(c.address, (a, b, kind, tolerance, most_batches, c.resolution, c.desk)) != 0
 
 
-@cache
+@once
 def motion_check_address() -> int:
     """Return the address, good for this process, of the check of a motion; compiled when first asked."""
     kind = types.int64(*[types.int64] * 3, types.float64, types.int64, types.float64, types.int64)

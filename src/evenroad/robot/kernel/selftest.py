@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 import numpy.typing as npt
 
+from evenroad._shared import once
 from evenroad.geometry.shapes import Capsule
 from evenroad.robot.joint import Joint
 from evenroad.robot.kernel.lane_world import LaneWorld
@@ -23,7 +22,7 @@ _FREE = 0b1001101111100001001101101101101111001101001101101011101100110100
 """Bit i: whether configuration i is free, in double precision; a test keeps it so."""
 
 
-@cache
+@once
 def lanes_failure() -> str | None:
     """Return why the lanes are of no use here; None where they compile and give the verdicts that they should."""
     try:

@@ -7,7 +7,6 @@ scene has a cloud or a mesh, and called by its address.
 
 from __future__ import annotations
 
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -17,6 +16,7 @@ from numba import types
 from numba.extending import intrinsic
 
 from evenroad._njit import cfunc
+from evenroad._shared import once
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel import surface_tree as tree
 from evenroad.robot.kernel.addresses import ANY_LENGTH, integers_at, room_for, singles_at
@@ -52,7 +52,7 @@ Ints = npt.NDArray[np.int64]
 Singles = npt.NDArray[np.float32]
 
 
-@cache
+@once
 def surface_check_address() -> int:
     """Return the address, good for this process, of the check against surfaces; compiled when first asked.
 

@@ -6,13 +6,14 @@ Rarely asked, so what is simple will do: leaves one after the other, and a line 
 from __future__ import annotations
 
 from ctypes import CFUNCTYPE, c_int64
-from functools import cache, lru_cache
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
 from numba import types
 
 from evenroad._njit import cfunc
+from evenroad._shared import once
 from evenroad.robot.kernel import layout as at
 from evenroad.robot.kernel import surface_tree as tree
 from evenroad.robot.kernel.addresses import (
@@ -48,7 +49,7 @@ def fixed_contact(surfaces: SceneSurfaces, robot: RobotTables) -> tuple[int, int
     return None if found < 0 else (found >> 32, found & 0xFFFFFFFF)
 
 
-@cache
+@once
 def scalar_check_address() -> int:
     """Return the address, good for this process, of the check; compiled when first asked.
 

@@ -1,0 +1,69 @@
+"""What several threads share: values that are made once, and what one thread uses at a time."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from functools import cached_property, wraps
+from typing import Any, TypeVar
+
+Made = TypeVar("Made")
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def once(function: Callable[..., Made]) -> Callable[..., Made]:
+    """Return a function that makes one value for each arguments, kept for good and the same in all threads.
+
+    With ``functools.cache`` two threads that ask at once may get two values, of which it keeps one: the address of the
+    other would soon point nowhere.
+    """
+    kept: dict[tuple[Any, ...], Made] = {}
+    making = threading.RLock()
+
+    @wraps(function)
+    def asked(*arguments: Any) -> Made:
+        if arguments not in kept:
+            with making:
+                if arguments not in kept:
+                    kept[arguments] = function(*arguments)
+        return kept[arguments]
+
+    return asked
+
+
+class once_property(cached_property[Made]):
+    """A cached property that is the same in all threads: what the first made is what the others get, too."""
+
+    def __get__(self, instance: Any, owner: type[Any] | None = None) -> Any:
+        """Return the value of an instance, or the property itself of a class."""
+        if instance is None:
+            return self
+        assert self.attrname is not None
+        return instance.__dict__.setdefault(self.attrname, self.func(instance))
+
+
+class OwnLock:
+    """A lock of one value's own, which is not copied with it: copies, here or in another process, have their own."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+
+    def __enter__(self) -> None:
+        self._lock.acquire()
+
+    def __exit__(self, *_: object) -> None:
+        self._lock.release()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return OwnLock, ()
+
+
+def one_at_a_time(method: Function) -> Function:
+    """Return a method that threads call one after the other, with others marked so; its value has a `_lock`."""
+
+    @wraps(method)
+    def called(self: Any, *given: Any, **named: Any) -> Any:
+        with self._lock:
+            return method(self, *given, **named)
+
+    return called  # type: ignore[return-value]

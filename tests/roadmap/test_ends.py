@@ -1,0 +1,150 @@
+"""A path that begins or ends elsewhere than asked is never handed out, whoever found it."""
+
+import math
+
+import numpy as np
+import pytest
+
+import evenroad as er
+from evenroad.arms.ways import Ends, plan_ways
+from evenroad.errors import EvenroadError
+from evenroad.geometry.shapes import Capsule
+from evenroad.roadmap.find_path import NO_POINTS
+from evenroad.roadmap.result import NEAR, PlanResult, Status, require_ends
+from evenroad.robot import ArmWorld, Joint, Robot, Scene, Straight
+from evenroad.robot_roadmap.make import make_roadmap
+from evenroad.space import SE3, Box, JointSpace
+from evenroad.world import Connection, FunctionWorld
+from tests.robot.kernel_arms import STRAIGHT, TABLE, Z, ur5
+
+PLANE = Box((0.0, 0.0), (1.0, 1.0))
+A, B, C = np.array([[0.1, 0.2], [0.8, 0.9], [0.5, 0.5]])
+
+
+def result(path, start=A, goals=(B,), index=0, **more):
+    goals = np.array(goals)
+    return PlanResult(
+        status=Status.SOLVED,
+        message="",
+        start=np.array(start),
+        goals=goals,
+        origin=NO_POINTS,
+        rule="none",
+        goal_index=index,
+        path=np.array(path),
+        **more,
+    )
+
+
+@pytest.mark.parametrize(
+    ("wrong", "where"),
+    [
+        (result([C, B]), "start"),
+        (result([A, C]), "end"),
+        (result([B, A]), "start"),
+        (result([A, B], goals=[B, C], index=1), "end"),
+        (result([A + 2.0 * NEAR, B]), "start"),
+        (result([A, B - 2.0 * NEAR]), "end"),
+        (result([A, [np.nan, 0.9]]), "end"),
+        (result([A, B], milestone_path=np.array([C, B])), "start"),
+        (result([A, B], milestone_path=np.array([A, C])), "end"),
+    ],
+)
+def test_a_path_that_leads_elsewhere_is_a_fault_and_no_error_of_the_input(wrong, where):
+    with pytest.raises(
+        AssertionError, match=f"does not {where} where it was asked to, but .* away"
+    ) as raised:
+        require_ends(PLANE, wrong)
+    assert not isinstance(raised.value, EvenroadError)
+
+
+def test_one_that_leads_there_but_for_rounding_is_handed_out():
+    for path in ([A, C, B], [A + 0.5 * NEAR, B - 0.5 * NEAR]):
+        assert require_ends(PLANE, result(path)).path.tolist() == np.array(path).tolist()
+    nothing = PlanResult(
+        status=Status.NOT_CONNECTED, message="", start=A, goals=B[np.newaxis], origin=NO_POINTS, rule="none"
+    )
+    assert require_ends(PLANE, nothing) is nothing
+
+
+def test_whole_turns_count_where_a_joint_wraps_and_nowhere_else():
+    space = JointSpace((-math.pi, -9.0), (math.pi, 9.0), (True, False))
+    asked = [A, B + np.array([5 * math.tau, 0.0])]
+    require_ends(space, result([A, B], start=asked[0], goals=asked[1:]))
+    with pytest.raises(AssertionError, match="end"):
+        require_ends(space, result([A, B], start=A, goals=[B + np.array([0.0, math.tau])]))
+
+
+def test_both_signs_of_a_quaternion_are_one_place():
+    space = SE3((0, 0, 0), (1, 1, 1))
+    pose = np.array([0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5])
+    other = np.array([0.5, 0.5, 0.5, 1.0, 0.0, 0.0, 0.0])
+    opposite = pose * [1, 1, 1, -1, -1, -1, -1]
+    require_ends(space, result([opposite, other], start=pose, goals=[other]))
+    with pytest.raises(AssertionError, match="start"):
+        require_ends(space, result([other, other], start=pose, goals=[other]))
+
+
+class Shortened(FunctionWorld):
+    """A world whose shorter path leaves out the goal."""
+
+    def shorten(self, path):
+        return path[:-1], 1
+
+
+class Astray(Shortened):
+    """A world that connects the start to a place that nobody asked for."""
+
+    planner = "astray"
+
+    def connect(self, start, goals, *, most_motions=0, seconds=0.0):
+        return Connection(np.array([start, C]), 0, 1, 1, 1)
+
+
+def test_what_a_world_found_by_itself_is_looked_at():
+    world = Astray(PLANE, lambda q: np.ones(len(q), dtype=bool), 0.1)
+    with pytest.raises(AssertionError, match="does not end"):
+        er.find_path(world, A, B, shorten=False)
+
+
+def test_what_a_world_made_shorter_is_looked_at():
+    world = Shortened(PLANE, lambda q: np.ones(len(q), dtype=bool), 0.1)
+    with pytest.raises(AssertionError, match="does not end"):
+        er.plan(world, A, B, 20)
+
+
+def test_what_a_robot_roadmap_found_is_looked_at(monkeypatch):
+    known = make_roadmap(ur5(joints=3), TABLE, 40, k=4, gamma=0.0, ends=100).in_scene(Scene("today"))
+    a, b, c = known.roadmap.milestones[:3]
+    ask = known._ask
+    monkeypatch.setattr(known, "_ask", lambda start, goals, *rest, **more: ask(c, goals, *rest, **more))
+    for shorten in (True, False):
+        with pytest.raises(AssertionError, match="does not start"):
+            known.plan(a, b, shorten=shorten)
+
+
+def test_what_lies_between_straight_lines_is_looked_at():
+    world = ArmWorld(ur5(), TABLE)
+    start, goal = [0.0, -1.5, 1.2, -1.0, -1.5, 0.0], [0.8, -1.4, 1.3, -1.2, -1.5, 0.3]
+
+    def plan(world, first, goals, shorten):
+        found = er.find_path(world, first, goals, shorten=shorten)
+        return PlanResult(**{**vars(found), "path": found.path[::-1] if astray else found.path})
+
+    ends = Ends(world, np.array(start), np.array([goal]))
+    for astray in (False, True):
+        if not astray:
+            assert plan_ways(ends, Straight(approach=0.03), None, plan).solved
+            continue
+        with pytest.raises(AssertionError, match="does not start"):
+            plan_ways(ends, Straight(approach=0.03), None, plan)
+
+
+def test_ends_of_joints_that_turn_for_ever_may_be_asked_for_after_any_turns():
+    turning = Joint("joint", "continuous", "base", "link", (0.0, 0.0, 0.0), STRAIGHT, Z)
+    body = Capsule((0.1, 0.0, 0.0), (0.4, 0.0, 0.0), 0.02, link="link")
+    robot = Robot("hand", ("base", "link"), (turning,), (body,), (), ("joint",))
+    for turns in (0, 1, -3, 1000):
+        found = er.plan_arm(robot, Scene("empty"), [0.3 + turns * math.tau], [2.0 - turns * math.tau])
+        assert found.solved
+        assert np.sin(found.path[[0, -1], 0]) == pytest.approx(np.sin([0.3, 2.0]), abs=1e-9)

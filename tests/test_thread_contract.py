@@ -1,0 +1,264 @@
+"""Whatever is public gives eight threads the answers that one gets, or paths as good where it learns."""
+
+import itertools
+import math
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+import evenroad as er
+from evenroad.geometry import Mesh, PointCloud, TriangleMesh
+from evenroad.points.measures import MEASURES
+from evenroad.research.mazes import load_maze
+from evenroad.research.worlds.chain import ChainWorld
+from evenroad.roadmap import Status, fmt
+from evenroad.robot import Obstacle, link_poses
+from evenroad.robot.certified import CertifiedWorld
+from evenroad.robot.chain import chain_of
+from evenroad.robot.upright import upright_world
+from evenroad.space.path import subdivide
+from evenroad.trajectory import Limits, load_trajectory, make_trajectory, save_trajectory
+from tests.robot.kernel_arms import TABLE, box_scene, ur5
+from tests.robot.oracle import clearance
+from tests.threads import together
+
+QUERIES = 8
+_names = itertools.count()
+
+
+def bits(answer):
+    """An answer as a value that is equal where all its bits are; of a result what does not tell of effort."""
+    if isinstance(answer, np.ndarray):
+        return answer.shape, answer.dtype.str, answer.tobytes()
+    if isinstance(answer, er.PlanResult):
+        return answer.status, answer.goal_index, answer.proof, answer.cost, bits(answer.path)
+    if isinstance(answer, er.PointSet):
+        return bits(answer.points)
+    if isinstance(answer, tuple | list):
+        return tuple(map(bits, answer))
+    return answer
+
+
+def robot():
+    """An arm that nothing is known of yet."""
+    return replace(ur5(limits=math.pi, joints=3), name=f"arm {next(_names)}")
+
+
+@cache
+def ends(world=None):
+    """Free starts and goals, (q, 2, dim): of the arm in its box, or of a world."""
+    world = er.ArmWorld(robot(), box_scene()) if world is None else world
+    q = world.space.from_cube(er.draw("sobol", 256, world.space.cube_dim, rng=1).points)
+    return q[world.valid(q)][: 2 * QUERIES].reshape(QUERIES, 2, -1)
+
+
+def explained(world, q):
+    """Why the first configuration is not free that is not."""
+    blocked = q[~world.valid(q)]
+    return world.explain(blocked[0]) if len(blocked) else ""
+
+
+def verdicts(world, q):
+    """What a world is asked: of each pair another question first, and so of each thread."""
+    asks = []
+    for a, b in q[:4]:
+        asks += [
+            lambda a=a, b=b: world.valid(np.linspace(a, b, 33)),
+            lambda a=a, b=b: world.motion_valid(np.array([a, b]), np.array([b, a])),
+            lambda a=a, b=b: explained(world, np.linspace(a, b, 33)),
+        ]
+        if hasattr(world, "recheck"):
+            asks.append(lambda a=a, b=b: world.recheck(np.linspace(a, b, 5)))
+    return asks
+
+
+def an_arm():
+    world = er.ArmWorld(robot(), box_scene())
+    certified, (a, b) = CertifiedWorld(world), ends()[0]
+    own = [lambda: world.may_connect(a, b), lambda: certified.motion_valid(ends()[:, 0], ends()[:, 1])]
+    return verdicts(world, ends()) + own + [lambda: world.shorten(np.array([a, b]))]
+
+
+def an_arm_without_lanes():
+    return verdicts(er.ArmWorld(robot(), box_scene(), backend="scalar"), ends())
+
+
+def an_arm_among_clouds_and_meshes():
+    corners = [(0, 0, 0), (0.3, 0, 0), (0, 0.3, 0), (0, 0, 0.5)]
+    wedge = TriangleMesh(corners, [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)], "wedge")
+    scan = np.random.default_rng(0).uniform((-0.5, 0.4, 0.2), (0.1, 0.6, 0.6), (60, 3))
+    scene = TABLE.with_(
+        Obstacle("wedge", Mesh(wedge, pose=er.Pose((0.4, -0.3, 0.05)))),
+        Obstacle("scan", PointCloud(scan, 0.02)),
+    )
+    return verdicts(er.ArmWorld(robot(), scene), ends())
+
+
+def an_upright_arm():
+    world = er.ArmWorld(robot(), box_scene())
+    tip = chain_of(world.robot, "wrist3")
+    upright = upright_world(world, tip, er.Upright(0.5), ends()[0, 0])
+    return [lambda a=a: upright.tilts(a) for a in ends()[:6]] + verdicts(upright, ends())
+
+
+def trees():
+    world = er.ArmWorld(robot(), box_scene())
+    budget = er.Budget(seconds=60.0, rounds=2)
+    asks = [lambda a=a, b=b: er.find_path(world, a, b) for a, b in ends()]
+    return [*asks, lambda: er.find_path(world, *ends()[0], budget=budget, improve=True)]
+
+
+def one_call():
+    where = link_poses(ur5(joints=3), ends()[1, 1][np.newaxis])[0, -1]
+    pose = er.PoseGoal(er.Pose(where[:3, 3]), position_only=True)
+    arm = robot()
+    return [
+        lambda: er.plan_arm("ur5", "box-reach", "home", "inside", certified=True),
+        lambda: er.plan_arm(arm, box_scene(), ends()[0, 0], pose),
+        lambda: er.plan_arm(arm, box_scene(), *ends()[2], 200),
+        lambda: er.configuration(er.load_robot("ur5"), "home", er.load_scene("box-reach")),
+    ]
+
+
+def points_and_rules():
+    world = er.ArmWorld(robot(), box_scene())
+    a, b = ends()[3]
+    return [
+        lambda: er.plan(world, a, b, 100),
+        lambda: er.plan(world, a, b, 100, search="lazy", rule=er.KNearest(12)),
+        lambda: fmt(world, a, b, 100),
+        lambda: er.plan_anytime(world, a, b, budget=er.Budget(samples=256)),
+    ]
+
+
+def a_kept_roadmap():
+    world = er.ArmWorld(robot(), box_scene())
+    kept = er.Roadmap.build(world.space, er.draw("uniform", 128, 3, rng=2))
+    here = kept.in_world(world)
+    asks = [lambda a=a, b=b: here.query(a, b) for a, b in ends()]
+    return [*asks, lambda: kept.in_world(world, lazy_milestones=True).query(*ends()[0])]
+
+
+def a_disk_on_a_map():
+    world = load_maze(2).world()
+    q = ends(world)
+    asks = [
+        lambda a=a, b=b: (world.may_connect(a, b), world.component(a), world.nearest_free(b))
+        for a, b in q[:4]
+    ]
+    return [*asks, *verdicts(world, q), *(lambda a=a, b=b: er.find_path(world, a, b) for a, b in q[:4])]
+
+
+def a_function():
+    world = er.FunctionWorld(er.SE2((0, 0), (1, 1)), lambda q: np.abs(q[:, 0] - 0.5) > 0.1 * q[:, 1], 0.02)
+    q = ends(world)
+    return [*verdicts(world, q[:2]), lambda: er.plan(world, *q[0], 40, search="lazy")]
+
+
+def a_chain():
+    world = ChainWorld(6)
+    return verdicts(world, ends(world))
+
+
+@cache
+def known():
+    """A robot's roadmap on its table."""
+    return er.make_roadmap(ur5(limits=math.pi, joints=3), TABLE, 40, k=4, gamma=0.0, ends=100)
+
+
+def a_robot_roadmap():
+    own = replace(known(), robot=robot())
+    scene = box_scene()
+
+    alone = [lambda a=a, b=b: own.in_scene(scene).plan(a, b) for a, b in ends()]
+    return [*alone, lambda: own.plan(scene, *ends()[1]), lambda: own.remember(ends()[0]).milestones]
+
+
+def samplers():
+    names = ("even", "hickernell", "korobov", "growing", "halton", "sobol", "lattice")
+    draws = [lambda name=name, d=d: er.draw(name, 64, d, rng=3) for name in names for d in (2, 3)]
+    return [*draws, lambda: MEASURES["hickernell"].rooted(er.draw("korobov", 101, 4))]
+
+
+def trajectories():
+    path = np.cumsum(ends()[:6, 0], axis=0)
+    limits = Limits((1.0,) * 3, (4.0,) * 3)
+
+    def made():
+        there = make_trajectory(path, limits)
+        return there.times, there.positions, there.velocities
+
+    return [made]
+
+
+def files(folder):
+    """Saved once, loaded by all, and saved by all."""
+    world = load_maze(2).world()
+    er.save_points(folder / "p.npz", er.draw("uniform", 64, 2, rng=2))
+    er.save_roadmap(folder / "r.npz", er.Roadmap.build(world.space, 64))
+    er.save_robot_roadmap(folder / "r.roadmap", known())
+    save_trajectory(folder / "t.json", make_trajectory(ends()[0], Limits((1.0,) * 3, (4.0,) * 3)))
+    return [
+        lambda: er.load_points(folder / "p.npz"),
+        lambda: er.load_roadmap(folder / "r.npz", world.space).edges,
+        lambda: er.load_robot_roadmap(folder / "r.roadmap").milestones,
+        lambda: load_trajectory(folder / "t.json").positions,
+        lambda: er.load_robot("arm7") == er.load_robot("arm7"),
+        lambda: er.load_scene("box-reach") == er.load_scene("box-reach"),
+        lambda: er.save_points(folder / "again.npz", er.draw("uniform", 64, 2, rng=2)),
+    ]
+
+
+VALUES = [
+    an_arm,
+    an_arm_without_lanes,
+    an_arm_among_clouds_and_meshes,
+    an_upright_arm,
+    trees,
+    one_call,
+    points_and_rules,
+    a_kept_roadmap,
+    a_disk_on_a_map,
+    a_function,
+    a_chain,
+    a_robot_roadmap,
+    samplers,
+    trajectories,
+]
+
+
+@pytest.mark.parametrize("made", VALUES, ids=lambda made: made.__name__)
+def test_eight_threads_get_the_answers_of_one(made):
+    expected = [bits(ask()) for ask in made()]
+    for answers in together(*made()):
+        assert [bits(answer) for answer in answers] == expected
+
+
+def test_eight_threads_read_and_write_files_as_one(tmp_path):
+    asks = files(tmp_path)
+    expected = [bits(ask()) for ask in asks]
+    for answers in together(*asks):
+        assert [bits(answer) for answer in answers] == expected
+    assert bits(er.load_points(tmp_path / "again.npz")) == bits(er.load_points(tmp_path / "p.npz"))
+
+
+@pytest.mark.parametrize("explore", [0, 20])
+def test_a_robot_roadmap_that_learns_gives_each_thread_the_path_that_it_asked_for(explore):
+    """What was learned before decides which path that is: each is looked at in double precision."""
+    arm, scene, paths = ur5(limits=math.pi, joints=3), box_scene(), {}
+    shared = known().in_scene(scene)
+    if explore:
+        shared.explore(explore)
+    # More than once: the later ones of what was learned.
+    asks = 4 * [lambda a=a, b=b: shared.plan(a, b) for a, b in ends()]
+    for results in together(*asks):
+        for (start, goal), result in zip(itertools.cycle(ends()), results, strict=False):
+            assert (result.status, result.proof) == (Status.SOLVED, "certified")
+            assert result.path[0].tolist() == start.tolist()
+            assert result.path[-1].tolist() == goal.tolist()
+            paths[result.path.tobytes()] = result.path
+    for path in paths.values():
+        states, _ = subdivide(path, shared.world.space, np.full(len(path) - 1, 10))
+        assert clearance(arm, scene, states).min() > 0.0
