@@ -19,6 +19,7 @@ from evenroad.trajectory.send import ASTRAY, AT_START, send_trajectory
 START = [0.1, -1.5, 0.3, -1.2, 0.2, 0.0]
 RUNNING, NORMAL, REDUCED = 7, 1, 2
 STATES = 10
+LIMITS = Limits((1.0,) * 6, (4.0,) * 6)
 
 
 class Arm:
@@ -115,7 +116,7 @@ def there(monkeypatch):
 
 def trajectory(away=0.02):
     """From `START`, every joint by so much."""
-    return make_trajectory([START, np.add(START, away)], Limits((1.0,) * 6, (4.0,) * 6))
+    return make_trajectory([START, np.add(START, away)], LIMITS)
 
 
 def sent(moves=None, **options):
@@ -196,7 +197,7 @@ def test_nothing_moves_unless_the_robot_runs(there, mode):
 def test_another_arm_is_not_moved_nor_faster_than_allowed(there, options, asked, said):
     arm = there(**options)
     with pytest.raises(InvalidValue, match=said):
-        sent(**asked)
+        sent(make_trajectory([START, np.add(START, 0.02 * np.eye(6)[1])], LIMITS), **asked)
     assert arm.places == []
 
 
