@@ -4,6 +4,7 @@ import trimesh
 
 from evenroad.geometry.distance import segment_distance
 from evenroad.robot import ArmWorld, Scene, load_model, load_robot, with_group
+from evenroad.robot.pairs import CONTAINED
 from tests.robot.mesh_arms import write_plate_arm
 from tests.robot.urdf_texts import LIMIT, joint, link, urdf, write
 
@@ -270,3 +271,47 @@ def test_pairs_of_a_hundred_bodies_are_soon_judged(tmp_path):
     joints = [joint(f"j{i}", f"l{i}", f"l{i + 1}", xyz="0 0 0.08") for i in range(99)]
     model = load_model(write(tmp_path, urdf(*links, *joints)))
     assert len(model.robot.pairs) == 100 * 99 // 2 - 99
+
+
+def _bellows(into, upper=0.4, glue="fixed"):
+    """A bellows of .3 m on a mast, so far in the base where the mast, which rises by `upper`, is low [m]."""
+    base = "<collision><geometry><box size='.4 .4 .3'/></geometry></collision>"
+    mast = "<collision><origin xyz='0 0 .3'/><geometry><box size='.05 .05 .1'/></geometry></collision>"
+    tube = f"<collision><origin xyz='0 0 {0.15 - into + 0.15}'/><geometry><box size='.1 .1 .3'/></geometry></collision>"
+    return urdf(
+        link("base", base), link("mast", mast), link("bellows", tube), link("arm", _ball(0.04, "0.3 0 0")),
+        joint("lift", "base", "mast", "prismatic", f"<limit lower='0' upper='{upper}'/>", "0 0 0", "0 0 1"),
+        joint("glue", "mast", "bellows", glue, "", "0 0 0", "0 0 1"),
+        joint("turn", "mast", "arm", "continuous", "", "0 0 .6", "0 0 1"),
+    )  # fmt: skip
+
+
+def test_a_bellows_that_goes_into_its_base_as_drawn_is_named_and_left_out_unless_an_srdf_says_otherwise(
+    tmp_path,
+):
+    path = write(tmp_path, _bellows(0.26))
+    model = load_model(path)
+    assert ("base", "bellows", CONTAINED) in model.dropped
+    assert model.notes == (
+        "'base' and 'bellows', of which one goes into the other as drawn, are not tested against each other: an SRDF"
+        " that disables other pairs alone has them tested",
+    )
+    assert load_model(path) == model, "as it comes out of the cache"
+    space = ArmWorld(model.robot, Scene("empty")).space
+    assert (
+        ArmWorld(model.robot, Scene("empty"))
+        .valid(space.from_cube(np.random.default_rng(0).random((50, 2))))
+        .all()
+    )
+    disabled = "<disable_collisions link1='base' link2='mast' reason='Adjacent'/>"
+    srdf = write(tmp_path, f"<robot name='arm'>{disabled}</robot>", "arm.srdf")
+    assert ("base", "bellows") in load_model(path, srdf=srdf).robot.pairs
+
+
+@pytest.mark.parametrize(("into", "upper"), [(0.14, 0.2), (0.18, 0.4)])
+def test_a_body_that_reaches_into_another_but_less_or_seldom_stays_tested(tmp_path, into, upper):
+    assert ("base", "bellows") in load_model(write(tmp_path, _bellows(into, upper))).robot.pairs
+
+
+def test_bodies_that_more_joints_move_on_each_other_stay_tested_however_deep_they_are(tmp_path):
+    assert ("base", "bellows") in load_model(write(tmp_path, _bellows(0.26, glue="continuous"))).robot.pairs

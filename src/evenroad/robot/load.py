@@ -194,7 +194,20 @@ def _build(
         drawn_only,
         pairs.always,
         pairs.never_free,
-        (*urdf.notes, *(() if srdf is None else srdf.notes), *group_notes(urdf, srdf, group)),
+        (
+            *urdf.notes,
+            *(() if srdf is None else srdf.notes),
+            *group_notes(urdf, srdf, group),
+            *map(_contained, pairs.contained),
+        ),
+    )
+
+
+def _contained(pair: tuple[str, str]) -> str:
+    first, second = pair
+    return (
+        f"{first!r} and {second!r}, of which one goes into the other as drawn, are not tested against each other: an"
+        " SRDF that disables other pairs alone has them tested"
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints
 from evenroad._rng import generator
+from evenroad.geometry.containment import share_inside
 from evenroad.geometry.hulls import Hull, Piece, halves
 from evenroad.robot.kernel.hull_trees import HullTrees, contacts, hull_trees
 from evenroad.robot.kinematics import KinematicTree, held_values, poses_at, with_mimics
@@ -20,8 +21,14 @@ TOUCHING = "touch in every sample"
 """Why a pair is not tested whose shapes are in contact in all of them."""
 HELD_TOUCHING = "touch in every sample with the other joints where they are held"
 """Why another is not, until these are held elsewhere."""
+CONTAINED = "one goes into the other as drawn"
+"""Why a third is not: a single joint moves one in and out of the other."""
+_MOSTLY = 0.5
+"""Of all samples in which such two touch, and of the volume that is inside in one of these."""
 _MOST_HULLS = 128
 """A link of so many is not split."""
+_PLACES = 20
+"""Of the samples in which two touch, so many tell how far one is inside of the other."""
 _ROUNDS = 12
 _LOOKED_AT = 400
 """Samples, of all of these, by which hulls are judged."""
@@ -38,7 +45,8 @@ class SelfPairs:
     """Pairs of links that are tested, in the order of the links; and the others with bodies, each with the reason.
 
     Pairs in `always` are tested and touch in every sample; those in `held` are dropped only for where joints outside of
-    the group are held.  `never_free` says which pair blocks most where some pair
+    the group are held, those in `contained` because one goes into the other as drawn.
+    `never_free` says which pair blocks most where some pair
     touches in every sample; else it is empty.
     """
 
@@ -46,6 +54,7 @@ class SelfPairs:
     dropped: tuple[tuple[str, str, str], ...]
     always: tuple[tuple[str, str], ...]
     held: tuple[tuple[str, str], ...]
+    contained: tuple[tuple[str, str], ...]
     hulls: tuple[Hull, ...]
     never_free: str
 
@@ -62,7 +71,9 @@ def self_pairs(
     with its reason; without these (None) neighbours in the tree (links without bodies between them do not count where
     only one joint between them moves).  With `drop_touching` those are, too, whose shapes touch in every one of 1000
     configurations drawn uniformly within the limits of all joints, and of as many where the joints outside of the group
-    are held.  Pairs that never touch are kept: a sample cannot prove that.
+    are held; and pairs that one joint moves on each other, which touch in most samples and in some of which most of one
+    is inside of the other, as of a bellows that its maker drew into the base.  Pairs that never touch are kept: a
+    sample cannot prove that.
     """
     order = [link for link in robot.links if link in pieces]
     reasons = _untested(robot, pieces, untested)
@@ -71,6 +82,9 @@ def self_pairs(
     always = samples.judge(candidates)
     if drop_touching:
         reasons |= always
+        joined = joined_by_one(robot, rigid_links(robot))
+        near = [pair for pair in candidates if pair not in always and joined(*pair)]
+        reasons |= dict.fromkeys(filter(samples.contains, near), CONTAINED)
     every = list(combinations(order, 2))
     tested = tuple(pair for pair in every if pair not in reasons)
     return SelfPairs(
@@ -78,6 +92,7 @@ def self_pairs(
         tuple((*pair, reasons[pair]) for pair in every if pair in reasons),
         tuple(pair for pair in always if pair not in reasons),
         tuple(pair for pair, why in reasons.items() if why == HELD_TOUCHING),
+        tuple(pair for pair, why in reasons.items() if why == CONTAINED),
         _unless_round(piece.hull for link in order for piece in samples.pieces[link]),
         samples.never_free(tested),
     )
@@ -123,6 +138,17 @@ def rigid_links(robot: KinematicTree) -> dict[str, str]:
     return first
 
 
+def joined_by_one(robot: KinematicTree, rigid: Mapping[str, str]) -> Callable[[str, str], bool]:
+    """Return what tells whether a single joint moves two links on each other."""
+    over = {joint.child: rigid[joint.parent] for joint in robot.joints if joint.kind != "fixed"}
+
+    def joined(first: str, second: str) -> bool:
+        one, two = rigid[first], rigid[second]
+        return over.get(one) == two or over.get(two) == one
+
+    return joined
+
+
 def bodied_above(robot: KinematicTree, bodied: Collection[str]) -> dict[str, tuple[str, int]]:
     """Return for every link the next one above it that has a body, if any, and how many joints between them move."""
     # Two joints with a length between them fold, and bring together what does not touch by construction.
@@ -137,7 +163,7 @@ class _Samples:
     """A robot in random configurations: which pairs touch there, by their hulls and by what these are around."""
 
     def __init__(self, robot: KinematicTree, pieces: dict[str, list[Piece]]) -> None:
-        self.pieces = pieces
+        self.pieces, self._shapes = pieces, dict(pieces)
         self.touching: dict[tuple[str, str], Ints] = {}
         self.looked_at = np.arange(0)
         poses = _sampled_poses(robot)
@@ -179,6 +205,21 @@ class _Samples:
         for _ in range(_ROUNDS):
             wrong = self._split({pair: rows for pair, rows in wrong.items() if len(rows) > _FEW * len(some)})
         return always
+
+    def contains(self, pair: tuple[str, str]) -> bool:
+        """Return whether two links touch in most samples and most of one is inside of the other in one of these."""
+        first, second = pair
+        rows = np.intersect1d(self.looked_at, self.touching[pair])
+        if len(rows) <= _MOSTLY * len(self.looked_at):
+            return False
+        rows = rows[:: 1 + len(rows) // _PLACES]
+        relative = np.asarray(np.linalg.inv(self._poses[second][rows]) @ self._poses[first][rows], np.float64)
+        back = np.asarray(np.linalg.inv(relative), np.float64)
+        shares = (
+            share_inside(self._shapes[first], self._shapes[second], relative),
+            share_inside(self._shapes[second], self._shapes[first], back),
+        )
+        return bool(np.max(shares) > _MOSTLY)
 
     def never_free(self, tested: Sequence[tuple[str, str]]) -> str:
         """Return which pair of those tested blocks most where one of them touches in all samples of the group."""
