@@ -2,23 +2,18 @@
 
     python -m benchmarks.arm_locked                  # cages that trees do not solve, of the problems of arm_planner
 
-What a plan itself proves in a tenth of a second (`evenroad.robot.locked`), with finer cells and more joints.
+What a plan itself proves in a tenth of a second (`evenroad.robot.separated`), with finer cells and more joints.
 """
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 
 from benchmarks.arm_problems import REPORTING, Pool, Problem, arm, problems
-from evenroad._arrays import Bools, Floats
-from evenroad.robot import Robot
 from evenroad.robot.arm_world import ArmWorld
-from evenroad.robot.locked import is_locked
-from evenroad.robot.locked import locked_by as quickly_locked_by
+from evenroad.robot.separated import THOROUGH, outer_bodies, shown_by
 
 TRIES = (
     (3, (0.35, 0.35, np.inf), 20_000_000),
@@ -31,18 +26,8 @@ TRIES = (
 
 def locked_by(problem: Problem) -> int:
     """Return by how many of the first joints it is proved that there is no path; 0 where that is not proved."""
-    world = ArmWorld(problem.robot, problem.scene)
-
-    def in_scene(robot: Robot) -> Callable[[Floats], Bools]:
-        return replace(world, robot=robot).valid
-
-    if joints := quickly_locked_by(in_scene, world.robot, problem.start, problem.goal):
-        return joints
-    for joints, reach, cells in TRIES:
-        for ends in ((problem.start, problem.goal), (problem.goal, problem.start)):
-            if is_locked(in_scene, world.robot, *ends, reach, cells):
-                return joints
-    return 0
+    bodies = outer_bodies(ArmWorld(problem.robot, problem.scene))
+    return shown_by(bodies, problem.start, problem.goal[np.newaxis], (), (*THOROUGH, *TRIES))[0]
 
 
 def main() -> None:

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -10,12 +9,12 @@ from scipy.ndimage import label
 
 from evenroad.geometry.shapes import Capsule
 from evenroad.roadmap import Budget, find_path
-from evenroad.robot import ArmWorld, Robot, Scene
+from evenroad.robot import ArmWorld, Robot, Scene, in_scene
 from evenroad.robot.joint import Joint, Mimic
-from evenroad.robot.locked import first_links, is_locked, locked_by, thinner
+from evenroad.robot.locked import BEYOND, SLACK, Bodies, first_links, piece_of, thinner
 from evenroad.robot.scene import Obstacle
-from evenroad.robot.trees import connect
-from tests.robot.kernel_arms import STRAIGHT, Z, random_scene, random_tree, seven_joint_arm
+from evenroad.robot.separated import apart
+from tests.robot.kernel_arms import STRAIGHT, Z, random_scene, random_tree
 
 
 def flat_arm(kind="revolute", joints=2, limit=3.0):
@@ -55,18 +54,23 @@ def free_places(world, rng, count):
     return q[world.valid(q)][:count]
 
 
-def in_scene(world):
-    return lambda robot: replace(world, robot=robot).valid
+def bodies(world):
+    return Bodies(world.robot, world.with_bodies, world.margin)
+
+
+def is_apart(world, a, b):
+    found = apart(world, a, b[np.newaxis])
+    return found is not None and found.proved
 
 
 def test_a_post_beside_the_upper_arm_locks_it():
     world = ArmWorld(flat_arm(), posts(at(1.0, 0.3)))
     a, b = np.array([0.0, 0.5]), np.array([2.0, 0.5])
-    assert locked_by(in_scene(world), world.robot, a, b) == 2
     assert not world.may_connect(a, b)
     result = find_path(world, a, b, budget=Budget(motions=300_000))
     assert result.status == "not_connected"
-    assert "proved" in result.message
+    assert result.message.startswith("proved: there is no path: joint joint0 alone cannot get there")
+    assert "shown for the robot's capsules" in result.message
     assert result.seconds["proof"] > 0.0
 
 
@@ -104,26 +108,138 @@ def test_what_is_proved_a_finer_flood_confirms(seed):
     found = 0
     for i in range(len(ends)):
         for j in range(i):
-            if locked_by(in_scene(world), world.robot, ends[i], ends[j]):
+            if is_apart(world, ends[i], ends[j]):
                 assert ours[i] != ours[j]
                 found += 1
     assert found > 0
 
 
-def test_nothing_is_proved_of_places_that_a_path_joins():
-    joined = 0
-    for seed in range(8):
-        robot = seven_joint_arm() if seed % 2 else random_tree(seed)
-        world = ArmWorld(robot, random_scene(seed, count=8, clear=0.5))
-        ends = free_places(world, np.random.default_rng(seed), 6)
-        for a, b in pairwise(ends):
-            if connect(world, a, b[np.newaxis], most_motions=5_000, seconds=20.0).goal < 0:
-                continue
-            joined += 1
-            for joints in range(2, min(world.space.dim, 3) + 1):
-                for reach in (np.inf, 0.5):
-                    assert not is_locked(in_scene(world), robot, a, b, (reach,) * joints, 8_000)
-    assert joined > 10
+def balls_alone(robot):
+    """The robot with a ball for each capsule, of which verdicts are what they are; without contacts of links."""
+    balls = tuple(replace(capsule, b=capsule.a, radius=0.06) for capsule in robot.capsules)
+    return replace(robot, capsules=balls, pairs=())
+
+
+def walk(world, rng, start, steps):
+    """Ends of motions that are proved free, one after the other, and places between them."""
+    here, seen = start, [start]
+    for _ in range(steps):
+        there = world.space.from_cube(rng.random((8, world.space.dim)))
+        far = rng.uniform(0.05, 1.0, (8, 1))
+        there = world.space.interpolate(np.broadcast_to(here, there.shape), there, far[:, 0])
+        free = world.motion_certified(np.broadcast_to(here, there.shape), there, 1e-6)
+        if free.any():
+            end = there[free][0]
+            shares = np.linspace(0.0, 1.0, 8)
+            seen += list(world.space.interpolate(*np.broadcast_arrays(here, np.tile(end, (8, 1))), shares))
+            here = end
+    return np.array(seen)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_walk_that_is_proved_free_stays_in_the_piece_that_it_starts_in(seed):
+    """Arms with joints that turn, turn on, slide and follow others, among obstacles near enough to lock some."""
+    rng = np.random.default_rng(seed)
+    robot = random_tree(seed)
+    robot = balls_alone(robot) if seed % 3 else robot
+    world = ArmWorld(robot, random_scene(seed, count=10, clear=0.4, spread=0.6))
+    starts = free_places(world, rng, 2)
+    for start in starts:
+        places = walk(world, rng, start, 25)
+        for joints, most in ((1, 300), (2, 3_000), (3, 6_000)):
+            if joints > world.space.dim:
+                break
+            for reach in (np.inf, 0.5):
+                piece = piece_of(bodies(world), start, (reach,) * joints, most)
+                if piece is not None:
+                    assert all(map(piece.holds, places))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_no_cell_is_blocked_that_holds_a_free_place_next_to_contact(seed):
+    """Of one ball on an arm that turns or slides, where a millimetre decides."""
+    rng = np.random.default_rng(seed)
+    kinds = ("revolute", "prismatic", "continuous")[seed % 3]
+    ends = {"revolute": (-3.0, 3.0), "prismatic": (-0.5, 0.5), "continuous": (-math.inf, math.inf)}[kinds]
+    axis = (1.0, 0.0, 0.0) if kinds == "prismatic" else Z
+    joint = Joint("joint", kinds, "base", "arm", (0.0, 0.0, 0.0), STRAIGHT, axis, *ends)
+    place = (0.0, 0.3, 0.0) if kinds == "prismatic" else (0.5, 0.0, 0.0)
+    length = 0.2 * (seed >= 3)
+    ball = Capsule(place, (place[0], place[1] + length, 0.0), 0.08, link="arm")
+    robot = Robot("one", ("base", "arm"), (joint,), (ball,), (), ("joint",))
+    posts_at = [(rng.uniform(-0.5, 0.5), 0.3) if kinds == "prismatic" else at(rng.uniform(-3, 3), 0.5)]
+    world = ArmWorld(robot, posts(*posts_at))
+    q = world.space.from_cube(rng.random((4_000, 1)))
+    ends = q[world.valid(q)], q[~world.valid(q)]
+    count = min(map(len, ends), default=0)
+    free, blocked = ends[0][:count], ends[1][:count]
+    for _ in range(40):
+        middle = 0.5 * (free + blocked)
+        valid = world.valid(middle)[:, np.newaxis]
+        free, blocked = np.where(valid, middle, free), np.where(valid, blocked, middle)
+    assert len(free) > 30
+    for most in (23, 40, 61, 90, 150):
+        for start in free[:: len(free) // 30]:
+            piece = piece_of(bodies(world), start, (np.inf,), most)
+            # None is said where it is blocked.
+            assert piece is not None
+            assert piece.holds(start)
+
+
+@pytest.mark.parametrize("turn", [-3.0, -1.0, 0.0, 2.0])
+def test_a_joint_that_turns_on_is_one_piece_all_the_way_round(turn):
+    """Blocked is a band of the second joint, by a ring; the first goes round as often as it likes."""
+    robot = flat_arm("continuous")
+    lift = replace(robot.joints[1], axis=(0.0, 1.0, 0.0), xyz=(0.0, 0.0, 0.0), lower=-1.5, upper=1.5)
+    robot = replace(
+        robot,
+        joints=(robot.joints[0], lift),
+        capsules=(Capsule((0.0, 0.0, 0.0), (0.5, 0.0, 0.0), 0.05, link="link1"),),
+    )
+    ring = [Obstacle.of(f"ball{i}", "sphere", (0.06,), (*at(0.2 * i, 0.4), 0.0)) for i in range(32)]
+    world = ArmWorld(robot, Scene("ring", tuple(ring)))
+    up, down = np.array([turn, 0.8]), np.array([turn + 2.0, -0.8])
+    assert not world.may_connect(up, down)
+    assert world.may_connect(up, np.array([turn + 3.1, 0.7]))
+    assert world.may_connect(up, np.array([turn - 3.1, 0.7]))
+
+
+def test_a_place_at_a_limit_is_in_a_cell_that_is_looked_at():
+    """Also where cells are so small that the first lies within what a configuration may be beyond its limit."""
+    robot = flat_arm(joints=1, limit=1e-4)
+    world = ArmWorld(robot, posts(at(1.0, 0.3)))
+    piece = piece_of(bodies(world), np.array([-1e-4]), (np.inf,), 2_000)
+    assert piece is not None
+    for q in (-1e-4, -1e-4 - 1e-5, 0.0, 1e-4, 1e-4 + 1e-5):
+        assert piece.holds(np.array([q]))
+    assert first_links(robot, 1).joints[0].upper == 1e-4 + BEYOND
+
+
+def test_a_scene_that_narrows_a_range_narrows_what_is_proved():
+    """The post is where the whole range leads around it the other way, the narrow one does not."""
+    robot = flat_arm(limit=6.0)
+    a, b = np.array([0.0, 0.5]), np.array([2.0, 0.5])
+    around = np.array([2.0 - math.tau, 0.5])
+    world = ArmWorld(robot, posts(at(1.0, 0.3)))
+    assert world.may_connect(a, around)
+    assert not world.may_connect(a, b)
+    narrow = Scene("narrow", world.scene.obstacles, limits={"joint0": (-2.0, 3.0)})
+    world = ArmWorld(in_scene(robot, narrow), narrow)
+    assert not world.may_connect(a, b)
+
+
+def test_links_of_the_first_joints_block_each_other_where_the_pair_is_tested():
+    """An upper arm that cannot pass its own base: shown without any obstacle, and soon."""
+    robot = flat_arm(limit=6.0)
+    base = Capsule((0.3, -0.3, -0.2), (0.3, -0.3, 0.2), 0.05, link="base")
+    robot = replace(robot, capsules=(*robot.capsules, base), pairs=(("base", "link0"),))
+    world = ArmWorld(robot, Scene("empty"))
+    a, b = np.array([0.0, 0.5]), np.array([-1.6, 0.5])
+    assert apart(world, a, b[np.newaxis], quickly=True).proved
+    result = find_path(world, a, b)
+    assert result.status == "not_connected"
+    free = ArmWorld(replace(robot, pairs=()), Scene("empty"))
+    assert free.may_connect(a, b)
 
 
 def test_what_a_later_joint_moves_is_gone_with_its_followers():
@@ -140,6 +256,8 @@ def test_what_a_later_joint_moves_is_gone_with_its_followers():
     first = first_links(robot, 2)
     assert first.group == ("joint0", "joint1")
     assert [capsule.link for capsule in first.capsules] == ["link0", "link1"]
+    # Not so the ones that a joint of the group moves, which stand before.
+    assert first_links(robot, 3).capsules == robot.capsules
 
 
 def test_joints_that_are_held_stay_where_they_are():
@@ -149,10 +267,9 @@ def test_joints_that_are_held_stay_where_they_are():
 
 def test_bodies_thinner_than_a_cell_moves_them_vanish_and_prove_nothing():
     robot = first_links(flat_arm(), 2)
-    assert thinner(robot, np.array([1.0, 1.0])).capsules == ()
+    assert thinner(robot, np.array([1.0, 1.0]), SLACK).capsules == ()
     world = ArmWorld(flat_arm(), posts(at(1.0, 0.3)))
-    a, b = np.array([0.0, 0.5]), np.array([2.0, 0.5])
-    assert not is_locked(in_scene(world), world.robot, a, b, (np.inf, np.inf), 4)
+    assert piece_of(bodies(world), np.array([0.0, 0.5]), (np.inf, np.inf), 4) is None
 
 
 def test_where_a_thinner_body_touches_its_cell_is_blocked_throughout():
@@ -160,7 +277,7 @@ def test_where_a_thinner_body_touches_its_cell_is_blocked_throughout():
     rng = np.random.default_rng(5)
     world = ArmWorld(flat_arm(), posts(at(1.0, 0.3), at(-1.5, 0.7), at(2.2, 0.9)))
     half = np.array([0.01, 0.02])
-    thin = replace(world, robot=thinner(world.robot, half))
+    thin = replace(world, robot=thinner(world.robot, half, SLACK))
     middles = rng.uniform(-2.9, 2.9, (20_000, 2))
     middles = middles[~thin.valid(middles)]
     assert len(middles) > 500

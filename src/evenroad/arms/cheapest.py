@@ -11,7 +11,7 @@ from evenroad.roadmap import Budget, PlanResult
 from evenroad.roadmap.answer import connected, gave_up, refusal
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.find_path import NO_POINTS, find_path, with_reasons
-from evenroad.roadmap.query import Query, read_places
+from evenroad.roadmap.query import AsksApart, Query, read_places
 from evenroad.space.path import path_length
 from evenroad.world import Connection, ConnectsItself, World
 
@@ -29,7 +29,14 @@ _WORTH_WHILE = 0.98
 
 
 def find_cheapest(
-    world: World, start: Floats, goals: Floats, *, budget: Budget, shorten: bool, improve: bool
+    world: World,
+    start: Floats,
+    goals: Floats,
+    *,
+    budget: Budget,
+    shorten: bool,
+    improve: bool,
+    apart: AsksApart | None = None,
 ) -> PlanResult:
     """Plan as `find_path`; of many goals not to the first one that trees happen to meet, but to a cheap one.
 
@@ -37,7 +44,7 @@ def find_cheapest(
     long.
     """
     if improve or len(goals) == 1 or not isinstance(world, ConnectsItself):
-        return find_path(world, start, goals, budget=budget, shorten=shorten, improve=improve)
+        return find_path(world, start, goals, budget=budget, shorten=shorten, improve=improve, apart=apart)
     query = Query(*read_places(start, goals, world.space), shorten=shorten, budget=budget)
     attempt = Attempt(world, query, NO_POINTS, "none", "none")
     attempt.planner = world.planner
@@ -63,7 +70,7 @@ def find_cheapest(
         return connected(attempt, replace(search.grown, path=search.best.path, goal=search.best.goal))
     if (rest := attempt.left()) is None:
         return with_reasons(world, gave_up(attempt, search.grown))
-    return find_path(world, start, query.goals, budget=rest, shorten=shorten)
+    return find_path(world, start, query.goals, budget=rest, shorten=shorten, apart=apart)
 
 
 class _Search:

@@ -128,9 +128,13 @@ def plan_arm(
     if points is not None and not isinstance(points, PointSet):
         points = draw("even", points, query.world.space.cube_dim, rng=rng)
 
+    apart = query.given.apart(query.world, straight=straight is not None)
+
     def plan_once(world: World, start: Floats, goals: Floats, shorten: bool) -> PlanResult:
         if points is None:
-            return find_cheapest(world, start, goals, budget=budget, shorten=shorten, improve=improve)
+            return find_cheapest(
+                world, start, goals, budget=budget, shorten=shorten, improve=improve, apart=apart
+            )
         return plan_on_points(world, start, goals, points, rule=rule, shorten=shorten, budget=budget)
 
     result = plan_ways(query.ends, straight, upright, plan_once, shorten=shorten)

@@ -121,6 +121,7 @@ def arm_query(
     if scene.near_ends and not given.unreached:
         ends = np.concatenate([first[np.newaxis], given.configurations])
         world = ArmWorld(robot, allowed_near_ends(robot, scene, ends), resolution=resolution)
+        given = replace(given, whole=not given.poses)
     return ArmQuery(world, first, given.configurations, given, source, model)
 
 

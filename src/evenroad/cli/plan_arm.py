@@ -83,11 +83,15 @@ def plan_arm(plan: PlanArm) -> int:
     points = planned_points(plan, world.space.cube_dim) if wants_points(plan) else None
     load_compiled_code(world, start, goals, points, rule, SEARCH)
 
+    apart = query.given.apart(query.world, straight=ways[0] is not None)
+
     def plan_once(world: World, start: Floats, goals: Floats, shorten: bool) -> PlanResult:
         if known is not None:
             return known.plan(start, goals, budget=budget, shorten=shorten)
         if points is None:
-            return find_cheapest(world, start, goals, budget=budget, shorten=shorten, improve=plan.improve)
+            return find_cheapest(
+                world, start, goals, budget=budget, shorten=shorten, improve=plan.improve, apart=apart
+            )
         return plan_on_points(world, start, goals, points, rule=rule, shorten=shorten, budget=budget)
 
     if (refused := unreached(query)) is not None:

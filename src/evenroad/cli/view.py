@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -18,7 +18,8 @@ from evenroad.io import load_plan
 from evenroad.points import draw
 from evenroad.roadmap import Budget, PlanResult
 from evenroad.roadmap.find_path import find_path
-from evenroad.robot import ArmWorld, find_robot, load_scene
+from evenroad.robot import find_robot, load_scene
+from evenroad.robot.goals import Goals
 from evenroad.robot.urdf_xml import RobotFile
 from evenroad.robot_roadmap.cell import day_and_all
 from evenroad.robot_roadmap.file import load_robot_roadmap
@@ -75,7 +76,8 @@ class View(RobotOptions):
         from evenroad.viz.page import ArmPage
 
         def plan(start: Floats, goal: Floats) -> PlanResult:
-            return self._planned(query.world, start, goal[np.newaxis])
+            goals = goal[np.newaxis]
+            return self._planned(replace(query, start=start, goals=goals, given=Goals(goals, ("",))))
 
         file = query.source
         if file is None and self.robot is not None:
@@ -95,7 +97,7 @@ class View(RobotOptions):
                 raise InvalidValue("give --robot, the arm that moves in this scene")
             goal = self.start if self.goal is None else self.goal
             query = arm_query(self.robot, self.world, self.start, goal, **options)
-            return query, self._planned(query.world, query.start, query.goals)
+            return query, self._planned(query)
         result, asked = load_plan(self.world)
         robot: Any = self.robot or asked.get("robot")
         kept = asked.get("roadmap")
@@ -112,13 +114,13 @@ class View(RobotOptions):
             robot, options = (roadmap.robot, {}) if robot is None else (robot, options)
         query = arm_query(robot, scene, result.start, list(result.goals), held=asked["held"], **options)
         if self.n is not None:
-            result = self._planned(query.world, query.start, query.goals)
+            result = self._planned(query)
         return query, result
 
-    def _planned(self, world: ArmWorld, start: Floats, goals: Floats) -> PlanResult:
-        budget = Budget(seconds=SECONDS)
+    def _planned(self, query: ArmQuery) -> PlanResult:
+        budget, world, start, goals = Budget(seconds=SECONDS), query.world, query.start, query.goals
         if self.n is None:
-            return find_path(world, start, goals, budget=budget)
+            return find_path(world, start, goals, budget=budget, apart=query.given.apart(world))
         return plan_on_points(
             world,
             start,

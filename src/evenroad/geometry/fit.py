@@ -180,9 +180,12 @@ def _rough(corners: Floats) -> Fitted:
     return rough_capsule_around(corners.reshape(-1, 3))
 
 
-def divided(corners: Floats) -> Floats:
-    """Return triangles, (t, 3, 3), of the same surface without long edges: halved at the longest, again and again."""
-    longest = _LONGEST_EDGE * float(np.ptp(corners.reshape(-1, 3), axis=0).max())
+def divided(corners: Floats, share: float = _LONGEST_EDGE) -> Floats:
+    """Return triangles, (t, 3, 3), of the same surface without long edges: halved at the longest, again and again.
+
+    None is longer than this share of the surface's extent.
+    """
+    longest = share * float(np.ptp(corners.reshape(-1, 3), axis=0).max())
     done = []
     while len(corners):
         lengths = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)

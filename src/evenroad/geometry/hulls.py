@@ -86,7 +86,7 @@ def _thinned(corners: Floats, little: float) -> tuple[Floats, float]:
     out = beyond.max(axis=1) > _ROUNDING
     # The nearest side is one of those that a point is farthest beyond; any of them bounds its distance.
     sides = few[hull.simplices[np.argsort(-beyond[out], axis=1)[:, :_SIDES_TRIED]]]
-    nearest = [_distances(corners[out], sides[:, k]) for k in range(sides.shape[1])]
+    nearest = [distances(corners[out], sides[:, k]) for k in range(sides.shape[1])]
     return few, float(np.min(nearest, axis=0).max(initial=_ROUNDING))
 
 
@@ -98,7 +98,7 @@ def _directions(count: int) -> Floats:
     return np.stack([around * np.cos(turn), around * np.sin(turn), z], axis=1)
 
 
-def _distances(points: Floats, sides: Floats) -> Floats:
+def distances(points: Floats, sides: Floats) -> Floats:
     """Return the distances of points, (n, 3), from triangles, (n, 3, 3)."""
     normal = np.cross(sides[:, 1] - sides[:, 0], sides[:, 2] - sides[:, 0])
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)

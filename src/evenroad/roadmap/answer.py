@@ -19,7 +19,17 @@ from evenroad.roadmap.search import BLOCKED, FREE, EdgeStates, components
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.space import Space
 from evenroad.space.path import path_length
-from evenroad.world import Connection, Explains, ExplainsStarts, Rechecks, Separates, Shortens, World
+from evenroad.world import (
+    Apart,
+    Connection,
+    Explains,
+    ExplainsStarts,
+    Rechecks,
+    Separates,
+    Shortens,
+    ShowsApart,
+    World,
+)
 
 PROVED = "proved: there is no path; start and goal lie in two components of the free space"
 
@@ -108,15 +118,26 @@ def gave_up(attempt: Attempt, connection: Connection) -> PlanResult:
     return replace(_result(attempt, Status.BUDGET_SPENT, message), counts=_counts_of(attempt, connection))
 
 
-def proved_apart(attempt: Attempt) -> PlanResult | None:
-    """Return the result where the world can prove that no path leads from the start to any goal; else None."""
+def shown_apart(attempt: Attempt, *, quickly: bool = False) -> PlanResult | None:
+    """Return the result where the world can find no path from the start to any goal, for a reason it gives; else None.
+
+    The status is ``not_connected`` where it is proved that there is none.
+    """
     world, query = attempt.world, attempt.query
-    if not isinstance(world, Separates):
-        return None
     with attempt.watch("proof"):
-        if any(world.may_connect(query.start, goal) for goal in query.goals[attempt.goals]):
+        if isinstance(world, ShowsApart):
+            ask = query.apart or (lambda start, goals, quick: world.apart(start, goals, quickly=quick))
+            found = ask(query.start, query.goals, quickly)
+        elif isinstance(world, Separates):
+            free = query.goals[attempt.goals]
+            joined = any(world.may_connect(query.start, goal) for goal in free)
+            found = None if joined else Apart(PROVED, proved=True)
+        else:
             return None
-    return _result(attempt, Status.NOT_CONNECTED, PROVED)
+    if found is None:
+        return None
+    status = Status.NOT_CONNECTED if found.proved else Status.BUDGET_SPENT
+    return _result(attempt, status, found.message)
 
 
 def _counts_of(attempt: Attempt, connection: Connection) -> dict[str, int]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import replace
-from itertools import count
+from itertools import count, pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -16,13 +16,13 @@ import numpy.typing as npt
 from evenroad._arrays import Floats
 from evenroad._clock import now
 from evenroad.points.pointset import Origin
-from evenroad.roadmap.answer import connected, gave_up, proved_apart, refusal
+from evenroad.roadmap.answer import connected, gave_up, refusal, shown_apart
 from evenroad.roadmap.anytime import plan_anytime
 from evenroad.roadmap.attempt import NO_LIMIT, Attempt
 from evenroad.roadmap.budget import Budget
-from evenroad.roadmap.query import Query, as_points, read_places
+from evenroad.roadmap.query import AsksApart, Query, as_points, read_places
 from evenroad.roadmap.result import PlanResult, Stage, Status
-from evenroad.world import ConnectsAnew, ConnectsItself, Explains, Separates, World
+from evenroad.world import ConnectsAnew, ConnectsItself, Explains, Separates, ShowsApart, World
 
 SECONDS = 5.0
 """Wall time of a budget that is not given."""
@@ -31,6 +31,8 @@ NO_BETTER = 1e-9
 """A path is not improved on that exceeds the shortest possible by no more than this share."""
 BEFORE_PROOF = 200_000
 """After so many motions a world is asked whether there can be a path at all: more than hard queries take."""
+BEFORE_QUICK_PROOF = 4_000
+"""After so many, one that can say so quickly: most queries take fewer."""
 LEAST_MOTIONS, LONGER = 1000, 4
 """A round gives up after so many motions, or after so many times those of the first path, whichever is more."""
 
@@ -43,11 +45,12 @@ def find_path(
     budget: Budget | None = None,
     shorten: bool = True,
     improve: bool = False,
+    apart: AsksApart | None = None,
 ) -> PlanResult:
     """Plan until there is a path, it is proved that there is none, or the budget is spent.
 
-    A world that connects itself plans.  Where it finds nothing, one that separates components is asked whether there
-    can be a path at all.  Then, and with any other world, points are added until they suffice.
+    A world that connects itself plans.  Where it finds nothing, one that can tell is asked whether there can be a path
+    at all.  Then, and with any other world, points are added until they suffice.
 
     Parameters
     ----------
@@ -58,27 +61,34 @@ def find_path(
     improve : bool
         Go on after the first path, until the budget is spent, and return the best of all.  The count ``rounds`` then
         says how often it was planned anew, and `stages` when better paths were found.
+    apart : callable, optional
+        Asked in place of the world what keeps the start from the goals, where they are not all that would do: it is
+        given the start, (dim,), the goals, (g, dim), and whether to be quick, and returns an
+        :class:`evenroad.world.Apart` or None.
 
     The status ``not_connected`` is proved; without path and proof it is ``budget_spent``, and the message says where
-    start or goal can hardly leave their places.  InvalidValue if one of them does not have the dimension of the space,
-    or is not finite.
+    start or goal can hardly leave their places, or what a proof falls short of.  InvalidValue if one of them does not
+    have the dimension of the space, or is not finite.
     """
     budget = budget or Budget(seconds=SECONDS)
-    query = Query(*read_places(start, goal, world.space), shorten=shorten, budget=budget)
+    query = Query(*read_places(start, goal, world.space), shorten=shorten, budget=budget, apart=apart)
     attempt = Attempt(world, query, NO_POINTS, "none", "none")
     if isinstance(world, ConnectsItself):
         attempt.planner = world.planner
         if (refused := refusal(attempt)) is not None:
             return refused
-        most = BEFORE_PROOF if isinstance(world, Separates) else NO_LIMIT
-        connection = attempt.connect(world, most=most)
-        if connection.goal < 0:
-            if (apart := proved_apart(attempt)) is not None:
-                return apart
-            if connection.motions >= most and attempt.left() is not None:
-                # The same search again, and further.
-                attempt.motions_checked -= connection.motions
-                connection = attempt.connect(world)
+        connection = attempt.connect(world, most=_stages(world)[0][0])
+        for (most, quickly), (more, _) in pairwise(_stages(world)):
+            if connection.goal >= 0:
+                break
+            ended = connection.motions < most or attempt.left() is None
+            if (apart_for := shown_apart(attempt, quickly=quickly and not ended)) is not None:
+                return apart_for
+            if ended:
+                break
+            # The same search again, and further.
+            attempt.motions_checked -= connection.motions
+            connection = attempt.connect(world, most=more)
         if connection.goal >= 0:
             result = connected(attempt, connection)
             return _improved(attempt, result) if improve else result
@@ -88,6 +98,14 @@ def find_path(
     until = "budget" if improve else "solved"
     grown = plan_anytime(world, query.start, query.goals, until=until, budget=budget, shorten=shorten)
     return with_reasons(world, grown)
+
+
+def _stages(world: World) -> list[tuple[int, bool]]:
+    """Return after how many motions a world is asked whether there can be a path, and whether quickly; then no more."""
+    last = [(NO_LIMIT, False)]
+    if isinstance(world, ShowsApart):
+        return [(BEFORE_QUICK_PROOF, True), (BEFORE_PROOF, False), *last]
+    return [(BEFORE_PROOF, False), *last] if isinstance(world, Separates) else last
 
 
 def _improved(attempt: Attempt, first: PlanResult) -> PlanResult:

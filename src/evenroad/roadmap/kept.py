@@ -14,7 +14,7 @@ from evenroad._arrays import Floats, Ints, Ints32
 from evenroad._shared import OwnLock
 from evenroad.errors import InvalidValue
 from evenroad.points.pointset import PointSet
-from evenroad.roadmap.answer import answer, connected, proved_apart, refusal
+from evenroad.roadmap.answer import answer, connected, refusal, shown_apart
 from evenroad.roadmap.attempt import Attempt
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.neighbours import Surroundings, nearest_of
@@ -234,7 +234,7 @@ class WorldRoadmap:
     def _connect(self, attempt: Attempt, states: EdgeStates) -> PlanResult | None:
         """Return the result of the world's own planner, or None where there is none, or it finds nothing."""
         world = self.world
-        if self._edge_cost is not None or not isinstance(world, ConnectsItself) or proved_apart(attempt):
+        if self._edge_cost is not None or not isinstance(world, ConnectsItself) or shown_apart(attempt):
             return None
         attempt.motions_checked += states.motions_checked
         connection = attempt.connect(world)

@@ -22,6 +22,7 @@ from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.rules import Rule
 from evenroad.roadmap.search import FINDERS, Finder, find_any
 from evenroad.space import SO3, Box, Product, Space
+from evenroad.world import Apart
 
 LINKS = 100
 """Milestones that start and goals are linked to by default, besides those of the rule.
@@ -42,12 +43,16 @@ EdgeCost: TypeAlias = Callable[[Floats, Floats], Floats]
 BOUND = 1.0 - 1e-9
 """Costs are at least this share of the length: room for the rounding of a cost that should be the length."""
 
+AsksApart: TypeAlias = Callable[[Floats, Floats, bool], Apart | None]
+"""Says of a start, (dim,), and goals, (g, dim), what keeps them apart, quickly or not: see ``world.ShowsApart``."""
+
 
 @dataclass(frozen=True, eq=False)
 class Query:
     """From where to where, and how; never changed.
 
-    `start`, (dim,), and `goals`, (g, dim), are what :func:`read_places` gives; the others are as in :func:`plan`.
+    `start`, (dim,), and `goals`, (g, dim), are what :func:`read_places` gives; the others are as in :func:`plan`, and
+    `apart` is as in :func:`find_path`.
     UnknownName if there is no such search.
     """
 
@@ -60,6 +65,7 @@ class Query:
     edge_cost: EdgeCost | None = None
     links: int | None = None
     budget: Budget = field(default_factory=Budget)
+    apart: AsksApart | None = None
 
     def __post_init__(self) -> None:
         require_known("search", self.search, FINDERS)

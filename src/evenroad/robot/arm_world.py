@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -23,17 +24,17 @@ from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
 from evenroad.robot.kernel.selftest import lanes_failure
 from evenroad.robot.kernel.surface_scalar import fixed_contact, scalar_check_address
 from evenroad.robot.known_robots import prepared
-from evenroad.robot.locked import locked_by
 from evenroad.robot.planes import with_planes
 from evenroad.robot.robot import Robot, within_scene
 from evenroad.robot.scene import Scene, limits_in_words
+from evenroad.robot.separated import apart
 from evenroad.robot.tree_sequences import shifted_cube_points
 from evenroad.robot.trees import MOST_MOTIONS, SECONDS, connect, shorten
 from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.space.joints import SLACK
 from evenroad.world.bisection import require_few_segments
-from evenroad.world.protocol import Connection
+from evenroad.world.protocol import Apart, Connection
 
 _BACKENDS = ("auto", "lanes", "scalar")
 
@@ -256,16 +257,31 @@ class ArmWorld:
         sequence = shifted_cube_points(self._space.dim, variant)
         return connect(self, start, goals, most_motions=most_motions, seconds=seconds, sequence=sequence)
 
-    def may_connect(self, a: Floats, b: Floats) -> bool:
-        """Return False where the first joints alone prove that no path joins two free places, (dim,) each.
+    def apart(self, start: Floats, goals: Floats, *, quickly: bool = False) -> Apart | None:
+        """Return what keeps the start, (dim,), from all goals, (g, dim); None says nothing.
 
-        True says nothing.  Takes a tenth of a second.  See :mod:`evenroad.robot.locked`.
+        The first joints alone show it, in tenths of a second, `quickly` in some milliseconds.  It is proved for bodies
+        inside of the robot's true shapes, see :mod:`evenroad.robot.separated`.
         """
-        ends = as_batch("a and b", np.array([a, b]), self._space.dim)
-        # Its cells end at the limits, which an end may exceed by a little: by less than its slack.
-        low, high, period = self.bounds
-        ends = np.where(np.isfinite(period), ends, np.clip(ends, low, high))
-        return not locked_by(lambda robot: replace(self, robot=robot).valid, self.robot, *ends)
+        ends = as_batch("start and goals", np.concatenate([np.atleast_2d(start), goals]), self._space.dim)
+        return apart(self, ends[0], ends[1:], quickly=quickly)
+
+    def may_connect(self, a: Floats, b: Floats) -> bool:
+        """Return False where it is proved that no path joins two free places, (dim,) each; True says nothing."""
+        found = self.apart(a, np.atleast_2d(b))
+        return found is None or not found.proved
+
+    @property
+    def margin(self) -> float:
+        """Bodies nearer to each other than this may touch by single precision [m]."""
+        clouds = [each.body.radius for each in self.scene.obstacles if isinstance(each.body, PointCloud)]
+        pairs = float(self.robot_tables.pair_margins.max(initial=0.0))
+        return max(self.tables.margin, pairs, 1e-6 * max(clouds, default=0.0))
+
+    def with_bodies(self, robot: Robot) -> Callable[[Floats], Bools]:
+        """Return what tells of configurations, (n, dim), which are free for a robot with other bodies, or a group."""
+        # Ranges are those of the robot.
+        return replace(self, robot=robot, scene=replace(self.scene, limits={})).valid
 
     def shorten(self, path: Floats) -> tuple[Floats, int]:
         """Return a path that is not longer and whose new motions are proved free, and how many were looked at.

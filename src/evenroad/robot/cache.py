@@ -86,14 +86,20 @@ def robot_of(record: dict[str, Any]) -> Robot:
     joints = [joint | {"mimic": joint["mimic"] and Mimic(**joint["mimic"])} for joint in record.pop("joints")]
     hulls = [Hull(each["points"], each["radius"], each["link"]) for each in record.pop("hulls")]
     planes = [Plane(**_with_tuples(each)) for each in record.pop("planes", ())]
-    capsules = [(each["a"], each["b"], each["radius"], each["link"]) for each in record.pop("capsules")]
+    # Where a file does not know what lies within the shapes, nothing does.
+    inner = record.pop("inner", [])
     return Robot(
         joints=tuple(Joint(**_with_tuples(joint)) for joint in joints),
-        capsules=tuple(Capsule(a, b, radius, link=link) for a, b, radius, link in capsules),
+        capsules=_capsules(record.pop("capsules")),
         hulls=tuple(hulls),
         planes=tuple(planes),
+        inner=None if inner is None else _capsules(inner),
         **_with_tuples(record),
     )
+
+
+def _capsules(records: Iterable[dict[str, Any]]) -> tuple[Capsule, ...]:
+    return tuple(Capsule(each["a"], each["b"], each["radius"], link=each["link"]) for each in records)
 
 
 def _with_tuples(value: Any) -> Any:

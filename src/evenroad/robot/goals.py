@@ -15,6 +15,8 @@ from evenroad.robot.chain import chain_of, default_tip, frame_pose
 from evenroad.robot.inverse_kinematics import Checks, Reached, misses, reach, task_of
 from evenroad.robot.pose_goal import PoseGoal, as_pose_goal
 from evenroad.robot.robot import Robot
+from evenroad.robot.separated import InScene, apart
+from evenroad.world.protocol import Apart
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +31,9 @@ class Goals:
     """The poses, and what reaches them."""
     seconds: float = 0.0
     """That took."""
+    whole: bool = True
+    """Whether the world is the same for postures that were not found: it is not where contacts are allowed near these.
+    """
 
     @property
     def unreached(self) -> str:
@@ -41,6 +46,21 @@ class Goals:
     def in_collision(self) -> bool:
         """Whether some pose is reached, but in collision each time."""
         return any(reached.in_collision for _, reached in self.poses)
+
+    def apart(
+        self, world: InScene, *, straight: bool = False
+    ) -> Callable[[Floats, Floats, bool], Apart | None]:
+        """Return what says of a start, (dim,), and goals, (g, dim), what keeps them apart, quickly or not.
+
+        Where poses are among the goals, it is proved of all postures that reach them.  Of plans between `straight`
+        lines nothing is: others may lead to other postures.
+        """
+        poses = [] if straight else [goal for goal, _ in self.poses]
+
+        def ask(start: Floats, goals: Floats, quickly: bool) -> Apart | None:
+            return apart(world, start, goals, poses, quickly=quickly, whole=self.whole and not straight)
+
+        return ask
 
     def records(self, world: Checks, end: Floats | None) -> list[dict[str, Any]]:
         """Return the poses as plain values; `end`, (dim,), is where a path ends: by how much it misses them."""

@@ -9,6 +9,7 @@ from evenroad._checks import require_known
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.fit import fit_capsules
 from evenroad.geometry.hulls import Hull, piece_of
+from evenroad.geometry.inner import inner_of
 from evenroad.geometry.pose import IDENTITY
 from evenroad.geometry.shapes import Capsule, Shape
 from evenroad.robot.joint import Joint
@@ -54,6 +55,7 @@ class HeldParts(NamedTuple):
     capsules: tuple[Capsule, ...]
     hull: Hull
     pairs: tuple[tuple[str, str], ...]
+    inner: tuple[Capsule, ...] | None
 
 
 def held_parts(robot: KinematicTree, held: HeldObject, *, neighbours: bool) -> HeldParts:
@@ -78,7 +80,7 @@ def held_parts(robot: KinematicTree, held: HeldObject, *, neighbours: bool) -> H
         if joints == 1:
             spared.add(above)
     pairs = tuple((link, held.name) for link in robot.links if link in bodied - spared)
-    return HeldParts(joint, fit_capsules(body), piece_of(body).hull, pairs)
+    return HeldParts(joint, fit_capsules(body), piece_of(body).hull, pairs, inner_of([body]))
 
 
 def same_bodies(robot: KinematicTree, held: HeldObject) -> bool:

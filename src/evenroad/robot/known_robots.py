@@ -62,7 +62,7 @@ class Prepared(NamedTuple):
 _recent: dict[int, tuple[Robot, dict[str, float], Prepared]] = {}
 """By identity, which costs less to look up than a key of a robot's values; a dictionary is the only part of a robot
 that can change."""
-_FIELDS = tuple(each.name for each in fields(Robot) if each.name not in ("states", "held"))
+_FIELDS = tuple(each.name for each in fields(Robot) if each.name not in ("states", "held", "inner"))
 
 
 def prepared(robot: Robot) -> Prepared:

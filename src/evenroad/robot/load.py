@@ -15,7 +15,8 @@ from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.geometry.fit import fit_capsules
 from evenroad.geometry.fit_points import union_volume
 from evenroad.geometry.hulls import Piece, piece_of
-from evenroad.geometry.shapes import Capsule, Mesh
+from evenroad.geometry.inner import inner_of
+from evenroad.geometry.shapes import Capsule, Mesh, Shape
 from evenroad.robot.apart import held_apart
 from evenroad.robot.cache import cached, keep, key_of
 from evenroad.robot.groups import choose_group, chosen_states, group_notes
@@ -172,6 +173,8 @@ def _build(
         group=chosen,
         states={} if srdf is None else chosen_states(srdf, chosen, group),
         planes=urdf.planes,
+        # What the user gives in place of a link's shapes is what the user says that they are.
+        inner=inner_of(_shapes(urdf, given)),
     )
     # Of those that a robot's own file lets touch, each has its reason; those of an SRDF have one for all.
     untested = {frozenset((a, b)): why for a, b, why in urdf.untested or ()}
@@ -226,11 +229,16 @@ def _capsules(
 
 def _pieces(urdf: Urdf, given: dict[str, tuple[Capsule, ...]]) -> dict[str, list[Piece]]:
     """Return what every link with a body consists of: the capsules given, or the shapes of the URDF."""
-    shapes = [shape for shape in urdf.shapes if shape.link not in given]
     pieces: dict[str, list[Piece]] = {}
-    for shape in (*shapes, *(capsule for capsules in given.values() for capsule in capsules)):
+    for shape in _shapes(urdf, given):
         pieces.setdefault(shape.link, []).append(piece_of(shape))
     return pieces
+
+
+def _shapes(urdf: Urdf, given: dict[str, tuple[Capsule, ...]]) -> list[Shape]:
+    """Return the shapes of all links: the capsules given, or those of the URDF."""
+    shapes = [shape for shape in urdf.shapes if shape.link not in given]
+    return [*shapes, *(capsule for capsules in given.values() for capsule in capsules)]
 
 
 def _link_body(urdf: Urdf, link: str, capsules: tuple[Capsule, ...], given: bool) -> LinkBody:

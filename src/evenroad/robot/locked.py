@@ -1,99 +1,134 @@
-"""Proofs that an arm cannot get from one configuration to another: its first links alone cannot.
+"""Proofs that an arm cannot get from one place to another: its first joints alone cannot.
 
 The first joints move the first links, whatever the others do.  Their ranges are cut into cells.  A cell is blocked
-throughout where its middle is, with capsules thinner by what half a cell can move them, and by how much the spheres of
-the check may be thicker.  If start and goal lie in two pieces of what is left, there is no path.  Contacts of links
-with each other are left out, which only makes more of it free.
+throughout where its middle is, with bodies thinner by what half a cell can move them, and by how much the spheres of
+the check may be thicker.  What is left falls into pieces, and no path leaves the piece that it starts in.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import label
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 
 from evenroad._arrays import Bools, Floats
-from evenroad.robot.kernel.placed_capsules import LARGEST_EXCESS
-from evenroad.robot.known_robots import prepared
-from evenroad.robot.robot import Robot, with_group
-from evenroad.space import JointSpace
-
-TRIES = (
-    (2, (np.inf, np.inf), 60_000),
-    (3, (np.inf, np.inf, np.inf), 500_000),
-    (3, (0.35, 0.35, np.inf), 500_000),
-)
-"""How many of the first joints are looked at, how far cells reach from an end along each [rad or m], how many cells.
-Together they take a tenth of a second."""
+from evenroad.robot.kernel.moving_tree import moving_tree
+from evenroad.robot.kernel.placed_capsules import LARGEST_EXCESS, place_capsule, speed_bounds
+from evenroad.robot.known_robots import joint_space
+from evenroad.robot.robot import Robot
 
 SLACK = 1e-4
-"""More than a verdict of single precision can be wrong by [m]."""
-
+"""Bodies are thinner by this, and by four times what single precision may be wrong by, than rounding asks for [m]."""
+BEYOND = 1e-4
+"""Cells reach so far beyond the limits of joints, where a configuration may be by rounding [rad or m]."""
 _SLOWEST = 0.05
 """Joints that move the links less than this are cut no coarser [m/rad]."""
-
-InScene = Callable[[Robot], Callable[[Floats], Bools]]
-"""Says of a robot which of its configurations, (n, dim), are free in the scene that is asked about: (n,)."""
-
-
-def locked_by(in_scene: InScene, robot: Robot, a: Floats, b: Floats) -> int:
-    """Return by how many of a robot's first joints it is proved that no path joins two free places; 0: by none."""
-    for joints, reach, cells in TRIES:
-        if joints <= len(robot.group):
-            # A grid around the one end may show what one around the other does not.
-            ends = ((a, b), (b, a)) if np.isfinite(reach).any() else ((a, b),)
-            if any(is_locked(in_scene, robot, *each, reach, cells) for each in ends):
-                return joints
-    return 0
+_AT_ONCE = 65_536
+"""Cells."""
 
 
-def is_locked(
-    in_scene: InScene, robot: Robot, a: Floats, b: Floats, reach: tuple[float, ...], cells: int
-) -> bool:
-    """Return whether the first joints, as many as `reach` has, show that no path joins two free places.
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """A robot whose `capsules` are tested in a scene, and by how much these verdicts may be wrong, >= 0 [m].
 
-    So many cells lie around `a`; `reach` says how far they go along each joint, to its limits at most.
+    `in_scene` says of such a robot which of its configurations, (n, dim), are free there: (n,).
     """
-    first = first_links(robot, len(reach))
+
+    robot: Robot
+    in_scene: Callable[[Robot], Callable[[Floats], Bools]]
+    margin: float
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Equal cells of the ranges of some joints: where they begin and end along each, and how many [rad or m].
+
+    `period` is inf where a joint does not wrap.
+    """
+
+    low: Floats
+    high: Floats
+    count: npt.NDArray[np.int64]
+    period: Floats
+
+    @property
+    def size(self) -> Floats:
+        """Their sides [rad or m]."""
+        return (self.high - self.low) / self.count
+
+    @property
+    def whole(self) -> Bools:
+        """Along which joints, of those that wrap, they go all the way round."""
+        return self.high - self.low >= self.period * (1.0 - 1e-12)
+
+    @property
+    def middles(self) -> list[Floats]:
+        """The middles along each joint."""
+        places = zip(self.low, self.size, self.count, strict=True)
+        return [low + size * (np.arange(count) + 0.5) for low, size, count in places]
+
+    def cell(self, q: Floats) -> tuple[int, ...] | None:
+        """Return which cell a place, (joints,), is in; None where it is in none."""
+        q = np.where(np.isfinite(self.period), self.low + np.mod(q - self.low, self.period), q)
+        number = np.floor((q - self.low) / self.size).astype(int)
+        # Rounding must not put what is on the rim outside.
+        inside = (number >= -1) & (number <= self.count)
+        return tuple(np.clip(number, 0, self.count - 1).tolist()) if inside.all() else None
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """All cells of a robot's first joints that a path may come to from where it starts."""
+
+    cells: Cells
+    reached: Bools
+
+    def holds(self, q: Floats) -> bool:
+        """Return whether a configuration, (dim,), is in one of them."""
+        cell = self.cells.cell(q[: len(self.cells.count)])
+        return cell is not None and bool(self.reached[cell])
+
+
+def piece_of(bodies: Bodies, place: Floats, reach: tuple[float, ...], most: int) -> Piece | None:
+    """Return the cells that a robot's first joints, as many as `reach` has, cannot leave from a free place, (dim,).
+
+    About so many cells lie around the place; `reach` says how far along each joint, to its limits at most [rad or m].
+    None where nothing is shown: by bodies too thin for such cells, or as a path may lead out of all of them.
+    """
+    first = first_links(bodies.robot, len(reach))
     if not first.capsules:
-        return False
-    space, speeds = prepared(first).space, prepared(first).tables.speeds
-    low, high, end = _window(space, a[: len(reach)], np.array(reach))
-    # Half a cell along any joint moves the links by about as much, the finer the better.
-    fastest = np.maximum(speeds.max(axis=0), _SLOWEST) * (high - low)
-    count = np.ceil(fastest * (cells / np.prod(fastest)) ** (1 / len(reach))).astype(int)
-    count = np.maximum(count, 2)
-    size = (high - low) / count
-    thin = thinner(first, 0.5 * size)
+        return None
+    cells = _cells_around(first, place[: len(reach)], np.array(reach), most)
+    thin = thinner(first, 0.5 * cells.size, SLACK + 4.0 * bodies.margin)
     if not thin.capsules:
-        return False
-    pieces, _ = label(_free_cells(in_scene(thin), low, size, count))
-    number = pieces[_cell(end, low, size, count)]
-    if number == 0:
-        # The end would be blocked: it is not as free as was said.
-        return False
-    piece = pieces == number
-    other = np.array(b[: len(reach)])
-    period = space.flat.period
-    wraps = np.isfinite(period)
-    other[wraps] = low[wraps] + np.mod(other[wraps] - low[wraps], period[wraps])
-    if ((low <= other) & (other <= high)).all() and piece[_cell(other, low, size, count)]:
-        return False
-    # It must not leave by a side of the cells that is no limit of a joint.
+        return None
+    number = _joined(label(_free_cells(bodies.in_scene(thin), cells))[0], cells.whole)
+    cell = cells.cell(place[: len(reach)])
+    # A place in no cell, or in a blocked one, is not as free as was said.
+    if cell is None or number[cell] == 0:
+        return None
+    reached = number == number[cell]
+    space = joint_space(first)
+    open_below = np.where(np.isfinite(cells.period), ~cells.whole, cells.low > space.low)
+    open_above = np.where(np.isfinite(cells.period), ~cells.whole, cells.high < space.high)
     for k in range(len(reach)):
-        sides = np.moveaxis(piece, k, 0)[[0, -1]].reshape(2, -1).any(axis=1)
-        if (sides[0] and (wraps[k] or low[k] > space.low[k])) or (
-            sides[1] and (wraps[k] or high[k] < space.high[k])
-        ):
-            return False
-    return True
+        # It must not leave by a side of the cells that is no limit of a joint.
+        below, above = np.moveaxis(reached, k, 0)[[0, -1]].reshape(2, -1).any(axis=1)
+        if (below and open_below[k]) or (above and open_above[k]):
+            return None
+    return Piece(cells, reached)
 
 
 def first_links(robot: Robot, joints: int) -> Robot:
-    """Return the robot with what its first joints alone move: the others are held, the bodies behind them are gone."""
+    """Return the robot with what its first joints alone move: the others are held, the bodies behind them are gone.
+
+    Its limits are a little wider: no cell is blocked for being beyond them.
+    """
     moved = set(robot.group[joints:])
     while (
         following := {each.name for each in robot.joints if each.mimic and each.mimic.joint in moved} - moved
@@ -103,43 +138,77 @@ def first_links(robot: Robot, joints: int) -> Robot:
     for joint in robot.joints:
         if joint.parent in behind or joint.name in moved:
             behind.add(joint.child)
-    capsules = tuple(capsule for capsule in robot.capsules if capsule.link not in behind)
-    held = with_group(robot, robot.group[:joints], robot.held)
-    return replace(held, capsules=capsules, pairs=(), hulls=(), resting=())
+    group = robot.group[:joints]
+    return replace(
+        robot,
+        joints=tuple(
+            replace(joint, lower=joint.lower - BEYOND, upper=joint.upper + BEYOND)
+            if joint.name in group
+            else joint
+            for joint in robot.joints
+        ),
+        capsules=tuple(capsule for capsule in robot.capsules if capsule.link not in behind),
+        pairs=tuple(pair for pair in robot.pairs if behind.isdisjoint(pair)),
+        group=group,
+        hulls=(),
+        resting=(),
+        inner=None,
+    )
 
 
-def thinner(robot: Robot, half: Floats) -> Robot:
-    """Return the robot with capsules so thin that where one touches, it does throughout the cell; some vanish.
+def thinner(robot: Robot, half: Floats, slack: float) -> Robot:
+    """Return the robot with bodies so thin that where one touches, it does throughout the cell; some vanish.
 
     `half`, (dim,), are half the sides of a cell [rad or m].
     """
+    tree = moving_tree(robot)
+    placed = [place_capsule(capsule, tree) for capsule in robot.capsules]
+    moved = speed_bounds(tree, placed, [], robot)[0] @ half
     kept = []
-    for capsule in robot.capsules:
-        speeds = prepared(replace(robot, capsules=(capsule,))).tables.speeds
-        radius = (capsule.radius - float((speeds @ half)[0]) - SLACK) / LARGEST_EXCESS
+    for capsule, far in zip(robot.capsules, moved.tolist(), strict=True):
+        radius = capsule.radius - far - slack
+        # Spheres that cover it are larger, unless it is one.
+        radius /= 1.0 if capsule.a == capsule.b else LARGEST_EXCESS
         kept += [replace(capsule, radius=radius)] if radius > 0.0 else []
     return replace(robot, capsules=tuple(kept))
 
 
-def _window(space: JointSpace, end: Floats, reach: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return lowest and highest values of the cells, and the end among them; around it where a joint wraps."""
-    low, high, period = np.array(space.low), np.array(space.high), space.flat.period
+def _cells_around(first: Robot, place: Floats, reach: Floats, most: int) -> Cells:
+    """Return about so many cells around a place; where a joint wraps, all the way round at most."""
+    space = joint_space(first)
+    period = space.flat.period
     reach = np.minimum(reach, 0.5 * period)
-    low = np.where(np.isfinite(period), end - reach, np.maximum(low, end - reach))
-    high = np.where(np.isfinite(period), end + reach, np.minimum(high, end + reach))
-    return low, high, end
+    wraps = np.isfinite(period)
+    low = np.where(wraps, place - reach, np.maximum(space.low, place - reach))
+    high = np.where(wraps, place + reach, np.minimum(space.high, place + reach))
+    tree = moving_tree(first)
+    placed = [place_capsule(capsule, tree) for capsule in first.capsules]
+    speeds = speed_bounds(tree, placed, [], first)[0].max(axis=0)
+    # Half a cell along any joint moves the links by about as much, the finer the better.
+    lengths = np.maximum(speeds, _SLOWEST) * (high - low)
+    count = np.ceil(lengths * (most / np.prod(lengths)) ** (1 / len(reach))).astype(int)
+    count = np.maximum(count, 2)
+    return Cells(low, high, count, period)
 
 
-def _cell(place: Floats, low: Floats, size: Floats, count: npt.NDArray[np.int64]) -> tuple[int, ...]:
-    return tuple(np.clip(np.floor((place - low) / size).astype(int), 0, count - 1).tolist())
+def _free_cells(valid: Callable[[Floats], Bools], cells: Cells) -> Bools:
+    middles, shape = cells.middles, tuple(cells.count.tolist())
+    free = np.empty(int(np.prod(shape)), dtype=bool)
+    for begin in range(0, len(free), _AT_ONCE):
+        rows = np.unravel_index(np.arange(begin, min(begin + _AT_ONCE, len(free))), shape)
+        free[begin : begin + _AT_ONCE] = valid(
+            np.stack([middles[k][row] for k, row in enumerate(rows)], axis=1)
+        )
+    return free.reshape(shape)
 
 
-def _free_cells(
-    valid: Callable[[Floats], Bools], low: Floats, size: Floats, count: npt.NDArray[np.int64]
-) -> Bools:
-    middles = [low[k] + size[k] * (np.arange(count[k]) + 0.5) for k in range(len(count))]
-    free = np.empty(count, dtype=bool)
-    for i, first in enumerate(middles[0]):
-        rest = np.stack(np.meshgrid([first], *middles[1:], indexing="ij"), axis=-1).reshape(-1, len(count))
-        free[i] = valid(rest).reshape(free.shape[1:])
-    return free
+def _joined(number: npt.NDArray[np.int32], whole: Bools) -> npt.NDArray[np.int32]:
+    """Return the numbers of pieces, 0 where blocked, with those joined that meet where a joint has gone round."""
+    for k in np.flatnonzero(whole):
+        first, last = np.moveaxis(number, k, 0)[[0, -1]].reshape(2, -1)
+        both = (first > 0) & (last > 0)
+        count = int(number.max()) + 1
+        pairs = coo_matrix((np.ones(int(both.sum())), (first[both], last[both])), shape=(count, count))
+        # Nothing is joined to 0, which stays the first.
+        number = connected_components(pairs, directed=False)[1][number]
+    return number

@@ -13,6 +13,7 @@ from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.fit import fit_capsules
 from evenroad.geometry.hulls import Hull, Piece, piece_of
+from evenroad.geometry.inner import inner_of
 from evenroad.geometry.pose import IDENTITY, Pose
 from evenroad.geometry.shapes import Capsule, Shape, without_pose
 from evenroad.robot.held import HeldObject, held_parts, same_bodies
@@ -40,6 +41,9 @@ class Robot:
     which touch whatever the group does as long as the others are held where they are.  `holds` are links that are
     bodies which the robot carries for a while, see :meth:`holding`.  `planes` are half spaces that its file has around
     it, obstacles of every scene.
+
+    `inner` are capsules that lie within the links' true shapes: proofs that there is no path are about them.  None says
+    that `capsules` are the true shapes.
     """
 
     name: str
@@ -55,6 +59,7 @@ class Robot:
     resting: tuple[tuple[str, str], ...] = ()
     holds: tuple[str, ...] = ()
     planes: tuple[Plane, ...] = ()
+    inner: tuple[Capsule, ...] | None = None
 
     def __post_init__(self) -> None:
         # The kernel takes the ends as they are: a capsule with a pose of its own gets them in its link's frame.
@@ -63,7 +68,7 @@ class Robot:
     def fingerprint(self) -> str:
         """Return the SHA-256 (hex) of what decides verdicts; the names of the robot and its states do not."""
         # Planes only where there are any: robots without keep the fingerprints that they always had.
-        left_out = {"name", "states", "holds", *(() if self.planes else ("planes",))}
+        left_out = {"name", "states", "holds", "inner", *(() if self.planes else ("planes",))}
         return fingerprint_of(
             *(getattr(self, each.name) for each in fields(self) if each.name not in left_out)
         )
@@ -86,7 +91,8 @@ class Robot:
             shapes = [replace(shape, link="tool") for shape in tool]
             capsules = tuple(capsule for shape in shapes for capsule in fit_capsules(shape))
             hulls = tuple(piece_of(shape).hull for shape in shapes)
-            tool = Robot("tool", ("tool",), (), capsules, (), (), hulls=hulls)
+            inner = inner_of(shapes)
+            tool = Robot("tool", ("tool",), (), capsules, (), (), hulls=hulls, inner=inner)
         if not tool.capsules:
             raise InvalidValue(f"tool {tool.name!r} must have a body: without one it would never collide")
         tool = replace(tool, group=(), states={})
@@ -109,6 +115,7 @@ class Robot:
             held={**self.held, **tool.held},
             hulls=(*self.hulls, *tool.hulls),
             resting=(*self.resting, *tool.resting),
+            inner=_both(self.inner, self.capsules, tool.inner, tool.capsules),
         )
         between = tuple(
             pair
@@ -154,6 +161,7 @@ class Robot:
             pairs=(*self.pairs, *parts.pairs),
             hulls=(*self.hulls, *hulls),
             holds=(*self.holds, held.name),
+            inner=_both(self.inner, self.capsules, parts.inner, parts.capsules),
         )
 
     def empty_handed(self) -> Robot:
@@ -161,14 +169,17 @@ class Robot:
         held = set(self.holds)
         if not held:
             return self
+        capsules = tuple(capsule for capsule in self.capsules if capsule.link not in held)
+        inner = self.inner and tuple(capsule for capsule in self.inner if capsule.link not in held)
         return replace(
             self,
             links=tuple(link for link in self.links if link not in held),
             joints=tuple(joint for joint in self.joints if joint.child not in held),
-            capsules=tuple(capsule for capsule in self.capsules if capsule.link not in held),
+            capsules=capsules,
             pairs=tuple(pair for pair in self.pairs if held.isdisjoint(pair)),
             hulls=tuple(hull for hull in self.hulls if hull.link not in held),
             holds=(),
+            inner=None if inner == capsules else inner,
         )
 
 
@@ -200,7 +211,20 @@ def _renamed(robot: Robot, prefix: str) -> Robot:
         held={prefix + name: value for name, value in robot.held.items()},
         hulls=tuple(replace(hull, link=prefix + hull.link) for hull in robot.hulls),
         resting=tuple((prefix + first, prefix + second) for first, second in robot.resting),
+        inner=robot.inner and tuple(replace(each, link=prefix + each.link) for each in robot.inner),
     )
+
+
+def _both(
+    ours: tuple[Capsule, ...] | None,
+    capsules: tuple[Capsule, ...],
+    theirs: tuple[Capsule, ...] | None,
+    their_capsules: tuple[Capsule, ...],
+) -> tuple[Capsule, ...] | None:
+    """Return what lies within the shapes of a robot and of what is fixed to it, see `Robot.inner`."""
+    if ours is None and theirs is None:
+        return None
+    return (*(capsules if ours is None else ours), *(their_capsules if theirs is None else theirs))
 
 
 @dataclass(frozen=True)

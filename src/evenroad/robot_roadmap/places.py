@@ -13,7 +13,7 @@ from evenroad.roadmap import PlanResult, Status
 from evenroad.roadmap.find_path import NO_POINTS
 from evenroad.roadmap.query import read_places
 from evenroad.robot import ArmWorld, configuration
-from evenroad.robot.goals import goals_of
+from evenroad.robot.goals import Goals, goals_of
 from evenroad.robot.pose_goal import PoseGoal
 
 Place = str | npt.ArrayLike
@@ -26,16 +26,17 @@ Goal = Place | Pose | PoseGoal
 
 def read_ends(
     world: ArmWorld, start: Place, goal: Goal | Sequence[Goal]
-) -> tuple[Floats, Floats] | PlanResult:
-    """Return start, (dim,), and goals, (g, dim), with all postures that reach poses; else why a pose is not reached."""
+) -> tuple[Floats, Goals] | PlanResult:
+    """Return start, (dim,), and goals, with all postures found that reach poses; else why a pose is not reached."""
     if not any(isinstance(each, POSES) for each in (goal if isinstance(goal, list | tuple) else (goal,))):
-        return read_places(_place(world, start), _places(world, goal), world.space)
+        first, goals = read_places(_place(world, start), _places(world, goal), world.space)
+        return first, Goals(goals, ("",) * len(goals))
     places: Sequence[Goal] = [goal] if isinstance(goal, POSES) else goal  # type: ignore[assignment]
     place, space = _place(world, start), world.space
     first = read_places(place, place, space)[0]
     given = goals_of(world, first, places, lambda each: read_places(place, _place(world, each), space)[1][0])
     if not given.unreached:
-        return read_places(first, given.configurations, space)
+        return first, given
     return PlanResult(
         status=Status.GOAL_INVALID if given.in_collision else Status.GOAL_UNREACHABLE,
         message=given.unreached,

@@ -80,4 +80,7 @@ class RobotRoadmap(KnownMotions):
             # Trees do not grow.
             return self.in_scene(scene).plan(start, goal, budget=budget)
         ends = read_ends(world, start, goal)
-        return ends if isinstance(ends, PlanResult) else find_path(world, *ends, budget=budget)
+        if isinstance(ends, PlanResult):
+            return ends
+        first, given = ends
+        return find_path(world, first, given.configurations, budget=budget, apart=given.apart(world))

@@ -262,7 +262,7 @@ class SceneRoadmap:
         ends = read_ends(self.world, start, goal)
         if isinstance(ends, PlanResult):
             return ends
-        (first, goals), budget = ends, budget or Budget(seconds=SECONDS)
+        first, goals, budget = ends[0], ends[1].configurations, budget or Budget(seconds=SECONDS)
         began, deadline = now(), budget.deadline()
         most = 2**31 - 1 if budget.motions is None else budget.motions
         # Trees grow among what is free for the capsules.

@@ -111,3 +111,24 @@ class Separates(Protocol):
 
     def may_connect(self, a: Floats, b: Floats) -> bool:
         """Return False where it is proved that no path leads from `a` to `b`, (dim,) each; True says nothing."""
+
+
+@dataclass(frozen=True)
+class Apart:
+    """What keeps a start from its goals."""
+
+    message: str
+    """In a sentence: of which bodies, and by what."""
+    proved: bool
+    """Whether there is no path at all; else the world can find none, and others may be."""
+
+
+@runtime_checkable
+class ShowsApart(Protocol):
+    """A world that says what keeps a start from all of its goals, those among them that it calls blocked, too."""
+
+    def apart(self, start: Floats, goals: Floats, *, quickly: bool = False) -> Apart | None:
+        """Return what keeps the start, (dim,), from the goals, (g, dim); None says nothing.
+
+        Asked `quickly`, it takes no more than some milliseconds.
+        """

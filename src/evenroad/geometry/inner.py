@@ -1,0 +1,185 @@
+"""From shapes to capsules inside of them: what surely touches where one of these does."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from evenroad._arrays import Bools, Floats
+from evenroad.geometry.fit import divided
+from evenroad.geometry.fit_points import Fitted
+from evenroad.geometry.hulls import distances
+from evenroad.geometry.mesh import closed_parts
+from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
+
+MOST_SIDE_BY_SIDE = 8
+"""Most capsules of a box; between those of a wider one there are gaps."""
+MOST_BALLS = 12
+"""Most balls of a mesh."""
+_ACROSS = 20
+"""Planes along each axis between which middles of balls are looked for."""
+_SMALLEST = 0.25
+"""A ball is worth its while whose radius is at least this share of the largest one's."""
+_APART = 0.9
+"""Middles of balls lie outside of the others, which count as so large for that."""
+_FINE = 1.0 / 24.0
+"""Sides of triangles, in parts of the mesh's extent, by whose corners middles are chosen."""
+_SHRUNK = 1e-9
+"""Of a length: rounding must not carry a capsule out of its shape."""
+
+
+def capsules_inside(shape: Shape) -> tuple[Capsule, ...]:
+    """Return capsules, in the frame of the shape's link, each of which lies within a shape; none where none is known.
+
+    A sphere and a capsule are kept.  A cylinder holds a capsule on its axis, a flat one several across.  A box holds
+    capsules along its longest edge, side by side.  A mesh holds balls, if it is closed: what its hull adds is not part
+    of it, and an open one has no inside.  A point cloud holds none.  Raises as :func:`evenroad.geometry.load_mesh` for
+    a mesh.
+    """
+    rotation, xyz = shape.pose.rotation_matrix, np.array(shape.pose.xyz)
+    exact = isinstance(shape, Sphere | Capsule)
+    placed = []
+    for a, b, radius in _inside(shape):
+        (ax, ay, az), (bx, by, bz) = ((rotation @ end + xyz).tolist() for end in (a, b))
+        radius -= 0.0 if exact else _SHRUNK * (radius + float(np.abs([ax, ay, az, bx, by, bz]).max()))
+        if radius > 0.0:
+            placed.append(Capsule((ax, ay, az), (bx, by, bz), float(radius), link=shape.link))
+    return tuple(placed)
+
+
+def inner_of(shapes: Iterable[Shape]) -> tuple[Capsule, ...] | None:
+    """Return capsules inside of shapes; None where the capsules that are fitted to them are these shapes."""
+    every = tuple(shapes)
+    if all(isinstance(shape, Sphere | Capsule) for shape in every):
+        return None
+    return tuple(capsule for shape in every for capsule in capsules_inside(shape))
+
+
+def _inside(shape: Shape) -> list[Fitted]:
+    if isinstance(shape, Mesh):
+        mesh = shape.triangles
+        closed, turned = closed_parts(mesh)
+        # Where sides do not tell inside from outside nobody knows what is solid.
+        return _in_mesh(_proper(mesh.vertices[mesh.triangles][closed])) if turned and closed.any() else []
+    if isinstance(shape, Box):
+        return _in_box(np.array(shape.size))
+    if isinstance(shape, Cylinder):
+        return _in_cylinder(shape.radius, 0.5 * shape.length)
+    if isinstance(shape, Sphere):
+        return [(np.zeros(3), np.zeros(3), shape.radius)]
+    if isinstance(shape, Capsule):
+        return [(np.array(shape.a), np.array(shape.b), shape.radius)]
+    return []
+
+
+def _in_box(size: Floats) -> list[Fitted]:
+    thin, middle, long = np.argsort(size, kind="stable")
+    radius, axes = 0.5 * size[thin], np.eye(3)
+    aside, along = 0.5 * size[middle] - radius, (0.5 * size[long] - radius) * axes[long]
+    # So near that their axes are no farther apart than they are thick, where there are enough of them.
+    count = min(1 + math.ceil(aside / radius - 1e-9), MOST_SIDE_BY_SIDE)
+    centres = [place * axes[middle] for place in (np.linspace(-aside, aside, count) if count > 1 else [0.0])]
+    return [(centre - along, centre + along, float(radius)) for centre in centres]
+
+
+def _in_cylinder(radius: float, half: float) -> list[Fitted]:
+    if half >= radius:
+        end = np.array([0.0, 0.0, half - radius])
+        return [(-end, end, radius)]
+    turns = np.arange(MOST_SIDE_BY_SIDE) * np.pi / MOST_SIDE_BY_SIDE
+    ends = (radius - half) * np.stack([np.cos(turns), np.sin(turns), np.zeros_like(turns)], axis=1)
+    return [(-end, end, half) for end in ends]
+
+
+def _proper(corners: Floats) -> Floats:
+    """Return triangles, (t, 3, 3), without those that are no more than a side of their neighbours."""
+    return corners[(corners != np.roll(corners, 1, axis=1)).any(axis=2).all(axis=1)]
+
+
+def _in_mesh(corners: Floats) -> list[Fitted]:
+    """Return balls inside of closed surfaces, triangles (t, 3, 3), whose sides tell inside from outside."""
+    from scipy.spatial import cKDTree
+
+    middles = _places_inside(corners)
+    if not len(middles):
+        return []
+    surface = divided(corners, _FINE)
+    points = np.concatenate([surface.reshape(-1, 3), surface.mean(axis=1)])
+    away = cKDTree(points).query(middles)[0]
+    balls: list[Fitted] = []
+    left, largest = np.ones(len(middles), dtype=np.bool_), 0.0
+    while left.any() and len(balls) < MOST_BALLS:
+        k = int(np.where(left, away, -1.0).argmax())
+        if away[k] < _SMALLEST * largest:
+            break
+        centre = middles[k]
+        left[k] = False
+        # Grid and tree only propose: the ball is inside as all triangles say.
+        if not is_inside(corners, centre):
+            continue
+        radius = float(distances(np.broadcast_to(centre, (len(corners), 3)), corners).min())
+        left &= np.linalg.norm(middles - centre, axis=1) > _APART * radius
+        largest = max(largest, radius)
+        balls.append((centre, centre, radius))
+    return [ball for ball in balls if ball[2] >= 0.5 * _SMALLEST * largest]
+
+
+def is_inside(corners: Floats, point: Floats) -> bool:
+    """Return whether closed surfaces, triangles (t, 3, 3), go around a point, (3,), exactly once.
+
+    Where they do twice, as around a hollow whose sides are turned the wrong way, it is not said to be inside.
+    """
+    a, b, c = np.moveaxis(corners - point, 1, 0)
+    u, v, w = (np.linalg.norm(each, axis=1) for each in (a, b, c))
+    triple = np.einsum("ni,ni->n", a, np.cross(b, c))
+    below = u * v * w
+    for (first, second), length in zip(((a, b), (b, c), (c, a)), (w, u, v), strict=True):
+        below += np.einsum("ni,ni->n", first, second) * length
+    # Each triangle covers this angle of the view from the point.
+    times = float(np.arctan2(triple, below).sum()) / (2.0 * np.pi)
+    return abs(abs(times) - 1.0) < 1e-3
+
+
+def _places_inside(corners: Floats) -> Floats:
+    """Return places, (n, 3), on a grid, that closed surfaces seem to go around: looked at along z, line by line."""
+    low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+    if not (high > low).all():
+        return np.empty((0, 3))
+    # Off the middle, where edges often are.
+    steps = (np.arange(_ACROSS) + 0.4837) / _ACROSS
+    x, y, z = (low[axis] + (high[axis] - low[axis]) * steps for axis in range(3))
+    first = np.searchsorted(x, corners[:, :, 0].min(axis=1)), np.searchsorted(y, corners[:, :, 1].min(axis=1))
+    end = np.searchsorted(x, corners[:, :, 0].max(axis=1)), np.searchsorted(y, corners[:, :, 1].max(axis=1))
+    turns = np.zeros((_ACROSS, _ACROSS, _ACROSS + 1))
+    wide, deep = end[0] - first[0], end[1] - first[1]
+    # All lines of a triangle's own rectangle, triangle after triangle.
+    count = wide * deep
+    row = np.repeat(np.arange(len(corners)), count)
+    place = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+    i, j = first[0][row] + place // np.maximum(deep[row], 1), first[1][row] + place % np.maximum(deep[row], 1)
+    hit, height, sign = _crossed(corners[row], x[i], y[j])
+    np.add.at(turns, (i[hit], j[hit], np.searchsorted(z, height[hit])), sign[hit])
+    # What lies above a crossing is on its other side.
+    around = np.cumsum(turns, axis=2)
+    ends = np.abs(around[:, :, -1:]) < 0.5
+    inside = (np.abs(np.abs(around[:, :, :-1]) - 1.0) < 0.5) & ends
+    at = np.nonzero(inside)
+    return np.stack([x[at[0]], y[at[1]], z[at[2]]], axis=1)
+
+
+def _crossed(corners: Floats, x: Floats, y: Floats) -> tuple[Bools, Floats, Floats]:
+    """Return which triangles, (n, 3, 3), a line along z at x, y, (n,), crosses, at which height and from which side."""
+    flat = corners[:, :, :2] - np.stack([x, y], axis=1)[:, np.newaxis]
+    areas = np.stack(
+        [flat[:, k, 0] * flat[:, (k + 1) % 3, 1] - flat[:, k, 1] * flat[:, (k + 1) % 3, 0] for k in range(3)],
+        axis=1,
+    )
+    whole = areas.sum(axis=1)
+    hit = ((areas > 0.0).all(axis=1) | (areas < 0.0).all(axis=1)) & (whole != 0.0)
+    safe = np.where(hit, whole, 1.0)
+    height = (
+        areas[:, 1] * corners[:, 0, 2] + areas[:, 2] * corners[:, 1, 2] + areas[:, 0] * corners[:, 2, 2]
+    ) / safe
+    return hit, height, np.sign(whole)

@@ -1,0 +1,198 @@
+"""What an arm cannot reach, in words: of which bodies, of which joints, and whether of all that was asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Protocol
+
+import numpy as np
+
+from evenroad._arrays import Bools, Floats
+from evenroad.robot.chain import Chain
+from evenroad.robot.inverse_kinematics import task_of
+from evenroad.robot.locked import BEYOND, Bodies, Piece, piece_of
+from evenroad.robot.pose_goal import PoseGoal
+from evenroad.robot.robot import Robot
+from evenroad.world.protocol import Apart
+
+ONE = (1, (np.inf,), 2_000)
+QUICK = (ONE, (2, (np.inf, np.inf), 20_000))
+"""How many of the first joints are looked at, how far cells reach from an end along each [rad or m], how many cells.
+Together they take some milliseconds."""
+THOROUGH = (
+    ONE,
+    (2, (np.inf, np.inf), 60_000),
+    (3, (np.inf, np.inf, np.inf), 500_000),
+    (3, (0.35, 0.35, np.inf), 500_000),
+)
+"""These take tenths of a second."""
+
+MOST_GOALS = 4
+"""Cells around a goal show what those around the start do not; around no more goals than these."""
+
+_NEAR = 1e-3
+"""By how much a posture may miss its pose and still be said to reach it [m]."""
+
+PROVED = "proved: there is no path"
+
+Task = tuple[Chain, Floats]
+"""A pose goal as inverse kinematics takes it."""
+
+Tries = Sequence[tuple[int, tuple[float, ...], int]]
+
+
+class InScene(Protocol):
+    """What is asked of an arm's world."""
+
+    @property
+    def robot(self) -> Robot: ...  # noqa: D102
+
+    @property
+    def margin(self) -> float: ...  # noqa: D102
+
+    def with_bodies(self, robot: Robot) -> Callable[[Floats], Bools]:
+        """Return what tells of configurations, (n, dim), which are free for a robot with other bodies."""
+
+
+def apart(
+    world: InScene,
+    start: Floats,
+    goals: Floats,
+    poses: Sequence[PoseGoal] = (),
+    *,
+    quickly: bool = False,
+    whole: bool = True,
+) -> Apart | None:
+    """Return what shows that no path leads from a start, (dim,), to any of the goals, (g, dim), or None.
+
+    It is proved where bodies inside of the robot's true shapes show it, of all postures that reach the `poses`.  The
+    goals are those that were found for them, and others that were asked for; where there are yet others that nobody
+    listed, they are not the `whole`.
+    """
+    robot, tries = world.robot, QUICK if quickly else THOROUGH
+    tasks = [task_of(robot, goal) for goal in poses]
+    bodies, others = outer_bodies(world), False
+    joints = truly = 0
+    if robot.inner is not None:
+        inner = Bodies(replace(robot, capsules=robot.inner, inner=None), world.with_bodies, world.margin)
+        truly, others = shown_by(inner, start, goals, tasks, tries)
+    if not truly:
+        joints, others = shown_by(bodies, start, goals, tasks, tries)
+        truly = joints if robot.inner is None else 0
+    if not (truly or joints):
+        return None
+    names = robot.group[: truly or joints]
+    alone = (
+        f"joint {names[0]} alone cannot get there, whatever the others do"
+        if len(names) == 1
+        else f"joints {', '.join(names)} alone cannot get there, whatever the others do"
+    )
+    if not truly:
+        message = (
+            f"no path is found for the capsules that stand for the robot's shapes: {alone}; of the shapes themselves"
+            " that is not proved"
+        )
+        return Apart(message, proved=False)
+    of = "the robot's capsules" if robot.inner is None else "capsules inside of the robot's shapes"
+    if others or not whole:
+        found = (
+            "the posture found cannot" if len(goals) == 1 else f"none of the {len(goals)} postures found can"
+        )
+        return Apart(f"{found} be reached: {alone} (shown for {of}); others may be", proved=False)
+    return Apart(f"{PROVED}: {alone} (shown for {of})", proved=True)
+
+
+def outer_bodies(world: InScene) -> Bodies:
+    """Return the bodies that are planned with; pairs of which hulls decide are left out."""
+    sharp = {hull.link for hull in world.robot.hulls if not hull.is_round}
+    pairs = tuple(pair for pair in world.robot.pairs if sharp.isdisjoint(pair))
+    return Bodies(replace(world.robot, pairs=pairs), world.with_bodies, world.margin)
+
+
+def shown_by(
+    bodies: Bodies, start: Floats, goals: Floats, tasks: Sequence[Task], tries: Tries
+) -> tuple[int, bool]:
+    """Return by how many joints no goal can be reached, 0 where by none; and whether other postures of poses may be."""
+    shown, unreached, undecided = 0, list(goals), list(tasks)
+    for joints, reach, cells in tries:
+        if joints > len(bodies.robot.group):
+            break
+        piece = piece_of(bodies, start, reach, cells)
+        if piece is not None:
+            unreached = [goal for goal in unreached if piece.holds(goal)]
+            undecided = [task for task in undecided if not is_beyond(piece, *task)]
+        if np.isfinite(reach).any() and len(unreached) <= MOST_GOALS:
+            unreached = [goal for goal in unreached if not _is_walled(bodies, goal, start, reach, cells)]
+        if not unreached:
+            shown = shown or joints
+            if not undecided:
+                return joints, False
+    return shown, bool(undecided)
+
+
+def _is_walled(bodies: Bodies, goal: Floats, start: Floats, reach: tuple[float, ...], cells: int) -> bool:
+    piece = piece_of(bodies, goal, reach, cells)
+    return piece is not None and not piece.holds(start)
+
+
+def is_beyond(piece: Piece, chain: Chain, task: Floats) -> bool:
+    """Return whether no posture in a piece brings a tip to a pose, wherever the other joints are.
+
+    The first joints place the next one's axis; from there the tip is no farther than the links are long, and no nearer
+    than one of them is longer than all others.
+    """
+    from evenroad.robot.kernel import reach as at
+
+    known, coordinates = len(piece.cells.count), chain.ints[:, 0].tolist()
+    place = next((i for i, coordinate in enumerate(coordinates) if coordinate >= known), len(coordinates))
+    bars, target = np.linalg.norm(chain.rows[place + 1 :, 9:12], axis=1).tolist(), task[9:12]
+    if bars and task[at.TURNED] == at.ALL and task[at.TILT] == 0.0:
+        # Where the last joint is is known, too.
+        turn = task[:9].reshape(3, 3) @ chain.rows[-1, :9].reshape(3, 3).T
+        target, bars = target - turn @ chain.rows[-1, 9:12], bars[:-1]
+    slides = _slides(chain)
+    most = sum(bars) + sum(slides[place:])
+    least = max([0.0, *(2.0 * bar - most for bar in bars)])
+    away, moved = _distances(piece, chain, place, target, slides)
+    near = _NEAR + float(task[at.NEAR])
+    return bool(((away - moved > most + near) | (away + moved < least - near)).all())
+
+
+def _slides(chain: Chain) -> list[float]:
+    """Return how far each frame slides at most; 0 where it turns [m]."""
+    lengths = []
+    for coordinate, slides, multiplier, offset in np.column_stack(
+        [chain.ints, chain.rows[:-1, 12:14]]
+    ).tolist():
+        low, high = chain.bounds[:, int(coordinate)] + (-BEYOND, BEYOND)
+        ends = abs(multiplier * low + offset), abs(multiplier * high + offset)
+        lengths.append(max(ends) if slides else 0.0)
+    return lengths
+
+
+def _distances(
+    piece: Piece, chain: Chain, place: int, target: Floats, slides: list[float]
+) -> tuple[Floats, float]:
+    """Return how far a frame's origin is from a point in all cells' middles, (n,), and how far half a cell moves it."""
+    cells, rows, ints = piece.cells, chain.rows, chain.ints
+    where = np.nonzero(piece.reached)
+    q = np.stack([cells.middles[k][row] for k, row in enumerate(where)], axis=1)
+    rotation, origin = np.broadcast_to(np.eye(3), (len(q), 3, 3)), np.zeros((len(q), 3))
+    for i in range(place):
+        origin = origin + rotation @ rows[i, 9:12]
+        rotation = rotation @ rows[i, :9].reshape(3, 3)
+        value = rows[i, 12] * q[:, ints[i, 0]] + rows[i, 13]
+        if ints[i, 1]:
+            origin = origin + rotation[:, :, 2] * value[:, np.newaxis]
+            continue
+        cosine, sine, zero = np.cos(value), np.sin(value), np.zeros_like(value)
+        turn = np.stack([cosine, -sine, zero, sine, cosine, zero, zero, zero, zero + 1.0], axis=1)
+        rotation = rotation @ turn.reshape(-1, 3, 3)
+    origin = origin + rotation @ rows[place, 9:12]
+    straight, moved = float(np.linalg.norm(rows[place, 9:12])), 0.0
+    for i in range(place - 1, -1, -1):
+        half = 0.5 * float(cells.size[ints[i, 0]]) * abs(float(rows[i, 12]))
+        moved += half * (1.0 if ints[i, 1] else straight)
+        straight += float(np.linalg.norm(rows[i, 9:12])) + slides[i]
+    return np.linalg.norm(origin - target, axis=1), moved
