@@ -28,7 +28,7 @@ from evenroad.robot.planes import Plane
 from evenroad.robot.robot import LinkBody, Robot, RobotModel
 from evenroad.robot.urdf import Urdf
 
-_FORMAT = 15
+_FORMAT = 16
 """Counted up when the same files would give another robot, or the files of this cache look different."""
 
 
