@@ -197,16 +197,13 @@ def among_triangles(pool: Pool, made: RobotRoadmap, seeds: range, options: argpa
                 [world_of(world.robot, world.scene) for _ in range(COPIES)]
                 for world_of in (ArmWorld, TightWorld)
             )
-            copies, known = ([SceneRoadmap(made, world.scene) for _ in range(COPIES)] for _ in range(2))
-            for each in known:
-                each.explore()
+            copies = [SceneRoadmap(made, world.scene) for _ in range(COPIES)]
             for number, (start, goal) in enumerate(pairs):
                 ends = partial(find_path, start=start, goal=goal, budget=budget)
                 calls: dict[str, list[Callable[[], PlanResult]]] = {
                     "trees": [partial(ends, w) for w in alone],
                     "trees, drawn tight": [partial(ends, w) for w in tight],
                     "roadmap, kept scene": [partial(k.plan, start, goal, budget=budget) for k in copies],
-                    "roadmap, explored scene": [partial(k.plan, start, goal, budget=budget) for k in known],
                     "roadmap, new scene": [partial(in_new_scene, made, world.scene, start, goal)] * COPIES,
                 }
                 answers = {title: timed(some) for title, some in calls.items()}

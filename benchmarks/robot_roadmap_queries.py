@@ -5,7 +5,6 @@
     python -m benchmarks.robot_roadmap_queries --suite 150
     python -m benchmarks.robot_roadmap_queries --turns 40
     python -m benchmarks.robot_roadmap_queries --remember 40
-    python -m benchmarks.robot_roadmap_queries --floor 12
     python -m benchmarks.robot_roadmap_queries --prices 40
 
 Scenes and problems come from the seeds kept for reporting.  Times are of the processor, the best of three: three copies
@@ -88,24 +87,19 @@ def costs(name: str, count: int, n: int, kinds: list[str], seeds: range = REPORT
     print("|---|" + "---|" * 8)
     for kind in kinds:
         rows: dict[str, list[tuple[float, float, float, float]]] = {}
-        straight, unsolved, explored = [], 0, []
+        straight, unsolved = [], 0
         for seed in seeds[:SCENES]:
             world, pairs = queries(pool, kind, seed, count)
             alone, tight = (
                 [of(world.robot, world.scene) for _ in range(COPIES)] for of in (ArmWorld, TightWorld)
             )
-            copies, known = ([SceneRoadmap(made, world.scene) for _ in range(COPIES)] for _ in range(2))
-            for each in known:
-                began = time.process_time()
-                each.explore()
-                explored.append(time.process_time() - began)
+            copies = [SceneRoadmap(made, world.scene) for _ in range(COPIES)]
             for number, (start, goal) in enumerate(pairs):
                 ends = partial(find_path, start=start, goal=goal, budget=LIMIT)
                 calls = {
                     "trees": [partial(ends, w) for w in alone],
                     "trees, drawn tight": [partial(ends, w) for w in tight],
                     "roadmap, kept scene": [partial(k.plan, start, goal, budget=LIMIT) for k in copies],
-                    "roadmap, explored scene": [partial(k.plan, start, goal, budget=LIMIT) for k in known],
                     "roadmap, new scene": [partial(in_new_scene, made, world.scene, start, goal)] * COPIES,
                     "trees, new scene": [partial(made.plan, world.scene, start, goal, budget=LIMIT)] * COPIES,
                 }
@@ -135,15 +129,6 @@ def costs(name: str, count: int, n: int, kinds: list[str], seeds: range = REPORT
                 f" {shares.mean():.3f} ± {error:.3f} | {whole:.3f} |",
                 flush=True,
             )
-        before, after = (
-            np.mean(rows[f"roadmap, {which} scene"], axis=0)[0] for which in ("kept", "explored")
-        )
-        once = np.median(explored)
-        print(
-            f"{kind}: exploring takes {once:.3f} s of the processor, as much as it saves in"
-            f" {once / (trees[:, 0].mean() - after):.0f} queries against trees, in {once / (before - after):.0f}"
-            " against a kept scene"
-        )
         print(
             f"{kind}: {len(trees)} queries, {unsolved} unsolved; straight from start to goal is"
             f" {np.mean(straight / trees[:, 3]):.3f} of the trees' length"
@@ -203,34 +188,6 @@ def counts_in_suite(name: str, count: int, n: int, draws: int) -> None:
             f" {longer.mean():.3f} ± {longer.std(ddof=1) / np.sqrt(len(longer)):.3f} |",
             flush=True,
         )
-
-
-def floor(name: str, count: int, n: int, kinds: list[str]) -> None:
-    """Print shares of the trees' length: of the best plan in half a second, the same drawn tight, the roadmap's."""
-    pool = Pool(arm(name))
-    made = make_roadmap(pool.robot, table_of(next(problems(pool, REPORTING))), n)
-    for kind in kinds:
-        best = []
-        for seed in REPORTING[:SCENES]:
-            world, pairs = queries(pool, kind, seed, FIRST + count)
-            known = SceneRoadmap(made, world.scene)
-            known.explore()
-            for start, goal in pairs[FIRST:]:
-                first = find_path(world, start, goal, budget=LIMIT)
-                along = known.plan(start, goal, budget=LIMIT)
-                if first.solved and first.cost and along.solved:
-                    long = find_path(world, start, goal, budget=Budget(seconds=0.5), improve=True)
-                    assert long.path is not None
-                    tight, _ = tighten(world, long.path, batches=3000)
-                    least = world.space.distance(tight[:-1], tight[1:]).sum()
-                    best.append((first.cost, long.cost, least, along.cost, long.counts.get("rounds", 0)))
-        table = np.array(best)
-        shares, whole = table[:, 1:4] / table[:, :1], table[:, 1:4].sum(axis=0) / table[:, 0].sum()
-        means, errors = shares.mean(axis=0), shares.std(axis=0, ddof=1) / np.sqrt(len(shares))
-        for i, title in enumerate(("planned anew", "the best of these drawn tight", "the roadmap")):
-            share = f"{means[i]:.3f} ± {errors[i]:.3f}"
-            print(f"{kind}: {title} {share} of the trees' length, of all {whole[i]:.3f}")
-        print(f"{kind}: {len(table)} queries, median of {np.median(table[:, 4]):.0f} rounds", flush=True)
 
 
 def prices(name: str, count: int, n: int) -> None:
@@ -370,7 +327,6 @@ def main() -> None:
     parser.add_argument("--suite", type=int, default=0, help="problems of each of the suite's generators")
     parser.add_argument("--turns", type=int, default=0, help="problems of each kind")
     parser.add_argument("--remember", type=int, default=0, help="problems of each kind")
-    parser.add_argument("--floor", type=int, default=0, help="queries in each scene")
     parser.add_argument("--prices", type=int, default=0, help="problems of each kind")
     parser.add_argument("--tuning", action="store_true", help="queries on the seeds kept for tuning")
     parser.add_argument("--draws", type=int, default=2)
@@ -388,8 +344,6 @@ def main() -> None:
         turns(options.robot, options.turns, options.n or 256, options.draws)
     if options.remember:
         remember(options.robot, options.remember, options.n or 256, options.draws)
-    if options.floor:
-        floor(options.robot, options.floor, options.n or 1024, options.kinds)
     if options.prices:
         prices(options.robot, options.prices, options.n or 1024)
 

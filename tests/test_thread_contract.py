@@ -244,13 +244,10 @@ def test_eight_threads_read_and_write_files_as_one(tmp_path):
     assert bits(er.load_points(tmp_path / "again.npz")) == bits(er.load_points(tmp_path / "p.npz"))
 
 
-@pytest.mark.parametrize("explore", [0, 20])
-def test_a_robot_roadmap_that_learns_gives_each_thread_the_path_that_it_asked_for(explore):
+def test_a_robot_roadmap_that_learns_gives_each_thread_the_path_that_it_asked_for():
     """What was learned before decides which path that is: each is looked at in double precision."""
     arm, scene, paths = ur5(limits=math.pi, joints=3), box_scene(), {}
     shared = known().in_scene(scene)
-    if explore:
-        shared.explore(explore)
     # More than once: the later ones of what was learned.
     asks = 4 * [lambda a=a, b=b: shared.plan(a, b) for a, b in ends()]
     for results in together(*asks):

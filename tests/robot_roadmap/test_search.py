@@ -2,6 +2,8 @@
 
 import heapq
 import itertools
+import pickle
+from copy import deepcopy
 from dataclasses import replace
 
 import numpy as np
@@ -247,6 +249,17 @@ def test_what_the_roadmap_does_not_lead_to_soon_is_left_to_the_trees_and_learned
     assert second.planner == "robot roadmap"
     assert second.counts["edges_checked"] < 10
     assert known.world.recheck(second.path).all()
+
+
+@pytest.mark.parametrize("copied", [deepcopy, lambda known: pickle.loads(pickle.dumps(known))])
+def test_a_copy_of_a_kept_scene_answers_alike_from_memory_of_its_own(roadmap, copied):
+    known = SceneRoadmap(roadmap, box_scene())
+    ends = list(itertools.islice(hard(known), 8))
+    assert any(known.plan(start, goal[0]).solved for start, goal in ends[:4])
+    copy = copied(known)
+    # What the other learns is not seen.
+    for start, goal in ends[2:]:
+        np.testing.assert_array_equal(known.plan(start, goal[0]).path, copy.plan(start, goal[0]).path)
 
 
 def test_there_is_room_for_more_than_was_taken_at_first(roadmap, monkeypatch):

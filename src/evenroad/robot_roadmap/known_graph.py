@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from evenroad._arrays import Bools, Floats, Ints, Ints32
+from evenroad._arrays import Floats, Ints, Ints32
 from evenroad.robot.kernel.addresses import address, doubles_at, integers_at, matrix_at
 from evenroad.robot.kernel.layout import program, quick
 from evenroad.robot_roadmap import search_memory as at
@@ -61,10 +61,8 @@ class KnownGraph:
         self.rules[[at.LOW, at.HIGH]] = one.limits
         self.rules[at.LIFTS], self.rules[at.ENDLESS] = one.lifts, one.wraps & ~one.lifts
         self.rules[at.MIDDLE], self.rules[at.GREED] = 0.5 * (one.low + one.high), 1.0
-        self.rules[at.WEIGHTS] = 1.0
         self.desk[at.DIM], self.desk[at.LIFTING] = dim, one.lifts.any()
         self._query, self._shape = np.empty(0), (0, 0)
-        self._far, self._steps = np.empty(0, np.float32), np.empty(0, np.uint16)
         self._make_room(n, count, len(edges))
         self.desk[[at.NODES, at.HALVES_MADE, at.EDGES_MADE, at.BASE]] = n, count, len(edges), len(edges)
         self.milestones[:n], self.columns[:, :n] = milestones, milestones.T
@@ -99,7 +97,7 @@ class KnownGraph:
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what a copy is made of, here or in another process: it finds out for itself where its arrays are."""
-        kept = "desk", "rules", "edges", "_known", "_graph", "_shares", "_far", "_steps"
+        kept = "desk", "rules", "edges", "_known", "_graph", "_shares"
         return {name: vars(self)[name] for name in kept}
 
     def __setstate__(self, kept: dict[str, Any]) -> None:
@@ -119,8 +117,8 @@ class KnownGraph:
     def _lay_out(self) -> None:
         """Write where things lie in the memory."""
         desk, dim, capacity = self.desk, int(self.desk[at.DIM]), int(self.desk[at.CAPACITY])
-        parts, graph = (self._known, self._graph, self.rules, self.edges, self._far, self._steps), self._graph
-        desk[[at.KNOWN, at.GRAPH, at.RULES, at.VERDICTS, at.FAR, at.STEPS]] = [address(a) for a in parts]
+        parts, graph = (self._known, self._graph, self.rules, self.edges), self._graph
+        desk[[at.KNOWN, at.GRAPH, at.RULES, at.VERDICTS]] = [address(a) for a in parts]
         self.milestones = self._known[: dim * capacity].reshape(capacity, dim)
         self.columns = self._known[dim * capacity :].view(np.float32)[: dim * capacity].reshape(dim, capacity)
         behind = (dim + (dim + 1) // 2) * capacity
@@ -132,10 +130,10 @@ class KnownGraph:
         self.leads = graph[split : split + count].view(np.int64)
         self.lengths = graph[split + count :].view(np.float32)
 
-    def _grow(self, edges: int = 0) -> None:
-        """Take more memory, for so many edges and some more, and copy what there is."""
+    def _grow(self) -> None:
+        """Take more memory, and copy what there is."""
         old = self._arrays()
-        self._make_room(len(self.nodes), len(self.halves) + 2 * edges, len(self.edges) + edges)
+        self._make_room(len(self.nodes), len(self.halves), len(self.edges))
         self._query, self._shape = np.empty(0), (0, 0)
         new = self._arrays()
         for before, after in zip(old, new, strict=True):
@@ -216,47 +214,6 @@ class KnownGraph:
         found, counts = np.empty((2, most, len(weights))), np.empty(2, dtype=np.int64)
         _around(address(self.desk), address(weights), onward, most, address(found), address(counts))
         return [None if n < 0 else rows[:n] for rows, n in zip(found, counts.tolist(), strict=True)]
-
-    def motions(self) -> tuple[Ints, Ints, Bools]:
-        """Return from which milestone to which the edges lead, (m,) each, and which of them after turns."""
-        count, made = int(self.desk[at.EDGES_MADE]), int(self.desk[at.HALVES_MADE])
-        owner, here = np.empty(made, dtype=np.int64), np.arange(self.desk[at.NODES])
-        half = self.first[: len(here)]
-        while len(half):
-            here, half = here[half >= 0], half[half >= 0]
-            owner[half] = here
-            half = self.halves[half, at.NEXT].astype(np.int64)
-        number, ends = self.halves[:made, at.NUMBER], np.empty((3, count), dtype=np.int64)
-        ends[:, number] = owner, self.halves[:made, at.OTHER], self.leads[:made]
-        return ends[0], ends[1], ends[2] != 0
-
-    def join(self, pairs: Ints, lengths: Floats) -> None:
-        """Take motions between milestones, (m, 2), of such lengths, (m,), for edges that are proved free today."""
-        self._own_halves()
-        desk, more, own = self.desk, len(pairs), pairs.T.ravel()
-        edge, first = int(desk[at.EDGES_MADE]), int(desk[at.HALVES_MADE])
-        if edge + more > desk[at.EDGES] or first + 2 * more > desk[at.HALVES]:
-            self._grow(more)
-        self.edges[edge : edge + more] = PROVED
-        # Those of a milestone lie side by side, to be gone through soon.
-        new, order = slice(first, first + 2 * more), np.argsort(own, kind="stable")
-        pair = order % max(more, 1)
-        self.halves[new, at.OTHER], self.halves[new, at.NUMBER] = own[order - more], edge + pair
-        self.lengths[new], self.leads[new] = lengths[pair], 0
-        for half, node in enumerate(own[order].tolist(), first):
-            self.halves[half, at.NEXT], self.first[node] = self.first[node], half
-        desk[[at.EDGES_MADE, at.HALVES_MADE]] += more, 2 * more
-
-    def guide(self, far: Floats, steps: Ints32, weights: Floats, close: int) -> None:
-        """Guide searches by how far milestones are from each other along what is known to be free, (n, n).
-
-        On the way to the first of two, `steps` says which one comes after the second, (n, n), n < 65536.  So many links
-        of each end go by displacement, in the metric of such weights, (dim,).
-        """
-        self._far, self._steps = np.ascontiguousarray(far, np.float32), steps.astype(np.uint16)
-        self.rules[at.WEIGHTS] = weights
-        self.desk[[at.TOLD, at.CLOSE]] = len(far), close
-        self._lay_out()
 
     def _own_halves(self) -> None:
         """Share half edges no longer."""

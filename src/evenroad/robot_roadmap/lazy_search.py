@@ -11,8 +11,7 @@ import numpy.typing as npt
 
 from evenroad.robot.kernel.addresses import matrix_at
 from evenroad.robot.kernel.layout import quick
-from evenroad.robot_roadmap.known_ways import has_others, look_up, price_links
-from evenroad.robot_roadmap.search_links import choose_close, choose_links
+from evenroad.robot_roadmap.search_links import choose_links
 from evenroad.robot_roadmap.search_memory import (
     AIM,
     AIMED_END,
@@ -21,9 +20,6 @@ from evenroad.robot_roadmap.search_memory import (
     BLOCKED,
     BY,
     CAPACITY,
-    CLOSE,
-    CLOSE_GOALS,
-    CLOSE_START,
     CUT_OFF,
     DIM,
     EDGE,
@@ -33,14 +29,12 @@ from evenroad.robot_roadmap.search_memory import (
     FREE,
     FULL,
     GREED,
-    HUB,
     LEAST,
     LEFT,
     LIFTED,
     LIFTING,
     LINK,
     LINKS,
-    LOOK_UP,
     MADE,
     MEASURED,
     NEARBY,
@@ -63,7 +57,6 @@ from evenroad.robot_roadmap.search_memory import (
     STATES,
     STRAIGHT,
     TO,
-    TOLD,
     UNKNOWN,
     VIA,
     WAITING,
@@ -92,8 +85,7 @@ def begin(s: Search) -> None:
     for end in range(d[ENDS]):
         choose_links(s, end)
     clear(s)
-    d[AIM], d[AIMED_END], d[HUB], d[PHASE] = -1, -1, -1, ASK_STRAIGHT
-    d[CLOSE_START] = d[CLOSE_GOALS] = d[CLOSE]
+    d[AIM], d[AIMED_END], d[PHASE] = -1, -1, ASK_STRAIGHT
 
 
 @quick
@@ -111,9 +103,6 @@ def step(s: Search) -> int:
     d = s.desk
     if d[PHASE] == ASK_STRAIGHT:
         d[PHASE] = ASK_GOALS
-        if d[TOLD] > 0 and s.rules[GREED, 0] > 1.0 and d[ONLY_KNOWN] == 0:
-            d[PHASE] = LOOK_UP
-            price_links(s)
         for end in range(1, d[ENDS]):
             if s.straight[end] == UNKNOWN:
                 d[TO], d[PHASE] = end, ASK_STRAIGHT
@@ -122,15 +111,6 @@ def step(s: Search) -> int:
                 return STRAIGHT
             if s.straight[end] >= FREE:
                 d[PHASE] = OPEN
-    if d[PHASE] == LOOK_UP:
-        question = look_up(s)
-        while question == NONE and has_others(s):
-            price_links(s)
-            question = look_up(s)
-        if question != NONE:
-            return question
-        clear(s)
-        d[PHASE] = ASK_GOALS
     if d[PHASE] == ASK_GOALS:
         question = _goal_link(s)
         if question != NONE:
@@ -141,12 +121,6 @@ def step(s: Search) -> int:
         d[PHASE] = SEARCH
     while True:
         if d[PENDING] < 0:
-            if d[WAITING] == 0 and d[AIM] < 0 and d[CLOSE_START] > 0 and d[ONLY_KNOWN] == 0:
-                if d[SIZE] + d[CLOSE] > d[STATES] or d[MADE] + d[CLOSE] > d[ENTRIES]:
-                    return FULL
-                d[CLOSE_START] = 0
-                choose_close(s, 0)
-                _open_links(s)
             if d[WAITING] == 0:
                 if d[AIM] < 0:
                     return NONE
@@ -183,32 +157,25 @@ def step(s: Search) -> int:
 def _goal_link(s: Search) -> int:
     """Return NONE where a free link of a goal is known; else the question for one, or CUT_OFF."""
     d = s.desk
-    while True:
-        for end in range(1, d[ENDS]):
-            missed = 0
-            for rank in range(d[LINKS]):
-                i = s.near[end, rank]
-                if i < 0 or s.nodes[i] == BLOCKED:
-                    continue
-                if s.links[end, i] == BLOCKED:
-                    missed += 1
-                    continue
-                if s.links[end, i] == UNKNOWN:
-                    d[TO], d[BY] = end, i
-                    for k in range(d[DIM]):
-                        s.asked[0, k] = s.ends[end, k]
-                    write(s, i, s.turns[end, i], s.asked[1])
-                    return LINK
-                if s.rules[GREED, 0] > 1.0:
-                    d[HUB] = i if i < d[TOLD] else -1
-                    if missed >= AIMED:
-                        d[AIM], d[AIMED_END] = i, end
-                return NONE
-        if d[CLOSE_GOALS] == 0 or d[ONLY_KNOWN] != 0:
-            return CUT_OFF
-        d[CLOSE_GOALS] = 0
-        for end in range(1, d[ENDS]):
-            choose_close(s, end)
+    for end in range(1, d[ENDS]):
+        missed = 0
+        for rank in range(d[LINKS]):
+            i = s.near[end, rank]
+            if i < 0 or s.nodes[i] == BLOCKED:
+                continue
+            if s.links[end, i] == BLOCKED:
+                missed += 1
+                continue
+            if s.links[end, i] == UNKNOWN:
+                d[TO], d[BY] = end, i
+                for k in range(d[DIM]):
+                    s.asked[0, k] = s.ends[end, k]
+                write(s, i, s.turns[end, i], s.asked[1])
+                return LINK
+            if s.rules[GREED, 0] > 1.0 and missed >= AIMED:
+                d[AIM], d[AIMED_END] = i, end
+            return NONE
+    return CUT_OFF
 
 
 @quick
@@ -218,13 +185,6 @@ def _open(s: Search) -> None:
     for end in range(1, d[ENDS]):
         if s.straight[end] != BLOCKED:
             push(s, -end, -1, -1, distance(s, s.ends[0], s.ends[end]), 0.0)
-    _open_links(s)
-
-
-@quick
-def _open_links(s: Search) -> None:
-    """Put the links of the start into the queue."""
-    d = s.desk
     for rank in range(d[LINKS]):
         i = s.near[0, rank]
         if i >= 0 and (s.links[0, i] >= FREE or (s.links[0, i] == UNKNOWN and d[ONLY_KNOWN] == 0)):

@@ -61,10 +61,7 @@ class RobotRoadmap(KnownMotions):
         return replace(self, milestones=milestones, edges=edges, turns=turns)
 
     def in_scene(self, scene: Scene, shapes: Sequence[Shape] | None = None) -> SceneRoadmap:
-        """Return the roadmap in the day's scene, for many queries in it: what one finds out serves the next.
-
-        :meth:`SceneRoadmap.explore` finds out beforehand what makes some of them slow.
-        """
+        """Return the roadmap in the day's scene, for many queries in it: what one finds out serves the next."""
         return SceneRoadmap(self, scene, shapes=shapes)
 
     def plan(

@@ -11,7 +11,6 @@ import numpy as np
 from evenroad._arrays import Floats
 from evenroad._checks import counted, require_count
 from evenroad._clock import now
-from evenroad._rng import RngLike, generator
 from evenroad._shared import OwnLock, one_at_a_time
 from evenroad.geometry.shapes import Shape
 from evenroad.roadmap import Budget, PlanResult, Status
@@ -24,7 +23,6 @@ from evenroad.robot import ArmWorld, Robot, Scene
 from evenroad.robot.trees import tighten
 from evenroad.robot_roadmap.ask import Asked, Checks, ask, prepare
 from evenroad.robot_roadmap.cell import left_to_check
-from evenroad.robot_roadmap.explored import explore
 from evenroad.robot_roadmap.known_motions import KnownMotions, world_of
 from evenroad.robot_roadmap.lazy_search import ENDS_TAKEN, SPENT
 from evenroad.robot_roadmap.own_shapes import OwnShapesWorld
@@ -68,12 +66,6 @@ queries are learned until there are so many milestones more."""
 SOON = 5000
 """So many motions ways out may take before shapes are asked: some milliseconds."""
 
-ENDS = 600
-"""Ends in narrow places that are tried where a scene is explored."""
-
-EXPLORED_LINKS, EXPLORED_MOTIONS, EXPLORED_WORK = 14, 150, 205
-"""In an explored scene fewer links do, and the slowest queries leave time to draw paths tighter."""
-
 _LONG = 1e8
 """Seconds that stand for no limit."""
 
@@ -89,7 +81,7 @@ class SceneRoadmap:
 
     Threads may share it: their queries are answered one after the other.  Each is answered with what those before it
     found out, so that the same queries in the same order have the same answers; in another order, as of threads, paths
-    may be others, each proved as ever.  Threads with a roadmap in the scene each, or a copy of one that is explored,
+    may be others, each proved as ever.  Threads with a roadmap in the scene each, or a copy of one,
     wait for nobody, and their answers depend on their own queries alone.
 
     Parameters
@@ -143,7 +135,7 @@ class SceneRoadmap:
         self._graph = roadmap.graph.within(np.array(self.world.space.low), np.array(self.world.space.high))
         self._wraps = bool(np.any(self.world.space.wrapping))
         self.learned: list[Floats] = []
-        self._explored, self._lock = False, OwnLock()
+        self._lock = OwnLock()
         self._make_ready()
 
     def _make_ready(self) -> None:
@@ -199,31 +191,6 @@ class SceneRoadmap:
         return len(self.roadmap.milestones)
 
     @one_at_a_time
-    def explore(self, ends: int = ENDS, *, rng: RngLike = 0) -> None:
-        """Find out beforehand what many queries here would; see docs/robot-roadmaps.md for when it pays.
-
-        Everything the roadmap has is asked about, and ways are learned to ends in narrow places: free configurations
-        whose tip is closed in by obstacles, and others closed in less where these are too few; they know no task.  The
-        same `ends` and `rng` give the same answers.
-
-        Parameters
-        ----------
-        ends : int
-            How many are tried, >= 1; none any more once there are nearly 3000 milestones.  In a roadmap of more, ways
-            are searched, not looked up.
-        rng : int, SeedSequence or Generator
-            Where they are drawn from.
-
-        Raises
-        ------
-        InvalidValue
-            If an argument is no such number.
-        """
-        ends = require_count("ends", ends)
-        self.learned += explore(self.roadmap, self.world, self._day, self._graph, ends, generator(rng))
-        self._explored = True
-
-    @one_at_a_time
     def plan(
         self,
         start: Place,
@@ -245,8 +212,7 @@ class SceneRoadmap:
         shorten : bool
             Whether the path is made shorter.
         trees : bool
-            Whether trees are tried, after 90 motions along the roadmap or 150 in an explored scene; else more of its
-            links and all motions are.
+            Whether trees are tried, after 90 motions along the roadmap; else more of its links and all motions are.
 
         Returns
         -------
@@ -267,10 +233,9 @@ class SceneRoadmap:
         most = 2**31 - 1 if budget.motions is None else budget.motions
         # Trees grow among what is free for the capsules.
         follow = trees and (not self._dear or ends_free(self.world, first, goals))
-        tried = (EXPLORED_LINKS, EXPLORED_MOTIONS) if self._explored else (TRIED_LINKS, TRIED_MOTIONS)
-        links = (DEAR_LINKS if self._dear else tried[0]) if follow else links_of(self._size)
+        links = (DEAR_LINKS if self._dear else TRIED_LINKS) if follow else links_of(self._size)
         share = SHARE if follow or self._own is not None else 1.0
-        limits = min(most, tried[1]) if follow else most, began + share * min(deadline - began, _LONG)
+        limits = min(most, TRIED_MOTIONS) if follow else most, began + share * min(deadline - began, _LONG)
         order = GREED, 0.0 if follow else NEARBY
         asked = self._ask(first, goals, *limits, links, *order, proved=not shorten)
         if asked.ended in (NONE, CUT_OFF, SPENT) and follow and len(goals) == 1:
@@ -352,8 +317,7 @@ class SceneRoadmap:
         )
         seconds = {"search": found - began}
         if shorter:
-            most = EXPLORED_WORK if self._explored else WORK
-            most = most if world.lanes.surfaces is None else AMONG_SURFACES
+            most = WORK if world.lanes.surfaces is None else AMONG_SURFACES
             work = DEAR_WORK if self._dear else max(LEAST_WORK, most - asked.batches)
             path, counts["shortcut_motions"] = tighten(world, path, batches=work, proved=asked.proved)
             if not len(path):

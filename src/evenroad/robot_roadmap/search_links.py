@@ -9,29 +9,21 @@ from evenroad.robot.kernel.layout import quick
 from evenroad.robot_roadmap.search_memory import (
     BLOCKED,
     CAPACITY,
-    CLOSE,
-    DIM,
     ENDS,
     FREE,
     LINKS,
     NODES,
     PROVED,
-    TOLD,
-    WEIGHTS,
     Search,
     kept_in_order,
 )
-from evenroad.robot_roadmap.search_metric import is_at, write_distances
+from evenroad.robot_roadmap.search_metric import is_at
 
 Ints = npt.NDArray[np.int64]
 Singles = npt.NDArray[np.float32]
 
 ONWARD = 0.5
 """Links are tried in the order of their length and this share of what is left beyond them."""
-
-CLOSE_ONWARD = 0.13
-"""Links by displacement are tried in the order of it and this share of the way by them, with the link twice: they find
-a way for most ends that see nothing, but lead round about."""
 
 HALVINGS = 12
 """So often at most an interval is halved, until no more than twice the wanted ones are below: they are sorted."""
@@ -71,7 +63,7 @@ def _milestone_at(s: Search, end: int, away: Singles) -> int:
 
 @quick
 def _write_wants(s: Search, end: int, away: Singles, wants: Singles) -> None:
-    """Write keys, the less the sooner: inf for what is blocked, 0 for free links of an explored scene."""
+    """Write keys, the less the sooner; inf for what is blocked."""
     d, n, links = s.desk, len(away), s.links[end]
     beyond = s.away[d[CAPACITY] : d[CAPACITY] + n] if end == 0 else s.away[:n]
     for i in range(n):
@@ -81,10 +73,8 @@ def _write_wants(s: Search, end: int, away: Singles, wants: Singles) -> None:
             beyond = s.away[other * d[CAPACITY] : other * d[CAPACITY] + n]
             for i in range(n):
                 wants[i] = beyond[i] if beyond[i] < wants[i] else wants[i]
-    sooner = FREE if d[CLOSE] > 0 else PROVED + 1
     for i in range(n):
         want = away[i] + np.float32(ONWARD) * wants[i]
-        want = np.float32(0.0) if links[i] >= sooner else want
         blocked = (s.nodes[i] == BLOCKED) | (links[i] == BLOCKED)
         wants[i] = np.float32(np.inf) if blocked else want
 
@@ -119,36 +109,3 @@ def _limit(wants: Singles, most: int) -> np.float32:
             if found < 2 * most:
                 break
     return high
-
-
-@quick
-def choose_close(s: Search, end: int) -> None:
-    """Choose other milestones that an end is tried to be linked to: free ones that are near in displacement."""
-    d, n, count, squared = s.desk, s.desk[NODES], 0, 0.0
-    other = 1 if end == 0 else 0
-    write_distances(s, end, s.rules[WEIGHTS], s.costs[:n])
-    for k in range(d[DIM]):
-        squared += s.rules[WEIGHTS, k] ** 2 / d[DIM]
-    # Joint values as displacement.
-    share, by = CLOSE_ONWARD * np.sqrt(squared), _seen_by(s, other)
-    for i in range(n):
-        onward = s.far[by * d[TOLD] + i] if by >= 0 and i < d[TOLD] else s.away[other * d[CAPACITY] + i]
-        s.costs[i] += share * (2.0 * s.away[end * d[CAPACITY] + i] + onward)
-    for i in range(n):
-        if s.nodes[i] >= FREE and s.links[end, i] != BLOCKED:
-            count = kept_in_order(s.keys, s.near[end], count, d[CLOSE], s.costs[i], i)
-    for rank in range(count, d[LINKS]):
-        s.near[end, rank] = -1
-
-
-@quick
-def _seen_by(s: Search, end: int) -> int:
-    """Return the first milestone that an end is known to be linked to, else the first to be tried; -1 for none."""
-    first = -1
-    for rank in range(s.desk[LINKS]):
-        i = s.near[end, rank]
-        if 0 <= i < s.desk[TOLD]:
-            if s.links[end, i] >= FREE:
-                return i
-            first = i if first < 0 else first
-    return first

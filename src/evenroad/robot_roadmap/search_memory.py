@@ -13,7 +13,6 @@ from evenroad.robot.kernel.addresses import (
     doubles_at,
     integers_at,
     matrix_at,
-    short_table_at,
     singles_at,
     small_table_at,
     table_at,
@@ -24,7 +23,6 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 Ints32 = npt.NDArray[np.int32]
 Bytes = npt.NDArray[np.uint8]
-Shorts = npt.NDArray[np.uint16]
 Singles = npt.NDArray[np.float32]
 
 UNKNOWN, BLOCKED, DOUBTED, FREE, PROVED = range(5)
@@ -42,7 +40,7 @@ PHASE, SIZE, MADE, WAITING, PENDING, TO, BY, AIM, AIMED_END = range(12, 21)
 """Desk: what the search has got to: states, entries, those in the queue, the one at hand; of a question the milestone
 or end, and the edge or the milestone it is linked to; the milestone by which a goal is approached, or -1, and which."""
 
-ASK_STRAIGHT, LOOK_UP, ASK_GOALS, OPEN, SEARCH = range(5)
+ASK_STRAIGHT, ASK_GOALS, OPEN, SEARCH = range(4)
 """Phases of a search."""
 
 KNOWN, GRAPH, RULES, QUERY = range(21, 25)
@@ -57,15 +55,7 @@ VERDICTS, LIFTING = 27, 28
 UNTURNED = 29
 """Desk: 1 where ends are linked to milestones as these are, 0 where these are turned to be near."""
 
-FAR, STEPS, TOLD, HUB, CLOSE = range(30, 35)
-"""Desk, where a scene was explored: addresses of how far milestones are from each other along motions known to be free,
-and of the next one on the way, of how many; the milestone that a goal is approached by, or -1; how many links by
-displacement."""
-
-CLOSE_START, CLOSE_GOALS = range(35, 37)
-"""Desk: more than 0 where start or goals may still be linked by displacement."""
-
-DESK = 37
+DESK = 30
 
 NODE, EDGE, LINK, STRAIGHT, FOUND, NONE, CUT_OFF, FULL = range(8)
 """What `step` ends with: a milestone, a motion of the roadmap, a link of an end or the motion straight to a goal to be
@@ -74,10 +64,10 @@ asked about; a way, none, no free link of a goal, no room."""
 OTHER, NEXT, NUMBER, HALF = range(4)
 """Of a half edge: where it leads, the next one of the same milestone or -1, its edge; how many things that is."""
 
-LOW, HIGH, LIFTS, ENDLESS, MIDDLE, GREED, NEARBY, WEIGHTS, RULE_ROWS = range(9)
+LOW, HIGH, LIFTS, ENDLESS, MIDDLE, GREED, NEARBY, RULE_ROWS = range(8)
 """Rows of the rules: limits; 1 for joints that are lifted by whole turns, or turn on for ever; the middle of the range
 of milestones; what the bound is multiplied by, 1 for the shortest way; by how many times their length links of the
-start are put off; what a unit of a joint counts as displacement.  And how many rows that is."""
+start are put off.  And how many rows that is."""
 
 OF, LIFTED, SIBLING, REACHED = range(4)
 """Of a state: milestone, packed turns, the next state of the same milestone or -1, the entry it was reached by."""
@@ -106,10 +96,7 @@ class Search(NamedTuple):
         Verdicts of milestones, their first half edges, and another one that free motions lead to, or itself.
     halves, leads, lengths, edges : arrays
         Half edges, (h, 3), their turns, packed, their lengths, verdicts of edges.
-    rules : float64 array, shape (8, dim)
-    far, steps : float32 array, shape (told^2,), and uint16 array, shape (told, told)
-        How far milestones are from each other along what is known to be free, inf where nothing leads; and on the way
-        to the first, which one comes after the second.
+    rules : float64 array, shape (7, dim)
     ends, asked : float64 arrays, shapes (e + 1, dim) and (2, dim)
         Start, goals and a place that is learned; the two ends of the motion that is asked about.
     turns, near, away : arrays, shape (e + 1, capacity); the last in one piece
@@ -136,8 +123,6 @@ class Search(NamedTuple):
     lengths: Singles
     edges: Bytes
     rules: Floats
-    far: Singles
-    steps: Shorts
     ends: Floats
     asked: Floats
     turns: Ints
@@ -205,8 +190,6 @@ def search_at(desk: int) -> Search:
         singles_at(leads + 8 * d[HALVES], (d[HALVES],)),
         bytes_at(d[VERDICTS], (d[EDGES],)),
         matrix_at(d[RULES], (RULE_ROWS, dim)),
-        singles_at(d[FAR], (d[TOLD] * d[TOLD],)),
-        short_table_at(d[STEPS], (d[TOLD], d[TOLD])),
         matrix_at(d[QUERY], (ends, dim)),
         matrix_at(asked, (2, dim)),
         table_at(turns, (ends, capacity)),

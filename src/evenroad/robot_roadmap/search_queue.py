@@ -13,7 +13,6 @@ from evenroad.robot_roadmap.search_memory import (
     ENDS,
     GREED,
     HIGH,
-    HUB,
     LEAST,
     LEFT,
     LIFTED,
@@ -27,16 +26,11 @@ from evenroad.robot_roadmap.search_memory import (
     SIBLING,
     SIZE,
     STATE,
-    TOLD,
     VIA,
     WAITING,
     Search,
 )
 from evenroad.robot_roadmap.search_metric import distance, write
-
-GUIDED = 2.0
-"""What the table says of the way to a goal is multiplied by where that is more than the bound: enough for a search that
-does not wander where obstacles lie between, and no more: a greedy one makes longer paths."""
 
 
 @quick
@@ -69,8 +63,6 @@ def state_of(s: Search, node: int, packed: int) -> int:
                 # Where the goal's link would be, as it was measured.
                 least = min(least, s.away[end * d[CAPACITY] + node])
     s.bounds[state, LEFT], s.bounds[state, LEAST] = s.rules[GREED, 0] * least, np.inf
-    if d[HUB] >= 0 and node < d[TOLD] and s.far[d[HUB] * d[TOLD] + node] < np.inf:
-        s.bounds[state, LEFT] = max(s.bounds[state, LEFT], GUIDED * s.far[d[HUB] * d[TOLD] + node])
     if not inside:
         s.bounds[state, LEFT] = np.inf
     return state if inside else -1
