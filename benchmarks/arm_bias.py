@@ -125,7 +125,7 @@ def rows(name: str, problems: int, draws: int) -> Iterator[tuple[object, ...]]:
     for draw in range(draws):
         bare = make_roadmap(arm, cell_of(arm), 8, gamma=0.0, ends=0, rng=draw)
         streams = np.random.default_rng([draw, 7]).spawn(3)
-        known = known_of(bare.world, bare.one_turn, POOL, [Recipe(0.0, 0)], streams, lambda *_: None)
+        known = known_of(bare.world, bare.one_turn, POOL, Recipe(0.0, 0), streams, lambda *_: None)
         free = verdicts(bare.robot, known.pool, streams[1])
         dense = free.reshape(-1, AT_ONCE, free.shape[1]).all(axis=1)
         scaled, periods = known.weights * known.pool, known.weights * known.periods

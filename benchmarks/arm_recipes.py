@@ -1,11 +1,10 @@
 """Recipes of roadmaps on the suite's problems, paired with the control.
 
     python -m benchmarks.arm_recipes --robot ur5-5 -n 256 --problems 60 --draws 2 --recipes 0:0 4:0 0:3000 4:3000
-    python -m benchmarks.arm_recipes --robot scara --stream report --recipes 4:3000 tune --against 4:3000
     python -m benchmarks.arm_recipes -n 64 --recipes 4:3000 --afar 0
     python -m benchmarks.arm_recipes --recipes 4:3000 swaps --against 4:3000
 
-A recipe is GAMMA:ENDS, as `evenroad.make_roadmap` takes them, `tune`, which chooses them, or `swaps`: milestones of
+A recipe is GAMMA:ENDS, as `evenroad.make_roadmap` takes them, or `swaps`: milestones of
 the last recipe before it, of which those that serve least are swapped for others as long as more of its random ends
 see one; what such ends, drawn anew, see is said; or `beginning`: the first n of four times as many. The control are
 the first scrambled Sobol points that are free of robot and cell, in the same metric. Constants are chosen on the
@@ -18,8 +17,6 @@ from __future__ import annotations
 
 import argparse
 import itertools
-import time
-from functools import partial
 
 import numpy as np
 
@@ -33,7 +30,7 @@ from evenroad.robot_roadmap.make import joined, make_roadmap
 from evenroad.robot_roadmap.pockets import Seen, links_of
 from evenroad.robot_roadmap.recipe import Recipe, chosen, known_of
 
-TUNED, SWAPPED, FIRST_OF_MORE = "tune", "swaps", "beginning"
+SWAPPED, FIRST_OF_MORE = "swaps", "beginning"
 
 ARMS["arm7-5"] = lambda: with_group(arm_named("arm7"), arm_named("arm7").group[:5])
 ARMS["arm7-6"] = lambda: with_group(arm_named("arm7"), arm_named("arm7").group[:6])
@@ -70,25 +67,21 @@ def main() -> None:
     kind = np.repeat(np.arange(len(GENERATORS)), options.problems)
     solved: dict[str, list[list[bool]]] = {}
     room: dict[str, list[float]] = {}
-    make = partial(make_roadmap, arm, cell, n, k=options.k)
     for draw in range(options.draws):
         rng = 1000 + draw
         recipes = {name: _recipe(name) for name in options.recipes if ":" in name}
-        bare = make(gamma=0.0, ends=0, rng=rng)
-        known = known_of(bare.world, bare.one_turn, n, list(recipes.values()), _streams(rng), _nothing)
+        bare = make_roadmap(arm, cell, n, k=options.k, gamma=0.0, ends=0, rng=rng)
+        most = Recipe(*(max(values) for values in zip(*recipes.values(), strict=True)))
+        known = known_of(bare.world, bare.one_turn, n, most, _streams(rng), _nothing)
         recipe, rows = Recipe(), np.arange(n)
         for name in options.recipes:
-            if name == TUNED:
-                began = time.process_time()
-                made = make(tune=True, rng=rng)
-                print(f"draw {draw}, in {time.process_time() - began:.1f} s: {made.tuned}", flush=True)
-            elif name == SWAPPED:
+            if name == SWAPPED:
                 rows, said = swapped(known.seen, len(known.pool), rows)
                 anew = known_of(
                     bare.world,
                     bare.one_turn,
                     n,
-                    [recipe],
+                    recipe,
                     [*_streams(rng)[:2], _streams(rng + 500)[2]],
                     _nothing,
                 )
@@ -96,7 +89,7 @@ def main() -> None:
                 made = joined(bare, known.pool[rows], options.k)
                 print(f"draw {draw}: {said}; drawn anew {fresh[0]:.1f}, then {fresh[1]:.1f} %", flush=True)
             elif name == FIRST_OF_MORE:
-                more = known_of(bare.world, bare.one_turn, 4 * n, [recipe], _streams(rng), _nothing)
+                more = known_of(bare.world, bare.one_turn, 4 * n, recipe, _streams(rng), _nothing)
                 made = joined(bare, more.pool[chosen(more, recipe, 4 * n)[:n]], options.k)
             else:
                 recipe = recipes[name]

@@ -1,10 +1,9 @@
-"""What queries of a robot's roadmap cost, what whole turns are worth, and whether remembered paths help elsewhere.
+"""What queries of a robot's roadmap cost, and what whole turns are worth.
 
     python -m benchmarks.robot_roadmap_queries --queries 100
     python -m benchmarks.robot_roadmap_queries --counts 60
     python -m benchmarks.robot_roadmap_queries --suite 150
     python -m benchmarks.robot_roadmap_queries --turns 40
-    python -m benchmarks.robot_roadmap_queries --remember 40
     python -m benchmarks.robot_roadmap_queries --prices 40
 
 Scenes and problems come from the seeds kept for reporting.  Times are of the processor, the best of three: three copies
@@ -289,33 +288,6 @@ def turns(name: str, count: int, n: int, draws: int) -> None:
     print(f"solved in one turn and not with whole turns: {lost} of {int(np.sum(one))}")
 
 
-def remember(name: str, count: int, n: int, draws: int) -> None:
-    """Print what paths that trees found in some scenes are worth as milestones in others."""
-    pool, kinds = Pool(arm(name)), ("shelf", "box")
-    some, cell = indirect(pool, REPORTING[:count], kinds), table_of(next(problems(pool, REPORTING)))
-    plain, longer, larger = [], [], []
-    for draw in range(draws):
-        made = make_roadmap(pool.robot, cell, n, rng=draw)
-        paths = []
-        for kind in kinds:
-            for seed in TUNING[:6]:
-                world, pairs = queries(pool, kind, seed, 12)
-                known = made.in_scene(world.scene)
-                for start, goal in pairs:
-                    known.plan(start, goal)
-                paths += known.learned
-        grown = made.remember(*paths)
-        control = make_roadmap(pool.robot, cell, len(grown.milestones), rng=draw)
-        print(f"draw {draw}: {len(paths)} paths, {len(grown.milestones) - n} milestones more", flush=True)
-        plain.append(solved(made, some))
-        longer.append(solved(grown, some))
-        larger.append(solved(control, some))
-    print("| | kind | before | after | difference |\n|---|---|---|---|---|")
-    paired("remembered", some, np.array(longer), np.array(plain))
-    paired("as many made", some, np.array(larger), np.array(plain))
-    paired("remembered against as many made", some, np.array(longer), np.array(larger))
-
-
 def main() -> None:
     """Measure."""
     parser = argparse.ArgumentParser(
@@ -326,7 +298,6 @@ def main() -> None:
     parser.add_argument("--counts", type=int, default=0, help="problems of each kind")
     parser.add_argument("--suite", type=int, default=0, help="problems of each of the suite's generators")
     parser.add_argument("--turns", type=int, default=0, help="problems of each kind")
-    parser.add_argument("--remember", type=int, default=0, help="problems of each kind")
     parser.add_argument("--prices", type=int, default=0, help="problems of each kind")
     parser.add_argument("--tuning", action="store_true", help="queries on the seeds kept for tuning")
     parser.add_argument("--draws", type=int, default=2)
@@ -342,8 +313,6 @@ def main() -> None:
         counts_in_suite(options.robot, options.suite, options.n or 1024, options.draws)
     if options.turns:
         turns(options.robot, options.turns, options.n or 256, options.draws)
-    if options.remember:
-        remember(options.robot, options.remember, options.n or 256, options.draws)
     if options.prices:
         prices(options.robot, options.prices, options.n or 1024)
 

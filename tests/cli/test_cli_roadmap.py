@@ -43,15 +43,6 @@ def test_it_makes_the_roadmap_that_python_makes(made):
     np.testing.assert_array_equal(roadmap.edges, expected.edges)
 
 
-def test_tuning_says_what_it_chose_and_the_file_keeps_it(folder, capsys, monkeypatch):
-    monkeypatch.setattr("evenroad.robot_roadmap.tuning.PROBLEMS", 6)
-    assert main(["roadmap", "ur5", "--cell", "cell.yaml", "-n", "32", "--tune", "-o", "tuned.roadmap"]) == 0
-    said = er.load_robot_roadmap("tuned.roadmap").tuned
-    assert said.startswith("gamma ")
-    assert "random problems" in said
-    assert said.split(":")[0] in capsys.readouterr().out
-
-
 def test_a_plan_along_it_is_that_of_python_and_proved(made):
     assert main(["plan", "box-reach.yaml", "--roadmap", "my.roadmap", *ENDS, "--out", "a"]) == 0
     record = json.loads((made / "a.json").read_text())

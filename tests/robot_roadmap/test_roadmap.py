@@ -16,7 +16,7 @@ from evenroad.robot_roadmap.cell import day_and_all
 from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
 from evenroad.robot_roadmap.spread import displacement_weights, spread_order
-from evenroad.robot_roadmap.turns import lifted_motions_free, whole_turns
+from evenroad.robot_roadmap.turns import whole_turns
 from tests.robot.kernel_arms import STRAIGHT, TABLE, Z, box_scene, ur5
 from tests.robot.surface_oracle import mesh_clearance, point_clearance
 
@@ -289,6 +289,11 @@ def test_a_damaged_file_and_one_of_another_version_are_broken(roadmap, tmp_path,
     monkeypatch.undo()
     with pytest.raises(er.BrokenFile, match="of evenroad 0.0.1, this is"):
         er.load_robot_roadmap(file)
+    monkeypatch.setattr("evenroad.robot_roadmap.file.FORMAT", 2)
+    er.save_robot_roadmap(file, roadmap)
+    monkeypatch.undo()
+    with pytest.raises(er.BrokenFile, match=r"format 2 .* make the roadmap anew"):
+        er.load_robot_roadmap(file)
 
 
 @pytest.mark.parametrize(
@@ -308,33 +313,6 @@ def test_content_that_no_roadmap_has_is_broken(roadmap, tmp_path, field, value, 
     er.save_robot_roadmap(file, replace(roadmap, **{field: value(getattr(roadmap, field))}))
     with pytest.raises(er.BrokenFile, match=said):
         er.load_robot_roadmap(file)
-
-
-def test_paths_are_remembered_as_milestones_in_every_scene_of_the_cell(roadmap, tmp_path):
-    known = roadmap.in_scene(box_scene())
-    path = known.world.connect(np.array([0.0, -1.5, 0.0]), np.array([[2.0, -1.0, 1.0]])).path
-    longer = roadmap.remember(path, path[::-1])
-    new = longer.milestones[40:]
-    # Of the second path nothing is new.
-    assert len(new) == len(path)
-    np.testing.assert_array_equal(longer.milestones[:40], roadmap.milestones)
-    np.testing.assert_allclose(np.cos(new), np.cos(path))
-    before = {(a, b, *t) for (a, b), t in zip(roadmap.edges.tolist(), roadmap.turns.tolist(), strict=True)}
-    after = {(a, b, *t) for (a, b), t in zip(longer.edges.tolist(), longer.turns.tolist(), strict=True)}
-    assert before < after
-    a, b = longer.milestones[longer.edges[:, 0]], longer.milestones[longer.edges[:, 1]]
-    assert lifted_motions_free(longer.world, longer.one_turn, a, b, longer.turns.astype(int)).all()
-    er.save_robot_roadmap(tmp_path / "a.roadmap", longer)
-    again = er.load_robot_roadmap(tmp_path / "a.roadmap").in_scene(box_scene())
-    assert again.plan(path[0], path[-1], trees=False).solved
-
-
-def test_a_path_that_is_not_free_of_robot_and_cell_is_not_remembered(roadmap):
-    through = np.array([[0.0, -1.5, 0.0], [0.0, 0.6, 0.0]])
-    with pytest.raises(er.InvalidValue, match="path 1 cannot be remembered: its motion 0 is not free"):
-        roadmap.remember(through[:1].repeat(2, axis=0), through)
-    with pytest.raises(er.InvalidValue, match="path 0"):
-        roadmap.remember(np.zeros((3, 2)))
 
 
 def test_shapes_are_asked_within_what_the_capsules_left_of_the_budget(roadmap):

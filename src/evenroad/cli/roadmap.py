@@ -41,8 +41,6 @@ class MakeRoadmap(RobotOptions):
     """Each is joined to so many of the nearest ones that it can reach freely."""
     gamma: float = 4.0
     """Milestones are as dense as the chance of being free in random scenes to this power, >= 0."""
-    tune: bool = False
-    """Choose gamma by random problems for this arm in this cell: some times as long."""
     resolution: float = 0.05
     """Largest step of a motion check, > 0, in radians."""
     seed: int = 0
@@ -74,10 +72,9 @@ class MakeRoadmap(RobotOptions):
                 self.n,
                 k=self.k,
                 gamma=self.gamma,
-                tune=self.tune,
                 resolution=self.resolution,
                 rng=self.seed,
-                progress=_progress(shown, self.tune),
+                progress=_progress(shown),
             )
         seconds = time.perf_counter() - began
         save_robot_roadmap(out, roadmap)
@@ -89,7 +86,6 @@ class MakeRoadmap(RobotOptions):
             ("roadmap", f"{size}, free of {robot.name!r} and its cell {cell.name!r}"),
             ("joints", ", ".join(robot.group)),
             *([("turn on", ", ".join(wraps))] if wraps else []),
-            *([("tuned", roadmap.tuned)] if roadmap.tuned else []),
             ("time", f"{seconds:.1f} s"),
             ("file", f"{out}, {out.stat().st_size / 1000:.0f} kB"),
         ]
@@ -103,24 +99,15 @@ _UNTIL = {
     "pockets": 0.9,
     "choosing and joining milestones": 1.0,
 }
-_UNTIL_TUNED = {
-    "drawing configurations": 0.01,
-    "random scenes": 0.05,
-    "pockets": 0.35,
-    "tuning: problems": 0.7,
-    "tuning: recipes": 0.95,
-    "choosing and joining milestones": 1.0,
-}
 """Up to which share of the time what is done takes, in its order; about."""
 
 
-def _progress(shown: Callable[..., None], tune: bool) -> Callable[[str, float], None]:
+def _progress(shown: Callable[..., None]) -> Callable[[str, float], None]:
     """Return what turns the share of what is being done into that of all."""
-    until = _UNTIL_TUNED if tune else _UNTIL
-    since = dict(zip(until, (0.0, *until.values()), strict=False))
+    since = dict(zip(_UNTIL, (0.0, *_UNTIL.values()), strict=False))
 
     def progress(what: str, share: float) -> None:
-        shown(int(1000 * (since[what] + share * (until[what] - since[what]))), 1000)
+        shown(int(1000 * (since[what] + share * (_UNTIL[what] - since[what]))), 1000)
 
     return progress
 

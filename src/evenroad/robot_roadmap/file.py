@@ -24,8 +24,8 @@ from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
 from evenroad.robot_roadmap.turns import TURN
 from evenroad.world.bisection import require_few_segments
 
-FORMAT = 2
-_SETTINGS = ("resolution", "gamma", "ends", "tuned")
+FORMAT = 3
+_SETTINGS = ("resolution", "gamma", "ends")
 _ARRAYS = ("milestones", "edges", "turns", "weights")
 _SURFACES = ("points", "triangles")
 """Of the cell's clouds and meshes, one after the other."""

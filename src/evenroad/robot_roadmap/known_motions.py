@@ -26,7 +26,6 @@ class KnownMotions:
     weights: Floats
     gamma: float
     ends: int = 0
-    tuned: str = ""
 
     @cached_property
     def world(self) -> ArmWorld:

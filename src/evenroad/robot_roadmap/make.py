@@ -16,7 +16,6 @@ from evenroad.robot import ArmWorld, Robot, Scene, in_scene, scene_seen_by
 from evenroad.robot.robot import require_robot
 from evenroad.robot_roadmap.recipe import GAMMA, Recipe, chosen, ends_for, known_of
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
-from evenroad.robot_roadmap.tuning import EASY, GAMMAS, tune_recipe
 from evenroad.robot_roadmap.turns import OneTurn, lifted_motions_free, one_turn, shifts, whole_turns
 from evenroad.space import JointSpace
 
@@ -35,7 +34,6 @@ def make_roadmap(
     k: int = 16,
     gamma: float = GAMMA,
     ends: int | None = None,
-    tune: bool = False,
     resolution: float = 0.05,
     rng: RngLike = 0,
     progress: Callable[[str, float], None] = lambda what, share: None,
@@ -61,9 +59,6 @@ def make_roadmap(
     ends : int, optional
         How many ends in pockets are learned from, >= 0.  Default: 3000, fewer for a robot of more than 60 pairs of
         capsules, but 300 at least.
-    tune : bool
-        Whether `gamma` gives way to another one that leads to more goals among random problems for this robot in this
-        cell: up to a minute more.  `RobotRoadmap.tuned` says what came of it.
     resolution : float
         Largest step of a motion check, > 0 [rad].
     rng : int, SeedSequence or Generator
@@ -91,11 +86,9 @@ def make_roadmap(
     if world.fixed_contact is not None:
         first, second = world.fixed_contact
         raise InvalidValue(f"the robot is never free in its cell: {first!r} always touches {second!r}")
-    recipe = Recipe(gamma, ends)
-    recipes = [recipe, *(recipe._replace(gamma=other) for other in GAMMAS if tune and other != gamma)]
-    one = one_turn(world.space, whole_turns(robot))
-    *streams, of_problems = generator(rng).spawn(4)
-    known = known_of(world, one, n, recipes, streams, progress)
+    recipe, one = Recipe(gamma, ends), one_turn(world.space, whole_turns(robot))
+    known = known_of(world, one, n, recipe, generator(rng).spawn(3), progress)
+    progress("choosing and joining milestones", 0.0)
     nothing = RobotRoadmap(
         robot,
         cell,
@@ -105,19 +98,9 @@ def make_roadmap(
         np.empty((0, world.space.dim), np.int8),
         known.weights,
         gamma,
+        ends,
     )
-
-    def made(by: Recipe) -> RobotRoadmap:
-        bare = replace(nothing, gamma=by.gamma, ends=by.ends)
-        return joined(bare, known.pool[chosen(known, by, min(n, len(known.pool)))], k)
-
-    said = ""
-    if tune:
-        recipe, said = tune_recipe(
-            joined(nothing, known.pool[:EASY], k), recipes, made, of_problems, progress
-        )
-    progress("choosing and joining milestones", 0.0)
-    return replace(made(recipe), tuned=said)
+    return joined(nothing, known.pool[chosen(known, recipe, min(n, len(known.pool)))], k)
 
 
 def require_settings(n: int, k: int, gamma: float, resolution: float) -> None:

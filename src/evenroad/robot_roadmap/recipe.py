@@ -1,4 +1,4 @@
-"""What milestones are chosen by: recipes, and what is known of robot and cell that they share."""
+"""What milestones are chosen by: a recipe, and what it needs to know of robot and cell."""
 
 from __future__ import annotations
 
@@ -70,27 +70,26 @@ def known_of(
     world: ArmWorld,
     one: OneTurn,
     n: int,
-    recipes: Sequence[Recipe],
+    recipe: Recipe,
     streams: Sequence[np.random.Generator],
     progress: Callable[[str, float], None],
 ) -> Known:
-    """Find out what recipes for n milestones need; the streams draw pool, scenes and pockets."""
+    """Find out what a recipe for n milestones needs; the streams draw pool, scenes and pockets."""
     pool_rng, scene_rng, pocket_rng = streams
     progress("drawing configurations", 0.0)
     pool = _free_pool(world, one, max(CHOICE * n, FIRST), pool_rng)
     weights = displacement_weights(world.robot, pool[:MEASURED])
     chance = np.ones(len(pool))
-    if any(recipe.gamma > 0.0 for recipe in recipes):
+    if recipe.gamma > 0.0:
         chance = chance_of_freedom(
             world.robot, pool, SCENES, scene_rng, lambda share: progress("random scenes", share)
         )
-    ends = max(recipe.ends for recipe in recipes)
     seen = ends_in_pockets(
         world.robot,
         world.scene,
         pool,
         weights * pool,
-        ends,
+        recipe.ends,
         pocket_rng,
         lambda share: progress("pockets", share),
     )

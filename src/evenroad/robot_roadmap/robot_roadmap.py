@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-
-import numpy as np
-import numpy.typing as npt
+from dataclasses import dataclass
 
 from evenroad.geometry.shapes import Shape
 from evenroad.roadmap import Budget, PlanResult
 from evenroad.roadmap.find_path import find_path
 from evenroad.robot import Scene
 from evenroad.robot_roadmap.known_motions import KnownMotions, world_of
-from evenroad.robot_roadmap.learned import with_paths
 from evenroad.robot_roadmap.places import Goal, Place, read_ends
 from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
 
@@ -42,23 +38,7 @@ class RobotRoadmap(KnownMotions):
         The power of the chance of being free that milestones are as dense as.
     ends : int
         How many ends in pockets they learned from, at most.
-    tuned : str
-        What came of tuning gamma; empty without.
     """
-
-    def remember(self, *paths: npt.ArrayLike) -> RobotRoadmap:
-        """Return a roadmap with the waypoints of paths, (p, dim) each, as further milestones, joined to the others.
-
-        Whether they help in other scenes is measured in docs/robot-roadmaps.md.  :attr:`SceneRoadmap.learned` has those
-        that trees found where the roadmap led nowhere.  Raises InvalidValue if a path is no such array, or one of its
-        motions is not free of robot and cell.
-        """
-        known = self.milestones, self.edges, self.turns
-        grown = with_paths(self.world, self.one_turn, known, tuple(np.asarray(path) for path in paths))
-        for array in grown:
-            array.setflags(write=False)
-        milestones, edges, turns = grown
-        return replace(self, milestones=milestones, edges=edges, turns=turns)
 
     def in_scene(self, scene: Scene, shapes: Sequence[Shape] | None = None) -> SceneRoadmap:
         """Return the roadmap in the day's scene, for many queries in it: what one finds out serves the next."""

@@ -99,8 +99,6 @@ class SceneRoadmap:
     ----------
     world : ArmWorld
         The robot in its cell, with the day's obstacles.
-    learned : list of ndarrays, shapes (p, dim)
-        Ways that trees found where the roadmap led nowhere; their waypoints serve later queries here.
 
     Raises
     ------
@@ -134,7 +132,6 @@ class SceneRoadmap:
             self._own._make_ready()
         self._graph = roadmap.graph.within(np.array(self.world.space.low), np.array(self.world.space.high))
         self._wraps = bool(np.any(self.world.space.wrapping))
-        self.learned: list[Floats] = []
         self._lock = OwnLock()
         self._make_ready()
 
@@ -283,7 +280,6 @@ class SceneRoadmap:
         """Ask again along what is known to be free, with ways learned that lead there from the ends."""
         left = most - asked.motions
         out = learn_ways_out(self.world, self._graph, self.roadmap.weights, (start, goals[0]), left, deadline)
-        self.learned += out.ways
         before = asked.milestones + out.configurations, asked.motions + out.motions
         batches = asked.batches + 2 * out.motions
         if out.complete:
@@ -297,7 +293,6 @@ class SceneRoadmap:
         attempt.planner = f"{PLANNER}, then trees"
         grown = attempt.connect(self.world)
         if grown.goal >= 0:
-            self.learned.append(grown.path)
             self._graph.learn(grown.path)
         checked = asked.milestones + grown.configurations, asked.motions + grown.motions
         return replace(grown, configurations=checked[0], motions=checked[1])

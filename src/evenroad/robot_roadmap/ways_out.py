@@ -16,9 +16,8 @@ the part beyond counts so much; nearer ones are found sooner, but lead astray.""
 
 
 class WaysOut(NamedTuple):
-    """Ways that were found and learned, (p, dim) each; whether both ends now lead on; what was checked."""
+    """Whether both ends now lead on, by ways that were found and learned; what was checked."""
 
-    ways: list[Floats]
     complete: bool
     configurations: int
     motions: int
@@ -33,20 +32,18 @@ def learn_ways_out(
     deadline: float,
 ) -> WaysOut:
     """Learn a way from start and goal of the last search to milestones that free motions join, where there is none."""
-    ways: list[Floats] = []
     configurations = motions = 0
     for end, near in zip(ends, graph.around(weights, ONWARD, AROUND), strict=True):
         if near is None:
             continue
         seconds = deadline - now()
         if not len(near) or seconds <= 0.0 or motions >= most_motions:
-            return WaysOut(ways, False, configurations, motions)
+            return WaysOut(False, configurations, motions)
         grown = connect(world, end, near, most_motions=most_motions - motions, seconds=seconds)
         configurations, motions = configurations + grown.configurations, motions + grown.motions
         if grown.goal < 0:
-            return WaysOut(ways, False, configurations, motions)
+            return WaysOut(False, configurations, motions)
         way, more = shorten(world, grown.path, pairs=0, cuts=0)
         motions += more
         graph.learn(way)
-        ways.append(way)
-    return WaysOut(ways, True, configurations, motions)
+    return WaysOut(True, configurations, motions)
