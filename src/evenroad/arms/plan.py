@@ -45,6 +45,7 @@ def plan_arm(
     rule: Rule | None = None,
     shorten: bool = True,
     resolution: float = RESOLUTION,
+    clearance: float = 0.0,
     degrees: bool = False,
     tip: str = "",
     frame: str = "",
@@ -84,6 +85,8 @@ def plan_arm(
         As in :func:`evenroad.roadmap.plan`; a rule goes with points.
     resolution : float
         Largest step of a motion check, > 0 [rad].
+    clearance : float
+        How far the arm keeps from all obstacles, 0 to 1 [m]: its bodies are larger by that, but not against each other.
     degrees : bool
         Angles in texts are degrees.
     tip, frame : str
@@ -120,7 +123,7 @@ def plan_arm(
         raise InvalidValue("improve goes without points: a roadmap of exactly so many has one best path")
     if points is None:
         prepare()
-    how = dict(resolution=resolution, degrees=degrees, tip=tip, frame=frame)
+    how = dict(resolution=resolution, clearance=clearance, degrees=degrees, tip=tip, frame=frame)
     query = arm_query(robot, scene, start, goal, **how, **options)  # type: ignore[arg-type]
     if (refused := unreached(query)) is not None:
         return refused

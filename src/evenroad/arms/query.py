@@ -81,6 +81,7 @@ def arm_query(
     goal: Goal | Sequence[Goal],
     *,
     resolution: float = RESOLUTION,
+    clearance: float = 0.0,
     degrees: bool = False,
     tip: str = "",
     frame: str = "",
@@ -116,11 +117,11 @@ def arm_query(
             read(place)
     require_tips(robot, goals, tip, frame)
     # Where a goal pose is reached is known only once it is: till then what is allowed near the ends is allowed.
-    world = ArmWorld(robot, open_everywhere(scene), resolution=resolution)
+    world = ArmWorld(robot, open_everywhere(scene), resolution=resolution, clearance=clearance)
     given = goals_of(world, first, goals, read, tip, frame)
     if scene.near_ends and not given.unreached:
         ends = np.concatenate([first[np.newaxis], given.configurations])
-        world = ArmWorld(robot, allowed_near_ends(robot, scene, ends), resolution=resolution)
+        world = replace(world, scene=allowed_near_ends(robot, scene, ends))
         given = replace(given, whole=not given.poses)
     return ArmQuery(world, first, given.configurations, given, source, model)
 

@@ -187,6 +187,8 @@ class PlanArm(PlanOptions, RobotOptions):
     """Angles are in degrees: of start, goal, "roll pitch yaw" and --upright."""
     resolution: float = 0.05
     """Largest step of a motion check, > 0, in radians."""
+    clearance: float = 0.0
+    """How far the arm keeps from all obstacles, 0 to 1, in metres; not from itself, and not with --roadmap."""
     trajectory: tyro.conf.UseAppendAction[tuple[Path, ...]] = ()
     """Give the path times, and write it here, too: .json, .csv, .yaml (ROS 2 JointTrajectory), .mcap (the same as a
     bag), .script (URScript, by the clock) or .movej.script (waypoint by waypoint).  May be given more than once."""

@@ -59,6 +59,8 @@ def plan_arm(plan: PlanArm) -> int:
     inputs = (find_scene(plan.world), *of_robot, plan.srdf, plan.bodies, plan.roadmap)
     files = output_files(plan, [path for path in inputs if path is not None], ("json", "csv"), "file")
     require_trajectory_options(plan, [path for path in inputs if path is not None], files.values())
+    if plan.roadmap is not None and plan.clearance:
+        raise InvalidValue("--clearance goes without --roadmap: what it knows of motions is known without")
     kept = None if plan.roadmap is None else kept_roadmap(plan)
     if kept is not None:
         prepare_roadmap()
@@ -73,6 +75,7 @@ def plan_arm(plan: PlanArm) -> int:
         " ".join(plan.start),
         asked_goals,
         resolution=plan.resolution,
+        clearance=plan.clearance,
         degrees=plan.deg,
         **({} if plan.robot is None else plan.options()),
     )
@@ -115,6 +118,7 @@ def plan_arm(plan: PlanArm) -> int:
         "holds": list(robot.holds),
         "goal_poses": query.given.records(world, None if result.path is None else result.path[-1]),
         "resolution": world.resolution,
+        "clearance": world.clearance,
     }
     record = plan_record(result, asked | common_query(plan)) | {
         "no_body": [] if model is None else list(model.bodiless),

@@ -18,7 +18,7 @@ from evenroad.robot.kernel import scalar
 from evenroad.robot.kernel.certify import motions_certified
 from evenroad.robot.kernel.lane_world import LaneWorld
 from evenroad.robot.kernel.obstacles import obstacle_rows, refuse, tested_contacts
-from evenroad.robot.kernel.robot_tables import RobotTables
+from evenroad.robot.kernel.robot_tables import RobotTables, enlarged
 from evenroad.robot.kernel.scene_surfaces import scene_surfaces
 from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
 from evenroad.robot.kernel.selftest import lanes_failure
@@ -37,6 +37,9 @@ from evenroad.world.bisection import require_few_segments
 from evenroad.world.protocol import Apart, Connection
 
 _BACKENDS = ("auto", "lanes", "scalar")
+
+MOST_CLEARANCE = 1.0
+"""No robot of this world is asked to keep farther from obstacles [m]."""
 
 RECHECK_TOLERANCE = 1e-6
 """How near to contact `ArmWorld.recheck` still proves a motion free [m]; verdicts of single precision keep about
@@ -62,6 +65,9 @@ class ArmWorld:
         The robot, and what stands around it; where the scene has narrower ranges to plan in, the robot keeps to these.
     resolution : float
         Largest Euclidean distance between neighbouring states of a motion, > 0 [rad].
+    clearance : float
+        How far bodies are to keep from obstacles, >= 0 [m]: they are larger by that against these, not against each
+        other.
     backend : {"auto", "lanes", "scalar"}
         Sixteen verdicts at once in single precision, with radii enlarged by some micrometres to stay on the safe
         side, or one after the other in double precision; "auto" is the lanes where a test finds that they work.
@@ -78,7 +84,8 @@ class ArmWorld:
     Raises
     ------
     InvalidValue
-        If `resolution` is no such number, a joint of the group has no finite range, or robot or scene is not sound.
+        If `resolution` or `clearance` is no such number, a joint of the group has no finite range, or robot or scene is
+        not sound.
     UnknownName
         If the robot or the scene names something that is not there, or there is no such backend.
     NotAvailable
@@ -89,6 +96,7 @@ class ArmWorld:
     scene: Scene
     resolution: float = 0.05
     backend: str = "auto"
+    clearance: float = 0.0
     _space: JointSpace = field(init=False, repr=False)
     bounds: Floats = field(init=False, repr=False)
     robot_tables: RobotTables = field(init=False, repr=False)
@@ -98,6 +106,11 @@ class ArmWorld:
     def __post_init__(self) -> None:
         object.__setattr__(self, "robot", within_scene(self.robot, self.scene))
         object.__setattr__(self, "resolution", require_positive("resolution", self.resolution))
+        object.__setattr__(
+            self,
+            "clearance",
+            require_positive("clearance", self.clearance, or_zero=True, at_most=MOST_CLEARANCE),
+        )
         for held in self.scene.attached:
             if held.name not in self.robot.holds:
                 raise InvalidValue(
@@ -112,6 +125,8 @@ class ArmWorld:
             )
         space, longest, of_robot, by_joint, bounds, by_joint_at = prepared(self.robot)
         require_few_segments(self.resolution, longest / self.resolution)
+        if self.clearance:
+            of_robot = enlarged(of_robot, self.clearance)
         tested = tested_contacts(of_robot.capsules, self.robot.links, self.scene)
         rows, surfaces = obstacle_rows(self.scene), None
         if len(rows) < len(self.scene.obstacles):
@@ -291,8 +306,9 @@ class ArmWorld:
         return shorten(self, path)
 
     def fingerprint(self) -> str:
-        """Return a text that two worlds share whose robot, scene and resolution are the same."""
-        return fingerprint_of("arm", self.robot, self.scene, self.resolution)
+        """Return a text that two worlds share whose robot, scene, resolution and clearance are the same."""
+        more = (self.clearance,) if self.clearance else ()
+        return fingerprint_of("arm", self.robot, self.scene, self.resolution, *more)
 
     def explain(self, q: Floats) -> str:
         """Return in words why one configuration, (dim,), is not free: a joint outside its limits, or what touches."""
@@ -305,7 +321,14 @@ class ArmWorld:
                 limits = limits_in_words(self.scene, name, low, high)
                 return f"joint {name!r} is at {value:g}, {beyond:.3g} outside {limits}"
         bodies = self.fixed_contact or self._touching(row)
-        return "it is free" if bodies is None else f"{bodies[0]!r} touches {bodies[1]!r}"
+        if bodies is None:
+            return "it is free"
+        if self.clearance:
+            plain = replace(self, clearance=0.0)
+            if not plain.valid(batch)[0]:
+                return plain.explain(q)
+            return f"{bodies[0]!r} is nearer than the clearance {self.clearance:g} to {bodies[1]!r}"
+        return f"{bodies[0]!r} touches {bodies[1]!r}"
 
     def explain_start(self, q: Floats) -> str:
         """Return as `explain` why a robot cannot start from one configuration, (dim,); of a scan what helps."""

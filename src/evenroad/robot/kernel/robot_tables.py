@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +17,7 @@ from evenroad.robot.kernel.hull_trees import contacts, hull_trees
 from evenroad.robot.kernel.moving_tree import MovingTree, moving_tree
 from evenroad.robot.kernel.placed_capsules import (
     FARTHEST,
+    Cover,
     PlacedCapsule,
     PlacedHulls,
     farthest,
@@ -75,6 +77,30 @@ class RobotTables:
     speeds: Floats
     pair_speeds: Floats
     fixed_contact: tuple[str, str] | None
+
+
+@lru_cache(maxsize=32)
+def enlarged(tables: RobotTables, clearance: float) -> RobotTables:
+    """Return tables of bodies that are larger by a clearance [m] where obstacles are concerned, and for these alone."""
+    floats, singles = tables.floats.copy(), tables.singles.copy()
+    at, width = tables.ints[layout.CAPSULE_FLOATS], layout.CAPSULE_FLOAT_ROW
+    bodies, body_width = tables.ints[layout.BODY_FLOATS], layout.BODY_FLOAT_ROW
+    for numbers in (floats, singles):
+        numbers[at:][: width * tables.ints[layout.CAPSULES]].reshape(-1, width)[:, 6] += clearance
+        numbers[bodies:][: body_width * tables.ints[layout.BODIES]].reshape(-1, body_width)[:, 3:7] += (
+            clearance
+        )
+        numbers.setflags(write=False)
+    capsules = tuple(
+        replace(
+            capsule,
+            radius=capsule.radius + clearance,
+            cover=Cover(capsule.cover.places, capsule.cover.radius + clearance),
+        )
+        for capsule in tables.capsules
+    )
+    reach = tables.reach + clearance
+    return replace(tables, capsules=capsules, reach=reach, floats=floats, singles=singles)
 
 
 def robot_tables(robot: Robot) -> RobotTables:

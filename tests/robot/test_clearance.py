@@ -1,0 +1,147 @@
+"""Arms that keep a distance from obstacles: no body nearer than the clearance, and none farther off than it has to."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import trimesh
+
+from evenroad.arms import plan_arm
+from evenroad.errors import InvalidValue
+from evenroad.geometry.mesh import TriangleMesh
+from evenroad.geometry.pose import Pose
+from evenroad.geometry.shapes import Box, Mesh, PointCloud
+from evenroad.robot import load_robot, load_scene
+from evenroad.robot.arm_world import ArmWorld
+from evenroad.robot.kinematics import capsule_ends
+from evenroad.robot.scene import Obstacle, Scene
+from evenroad.robot.trees import connect, shorten
+from tests.robot.kernel_arms import box_scene, edge, random_scene, random_tree, ur5
+from tests.robot.oracle import clearance
+from tests.robot.test_trees import GOAL, START, dense_states
+
+BAND = 2e-4
+"""Verdicts of single precision may be on the safe side by this [m]."""
+ROUNDING = 1e-12
+CASES = {
+    "ur5 in a box": (ur5(np.pi), box_scene()),
+    "ur5 among everything": (ur5(np.pi), random_scene(5)),
+    "tree with a joint that wraps": (random_tree(13), random_scene(113, spread=0.7, clear=0.45)),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("backend", ["auto", "scalar"])
+def test_free_is_what_keeps_the_clearance_from_obstacles_and_does_not_touch_itself(case, backend):
+    (robot, scene), kept = CASES[case], 0.01
+    world = ArmWorld(robot, scene, clearance=kept, backend=backend)
+    q = world.space.from_cube(np.random.default_rng(0).random((3000, world.space.dim)))
+    # Half of them on either side of the edge.
+    q = np.concatenate([q[:500], *edge(world, q, 300)])
+    free = world.valid(q)
+    obstacles = clearance(replace(robot, pairs=()), scene, q)
+    itself = clearance(robot, Scene("nothing"), q)
+    assert not free[(obstacles < kept - ROUNDING) | (itself < -ROUNDING)].any()
+    assert free[(obstacles > kept + BAND) & (itself > BAND)].all()
+    assert np.sum(free & (obstacles < kept + 10.0 * BAND)) > 10
+    # Bodies come nearer than that to each other.
+    assert case == "ur5 in a box" or np.any(free & (itself < kept))
+
+
+def test_every_state_of_a_path_keeps_the_clearance():
+    robot, scene, kept = ur5(np.pi, joints=5), box_scene(), 0.01
+    world = ArmWorld(robot, scene, clearance=kept)
+    if world.backend == "scalar":
+        pytest.skip("trees grow in the lanes only")
+    alone = replace(robot, pairs=())
+    found = connect(world, START, [GOAL])
+    assert found.goal == 0
+    short, _ = shorten(world, found.path)
+    near = clearance(alone, scene, dense_states(world, short)).min()
+    assert kept <= near < 2.0 * kept
+    assert world.recheck(short).all()
+    # Without, the way is cut as far as it goes.
+    plain = ArmWorld(robot, scene)
+    tight, _ = shorten(plain, connect(plain, START, [GOAL]).path)
+    assert clearance(alone, scene, dense_states(plain, tight)).min() < kept
+    assert not world.recheck(tight).all()
+
+
+def distances_from(robot, q, points):
+    """Distances of points (n, 3) from the robot's capsules, the least of each configuration."""
+    ends = capsule_ends(robot, q)
+    a, way = ends[:, :, 0], ends[:, :, 1] - ends[:, :, 0]
+    squares = np.maximum((way**2).sum(axis=-1), 1e-300)
+    share = np.einsum("nkc,nkpc->nkp", way, points - a[:, :, None]) / squares[..., None]
+    nearest = a[:, :, None] + np.clip(share, 0.0, 1.0)[..., None] * way[:, :, None]
+    radii = np.array([capsule.radius for capsule in robot.capsules])
+    return (np.linalg.norm(points - nearest, axis=-1) - radii[:, None]).min(axis=(1, 2))
+
+
+@pytest.mark.parametrize("backend", ["auto", "scalar"])
+@pytest.mark.parametrize("kind", ["cloud", "mesh"])
+def test_clouds_and_meshes_are_kept_clear_of(kind, backend):
+    robot, kept, rng = ur5(np.pi), 0.02, np.random.default_rng(2)
+    robot = replace(robot, pairs=())
+    box = Box((0.3, 0.3, 0.3), pose=Pose((0.5, 0.1, 0.3)))
+    points = rng.uniform(-0.15, 0.15, (60, 3))
+    if kind == "mesh":
+        form = trimesh.creation.box((0.3, 0.3, 0.3))
+        body, radius = Mesh(TriangleMesh(form.vertices, form.faces), pose=box.pose), 0.0
+        # All over its surface.
+        points = rng.uniform(-0.15, 0.15, (300, 3))
+        points[np.arange(300), rng.integers(0, 3, 300)] = rng.choice([-0.15, 0.15], 300)
+    else:
+        body, radius = PointCloud(points, 0.01, pose=box.pose), 0.01
+    scene = Scene("s", (Obstacle("it", body),))
+    world = ArmWorld(robot, scene, clearance=kept, backend=backend)
+    q = world.space.from_cube(rng.random((3000, 6)))
+    free, plain = world.valid(q), ArmWorld(robot, scene, backend=backend).valid(q)
+    near = distances_from(robot, q, box.pose.apply(points)) - radius
+    assert not free[near < kept].any()
+    assert free[near > kept + 0.06].all()
+    # What is given up lies near.
+    assert (plain & ~free).sum() > 20
+    assert near[plain & ~free].max() < kept + 0.06
+
+
+def test_what_is_nearer_than_the_clearance_is_told_so_and_what_touches_is_told_that():
+    robot, scene = ur5(np.pi), Scene("s", (Obstacle.of("wall", "box", (0.1, 2.0, 2.0), (0.9, 0.0, 0.5)),))
+    world, plain = ArmWorld(robot, scene, clearance=0.3), ArmWorld(robot, scene)
+    q = world.space.from_cube(np.random.default_rng(0).random((600, 6)))
+    told = [world.explain(each) for each in q]
+    free = plain.valid(q)
+    for text, within in zip(told, world.valid(q), strict=True):
+        assert (text == "it is free") == within
+        if "clearance" in text:
+            assert text.endswith("is nearer than the clearance 0.3 to 'wall'")
+    nearer = np.array(["clearance" in text for text in told])
+    np.testing.assert_array_equal(nearer, free & ~world.valid(q))
+    assert nearer.sum() > 20
+    result = plan_arm(robot, scene, q[world.valid(q)][0], q[nearer][0], clearance=0.3)
+    assert result.status == "goal_invalid"
+    assert "is nearer than the clearance 0.3 to 'wall'" in result.message
+
+
+def test_a_world_with_a_clearance_is_another_world():
+    robot, scene = ur5(), box_scene()
+    plain = ArmWorld(robot, scene)
+    assert ArmWorld(robot, scene, clearance=0.0).fingerprint() == plain.fingerprint()
+    assert len({ArmWorld(robot, scene, clearance=c).fingerprint() for c in (0.0, 0.01, 0.02)}) == 3
+    # The robot's own tables are as they were.
+    q = plain.space.from_cube(np.random.default_rng(0).random((500, 6)))
+    np.testing.assert_array_equal(ArmWorld(robot, scene).valid(q), plain.valid(q))
+
+
+@pytest.mark.parametrize("value", [-0.01, float("nan"), 2.0, "near"])
+def test_a_clearance_that_makes_no_sense_is_refused(value):
+    with pytest.raises(InvalidValue, match="clearance must be"):
+        ArmWorld(ur5(), box_scene(), clearance=value)
+
+
+def test_a_plan_keeps_the_clearance_it_is_asked_for():
+    result = plan_arm("ur5", "box-reach", "home", "inside", clearance=0.005)
+    assert result.solved
+    assert plan_arm("ur5", "box-reach", "home", "inside").solved
+    world = ArmWorld(load_robot("ur5"), load_scene("box-reach"), clearance=0.005)
+    assert world.recheck(result.path).all()
