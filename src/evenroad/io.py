@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad import __version__
+from evenroad._arrays import set_fields
 from evenroad._files import atomic_write, read_json_file
 from evenroad.errors import BrokenFile
 from evenroad.points import Origin
@@ -31,6 +32,7 @@ def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
         "cost",
         "milestone_cost",
         "proof",
+        "clearance",
         "goal_index",
         "planner",
         "rule",
@@ -84,6 +86,8 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
             planner=str(record["planner"]),
             seconds={str(phase): float(value) for phase, value in record["seconds"].items()},
         )
+        # A file has no world to ask.
+        set_fields(result, clearance=record.get("clearance"))
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         why = f"it lacks {error}" if isinstance(error, KeyError) else str(error)
         raise BrokenFile(f"{path} is not a plan of evenroad: {why}") from error

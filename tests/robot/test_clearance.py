@@ -1,6 +1,7 @@
 """Arms that keep a distance from obstacles: no body nearer than the clearance, and none farther off than it has to."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -11,7 +12,8 @@ from evenroad.errors import InvalidValue
 from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.pose import Pose
 from evenroad.geometry.shapes import Box, Mesh, PointCloud
-from evenroad.robot import load_robot, load_scene
+from evenroad.roadmap.find_path import find_path
+from evenroad.robot import configuration, load_robot, load_scene
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.kinematics import capsule_ends
 from evenroad.robot.scene import Obstacle, Scene
@@ -145,3 +147,20 @@ def test_a_plan_keeps_the_clearance_it_is_asked_for():
     assert plan_arm("ur5", "box-reach", "home", "inside").solved
     world = ArmWorld(load_robot("ur5"), load_scene("box-reach"), clearance=0.005)
     assert world.recheck(result.path).all()
+
+
+def test_a_path_tells_a_clearance_that_it_keeps_and_hardly_more():
+    """The oracle is the exact distance of states; a path between them is no farther away."""
+    world = ArmWorld(load_robot("ur5"), load_scene("box-reach"))
+    scene = load_scene("box-reach")
+    ends = [configuration(world.robot, name, scene) for name in ("home", "inside")]
+    result = find_path(world, *ends)
+    assert result.clearance is not None
+    along = np.concatenate(
+        [a + np.linspace(0.0, 1.0, 60)[:, np.newaxis] * (b - a) for a, b in pairwise(result.path)]
+    )
+    kept = replace(world, clearance=result.clearance, backend="scalar")
+    assert kept.valid(along).all()
+    # Capsules are covered by spheres of up to 1.1 times their radius.
+    touched = replace(world, clearance=result.clearance + 0.002, backend="scalar")
+    assert not touched.valid(along).all()

@@ -159,6 +159,7 @@ def _with_path(
         result,
         path=path,
         milestone_path=raw,
+        world=world,
         cost=cost,
         milestone_cost=raw_cost,
         deviation=deviation,

@@ -172,6 +172,8 @@ def print_plan(result: PlanResult, files: Iterable[Path], more: Sequence[tuple[s
         rows.append(("improved", f"from {after}, in {counts['rounds']} rounds"))
     if result.proof is not None:
         rows.append(("proved", PROOFS[result.proof]))
+    if result.clearance is not None:
+        rows.append(("clearance", f"{result.clearance:.6g} at least"))
     # Without digits that say nothing, so that all phases fit into one line.
     times = {phase: 1e3 * seconds for phase, seconds in result.seconds.items()}
     if times:

@@ -175,6 +175,7 @@ def _with_path(
         cost=length,
         milestone_cost=raw_cost,
         counts=counts,
+        world=world,
     )
     return require_ends(world.space, result)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import cached_property
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from evenroad.points.pointset import Origin
 from evenroad.roadmap.certificate import Certificate
 from evenroad.roadmap.notebook import as_html
 from evenroad.space import Space
+from evenroad.world import MeasuresPaths, World
 
 NEAR = 1e-6
 """An end of a path that is no farther from what was asked than this, for numbers of 1, is there but for rounding."""
@@ -116,6 +118,8 @@ class PlanResult:
         no path has a clearance of its `dispersion`.
     roadmap : SearchedGraph or None
         What was searched; None when start or goal is invalid, and where a reused roadmap was asked.
+    world : World or None
+        Where the path was found; None without a path, or in a plan that was read from a file.
     """
 
     status: Status
@@ -138,6 +142,18 @@ class PlanResult:
     stages: tuple[Stage, ...] = ()
     certificate: Certificate | None = None
     roadmap: SearchedGraph | None = None
+    world: World | None = field(default=None, repr=False)
+
+    @cached_property
+    def clearance(self) -> float | None:
+        """How far the path stays from all obstacles, never more than it does; None where nothing can tell.
+
+        Of a disk in map units, exact within 1e-3 pixels; of an arm in metres, what is proved for its capsules, within
+        .1 mm, and 1 m at most.  It is found when it is asked for the first time: of an arm in some milliseconds.
+        """
+        if self.path is None or not isinstance(self.world, MeasuresPaths):
+            return None
+        return self.world.path_clearance(self.path)
 
     @property
     def solved(self) -> bool:

@@ -34,6 +34,7 @@ from evenroad.space import JointSpace
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.space.joints import SLACK
 from evenroad.world.bisection import require_few_segments
+from evenroad.world.clearance import largest_kept
 from evenroad.world.protocol import Apart, Connection
 
 _BACKENDS = ("auto", "lanes", "scalar")
@@ -280,6 +281,11 @@ class ArmWorld:
         """
         ends = as_batch("start and goals", np.concatenate([np.atleast_2d(start), goals]), self._space.dim)
         return apart(self, ends[0], ends[1:], quickly=quickly)
+
+    def path_clearance(self, path: Floats) -> float | None:
+        """Return what distance from obstacles a path, (p, dim), is proved to keep, to .1 mm; None if none [m]."""
+        keeps = lambda room: bool(replace(self, clearance=room).recheck(path).all())  # noqa: E731
+        return largest_kept(keeps, self.clearance, MOST_CLEARANCE, 1e-4)
 
     def may_connect(self, a: Floats, b: Floats) -> bool:
         """Return False where it is proved that no path joins two free places, (dim,) each; True says nothing."""

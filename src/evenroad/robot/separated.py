@@ -51,6 +51,9 @@ class InScene(Protocol):
     @property
     def margin(self) -> float: ...  # noqa: D102
 
+    @property
+    def clearance(self) -> float: ...  # noqa: D102
+
     def with_bodies(self, robot: Robot) -> Callable[[Floats], Bools]:
         """Return what tells of configurations, (n, dim), which are free for a robot with other bodies."""
 
@@ -95,6 +98,7 @@ def apart(
         )
         return Apart(message, proved=False)
     of = "the robot's capsules" if robot.inner is None else "capsules inside of the robot's shapes"
+    of += f", {world.clearance:g} m from obstacles" if world.clearance else ""
     if others or not whole:
         found = (
             "the posture found cannot" if len(goals) == 1 else f"none of the {len(goals)} postures found can"

@@ -305,11 +305,8 @@ class SceneRoadmap:
         if self._dear:
             self._learn_ends(path)
         length = raw_length = self._length(path)
-        counts = dict(
-            nodes=self._size,
-            configurations_checked=1 + len(goals) + asked.milestones,
-            edges_checked=asked.motions,
-        )
+        checked = 1 + len(goals) + asked.milestones
+        counts = dict(nodes=self._size, configurations_checked=checked, edges_checked=asked.motions)
         seconds = {"search": found - began}
         if shorter:
             most = WORK if world.lanes.surfaces is None else AMONG_SURFACES
@@ -335,6 +332,7 @@ class SceneRoadmap:
             milestone_cost=raw_length,
             counts=counts,
             seconds=seconds,
+            world=world,
         )
         return require_ends(world.space, result)
 

@@ -11,6 +11,7 @@ from evenroad.world.protocol import ConnectsAnew as ConnectsAnew
 from evenroad.world.protocol import ConnectsItself as ConnectsItself
 from evenroad.world.protocol import Explains as Explains
 from evenroad.world.protocol import ExplainsStarts as ExplainsStarts
+from evenroad.world.protocol import MeasuresPaths as MeasuresPaths
 from evenroad.world.protocol import Rechecks as Rechecks
 from evenroad.world.protocol import Separates as Separates
 from evenroad.world.protocol import Shortens as Shortens

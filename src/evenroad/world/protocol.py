@@ -76,6 +76,14 @@ class Connection:
 
 
 @runtime_checkable
+class MeasuresPaths(Protocol):
+    """A world that can tell how near a path comes to an obstacle."""
+
+    def path_clearance(self, path: Floats) -> float | None:
+        """Return how far a path, (p, dim), stays from all obstacles, never more than it does; None says nothing."""
+
+
+@runtime_checkable
 class Shortens(Protocol):
     """A world with a compiled way of making paths shorter."""
 

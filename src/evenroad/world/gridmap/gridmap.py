@@ -15,6 +15,7 @@ from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue
 from evenroad.space import Rectangle
 from evenroad.space.batch import as_batch, as_batch_pair
+from evenroad.world.clearance import least_distance
 from evenroad.world.gridmap.cells import DiskTables, classify, vertical_runs
 from evenroad.world.gridmap.components import PARTS, Components, find_gates, label_components, pieces_of
 from evenroad.world.gridmap.frame import MapFrame
@@ -29,6 +30,8 @@ from evenroad.world.protocol import Connection
 
 _SPREADS = (32, 96)
 """Points that a path is offered to be straightened with, in the coarse rounds and in the fine ones."""
+_CLOSE = 1e-3
+"""Pixels by which a path's clearance may be told too small."""
 _SMALLEST_RADIUS = 1e-150
 """In pixels: its square is still above 0, so that a disk of any size touches what its centre lies on."""
 
@@ -97,7 +100,7 @@ class GridMap:
         """
         radius = require_positive("robot_radius", robot_radius)
         room = require_positive("clearance", clearance, or_zero=True)
-        return DiskWorld(self, require_positive("robot_radius + clearance", radius + room))
+        return DiskWorld(self, require_positive("robot_radius + clearance", radius + room), room)
 
 
 def _as_cells(name: str, value: Bools) -> Bools:
@@ -117,7 +120,7 @@ class DiskWorld:
     Obstacles are the closed squares of the occupied cells and everything outside the map; a disk is free if its centre
     is at least `radius` away from all of them, so touching is free.  Motions are swept disks along straight segments,
     tested without any step length: exact up to float rounding, about 1e-12 pixels.  `radius` is the disk's with any
-    clearance added, in map units, > 0, else InvalidValue.
+    clearance added, in map units, > 0, else InvalidValue; `margin` is how much of it is clearance.
     """
 
     proof: ClassVar[str] = "exact"
@@ -127,6 +130,7 @@ class DiskWorld:
 
     grid: GridMap
     radius: float
+    margin: float = 0.0
     _tables: DiskTables = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -154,6 +158,12 @@ class DiskWorld:
         """
         _, distance = nearest_obstacle_points(as_batch("q", q, 2), self._tables)
         return distance * self.grid.frame.resolution
+
+    def path_clearance(self, path: Floats) -> float:
+        """Return how far the disk stays from all obstacles along a path, (p, 2), within 1e-3 pixels and never more."""
+        points = as_batch("path", path, 2)
+        nearest = least_distance(points, self.clearance, _CLOSE * self.grid.frame.resolution)
+        return max(0.0, nearest - (self.radius - self.margin))
 
     def nearest_obstacle(self, q: Floats) -> Floats:
         """Return the obstacle point nearest to each map point, (n, 2) -> (n, 2), in map units.

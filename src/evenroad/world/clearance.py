@@ -1,0 +1,59 @@
+"""The least clearance of a path: how near it comes to an obstacle."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from evenroad._arrays import Floats
+
+_MOST_PIECES = 200_000
+"""Pieces of a path that are looked at before a bound is good enough as it is."""
+
+
+def least_distance(path: Floats, distance: Callable[[Floats], Floats], tolerance: float) -> float:
+    """Return the least distance along a path, (p, dim), less at most `tolerance`: never more than it is.
+
+    `distance` says of places, (n, dim), how far an obstacle is; between two places it may change by no more than how
+    far they are apart, as every distance does.  So a piece of the path is halved while its middle leaves open that the
+    least is within it (S. Piyavskii, 1972, of functions with a Lipschitz constant).
+    """
+    ends = path if len(path) > 1 else np.repeat(path, 2, axis=0)
+    a, b = ends[:-1], ends[1:]
+    least, looked_at = float(distance(ends).min()), 0
+    floor = np.inf
+    while len(a):
+        middle = 0.5 * (a + b)
+        half = 0.5 * np.linalg.norm(b - a, axis=1)
+        here = distance(middle)
+        least = min(least, float(here.min()))
+        looked_at += len(a)
+        bound = here - half
+        open_ = bound < least - tolerance
+        if looked_at > _MOST_PIECES:
+            return max(0.0, min(floor, float(bound.min())))
+        floor = min(floor, float(bound[~open_].min(initial=np.inf)))
+        a, b = np.concatenate([a[open_], middle[open_]]), np.concatenate([middle[open_], b[open_]])
+    return max(0.0, min(least, floor))
+
+
+def largest_kept(keeps: Callable[[float], bool], known: float, most: float, tolerance: float) -> float | None:
+    """Return the largest clearance up to `most` that is proved to be kept, within `tolerance`; None if none is.
+
+    `keeps` says whether one is proved; `known` is one that was asked for.
+    """
+    if not keeps(known):
+        return None
+    low, step = known, 16.0 * tolerance
+    while low < most and keeps(high := min(low + step, most)):
+        low, step = high, 2.0 * step
+    if low >= most:
+        return most
+    while high - low > tolerance:
+        middle = 0.5 * (low + high)
+        if keeps(middle):
+            low = middle
+        else:
+            high = middle
+    return low
