@@ -1,7 +1,5 @@
 """How near a path comes to an obstacle: never told larger than it is, and hardly smaller."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 
@@ -36,10 +34,7 @@ def test_the_clearance_of_a_disks_path_is_the_least_distance_along_it(seed):
     if not result.solved:
         pytest.skip("no path to measure")
     along = np.concatenate(
-        [
-            a + np.linspace(0.0, 1.0, 2001)[:, np.newaxis] * (b - a)
-            for a, b in zip(result.path, result.path[1:])
-        ]
+        [a + np.linspace(0.0, 1.0, 2001)[:, np.newaxis] * (b - a) for a, b in pairwise(result.path)]
     )
     truth = _to_squares(grid, along).min() - 0.7
     # The oracle looks at states, so it may be a little too large.
