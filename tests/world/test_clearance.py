@@ -1,5 +1,7 @@
 """How near a path comes to an obstacle: never told larger than it is, and hardly smaller."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
