@@ -14,6 +14,7 @@ ROOT = Path(evenroad.__file__).parent
 BASE = {
     *("errors", "_checks", "_rng", "_files", "_seal", "_npz", "_yaml"),
     *("_arrays", "_clock", "_terminal", "_compiled", "_fingerprint", "_njit", "_shared", "_threads"),
+    "_above",
 }
 MAY_IMPORT = {
     "points": BASE,
@@ -188,3 +189,9 @@ def test_planning_on_a_shipped_set_does_not_wait_for_scipy_stats():
     code = "import sys, evenroad.viz.plan, evenroad.cli.plan_disk; print('scipy.stats' in sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert loaded.stdout.strip() == "False"
+
+
+def test_methods_of_values_name_functions_that_are_there():
+    from evenroad._above import FUNCTIONS, above
+
+    assert all(callable(above(method)) for method in FUNCTIONS)

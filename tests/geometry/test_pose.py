@@ -101,3 +101,33 @@ MIRRORED = np.diag([-1.0, 1.0, 1.0, 1.0])
 def test_what_is_no_pose_is_refused_with_its_value(make, says):
     with pytest.raises(InvalidValue, match=says):
         make()
+
+
+def test_a_pose_takes_and_gives_angles_and_quaternions():
+    rng = np.random.default_rng(0)
+    for angles in rng.uniform(-1.5, 1.5, (50, 3)).tolist():
+        pose = Pose((1, 2, 3), rpy=angles)
+        assert pose == Pose.from_rpy((1, 2, 3), angles)
+        theirs = Rotation.from_euler("xyz", angles)
+        assert np.allclose(pose.rpy, angles)
+        x, y, z, w = theirs.as_quat()
+        assert np.allclose(pose.xyzw, np.array([x, y, z, w]) * (1 if w >= 0 else -1))
+        assert np.allclose(Pose(pose.xyz, xyzw=pose.xyzw).matrix, pose.matrix)
+    for quaternion in ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0.5, -0.5, 0.5, 0.5)):
+        assert np.allclose(np.abs(Pose(xyzw=quaternion).xyzw), np.abs(quaternion))
+
+
+@pytest.mark.parametrize("pitch", [math.pi / 2, -math.pi / 2])
+def test_angles_at_the_gimbal_give_the_same_rotation(pitch):
+    pose = Pose(rpy=(0.3, pitch, 0.7))
+    assert np.allclose(Pose(rpy=pose.rpy).rotation, pose.rotation, atol=1e-8)
+
+
+def test_a_rotation_is_given_once():
+    with pytest.raises(InvalidValue, match="one of rotation, rpy and xyzw"):
+        Pose((0, 0, 0), rpy=(0, 0, 1), xyzw=(0, 0, 0, 1))
+
+
+def test_a_pose_shows_itself_as_it_can_be_written():
+    assert repr(Pose((1, 2, 3))) == "Pose((1, 2, 3))"
+    assert repr(Pose((1, 2, 3), rpy=(0, 0, 0.5))) == "Pose((1, 2, 3), rpy=(0, 0, 0.5))"

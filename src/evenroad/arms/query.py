@@ -33,11 +33,13 @@ from evenroad.robot.pose_goal import PoseGoal
 from evenroad.robot.reference.recheck import MeshCheck, has_meshes, recheck, unseen_pairs
 from evenroad.robot.robot import with_group
 from evenroad.robot.scan import allowed_near_ends, open_everywhere
+from evenroad.robot.states import as_configuration
 from evenroad.robot.urdf_xml import RobotFile
 
 PathLike = str | os.PathLike[str]
-Place = str | npt.ArrayLike
-"""A configuration: numbers in the order of the group, or a text as :func:`evenroad.robot.configuration` takes it."""
+Place = str | Mapping[str, float] | npt.ArrayLike
+"""A configuration: numbers in the order of the group, joint -> value, or a text as
+:func:`evenroad.robot.configuration` takes it."""
 
 Goal = Place | Pose | PoseGoal
 """A configuration, or where a link is to be."""
@@ -148,25 +150,18 @@ def mesh_check(query: ArmQuery, path: Floats) -> MeshCheck | None:
 
 def _places(goal: Goal | Sequence[Goal]) -> list[Goal]:
     """Return one goal or several as a list."""
-    if isinstance(goal, str | Pose | PoseGoal):
+    if isinstance(goal, str | Mapping | Pose | PoseGoal):
         return [goal]
     if isinstance(goal, np.ndarray):
         return list(goal) if goal.ndim == 2 else [goal]
     several = isinstance(goal, Sequence) and any(
-        isinstance(each, str | Pose | PoseGoal) or np.ndim(each) > 0 for each in goal
+        isinstance(each, str | Mapping | Pose | PoseGoal) or np.ndim(each) > 0 for each in goal
     )
     return list(goal) if several else [goal]  # type: ignore[arg-type, list-item]
 
 
 def _configuration(robot: Robot, scene: Scene, name: str, place: Place, degrees: bool) -> Floats:
-    """Return a configuration, (dim,), from a text or numbers; `name` says what it is in an error."""
+    """Return a configuration, (dim,), from a text, joint values or numbers; `name` says what it is in an error."""
     if isinstance(place, str):
         return configuration(robot, place, scene, degrees=degrees)
-    dim = len(robot.group)
-    try:
-        q = np.array(place, dtype=np.float64)
-    except (TypeError, ValueError):
-        q = np.empty(0)
-    if q.shape != (dim,) or not np.isfinite(q).all():
-        raise InvalidValue(f"{name} must be {dim} finite numbers, {','.join(robot.group)}, got {place!r}")
-    return q
+    return as_configuration(robot, place, scene, name=name)

@@ -121,22 +121,60 @@ def _three(xyz: Sequence[float]) -> Vector:
     return x, y, z
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False, repr=False)
 class Pose:
     """A rotation, then a translation: ``p -> R p + xyz``.
 
-    `xyz` is the origin of the pose's own frame [m], `rotation` from that frame, row by row; a 3x3 array will do.
-    InvalidValue if these are not finite numbers, or the rotation is none.
+    Parameters
+    ----------
+    xyz : sequence of 3 floats
+        Origin of the pose's own frame [m].
+    rotation : sequence of 9 floats, or ndarray, shape (3, 3)
+        From that frame, row by row.
+    rpy : sequence of 3 floats
+        In place of `rotation`: roll, pitch and yaw [rad] as URDF has them.
+    xyzw : sequence of 4 floats
+        In place of `rotation`: a quaternion of any norm > 0, in the order of SciPy and ROS.
+
+    Raises
+    ------
+    InvalidValue
+        If these are not finite numbers, the rotation is none, or it is given twice.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.Pose((0.5, 0.2, 0.4), rpy=(3.14159, 0, 0))
+    Pose((0.5, 0.2, 0.4), rpy=(3.14159, 0, 0))
     """
 
-    xyz: Vector = (0.0, 0.0, 0.0)
-    rotation: tuple[float, ...] = NO_ROTATION
+    xyz: Vector
+    rotation: tuple[float, ...]
 
-    def __post_init__(self) -> None:
-        set_fields(self, xyz=_three(self.xyz))
-        if self.rotation is not NO_ROTATION:
-            rotation = self.rotation.ravel() if isinstance(self.rotation, np.ndarray) else self.rotation
-            set_fields(self, rotation=as_rotation(rotation))
+    def __init__(
+        self,
+        xyz: Sequence[float] = (0.0, 0.0, 0.0),
+        rotation: Sequence[float] | Floats = NO_ROTATION,
+        *,
+        rpy: Sequence[float] | None = None,
+        xyzw: Sequence[float] | None = None,
+    ) -> None:
+        if (rotation is not NO_ROTATION) + (rpy is not None) + (xyzw is not None) > 1:
+            raise InvalidValue("a pose must have one of rotation, rpy and xyzw, got more than one")
+        if rpy is not None:
+            rotation = rotation_from_rpy(*as_row("rpy", rpy, 3))
+        elif xyzw is not None:
+            rotation = rotation_from_quaternion(xyzw=xyzw)
+        elif rotation is not NO_ROTATION:
+            rotation = as_rotation(
+                rotation.ravel().tolist() if isinstance(rotation, np.ndarray) else rotation
+            )
+        set_fields(self, xyz=_three(xyz), rotation=rotation)
+
+    def __repr__(self) -> str:
+        roll, pitch, yaw = self.rpy
+        turned = "" if self.rotation == NO_ROTATION else f", rpy=({roll:.6g}, {pitch:.6g}, {yaw:.6g})"
+        return f"{type(self).__name__}(({', '.join(f'{value:.6g}' for value in self.xyz)}){turned})"
 
     @classmethod
     def from_rpy(cls, xyz: Sequence[float], rpy: Sequence[float]) -> Pose:
@@ -180,6 +218,32 @@ class Pose:
     def rotation_matrix(self) -> Floats:
         """The rotation as a matrix, (3, 3)."""
         return np.array(self.rotation).reshape(3, 3)
+
+    @property
+    def rpy(self) -> Vector:
+        """Roll, pitch and yaw of the rotation [rad]; at a pitch of +-pi/2 the roll is 0."""
+        (xx, xy, _), (yx, yy, _), (zx, zy, zz) = (self.rotation[i : i + 3] for i in (0, 3, 6))
+        flat = math.hypot(xx, yx)
+        if flat < 1e-9:
+            return 0.0, math.atan2(-zx, flat), math.atan2(-xy, yy)
+        return math.atan2(zy, zz), math.atan2(-zx, flat), math.atan2(yx, xx)
+
+    @property
+    def xyzw(self) -> tuple[float, float, float, float]:
+        """The rotation as a quaternion of norm 1, in the order of SciPy and ROS; w >= 0."""
+        (a, b, c), (d, e, f), (g, h, i) = (self.rotation[k : k + 3] for k in (0, 3, 6))
+        # Four times the squares of x, y, z and w: the largest is divided by, which loses nothing.
+        squares = (1.0 + a - e - i, 1.0 - a + e - i, 1.0 - a - e + i, 1.0 + a + e + i)
+        rows = (
+            (squares[0], b + d, c + g, h - f),
+            (b + d, squares[1], f + h, c - g),
+            (c + g, f + h, squares[2], d - b),
+            (h - f, c - g, d - b, squares[3]),
+        )
+        row = rows[squares.index(max(squares))]
+        norm = math.copysign(math.hypot(*row), row[3])
+        x, y, z, w = (value / norm for value in row)
+        return x, y, z, w
 
     @property
     def matrix(self) -> Floats:

@@ -21,12 +21,13 @@ from evenroad.robot.joint import Joint, require_within, within_limits_of_mimics
 from evenroad.robot.kinematics import held_values
 from evenroad.robot.pairs import self_pairs
 from evenroad.robot.planes import Plane
+from evenroad.robot.robot_methods import RobotMethods
 from evenroad.robot.scene import Scene
 from evenroad.robot.urdf_xml import RobotFile
 
 
-@dataclass(frozen=True)
-class Robot:
+@dataclass(frozen=True, repr=False)
+class Robot(RobotMethods):
     """A kinematic tree with bodies.
 
     Of the `links` the root comes first, every parent before its children; ``joints[i]`` is the joint whose child is

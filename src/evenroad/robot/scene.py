@@ -108,7 +108,7 @@ class Obstacle:
         finite number > 0, or the rotation is none.
         """
         try:
-            return cls(name, shape_of(kind, size, Pose(xyz, rotation)), cell)  # type: ignore[arg-type]
+            return cls(name, shape_of(kind, size, Pose(xyz, rotation)), cell)
         except InvalidValue as error:
             raise InvalidValue(f"obstacle {name!r}: {error}") from None
 

@@ -7,10 +7,11 @@ import re
 from collections.abc import Iterable, Mapping
 
 import numpy as np
+import numpy.typing as npt
 
 from evenroad._arrays import Floats
-from evenroad._checks import require_known
-from evenroad.errors import InvalidValue, UnknownName
+from evenroad._checks import as_row, require_known
+from evenroad.errors import InvalidValue, UnknownName, shown
 from evenroad.robot.joint import Joint, require_within
 from evenroad.robot.kinematics import held_values
 from evenroad.robot.robot import Robot, require_robot, with_group
@@ -57,7 +58,11 @@ def state_values(robot: Robot, name: str, scene: Scene | None = None) -> Floats:
     UnknownName if the state has a joint that the robot does not have; InvalidValue if it lacks a joint of the group, or
     has another joint elsewhere than where the robot holds it.
     """
-    values = named_states(robot, scene)[name]
+    return _in_order(robot, name, named_states(robot, scene)[name])
+
+
+def _in_order(robot: Robot, name: str, values: Mapping[str, float]) -> Floats:
+    """Return the values of a state as a configuration, (dim,)."""
     missing = [joint for joint in robot.group if joint not in values]
     if missing:
         raise InvalidValue(f"the state {name!r} has no value for {', '.join(missing)}")
@@ -116,6 +121,46 @@ def configuration(robot: Robot, text: str, scene: Scene | None = None, *, degree
     for joint, value in zip(robot.group, q.tolist(), strict=True):
         _require_within(joints[joint], value, repr(text), scene)
     return q
+
+
+def as_configuration(
+    robot: Robot, q: npt.ArrayLike | Mapping[str, float] | str, scene: Scene | None = None, *, name: str = "q"
+) -> Floats:
+    """Return a configuration, (dim,) [rad or m], from whatever people have one in; `name` is what errors call it.
+
+    Parameters
+    ----------
+    q : array_like, shape (dim,), mapping or str
+        Numbers in the order of the group; or joint -> value, where joints that are left out are at 0, or the nearest to
+        it within limits; or a text as :func:`configuration` takes it.
+
+    Raises as :func:`configuration` of texts; InvalidValue for what is not so many finite numbers, and for a joint
+    outside of the group elsewhere than where the robot holds it; UnknownName for a joint that is not there.  Numbers
+    and mappings may be outside of the limits.
+    """
+    require_robot(robot)
+    if isinstance(q, str):
+        return configuration(robot, q, scene)
+    if isinstance(q, Mapping):
+        neutral = {joint.name: joint.neutral for joint in robot.joints if joint.name in robot.group}
+        return _in_order(robot, name, {**neutral, **{str(joint): _number(name, q, joint) for joint in q}})
+    dim = len(robot.group)
+    try:
+        row = np.array(q, dtype=np.float64)
+    except (TypeError, ValueError):
+        row = np.empty(0)
+    if row.shape != (dim,) or not np.isfinite(row).all():
+        several = f"; of {len(row)} rows give one" if row.ndim == 2 and row.shape[1:] == (dim,) else ""
+        raise InvalidValue(
+            f"{name} must be {dim} finite numbers, {','.join(robot.group)}, got {shown(q)}{several}"
+        )
+    return row
+
+
+def _number(name: str, values: Mapping[str, float], joint: str) -> float:
+    """Return the value of a joint as a finite number."""
+    (value,) = as_row(f"joint {joint!r} of {name}", [values[joint]], 1)
+    return value
 
 
 def _from_pairs(robot: Robot, text: str, degrees: bool) -> Floats:

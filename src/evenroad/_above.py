@@ -1,0 +1,24 @@
+"""Functions that lie above the values whose methods call them.
+
+A method such as ``robot.ik(pose)`` stands where one looks for it, on the value.  The function that does the work needs
+much more than the value does, and imports it.  So the method knows it by name alone, and loads it when it is called.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+FUNCTIONS = {
+    "Robot.limits": "evenroad.robot.robot_questions:joint_limits",
+    "Robot.fk": "evenroad.robot.robot_questions:pose_of_link",
+    "Robot.ik": "evenroad.robot.robot_questions:configurations_at",
+    "Robot.random": "evenroad.robot.robot_questions:random_configurations",
+}
+"""Method -> the function that it is, ``module:name``; its first argument is the value."""
+
+
+def above(method: str) -> Any:
+    """Return the function that does what a method says."""
+    module, _, name = FUNCTIONS[method].partition(":")
+    return getattr(import_module(module), name)

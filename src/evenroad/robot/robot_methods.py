@@ -1,0 +1,145 @@
+"""What one asks a robot by itself, without a scene: joints, limits, forward and inverse kinematics, samples."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy.typing as npt
+
+from evenroad._above import above
+from evenroad._arrays import Floats
+from evenroad._rng import RngLike
+from evenroad.geometry.pose import Pose
+
+if TYPE_CHECKING:
+    from evenroad.robot.pose_goal import PoseGoal
+
+
+class RobotMethods:
+    """Methods of :class:`evenroad.robot.Robot`."""
+
+    name: str
+    links: tuple[str, ...]
+    group: tuple[str, ...]
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """The joints that are planned for, in the order of a configuration; another name for `group`."""
+        return self.group
+
+    @property
+    def dof(self) -> int:
+        """How many numbers a configuration has."""
+        return len(self.group)
+
+    @property
+    def limits(self) -> Floats:
+        """Lower and upper limit of each joint that is planned for, (dof, 2) [rad or m]; infinite where it turns on."""
+        limits: Floats = above("Robot.limits")(self)
+        return limits
+
+    def fk(self, q: npt.ArrayLike | Mapping[str, float] | str, link: str = "") -> Pose:
+        """Return where a link is: forward kinematics.
+
+        Parameters
+        ----------
+        q : array_like, shape (dof,), mapping or str
+            A configuration [rad or m].  Joints that a mapping leaves out are at 0, or the nearest to it within limits;
+            a text is the name of a state, or as :func:`evenroad.configuration` takes it.
+        link : str
+            Default: the link at the end of what the group moves.
+
+        Returns
+        -------
+        Pose
+            Of the link's frame, in the frame of the robot's root link.
+
+        Raises
+        ------
+        InvalidValue
+            If `q` is no configuration, or no link is named and there are several at the end.
+        UnknownName
+            If there is no such link, joint or state.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> robot = er.load_robot("ur5")
+        >>> robot.fk("home", "tool0").matrix[:3, 3].round(2).tolist()
+        [0.0, 0.19, 1.0]
+        """
+        pose: Pose = above("Robot.fk")(self, q, link)
+        return pose
+
+    def ik(
+        self, pose: Pose | PoseGoal, link: str = "", *, start: npt.ArrayLike | Mapping[str, float] | str = ()
+    ) -> Floats:
+        """Return the configurations that bring a link to a pose: inverse kinematics.
+
+        Nothing is tested for collisions; :func:`evenroad.plan_arm` takes poses as goals, and does.
+
+        Parameters
+        ----------
+        pose : Pose, PoseGoal or array_like, shape (4, 4)
+            In the frame of the robot's root link.
+        link : str
+            Default: that of the PoseGoal, else the link at the end of what the group moves.
+        start : configuration, optional
+            As `q` of :meth:`fk`.  The nearest to it comes first, and joints that do not move the link stay as they are
+            there.  Default: all joints at 0, or the nearest to it within limits.
+
+        Returns
+        -------
+        ndarray, shape (n, dof)
+            All that are known, within limits, whole turns added; of an arm with spare joints some.  n is 0 where the
+            pose is out of reach.
+
+        Raises
+        ------
+        InvalidValue
+            If `pose` or `start` is none, or no link is named and there are several at the end.
+        UnknownName
+            If there is no such link.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> robot = er.load_robot("ur5")
+        >>> robot.ik(er.Pose((0.4, 0.2, 0.3), rpy=(3.14159, 0, 0)), "tool0").shape[1]
+        6
+        """
+        found: Floats = above("Robot.ik")(self, pose, link, start)
+        return found
+
+    def random(self, rng: RngLike = 0, n: int | None = None) -> Floats:
+        """Return random configurations within the limits, uniform in each joint; they may be in collision.
+
+        Parameters
+        ----------
+        rng : int, SeedSequence or Generator
+            Equal numbers give equal configurations; a Generator is spawned.
+        n : int, optional
+            How many, >= 1.  Default: one, without an axis for how many.
+
+        Returns
+        -------
+        ndarray, shape (dof,) or (n, dof)
+            In rad or m.
+
+        Raises
+        ------
+        InvalidValue
+            If `rng` or `n` is not of that kind, or a joint has no limits.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.load_robot("ur5").random(rng=7, n=10).shape
+        (10, 6)
+        """
+        drawn: Floats = above("Robot.random")(self, rng, n)
+        return drawn
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.name!r}, {self.dof} joints, {len(self.links)} links)"

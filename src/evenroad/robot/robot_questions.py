@@ -1,0 +1,79 @@
+"""What a robot is asked by itself, without a scene: the functions behind its methods."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from evenroad._arrays import Bools, Floats
+from evenroad._checks import require_count, require_known
+from evenroad._rng import RngLike, generator
+from evenroad.errors import InvalidValue, shown
+from evenroad.geometry.pose import Pose
+from evenroad.robot.chain import default_tip
+from evenroad.robot.inverse_kinematics import reach
+from evenroad.robot.kinematics import link_poses
+from evenroad.robot.known_robots import prepared
+from evenroad.robot.pose_goal import PoseGoal, as_pose_goal
+from evenroad.robot.robot import Robot
+from evenroad.robot.states import as_configuration
+
+
+@dataclass(frozen=True)
+class _Anywhere:
+    """A world without obstacles, in which nothing is tested."""
+
+    robot: Robot
+
+    def valid(self, q: Floats) -> Bools:
+        """Return that all are."""
+        return np.ones(len(q), dtype=np.bool_)
+
+    def explain(self, q: Floats) -> str:
+        """Return that nothing is in the way."""
+        return "it is free"
+
+
+def joint_limits(robot: Robot) -> Floats:
+    """Return `Robot.limits`."""
+    joints = {joint.name: joint for joint in robot.joints}
+    return np.array([(joints[name].lower, joints[name].upper) for name in robot.group]).reshape(-1, 2)
+
+
+def pose_of_link(robot: Robot, q: npt.ArrayLike | Mapping[str, float] | str, link: str = "") -> Pose:
+    """Return what :meth:`Robot.fk` does."""
+    link = link or default_tip(robot)
+    require_known(f"link of {robot.name!r}:", link, robot.links)
+    row = as_configuration(robot, q)
+    matrix = link_poses(robot, row[np.newaxis])[0, robot.links.index(link)]
+    return Pose(tuple(matrix[:3, 3].tolist()), tuple(matrix[:3, :3].ravel().tolist()))
+
+
+def configurations_at(
+    robot: Robot,
+    pose: Pose | PoseGoal | npt.ArrayLike,
+    link: str = "",
+    start: npt.ArrayLike | Mapping[str, float] | str = (),
+) -> Floats:
+    """Return what :meth:`Robot.ik` does."""
+    if isinstance(pose, str | Mapping) or (
+        not isinstance(pose, Pose | PoseGoal) and np.shape(pose) != (4, 4)
+    ):
+        raise InvalidValue(
+            f"pose must be a Pose, as er.Pose((x, y, z), rpy=(r, p, y)), a PoseGoal or a 4x4 matrix, got {shown(pose)}"
+        )
+    goal = as_pose_goal(pose if isinstance(pose, Pose | PoseGoal) else Pose.from_matrix(pose), link)
+    goal = replace(goal, tip=link or goal.tip or default_tip(robot))
+    nothing = not isinstance(start, str | Mapping) and np.size(start) == 0
+    return reach(_Anywhere(robot), goal, as_configuration(robot, {} if nothing else start)).configurations
+
+
+def random_configurations(robot: Robot, rng: RngLike = 0, n: int | None = None) -> Floats:
+    """Return what :meth:`Robot.random` does."""
+    space = prepared(robot).space
+    count = 1 if n is None else require_count("n", n)
+    drawn = space.from_cube(generator(rng).random((count, space.dim)))
+    return drawn[0] if n is None else drawn

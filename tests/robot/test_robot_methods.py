@@ -1,0 +1,82 @@
+"""What one asks a robot by itself, as one types it."""
+
+import numpy as np
+import pytest
+
+import evenroad as er
+from evenroad.robot import link_poses
+
+ARM, TURNING = er.load_robot("ur5"), er.load_robot("arm7")
+
+
+@pytest.mark.parametrize("robot", [ARM, TURNING], ids=lambda robot: robot.name)
+def test_limits_are_those_of_the_joints_in_the_order_of_the_group(robot):
+    assert robot.joint_names == robot.group
+    assert robot.limits.shape == (robot.dof, 2) == (len(robot.group), 2)
+    joints = {joint.name: joint for joint in robot.joints}
+    for name, (lower, upper) in zip(robot.joint_names, robot.limits, strict=True):
+        assert (lower, upper) == (joints[name].lower, joints[name].upper)
+
+
+def test_a_configuration_may_be_numbers_a_mapping_or_the_name_of_a_state():
+    row = er.configuration(ARM, "home")
+    places = [row, row.tolist(), dict(zip(ARM.joint_names, row, strict=True)), "home", ARM.states["home"]]
+    (pose,) = {ARM.fk(place, "tool0") for place in places}
+    frame = link_poses(ARM, row[np.newaxis])[0, ARM.links.index("tool0")]
+    assert np.allclose(pose.matrix, frame, rtol=0, atol=1e-15)
+
+
+def test_joints_that_a_mapping_leaves_out_are_at_0():
+    assert ARM.fk({"elbow_joint": -1.5}, "tool0") == ARM.fk([0, 0, -1.5, 0, 0, 0], "tool0")
+
+
+@pytest.mark.parametrize("robot", [ARM, TURNING], ids=lambda robot: robot.name)
+def test_what_inverse_kinematics_finds_is_where_it_should_be(robot):
+    for q in robot.random(3, 5):
+        pose = robot.fk(q)
+        found = robot.ik(pose, start=q)
+        assert len(found)
+        assert np.abs(found[0] - q).max() < 1e-4, "the nearest to the start comes first"
+        assert (found >= robot.limits[:, 0]).all()
+        assert (found <= robot.limits[:, 1]).all()
+        for each in found:
+            assert np.allclose(robot.fk(each).matrix, pose.matrix, rtol=0, atol=1e-6)
+
+
+def test_out_of_reach_is_no_configuration_at_all():
+    assert ARM.ik(er.Pose((9, 0, 0))).shape == (0, 6)
+
+
+def test_random_configurations_lie_within_the_limits_and_are_those_of_their_seed():
+    drawn = ARM.random(1, 200)
+    assert (drawn >= ARM.limits[:, 0]).all()
+    assert (drawn <= ARM.limits[:, 1]).all()
+    assert np.array_equal(drawn, ARM.random(1, 200))
+    assert not np.array_equal(drawn, ARM.random(2, 200))
+    assert np.array_equal(ARM.random(5), ARM.random(5, 1)[0])
+    assert np.abs(drawn.mean(axis=0) - ARM.limits.mean(axis=1)).max() < np.ptp(ARM.limits, axis=1).max() / 10
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: ARM.fk(np.zeros((3, 6)), "tool0"), "of 3 rows give one"),
+        (lambda: ARM.fk([0, 1], "tool0"), "q must be 6 finite numbers"),
+        (lambda: ARM.fk("hom", "tool0"), "unknown state 'hom'"),
+        (lambda: ARM.fk({"elbow": 1.0}, "tool0"), "elbow_joint"),
+        (lambda: ARM.fk({"elbow_joint": "bent"}, "tool0"), "elbow_joint"),
+        (lambda: ARM.fk("home", "tool"), "tool0"),
+        (lambda: ARM.ik("home"), "pose must be a Pose"),
+        (lambda: ARM.ik((0.4, 0.2, 0.3)), "er.Pose((x, y, z)"),
+        (lambda: ARM.random("0"), "rng must be"),
+        (lambda: ARM.random(0, 2.5), "n must be"),
+    ],
+)
+def test_an_error_says_what_to_write_instead(call, words):
+    with pytest.raises(er.EvenroadError) as error:
+        call()
+    assert words in str(error.value)
+
+
+def test_a_robot_shows_itself_in_one_line():
+    assert repr(ARM) == "Robot('ur5', 6 joints, 8 links)"
