@@ -264,7 +264,6 @@ NOT_YET: dict[str, str] = {
     "result save csv": "'PlanResult' object has no attribute 'save'",
     "result plot": "'PlanResult' object has no attribute 'plot'",
     "result trajectory": "'PlanResult' object has no attribute 'trajectory'",
-    "result clearance": "'PlanResult' object has no attribute 'clearance'",
     "scene of solids": "module 'evenroad' has no attribute 'Box'",
     "scene of other solids": "module 'evenroad' has no attribute 'Cylinder'",
     "scene of a cloud": "module 'evenroad' has no attribute 'PointCloud'",
