@@ -34,7 +34,7 @@ from tests.clear_paths import DiscWorld, Plane
 from evenroad._arrays import Floats
 from evenroad.points import PointSet, draw
 from evenroad.roadmap import Budget, KNearest, Radius, Rule, certify, plan
-from evenroad.space import Box
+from evenroad.space import BoxSpace
 
 SETS = {2: 256, 3: 512, 4: 512}
 """Dimension -> number of points."""
@@ -92,7 +92,7 @@ def print_holes() -> dict[tuple[str, int, int], float]:
         for n in (256, 1024):
             texts = []
             for d in (2, 3, 4, 5, 6, 7):
-                points, space = draw(sampler, n, d), Box([0.0] * d, [1.0] * d)
+                points, space = draw(sampler, n, d), BoxSpace([0.0] * d, [1.0] * d)
                 beta = holes[sampler, n, d] = certify(points, Radius(1.0), space).dispersion
                 k = "" if beta > 0.5 else f" ({_least_k(points, space)})"
                 texts.append(f"d={d} {beta:.3f}{k}")
@@ -100,7 +100,7 @@ def print_holes() -> dict[tuple[str, int, int], float]:
     return holes
 
 
-def _least_k(points: PointSet, space: Box) -> int:
+def _least_k(points: PointSet, space: BoxSpace) -> int:
     """Return the smallest k, to within a tenth, whose certificate is complete."""
     k = 3
     while not certify(points, KNearest(k), space).complete:
@@ -117,7 +117,7 @@ def _read(text: str) -> Any:
 
 def rules_for(d: int, sampler: str) -> list[Rule]:
     """Return the rules of :data:`RULES` for this sampler's sets."""
-    points, space = draw(sampler, SETS[d], d), Box([0.0] * d, [1.0] * d)
+    points, space = draw(sampler, SETS[d], d), BoxSpace([0.0] * d, [1.0] * d)
     beta, rules = certify(points, Radius(1.0), space).dispersion, []
     for kind, share in RULES:
         if kind == "radius":
@@ -135,7 +135,7 @@ def claims(d: int, number: int, kind: str, rules: dict[str, list[Rule]]) -> Iter
     rng = np.random.default_rng([d, number, kind == "wall"])
     for sampler in FAMILIES[d]:
         points = _set(sampler, d, number % POOL)
-        beta = certify(points, Radius(1.0), Box([0.0] * d, [1.0] * d)).dispersion
+        beta = certify(points, Radius(1.0), BoxSpace([0.0] * d, [1.0] * d)).dispersion
         world, start, goal = make_world(d, kind, beta, np.random.default_rng(rng.integers(2**32)))
         inside = all((np.minimum(p.centres, 1 - p.centres).min(1) > p.radii).all() for p in world.planes)
         exists = world.leads(start, goal, beta)

@@ -11,7 +11,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
 from evenroad._arrays import Bools, Floats
-from evenroad.space import Box
+from evenroad.space import BoxSpace
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,9 +44,9 @@ class DiscWorld:
     proof = "exact"
 
     @property
-    def space(self) -> Box:
+    def space(self) -> BoxSpace:
         """The cube."""
-        return Box([0.0] * self.d, [1.0] * self.d)
+        return BoxSpace([0.0] * self.d, [1.0] * self.d)
 
     def valid(self, q: Floats) -> Bools:
         """Return which places, (n, d), lie in no disc."""

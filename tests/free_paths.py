@@ -13,7 +13,7 @@ from evenroad.roadmap import Budget, Roadmap, fmt, plan, plan_anytime
 from evenroad.roadmap.find_path import find_path
 from evenroad.robot import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
-from evenroad.space import SE2, SE3, Box
+from evenroad.space import SE2, SE3, BoxSpace
 from evenroad.space.path import subdivide
 from evenroad.world import FunctionWorld, GridMap
 from evenroad.world.gridmap import DiskWorld
@@ -137,7 +137,7 @@ def solid_world(seed, kind):
             turn = (math.cos(angle), -math.sin(angle), math.sin(angle), math.cos(angle))
         obstacles.append(OrientedBox(rng.uniform(0, 10, dim), half, turn))
     if kind == "boxes":
-        return SolidWorld(Box([0] * 3, [10] * 3), body, obstacles, 0.1)
+        return SolidWorld(BoxSpace([0] * 3, [10] * 3), body, obstacles, 0.1)
     space = SE2([0, 0], [10, 10]) if dim == 2 else SE3([0] * 3, [10] * 3)
     return SolidWorld(space, body, obstacles, (0.1, 0.05))
 

@@ -9,7 +9,7 @@ from evenroad.errors import NotAvailable
 from evenroad.research.worlds.rigid import OrientedBox, SolidWorld
 from evenroad.robot import ArmWorld, load_robot, load_scene
 from evenroad.robot.certified import CertifiedWorld
-from evenroad.space import SE2, SE3, Box, Circle, JointSpace, Rectangle
+from evenroad.space import SE2, SE3, BoxSpace, Circle, JointSpace, Rectangle
 from evenroad.world import FunctionWorld, GridMap
 from tests.counting import Counting
 
@@ -60,9 +60,9 @@ DIFFERENT = [
     np.zeros((1, 2)),
     np.ones(2),
     np.zeros(2, dtype=np.float32),
-    Box((0,), (1,)),
-    Box((0,), (2,)),
-    Box((0,), (1,), weights=(2,)),
+    BoxSpace((0,), (1,)),
+    BoxSpace((0,), (2,)),
+    BoxSpace((0,), (1,), weights=(2,)),
     Circle(),
     SE2((0, 0), (1, 1)),
     SE2((0, 0), (1, 2)),

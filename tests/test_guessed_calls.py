@@ -327,9 +327,9 @@ def _made(name):
     if name == "arm":
         return er.ArmWorld(_made("robot"), _made("scene"))
     if name == "space":
-        from evenroad.space import Box
+        from evenroad.space import BoxSpace
 
-        return Box((-2, -2), (2, 2))
+        return BoxSpace((-2, -2), (2, 2))
     raise KeyError(name)
 
 

@@ -20,7 +20,7 @@ from evenroad.points.npz import read_points
 from evenroad.roadmap.npz import load_roadmap
 from evenroad.robot import load_robot, load_scene
 from evenroad.robot_roadmap.file import load_robot_roadmap
-from evenroad.space import Box as BoxSpace
+from evenroad.space import BoxSpace
 
 pytest.importorskip("trimesh")
 # Loaded before, so that its own time and memory are not a file's.

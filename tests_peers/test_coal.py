@@ -13,7 +13,7 @@ from evenroad.research.problems import source_named
 from evenroad.research.worlds.rigid import OrientedBox, SolidWorld, shell, surface_of
 from evenroad.research.worlds.rigid.mesh_world import Collider, MeshWorld
 from evenroad.research.worlds.rigid.solid_world import as_poses
-from evenroad.space import SE3, Box
+from evenroad.space import SE3, BoxSpace
 from evenroad.testing import WorldContract
 
 NEAR = 1e-5
@@ -125,7 +125,7 @@ class TestMeshWorldInSpace(WorldContract):
 
 class TestMeshWorldWithoutTurns(WorldContract):
     world = MeshWorld(
-        Box([0, 0, 0], [10, 10, 10]), as_one_mesh(ELL), [surface_of(box) for box in CRATES], 0.1
+        BoxSpace([0, 0, 0], [10, 10, 10]), as_one_mesh(ELL), [surface_of(box) for box in CRATES], 0.1
     )
     free_between = False
 
@@ -144,7 +144,7 @@ def test_meshes_and_boxes_of_one_scene_agree_on_motions():
 def test_meshes_are_hollow():
     room = OrientedBox.spanning((2, 2, 2), (8, 8, 8), name="room")
     body = OrientedBox([0, 0, 0], [0.5, 0.5, 0.5])
-    space = Box([0, 0, 0], [10, 10, 10])
+    space = BoxSpace([0, 0, 0], [10, 10, 10])
     meshes = MeshWorld(space, surface_of(body), [surface_of(room)], 0.1)
     boxes = SolidWorld(space, [body], shell(room), 0.1)
     q = space.from_cube(np.random.default_rng(6).random((5000, 3)))
@@ -181,5 +181,5 @@ def test_a_world_of_files_is_that_of_its_meshes(tmp_path):
 def test_one_triangle_is_a_mesh():
     triangle = TriangleMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
     needle = TriangleMesh([[0, 0, -1], [0, 0, 1], [0.01, 0, 1]], [[0, 1, 2]])
-    world = MeshWorld(Box([-5] * 3, [5] * 3), needle, [triangle], 0.1)
+    world = MeshWorld(BoxSpace([-5] * 3, [5] * 3), needle, [triangle], 0.1)
     assert world.valid([[0.2, 0.2, 0.0], [0.8, 0.8, 0.0], [0.2, 0.2, 1.5]]).tolist() == [False, True, True]

@@ -7,7 +7,7 @@ from benchmarks.ompl_peer import ompl_prm
 from evenroad.points import draw
 from evenroad.research.worlds import Corridor
 from evenroad.roadmap import KEarlier, plan
-from evenroad.space import Box
+from evenroad.space import BoxSpace
 from evenroad.world import FunctionWorld
 
 
@@ -33,7 +33,7 @@ def test_success_agrees_on_random_worlds(seed):
     start, goal = np.full(d, 0.02), np.full(d, 0.98)
     points = draw("uniform", 40, d, rng=seed)
     share = 0.01
-    world = FunctionWorld(Box(np.zeros(d), np.ones(d)), free, share * np.sqrt(d))
+    world = FunctionWorld(BoxSpace(np.zeros(d), np.ones(d)), free, share * np.sqrt(d))
     ours = plan(world, start, goal, points, rule=KEarlier(10), links=None, shorten=False)
     if str(ours.status).endswith("invalid"):
         start_and_goal_free = free(np.stack([start, goal]))
@@ -47,7 +47,7 @@ def test_random_worlds_are_both_solved_and_not():
     outcomes = set()
     for seed in range(60):
         d, free, _ = _balls(seed)
-        world = FunctionWorld(Box(np.zeros(d), np.ones(d)), free, 0.01 * np.sqrt(d))
+        world = FunctionWorld(BoxSpace(np.zeros(d), np.ones(d)), free, 0.01 * np.sqrt(d))
         points = draw("uniform", 40, d, rng=seed)
         result = plan(
             world, np.full(d, 0.02), np.full(d, 0.98), points, rule=KEarlier(10), links=None, shorten=False

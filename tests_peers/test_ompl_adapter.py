@@ -10,7 +10,7 @@ from evenroad.errors import InvalidValue
 from evenroad.research.mazes import load_maze
 from evenroad.roadmap import KEarlier
 from evenroad.robot import load_robot, load_scene
-from evenroad.space import SE2, SE3, SO3, Box, Circle, JointSpace, Product
+from evenroad.space import SE2, SE3, SO3, BoxSpace, Circle, JointSpace, Product
 from evenroad.testing import WorldContract
 from evenroad.world import FunctionWorld
 
@@ -33,13 +33,13 @@ ou.setLogLevel(ou.LogLevel.LOG_NONE)
 
 ARM = JointSpace((-3.0, -math.pi, -2.0, -math.pi), (3.0, math.pi, 1.0, math.pi), (False, True, False, True))
 SPACES = {
-    "box": Box((-1.0, 2.0, 0.0), (1.0, 5.0, 0.5)),
+    "box": BoxSpace((-1.0, 2.0, 0.0), (1.0, 5.0, 0.5)),
     "circle": Circle(),
     "rotations": SO3(),
     "SE(2)": SE2((-1, -2), (3, 4), weights=(1.0, 0.5), combine="sum"),
     "SE(3)": SE3((-1, -2, 0), (3, 4, 1), weights=(1.0, 2.0)),
     "two bodies": Product((SE2((0, 0), (1, 1), combine="sum"), SE3((0, 0, 0), (1, 1, 1))), (1.0, 0.5)),
-    "body and joint": Product((SE2((0, 0), (1, 1), combine="sum"), Box((0.0,), (2.0,))), (1.0, 0.5)),
+    "body and joint": Product((SE2((0, 0), (1, 1), combine="sum"), BoxSpace((0.0,), (2.0,))), (1.0, 0.5)),
     "arm": ARM,
 }
 spaces = pytest.mark.parametrize("space", SPACES.values(), ids=SPACES)
@@ -116,14 +116,14 @@ class TestTheirWorld(WorldContract):
 
     @property
     def world(self):
-        information = ob.SpaceInformation(ompl_space(Box((0.0, 0.0), (1.0, 1.0))))
+        information = ob.SpaceInformation(ompl_space(BoxSpace((0.0, 0.0), (1.0, 1.0))))
         information.setStateValidityChecker(lambda s: (s[0] - 0.5) ** 2 + (s[1] - 0.5) ** 2 > 0.09)
         information.setStateValidityCheckingResolution(0.01)
         return OmplWorld(information)
 
 
 def test_our_planner_on_their_world_finds_what_it_finds_on_ours():
-    ours = FunctionWorld(Box((0.0, 0.0), (1.0, 1.0)), _ball, 0.01)
+    ours = FunctionWorld(BoxSpace((0.0, 0.0), (1.0, 1.0)), _ball, 0.01)
     theirs = TestTheirWorld().world
     points = er.draw("even", 128, 2)
     one, other = (er.plan(world, (0.1, 0.1), (0.9, 0.9), points) for world in (ours, theirs))
@@ -154,14 +154,14 @@ def test_their_planner_on_our_arm_makes_a_path_that_is_proved_free():
 
 
 def test_no_path_is_none_within_the_time():
-    box = Box((0.0, 0.0), (1.0, 1.0))
+    box = BoxSpace((0.0, 0.0), (1.0, 1.0))
     wall = FunctionWorld(box, lambda q: abs(q[:, 0] - 0.5) > 0.1, 0.01)
     assert solve(og.RRTConnect(space_information(wall)), (0.1, 0.1), (0.9, 0.9), seconds=0.2) is None
     assert plan_on_points(space_information(wall), (0.1, 0.1), (0.9, 0.9), er.draw("even", 64, 2)) is None
 
 
 def test_the_nearest_of_several_goals_is_reached():
-    world = FunctionWorld(Box((0.0, 0.0), (1.0, 1.0)), _ball, 0.01)
+    world = FunctionWorld(BoxSpace((0.0, 0.0), (1.0, 1.0)), _ball, 0.01)
     goals = [(0.9, 0.9), (0.1, 0.6)]
     path = plan_on_points(space_information(world), (0.1, 0.1), goals, er.draw("even", 64, 2))
     np.testing.assert_array_equal(path[[0, -1]], [(0.1, 0.1), goals[1]])
@@ -169,7 +169,7 @@ def test_the_nearest_of_several_goals_is_reached():
 
 
 def test_the_sampler_hands_out_the_free_points_in_their_order():
-    world = FunctionWorld(Box((0.0, 0.0), (1.0, 1.0)), _ball, 0.01)
+    world = FunctionWorld(BoxSpace((0.0, 0.0), (1.0, 1.0)), _ball, 0.01)
     information, points = space_information(world), er.draw("halton", 60, 2)
     sampler, state = give_points(information, points), information.allocState()
     handed = []

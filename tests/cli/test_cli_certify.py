@@ -10,7 +10,7 @@ from evenroad.points import draw, save_points
 from evenroad.roadmap import KNearest, Radius, certify
 from evenroad.robot.kinematics import capsule_ends
 from evenroad.robot_roadmap.certify import certify_robot_roadmap, joints_per_metre
-from evenroad.space import Box
+from evenroad.space import BoxSpace
 
 
 @pytest.fixture
@@ -24,7 +24,7 @@ def test_json_says_what_python_says(run, sets):
         "certify", "two.npz", "--connect-radius", 0.3, "--clearance", 0.1, "--length", 2, "--json"
     )
     record = json.loads(out)
-    certificate = certify(draw("cover", 200, 2), Radius(0.3), Box([0.0, 0.0], [1.0, 1.0]))
+    certificate = certify(draw("cover", 200, 2), Radius(0.3), BoxSpace([0.0, 0.0], [1.0, 1.0]))
     assert (code, err) == (0, "")
     assert record["dispersion"] == certificate.dispersion
     assert record["factor"] == certificate.factor(0.1)
@@ -35,7 +35,7 @@ def test_json_says_what_python_says(run, sets):
 
 def test_the_box_has_the_sides_that_are_given(run, sets):
     record = json.loads(run("certify", "two.npz", "--sides", "10,5", "-k", 20, "--json")[1])
-    certificate = certify(draw("cover", 200, 2), KNearest(20), Box([0.0, 0.0], [10.0, 5.0]))
+    certificate = certify(draw("cover", 200, 2), KNearest(20), BoxSpace([0.0, 0.0], [10.0, 5.0]))
     assert record["between"] == certificate.between
     assert record["rule"] == "k=20 symmetrised"
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from evenroad.space import Box
+from evenroad.space import BoxSpace
 
 
 class GappyWorld:
@@ -11,7 +11,7 @@ class GappyWorld:
     The strict check is exact: a segment is free if it meets no wall, each a segment parallel to an axis.
     """
 
-    space = Box((0.0, 0.0), (1.0, 1.0))
+    space = BoxSpace((0.0, 0.0), (1.0, 1.0))
     proof = "resolution"
 
     def __init__(self, walls, step=0.1, thickness=1e-3):

@@ -23,11 +23,11 @@ from evenroad.roadmap import (
     certify_roadmap,
     plan,
 )
-from evenroad.space import SO3, Box, JointSpace
+from evenroad.space import SO3, BoxSpace, JointSpace
 from evenroad.world import FunctionWorld
 from tests.clear_paths import DiscWorld, Plane, shortest_around
 
-SQUARE = Box([0.0, 0.0], [1.0, 1.0])
+SQUARE = BoxSpace([0.0, 0.0], [1.0, 1.0])
 
 
 def test_the_papers_case_costs_one_plus_its_factor():
@@ -110,7 +110,7 @@ def test_the_shortest_path_around_one_disc_is_two_tangents_and_an_arc():
 def test_no_claim_is_false_in_random_worlds(d, n, k, sampler):
     rng = np.random.default_rng([d, n])
     points = draw(sampler, n, d, rng=1)
-    space = Box([0.0] * d, [1.0] * d)
+    space = BoxSpace([0.0] * d, [1.0] * d)
     beta = certify(points, Complete(), space).dispersion
     costs = 0
     for rule in (Radius(2.2 * beta), Radius(4 * beta), KNearest(k)):
@@ -203,7 +203,7 @@ def test_a_kept_roadmap_is_certified_by_its_edges():
 def test_lengths_are_those_of_the_spaces_metric():
     points = draw("even", 64, 2)
     unit = certify(points, Radius(0.5), SQUARE)
-    large = certify(points, Radius(5.0), Box([-5.0, 0.0], [0.0, 2.5], weights=[2.0, 4.0]))
+    large = certify(points, Radius(5.0), BoxSpace([-5.0, 0.0], [0.0, 2.5], weights=[2.0, 4.0]))
     assert large.dispersion == pytest.approx(10 * unit.dispersion, rel=1e-6)
 
 
@@ -212,7 +212,7 @@ def test_on_a_torus_no_motion_longer_than_half_a_turn_counts():
     certificate = certify(draw("even", 64, 2), Radius(100.0), turns)
     assert certificate.between == pytest.approx(math.pi)
     assert certificate.between < math.pi
-    flat = certify(draw("even", 64, 2), Radius(100.0), Box([-math.pi] * 2, [math.pi] * 2))
+    flat = certify(draw("even", 64, 2), Radius(100.0), BoxSpace([-math.pi] * 2, [math.pi] * 2))
     assert certificate.dispersion < flat.dispersion
 
 

@@ -13,11 +13,11 @@ from evenroad.roadmap.find_path import NO_POINTS
 from evenroad.roadmap.result import NEAR, PlanResult, Status, require_ends
 from evenroad.robot import ArmWorld, Joint, Robot, Scene, Straight
 from evenroad.robot_roadmap.make import make_roadmap
-from evenroad.space import SE3, Box, JointSpace
+from evenroad.space import SE3, BoxSpace, JointSpace
 from evenroad.world import Connection, FunctionWorld
 from tests.robot.kernel_arms import STRAIGHT, TABLE, Z, ur5
 
-PLANE = Box((0.0, 0.0), (1.0, 1.0))
+PLANE = BoxSpace((0.0, 0.0), (1.0, 1.0))
 A, B, C = np.array([[0.1, 0.2], [0.8, 0.9], [0.5, 0.5]])
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from evenroad.errors import InvalidValue
 from evenroad.roadmap import Budget, find_path
-from evenroad.space import Box
+from evenroad.space import BoxSpace
 from evenroad.world import FunctionWorld, GridMap
 
 
@@ -43,13 +43,13 @@ def test_an_end_in_collision_is_a_status(start, goal, status):
 
 def test_for_any_other_world_points_grow():
     world = FunctionWorld(
-        Box((0, 0), (1, 1)), lambda q: (np.abs(q[:, 0] - 0.5) > 0.1) | (q[:, 1] > 0.9), 0.01
+        BoxSpace((0, 0), (1, 1)), lambda q: (np.abs(q[:, 0] - 0.5) > 0.1) | (q[:, 1] > 0.9), 0.01
     )
     # Time enough also where code is compiled first.
     result = find_path(world, (0.1, 0.1), (0.9, 0.1), budget=Budget(seconds=60.0))
     assert result.solved
     assert result.planner == "prm anytime"
-    closed = FunctionWorld(Box((0, 0), (1, 1)), lambda q: np.abs(q[:, 0] - 0.5) > 0.1, 0.01)
+    closed = FunctionWorld(BoxSpace((0, 0), (1, 1)), lambda q: np.abs(q[:, 0] - 0.5) > 0.1, 0.01)
     assert find_path(closed, (0.1, 0.1), (0.9, 0.1), budget=Budget(samples=128)).status == "budget_spent"
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from evenroad.roadmap import Budget, find_path, plan
 from evenroad.roadmap.find_path import with_reasons
-from evenroad.space import Box
+from evenroad.space import BoxSpace
 from evenroad.world import FunctionWorld
 
 
@@ -21,7 +21,7 @@ def ring(q):
     return (away < 0.02) | (away > 0.06)
 
 
-WORLD = Named(Box((0, 0), (1, 1)), ring, 0.002)
+WORLD = Named(BoxSpace((0, 0), (1, 1)), ring, 0.002)
 START, GOAL = (0.2, 0.5), (0.8, 0.5)
 
 
@@ -47,7 +47,7 @@ def test_of_several_goals_each_is_named_by_its_number():
 def test_nothing_is_said_of_a_path_or_of_ends_that_move_freely():
     solved = plan(WORLD, START, (0.2, 0.6), 16)
     assert with_reasons(WORLD, solved) is solved
-    wall = FunctionWorld(Box((0, 0), (1, 1)), lambda q: np.abs(q[:, 0] - 0.5) > 0.1, 0.01)
+    wall = FunctionWorld(BoxSpace((0, 0), (1, 1)), lambda q: np.abs(q[:, 0] - 0.5) > 0.1, 0.01)
     apart = plan(wall, START, (0.9, 0.5), 64)
     assert with_reasons(wall, apart) is apart
 

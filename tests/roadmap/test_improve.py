@@ -7,7 +7,7 @@ import pytest
 
 from evenroad.errors import InvalidValue
 from evenroad.roadmap import Budget, find_path
-from evenroad.space import Box
+from evenroad.space import BoxSpace
 from evenroad.world import Connection, FunctionWorld, GridMap
 
 HEIGHTS = (0.9, 0.7, 0.8, 0.3, 0.6)
@@ -20,7 +20,7 @@ class Detours:
     planner = "detours"
 
     def __init__(self):
-        self.free = FunctionWorld(Box((0, 0), (1, 1)), lambda q: np.ones(len(q), dtype=bool), 0.1)
+        self.free = FunctionWorld(BoxSpace((0, 0), (1, 1)), lambda q: np.ones(len(q), dtype=bool), 0.1)
         self.space, self.valid, self.motion_valid = self.free.space, self.free.valid, self.free.motion_valid
         self.asked, self.most = [], []
 

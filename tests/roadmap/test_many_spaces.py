@@ -10,7 +10,7 @@ from evenroad.points.samplers.poses import Sliced
 from evenroad.research.worlds import Corridor
 from evenroad.roadmap import KEarlier, KNearest, Radius, Roadmap, fmt, plan, plan_anytime
 from evenroad.roadmap.query import even_points
-from evenroad.space import SE2, SE3, SO3, Box, JointSpace, Product
+from evenroad.space import SE2, SE3, SO3, BoxSpace, JointSpace, Product
 from evenroad.world import FunctionWorld
 from tests.counting import Counting
 
@@ -108,7 +108,7 @@ def test_elsewhere_a_number_of_points_means_the_even_lattice(space):
 )
 def test_in_a_box_of_many_dimensions_points_of_a_sparse_roadmap_are_drawn_in(d, rule, near):
     points = draw("even", 30, d, rng=3)
-    box = Box([0.0] * d, [2.0] * d)
+    box = BoxSpace([0.0] * d, [2.0] * d)
     assert even_points(30, box, rule, rng=3) == (drawn_in(points) if near else points)
 
 

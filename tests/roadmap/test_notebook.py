@@ -5,10 +5,10 @@ import numpy as np
 from evenroad import plan
 from evenroad.points import draw
 from evenroad.roadmap import Status
-from evenroad.space import Box
+from evenroad.space import BoxSpace
 from evenroad.world import FunctionWorld
 
-WORLD = FunctionWorld(Box([0.0, 0.0], [1.0, 1.0]), lambda q: q[:, 0] < 2.0, resolution=0.05)
+WORLD = FunctionWorld(BoxSpace([0.0, 0.0], [1.0, 1.0]), lambda q: q[:, 0] < 2.0, resolution=0.05)
 
 
 def html_of(result):

@@ -7,7 +7,7 @@ from evenroad.errors import InvalidValue
 from evenroad.points import PointSet, draw
 from evenroad.roadmap import KNearest, Radius, Status, plan
 from evenroad.roadmap.shortcut import shortcut
-from evenroad.space import Box
+from evenroad.space import BoxSpace
 from evenroad.space.path import path_length
 from evenroad.world import FunctionWorld, GridMap
 
@@ -42,7 +42,7 @@ def test_no_way_around_a_wall_is_an_answer_with_its_reason():
 
 def test_few_neighbours_on_a_lattice_are_named_as_a_cause():
     def message(family, n, d, k, *sides):
-        space = Box([0.0] * d, sides or [1.0] * d)
+        space = BoxSpace([0.0] * d, sides or [1.0] * d)
         end = np.array(sides or [1.0] * d)
         wall = FunctionWorld(
             space, lambda q: np.abs(q[:, 0] / end[0] - 0.5) > 0.2, resolution=0.02 * end.max()

@@ -22,7 +22,7 @@ from evenroad.roadmap import (
     prm_star_gamma,
     rule_named,
 )
-from evenroad.space import Box, Rectangle
+from evenroad.space import BoxSpace, Rectangle
 from tests.roadmap.clouds import clouds, nearest_by_sorting
 from tests.roadmap.spaces import Great, Torus
 
@@ -199,4 +199,4 @@ def test_the_hole_of_a_set_is_within_the_bound_that_the_theory_radius_takes():
 
 @pytest.mark.parametrize(("d", "k"), [(2, 10), (5, 10), (6, 20), (10, 20), (14, 28)])
 def test_the_default_k_spans_all_directions_of_a_lattice(d, k):
-    assert default_rule(Box([0.0] * d, [1.0] * d)) == KNearest(k)
+    assert default_rule(BoxSpace([0.0] * d, [1.0] * d)) == KNearest(k)

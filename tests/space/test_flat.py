@@ -1,4 +1,4 @@
-"""Box, Circle and JointSpace: the contract, wrapping the short way, exact ends, and what they refuse."""
+"""BoxSpace, Circle and JointSpace: the contract, wrapping the short way, exact ends, and what they refuse."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue
-from evenroad.space import Box, Circle, FlatMetric, JointSpace
+from evenroad.space import BoxSpace, Circle, FlatMetric, JointSpace
 from evenroad.testing import SpaceContract
 
 ARM = JointSpace(
@@ -22,15 +22,15 @@ ARM = JointSpace(
 
 
 class TestBox(SpaceContract):
-    space = Box([-1.0, 10.0, 0.0], [2.0, 11.0, 1e-3])
+    space = BoxSpace([-1.0, 10.0, 0.0], [2.0, 11.0, 1e-3])
 
 
 class TestBoxOnALine(SpaceContract):
-    space = Box([-3.0], [4.0])
+    space = BoxSpace([-3.0], [4.0])
 
 
 class TestWeightedBox(SpaceContract):
-    space = Box([0.0] * 6, [1.0] * 6, weights=[1, 2, 3, 4, 5, 6])
+    space = BoxSpace([0.0] * 6, [1.0] * 6, weights=[1, 2, 3, 4, 5, 6])
 
 
 class TestCircle(SpaceContract):
@@ -77,7 +77,7 @@ def test_opposite_directions_are_joined_by_one_way_in_either_direction(angle):
 
 
 def test_weights_multiply_the_differences_of_their_axes():
-    box = Box([0.0, 0.0], [10.0, 10.0], weights=[3.0, 2.0])
+    box = BoxSpace([0.0, 0.0], [10.0, 10.0], weights=[3.0, 2.0])
     np.testing.assert_allclose(box.distance([[0.0, 0.0]], [[1.0, 2.0]]), [5.0])
     np.testing.assert_allclose(box.flat.scale, [3.0, 2.0])
     assert np.isinf(box.flat.period).all()
@@ -90,7 +90,7 @@ def test_joints_with_stops_do_not_wrap_and_others_do():
 
 
 def test_bounded_axes_have_their_bounds_inside_and_nothing_beyond():
-    box = Box([0.0, 0.0], [1.0, 2.0])
+    box = BoxSpace([0.0, 0.0], [1.0, 2.0])
     q = [[0, 0], [1, 2], [0.5, np.nextafter(2, 3)], [-1e-300, 1]]
     assert box.contains(q).tolist() == [True, True, False, False]
 
@@ -100,7 +100,7 @@ finite = st.floats(-1e6, 1e6)
 
 @given(a=finite, b=finite, t=st.floats(0.0, 1.0))
 def test_interpolation_is_exact_at_its_ends_and_never_beyond_them(a, b, t):
-    box = Box([-1e6], [1e6])
+    box = BoxSpace([-1e6], [1e6])
     first, second = np.array([[a]]), np.array([[b]])
     assert box.interpolate(first, second, 0.0) == first
     assert box.interpolate(first, second, 1.0) == second
@@ -121,27 +121,27 @@ def test_interpolation_on_a_circle_is_exact_at_its_ends(a, b):
 
 
 def test_spaces_are_values():
-    assert Box([0, 0], [1, 1]) == Box(np.zeros(2), (1.0, 1.0))
-    assert hash(Box([0], [1])) == hash(Box([0], [1]))
-    assert Box([0], [1]) != Box([0], [2])
+    assert BoxSpace([0, 0], [1, 1]) == BoxSpace(np.zeros(2), (1.0, 1.0))
+    assert hash(BoxSpace([0], [1])) == hash(BoxSpace([0], [1]))
+    assert BoxSpace([0], [1]) != BoxSpace([0], [2])
     assert Circle() == Circle()
-    assert repr(Box([0], [1])) == "Box(low=(0.0,), high=(1.0,), weights=(1.0,))"
+    assert repr(BoxSpace([0], [1])) == "BoxSpace(low=(0.0,), high=(1.0,), weights=(1.0,))"
 
 
 @pytest.mark.parametrize(
     ("make", "text"),
     [
-        (lambda: Box([0.0], [0.0]), "axis 0"),
-        (lambda: Box([0.0, 2.0], [1.0, 1.0]), "axis 1"),
-        (lambda: Box([-1.7e308], [1.7e308]), "axis 0"),
-        (lambda: Box([0.0], [math.inf]), "high"),
-        (lambda: Box([math.nan], [1.0]), "low"),
-        (lambda: Box([], []), "low"),
-        (lambda: Box(0.0, 1.0), "low"),
-        (lambda: Box([0.0], [1.0, 2.0]), "high"),
-        (lambda: Box([0.0], [1.0], weights=[0.0]), "weights"),
-        (lambda: Box([0.0], [1.0], weights=[-1.0]), "weights"),
-        (lambda: Box([0.0], [1.0], weights=[1.0, 1.0]), "weights"),
+        (lambda: BoxSpace([0.0], [0.0]), "axis 0"),
+        (lambda: BoxSpace([0.0, 2.0], [1.0, 1.0]), "axis 1"),
+        (lambda: BoxSpace([-1.7e308], [1.7e308]), "axis 0"),
+        (lambda: BoxSpace([0.0], [math.inf]), "high"),
+        (lambda: BoxSpace([math.nan], [1.0]), "low"),
+        (lambda: BoxSpace([], []), "low"),
+        (lambda: BoxSpace(0.0, 1.0), "low"),
+        (lambda: BoxSpace([0.0], [1.0, 2.0]), "high"),
+        (lambda: BoxSpace([0.0], [1.0], weights=[0.0]), "weights"),
+        (lambda: BoxSpace([0.0], [1.0], weights=[-1.0]), "weights"),
+        (lambda: BoxSpace([0.0], [1.0], weights=[1.0, 1.0]), "weights"),
         (lambda: JointSpace([0.0], [1.0], wrapping=[True, False]), "wrapping"),
         (lambda: JointSpace([0.0], [1.0], wrapping=[1]), "wrapping"),
         (lambda: JointSpace([0.0], [1.0], wrapping=None), "wrapping"),

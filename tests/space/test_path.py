@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
-from evenroad.space import SE2, Box
+from evenroad.space import SE2, BoxSpace
 from evenroad.space.path import motion_lengths, path_length, place_at, resample, subdivide
 
-SQUARE = Box((0.0, 0.0), (4.0, 4.0))
+SQUARE = BoxSpace((0.0, 0.0), (4.0, 4.0))
 PATH = np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 0.0], [3.0, 1.0]])
 
 

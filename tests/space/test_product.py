@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue, UnknownName
-from evenroad.space import SE2, SE3, SO3, Box, Circle, Product
+from evenroad.space import SE2, SE3, SO3, BoxSpace, Circle, Product
 from evenroad.testing import SpaceContract
 
 PUZZLE = SE3([-508.88, -230.13, -123.75], [319.62, 531.87, 101.0])
@@ -27,7 +27,7 @@ class TestSE3(SpaceContract):
 
 
 class TestTwoBodies(SpaceContract):
-    space = Product([SO3(), Product([Box([0.0], [1.0]), Circle()])], weights=[1.0, 0.5], combine="l2")
+    space = Product([SO3(), Product([BoxSpace([0.0], [1.0]), Circle()])], weights=[1.0, 0.5], combine="l2")
 
 
 def test_the_distance_of_poses_in_space_is_way_plus_turn():

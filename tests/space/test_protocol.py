@@ -9,11 +9,11 @@ import pytest
 
 from evenroad.errors import InvalidValue
 from evenroad.research.worlds.chain import ChainSpace
-from evenroad.space import SE2, SE3, SO3, Box, Circle, JointSpace, Product, Rectangle
+from evenroad.space import SE2, SE3, SO3, BoxSpace, Circle, JointSpace, Product, Rectangle
 from evenroad.space.protocol import all_distances
 
 SPACES = {
-    "box": Box([-1, 0, 2], [1, 5, 3], weights=[1.0, 2.0, 0.5]),
+    "box": BoxSpace([-1, 0, 2], [1, 5, 3], weights=[1.0, 2.0, 0.5]),
     "circle": Circle(),
     "joints": JointSpace([-math.pi, 0.0], [math.pi, 1.0], wrapping=[True, False]),
     "rotations": SO3(),

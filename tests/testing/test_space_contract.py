@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from evenroad.space import SE3, SO3, Box, Circle, FlatMetric, Rectangle, Space
+from evenroad.space import SE3, SO3, BoxSpace, Circle, FlatMetric, Rectangle, Space
 from evenroad.space.batch import as_batch_pair
 from evenroad.testing import SpaceContract
 
@@ -48,8 +48,8 @@ def euler_angles(u):
     "space",
     [
         Changed(SO3(), {"from_cube": euler_angles}),
-        Changed(Box([0.0, 0.0], [1.0, 1.0]), {"from_cube": lambda u: np.asarray(u) ** 2}),
-        Changed(Box([0.0] * 3, [1.0] * 3), {"from_cube": lambda u: np.asarray(u) ** [1.0, 1.0, 1.5]}),
+        Changed(BoxSpace([0.0, 0.0], [1.0, 1.0]), {"from_cube": lambda u: np.asarray(u) ** 2}),
+        Changed(BoxSpace([0.0] * 3, [1.0] * 3), {"from_cube": lambda u: np.asarray(u) ** [1.0, 1.0, 1.5]}),
     ],
     ids=["euler", "squares", "one axis"],
 )
@@ -58,28 +58,28 @@ def test_a_map_that_does_not_preserve_volumes_is_found(space):
         contract_of(space).test_equal_volumes_of_the_cube_get_equal_measure()
 
 
-@pytest.mark.parametrize("space", [SO3(), SE3([0, 0, 0], [900.0, 0.1, 5.0]), Box([0] * 8, range(1, 9))])
+@pytest.mark.parametrize("space", [SO3(), SE3([0, 0, 0], [900.0, 0.1, 5.0]), BoxSpace([0] * 8, range(1, 9))])
 def test_a_map_that_preserves_volumes_passes_at_other_places_too(space):
     contract = contract_of(space)
     contract.test_equal_volumes_of_the_cube_get_equal_measure()
 
 
 def test_a_metric_that_is_not_symmetric_is_found():
-    line = Box([0.0], [1.0])
+    line = BoxSpace([0.0], [1.0])
     one_way = Changed(line, {"distance": lambda a, b: line.distance(a, b) * np.where(a < b, 1.0, 1.5)[:, 0]})
     with pytest.raises(AssertionError):
         contract_of(one_way).test_distance_is_symmetric()
 
 
 def test_a_squared_distance_is_no_metric():
-    line = Box([0.0], [1.0])
+    line = BoxSpace([0.0], [1.0])
     squared = Changed(line, {"distance": lambda a, b: line.distance(a, b) ** 2})
     with pytest.raises(AssertionError):
         contract_of(squared).test_distance_satisfies_the_triangle_inequality()
 
 
 def test_an_angle_that_goes_the_long_way_round_is_found():
-    straight = Box([-math.pi], [math.pi])
+    straight = BoxSpace([-math.pi], [math.pi])
     long_way = Changed(Circle(), {"interpolate": straight.interpolate})
     with pytest.raises(AssertionError):
         contract_of(long_way).test_interpolation_covers_the_distance_evenly()
@@ -109,7 +109,7 @@ def test_a_map_that_leaves_the_space_is_found():
 
 
 def test_a_space_that_reads_over_bad_input_is_found():
-    lax = Changed(Box([0.0], [1.0]), {"distance": lambda a, b: np.abs(np.subtract(a, b)).sum(axis=-1)})
+    lax = Changed(BoxSpace([0.0], [1.0]), {"distance": lambda a, b: np.abs(np.subtract(a, b)).sum(axis=-1)})
     with pytest.raises(pytest.fail.Exception):
         contract_of(lax).test_an_entry_that_is_not_finite_is_refused(np.nan)
     with pytest.raises(pytest.fail.Exception):
@@ -122,14 +122,14 @@ class TwofoldLine(Space):
     dim = 1
 
     def from_cube(self, u):
-        return Box([0.0], [1.0]).from_cube(u)
+        return BoxSpace([0.0], [1.0]).from_cube(u)
 
     def distance(self, a, b):
         first, second = as_batch_pair(a, b, 1)
         return 2.0 * np.abs(first - second)[:, 0]
 
     def interpolate(self, a, b, t):
-        return Box([0.0], [1.0]).interpolate(a, b, t)
+        return BoxSpace([0.0], [1.0]).interpolate(a, b, t)
 
 
 class TestAUsersOwnSpace(SpaceContract):

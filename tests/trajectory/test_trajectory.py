@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from evenroad import FunctionWorld
 from evenroad.errors import InvalidValue, NotAvailable
-from evenroad.space import Box
+from evenroad.space import BoxSpace
 from evenroad.trajectory import Limits, make_trajectory
 
 
@@ -105,7 +105,7 @@ def around_a_corner(reach):
     def free(q):
         return ~((q[:, 0] < 1.0 - reach) & (q[:, 1] > reach))
 
-    return FunctionWorld(Box([-1.0, -1.0], [3.0, 3.0]), free, resolution=0.001)
+    return FunctionWorld(BoxSpace([-1.0, -1.0], [3.0, 3.0]), free, resolution=0.001)
 
 
 @pytest.mark.parametrize("reach", [0.05, 0.01, 1e-5])
@@ -122,7 +122,7 @@ def test_a_corner_that_touches_is_cut_less(reach):
 
 
 def test_a_path_that_is_not_free_is_refused():
-    world = FunctionWorld(Box([-1.0], [3.0]), lambda q: np.abs(q[:, 0] - 1.0) > 0.1, resolution=0.01)
+    world = FunctionWorld(BoxSpace([-1.0], [3.0]), lambda q: np.abs(q[:, 0] - 1.0) > 0.1, resolution=0.01)
     with pytest.raises(NotAvailable, match="not proved free"):
         make_trajectory([[0.0], [2.0]], Limits((1.0,), (1.0,)), world=world)
 

@@ -12,13 +12,13 @@ from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue
 from evenroad.research.worlds import Corridor
-from evenroad.space import SE2, SE3, Box, Circle, JointSpace, Product
+from evenroad.space import SE2, SE3, BoxSpace, Circle, JointSpace, Product
 from evenroad.testing import WorldContract
 from evenroad.world import Explains, FunctionWorld
 from evenroad.world.bisection import between_ends
 from evenroad.world.protocol import Rechecks
 
-SQUARE = Box([0.0, 0.0], [1.0, 1.0])
+SQUARE = BoxSpace([0.0, 0.0], [1.0, 1.0])
 
 
 def outside_a_disk(q):
@@ -96,7 +96,7 @@ def test_a_motion_too_long_for_one_batch_is_handed_out_in_parts():
 @pytest.mark.parametrize("length", [0.0, 0.05, 0.1, 0.101, 0.75])
 def test_states_are_those_of_the_protocol(length):
     asked = Asked()
-    world = FunctionWorld(Box([0.0], [1.0]), asked, 0.1)
+    world = FunctionWorld(BoxSpace([0.0], [1.0]), asked, 0.1)
     assert world.motion_valid([[0.0]], [[length]])[0]
     n = max(1, math.ceil(length / 0.1))
     np.testing.assert_allclose(np.sort(asked.states[:, 0]), np.linspace(0.0, length, n + 1), atol=1e-15)
@@ -115,7 +115,7 @@ def test_neighbouring_states_are_at_most_the_resolution_apart_in_the_metric_of_t
 
 def test_with_a_resolution_a_part_the_finer_division_counts():
     asked = Asked()
-    space = Product([Box([0.0], [10.0]), Circle()])
+    space = Product([BoxSpace([0.0], [10.0]), Circle()])
     world = FunctionWorld(space, asked, [0.5, 0.1])
     for b, n in (([4.0, 0.0], 8), ([4.0, 1.05], 11), ([0.0, 0.35], 4)):
         asked.batches.clear()
@@ -255,7 +255,7 @@ def _ball(radius):
     def outside_ball(q):
         return np.hypot(q[:, 0] - 0.5, q[:, 1] - 0.5) > radius
 
-    return FunctionWorld(Box((0, 0), (1, 1)), outside_ball, 0.01, name=f"ball of {radius}")
+    return FunctionWorld(BoxSpace((0, 0), (1, 1)), outside_ball, 0.01, name=f"ball of {radius}")
 
 
 def test_equal_worlds_have_one_fingerprint_and_others_another():
@@ -265,20 +265,22 @@ def test_equal_worlds_have_one_fingerprint_and_others_another():
         _ball(0.21),
         replace(first, resolution=0.02),
         replace(first, name="another cell"),
-        replace(first, space=Box((0, 0), (1, 2))),
+        replace(first, space=BoxSpace((0, 0), (1, 2))),
     ]
     assert len({world.fingerprint() for world in (first, *others)}) == 5
 
 
 def test_a_single_place_makes_no_difference_to_how_a_fingerprint_is_computed():
-    one = FunctionWorld(Box((0, 0), (1, 1)), lambda q: bool(q[0] > 0.5), 0.1, vectorised=False, name="half")
-    many = FunctionWorld(Box((0, 0), (1, 1)), lambda q: q[:, 0] > 0.5, 0.1, name="half")
+    one = FunctionWorld(
+        BoxSpace((0, 0), (1, 1)), lambda q: bool(q[0] > 0.5), 0.1, vectorised=False, name="half"
+    )
+    many = FunctionWorld(BoxSpace((0, 0), (1, 1)), lambda q: q[:, 0] > 0.5, 0.1, name="half")
     assert one.fingerprint() == many.fingerprint()
 
 
 def test_the_strict_check_of_a_path_asks_for_states_twenty_times_as_dense():
     asked = Asked()
-    world = FunctionWorld(Box([0.0], [10.0]), asked, 1.0)
+    world = FunctionWorld(BoxSpace([0.0], [10.0]), asked, 1.0)
     path = np.array([[0.0], [3.0], [3.0], [5.0]])
     assert world.motion_valid(path[:-1], path[1:]).all()
     asked.batches.clear()

@@ -22,7 +22,7 @@ from evenroad._checks import as_batch, require_extra, require_positive
 from evenroad.adapters._ompl_states import StateFormat, format_of
 from evenroad.errors import InvalidValue
 from evenroad.points import PointSet
-from evenroad.space import SO3, Box, Circle, JointSpace, Product, Rectangle, Space
+from evenroad.space import SO3, BoxSpace, Circle, JointSpace, Product, Rectangle, Space
 from evenroad.space.batch import as_batch_pair
 from evenroad.world import World
 
@@ -38,8 +38,8 @@ def ompl_space(space: Space) -> Any:
 
     Parameters
     ----------
-    space : Box, Circle, JointSpace, Rectangle, SO3 or Product
-        Weights of a Product are kept, those within a Box or JointSpace are not.
+    space : BoxSpace, Circle, JointSpace, Rectangle, SO3 or Product
+        Weights of a Product are kept, those within a BoxSpace or JointSpace are not.
 
     Raises
     ------
@@ -47,7 +47,7 @@ def ompl_space(space: Space) -> Any:
         For another space, or a joint that wraps after anything but one turn.
     """
     if isinstance(space, Product):
-        named = {(Box, Circle): (2, ob.SE2StateSpace), (Box, SO3): (3, ob.SE3StateSpace)}.get(
+        named = {(BoxSpace, Circle): (2, ob.SE2StateSpace), (BoxSpace, SO3): (3, ob.SE3StateSpace)}.get(
             tuple(type(part) for part in space.parts)  # type: ignore[arg-type]
         )
         if named is not None and space.parts[0].dim == named[0]:
@@ -64,7 +64,7 @@ def ompl_space(space: Space) -> Any:
         return _real(corners.min(axis=0), corners.max(axis=0))
     if isinstance(space, Circle):
         return ob.SO2StateSpace()
-    if isinstance(space, Box | JointSpace):
+    if isinstance(space, BoxSpace | JointSpace):
         wrapping = space.flat.wrapping
         if not np.allclose(space.flat.period[wrapping], 2.0 * math.pi, rtol=1e-12):
             raise InvalidValue(
@@ -77,7 +77,7 @@ def ompl_space(space: Space) -> Any:
             parts += [ob.SO2StateSpace() for _ in run] if wraps else [_real(low[run], high[run])]
         return parts[0] if len(parts) == 1 else _compound(parts, [1.0] * len(parts))
     raise InvalidValue(
-        f"OMPL has no counterpart of {type(space).__name__}: build one of Box, Circle, SO3 and Product"
+        f"OMPL has no counterpart of {type(space).__name__}: build one of BoxSpace, Circle, SO3 and Product"
     )
 
 
@@ -92,7 +92,7 @@ def space_of(space: Any) -> Space:
         return SO3()
     if type(space) is ob.RealVectorStateSpace:
         bounds = space.getBounds()
-        return Box(tuple(bounds.low), tuple(bounds.high))
+        return BoxSpace(tuple(bounds.low), tuple(bounds.high))
     format_of(space)
     parts = [space_of(space.getSubspace(i)) for i in range(space.getSubspaceCount())]
     return Product(parts, tuple(space.getSubspaceWeights()), "sum")

@@ -15,7 +15,7 @@ from evenroad._terminal import print_table
 from evenroad.errors import InvalidValue, shown
 from evenroad.points.npz import read_points
 from evenroad.roadmap import Certificate, KNearest, Radius, Rule, certify, default_rule
-from evenroad.space import Box
+from evenroad.space import BoxSpace
 
 FACTORS = (3.0, 2.0, 1.5, 1.2)
 """Times the best path, for which the clearance is said that they take."""
@@ -64,7 +64,7 @@ class Certify:
         points = read_points(file)
         sides = (1.0,) * points.d if self.sides is None else _sides(self.sides, points.d)
         rule = self._rule(points.d)
-        certificate = certify(points, rule, Box([0.0] * points.d, sides), goals=self.goals)
+        certificate = certify(points, rule, BoxSpace([0.0] * points.d, sides), goals=self.goals)
         record = {"file": str(file), "n": points.n, "d": points.d, "hash": points.hash, "rule": str(rule)}
         title = f"{file}: n={points.n}, d={points.d}, {points.origin}, {rule}"
         return self._show(title, record | {"sides": list(sides)}, certificate, 1.0, 0.0, "")
@@ -91,7 +91,7 @@ class Certify:
 
     def _rule(self, d: int) -> Rule:
         if self.connect_radius is None:
-            return default_rule(Box([0.0] * d, [1.0] * d)) if self.k is None else KNearest(self.k)
+            return default_rule(BoxSpace([0.0] * d, [1.0] * d)) if self.k is None else KNearest(self.k)
         if self.k is not None:
             raise InvalidValue("give -k or --connect-radius, not both")
         return Radius(self.connect_radius)

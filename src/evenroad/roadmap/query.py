@@ -21,7 +21,7 @@ from evenroad.points.samplers.poses import Sliced
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.rules import Rule
 from evenroad.roadmap.search import FINDERS, Finder, find_any
-from evenroad.space import SO3, Box, Product, Space
+from evenroad.space import SO3, BoxSpace, Product, Space
 from evenroad.world import Apart
 
 LINKS = 100
@@ -135,10 +135,10 @@ def even_points(n: int, space: Space, rule: Rule | None = None, *, rng: RngLike 
     k = None if rule is None else rule.reach(n, space).k
     sparse = k is not None and k <= SPARSE
     parts = space.parts if isinstance(space, Product) else ()
-    if [(type(part), part.dim) for part in parts] == [(Box, 3), (SO3, 4)]:
+    if [(type(part), part.dim) for part in parts] == [(BoxSpace, 3), (SO3, 4)]:
         return (Sliced() if sparse else make_sampler("sobol")).draw(n, d, rng=rng)
     points = make_sampler("even").draw(n, d, rng=rng)
-    return drawn_in(points) if sparse and d >= DRAWN_IN_FROM and isinstance(space, Box) else points
+    return drawn_in(points) if sparse and d >= DRAWN_IN_FROM and isinstance(space, BoxSpace) else points
 
 
 def _finite(value: npt.ArrayLike) -> Floats:

@@ -1,7 +1,7 @@
 """Spaces: from the unit cube to configurations, with a metric and shortest interpolation."""
 
 from evenroad.space.flat import FlatMetric as FlatMetric
-from evenroad.space.joints import Box as Box
+from evenroad.space.joints import BoxSpace as BoxSpace
 from evenroad.space.joints import Circle as Circle
 from evenroad.space.joints import JointSpace as JointSpace
 from evenroad.space.product import SE2 as SE2

@@ -1,4 +1,4 @@
-"""Spaces of numbers side by side: Box, bounded axes; Circle, one angle that wraps; JointSpace, the joints of an arm."""
+"""Spaces of numbers side by side: BoxSpace, bounded axes; Circle, an angle that wraps; JointSpace, joints of an arm."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ class FlatSpace(Space):
 
 
 @dataclass(frozen=True)
-class Box(FlatSpace):
+class BoxSpace(FlatSpace):
     """The box ``[low_1, high_1] x ... x [low_dim, high_dim]``; straight lines are its shortest paths.
 
     `low` and `high`, ``low < high`` on every axis, are stored as tuples; `weights`, > 0, are what a unit of each axis
@@ -136,7 +136,7 @@ class JointSpace(FlatSpace):
     A revolute joint that can turn on and on wraps; one with stops does not, even where its range exceeds a full turn:
     the two ends of such a range are far apart. A wrapping joint repeats after ``high - low``, so in radians these are
     2 pi apart; `wrapping` says which joints wrap, one bool stands for all. A value may exceed a bound by 1e-5. `low`,
-    `high` and `weights` are as for :class:`Box`; InvalidValue for any other value.
+    `high` and `weights` are as for :class:`BoxSpace`; InvalidValue for any other value.
     """
 
     low: Sequence[float]

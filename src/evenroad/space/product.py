@@ -14,7 +14,7 @@ from evenroad._checks import require_known
 from evenroad.errors import InvalidValue
 from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_fractions, as_weights
 from evenroad.space.flat import FlatMetric
-from evenroad.space.joints import Box, Circle
+from evenroad.space.joints import BoxSpace, Circle
 from evenroad.space.protocol import Space, all_distances
 from evenroad.space.so3 import SO3
 
@@ -133,7 +133,7 @@ def SE2(
     """Return the poses (x, y, heading) of a body in the plane, its position bounded by `low` and `high`.
 
     `weights`, > 0, are what a unit of length and a radian count, `combine` how the two distances make one; with "l2"
-    the metric is flat, so that neighbours are found in a tree.  Errors are those of `Box` and `Product`.
+    the metric is flat, so that neighbours are found in a tree.  Errors are those of `BoxSpace` and `Product`.
     """
     return Product((_position(low, high, 2), Circle()), weights, combine)
 
@@ -152,8 +152,8 @@ def SE3(
     return Product((_position(low, high, 3), SO3()), weights, combine)
 
 
-def _position(low: Sequence[float], high: Sequence[float], dim: int) -> Box:
-    box = Box(low, high)
+def _position(low: Sequence[float], high: Sequence[float], dim: int) -> BoxSpace:
+    box = BoxSpace(low, high)
     if box.dim != dim:
         raise InvalidValue(f"low and high must have {dim} numbers, got {low!r} and {high!r}")
     return box

@@ -10,7 +10,7 @@ from evenroad.research.bench.searches import SEARCHES, is_connected, milestones_
 from evenroad.research.worlds import Corridor
 from evenroad.roadmap import rule_named
 from evenroad.roadmap.search import FREE, EdgeStates
-from evenroad.space import Box
+from evenroad.space import BoxSpace
 from tests.counting import Counting
 
 
@@ -18,7 +18,7 @@ class _Graph:
     """A world whose motions are free where a table says so; node i is the configuration (i,)."""
 
     def __init__(self, nodes, free_pairs):
-        self.space = Box([0.0], [float(max(nodes, 1))])
+        self.space = BoxSpace([0.0], [float(max(nodes, 1))])
         self._free = {frozenset(pair) for pair in free_pairs}
 
     def valid(self, q):

@@ -16,7 +16,7 @@ from evenroad.research.mazes import load_maze
 from evenroad.research.problems import PROBLEMS, source_named
 from evenroad.research.worlds import Corridor
 from evenroad.roadmap import plan, rule_named
-from evenroad.space import Box
+from evenroad.space import BoxSpace
 from evenroad.world import FunctionWorld
 
 TASK = Task("corridor-2d-0.1", 0, "uniform", 256, "k=10 symmetrised", "full", 3, 7)
@@ -112,7 +112,7 @@ def test_an_end_in_collision_is_an_answer(problems, start, goal, status):
 
 
 def test_coordinates_that_the_set_does_not_give_are_drawn_anew_in_every_run(problems):
-    world = FunctionWorld(Box([0.0] * 3, [1.0] * 3), lambda q: q[:, 2] < 0.5, 0.1)
+    world = FunctionWorld(BoxSpace([0.0] * 3, [1.0] * 3), lambda q: q[:, 2] < 0.5, 0.1)
     problems("partly", lambda instance: Problem(world, np.full(3, 0.1), np.full(3, 0.2), 2))
     task = replace(TASK, problem="partly", sampler="halton paper-blocks", n=64)
     valid = [run_task(replace(task, run=run)).valid for run in range(6)]
@@ -153,7 +153,7 @@ def test_an_exception_is_a_row_with_its_traceback(problems):
     def broken(q):
         raise RuntimeError("the checker fell over")
 
-    world = FunctionWorld(Box([0.0] * 2, [1.0] * 2), broken, 0.1)
+    world = FunctionWorld(BoxSpace([0.0] * 2, [1.0] * 2), broken, 0.1)
     problems("broken", lambda instance: Problem(world, np.zeros(2), np.ones(2), 2))
     outcome = run_task(replace(TASK, problem="broken"))
     assert (outcome.status, outcome.solved, outcome.valid) == ("failed", False, 0)
@@ -183,7 +183,7 @@ def test_a_task_that_takes_too_long_is_a_row(problems):
             time.sleep(5.0)
         return np.ones(len(q), dtype=bool)
 
-    world = FunctionWorld(Box([0.0] * 2, [1.0] * 2), slow, 0.1)
+    world = FunctionWorld(BoxSpace([0.0] * 2, [1.0] * 2), slow, 0.1)
     problems("slow", lambda instance: Problem(world, np.zeros(2), np.ones(2), 2))
     began = time.monotonic()
     outcome = run_task(replace(TASK, problem="slow"), limit=0.2)

@@ -11,7 +11,7 @@ from evenroad.points.samplers.even import drawn_in
 from evenroad.research.bench.samplers import SAMPLERS, draw_set, why_not
 from evenroad.roadmap import KNearest
 from evenroad.roadmap.query import even_points
-from evenroad.space import SE3, Box
+from evenroad.space import SE3, BoxSpace
 
 
 def _draw(name, n, d, run=0, seed=0):
@@ -99,10 +99,12 @@ def test_an_unknown_sampler_gets_the_list():
 
 
 SPACE = SE3((0.0, 0.0, 0.0), (1.0, 1.0, 1.0), weights=(1.0, 0.3))
-CUBE = Box([0.0] * 10, [1.0] * 10)
+CUBE = BoxSpace([0.0] * 10, [1.0] * 10)
 
 
-@pytest.mark.parametrize(("space", "rule"), [(SPACE, KNearest(4)), (Box([0.0] * 9, [1.0] * 9), KNearest(10))])
+@pytest.mark.parametrize(
+    ("space", "rule"), [(SPACE, KNearest(4)), (BoxSpace([0.0] * 9, [1.0] * 9), KNearest(10))]
+)
 def test_even_is_drawn_for_the_space_and_the_rule_as_a_planner_draws_it(space, rule):
     d = space.cube_dim
     given, _ = draw_set("even", 30, d, 0, np.random.default_rng(2), (space, rule))

@@ -9,7 +9,7 @@ import pytest
 from evenroad.errors import InvalidValue
 from evenroad.research.worlds.rigid import OrientedBox, SolidWorld
 from evenroad.roadmap import plan
-from evenroad.space import SE2, SE3, Box
+from evenroad.space import SE2, SE3, BoxSpace
 from evenroad.space.path import subdivide
 from evenroad.world import FunctionWorld
 from evenroad.world.protocol import Rechecks
@@ -91,7 +91,7 @@ def test_a_turn_on_the_spot_that_grazes_a_post_is_refused():
 
 
 def test_one_verdict_a_motion_and_none_outside_of_the_space():
-    world = SolidWorld(Box([0, 0], [1, 1]), [OrientedBox([0, 0], [0.1, 0.1])], [], 0.1)
+    world = SolidWorld(BoxSpace([0, 0], [1, 1]), [OrientedBox([0, 0], [0.1, 0.1])], [], 0.1)
     assert isinstance(world, Rechecks)
     path = np.array([[0.1, 0.1], [0.9, 0.9], [0.9, 0.9], [1.5, 0.9]])
     assert world.recheck(path).tolist() == [True, True, False]

@@ -11,7 +11,7 @@ from scipy.optimize import linprog
 from evenroad.errors import InvalidValue
 from evenroad.geometry import Pose, rotation_from_heading, rotation_from_quaternion, shapes
 from evenroad.research.worlds.rigid import OrientedBox, SolidWorld, shell
-from evenroad.space import SE2, SE3, SO3, Box, Circle, JointSpace, Product
+from evenroad.space import SE2, SE3, SO3, BoxSpace, Circle, JointSpace, Product
 from evenroad.testing import WorldContract
 from evenroad.world import FunctionWorld
 
@@ -42,8 +42,8 @@ IN_SPACE = SolidWorld(
     SE3([0, 0, 0], [10, 10, 10]), ELL, some_boxes(RANDOM, 25, 3, flat=range(0, 25, 2)), (0.1, 0.05)
 )
 IN_THE_PLANE = SolidWorld(SE2([0, 0], [10, 10]), FLAT_ELL, some_boxes(RANDOM, 12, 2), (0.1, 0.05))
-SHIFTED = SolidWorld(Box([0, 0, 0], [10, 10, 10]), ELL, some_boxes(RANDOM, 25, 3), 0.1)
-SHIFTED_IN_THE_PLANE = SolidWorld(Box([0, 0], [10, 10]), FLAT_ELL, some_boxes(RANDOM, 12, 2), 0.1)
+SHIFTED = SolidWorld(BoxSpace([0, 0, 0], [10, 10, 10]), ELL, some_boxes(RANDOM, 25, 3), 0.1)
+SHIFTED_IN_THE_PLANE = SolidWorld(BoxSpace([0, 0], [10, 10]), FLAT_ELL, some_boxes(RANDOM, 12, 2), 0.1)
 WORLDS = [IN_SPACE, IN_THE_PLANE, SHIFTED, SHIFTED_IN_THE_PLANE]
 
 
@@ -127,7 +127,7 @@ def test_two_boxes_that_nearly_touch_are_told_apart(seed):
                 inside = middle
             else:
                 outside = middle
-        world = SolidWorld(Box([-20] * 3, [20] * 3), [body], [obstacle], 1.0)
+        world = SolidWorld(BoxSpace([-20] * 3, [20] * 3), [body], [obstacle], 1.0)
         places = np.array([inside - 1e-5, inside + 1e-5])[:, np.newaxis] * direction
         np.testing.assert_array_equal(world.valid(places), [False, True])
 
@@ -148,7 +148,7 @@ def test_motions_get_the_verdict_of_their_states_one_by_one(world):
 def test_a_wall_without_thickness_stops_a_motion_and_room_inside_a_shell_is_free():
     room = OrientedBox.spanning((2, 2, 2), (8, 8, 8), name="room")
     ball = [OrientedBox([0, 0, 0], [0.5, 0.5, 0.5])]
-    space = Box([0, 0, 0], [10, 10, 10])
+    space = BoxSpace([0, 0, 0], [10, 10, 10])
     hollow, solid = SolidWorld(space, ball, shell(room), 0.1), SolidWorld(space, ball, [room], 0.1)
     inside, outside = np.array([[5.0, 5, 5]]), np.array([[1.0, 5, 5]])
     assert hollow.valid(inside).all()
@@ -160,7 +160,7 @@ def test_a_wall_without_thickness_stops_a_motion_and_room_inside_a_shell_is_free
 
 def test_touching_is_meeting():
     cube = OrientedBox.spanning((0, 0, 0), (1, 1, 1))
-    world = SolidWorld(Box([-5] * 3, [5] * 3), [cube], [cube], 0.1)
+    world = SolidWorld(BoxSpace([-5] * 3, [5] * 3), [cube], [cube], 0.1)
     assert world.valid([[1.0, 0, 0], [1, 1, 1], [1.0 + 1e-9, 0, 0]]).tolist() == [False, False, True]
 
 
@@ -221,7 +221,7 @@ def test_boxes_that_are_none_are_refused():
 
 @pytest.mark.parametrize(
     "space",
-    [Box([0], [1]), JointSpace([0, 0], [1, 1]), Product([Circle(), Box([0, 0], [1, 1])]), SO3()],
+    [BoxSpace([0], [1]), JointSpace([0, 0], [1, 1]), Product([Circle(), BoxSpace([0, 0], [1, 1])]), SO3()],
     ids=["1-D", "joints", "heading first", "rotations"],
 )
 def test_spaces_that_no_body_moves_in_are_refused(space):
@@ -241,7 +241,7 @@ def test_parameters_that_make_no_world_are_refused():
         with pytest.raises(InvalidValue, match="resolution"):
             SolidWorld(space, ELL, [], wrong)
     with pytest.raises(InvalidValue, match="resolution"):
-        SolidWorld(Box([0, 0], [1, 1]), FLAT_ELL, [], (0.1, 0.1))
+        SolidWorld(BoxSpace([0, 0], [1, 1]), FLAT_ELL, [], (0.1, 0.1))
 
 
 def test_a_box_of_geometry_is_the_same_box_with_its_pose():

@@ -14,7 +14,7 @@ from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import require_count, require_known, require_positive
 from evenroad._njit import njit
 from evenroad.errors import InvalidValue
-from evenroad.space import Box, Space
+from evenroad.space import BoxSpace, Space
 from evenroad.space.batch import as_batch, as_batch_pair
 
 ROUNDING = 1e-9
@@ -50,9 +50,9 @@ class CubeWorld(CompiledWorld):
     d: int
 
     @cached_property
-    def space(self) -> Box:
+    def space(self) -> BoxSpace:
         """The unit cube with the Euclidean metric."""
-        return Box([0.0] * self.d, [1.0] * self.d)
+        return BoxSpace([0.0] * self.d, [1.0] * self.d)
 
 
 @njit(cache=True, nogil=True, inline="always")

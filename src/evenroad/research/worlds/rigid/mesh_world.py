@@ -48,7 +48,7 @@ class MeshWorld(TestedAtStates):
     :class:`FunctionWorld` does; some ten thousand states a second.  Where body and obstacles are boxes,
     :class:`SolidWorld` is tens of times faster.
 
-    `space`, ``SE3(..)`` or a Box of 3 axes, `body` and `obstacles`, at least one, are as for :class:`SolidWorld`;
+    `space`, ``SE3(..)`` or a BoxSpace of 3 axes, `body` and `obstacles`, at least one, are as for :class:`SolidWorld`;
     `resolution` is the largest distance between neighbouring states, for SE3 also the largest rotation.  NotAvailable
     if coal is not installed (the extra ``mesh``), InvalidValue for anything else.
     """
@@ -62,7 +62,7 @@ class MeshWorld(TestedAtStates):
 
     def __post_init__(self) -> None:
         if body_dimension(self.space) != 3:
-            raise InvalidValue(f"space must be SE3(..) or a Box of 3 axes, got {self.space!r}")
+            raise InvalidValue(f"space must be SE3(..) or a BoxSpace of 3 axes, got {self.space!r}")
         obstacles = tuple(self.obstacles)
         if not obstacles:
             raise InvalidValue("obstacles must be one mesh or more, got none")

@@ -16,7 +16,7 @@ from evenroad.errors import InvalidValue
 from evenroad.geometry.mesh import TriangleMesh
 from evenroad.research.worlds.rigid.kernel import contacts, motions_are_free, motions_are_proved
 from evenroad.research.worlds.rigid.oriented_box import OrientedBox, SolidTables, box_table, reaches_of
-from evenroad.space import SO3, Box, Circle, Product, Space
+from evenroad.space import SO3, BoxSpace, Circle, Product, Space
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.bisection import require_few_segments
 from evenroad.world.function import OUTSIDE
@@ -25,23 +25,23 @@ _TOLERANCE = 1e-3
 """How near to contact `SolidWorld.recheck` still proves a motion free, as a share of the step of translations."""
 
 
-RigidSpace: TypeAlias = Product | Box
-"""``SE2(..)``, ``SE3(..)``, or a `Box` of 2 or 3 axes for a body that does not rotate."""
+RigidSpace: TypeAlias = Product | BoxSpace
+"""``SE2(..)``, ``SE3(..)``, or a `BoxSpace` of 2 or 3 axes for a body that does not rotate."""
 
 
 def body_dimension(space: Space) -> int:
     """Return 2 or 3: the dimension of the bodies that move in `space`.
 
-    Raises InvalidValue if `space` is none of ``SE2(..)``, ``SE3(..)`` and a `Box` of 2 or 3 axes.
+    Raises InvalidValue if `space` is none of ``SE2(..)``, ``SE3(..)`` and a `BoxSpace` of 2 or 3 axes.
     """
-    if isinstance(space, Box) and space.dim in (2, 3):
+    if isinstance(space, BoxSpace) and space.dim in (2, 3):
         return space.dim
-    if isinstance(space, Product) and len(space.parts) == 2 and isinstance(space.parts[0], Box):
+    if isinstance(space, Product) and len(space.parts) == 2 and isinstance(space.parts[0], BoxSpace):
         position, rotation = space.parts
         for dim, kind in ((2, Circle), (3, SO3)):
             if position.dim == dim and isinstance(rotation, kind):
                 return dim
-    raise InvalidValue(f"space must be SE2(..), SE3(..) or a Box of 2 or 3 axes, got {space!r}")
+    raise InvalidValue(f"space must be SE2(..), SE3(..) or a BoxSpace of 2 or 3 axes, got {space!r}")
 
 
 def contact_with(obstacles: Sequence[OrientedBox | TriangleMesh], number: int) -> str:
@@ -99,8 +99,8 @@ class SolidWorld:
     all n + 1 ends of segments are; they are tested in bisection order, the ends first.  What lies between two states is
     not seen; `recheck` proves the motions of a path that is handed out, with no gap.
 
-    `space` are the poses of the body's frame, ``SE2(..)``, ``SE3(..)``, or a Box of 2 or 3 axes, in which the body does
-    not rotate; all boxes are of its plane or space, those of the `body`, at least one, in the body's frame.
+    `space` are the poses of the body's frame, ``SE2(..)``, ``SE3(..)``, or a BoxSpace of 2 or 3 axes, in which the
+    body does not rotate; all boxes are of its plane or space, those of the `body`, at least one, in the body's frame.
     `resolution` is `step`, and for SE2 and SE3 `rotation_step`: the largest distance and rotation between neighbouring
     states, > 0, measured as the space does: headings in radians, quaternions by ``arccos |q . q'|``.  InvalidValue for
     anything else.
@@ -185,7 +185,7 @@ def _as_steps(
 ) -> tuple[float | tuple[float, ...], tuple[float, float]]:
     """Return the resolution as a value, and the steps of position and quaternion that follow from it."""
     position = space.parts[0] if isinstance(space, Product) else space
-    assert isinstance(position, Box)  # as body_dimension has seen to
+    assert isinstance(position, BoxSpace)  # as body_dimension has seen to
     value: float | tuple[float, ...]
     if isinstance(space, Product):
         if not isinstance(resolution, Sequence | np.ndarray) or isinstance(resolution, str):
