@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from typing import Unpack
 
 from evenroad._arrays import Floats
 from evenroad._rng import RngLike
-from evenroad.arms.cheapest import find_cheapest
 from evenroad.arms.query import RESOLUTION, ArmQuery, Goal, PathLike, Place, arm_query, mesh_check, unreached
 from evenroad.arms.ways import plan_ways
 from evenroad.errors import InvalidValue
 from evenroad.points import PointSet, draw
 from evenroad.roadmap import Budget, PlanResult, Rule, Status
 from evenroad.roadmap.answer import require_certified
-from evenroad.roadmap.find_path import SECONDS, with_reasons
+from evenroad.roadmap.find_path import SECONDS, find_path, with_reasons
 from evenroad.roadmap.plan import plan
 from evenroad.robot import Robot, Scene
 from evenroad.robot.load import RobotOptions
@@ -28,6 +27,26 @@ from evenroad.world import World
 
 SEARCH = "lazy"
 """The same path as by the full search; of an arm, checks of motions are the dear part."""
+
+
+@dataclass(frozen=True, eq=False)
+class ArmPlanner:
+    """How an arm's query is planned; but for what is said here as parameters of :func:`plan_arm`.
+
+    Attributes
+    ----------
+    along : callable, optional
+        Plans in place of trees and points from a start, (dim,), to goals, (g, dim); keywords `budget` and `shorten`.
+    """
+
+    budget: Budget
+    points: PointSet | None = None
+    rule: Rule | None = None
+    improve: bool = False
+    shorten: bool = True
+    straight: Straight | None = None
+    upright: Upright | None = None
+    along: Callable[..., PlanResult] | None = None
 
 
 def plan_arm(
@@ -66,7 +85,7 @@ def plan_arm(
         A value may exceed its joint's limits by 1e-5, as five printed decimals do, and stays what it is.
     goal : str, array_like, Pose, PoseGoal, or a sequence of such
         As `start`, or where a link is to be: all configurations that are known to bring it there are goals.  Of several
-        the path ends at a cheap one, with points or `improve` at the cheapest.
+        the path ends at the nearest, where that is soon reached, with points or `improve` at the cheapest.
     points : int or PointSet, optional
         Plan on a roadmap (ps-PRM) of this set, or of exactly so many points of the sampler ``even``.  Default: no
         roadmap, but trees that grow from both ends until they meet.
@@ -125,38 +144,30 @@ def plan_arm(
         prepare()
     how = dict(resolution=resolution, clearance=clearance, degrees=degrees, tip=tip, frame=frame)
     query = arm_query(robot, scene, start, goal, **how, **options)  # type: ignore[arg-type]
-    if (refused := unreached(query)) is not None:
-        return refused
     budget = Budget(seconds=seconds) if budget is None else budget
     if points is not None and not isinstance(points, PointSet):
         points = draw("even", points, query.world.space.cube_dim, rng=rng)
 
-    apart = query.given.apart(query.world, straight=straight is not None)
+    planner = ArmPlanner(budget, points, rule, improve, shorten, straight, upright)
+    return finished(query, plan_query(query, planner), certified=certified)[0]
+
+
+def plan_query(query: ArmQuery, by: ArmPlanner) -> PlanResult:
+    """Plan what an arm is asked; the path is free for its capsules."""
+    apart = query.given.apart(query.world, straight=by.straight is not None)
 
     def plan_once(world: World, start: Floats, goals: Floats, shorten: bool) -> PlanResult:
-        if points is None:
-            return find_cheapest(
-                world, start, goals, budget=budget, shorten=shorten, improve=improve, apart=apart
-            )
-        return plan_on_points(world, start, goals, points, rule=rule, shorten=shorten, budget=budget)
+        if by.along is not None:
+            return by.along(start, goals, budget=by.budget, shorten=shorten)
+        if by.points is None:
+            how = dict(budget=by.budget, shorten=shorten, improve=by.improve, apart=apart)
+            return find_path(world, start, goals, **how)  # type: ignore[arg-type]
+        more = dict(rule=by.rule, search=SEARCH, shorten=shorten, budget=by.budget)
+        return with_reasons(world, plan(world, start, goals, by.points, **more))  # type: ignore[arg-type]
 
-    result = plan_ways(query.ends, straight, upright, plan_once, shorten=shorten)
-    return finished(query, result, certified=certified)[0]
-
-
-def plan_on_points(
-    world: World,
-    start: Floats,
-    goals: Floats,
-    points: PointSet,
-    *,
-    rule: Rule | None,
-    shorten: bool,
-    budget: Budget,
-) -> PlanResult:
-    """Plan on a roadmap of these points; where they do not suffice, the message says what hems in start and goals."""
-    result = plan(world, start, goals, points, rule=rule, search=SEARCH, shorten=shorten, budget=budget)
-    return with_reasons(world, result)
+    if (refused := unreached(query)) is not None:
+        return refused
+    return plan_ways(query.ends, by.straight, by.upright, plan_once, shorten=by.shorten)
 
 
 def finished(

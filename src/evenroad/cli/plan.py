@@ -161,7 +161,7 @@ class PlanArm(PlanOptions, RobotOptions):
     """Plan along this roadmap, which ``evenroad roadmap`` made and which knows its arm and its cell; --robot may be
     given, too, and then has to be that arm."""
     goal: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]] = ()
-    """As start.  Given more than once, also with --goal-pose, the path ends at a cheap one.
+    """As start.  Given more than once, also with --goal-pose, the path ends at the nearest, where that is soon reached.
     With points or --improve at the cheapest."""
     goal_pose: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]] = ()
     """Where a link is to be: "x y z qx qy qz qw" or "x y z roll pitch yaw" (metres, radians), or "x y z", turned at

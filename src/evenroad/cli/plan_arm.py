@@ -6,18 +6,8 @@ import math
 from dataclasses import asdict, replace
 from pathlib import Path
 
-from evenroad._arrays import Floats
 from evenroad._compiled import say_if_compiling
-from evenroad.arms import (
-    SEARCH,
-    Goal,
-    arm_query,
-    find_cheapest,
-    finished,
-    plan_on_points,
-    plan_ways,
-    unreached,
-)
+from evenroad.arms import SEARCH, ArmPlanner, Goal, arm_query, finished, plan_query
 from evenroad.cli.plan import PlanArm
 from evenroad.cli.plan_parts import (
     chosen_budget,
@@ -34,7 +24,7 @@ from evenroad.cli.robot import bodiless_rows
 from evenroad.cli.trajectory import require_trajectory_options, trajectory_rows
 from evenroad.errors import InvalidValue
 from evenroad.io import plan_record
-from evenroad.roadmap import PlanResult, default_rule
+from evenroad.roadmap import default_rule
 from evenroad.robot import find_robot, find_scene, held_values, load_scene
 from evenroad.robot.kernel.selftest import lanes_failure
 from evenroad.robot.pose_goal import PoseGoal, as_axis, as_numbers, pose_of
@@ -44,7 +34,6 @@ from evenroad.robot.upright import Upright
 from evenroad.robot_roadmap.ask import prepare as prepare_roadmap
 from evenroad.robot_roadmap.cell import day_and_all
 from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
-from evenroad.world import World
 
 
 def plan_arm(plan: PlanArm) -> int:
@@ -86,22 +75,9 @@ def plan_arm(plan: PlanArm) -> int:
     points = planned_points(plan, world.space.cube_dim) if wants_points(plan) else None
     load_compiled_code(world, start, goals, points, rule, SEARCH)
 
-    apart = query.given.apart(query.world, straight=ways[0] is not None)
-
-    def plan_once(world: World, start: Floats, goals: Floats, shorten: bool) -> PlanResult:
-        if known is not None:
-            return known.plan(start, goals, budget=budget, shorten=shorten)
-        if points is None:
-            return find_cheapest(
-                world, start, goals, budget=budget, shorten=shorten, improve=plan.improve, apart=apart
-            )
-        return plan_on_points(world, start, goals, points, rule=rule, shorten=shorten, budget=budget)
-
-    if (refused := unreached(query)) is not None:
-        result = refused
-    else:
-        result = plan_ways(query.ends, *ways, plan_once, shorten=not plan.raw)
-    result, meshes = finished(query, result, certified=plan.certified)
+    along = None if known is None else known.plan
+    planner = ArmPlanner(budget, points, rule, plan.improve, not plan.raw, *ways, along)
+    result, meshes = finished(query, plan_query(query, planner), certified=plan.certified)
     more_rows, trajectory = trajectory_rows(plan, query, result, ways)
     robot, model = world.robot, query.model
     made = plan.options()

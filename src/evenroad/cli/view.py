@@ -11,13 +11,12 @@ import tyro
 
 from evenroad._arrays import Floats
 from evenroad._files import require_writable_folder
-from evenroad.arms import ArmQuery, arm_query, plan_on_points
+from evenroad.arms import ArmPlanner, ArmQuery, arm_query, plan_query
 from evenroad.cli.plan import RobotOptions
 from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.io import load_plan
 from evenroad.points import draw
 from evenroad.roadmap import Budget, PlanResult
-from evenroad.roadmap.find_path import find_path
 from evenroad.robot import find_robot, load_scene
 from evenroad.robot.goals import Goals
 from evenroad.robot.urdf_xml import RobotFile
@@ -118,18 +117,8 @@ class View(RobotOptions):
         return query, result
 
     def _planned(self, query: ArmQuery) -> PlanResult:
-        budget, world, start, goals = Budget(seconds=SECONDS), query.world, query.start, query.goals
-        if self.n is None:
-            return find_path(world, start, goals, budget=budget, apart=query.given.apart(world))
-        return plan_on_points(
-            world,
-            start,
-            goals,
-            draw("even", self.n, world.space.cube_dim),
-            rule=None,
-            shorten=True,
-            budget=budget,
-        )
+        points = None if self.n is None else draw("even", self.n, query.world.space.cube_dim)
+        return plan_query(query, ArmPlanner(Budget(seconds=SECONDS), points))
 
 
 def _require_sound(file: Path, asked: dict[str, Any]) -> None:

@@ -134,13 +134,16 @@ class Attempt:
                 return Searched(states, found)
             return Searched(states, found, length_along(edge_costs(space, q, edges[found.edges], cost)))
 
-    def connect(self, world: ConnectsItself, variant: int = 0, most: int = NO_LIMIT) -> Connection:
-        """Let the world join the start to one of the free goals, within what is left of the budget.
+    def connect(
+        self, world: ConnectsItself, variant: int = 0, most: int = NO_LIMIT, goal: int | None = None
+    ) -> Connection:
+        """Let the world join the start to one of the free goals, or to this one, within what is left of the budget.
 
         A variant >= 1 has it do so in another way; only a world that is `ConnectsAnew` can.  It gives up after `most`
         motions.
         """
         start, goals, motions = self.query.start, self.query.goals[self.goals], self.query.budget.motions
+        goals = goals if goal is None else goals[goal : goal + 1]
         if motions is not None:
             most = min(most, max(motions - self.motions_checked, 1))
         seconds = min(max(self.deadline - now(), 1e-3), _LONG)
@@ -150,7 +153,7 @@ class Attempt:
             else:
                 found = world.connect(start, goals, most_motions=most, seconds=seconds)
         self.motions_checked += found.motions
-        return found
+        return found if goal is None or found.goal < 0 else replace(found, goal=goal)
 
     def elapsed(self) -> float:
         """Return the seconds since the query began."""

@@ -22,7 +22,7 @@ from evenroad.roadmap.attempt import NO_LIMIT, Attempt
 from evenroad.roadmap.budget import Budget
 from evenroad.roadmap.query import AsksApart, Query, as_points, read_places
 from evenroad.roadmap.result import PlanResult, Stage, Status
-from evenroad.world import ConnectsAnew, ConnectsItself, Explains, Separates, ShowsApart, World
+from evenroad.world import Connection, ConnectsAnew, ConnectsItself, Explains, Separates, ShowsApart, World
 
 SECONDS = 5.0
 """Wall time of a budget that is not given."""
@@ -35,6 +35,8 @@ BEFORE_QUICK_PROOF = 4_000
 """After so many, one that can say so quickly: most queries take fewer."""
 LEAST_MOTIONS, LONGER = 1000, 4
 """A round gives up after so many motions, or after so many times those of the first path, whichever is more."""
+TO_NEAREST = 300
+"""Motions that are checked at most on the way to the nearest of several goals alone."""
 
 
 def find_path(
@@ -49,7 +51,8 @@ def find_path(
 ) -> PlanResult:
     """Plan until there is a path, it is proved that there is none, or the budget is spent.
 
-    A world that connects itself plans.  Where it finds nothing, one that can tell is asked whether there can be a path
+    A world that connects itself plans; trees are led to the nearest of several goals first, for a short while, then to
+    all.  Where it finds nothing, one that can tell is asked whether there can be a path
     at all.  Then, and with any other world, points are added until they suffice.
 
     Parameters
@@ -77,7 +80,7 @@ def find_path(
         attempt.planner = world.planner
         if (refused := refusal(attempt)) is not None:
             return refused
-        connection = attempt.connect(world, most=_stages(world)[0][0])
+        connection = _connection(attempt, world, _stages(world)[0][0])
         for (most, quickly), (more, _) in pairwise(_stages(world)):
             if connection.goal >= 0:
                 break
@@ -88,7 +91,7 @@ def find_path(
                 break
             # The same search again, and further.
             attempt.motions_checked -= connection.motions
-            connection = attempt.connect(world, most=more)
+            connection = _connection(attempt, world, more)
         if connection.goal >= 0:
             result = connected(attempt, connection)
             return _improved(attempt, result) if improve else result
@@ -106,6 +109,24 @@ def _stages(world: World) -> list[tuple[int, bool]]:
     if isinstance(world, ShowsApart):
         return [(BEFORE_QUICK_PROOF, True), (BEFORE_PROOF, False), *last]
     return [(BEFORE_PROOF, False), *last] if isinstance(world, Separates) else last
+
+
+def _connection(attempt: Attempt, world: ConnectsItself, most: int) -> Connection:
+    """Let the world join the start to a goal, trees to the nearest one first: of many they may meet a far one."""
+    start, goals = attempt.query.start, attempt.query.goals[attempt.goals]
+    if len(goals) == 1 or not isinstance(world, ConnectsAnew):
+        return attempt.connect(world, most=most)
+    nearest = int(np.argmin(attempt.world.space.distance(np.broadcast_to(start, goals.shape), goals)))
+    near = attempt.connect(world, most=min(most, TO_NEAREST), goal=nearest)
+    if near.goal >= 0 or attempt.left() is None:
+        return near
+    found = attempt.connect(world, most=most - near.motions)
+    return replace(
+        found,
+        nodes=near.nodes + found.nodes,
+        configurations=near.configurations + found.configurations,
+        motions=near.motions + found.motions,
+    )
 
 
 def _improved(attempt: Attempt, first: PlanResult) -> PlanResult:

@@ -1,12 +1,14 @@
-"""The cheapest of many goals, found in one plan."""
+"""Many goals in one plan: the nearest first, then all."""
+
+from importlib import import_module
 
 import numpy as np
 import pytest
 
 import evenroad as er
-from evenroad.arms import find_cheapest
 from evenroad.roadmap import Budget, find_path
 from evenroad.robot import ArmWorld, in_scene, load_robot, load_scene
+from evenroad.space.path import path_length
 from tests.robot.kernel_arms import random_scene
 
 
@@ -15,22 +17,38 @@ def free(world, count, seed):
     return q[world.valid(q)][:count]
 
 
-def test_no_goal_alone_is_much_cheaper_than_the_one_that_is_chosen():
-    better, first = [], []
+def test_a_near_goal_is_chosen_where_trees_that_are_led_to_all_meet_a_far_one():
+    longer, better = [], []
     for seed in range(6):
         world = ArmWorld(load_robot("arm7"), random_scene(seed, count=6, spread=0.9, clear=0.35))
         start, *goals = free(world, 13, seed)
         goals = np.array(goals)
         budget = Budget(seconds=20, motions=3000)
-        chosen = find_cheapest(world, start, goals, budget=budget, shorten=True, improve=False)
+        chosen = find_path(world, start, goals, budget=budget)
         assert chosen.solved
         assert chosen.path[-1].tolist() == goals[chosen.goal_index].tolist()
         assert world.recheck(chosen.path).all()
+        at_once = world.connect(start, goals, most_motions=3000, seconds=20)
+        longer.append(path_length(world.shorten(at_once.path)[0], world.space) / chosen.cost)
         alone = [find_path(world, start, goal, budget=budget) for goal in goals]
         better.append(chosen.cost / min(one.cost for one in alone if one.solved))
-        first.append(find_path(world, start, goals, budget=budget).cost / chosen.cost)
+    assert np.mean(longer) > 1.05
     assert np.mean(better) < 1.1
-    assert np.mean(first) > 1.0
+
+
+def test_a_nearest_goal_that_is_not_reached_soon_gives_way_to_all(monkeypatch):
+    world = ArmWorld(load_robot("arm7"), random_scene(2, count=6, spread=0.9, clear=0.35))
+    start, *goals = free(world, 7, 2)
+    goals = np.array([goal for goal in goals if not world.motion_valid(start[None], goal[None])[0]])
+    monkeypatch.setattr(import_module("evenroad.roadmap.find_path"), "TO_NEAREST", 1)
+    result, alone = (
+        find_path(world, start, goals),
+        world.connect(start, goals, most_motions=10**6, seconds=20),
+    )
+    assert (result.solved, result.goal_index) == (True, alone.goal)
+    np.testing.assert_array_equal(result.path, world.shorten(alone.path)[0])
+    # What was asked in vain counts.
+    assert result.counts["edges_checked"] == alone.motions + 1
 
 
 def test_a_goal_that_is_near_and_cannot_be_reached_does_not_keep_from_others():
@@ -41,9 +59,7 @@ def test_a_goal_that_is_near_and_cannot_be_reached_does_not_keep_from_others():
     blocked = start + 0.01
     blocked[2] = 3.0
     assert not world.valid(blocked[None])[0]
-    result = find_cheapest(
-        world, start, np.array([blocked, inside]), budget=Budget(seconds=20), shorten=True, improve=False
-    )
+    result = find_path(world, start, np.array([blocked, inside]), budget=Budget(seconds=20))
     assert (result.status, result.goal_index) == (er.Status.SOLVED, 1)
 
 
@@ -51,9 +67,9 @@ def test_a_goal_that_is_near_and_cannot_be_reached_does_not_keep_from_others():
 def test_the_same_goals_give_the_same_path_in_any_order(shorten):
     world = ArmWorld(load_robot("arm7"), random_scene(3, count=6, spread=0.9, clear=0.35))
     start, *goals = free(world, 9, 5)
-    options = dict(budget=Budget(seconds=20), shorten=shorten, improve=False)
-    one = find_cheapest(world, start, np.array(goals), **options)
-    other = find_cheapest(world, start, np.array(goals[::-1]), **options)
+    options = dict(budget=Budget(seconds=20), shorten=shorten)
+    one = find_path(world, start, np.array(goals), **options)
+    other = find_path(world, start, np.array(goals[::-1]), **options)
     assert one.path.tolist() == other.path.tolist()
     assert one.goal_index == len(goals) - 1 - other.goal_index
 
@@ -64,11 +80,11 @@ def test_a_start_in_collision_and_motions_that_do_not_suffice_are_answers():
     start = er.configuration(world.robot, "home", scene)
     inside = er.configuration(world.robot, "inside", scene)
     goals = np.array([inside, inside])
-    few = find_cheapest(world, start, goals, budget=Budget(motions=2, seconds=9), shorten=True, improve=False)
+    few = find_path(world, start, goals, budget=Budget(motions=2, seconds=9))
     assert few.status is er.Status.BUDGET_SPENT
     # One search has spent it all: there is no other, with a budget of its own.
     assert few.counts["edges_checked"] == world.connect(start, goals[:1], most_motions=2).motions
     folded = start.copy()
     folded[2] = 3.0
-    bad = find_cheapest(world, folded, goals, budget=Budget(seconds=9), shorten=True, improve=False)
+    bad = find_path(world, folded, goals, budget=Budget(seconds=9))
     assert bad.status is er.Status.START_INVALID
