@@ -27,11 +27,13 @@ from benchmarks.nested_k import smallest_k
 from evenroad._arrays import Floats
 from evenroad.points import draw
 from evenroad.points.bank import Bank
-from evenroad.points.measures import dispersion_l2, rooted_prefixes
+from evenroad.points.measures import dispersion_l2
 from evenroad.points.samplers import Growing, Sobol
 from evenroad.research.measures import riesz_rooted, separation
 from evenroad.research.network import NetworkConfig
+from evenroad.research.prefixes import rooted_prefixes
 from evenroad.research.problems.fair import DIFFICULTIES, SIZES, Family, Stream, make_instance
+from evenroad.research.sequence import Sequence
 from evenroad.research.training import anneal_many, train_many
 from evenroad.roadmap import Budget, plan_anytime
 
@@ -104,7 +106,7 @@ def trained(n: int, d: int, seed: int, network: bool) -> Floats:
 
 
 METHODS: dict[str, tuple[Callable[[int, int, int], Floats], int, int]] = {
-    "sequence": (lambda n, d, seed: draw("sequence", n, d, rng=seed).points, 1024, 4),
+    "sequence": (lambda n, d, seed: Sequence().draw(n, d, rng=seed).points, 1024, 4),
     "growing": (lambda n, d, seed: draw("growing", n, d, rng=seed).points, 1024, 32),
     "halton": (lambda n, d, seed: draw("halton", n, d, rng=seed).points, 1024, 32),
     "kronecker": (kronecker, 1024, 32),
@@ -189,7 +191,7 @@ def spread(dimensions: list[int]) -> list[dict[str, object]]:
 
 @cache
 def moved_sobol(d: int, number: int) -> Floats:
-    return draw("sequence", 512, d, rng=number).points
+    return Sequence().draw(512, d, rng=number).points
 
 
 COUNTS = (64, 90, 128, 181, 256, 362, 512)

@@ -25,9 +25,10 @@ from benchmarks.chain_rrt import JOINTS, Setting, grow, problem
 from benchmarks.sequences import _read, of_bank
 from evenroad._arrays import Floats, Ints
 from evenroad.points import draw
-from evenroad.points.measures import rooted_prefixes
 from evenroad.points.samplers import Halton, Sobol
+from evenroad.research.prefixes import rooted_prefixes
 from evenroad.research.problems.fair import Stream
+from evenroad.research.sequence import Sequence
 from evenroad.research.statistics.rates import wilson
 
 WIDTHS = (0.64, 0.40)
@@ -70,7 +71,7 @@ def fixed(name: str, number: int) -> Floats:
     if name == "greedy":
         return of_bank(1024, JOINTS, number)
     if name == "sequence":
-        return draw("sequence", LONGEST, JOINTS, rng=number).points
+        return Sequence().draw(LONGEST, JOINTS, rng=number).points
     return networks(name)[number]
 
 

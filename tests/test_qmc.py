@@ -10,7 +10,6 @@ from evenroad.errors import Exhausted, InvalidValue, NotAvailable
 from evenroad.points import draw
 from evenroad.points.measures import MEASURES
 from evenroad.research.measures import riesz_rooted, separation
-from tests.points.samplers.conftest import hardly_moved as hardly_moved
 
 SEED = 170382760648021597650530316304495310428
 
@@ -253,11 +252,6 @@ class SequenceContract(Refusals):
 class TestGrowing(SequenceContract):
     engine_class = qmc.Growing
     d = 5
-
-
-@pytest.mark.usefixtures("hardly_moved")
-class TestSequence(SequenceContract):
-    engine_class = qmc.Sequence
 
 
 class TestHickernell(EngineContract):

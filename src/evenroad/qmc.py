@@ -159,12 +159,6 @@ class Growing(SequenceEngine):
     family = "growing"
 
 
-class Sequence(SequenceEngine):
-    """Scrambled Sobol points, the first 2048 moved: every beginning is of low discrepancy."""
-
-    family = "sequence"
-
-
 class Even(FamilyEngine):
     """Sets of the default family: the Korobov lattices, by the name that follows the default."""
 

@@ -20,7 +20,7 @@ class SamplerOptions:
     """Which points are drawn."""
 
     sampler: str | None = None
-    """even, growing, sequence, hickernell, mpmc, korobov, lattice, cover, halton, sobol, sukharev or uniform
+    """even, growing, hickernell, mpmc, korobov, lattice, cover, halton, sobol, sukharev or uniform
     (default: even)."""
     plain: bool = False
     """halton and sobol: the plain sequence instead of the scrambled one."""

@@ -158,7 +158,6 @@ def test_every_name_makes_a_sampler_of_that_name():
         assert make_sampler(name).name == name
 
 
-@pytest.mark.usefixtures("hardly_moved")
 @pytest.mark.parametrize("name", SAMPLERS)
 def test_a_sampler_of_any_n_has_sets_of_all_and_the_others_have_not(name):
     sampler = make_sampler(name)

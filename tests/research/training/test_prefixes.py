@@ -5,8 +5,8 @@ import pytest
 
 from evenroad.errors import InvalidValue
 from evenroad.points import draw
-from evenroad.points.measures import rooted_prefixes
 from evenroad.research.network import NetworkConfig, train
+from evenroad.research.prefixes import rooted_prefixes
 from evenroad.research.training.objective import parse_objective
 
 

@@ -10,4 +10,3 @@ from evenroad.points.measures.dispersion import dispersion_linf as dispersion_li
 from evenroad.points.measures.dispersion import dispersion_lower_bound as dispersion_lower_bound
 from evenroad.points.measures.measure import MEASURES as MEASURES
 from evenroad.points.measures.measure import Measure as Measure
-from evenroad.points.measures.prefixes import rooted_prefixes as rooted_prefixes

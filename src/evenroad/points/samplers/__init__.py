@@ -20,7 +20,6 @@ from evenroad.points.samplers.plain import Halton as Halton
 from evenroad.points.samplers.plain import Sobol as Sobol
 from evenroad.points.samplers.plain import Sukharev as Sukharev
 from evenroad.points.samplers.plain import Uniform as Uniform
-from evenroad.points.samplers.sequence import Sequence as Sequence
 
 
 class Sampler(Protocol):
@@ -55,8 +54,7 @@ class KnownSampler(Sampler, Protocol):
 
 
 SAMPLERS: dict[str, Callable[..., KnownSampler]] = {
-    each.name: each
-    for each in (Even, Growing, Sequence, Korobov, Lattice, Cover, Halton, Sobol, Sukharev, Uniform)
+    each.name: each for each in (Even, Growing, Korobov, Lattice, Cover, Halton, Sobol, Sukharev, Uniform)
 } | {family: partial(Trained, family) for family in TRAINED_FAMILIES}
 """Name -> how to make the sampler from its options; without any it says what it is, and what keeps its sets even."""
 

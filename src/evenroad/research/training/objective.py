@@ -28,11 +28,11 @@ from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue, UnknownName, shown
 from evenroad.points.bank.anneal import require_points_for
 from evenroad.points.measures import MEASURES
-from evenroad.points.measures.prefixes import PREFIXED, worst_prefix
 from evenroad.points.pointset import as_unit_points
 from evenroad.points.randomise import ALL_SYMMETRIES, Symmetry
-from evenroad.points.samplers.sequence import usual_prefixes
 from evenroad.research.measures import log_riesz_of_columns
+from evenroad.research.prefixes import PREFIXED, worst_prefix
+from evenroad.research.sequence import usual_prefixes
 
 ENERGIES = {"riesz": ALL_SYMMETRIES, "riesz_open": ALL_SYMMETRIES - {Symmetry.SHIFT}}
 """Riesz energies with s = 2d, rooted, on the torus and in the open cube; and what leaves each as it is."""

@@ -11,10 +11,10 @@ from evenroad._arrays import Floats
 from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.points.bank.anneal import anneal
-from evenroad.points.measures.prefixes import SHORTEST, rooted_prefixes, worst_prefix
 from evenroad.points.pointset import Origin, PointSet
 from evenroad.points.randomise import Symmetry
 from evenroad.points.samplers.plain import Sobol
+from evenroad.research.prefixes import SHORTEST, rooted_prefixes, worst_prefix
 
 MEASURE = "hickernell"
 TOGETHER = 512

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
-from evenroad.points.measures import MEASURES, rooted_prefixes
-from evenroad.points.measures.prefixes import PREFIXED, SHARPNESS, SHORTEST, worst_prefix
+from evenroad.points.measures import MEASURES
+from evenroad.research.prefixes import PREFIXED, SHARPNESS, SHORTEST, rooted_prefixes, worst_prefix
 
 
 def slow_worst(name, points, level, fixed=0):

@@ -5,9 +5,26 @@ import pytest
 
 from evenroad.errors import InvalidValue
 from evenroad.points import draw
-from evenroad.points.measures import rooted_prefixes
-from evenroad.points.samplers import Sequence, Sobol, sequence
+from evenroad.points.samplers import Sobol
+from evenroad.research import sequence
+from evenroad.research.prefixes import rooted_prefixes
+from evenroad.research.sequence import Sequence
 from tests.points.samplers.sampler_contract import SamplerContract
+
+
+@pytest.fixture
+def hardly_moved(monkeypatch):
+    """Let `sequence` move its points in milliseconds, and hardly at all."""
+    monkeypatch.setattr(sequence, "STEPS", 3)
+    monkeypatch.setattr(sequence, "STARTS", 2)
+    monkeypatch.setattr(sequence, "TOGETHER", 128)
+    monkeypatch.setattr(sequence, "BLOCKS", {256: 3, 512: 3})
+    made = (sequence._moved, sequence._scramble)
+    for each in made:
+        each.cache_clear()
+    yield
+    for each in made:
+        each.cache_clear()
 
 
 @pytest.mark.usefixtures("hardly_moved")
@@ -49,7 +66,7 @@ def _scrambles(seed, d):
 @pytest.mark.parametrize("d", [2, 3])
 def test_nearly_every_beginning_has_a_lower_discrepancy_than_scrambled_sobol_points(d):
     usual = np.mean([np.log(rooted_prefixes(draw("sobol", 512, d, rng=50 + i))) for i in range(16)], axis=0)
-    above = (np.log(rooted_prefixes(draw("sequence", 512, d, rng=1))) - usual)[15:]
+    above = (np.log(rooted_prefixes(Sequence().draw(512, d, rng=1))) - usual)[15:]
     assert np.exp(above.mean()) < 0.96
     assert np.exp(above.max()) < 1.1
     assert (above < 0).mean() > 0.9
