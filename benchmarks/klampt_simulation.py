@@ -152,9 +152,7 @@ def simulate(world: KlamptWorld, trajectory: Trajectory) -> tuple[Array, Array, 
 def grown(scene: Scene, margin: float) -> Scene:
     """Return a scene whose boxes are larger by a margin on every side [m]."""
     boxes = [
-        replace(
-            each, body=replace(each.body, extents=tuple(side + 2.0 * margin for side in each.body.extents))
-        )
+        replace(each, body=replace(each.body, size=tuple(side + 2.0 * margin for side in each.body.size)))
         for each in scene.obstacles
     ]
     return replace(scene, obstacles=tuple(boxes))

@@ -7,7 +7,13 @@ from evenroad.errors import InvalidValue as InvalidValue
 from evenroad.errors import NotAvailable as NotAvailable
 from evenroad.errors import UnknownName as UnknownName
 from evenroad.errors import WorkerLost as WorkerLost
+from evenroad.geometry import Box as Box
+from evenroad.geometry import Capsule as Capsule
+from evenroad.geometry import Cylinder as Cylinder
+from evenroad.geometry import Mesh as Mesh
+from evenroad.geometry import PointCloud as PointCloud
 from evenroad.geometry import Pose as Pose
+from evenroad.geometry import Sphere as Sphere
 from evenroad.points import Origin as Origin
 from evenroad.points import PointSet as PointSet
 from evenroad.points import draw as draw

@@ -10,12 +10,13 @@ from importlib import import_module
 from typing import Any
 
 FUNCTIONS = {
+    "Scene": "evenroad.robot.scene_file:scene_of",
     "Robot.limits": "evenroad.robot.robot_questions:joint_limits",
     "Robot.fk": "evenroad.robot.robot_questions:pose_of_link",
     "Robot.ik": "evenroad.robot.robot_questions:configurations_at",
     "Robot.random": "evenroad.robot.robot_questions:random_configurations",
 }
-"""Method -> the function that it is, ``module:name``; its first argument is the value."""
+"""Method -> the function that it is, ``module:name``; it is given the value, or what one is made of."""
 
 
 def above(method: str) -> Any:

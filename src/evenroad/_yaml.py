@@ -8,6 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import yaml
 
 from evenroad._checks import require_known
@@ -146,7 +147,8 @@ def require_keys(keys: Iterable[str], required: Collection[str], optional: Itera
 
 def numbers(value: object, count: int, what: str) -> tuple[float, ...]:
     """Return `value` as a tuple of `count` finite floats, or raise InvalidValue naming it."""
-    entries = value if isinstance(value, list) else [value]
+    value = value.tolist() if isinstance(value, np.ndarray) else value
+    entries = list(value) if isinstance(value, list | tuple) else [value]
     plain = [entry for entry in entries if isinstance(entry, int | float) and not isinstance(entry, bool)]
     with suppress(OverflowError):
         row = tuple(map(float, plain))

@@ -1,7 +1,11 @@
+from dataclasses import replace
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from evenroad.errors import BrokenFile, EvenroadError, InvalidValue, UnknownName
+from evenroad.geometry.mesh import TriangleMesh
 from evenroad.geometry.pose import Pose, rotation_from_rpy
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, PointCloud, Sphere
 from evenroad.robot import ArmWorld, Obstacle, Scene, load_robot, load_scene
@@ -312,3 +316,83 @@ def test_an_obstacle_that_is_not_sound_is_refused(make, error, says):
     with pytest.raises(error, match=says) as caught:
         make()
     assert "\n" not in str(caught.value)
+
+
+TABLE = Box((0.8, 1.2, 0.04), xyz=(0.5, 0, -0.02), name="table")
+
+
+def test_a_scene_is_made_of_shapes_which_get_names_where_they_have_none():
+    scene = Scene([TABLE, Sphere(0.1), Box((1, 1, 1)), Sphere(0.2), Box((2, 1, 1), name="box 0")])
+    assert [each.name for each in scene.obstacles] == ["table", "sphere 0", "box 1", "sphere 1", "box 0"]
+    assert scene.obstacles[0] == Obstacle("table", TABLE)
+    more = scene.with_(Box((3, 1, 1))).with_([Box((4, 1, 1)), Obstacle("o", TABLE)])
+    assert [each.name for each in more.obstacles[5:]] == ["box 2", "box 3", "o"]
+
+
+def test_both_orders_of_name_and_obstacles_make_the_same_scene():
+    obstacle, allowed = Obstacle("table", TABLE), frozenset([("base_link", "table")])
+    scenes = [
+        Scene("cell", (obstacle,), allowed),
+        Scene("cell", [TABLE], allowed=allowed),
+        Scene([TABLE], name="cell", allowed=allowed),
+        Scene(obstacles=(obstacle,), name="cell", allowed=allowed),
+        Scene({"name": "cell", "obstacles": MAPPING, "allowed": {"table": ["base_link"]}}),
+    ]
+    assert all(each == scenes[0] and each.fingerprint() == scenes[0].fingerprint() for each in scenes)
+    assert replace(scenes[0], limits={"a": (0, 1)}).obstacles == scenes[0].obstacles
+    assert Scene().obstacles == Scene([]).obstacles == Scene("nothing").obstacles == ()
+
+
+MAPPING = {"table": {"shape": "box", "size": (0.8, 1.2, 0.04), "xyz": np.array([0.5, 0, -0.02])}}
+
+
+def test_two_scenes_share_nothing_that_can_change():
+    first, second = Scene([TABLE]), Scene([TABLE])
+    first.states["home"] = {}
+    assert second.states == {}
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: Scene("table.yaml"), "load_scene('table.yaml')"),
+        (lambda: Scene([TABLE], obstacle=1), "known: allowed, attached"),
+        (lambda: Scene([TABLE], obstacles=[TABLE]), "obstacles twice"),
+        (lambda: Scene([TABLE], "cell"), "Scene(obstacles, name=...)"),
+        (lambda: Scene(["table"]), "er.Box((x, y, z), xyz=...)"),
+        (lambda: Scene([np.zeros(3)]), "er.Box((x, y, z), xyz=...)"),
+        (lambda: Scene("cell", "table"), "must be a list of shapes"),
+        (lambda: Scene(7), "must be a list of shapes"),
+        (lambda: Scene([TABLE], name=3), "must be a text"),
+        (lambda: Scene([TABLE, TABLE]), "names of their own"),
+        (lambda: Scene({"obstacle": {}}), "obstacles"),
+        (lambda: Scene({"obstacles": {"can": {"shape": "tin"}}}), "obstacle 'can' in scene"),
+        (lambda: Scene({"obstacles": MAPPING}, limits={"a": (0, 1)}), "put limits into it"),
+        (lambda: Box((1, 1, 1), position=(0, 0, 0)), "known: link, name, pose, rpy, xyz, xyzw"),
+        (lambda: Box((1, 1, 1), xyz=(0, 0, 0), pose=Pose()), "got both"),
+        (lambda: Box((1, 1, 1), pose=(0, 0, 0)), "must be a Pose"),
+        (lambda: Box((1, 1)), "size of a box"),
+        (lambda: Capsule(0.1), "Capsule(radius, length)"),
+        (lambda: Capsule(0.1, 0.2, 0.3, 0.4), "each once"),
+        (lambda: Mesh(7), "vertices (v, 3)"),
+    ],
+)
+def test_a_scene_that_is_none_is_told_what_to_write(call, words):
+    with pytest.raises(EvenroadError) as error:
+        call()
+    assert words in str(error.value)
+
+
+def test_capsules_and_meshes_are_made_of_what_people_have():
+    assert Capsule(0.1, 0.4) == Capsule(radius=0.1, length=0.4) == Capsule((0, 0, -0.2), (0, 0, 0.2), 0.1)
+    vertices, triangles = np.eye(3), [[0, 1, 2]]
+    theirs = SimpleNamespace(vertices=vertices, faces=triangles)
+    for mesh in (Mesh((vertices, triangles), scale=2), Mesh(theirs, 2, name="m")):
+        assert mesh.triangles == TriangleMesh(2 * vertices, triangles)
+
+
+def test_scenes_and_shapes_show_themselves_in_one_line():
+    assert repr(TABLE) == "Box((0.8, 1.2, 0.04), pose=Pose((0.5, 0, -0.02)), name='table')"
+    assert repr(Sphere(0.1)) == "Sphere(radius=0.1)"
+    assert repr(Scene([TABLE])) == "Scene('scene', 1 obstacle: table)"
+    assert repr(PointCloud(np.zeros((9, 3)), 0.1)) == "PointCloud(9 points, radius=0.1)"

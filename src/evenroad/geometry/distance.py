@@ -17,7 +17,7 @@ def point_distance(shape: Shape, points: Floats) -> Floats:
     own = shape.pose.local(points)
     match shape:
         case Box():
-            return np.linalg.norm(np.maximum(np.abs(own) - 0.5 * np.array(shape.extents), 0.0), axis=1)
+            return np.linalg.norm(np.maximum(np.abs(own) - 0.5 * np.array(shape.size), 0.0), axis=1)
         case Sphere():
             return np.maximum(np.linalg.norm(own, axis=1) - shape.radius, 0.0)
         case Cylinder():

@@ -7,86 +7,59 @@ world).  A new one is a class here, with its distance (``distance.py``) and its 
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from hashlib import sha256
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar, Unpack, overload
 
 import numpy as np
 
 from evenroad._arrays import Floats, set_fields
 from evenroad._checks import FARTHEST, as_batch, as_row, require_known, require_positive
-from evenroad.errors import InvalidValue
+from evenroad.errors import InvalidValue, shown
+from evenroad.geometry.cloud_file import load_cloud
 from evenroad.geometry.mesh import TriangleMesh, load_mesh, scaled, volume_of
 from evenroad.geometry.pose import IDENTITY, Pose, Vector, rotation_from_z
-
-WORLD = ""
-"""The `link` of a shape that is fixed to no link."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Shape:
-    """What all shapes have: a pose, from the shape's own frame to that of its link, or of the world.
-
-    `link` is the name of the link that it is fixed to; `WORLD`, an empty text, for the world.
-    """
-
-    kind: ClassVar[str]
-    """What files call it."""
-    dimensions: ClassVar[tuple[tuple[str, int], ...]] = ()
-    """Names of its dimensions in files, and how many numbers each has."""
-
-    pose: Pose = IDENTITY
-    link: str = WORLD
-
-    @property
-    def size(self) -> tuple[float, ...]:
-        """Its dimensions in a row, in the order of `dimensions` [m]."""
-        return tuple(getattr(self, name) for name, _ in self.dimensions)
-
-    @property
-    def volume(self) -> float:
-        """Volume [m^3]."""
-        raise NotImplementedError
-
-    def __str__(self) -> str:
-        return self.kind
-
-    def _require_lengths(self, *names: str) -> None:
-        """Keep dimensions as floats; InvalidValue for one that is no length > 0 [m]."""
-        for name in names:
-            what = f"the {name} of a {self.kind}"
-            set_fields(self, **{name: require_positive(what, getattr(self, name), at_most=FARTHEST)})
+from evenroad.geometry.shape import WORLD as WORLD
+from evenroad.geometry.shape import Placed as Placed
+from evenroad.geometry.shape import Shape as Shape
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False, repr=False)
 class Box(Shape):
-    """A box around the origin of its frame: full extents (x, y, z), > 0 [m]."""
+    """A box around the origin of its frame: `size` are its full extents (x, y, z), > 0 [m].
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.Box((0.8, 1.2, 0.04), xyz=(0.5, 0, -0.02), name="table")
+    Box((0.8, 1.2, 0.04), pose=Pose((0.5, 0, -0.02)), name='table')
+    """
 
     kind: ClassVar[str] = "box"
     dimensions: ClassVar[tuple[tuple[str, int], ...]] = (("size", 3),)
 
-    extents: Vector
+    size: Vector
 
-    def __post_init__(self) -> None:
-        set_fields(self, extents=as_row("the size of a box", self.extents, 3))
-        for extent in self.extents:
+    def __init__(self, size: Sequence[float], **placed: Unpack[Placed]) -> None:
+        set_fields(self, size=as_row("the size of a box", size, 3))
+        for extent in self.size:
             require_positive("the size of a box", extent, at_most=FARTHEST)
-
-    @property
-    def size(self) -> tuple[float, ...]:
-        """The extents [m]."""
-        return self.extents
+        self._place(placed)
 
     @property
     def volume(self) -> float:
         """Volume [m^3]."""
-        return math.prod(self.extents)
+        return math.prod(self.size)
+
+    def _written(self) -> str:
+        return f"({', '.join(f'{extent:g}' for extent in self.size)})"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False, repr=False)
 class Sphere(Shape):
     """All points within `radius`, > 0 [m], of the origin of its frame."""
 
@@ -95,8 +68,9 @@ class Sphere(Shape):
 
     radius: float
 
-    def __post_init__(self) -> None:
-        self._require_lengths("radius")
+    def __init__(self, radius: float, **placed: Unpack[Placed]) -> None:
+        self._lengths(radius=radius)
+        self._place(placed)
 
     @property
     def volume(self) -> float:
@@ -104,7 +78,7 @@ class Sphere(Shape):
         return _ball(self.radius)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False, repr=False)
 class Cylinder(Shape):
     """A cylinder along the z axis of its frame, its middle in the origin: `radius` and `length`, > 0 [m]."""
 
@@ -114,8 +88,9 @@ class Cylinder(Shape):
     radius: float
     length: float
 
-    def __post_init__(self) -> None:
-        self._require_lengths("radius", "length")
+    def __init__(self, radius: float, length: float, **placed: Unpack[Placed]) -> None:
+        self._lengths(radius=radius, length=length)
+        self._place(placed)
 
     @property
     def volume(self) -> float:
@@ -123,11 +98,13 @@ class Cylinder(Shape):
         return math.pi * self.radius**2 * self.length
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False, repr=False)
 class Capsule(Shape):
-    """All points within `radius`, > 0 [m], of the segment from `a` to `b`; a ball where the two are one point.
+    """All points within `radius`, > 0 [m], of a segment: a cylinder with half balls on its ends.
 
-    A robot's bodies are capsules with `a` and `b` in their link's frame, in no pose of their own.
+    ``Capsule(radius, length)`` lies along the z axis of its frame, its middle in the origin; `length`, > 0 [m], is
+    without the half balls.  ``Capsule(a, b, radius)`` has its segment from `a` to `b`, and is a ball where the two are
+    one point.  A robot's bodies are capsules with `a` and `b` in their link's frame, in no pose of their own.
     """
 
     kind: ClassVar[str] = "capsule"
@@ -137,17 +114,38 @@ class Capsule(Shape):
     b: Vector
     radius: float
 
-    def __post_init__(self) -> None:
+    @overload
+    def __init__(self, radius: float, length: float, **placed: Unpack[Placed]) -> None: ...
+    @overload
+    def __init__(
+        self, a: Sequence[float], b: Sequence[float], radius: float, **placed: Unpack[Placed]
+    ) -> None: ...
+    def __init__(self, *given: Any, **named: Any) -> None:
+        along_z = len(given) == 2 and np.ndim(given[0]) == 0
+        names = ("radius", "length") if along_z or "length" in named else ("a", "b", "radius")
+        if len(given) > len(names) or set(names[: len(given)]) & set(named):
+            raise InvalidValue(
+                f"a capsule must be made of {' and '.join(names)}, each once, got {shown(given)}"
+            )
+        named.update(zip(names, given, strict=False))
+        if missing := [name for name in names if name not in named]:
+            raise InvalidValue(
+                f"a capsule must have {' and '.join(missing)}: it is Capsule(radius, length) or Capsule(a, b, radius)"
+            )
+        values = {name: named.pop(name) for name in names}
+        if "length" in values:
+            half = 0.5 * require_positive("the length of a capsule", values["length"], at_most=FARTHEST)
+            values.update(a=(0.0, 0.0, -half), b=(0.0, 0.0, half))
         for name in ("a", "b"):
-            end = as_row(f"the end {name} of a capsule", getattr(self, name), 3, within=FARTHEST)
+            end = as_row(f"the end {name} of a capsule", values[name], 3, within=FARTHEST)
             set_fields(self, **{name: end})
-        self._require_lengths("radius")
+        self._lengths(radius=values["radius"])
+        self._place(named)  # type: ignore[arg-type]
 
     @classmethod
     def along_z(cls, radius: float, length: float, pose: Pose = IDENTITY, link: str = WORLD) -> Capsule:
         """Return the capsule along the z axis of its frame: a cylinder of `length` [m] and half balls on its ends."""
-        half = 0.5 * require_positive("the length of a capsule", length)
-        return cls((0.0, 0.0, -half), (0.0, 0.0, half), radius, pose=pose, link=link)
+        return cls(radius, length, pose=pose, link=link)
 
     @property
     def length(self) -> float:
@@ -159,25 +157,37 @@ class Capsule(Shape):
         """Volume [m^3]."""
         return math.pi * self.radius**2 * self.length + _ball(self.radius)
 
+    def _written(self) -> str:
+        return f"{self.a!r}, {self.b!r}, {self.radius!r}"
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, init=False, repr=False)
 class Mesh(Shape):
-    """A surface of triangles: a file, which is opened when it is needed, or the triangles themselves.
+    """A surface of triangles.
 
-    `scale` are the factors that its coordinates are multiplied with, none of them 0; in files often one number.
+    Parameters
+    ----------
+    source : str, path-like, TriangleMesh, or a pair of arrays
+        A file, which is opened when it is needed; or the triangles themselves: vertices, (v, 3) [m], and rows of these,
+        (t, 3).  What has `vertices` and `faces`, as a mesh of trimesh, will do.
+    scale : float or sequence of 3 floats
+        The factors that its coordinates are multiplied with, none of them 0.
     """
 
     kind: ClassVar[str] = "mesh"
 
-    source: str | Path | TriangleMesh
-    scale: Vector = (1.0, 1.0, 1.0)
+    source: Path | TriangleMesh
+    scale: Vector
 
-    def __post_init__(self) -> None:
-        scale = as_row("the scale of a mesh", self.scale, 3)
-        if 0.0 in scale:
-            raise InvalidValue(f"the scale of {self} must not be 0, got {scale}: it would be flat")
-        source = self.source if isinstance(self.source, TriangleMesh) else Path(self.source)
-        set_fields(self, scale=scale, source=source)
+    def __init__(
+        self, source: Any, scale: float | Sequence[float] = (1.0, 1.0, 1.0), **placed: Unpack[Placed]
+    ) -> None:
+        row = as_row("the scale of a mesh", [scale] * 3 if np.ndim(scale) == 0 else scale, 3)  # type: ignore
+        source = _surface(source)
+        if 0.0 in row:
+            raise InvalidValue(f"the scale of mesh {source.name} must not be 0, got {row}: it would be flat")
+        set_fields(self, scale=row, source=source)
+        self._place(placed)
 
     @property
     def triangles(self) -> TriangleMesh:
@@ -191,31 +201,53 @@ class Mesh(Shape):
         return volume_of(self.triangles)
 
     def __str__(self) -> str:
-        return f"mesh {self.source if isinstance(self.source, str) else self.source.name}"
+        return f"mesh {self.source.name}"
+
+    def _written(self) -> str:
+        if isinstance(self.source, TriangleMesh):
+            return f"{len(self.source.triangles)} triangles"
+        return repr(str(self.source))
 
 
-@dataclass(frozen=True, eq=False)
+def _surface(source: Any) -> Path | TriangleMesh:
+    """Return the file or the triangles that the source of a mesh stands for."""
+    if isinstance(source, TriangleMesh):
+        return source
+    if isinstance(source, str | os.PathLike):
+        return Path(source)
+    if hasattr(source, "vertices") and hasattr(source, "faces"):
+        source = source.vertices, source.faces
+    if isinstance(source, tuple | list) and len(source) == 2:
+        return TriangleMesh(*source)
+    raise InvalidValue(
+        f"a mesh must be a file, or its vertices (v, 3) and triangles (t, 3) as a pair, got {shown(source)}"
+    )
+
+
+@dataclass(frozen=True, eq=False, init=False, repr=False)
 class PointCloud(Shape):
     """Balls of one radius around points, (n, 3) [m], as a depth camera sees them; of radius 0: the points alone.
 
-    Equal by value.
+    `points` may be a file, too, see :func:`evenroad.geometry.load_cloud`.  Equal by value.
     """
 
     kind: ClassVar[str] = "cloud"
 
     points: Floats
-    radius: float = 0.0
+    radius: float
 
-    def __post_init__(self) -> None:
-        points = np.array(as_batch("points of a cloud", self.points, 3))
+    def __init__(self, points: Any, radius: float = 0.0, **placed: Unpack[Placed]) -> None:
+        points = load_cloud(points) if isinstance(points, str | os.PathLike) else points
+        points = np.array(as_batch("points of a cloud", points, 3))
         if len(points) == 0:
             raise InvalidValue("a cloud must have one point or more: one without would never collide")
         if np.abs(points).max() > FARTHEST:
             raise InvalidValue(
                 f"points of a cloud must lie within {FARTHEST:g} m, got {np.abs(points).max():g}"
             )
-        radius = require_positive("the radius of a cloud", self.radius, or_zero=True, at_most=FARTHEST)
+        radius = require_positive("the radius of a cloud", radius, or_zero=True, at_most=FARTHEST)
         set_fields(self, points=points, radius=radius)
+        self._place(placed)
 
     @property
     def volume(self) -> float:
@@ -236,6 +268,9 @@ class PointCloud(Shape):
 
     def __str__(self) -> str:
         return f"cloud of {len(self.points)} points"
+
+    def _written(self) -> str:
+        return f"{len(self.points)} points, radius={self.radius!r}"
 
 
 PRIMITIVES: dict[str, type[Shape]] = {shape.kind: shape for shape in (Box, Sphere, Cylinder, Capsule)}
@@ -266,7 +301,7 @@ def shape_of(kind: str, size: Sequence[float], pose: Pose = IDENTITY, link: str 
     if len(size) != count:
         raise InvalidValue(f"a {kind} must have {count} size(s), got {size!r}")
     numbers = [tuple(size)] if kind == Box.kind else size
-    make: Callable[..., Shape] = Capsule.along_z if kind == Capsule.kind else PRIMITIVES[kind]
+    make: Callable[..., Shape] = PRIMITIVES[kind]
     return make(*numbers, pose=pose, link=link)
 
 

@@ -2,20 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
+from itertools import count
 from struct import Struct
+from types import MappingProxyType
+from typing import Any, TypeAlias, TypedDict, Unpack, overload
 
+from evenroad._above import above
 from evenroad._arrays import set_fields
-from evenroad._checks import require_known, require_positive
+from evenroad._checks import counted, require_known, require_positive
 from evenroad._fingerprint import fingerprint_of
-from evenroad.errors import InvalidValue
+from evenroad.errors import InvalidValue, UnknownName, shown
 from evenroad.geometry.pose import NO_ROTATION, Pose, Vector
 from evenroad.geometry.shapes import PRIMITIVES, Capsule, Mesh, PointCloud, Shape, along_z, shape_of
 from evenroad.robot.held import HeldObject
 
 MARGIN = 0.02
 """How near to the robot points of a scan are taken for its own, where nothing else is said [m]."""
+
+
+class _More(TypedDict, total=False):
+    """What a scene may have besides its obstacles."""
+
+    allowed: frozenset[tuple[str, str]]
+    states: Mapping[str, Mapping[str, float]]
+    limits: Mapping[str, tuple[float, float]]
+    attached: tuple[HeldObject, ...]
+    near_ends: frozenset[tuple[str, str, float]]
+
 
 _ROW = Struct("16d")
 _NUMBERS = {kind: number for number, kind in enumerate(PRIMITIVES)}
@@ -52,7 +67,7 @@ class Cut:
         require_positive("by how much a cut grows", self.grow, or_zero=True)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Obstacle:
     """A body that does not move, by a name that is unique in its scene.
 
@@ -112,6 +127,9 @@ class Obstacle:
         except InvalidValue as error:
             raise InvalidValue(f"obstacle {name!r}: {error}") from None
 
+    def __repr__(self) -> str:
+        return f"Obstacle({self.name!r}, {self.body!r})"
+
     def at(self, pose: Pose) -> Obstacle:
         """Return the obstacle in another pose."""
         return replace(self, body=replace(self.body, pose=pose))
@@ -137,27 +155,100 @@ class Obstacle:
         return self.body.pose.rotation
 
 
-@dataclass(frozen=True)
-class Scene:
-    """Obstacles, no two of one name (InvalidValue); allowed contacts and named configurations.
+Bodies: TypeAlias = "Sequence[Obstacle | Shape]"
 
-    `allowed` are contacts that are not tested, (link, obstacle), e.g. of the base with its table; `states` are named
-    configurations, joint -> value, in which joints that are not planned for are held; `limits` are ranges to plan in,
-    joint -> (lower, upper) [rad or m]; `attached` is what the robot holds, no two of one name (InvalidValue).
-    :func:`evenroad.robot.in_scene` takes over both; a world keeps to the limits by itself.  `near_ends` are contacts,
-    (link, cloud, distance), that are not tested with points within the distance [m] of where the link's body is at the
-    start or a goal; :func:`evenroad.robot.allowed_near_ends` makes allowed contacts of them.
+
+@dataclass(frozen=True, init=False, repr=False)
+class Scene:
+    """Obstacles, no two of one name; allowed contacts and named configurations.
+
+    ``Scene(obstacles, name=...)`` or ``Scene(name, obstacles)``.
+
+    Parameters
+    ----------
+    obstacles : sequence of Shape or Obstacle, or mapping
+        Shapes have their poses in the frame of the robot's root link; without a name of their own they are called
+        ``box 0``, ``box 1``, ``sphere 0``.  A mapping says what a scene's file does, see :func:`evenroad.load_scene`,
+        and files that it names lie in the current folder; nothing else is given with it but a name.
+    name : str
+        What the scene is called.
+    allowed : frozenset of (str, str)
+        Contacts that are not tested, (link, obstacle), e.g. of the base with its table.
+    states : mapping
+        Named configurations, joint -> value [rad or m], in which joints that are not planned for are held.
+    limits : mapping
+        Ranges to plan in, joint -> (lower, upper) [rad or m]; a world keeps to them by itself.
+    attached : tuple of HeldObject
+        What the robot holds, no two of one name; :func:`evenroad.robot.in_scene` takes over both.
+    near_ends : frozenset of (str, str, float)
+        Contacts, (link, cloud, distance), that are not tested with points within the distance [m] of where the link's
+        body is at the start or a goal; :func:`evenroad.robot.allowed_near_ends` makes allowed contacts of them.
+
+    Raises
+    ------
+    InvalidValue
+        If two have one name, or something is no shape.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.Scene([er.Box((0.8, 1.2, 0.04), xyz=(0.5, 0, -0.02), name="table"), er.Sphere(0.1, xyz=(0.5, 0, 0.4))])
+    Scene('scene', 2 obstacles: table, sphere 0)
+    >>> er.Scene({"obstacles": {"can": {"shape": "cylinder", "radius": 0.03, "length": 0.12, "xyz": [0.4, 0, 0.06]}}})
+    Scene('scene', 1 obstacle: can)
     """
 
     name: str
-    obstacles: tuple[Obstacle, ...] = ()
-    allowed: frozenset[tuple[str, str]] = frozenset()
-    states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    attached: tuple[HeldObject, ...] = ()
-    near_ends: frozenset[tuple[str, str, float]] = frozenset()
+    obstacles: tuple[Obstacle, ...]
+    allowed: frozenset[tuple[str, str]]
+    states: Mapping[str, Mapping[str, float]]
+    limits: Mapping[str, tuple[float, float]]
+    attached: tuple[HeldObject, ...]
+    near_ends: frozenset[tuple[str, str, float]]
 
-    def __post_init__(self) -> None:
+    @overload
+    def __init__(
+        self, obstacles: Bodies | Mapping[str, Any] = (), *, name: str = "scene", **more: Unpack[_More]
+    ) -> None: ...
+    @overload
+    def __init__(
+        self,
+        name: str,
+        obstacles: Bodies = (),
+        allowed: frozenset[tuple[str, str]] = frozenset(),
+        states: Mapping[str, Mapping[str, float]] = ...,
+        limits: Mapping[str, tuple[float, float]] = ...,
+        attached: tuple[HeldObject, ...] = (),
+        near_ends: frozenset[tuple[str, str, float]] = frozenset(),
+    ) -> None: ...
+    def __init__(self, *given: Any, **named: Any) -> None:
+        order = [each.name for each in fields(self)]
+        if given and not isinstance(given[0], str):
+            order = ["obstacles"]
+        if len(given) > len(order) or (twice := set(order[: len(given)]) & set(named)):
+            what = f"{', '.join(sorted(twice))} twice" if len(given) <= len(order) else f"{len(given)} values"
+            raise InvalidValue(f"a scene is Scene(obstacles, name=...) or Scene(name, obstacles), got {what}")
+        values = {**_NOTHING, "states": {}, "limits": {}, **dict(zip(order, given, strict=False)), **named}
+        if strange := sorted(set(values) - set(_NOTHING)):
+            raise UnknownName.among("keyword of a scene:", strange[0], _NOTHING)
+        if isinstance(values["obstacles"], Mapping):
+            values = _of_mapping(values)
+        name, bodies = values["name"], values["obstacles"]
+        if not isinstance(name, str):
+            raise InvalidValue(f"the name of a scene must be a text, got {shown(name)}")
+        if given[:1] == (name,) and not bodies and name.endswith((".yaml", ".yml", ".scene")):
+            raise InvalidValue(
+                f"a scene is read from its file by load_scene({name!r}), not by Scene({name!r})"
+            )
+        set_fields(self, **{**values, "obstacles": _as_obstacles(bodies, (), name)})
+        self._require_names()
+
+    def __repr__(self) -> str:
+        names = [obstacle.name for obstacle in self.obstacles]
+        listed = ", ".join(names[:3]) + (", ..." if len(names) > 3 else "")
+        return f"Scene({self.name!r}, {counted(len(names), 'obstacle')}{': ' if names else ''}{listed})"
+
+    def _require_names(self) -> None:
         held = [each.name for each in self.attached]
         if len(set(held)) < len(held):
             twice = sorted({name for name in held if held.count(name) > 1})
@@ -184,9 +275,22 @@ class Scene:
             rows.add((each.name, each.shape, *(number + 0.0 for number in numbers), *content))
         return fingerprint_of(rows, self.allowed, *sorted(self.near_ends))
 
-    def with_(self, *obstacles: Obstacle, allowed: Sequence[tuple[str, str]] = ()) -> Scene:
-        """Return the scene with more obstacles, of new names, and more (link, obstacle) contacts left untested."""
-        return replace(self, obstacles=(*self.obstacles, *obstacles), allowed=self.allowed.union(allowed))
+    def with_(self, *obstacles: Obstacle | Shape | Bodies, allowed: Sequence[tuple[str, str]] = ()) -> Scene:
+        """Return the scene with more obstacles, of new names, and more (link, obstacle) contacts left untested.
+
+        Obstacles are shapes, too, and sequences of them.  Raises as :class:`Scene`.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.load_scene("box-reach").with_(er.Sphere(0.05, xyz=(0.3, 0.3, 0.3), name="ball")).obstacles[-1].name
+        'ball'
+        """
+        more: list[object] = []
+        for each in obstacles:
+            more += each if isinstance(each, list | tuple) else [each]
+        added = _as_obstacles(more, self.obstacles, self.name)
+        return replace(self, obstacles=(*self.obstacles, *added), allowed=self.allowed.union(allowed))
 
     def without(self, *names: str) -> Scene:
         """Return the scene without the obstacles of these names, and without what was allowed to touch them.
@@ -202,6 +306,53 @@ class Scene:
             allowed=frozenset((link, name) for link, name in self.allowed if name not in names),
             near_ends=frozenset(each for each in self.near_ends if each[1] not in names),
         )
+
+
+_NOTHING: dict[str, Any] = {
+    "name": "scene",
+    "obstacles": (),
+    "allowed": frozenset(),
+    "states": MappingProxyType({}),
+    "limits": MappingProxyType({}),
+    "attached": (),
+    "near_ends": frozenset(),
+}
+
+
+def _of_mapping(values: dict[str, Any]) -> dict[str, Any]:
+    """Return the fields of a scene that a mapping describes."""
+    more = sorted(key for key in _NOTHING if key not in ("name", "obstacles") and values[key])
+    if more:
+        raise InvalidValue(
+            f"a scene of a mapping has what the mapping says: put {', '.join(more)} into it, too"
+        )
+    scene = above("Scene")(values["obstacles"], values["name"])
+    return {each.name: getattr(scene, each.name) for each in fields(scene)}
+
+
+def _as_obstacles(bodies: object, others: Sequence[Obstacle], scene: str) -> tuple[Obstacle, ...]:
+    """Return shapes and obstacles as obstacles; a shape without a name gets one that neither they nor `others` have."""
+    if isinstance(bodies, Shape | Obstacle):
+        bodies = [bodies]
+    if isinstance(bodies, str) or not isinstance(bodies, Iterable):
+        raise InvalidValue(f"obstacles of scene {scene!r} must be a list of shapes, got {shown(bodies)}")
+    listed = tuple(bodies)
+    for each in listed:
+        if not isinstance(each, Shape | Obstacle):
+            raise InvalidValue(
+                f"obstacles of scene {scene!r} must be shapes, as er.Box((x, y, z), xyz=...), got {shown(each)}"
+            )
+    if all(isinstance(each, Obstacle) for each in listed):
+        return listed
+    taken = {each.name for each in (*listed, *others)}
+    obstacles = []
+    for each in listed:
+        if isinstance(each, Shape):
+            name = each.name or next(text for k in count() if (text := f"{each.kind} {k}") not in taken)
+            taken.add(name)
+            each = Obstacle(name, each)
+        obstacles.append(each)
+    return tuple(obstacles)
 
 
 def limits_in_words(scene: Scene | None, joint: str, lower: float, upper: float) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -89,6 +89,15 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
     document = read_mapping(path, "scene")
     if "obstacles" not in document and "world" in document:
         return read_planning_scene(document, path)
+    return _scene(document, path)
+
+
+def scene_of(document: Mapping[str, Any], name: str) -> Scene:
+    """Return the scene that a mapping describes as a file does; errors as :func:`load_scene`."""
+    return _scene({"name": name, **document}, Path("scene"))
+
+
+def _scene(document: dict[str, Any], path: Path) -> Scene:
     require_keys(document, ("obstacles",), _SECTIONS, f"the scene {path}")
     entries = _mapping(document["obstacles"], f"obstacles in {path}")
     obstacles = tuple(

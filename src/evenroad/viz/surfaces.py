@@ -26,7 +26,7 @@ def surface_of(shape: Shape) -> Surface:
         mesh = shape.triangles
         return shape.pose.apply(mesh.vertices), mesh.triangles
     if isinstance(shape, Box):
-        solid = creation.box(extents=shape.extents)
+        solid = creation.box(extents=shape.size)
     elif isinstance(shape, Sphere):
         solid = creation.icosphere(subdivisions=2, radius=shape.radius)
     elif isinstance(shape, Cylinder):

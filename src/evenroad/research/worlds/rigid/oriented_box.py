@@ -65,7 +65,7 @@ class OrientedBox:
     @classmethod
     def of(cls, box: Box) -> OrientedBox:
         """Return a box of :mod:`evenroad.geometry`, which is one in space, with its pose."""
-        return cls(box.pose.xyz, [0.5 * extent for extent in box.extents], box.pose.rotation)
+        return cls(box.pose.xyz, [0.5 * extent for extent in box.size], box.pose.rotation)
 
     @property
     def dim(self) -> int:

@@ -1,0 +1,95 @@
+"""Shape: the base of all shapes, with the pose that each has, the link that it is fixed to, and its name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import ClassVar, TypedDict
+
+from evenroad._arrays import set_fields
+from evenroad._checks import FARTHEST, require_positive
+from evenroad.errors import InvalidValue, UnknownName, shown
+from evenroad.geometry.pose import IDENTITY, Pose
+
+WORLD = ""
+"""The `link` of a shape that is fixed to no link."""
+
+
+class Placed(TypedDict, total=False):
+    """Where a shape is, and what it is called: the keywords that all shapes take."""
+
+    xyz: Sequence[float]
+    """Its origin [m]."""
+    rpy: Sequence[float]
+    """Roll, pitch and yaw [rad]."""
+    xyzw: Sequence[float]
+    """A quaternion in place of `rpy`."""
+    pose: Pose
+    """In place of the three."""
+    link: str
+    """The link that it is fixed to; default: the world."""
+    name: str
+    """What a scene calls it; default: its kind with a number, as ``box 0``."""
+
+
+@dataclass(frozen=True, eq=False, init=False, repr=False)
+class Shape:
+    """What all shapes have: a pose, from the shape's own frame to that of its link, or of the world; and a name.
+
+    `link` is the name of the link that it is fixed to; `WORLD`, an empty text, for the world.  Names do not count when
+    shapes are compared.
+    """
+
+    kind: ClassVar[str]
+    """What files call it."""
+    dimensions: ClassVar[tuple[tuple[str, int], ...]] = ()
+    """Names of its dimensions in files, and how many numbers each has."""
+
+    pose: Pose
+    link: str
+    name: str = field(compare=False)
+
+    @cached_property
+    def size(self) -> tuple[float, ...]:
+        """Its dimensions in a row, in the order of `dimensions` [m]."""
+        return tuple(getattr(self, name) for name, _ in self.dimensions)
+
+    @property
+    def volume(self) -> float:
+        """Volume [m^3]."""
+        raise NotImplementedError
+
+    def __str__(self) -> str:
+        return self.kind
+
+    def __repr__(self) -> str:
+        parts = [self._written(), "" if self.pose == IDENTITY else f"pose={self.pose!r}"]
+        parts += [f"{key}={value!r}" for key, value in (("link", self.link), ("name", self.name)) if value]
+        return f"{type(self).__name__}({', '.join(filter(None, parts))})"
+
+    def _written(self) -> str:
+        """Return the dimensions as one writes them."""
+        return ", ".join(f"{key}={getattr(self, key)!r}" for key, _ in self.dimensions)
+
+    def _place(self, placed: Placed) -> None:
+        """Keep where it is, and what it is called; InvalidValue for any other keyword, or two places."""
+        if strange := sorted(set(placed) - Placed.__annotations__.keys()):
+            raise UnknownName.among(f"keyword of a {self.kind}:", strange[0], Placed.__annotations__)
+        turned = {key: placed[key] for key in ("xyz", "rpy", "xyzw") if key in placed}
+        pose = placed.get("pose", IDENTITY)
+        if not isinstance(pose, Pose):
+            raise InvalidValue(f"the pose of a {self.kind} must be a Pose, got {shown(pose)}")
+        if turned and "pose" in placed:
+            raise InvalidValue(f"a {self.kind} must have one of pose and {', '.join(turned)}, got both")
+        for key in ("name", "link"):
+            if not isinstance(placed.get(key, ""), str):
+                raise InvalidValue(f"the {key} of a {self.kind} must be a text, got {shown(placed[key])}")
+        pose = Pose(**turned) if turned else pose
+        set_fields(self, pose=pose, link=placed.get("link", WORLD), name=placed.get("name", ""))
+
+    def _lengths(self, **dimensions: object) -> None:
+        """Keep dimensions as floats; InvalidValue for one that is no length > 0 [m]."""
+        for name, value in dimensions.items():
+            what = f"the {name} of a {self.kind}"
+            set_fields(self, **{name: require_positive(what, value, at_most=FARTHEST)})
