@@ -278,7 +278,6 @@ BAD = {
     ),
     "a mesh that is empty": ({"robot": "empty-mesh.urdf"}, "mesh .*empty.stl"),
     "a group with unknown joints": ({"group": "a,knee"}, "unknown joint of the group 'knee'; known: a, b"),
-    "an SRDF group with unknown joints": ({"srdf": "bad.srdf"}, "unknown joint in bad.srdf: 'knee'"),
     "an SRDF that is missing": ({"srdf": "none.srdf"}, "cannot read the SRDF none.srdf"),
     "a start outside limits": (
         {"start": "1.5,0"},
@@ -343,7 +342,6 @@ def test_bad_input_gets_one_line_and_exit_code_2_and_nothing_is_written(case, ru
         ("empty-mesh.urdf", EMPTY_MESH),
         ("empty.stl", ""),
         ("arm.json", two_joints()),
-        ("bad.srdf", "<robot name='arm'><group name='g'><joint name='knee'/></group></robot>"),
         ("colour.yaml", "obstacles: {}\ncolour: red\n"),
         (
             "ghost.yaml",

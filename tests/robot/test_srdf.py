@@ -136,6 +136,7 @@ def test_what_is_wrong_in_an_srdf_is_named(case, read):
 
 
 LACKING = {
+    "<group_state name='home'><joint name='elbow' value='0'/></group_state>": "states without a group.*: home",
     "<passive_joint name='knee'/>": "joints that the robot lacks, which are skipped: knee",
     "<group name='h'><joint name='knee'/><joint name='grip'/></group>": "joints .*: knee",
     "<group name='h'><link name='leg'/><joint name='grip'/></group>": "links .*: leg",

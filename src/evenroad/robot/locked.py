@@ -12,9 +12,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
-from scipy.ndimage import label
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from evenroad._arrays import Bools, Floats
 from evenroad.robot.kernel.moving_tree import moving_tree
@@ -107,6 +104,9 @@ def piece_of(bodies: Bodies, place: Floats, reach: tuple[float, ...], most: int)
     thin = thinner(first, 0.5 * cells.size, SLACK + 4.0 * bodies.margin)
     if not thin.capsules:
         return None
+    # Here, as most plans need no proof.
+    from scipy.ndimage import label
+
     number = _joined(label(_free_cells(bodies.in_scene(thin), cells))[0], cells.whole)
     cell = cells.cell(place[: len(reach)])
     # A place in no cell, or in a blocked one, is not as free as was said.
@@ -204,6 +204,11 @@ def _free_cells(valid: Callable[[Floats], Bools], cells: Cells) -> Bools:
 
 def _joined(number: npt.NDArray[np.int32], whole: Bools) -> npt.NDArray[np.int32]:
     """Return the numbers of pieces, 0 where blocked, with those joined that meet where a joint has gone round."""
+    if not whole.any():
+        return number
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
     for k in np.flatnonzero(whole):
         first, last = np.moveaxis(number, k, 0)[[0, -1]].reshape(2, -1)
         both = (first > 0) & (last > 0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -61,6 +62,10 @@ def read_srdf(path: Path, urdf: Urdf) -> Srdf:
     groups = {name: _in_order(reader.joints(name, ()) - passive, urdf) for name in elements}
     states = {}
     for state in root.findall("group_state"):
+        if state.get("group") is None:
+            # As a Kinova's own has it: of which joints it speaks nobody knows.
+            known.missing["state of no group"][_attribute(state, "name", path)] = None
+            continue
         group = _attribute(state, "group", path)
         require_known(f"group in {path}:", group, groups)
         states[group, _attribute(state, "name", path)] = _values(state, known, path)
@@ -72,13 +77,21 @@ def read_srdf(path: Path, urdf: Urdf) -> Srdf:
     return Srdf(groups, states, disabled, passive, known.notes)
 
 
+_MISSING = {
+    "joint": "joints that the robot lacks",
+    "link": "links that the robot lacks",
+    "state of no group": "states without a group",
+}
+"""What is skipped, in words."""
+
+
 @dataclass(frozen=True)
 class _Known:
     """What the URDF has, and what was asked for that it lacks."""
 
     urdf: Urdf
     virtual: frozenset[str]
-    missing: dict[str, dict[str, None]] = field(default_factory=lambda: {"joint": {}, "link": {}})
+    missing: dict[str, dict[str, None]] = field(default_factory=lambda: defaultdict(dict))
 
     def joint(self, name: str) -> bool:
         """Return whether the URDF has a joint; virtual ones are missed by nobody."""
@@ -91,11 +104,10 @@ class _Known:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """One line about joints and one about links that the URDF lacks, where it does."""
+        """One line about each kind of what is skipped, where something is."""
         return tuple(
-            f"the SRDF names {what}s that the robot lacks, which are skipped: {few_of(list(names))}"
+            f"the SRDF names {_MISSING[what]}, which are skipped: {few_of(list(names))}"
             for what, names in self.missing.items()
-            if names
         )
 
     def _has(self, what: str, name: str, known: Collection[str]) -> bool:
