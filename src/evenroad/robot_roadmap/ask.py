@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from typing import TypeGuard
+from typing import NamedTuple, Protocol, TypeGuard
 
 import numpy as np
 
-from evenroad._arrays import Floats
+from evenroad._arrays import Bools, Floats
 from evenroad._clock import now
 from evenroad._compiled import compile_beside
 from evenroad.robot import ArmWorld
@@ -17,13 +17,69 @@ from evenroad.robot.kernel.layout import program
 from evenroad.robot.kernel.motion_states import COUNTS
 from evenroad.robot_roadmap import lazy_search as search
 from evenroad.robot_roadmap import search_memory as at
-from evenroad.robot_roadmap.dear_search import Asked, Checks, ask_few
+from evenroad.robot_roadmap.dear_search import DEARLY, NOT_ASKED, NOT_PROVED, next_dear_question
 from evenroad.robot_roadmap.known_graph import KnownGraph
 from evenroad.robot_roadmap.lazy_search import ENDS_TAKEN, PAUSED, SPENT
-from evenroad.robot_roadmap.search_memory import BLOCKED, EDGE, FOUND, FULL, NODE, PROVED, STRAIGHT, UNKNOWN
+from evenroad.robot_roadmap.search_memory import (
+    BLOCKED,
+    DOUBTED,
+    EDGE,
+    FOUND,
+    FREE,
+    FULL,
+    NODE,
+    PROVED,
+    STRAIGHT,
+    UNKNOWN,
+)
+from evenroad.world import World
 
 _SLICE = 1000
 """Batches of sixteen checks between two looks at the clock: about 10 ms."""
+
+
+class Checks(World, Protocol):
+    """A world that proves motions, and says who does: ``lanes`` are asked by compiled code."""
+
+    @property
+    def backend(self) -> str:
+        """Who checks."""
+
+    def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> Bools:
+        """Return which motions, (m, dim) each, are free: (m,)."""
+
+
+class Asked(NamedTuple):
+    """What a search ended with: a path, (p, dim), and its goal or -1; milestones and motions that were asked about; how
+    many batches of sixteen checks that took, where it is known; and whether every motion had to be proved.
+    """
+
+    ended: int
+    path: Floats
+    goal: int
+    milestones: int
+    motions: int
+    batches: int = 0
+    proved: bool = True
+
+    def after(self, before: Asked) -> Asked:
+        """Return this search with what was asked about in one before it, too."""
+        checked = self.milestones + before.milestones, self.motions + before.motions
+        return self._replace(milestones=checked[0], motions=checked[1])
+
+
+class ProvesSoon(Checks, Protocol):
+    """A world that can say for little of some motions that they are free."""
+
+    def proved(self, q: Floats) -> Bools:
+        """Return which configurations, (n, dim), are known to be free for little: (n,)."""
+
+    def motion_proved(self, a: Floats, b: Floats) -> Bools:
+        """Return which motions, (m, dim) each, are proved free for little: (m,); of the others nothing is said."""
+
+
+def _proves_soon(world: Checks) -> TypeGuard[ProvesSoon]:
+    return hasattr(world, "motion_proved")
 
 
 def prepare() -> None:
@@ -73,10 +129,8 @@ def ask(
         graph.prepare(start, goals, links, greed, nearby, room, only_known=only_known, unturned=unturned)
         if _by_one_program(world) and _by_one_program(day):
             asked = _by_lanes(world, day, graph, most_motions, deadline, proved)
-        elif isinstance(world, ArmWorld):
-            asked = _one_by_one(world, day, graph, most_motions, deadline)
         else:
-            asked = ask_few(world, day, graph, most_motions, deadline)
+            asked = _by_questions(world, day, graph, most_motions, deadline)
         if asked.ended != FULL:
             return asked
         room *= 2
@@ -117,33 +171,44 @@ def _find_way() -> tuple[Callable[..., int], float]:
     return find_way, CLEARANCE
 
 
-def _one_by_one(world: Checks, day: Checks, graph: KnownGraph, most_motions: int, deadline: float) -> Asked:
+def _by_questions(world: Checks, day: Checks, graph: KnownGraph, most_motions: int, deadline: float) -> Asked:
+    """Ask motion by motion: lazily what an arm itself checks; of other worlds, where checks are dear, few motions."""
+    dear = not isinstance(world, ArmWorld)
+    known = FREE if dear else PROVED
     desk, path, nothing = graph.desk, graph.path, np.empty((0, len(graph.asked[0])))
     milestones = motions = 0
     if not world.valid(graph.ends).all():
         return Asked(ENDS_TAKEN, nothing, -1, 0, 0)
     graph.ends[:] = world.space.interpolate(graph.ends, graph.ends, 0.0)
-    memory, way, most_rows, _ = graph.places
+    if _proves_soon(world):
+        for end in np.flatnonzero(~world.proved(graph.ends)).tolist():
+            graph.doubt(end)
+    memory, way, rows, _ = graph.places
     question, verdict = -1, UNKNOWN
     while True:
-        question = _next_question(memory, question, verdict, way, most_rows)
+        if dear:
+            question = next_dear_question(memory, question, verdict, NOT_ASKED, NOT_PROVED, way, rows)
+        else:
+            question = _next_question(memory, question, verdict, way, rows)
         if question == FOUND:
-            rows = int(desk[at.BY])
-            return Asked(FOUND, path[:rows][::-1].copy(), int(desk[at.TO]) - 1, milestones, motions)
+            found, goal = path[: desk[at.BY]][::-1].copy(), int(desk[at.TO]) - 1
+            return Asked(FOUND, found, goal, milestones, motions)
+        dearly, question = divmod(question, DEARLY)
         if question > STRAIGHT:
             return Asked(question, nothing, -1, milestones, motions)
         if motions >= most_motions or now() >= deadline:
             return Asked(SPENT, nothing, -1, milestones, motions)
+        a, b = graph.asked[:1], graph.asked[1:]
         if question == NODE:
             milestones += 1
-            free = day.valid(graph.asked[:1])[0]
+            verdict = known if day.valid(a)[0] else BLOCKED
+            continue
+        judge = day if question == EDGE and desk[at.BY] < desk[at.BASE] else world
+        motions += 1 - dearly
+        if _proves_soon(judge) and not dearly:
+            verdict = FREE if judge.motion_proved(a, b)[0] else DOUBTED
         else:
-            motions += 1
-            old = question == EDGE and desk[at.BY] < desk[at.BASE]
-            free = (day if old else world).motion_certified(
-                graph.asked[:1], graph.asked[1:], RECHECK_TOLERANCE
-            )[0]
-        verdict = PROVED if free else BLOCKED
+            verdict = known if judge.motion_certified(a, b, RECHECK_TOLERANCE)[0] else BLOCKED
 
 
 @program

@@ -6,19 +6,11 @@ is: so it goes along what is known, and asks about short motions that lead there
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol, TypeGuard
-
 import numpy as np
 
-from evenroad._arrays import Bools, Floats
-from evenroad._clock import now
-from evenroad.robot.arm_world import RECHECK_TOLERANCE
 from evenroad.robot.kernel.layout import program, quick
 from evenroad.robot_roadmap import search_memory as at
-from evenroad.robot_roadmap.known_graph import KnownGraph
 from evenroad.robot_roadmap.lazy_search import (
-    ENDS_TAKEN,
-    SPENT,
     clear,
     hear,
     question_of,
@@ -29,7 +21,6 @@ from evenroad.robot_roadmap.lazy_search import (
 from evenroad.robot_roadmap.search_memory import (
     BLOCKED,
     DOUBTED,
-    EDGE,
     FOUND,
     FREE,
     FULL,
@@ -42,7 +33,6 @@ from evenroad.robot_roadmap.search_memory import (
 )
 from evenroad.robot_roadmap.search_metric import distance, write
 from evenroad.robot_roadmap.search_queue import pop, push, state_of
-from evenroad.world import World
 
 NOT_ASKED, NOT_PROVED = 5.0, 20.0
 """How many times as long as it is a motion counts that nobody has asked about, and one that is not proved soon."""
@@ -51,88 +41,8 @@ DEARLY = 16
 """Added to a question about a motion that was not proved soon."""
 
 
-class Checks(World, Protocol):
-    """A world that proves motions, and says who does: ``lanes`` are asked by compiled code."""
-
-    @property
-    def backend(self) -> str:
-        """Who checks."""
-
-    def motion_certified(self, a: Floats, b: Floats, tolerance: float) -> Bools:
-        """Return which motions, (m, dim) each, are free: (m,)."""
-
-
-class Asked(NamedTuple):
-    """What a search ended with: a path, (p, dim), and its goal or -1; milestones and motions that were asked about; how
-    many batches of sixteen checks that took, where it is known; and whether every motion had to be proved.
-    """
-
-    ended: int
-    path: Floats
-    goal: int
-    milestones: int
-    motions: int
-    batches: int = 0
-    proved: bool = True
-
-    def after(self, before: Asked) -> Asked:
-        """Return this search with what was asked about in one before it, too."""
-        checked = self.milestones + before.milestones, self.motions + before.motions
-        return self._replace(milestones=checked[0], motions=checked[1])
-
-
-class ProvesSoon(Checks, Protocol):
-    """A world that can say for little of some motions that they are free."""
-
-    def proved(self, q: Floats) -> Bools:
-        """Return which configurations, (n, dim), are known to be free for little: (n,)."""
-
-    def motion_proved(self, a: Floats, b: Floats) -> Bools:
-        """Return which motions, (m, dim) each, are proved free for little: (m,); of the others nothing is said."""
-
-
-def _proves_soon(world: Checks) -> TypeGuard[ProvesSoon]:
-    return hasattr(world, "motion_proved")
-
-
-def ask_few(world: Checks, day: Checks, graph: KnownGraph, most_motions: int, deadline: float) -> Asked:
-    """Search for a way of the query that a graph was prepared for."""
-    desk, path, nothing = graph.desk, graph.path, np.empty((0, len(graph.asked[0])))
-    milestones = motions = 0
-    if not world.valid(graph.ends).all():
-        return Asked(ENDS_TAKEN, nothing, -1, 0, 0)
-    graph.ends[:] = world.space.interpolate(graph.ends, graph.ends, 0.0)
-    if _proves_soon(world):
-        for end in np.flatnonzero(~world.proved(graph.ends)).tolist():
-            graph.doubt(end)
-    memory, way, rows, _ = graph.places
-    question, verdict = -1, UNKNOWN
-    while True:
-        given = NOT_ASKED, NOT_PROVED, way, rows
-        question = _next_dear_question(memory, question, verdict, *given)
-        if question == FOUND:
-            found, goal = path[: desk[at.BY]][::-1].copy(), int(desk[at.TO]) - 1
-            return Asked(FOUND, found, goal, milestones, motions)
-        dearly, question = divmod(question, DEARLY)
-        if question > STRAIGHT:
-            return Asked(question, nothing, -1, milestones, motions)
-        if motions >= most_motions or now() >= deadline:
-            return Asked(SPENT, nothing, -1, milestones, motions)
-        a, b = graph.asked[:1], graph.asked[1:]
-        if question == NODE:
-            milestones += 1
-            verdict = FREE if day.valid(a)[0] else BLOCKED
-            continue
-        judge = day if question == EDGE and desk[at.BY] < desk[at.BASE] else world
-        motions += 1 - dearly
-        if _proves_soon(judge) and not dearly:
-            verdict = FREE if judge.motion_proved(a, b)[0] else DOUBTED
-        else:
-            verdict = FREE if judge.motion_certified(a, b, RECHECK_TOLERANCE)[0] else BLOCKED
-
-
 @program
-def _next_dear_question(
+def next_dear_question(
     desk: int, answered: int, verdict: int, unknown: float, doubted: float, path: int, rows: int
 ) -> int:
     """Do what ``ask._next_question`` does for this search; DEARLY is added where the motion was not proved soon."""
