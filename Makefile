@@ -18,18 +18,18 @@ help:
 	@echo "make clean  remove the environment and out/"
 
 # A stamp a file that pip finished: a stopped install is taken up again, a finished one costs nothing.
-$(VENV)/.core: pyproject.toml constraints.txt
+$(VENV)/.core: pyproject.toml studies/pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "evenroad needs Python >= 3.11; set PYTHON=")'
 	$(PYTHON) -m venv $(VENV)
-	$(PIP) -e .
+	$(PIP) -e . -e ./studies
 	@touch $@
 
 $(VENV)/.dev: $(VENV)/.core
-	$(PIP) -e '.[dev]'
+	$(PIP) -e '.[dev]' -e './studies[dask]'
 	@touch $@
 
 $(VENV)/.peers: $(VENV)/.dev
-	$(PIP) -e '.[dev,peers]'
+	$(PIP) -e '.[dev,peers]' -e './studies[dask]'
 	@touch $@
 
 demo: $(VENV)/.core
@@ -60,10 +60,10 @@ bench: $(VENV)/.peers
 	$(BIN)/evenroad report out/bench/fair.db -o out/bench/fair
 
 bank: $(VENV)/.dev
-	$(BIN)/python -m evenroad.research.training.bank
+	$(BIN)/python -m evenroad_studies.training.bank
 
-mazes: $(VENV)/.core
-	$(BIN)/python tools/draw_mazes.py
+mazes: $(VENV)/.dev
+	$(BIN)/python studies/tools/draw_mazes.py
 
 release-check: $(VENV)/.core
 	$(BIN)/python tools/release_check.py

@@ -29,10 +29,6 @@ from pathlib import Path
 import numpy as np
 
 from evenroad._arrays import Bools, Floats
-from evenroad.research.arms.problems import draw_problem, joins
-from evenroad.research.arms.roadmaps import cell_of
-from evenroad.research.arms.robots import ARMS, arm_named
-from evenroad.research.arms.scenes import GENERATORS
 from evenroad.robot import ArmWorld, Robot, with_group, with_limits
 from evenroad.robot.joint import Joint
 from evenroad.robot_roadmap.chance import Surroundings, random_scene
@@ -40,6 +36,10 @@ from evenroad.robot_roadmap.make import joined, make_roadmap
 from evenroad.robot_roadmap.pockets import links_of
 from evenroad.robot_roadmap.recipe import SCENES, Recipe, known_of
 from evenroad.robot_roadmap.spread import spread_order
+from evenroad_studies.arms.problems import draw_problem, joins
+from evenroad_studies.arms.roadmaps import cell_of
+from evenroad_studies.arms.robots import ARMS, arm_named
+from evenroad_studies.arms.scenes import GENERATORS
 
 N, K, POOL = 256, 10, 512
 """Milestones, their neighbours, and milestones that the pool would be enough for."""

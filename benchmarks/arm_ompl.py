@@ -23,9 +23,9 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.lines import Line2D
 
-from evenroad.research.arms.problems import ARM_ROBOTS, draw_problem
-from evenroad.research.arms.scenes import GENERATORS
 from evenroad.robot.arm_world import ArmWorld
+from evenroad_studies.arms.problems import ARM_ROBOTS, draw_problem
+from evenroad_studies.arms.scenes import GENERATORS
 
 STEP = 1.5
 """RRT-Connect's range [rad]: the one that the compiled trees have for the UR5."""
@@ -131,8 +131,8 @@ def run(robot: str, problems: int, seconds: float, path: Path) -> None:
 
 def draw(store: Path, table: Path, robot: str, picture: Path) -> None:
     """Draw what success costs: the rows of a store, and OMPL's planners of a table that `run` wrote."""
-    from evenroad.research.bench.store import read_rows
-    from evenroad.research.report.arms import cost_curve, draw_costs
+    from evenroad_studies.bench.store import read_rows
+    from evenroad_studies.report.arms import cost_curve, draw_costs
 
     with table.open() as file:
         lines = [line for line in csv.DictReader(file) if line["robot"] == robot]

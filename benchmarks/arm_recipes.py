@@ -20,15 +20,15 @@ import itertools
 
 import numpy as np
 
-from evenroad.research.arms.problems import ARM_ROBOTS, draw_problem, joins
-from evenroad.research.arms.roadmaps import cell_of, first_free
-from evenroad.research.arms.robots import ARMS, arm_named
-from evenroad.research.arms.scenes import GENERATORS
 from evenroad.robot import with_group
 from evenroad.robot_roadmap import pockets
 from evenroad.robot_roadmap.make import joined, make_roadmap
 from evenroad.robot_roadmap.pockets import Seen, links_of
 from evenroad.robot_roadmap.recipe import Recipe, chosen, known_of
+from evenroad_studies.arms.problems import ARM_ROBOTS, draw_problem, joins
+from evenroad_studies.arms.roadmaps import cell_of, first_free
+from evenroad_studies.arms.robots import ARMS, arm_named
+from evenroad_studies.arms.scenes import GENERATORS
 
 SWAPPED, FIRST_OF_MORE = "swaps", "beginning"
 

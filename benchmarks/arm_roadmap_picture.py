@@ -14,11 +14,11 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from evenroad.research.arms.roadmaps import cell_of, roadmap_of
-from evenroad.research.arms.robots import arm_named, tool_of
 from evenroad.robot import ArmWorld
 from evenroad.robot.kinematics import link_poses
 from evenroad.robot_roadmap.pockets import ends_in_pockets
+from evenroad_studies.arms.roadmaps import cell_of, roadmap_of
+from evenroad_studies.arms.robots import arm_named, tool_of
 
 ROBOT, COUNT, ENDS = "ur5-5", 256, 1000
 STYLES = {

@@ -20,14 +20,14 @@ from pathlib import Path
 import numpy as np
 
 from evenroad._arrays import Floats
-from evenroad.research.arms.execute import KEPT
-from evenroad.research.arms.outcomes import Outcomes, Way, outcomes_of, paired, read_outcomes, write_outcomes
-from evenroad.research.arms.results import ALL, HEADER, REFERENCE, TITLES, Line, csv_of, lines_of
-from evenroad.research.arms.scenes import GENERATORS
-from evenroad.research.bench.store import joined, read_rows
-from evenroad.research.report.arms import OTHERS, arm_tables, draw_success, summary_tables
-from evenroad.research.report.tables import Table, as_markdown, row
-from evenroad.research.report.write import csv_text
+from evenroad_studies.arms.execute import KEPT
+from evenroad_studies.arms.outcomes import Outcomes, Way, outcomes_of, paired, read_outcomes, write_outcomes
+from evenroad_studies.arms.results import ALL, HEADER, REFERENCE, TITLES, Line, csv_of, lines_of
+from evenroad_studies.arms.scenes import GENERATORS
+from evenroad_studies.bench.store import joined, read_rows
+from evenroad_studies.report.arms import OTHERS, arm_tables, draw_success, summary_tables
+from evenroad_studies.report.tables import Table, as_markdown, row
+from evenroad_studies.report.write import csv_text
 
 PAGES = ("robot-roadmaps.md", "arm-suite.md")
 PLACE = re.compile(r"(<!-- table (\S+) -->\n).*?(<!-- end -->)", re.DOTALL)

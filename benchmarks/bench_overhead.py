@@ -15,10 +15,10 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from evenroad.research.bench.runner import Done, run_tasks
-from evenroad.research.bench.store import open_store, read_rows
-from evenroad.research.bench.task import Outcome, Task
-from evenroad.research.workers import ProcessPool, SerialExecutor, Workers
+from evenroad_studies.bench.runner import Done, run_tasks
+from evenroad_studies.bench.store import open_store, read_rows
+from evenroad_studies.bench.task import Outcome, Task
+from evenroad_studies.workers import ProcessPool, SerialExecutor, Workers
 
 SAMPLERS = ("uniform", "halton paper-blocks", "sobol scrambled", "lattice", "hickernell", "even", "korobov")
 

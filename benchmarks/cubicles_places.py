@@ -21,7 +21,7 @@ from scipy.spatial import cKDTree
 from benchmarks.nested_k import smallest_k
 from evenroad._arrays import Floats
 from evenroad.points import draw
-from evenroad.research.problems import source_named
+from evenroad_studies.problems import source_named
 
 RULES = (4, 6, 10, 20)
 NAMES = ("sobol", "lattice", "lattice, rotations dealt anew", "lattice of places")

@@ -54,8 +54,8 @@ from benchmarks.nested_k import smallest_k
 from evenroad.points import draw
 from evenroad.points.bank import Bank
 from evenroad.points.bank.bank import Cell
-from evenroad.research.problems.fair import DIFFICULTIES, SIZES, Family, Stream, make_instance
-from evenroad.research.training import anneal_many
+from evenroad_studies.problems.fair import DIFFICULTIES, SIZES, Family, Stream, make_instance
+from evenroad_studies.training import anneal_many
 
 DIMENSIONS = (5, 3, 2, 4, 7, 10)
 COUNTS = (128, 256, 512)

@@ -28,8 +28,9 @@ import numpy as np
 from benchmarks.nested_k import smallest_k
 from evenroad.points import draw
 from evenroad.points.samplers.even import DRAWN_IN, drawn_in
-from evenroad.research.problems import source_named
-from evenroad.research.problems.fair import (
+from evenroad.roadmap import KNearest, plan
+from evenroad_studies.problems import source_named
+from evenroad_studies.problems.fair import (
     CALIBRATED_AT,
     DIFFICULTIES,
     SIZES,
@@ -37,8 +38,7 @@ from evenroad.research.problems.fair import (
     Stream,
     make_instance,
 )
-from evenroad.research.suites import COUNTS
-from evenroad.roadmap import KNearest, plan
+from evenroad_studies.suites import COUNTS
 
 FACTORS = (1.0, 0.95, 0.9, 0.85, 0.8)
 RULES = (3, 4, 6, 8)

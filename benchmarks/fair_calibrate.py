@@ -25,8 +25,8 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.nested_k import NEVER, smallest_k
-from evenroad.research.bench.task import Problem
-from evenroad.research.problems.fair import (
+from evenroad_studies.bench.task import Problem
+from evenroad_studies.problems.fair import (
     BALLS,
     BOUNDED_AXES,
     BOXES,

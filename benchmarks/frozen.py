@@ -28,11 +28,6 @@ from benchmarks.arm_problems import KINDS, Pool, Problem, arm, problems
 from benchmarks.clouds import points_on, triangles_of
 from evenroad import Budget, draw, find_path, plan, plan_anytime, plan_arm
 from evenroad.geometry import Mesh, PointCloud
-from evenroad.research.bench.execute import run_task
-from evenroad.research.bench.task import Task
-from evenroad.research.mazes import load_maze
-from evenroad.research.problems import source_named
-from evenroad.research.suites import fair_suite, paper_suite
 from evenroad.roadmap import KNearest, PlanResult, Roadmap
 from evenroad.roadmap.plan import fmt
 from evenroad.robot.arm_world import ArmWorld
@@ -40,6 +35,11 @@ from evenroad.robot.scene import Obstacle, Scene
 from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.scene_roadmap import SceneRoadmap
 from evenroad.world import World
+from evenroad.world.gridmap.shipped import load_maze
+from evenroad_studies.bench.execute import run_task
+from evenroad_studies.bench.task import Task
+from evenroad_studies.problems import source_named
+from evenroad_studies.suites import fair_suite, paper_suite
 
 KEPT = Path(__file__).with_suffix(".npz")
 SEEDS = range(3_000, 3_003)

@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
-from evenroad.research.mazes import LEVELS, load_maze
+from evenroad.world.gridmap.shipped import LEVELS, load_maze
 
 REPEATS = 11
 

@@ -56,8 +56,11 @@ from evenroad.points.measures.rank_one import (
 from evenroad.points.samplers import korobov, rank_one_search
 from evenroad.points.samplers.korobov import korobov_generator
 from evenroad.points.samplers.poses import Sliced
-from evenroad.research.bench.task import Problem
-from evenroad.research.problems.fair import (
+from evenroad.roadmap import KNearest, plan
+from evenroad.roadmap.neighbours import nearest
+from evenroad.roadmap.search import components
+from evenroad_studies.bench.task import Problem
+from evenroad_studies.problems.fair import (
     DIFFICULTIES,
     ROTATION_WEIGHT,
     SIZES,
@@ -65,9 +68,6 @@ from evenroad.research.problems.fair import (
     Stream,
     make_instance,
 )
-from evenroad.roadmap import KNearest, plan
-from evenroad.roadmap.neighbours import nearest
-from evenroad.roadmap.search import components
 
 RULES = (4, 6, 10, 20)
 COUNTS = tuple(round(128 * 8 ** (i / 23)) for i in range(24))

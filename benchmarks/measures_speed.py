@@ -21,7 +21,7 @@ from scipy.stats import qmc
 
 from evenroad.points.bank.anneal import anneal
 from evenroad.points.measures import MEASURES
-from evenroad.research.training.objective import parse_objective
+from evenroad_studies.training.objective import parse_objective
 
 COUNTS = (128, 512, 1024, 2048)
 D = 10

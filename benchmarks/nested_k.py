@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from evenroad.research.bench.task import Problem
 from evenroad.roadmap.neighbours import nearest
 from evenroad.roadmap.search import join
+from evenroad_studies.bench.task import Problem
 
 NEVER = 10**6
 """Stands for: not with any k that was tried."""

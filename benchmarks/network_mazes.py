@@ -15,12 +15,12 @@ import numpy as np
 from benchmarks.nested_k import smallest_k
 from evenroad.points import PointSet, draw
 from evenroad.points.bank import Bank
-from evenroad.research.mazes import load_maze
-from evenroad.research.network import NetworkConfig
-from evenroad.research.network.train import kronecker
-from evenroad.research.problems.fair import DIFFICULTIES, SIZES, Family, Stream, make_instance
-from evenroad.research.training import train_many
 from evenroad.roadmap import KNearest, plan
+from evenroad.world.gridmap.shipped import load_maze
+from evenroad_studies.network import NetworkConfig
+from evenroad_studies.network.train import kronecker
+from evenroad_studies.problems.fair import DIFFICULTIES, SIZES, Family, Stream, make_instance
+from evenroad_studies.training import train_many
 
 CELLS = ((64, (1, 2)), (128, (2,)), (256, (3,)))
 SEED, STARTS = 7, 400

@@ -12,7 +12,7 @@ from functools import partial
 import numpy as np
 
 from evenroad.points.measures import MEASURES
-from evenroad.research.network import NetworkConfig, train
+from evenroad_studies.network import NetworkConfig, train
 
 CELLS = ((2, 128), (5, 128), (10, 128), (2, 512), (10, 512), (10, 1024))
 STEPS, REPEATS = 20, 5

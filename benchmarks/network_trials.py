@@ -16,8 +16,8 @@ import numpy as np
 
 from evenroad._arrays import Floats, Ints
 from evenroad.points.bank import Bank
-from evenroad.research.network import NetworkConfig, train
-from evenroad.research.network.train import Network, moved, nearest
+from evenroad_studies.network import NetworkConfig, train
+from evenroad_studies.network.train import Network, moved, nearest
 
 N, SEED, REBUILT = 128, 7, 50
 
@@ -71,7 +71,7 @@ def values(d: int, sets: int, steps: int, trial: dict[str, Any]) -> Floats:
     steps, restarts = steps * options.pop("times", 1), options.pop("restarts", 1)
     made = Rebuilt if options.pop("rebuilt", False) else Shaken if options.pop("shaken", False) else Network
     config = NetworkConfig(N, d, steps=steps // restarts, **options)
-    with mock.patch.object(sys.modules["evenroad.research.network.train"], "Network", made):
+    with mock.patch.object(sys.modules["evenroad_studies.network.train"], "Network", made):
         seeds = np.random.SeedSequence(SEED).spawn(sets * restarts)
         return np.array([train(config, rng=seed).value for seed in seeds]).reshape(sets, restarts).min(axis=1)
 

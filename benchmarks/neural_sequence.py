@@ -21,7 +21,7 @@ import torch
 from evenroad._arrays import Floats
 from evenroad.points.measures.l2 import MaximumPairs
 from evenroad.points.samplers import Sobol
-from evenroad.research.prefixes import PREFIXED, _squared, _weighted_slopes
+from evenroad_studies.prefixes import PREFIXED, _squared, _weighted_slopes
 
 POINTS, DIMENSION, BURNT = 1000, 4, 128
 BANDS, WIDTH, LAYERS = 32, 256, 4

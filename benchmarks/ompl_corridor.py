@@ -10,8 +10,8 @@ import statistics
 import time
 
 from evenroad.points import draw
-from evenroad.research.worlds import Corridor
 from evenroad.roadmap import KEarlier, plan
+from evenroad_studies.worlds import Corridor
 
 N = 1024
 SHAPES = ((2, 0.1), (3, 0.2), (6, 0.37))

@@ -21,8 +21,8 @@ from evenroad.points import draw
 from evenroad.points.bank.anneal import anneal, first_rate
 from evenroad.points.measures import MEASURES
 from evenroad.points.pointset import BELOW_ONE
-from evenroad.research.network import NetworkConfig
-from evenroad.research.network.train import INSET, Network, kronecker, moved, nearest
+from evenroad_studies.network import NetworkConfig
+from evenroad_studies.network.train import INSET, Network, kronecker, moved, nearest
 
 MEASURE = MEASURES["hickernell"]
 SEEN_D, D, UNSEEN_N = (2, 3, 5), (2, 3, 4, 5, 6, 10), (50, 200)

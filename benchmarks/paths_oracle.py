@@ -19,7 +19,8 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from tests.free_paths import (
+from tests.robot.kernel_arms import random_scene, random_tree, seven_joint_arm, ur5
+from tests.studies.free_paths import (
     PLANNERS,
     disk_world,
     nearest,
@@ -28,7 +29,6 @@ from tests.free_paths import (
     sampled,
     solid_world,
 )
-from tests.robot.kernel_arms import random_scene, random_tree, seven_joint_arm, ur5
 
 from evenroad.robot import ArmWorld
 from evenroad.robot.certified import CertifiedWorld

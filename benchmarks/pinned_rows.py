@@ -3,7 +3,7 @@
     python -m benchmarks.pinned_rows [--runs 400] [--only cubicles,chain-10d] [--store results.db] [--jobs 2]
 
 Runs those cells of the paper's suite that have a pinned counterpart
-(`evenroad/research/report/expected/pinned.toml`), in a store of their own, or those that the given store lacks.  For
+(`evenroad_studies/report/expected/pinned.toml`), in a store of their own, or those that the given store lacks.  For
 each cell: our success with its 95 % interval, the mean number of milestones counted as the pinned row counts them, both
 beside what is pinned, and Fisher's exact test of the two counts with Holm's correction over all cells that are tested
 here.
@@ -17,14 +17,14 @@ import tempfile
 from pathlib import Path
 
 from evenroad._terminal import LineProgress
-from evenroad.research.bench.runner import run_tasks
-from evenroad.research.bench.store import open_store, read_rows
-from evenroad.research.bench.task import Task
-from evenroad.research.report.analysis import Verdict, load_expected, verdicts_of
-from evenroad.research.report.cells import cells_of
-from evenroad.research.report.runs import runs_of
-from evenroad.research.suites import SEED, paper_suite
-from evenroad.research.workers import processes
+from evenroad_studies.bench.runner import run_tasks
+from evenroad_studies.bench.store import open_store, read_rows
+from evenroad_studies.bench.task import Task
+from evenroad_studies.report.analysis import Verdict, load_expected, verdicts_of
+from evenroad_studies.report.cells import cells_of
+from evenroad_studies.report.runs import runs_of
+from evenroad_studies.suites import SEED, paper_suite
+from evenroad_studies.workers import processes
 
 PINNED = load_expected("pinned")
 

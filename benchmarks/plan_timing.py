@@ -17,8 +17,8 @@ import time
 from pathlib import Path
 
 from evenroad.points import draw
-from evenroad.research.mazes import LEVELS, load_maze
 from evenroad.roadmap import plan
+from evenroad.world.gridmap.shipped import LEVELS, load_maze
 
 REPEATS = 31
 

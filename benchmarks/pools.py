@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from evenroad.points.bank import Bank
-from evenroad.research.training.bank import DATA, MPMC_CELLS
+from evenroad_studies.training.bank import DATA, MPMC_CELLS
 
 
 def main() -> None:

@@ -21,10 +21,10 @@ from pathlib import Path
 import numpy as np
 
 from evenroad.geometry import Pose
-from evenroad.research.statistics.rates import wilson
 from evenroad.robot import ArmWorld, PoseGoal, Scene, closed_form, link_poses, load_robot
 from evenroad.robot.chain import TURN, default_tip
 from evenroad.robot.inverse_kinematics import reach
+from evenroad_studies.statistics.rates import wilson
 
 COLUMNS = ("robot", "joints", "solver", "poses", "solved", "low_percent", "high_percent", "own", "error",
            "median_ms", "p95_ms", "postures")  # fmt: skip

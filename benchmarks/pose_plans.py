@@ -27,9 +27,9 @@ import numpy as np
 
 from evenroad import PoseGoal, Straight, Upright, plan_arm
 from evenroad.geometry import Pose
-from evenroad.research.statistics.rates import wilson
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene, link_poses, load_robot
 from evenroad.robot.inverse_kinematics import reach
+from evenroad_studies.statistics.rates import wilson
 
 TIPS = {"ur5": "tool0", "arm7": "flange"}
 COLUMNS = ("robot", "row", "problems", "solved", "low_percent", "high_percent", "median_ms", "p95_ms", "length",

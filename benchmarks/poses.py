@@ -34,9 +34,9 @@ from benchmarks.nested_k import smallest_k
 from evenroad._arrays import Floats
 from evenroad.points import draw
 from evenroad.points.samplers.poses import Poses, Rotations, Sliced, spread_directions
-from evenroad.research.problems import source_named
-from evenroad.research.problems.fair import ROTATION_WEIGHT, SIZES, Family, Stream, make_instance
 from evenroad.space import SO3
+from evenroad_studies.problems import source_named
+from evenroad_studies.problems.fair import ROTATION_WEIGHT, SIZES, Family, Stream, make_instance
 
 SAMPLERS = ("sliced", "poses", "even", "sobol", "hickernell", "uniform")
 IN_PLANE = ("poses", "even", "sobol", "hickernell", "uniform")

@@ -19,12 +19,12 @@ from pathlib import Path
 
 import numpy as np
 
-from evenroad.research.bench.samplers import SAMPLERS
-from evenroad.research.bench.store import open_store, read_rows
-from evenroad.research.bench.task import Outcome, Task
-from evenroad.research.problems import PROBLEMS
-from evenroad.research.report import write_report
-from evenroad.research.report.analysis import analyse
+from evenroad_studies.bench.samplers import SAMPLERS
+from evenroad_studies.bench.store import open_store, read_rows
+from evenroad_studies.bench.task import Outcome, Task
+from evenroad_studies.problems import PROBLEMS
+from evenroad_studies.report import write_report
+from evenroad_studies.report.analysis import analyse
 
 POOLS = ("mpmc", "hickernell")
 POOL = 64

@@ -17,10 +17,10 @@ import numpy as np
 
 from evenroad.errors import NotAvailable
 from evenroad.geometry.mesh import merged
-from evenroad.research.problems import source_named
-from evenroad.research.worlds.rigid import MeshWorld, SolidWorld, surface_of
 from evenroad.roadmap import KNearest
 from evenroad.world import World
+from evenroad_studies.problems import source_named
+from evenroad_studies.worlds.rigid import MeshWorld, SolidWorld, surface_of
 
 REPEATS = 7
 

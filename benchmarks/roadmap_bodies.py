@@ -18,13 +18,13 @@ from pathlib import Path
 import numpy as np
 
 from evenroad.points import draw
-from evenroad.research.arms.roadmaps import first_free
 from evenroad.roadmap import Budget
 from evenroad.roadmap.find_path import find_path
 from evenroad.robot import ArmWorld, Obstacle, Robot, Scene, load_robot
 from evenroad.robot_roadmap.make import joined, make_roadmap
 from evenroad.robot_roadmap.pockets import links_of
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
+from evenroad_studies.arms.roadmaps import first_free
 
 ROOM = 2.0
 """Half of the room's sides [m]."""

@@ -14,8 +14,8 @@ import argparse
 import numpy as np
 
 from evenroad.points import draw
-from evenroad.research.mazes import LEVELS, load_maze
 from evenroad.roadmap import KNearest, PlanResult, fmt, plan
+from evenroad.world.gridmap.shipped import LEVELS, load_maze
 
 PHASES = ("validity", "motions", "search")
 

@@ -14,8 +14,8 @@ import time
 import numpy as np
 
 from evenroad.points import draw
-from evenroad.research.mazes import LEVELS, load_maze
 from evenroad.roadmap import KNearest, Roadmap
+from evenroad.world.gridmap.shipped import LEVELS, load_maze
 
 
 def measure(level: int, n: int, k: int, queries: int, links: int | None = None) -> str:

@@ -22,9 +22,6 @@ import numpy as np
 
 from benchmarks.arm_problems import KINDS, REPORTING, TUNING, Pool, Problem, arm, problems, queries
 from benchmarks.robot_roadmaps import table_of
-from evenroad.research.arms.problems import draw_problem
-from evenroad.research.arms.roadmaps import made_roadmap
-from evenroad.research.arms.scenes import GENERATORS
 from evenroad.roadmap import Budget, PlanResult
 from evenroad.roadmap.find_path import find_path
 from evenroad.robot import ArmWorld, Scene, with_limits
@@ -35,6 +32,9 @@ from evenroad.robot_roadmap.make import make_roadmap
 from evenroad.robot_roadmap.robot_roadmap import RobotRoadmap
 from evenroad.robot_roadmap.scene_roadmap import AMONG_SURFACES, WORK, SceneRoadmap
 from evenroad.robot_roadmap.search_memory import NUMBER
+from evenroad_studies.arms.problems import draw_problem
+from evenroad_studies.arms.roadmaps import made_roadmap
+from evenroad_studies.arms.scenes import GENERATORS
 
 COPIES = 3
 SCENES = 6

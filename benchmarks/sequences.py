@@ -27,15 +27,14 @@ from benchmarks.nested_k import smallest_k
 from evenroad._arrays import Floats
 from evenroad.points import draw
 from evenroad.points.bank import Bank
-from evenroad.points.measures import dispersion_l2
+from evenroad.points.measures import dispersion_l2, riesz_rooted, separation
 from evenroad.points.samplers import Growing, Sobol
-from evenroad.research.measures import riesz_rooted, separation
-from evenroad.research.network import NetworkConfig
-from evenroad.research.prefixes import rooted_prefixes
-from evenroad.research.problems.fair import DIFFICULTIES, SIZES, Family, Stream, make_instance
-from evenroad.research.sequence import Sequence
-from evenroad.research.training import anneal_many, train_many
 from evenroad.roadmap import Budget, plan_anytime
+from evenroad_studies.network import NetworkConfig
+from evenroad_studies.prefixes import rooted_prefixes
+from evenroad_studies.problems.fair import DIFFICULTIES, SIZES, Family, Stream, make_instance
+from evenroad_studies.sequence import Sequence
+from evenroad_studies.training import anneal_many, train_many
 
 LENGTHS = (
     16,

@@ -26,10 +26,10 @@ from benchmarks.sequences import _read, of_bank
 from evenroad._arrays import Floats, Ints
 from evenroad.points import draw
 from evenroad.points.samplers import Halton, Sobol
-from evenroad.research.prefixes import rooted_prefixes
-from evenroad.research.problems.fair import Stream
-from evenroad.research.sequence import Sequence
-from evenroad.research.statistics.rates import wilson
+from evenroad_studies.prefixes import rooted_prefixes
+from evenroad_studies.problems.fair import Stream
+from evenroad_studies.sequence import Sequence
+from evenroad_studies.statistics.rates import wilson
 
 WIDTHS = (0.64, 0.40)
 PUBLISHED = {0.64: (96.6, 88.0), 0.40: (80.0, 67.3)}

@@ -15,11 +15,11 @@ import numpy as np
 
 from evenroad._arrays import Floats, Ints
 from evenroad.points import PointSet
-from evenroad.research.measures import star_discrepancy
-from evenroad.research.network import NetworkConfig
-from evenroad.research.network.train import kronecker
-from evenroad.research.training import anneal_many, order_many, train_many
-from evenroad.research.training.order import place_order
+from evenroad.points.measures import star_discrepancy
+from evenroad_studies.network import NetworkConfig
+from evenroad_studies.network.train import kronecker
+from evenroad_studies.training import anneal_many, order_many, train_many
+from evenroad_studies.training.order import place_order
 
 PUBLISHED = {  # n: MPMC, best known
     20: (0.0640, 0.0611),

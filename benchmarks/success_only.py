@@ -16,8 +16,8 @@ from functools import partial
 import numpy as np
 
 from evenroad.points import draw
-from evenroad.research.mazes import LEVELS, load_maze
 from evenroad.roadmap import plan
+from evenroad.world.gridmap.shipped import LEVELS, load_maze
 
 REPEATS = 25
 

@@ -19,8 +19,8 @@ import numpy as np
 
 from evenroad.points import PointSet
 from evenroad.points.measures import MEASURES
-from evenroad.research.network import NetworkConfig, refine
-from evenroad.research.training import anneal_many, train_many
+from evenroad_studies.network import NetworkConfig, refine
+from evenroad_studies.training import anneal_many, train_many
 
 CELLS = [(d, n) for n in (128, 512) for d in (2, 5, 10)]
 SETS = 8

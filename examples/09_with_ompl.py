@@ -11,8 +11,8 @@ from evenroad.adapters.ompl import (
     solve,
     space_information,
 )
-from evenroad.research.mazes import load_maze
 from evenroad.roadmap import KEarlier
+from evenroad.world.gridmap.shipped import load_maze
 
 
 def theirs_on_ours() -> None:

@@ -8,8 +8,8 @@ import klampt
 
 import evenroad as er
 from evenroad.adapters.klampt import KlamptWorld, klampt_motion, plan_on_points
-from evenroad.research.mazes import load_maze
 from evenroad.trajectory import Limits, make_trajectory
+from evenroad.world.gridmap.shipped import load_maze
 
 # Theirs on ours: what Klamp't calls free is what our map does, exactly, places and motions.
 maze = load_maze(2)

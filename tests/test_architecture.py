@@ -3,11 +3,13 @@
 import ast
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
 
 import evenroad
+from evenroad.cli.verbs import ENTRY_POINTS, OF_STUDIES
 
 ROOT = Path(evenroad.__file__).parent
 
@@ -31,11 +33,9 @@ MAY_IMPORT = {
     "arms": BASE | {"points", "space", "geometry", "world", "robot", "roadmap"},
     "trajectory": BASE | {"space", "world", "robot"},
     "adapters": BASE | {"points", "space", "world", "robot", "trajectory"},
-    "research": BASE
-    | {"points", "space", "world", "geometry", "robot", "roadmap", "robot_roadmap", "io", "viz"},
     "cli": BASE
     | {"points", "space", "world", "geometry", "robot", "roadmap", "robot_roadmap"}
-    | {"arms", "research", "io", "viz", "trajectory"},
+    | {"arms", "io", "viz", "trajectory"},
     **dict.fromkeys(BASE, BASE),
 }
 """Part -> the parts it may import: the arrows of docs/design.md."""
@@ -132,14 +132,15 @@ def test_nobody_imports_the_adapters():
     assert [part for part, others in MAY_IMPORT.items() if "adapters" in others] == []
 
 
-def test_only_the_command_imports_the_studies():
-    importers = {part for part, others in MAY_IMPORT.items() if "research" in others}
-    assert importers == {"cli"}
+def test_evenroad_imports_nothing_of_the_studies_and_the_command_knows_them_by_entry_points():
+    importing = [path for path in MODULES if "import evenroad_studies" in path.read_text()]
+    importing += [path for path in MODULES if "from evenroad_studies" in path.read_text()]
+    assert importing == []
 
 
-def test_nobody_else_loads_the_studies_by_name_either():
-    naming = {path.relative_to(ROOT).parts[0] for path in MODULES if "evenroad.research" in path.read_text()}
-    assert naming == {"cli", "research"}
+def test_the_studies_bring_the_verbs_that_the_command_names():
+    settings = tomllib.loads((ROOT.parents[1] / "studies" / "pyproject.toml").read_text(encoding="utf-8"))
+    assert set(settings["project"]["entry-points"][ENTRY_POINTS]) == set(OF_STUDIES)
 
 
 def test_no_module_is_longer_than_400_lines():

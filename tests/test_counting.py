@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from evenroad.research.worlds import Corridor
 from evenroad.testing import WorldContract
 from evenroad.world import Explains, GridMap
+from evenroad_studies.worlds import Corridor
 from tests.counting import Counting
 
 CORRIDOR = Corridor(2, 0.3)

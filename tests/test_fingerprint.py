@@ -6,11 +6,11 @@ import pytest
 
 from evenroad._fingerprint import Fingerprinted, fingerprint_of
 from evenroad.errors import NotAvailable
-from evenroad.research.worlds.rigid import OrientedBox, SolidWorld
 from evenroad.robot import ArmWorld, load_robot, load_scene
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.space import SE2, SE3, BoxSpace, Circle, JointSpace, Rectangle
 from evenroad.world import FunctionWorld, GridMap
+from evenroad_studies.worlds.rigid import OrientedBox, SolidWorld
 from tests.counting import Counting
 
 

@@ -95,11 +95,11 @@ def test_make_targets_and_benchmarks_that_a_page_names_exist():
 
 
 def test_verbs_that_a_page_names_exist():
-    from evenroad.cli.verbs import VERBS
+    from evenroad.cli.verbs import ABOUT
 
     for page in PAGES:
         for verb in re.findall(r"`evenroad\s+([a-z]+)", page.read_text()):
-            assert verb in VERBS, f"{page.name} names evenroad {verb}"
+            assert verb in ABOUT, f"{page.name} names evenroad {verb}"
 
 
 def test_the_readme_is_short_and_its_python_five_lines_long():

@@ -8,8 +8,7 @@ from scipy.stats import qmc as scipy_qmc
 from evenroad import qmc
 from evenroad.errors import Exhausted, InvalidValue, NotAvailable
 from evenroad.points import draw
-from evenroad.points.measures import MEASURES
-from evenroad.research.measures import riesz_rooted, separation
+from evenroad.points.measures import MEASURES, riesz_rooted, separation
 
 SEED = 170382760648021597650530316304495310428
 

@@ -11,8 +11,6 @@ import pytest
 import evenroad as er
 from evenroad.geometry import Mesh, PointCloud, TriangleMesh
 from evenroad.points.measures import MEASURES
-from evenroad.research.mazes import load_maze
-from evenroad.research.worlds.chain import ChainWorld
 from evenroad.roadmap import Status, fmt
 from evenroad.robot import Obstacle, link_poses
 from evenroad.robot.certified import CertifiedWorld
@@ -20,6 +18,8 @@ from evenroad.robot.chain import chain_of
 from evenroad.robot.upright import upright_world
 from evenroad.space.path import subdivide
 from evenroad.trajectory import Limits, load_trajectory, make_trajectory, save_trajectory
+from evenroad.world.gridmap.shipped import load_maze
+from evenroad_studies.worlds.chain import ChainWorld
 from tests.robot.kernel_arms import TABLE, box_scene, ur5
 from tests.robot.oracle import clearance
 from tests.threads import together

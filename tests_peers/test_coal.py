@@ -9,12 +9,12 @@ import pytest
 from evenroad.geometry import TriangleMesh, load_mesh
 from evenroad.geometry.mesh import merged
 from evenroad.geometry.pose import rotation_from_quaternion, rotations_from_quaternions
-from evenroad.research.problems import source_named
-from evenroad.research.worlds.rigid import OrientedBox, SolidWorld, shell, surface_of
-from evenroad.research.worlds.rigid.mesh_world import Collider, MeshWorld
-from evenroad.research.worlds.rigid.solid_world import as_poses
 from evenroad.space import SE3, BoxSpace
 from evenroad.testing import WorldContract
+from evenroad_studies.problems import source_named
+from evenroad_studies.worlds.rigid import OrientedBox, SolidWorld, shell, surface_of
+from evenroad_studies.worlds.rigid.mesh_world import Collider, MeshWorld
+from evenroad_studies.worlds.rigid.solid_world import as_poses
 
 NEAR = 1e-5
 """Poses this near to contact may be judged differently: coal's tolerance is 1e-6."""

@@ -5,12 +5,12 @@ import pytest
 
 import evenroad as er
 from evenroad.errors import Exhausted, InvalidValue, UnknownName
-from evenroad.research.mazes import load_maze
 from evenroad.robot import Scene, link_poses, load_robot
 from evenroad.space import SE2
 from evenroad.testing import WorldContract
 from evenroad.trajectory import Limits, make_trajectory
 from evenroad.world import FunctionWorld
+from evenroad.world.gridmap.shipped import load_maze
 from tests_peers.engines.urdf_text import as_urdf
 
 klampt = pytest.importorskip("klampt")

@@ -5,10 +5,10 @@ import pytest
 from benchmarks.ompl_peer import ompl_prm
 
 from evenroad.points import draw
-from evenroad.research.worlds import Corridor
 from evenroad.roadmap import KEarlier, plan
 from evenroad.space import BoxSpace
 from evenroad.world import FunctionWorld
+from evenroad_studies.worlds import Corridor
 
 
 def _balls(seed):

@@ -25,7 +25,7 @@ from sphinx.ext.autodoc.mock import mock as stand_ins
 
 import evenroad
 from evenroad.cli import main
-from evenroad.cli.verbs import VERBS
+from evenroad.cli.verbs import ABOUT
 
 ROOT = Path(__file__).parents[1]
 SHOWN = ROOT / "docs" / "examples"
@@ -59,7 +59,7 @@ REFERENCE = {
     ),
     "trajectories": ("Trajectories", ("evenroad.trajectory",)),
     "pictures": ("Pictures", ("evenroad.viz.plan", "evenroad.viz.arm")),
-    "mazes": ("Mazes", ("evenroad.research.mazes",)),
+    "mazes": ("Mazes", ("evenroad_studies.mazes",)),
     "adapters": ("Adapters", ("evenroad.adapters.ompl", "evenroad.adapters.klampt")),
     "errors": ("Errors", ("evenroad.errors",)),
 }
@@ -213,7 +213,7 @@ def _heading(text: str, line: str) -> str:
 
 def _commands() -> str:
     parts = ["# Commands\n\nWhat `evenroad VERB --help` prints.\n"]
-    for verb, (_, about) in VERBS.items():
+    for verb, about in ABOUT.items():
         for words in [[verb], [verb, "--robot", "ur5"]] if verb == "plan" else [[verb]]:
             printed = io.StringIO()
             with (

@@ -17,9 +17,9 @@ from scipy.spatial import cKDTree
 
 import evenroad as er
 from evenroad.points.measures import dispersion_l2
-from evenroad.research.mazes import Maze, load_maze
-from evenroad.research.statistics.rates import wilson
 from evenroad.viz import style
+from evenroad.world.gridmap.shipped import Maze, load_maze
+from evenroad_studies.statistics.rates import wilson
 
 OUT = Path(__file__).parents[1] / "docs" / "concepts"
 SAMPLERS = {"uniform": "uniform", "sobol": "scrambled Sobol", "even": "even"}

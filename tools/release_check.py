@@ -50,6 +50,8 @@ README_STEPS = {
     "a point set": "evenroad points -n 512 -d 6 -o set.npy",
     "its measures": "evenroad measure set.npy",
     "what it guarantees": "evenroad certify set.npy -k 511",
+}
+STUDIES_STEPS = {
     "the list of suites": "evenroad bench paper --list",
     "one cell of the paper": "evenroad bench paper --quick --only hypercube-legacy6 --runs 1 --store results.db",
     "its report": "evenroad report results.db -o report",
@@ -117,8 +119,8 @@ def build(steps: Steps, dist: Path, work: Path) -> None:
     steps.run("build: sdist", f"{tool}/bin/python -m build --no-isolation -s -o {dist} {ROOT}")
     steps.run("build: wheel", f"{tool}/bin/python -m build --no-isolation -w -o {dist} {ROOT}")
     steps.run(
-        "build: wheel of the large sets",
-        f"{tool}/bin/python -m build --no-isolation -w -o {dist} {ROOT}/sets",
+        "build: wheel of the studies",
+        f"{tool}/bin/python -m build --no-isolation -w -o {dist} {ROOT}/studies",
     )
 
 
@@ -142,8 +144,8 @@ def try_all(steps: Steps, work: Path, options: argparse.Namespace) -> None:
     if options.dist is None:
         build(steps, dist, work)
     (wheel,) = dist.glob("evenroad-*.whl")
-    (sets,) = dist.glob("evenroad_sets-*.whl")
-    for each, package in ((wheel, "evenroad"), (sets, "evenroad_sets")):
+    (studies,) = dist.glob("evenroad_studies-*.whl")
+    for each, package in ((wheel, "evenroad"), (studies, "evenroad_studies")):
         check_names(each, package)
         steps.note(f"size of {each.name.split('-')[0]}", f"{each.stat().st_size / 1e6:.2f} MB")
     if wheel.stat().st_size > LARGEST_WHEEL:
@@ -178,9 +180,14 @@ def try_all(steps: Steps, work: Path, options: argparse.Namespace) -> None:
     for name, command in README_STEPS.items():
         steps.run(name, command, **here)
     large = "evenroad points -n 512 -d 2 --sampler hickernell -o large.npy"
-    steps.run("a large set without evenroad-sets", large, expect=2, says="pip install evenroad-sets", **here)
-    steps.run("pip install of evenroad-sets", f"{pip} --no-deps {sets.resolve()}", cwd=ROOT)
+    steps.run("a large set without the studies", large, expect=2, says="pip install evenroad-studies", **here)
+    steps.run(
+        "a verb of the studies without them", "evenroad bench", expect=2, says="evenroad-studies", **here
+    )
+    steps.run("pip install of evenroad-studies", f"{pip} --no-deps {studies.resolve()}", cwd=ROOT)
     steps.run("the large set", large, **here)
+    for name, command in STUDIES_STEPS.items():
+        steps.run(name, command, **here)
     outside = [
         path for path in desk.parent.iterdir() if path.name not in ("venv", "home", "desk", "dist", "build")
     ]

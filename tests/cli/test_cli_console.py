@@ -12,7 +12,7 @@ from evenroad.cli.plan_parts import print_plan
 from evenroad.points import PointSet, save_points
 from evenroad.roadmap import plan
 from evenroad.world import GridMap
-from tests.research.report.stores import solved, task, write_store
+from tests.studies.report.stores import solved, task, write_store
 
 SAID = ("[ms]", "[bold]", "[/]", "scene[red].yaml", ":key:")
 

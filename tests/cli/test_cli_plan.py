@@ -9,10 +9,10 @@ from PIL import Image
 
 import evenroad as er
 from evenroad.cli.sampler import SamplerOptions, draw_points
-from evenroad.cli.verbs import VERBS
+from evenroad.cli.verbs import ABOUT
 from evenroad.points import draw
-from evenroad.research.mazes import load_maze
 from evenroad.roadmap import KNearest
+from evenroad.world.gridmap.shipped import load_maze
 
 MAZE = load_maze(1)
 
@@ -347,7 +347,7 @@ def test_an_interrupt_exits_with_130_and_leaves_no_half_file(run, tmp_path, monk
     "arguments",
     [
         ["--help"],
-        *([verb, "--help"] for verb in VERBS),
+        *([verb, "--help"] for verb in ABOUT),
         ["plan", "-h"],
         ["plan", "--robot", "ur5", "-h"],
     ],

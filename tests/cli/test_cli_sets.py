@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from evenroad.points import SAMPLERS, PointSet, draw, load_points, save_points
-from evenroad.research.measures import star_discrepancy
-from evenroad.research.workers import interrupt_between_steps
+from evenroad.points.measures import star_discrepancy
+from evenroad_studies.workers import interrupt_between_steps
 
 
 def test_a_shipped_set_is_written_as_a_plain_array(run, tmp_path):
@@ -140,8 +140,7 @@ def test_json_has_the_same_measures(run):
     points = draw("halton", 50, 2)
     save_points("set.npz", points)
     record = json.loads(run("measure", "set.npz", "--json")[1])
-    from evenroad.points.measures import MEASURES
-    from evenroad.research.measures import separation
+    from evenroad.points.measures import MEASURES, separation
 
     assert record["hash"] == points.hash
     assert record["hickernell_rooted"] == MEASURES["hickernell"].rooted(points)
@@ -359,7 +358,7 @@ def test_a_folder_of_another_seed_is_refused_by_the_name_of_the_option(run):
 
 
 def test_refined_sets_are_kept_one_by_one_and_read_back(run, tmp_path, monkeypatch):
-    from evenroad.research import network
+    from evenroad_studies import network
 
     line = (*MPMC, "--steps", 3, "--refine", 20)
     refine = network.refine
@@ -409,7 +408,7 @@ def test_an_empty_set_has_nothing_to_measure(run):
 
 
 def test_a_value_beyond_the_range_of_a_float_is_left_out_and_said_so():
-    from evenroad.research.commands.measure import _finite
+    from evenroad.cli.measure import _finite
 
     assert _finite("a", 0.5, "note") == ("a", 0.5, "note")
     for value in (np.inf, np.nan):

@@ -10,7 +10,7 @@ import pytest
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 from evenroad.geometry import TriangleMesh, load_mesh
 from evenroad.geometry.mesh import merged
-from evenroad.research.worlds.rigid import OrientedBox, surface_of
+from evenroad_studies.worlds.rigid import OrientedBox, surface_of
 
 CUBE = surface_of(OrientedBox.spanning((0, 0, 0), (1, 2, 3), name="cube"))
 

@@ -14,9 +14,9 @@ from evenroad._files import atomic_write, remove_abandoned_parts, require_writab
 from evenroad.errors import BrokenFile
 from evenroad.io import plan_record, save_json, save_path_csv
 from evenroad.points import draw
-from evenroad.research.training.folder import one_at_a_time
 from evenroad.roadmap import plan
 from evenroad.world import GridMap
+from evenroad_studies.training.folder import one_at_a_time
 
 
 def test_a_reader_sees_the_old_file_until_the_new_one_is_whole(tmp_path):

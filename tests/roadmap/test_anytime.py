@@ -6,9 +6,9 @@ from hypothesis import strategies as st
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points.samplers import Halton, Sobol
 from evenroad.points.samplers.lattice import Lattice
-from evenroad.research.mazes import load_maze
 from evenroad.roadmap import Budget, KEarlier, KNearest, Radius, Status, plan, plan_anytime
 from evenroad.roadmap.anytime import KnownPairs
+from evenroad.world.gridmap.shipped import load_maze
 from tests.roadmap.worlds import ChanceWorld
 
 START, GOAL = (0.0, 0.0), (1.0, 1.0)

@@ -8,8 +8,7 @@ import pytest
 
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.points import PointSet, draw
-from evenroad.points.measures import dispersion_bounds, dispersion_l2, dispersion_linf
-from evenroad.research.measures import star_discrepancy
+from evenroad.points.measures import dispersion_bounds, dispersion_l2, dispersion_linf, star_discrepancy
 from evenroad.roadmap import (
     Certificate,
     Complete,

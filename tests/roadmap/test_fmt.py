@@ -5,9 +5,9 @@ from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue
 from evenroad.points import PointSet, draw
-from evenroad.research.mazes import load_maze
 from evenroad.roadmap import Radius, Status, fmt, plan
 from evenroad.roadmap.search import EdgeStates, Graph, SearchProblem, march
+from evenroad.world.gridmap.shipped import load_maze
 from tests.roadmap.worlds import ChanceWorld
 
 START, GOAL = (0.0, 0.0), (1.0, 1.0)

@@ -5,9 +5,9 @@ from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points import PointSet, draw
-from evenroad.research.mazes import load_maze
 from evenroad.roadmap import Complete, KEarlier, KMutual, KNearest, Radius, Status, plan
 from evenroad.roadmap.rules.near import ascending
+from evenroad.world.gridmap.shipped import load_maze
 from tests.roadmap.worlds import ChanceWorld
 
 START, GOAL = (0.0, 0.0), (1.0, 1.0)

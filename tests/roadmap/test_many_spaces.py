@@ -7,11 +7,11 @@ from evenroad.points import draw
 from evenroad.points.samplers import Sobol
 from evenroad.points.samplers.even import drawn_in
 from evenroad.points.samplers.poses import Sliced
-from evenroad.research.worlds import Corridor
 from evenroad.roadmap import KEarlier, KNearest, Radius, Roadmap, fmt, plan, plan_anytime
 from evenroad.roadmap.query import even_points
 from evenroad.space import SE2, SE3, SO3, BoxSpace, JointSpace, Product
 from evenroad.world import FunctionWorld
+from evenroad_studies.worlds import Corridor
 from tests.counting import Counting
 
 

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 from evenroad.arms import plan_arm
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.points import PointSet, draw
-from evenroad.research.mazes import load_maze
 from evenroad.roadmap import (
     Budget,
     Complete,
@@ -27,6 +26,7 @@ from evenroad.roadmap import (
 from evenroad.roadmap.neighbours import Surroundings, nearest_of
 from evenroad.space import Rectangle, Space
 from evenroad.world import GridMap
+from evenroad.world.gridmap.shipped import load_maze
 from tests.roadmap.spaces import Great, Torus
 from tests.roadmap.worlds import ChanceWorld
 

@@ -7,8 +7,7 @@ from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue, NotAvailable, UnknownName
 from evenroad.points import draw
-from evenroad.points.measures import dispersion_linf
-from evenroad.research.measures import star_discrepancy
+from evenroad.points.measures import dispersion_linf, star_discrepancy
 from evenroad.roadmap import (
     Complete,
     KEarlier,

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from evenroad.errors import InvalidValue
-from evenroad.research.worlds.chain import ChainSpace
 from evenroad.space import SE2, SE3, SO3, BoxSpace, Circle, JointSpace, Product, Rectangle
 from evenroad.space.protocol import all_distances
+from evenroad_studies.worlds.chain import ChainSpace
 
 SPACES = {
     "box": BoxSpace([-1, 0, 2], [1, 5, 3], weights=[1.0, 2.0, 0.5]),

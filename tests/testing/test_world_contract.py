@@ -9,8 +9,8 @@ import textwrap
 import numpy as np
 import pytest
 
-from evenroad.research.worlds import Corridor
 from evenroad.testing import WorldContract
+from evenroad_studies.worlds import Corridor
 
 
 class Good:
@@ -99,7 +99,7 @@ def test_a_user_runs_both_contracts_from_a_file_of_their_own(tmp_path):
             """
             from evenroad.space import Circle
             from evenroad.testing import SpaceContract, WorldContract
-            from evenroad.research.worlds import Corridor
+            from evenroad_studies.worlds import Corridor
 
             class TestSpace(SpaceContract):
                 space = Circle()

@@ -11,12 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue
-from evenroad.research.worlds import Corridor
 from evenroad.space import SE2, SE3, BoxSpace, Circle, JointSpace, Product
 from evenroad.testing import WorldContract
 from evenroad.world import Explains, FunctionWorld
 from evenroad.world.bisection import between_ends
 from evenroad.world.protocol import Rechecks
+from evenroad_studies.worlds import Corridor
 
 SQUARE = BoxSpace([0.0, 0.0], [1.0, 1.0])
 

@@ -10,7 +10,7 @@ import numpy as np
 from evenroad.geometry import TriangleMesh
 from evenroad.geometry.mesh import merged
 from evenroad.geometry.shapes import Mesh, Shape
-from evenroad.research.worlds.rigid import OrientedBox, surface_of
+from evenroad_studies.worlds.rigid import OrientedBox, surface_of
 
 AROUND = 24
 """Corners of a circle; a round body loses less than 0.9 % of its radius, which stays inside of the true one."""

@@ -217,7 +217,7 @@ class Demo:
 
     def run(self) -> int:
         """Run ``evenroad plan`` on the maze with its own start and goal."""
-        from evenroad.research.mazes import load_maze
+        from evenroad.world.gridmap.shipped import load_maze
 
         maze = load_maze(self.level)
         return PlanDisk(

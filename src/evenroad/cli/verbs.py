@@ -5,11 +5,12 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from importlib.metadata import entry_points
 from textwrap import fill
 
 from evenroad import __version__
 from evenroad._terminal import leave_output, table_width
-from evenroad.errors import EvenroadError, UnknownName, in_one_line
+from evenroad.errors import EvenroadError, NotAvailable, UnknownName, in_one_line
 
 DONE = 0
 BAD_INPUT = 2
@@ -26,19 +27,28 @@ VERBS = {
         "evenroad.cli.points:Points",
         "write a point set: shipped, constructed, or annealed on demand",
     ),
-    "measure": ("evenroad.research.commands.measure:Measure", "print every measure of a point set"),
+    "measure": ("evenroad.cli.measure:Measure", "print every measure of a point set"),
     "certify": (
         "evenroad.cli.certify:Certify",
         "what a roadmap guarantees in every world, in every dimension",
     ),
-    "train": ("evenroad.research.commands.train:Train", "train point sets for any objective"),
-    "bench": ("evenroad.research.commands.bench:Bench", "run benchmarks into a store"),
-    "report": ("evenroad.research.commands.report:Report", "page, figures and tables of a store"),
     "robot": ("evenroad.cli.robot:Robot", "what an arm is made of, and how fast it is checked"),
-    "export": ("evenroad.research.commands.report:Export", "a store for OMPL's Planner Arena"),
     "demo": ("evenroad.cli.plan:Demo", "plan through a maze that ships with evenroad"),
 }
 """Name of a verb -> where it is, loaded when it is asked for, and what it does."""
+
+OF_STUDIES = {
+    "train": "train point sets for any objective",
+    "bench": "run benchmarks into a store",
+    "report": "page, figures and tables of a store",
+    "export": "a store for OMPL's Planner Arena",
+}
+"""Name of a verb that the package evenroad-studies brings -> what it does."""
+ENTRY_POINTS = "evenroad.verbs"
+"""Group of entry points by which another package brings verbs."""
+
+ABOUT = {name: about for name, (_, about) in VERBS.items()} | OF_STUDIES
+"""Name of every verb -> what it does."""
 
 DESCRIPTION = f"""usage: evenroad [-h] [--version [-v]] [--tyro-print-completion {{bash,zsh,fish}}] VERB ...
 
@@ -76,7 +86,7 @@ def _run(arguments: list[str]) -> int:
         return DONE
     if verb in ("-h", "--help"):
         print(DESCRIPTION, end="")
-        for name, (_, about) in VERBS.items():
+        for name, about in ABOUT.items():
             print(fill(f"  {name:8} {about}", table_width(), subsequent_indent=" " * 11))
         return DONE
     # Here, since neither version nor help wait for numpy and tyro.
@@ -85,8 +95,8 @@ def _run(arguments: list[str]) -> int:
 
     try:
         if verb.startswith("--tyro-"):
-            print_completion({name: _kind(name, ["--help"]) for name in VERBS}, arguments)
-        require_known("verb", verb, VERBS)
+            print_completion({name: _kind(name, ["--help"]) for name in _installed()}, arguments)
+        require_known("verb", verb, ABOUT)
         asked = read_options(verb, _kind(verb, words), words)
     except SystemExit:
         return DONE
@@ -104,7 +114,25 @@ def _print_surroundings() -> None:
         print(f"{name:16} {value}")
 
 
+def _installed() -> list[str]:
+    """Return the verbs that are there: those of the studies where the package is installed."""
+    there = entry_points(group=ENTRY_POINTS).names
+    return [name for name in ABOUT if name in VERBS or name in there]
+
+
+def _kind_of_studies(verb: str) -> type:
+    for found in entry_points(group=ENTRY_POINTS, name=verb):
+        kind: type = found.load()
+        return kind
+    raise NotAvailable(
+        f"evenroad {verb} comes with the package evenroad-studies, which is not installed:"
+        " pip install evenroad-studies, in a clone ./studies"
+    )
+
+
 def _kind(verb: str, words: Sequence[str]) -> type:
+    if verb in OF_STUDIES:
+        return _kind_of_studies(verb)
     module, _, name = VERBS[verb][0].partition(":")
     home = import_module(module)
     # Of `plan` there are two: one for each kind of robot.

@@ -7,9 +7,8 @@ from evenroad.errors import InvalidValue
 from evenroad.points import PointSet
 from evenroad.points.bank import anneal as module
 from evenroad.points.bank.anneal import first_rate, learning_rate, noise_over_rate
-from evenroad.points.measures import MEASURES
-from evenroad.research.measures import separation
-from evenroad.research.training.objective import parse_objective
+from evenroad.points.measures import MEASURES, separation
+from evenroad_studies.training.objective import parse_objective
 
 
 def anneal(n, d, objective="hickernell", **options):

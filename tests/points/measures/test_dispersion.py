@@ -15,8 +15,8 @@ from evenroad.points.measures import (
     dispersion_l2,
     dispersion_linf,
     dispersion_lower_bound,
+    star_discrepancy,
 )
-from evenroad.research.measures import star_discrepancy
 
 GRID = {1: 501, 2: 101, 3: 31}
 

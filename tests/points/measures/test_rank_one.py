@@ -13,6 +13,7 @@ from scipy.spatial import cKDTree
 
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.points import draw
+from evenroad.points.measures import separation
 from evenroad.points.measures.rank_one import (
     covering_bounds,
     generating_vector,
@@ -23,7 +24,6 @@ from evenroad.points.measures.rank_one import (
 )
 from evenroad.points.measures.short_vectors import lattice_basis, short_vectors
 from evenroad.points.samplers.korobov import korobov_generator
-from evenroad.research.measures import separation
 
 
 def korobov_vector(n, d):

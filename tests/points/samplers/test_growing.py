@@ -5,10 +5,9 @@ import pytest
 
 from evenroad.errors import InvalidValue
 from evenroad.points import draw
-from evenroad.points.measures import MEASURES
+from evenroad.points.measures import MEASURES, riesz_rooted, separation
 from evenroad.points.samplers import Growing, growing
 from evenroad.points.samplers.growing import growing_vector
-from evenroad.research.measures import riesz_rooted, separation
 from tests.points.samplers.sampler_contract import SamplerContract
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from evenroad.errors import EvenroadError, InvalidValue
 from evenroad.points import SAMPLERS, draw
-from evenroad.points.measures import MEASURES
+from evenroad.points.measures import MEASURES, riesz_rooted, separation
 from evenroad.points.measures.rank_one import (
     generating_vector,
     neighbour_directions,
@@ -18,7 +18,6 @@ from evenroad.points.measures.rank_one import (
 )
 from evenroad.points.samplers import korobov
 from evenroad.points.samplers.korobov import Korobov, korobov_generator
-from evenroad.research.measures import riesz_rooted, separation
 from tests.points.samplers.sampler_contract import SamplerContract
 
 

@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from evenroad.points import draw
+from evenroad.points.measures import riesz_rooted
 from evenroad.points.measures.rank_one import generating_vector, minima_ratio
 from evenroad.points.samplers import rank_one_search
 from evenroad.points.samplers.korobov import korobov_generator
 from evenroad.points.samplers.rank_one_search import rank_one_vector
-from evenroad.research.measures import riesz_rooted
 
 POOR = ((96, 5), (240, 5), (120, 7), (960, 7), (504, 3), (72, 9))
 FINE = ((64, 2), (90, 2), (128, 3), (512, 5), (1024, 7), (1024, 9))

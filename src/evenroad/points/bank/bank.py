@@ -6,7 +6,7 @@
     data/hickernell/d02-n0512.npy
 
 The index alone says what is in the bank: a file without a record is a build that has not finished.  The wheel of
-evenroad has the files of up to 256 points; those of more, which benchmarks draw, come with the wheel of evenroad-sets.
+evenroad has the files of up to 256 points; those of more, which studies draw, come with evenroad-studies.
 """
 
 from __future__ import annotations
@@ -28,8 +28,10 @@ from evenroad.points.pointset import PointSet
 
 DATA = Path(__file__).parent / "data"
 INDEX = "index.json"
-LARGE_SETS = "evenroad_sets"
-"""The package with the files that the wheel leaves out."""
+STUDIES, LARGE_SETS = "evenroad_studies", "sets"
+"""The package with the files of larger sets, and their folder in it."""
+MOST_IN_THE_CORE = 256
+"""Points of the largest sets that evenroad's own wheel carries."""
 SEED = 20261121
 """Set i of every cell is annealed with ``SeedSequence(SEED, spawn_key=(i,))``."""
 
@@ -100,23 +102,29 @@ class Bank:
 
 
 def _file(folder: Path, family: str, n: int, d: int) -> Path:
-    """Return where the sets of a cell are: in the bank's folder, or for the one that ships in the package beside it."""
+    """Return where the sets of a cell are: in the bank's folder, or for the one that ships in the studies."""
     path = folder / family / cell_name(n, d)
     if folder != DATA or path.exists():
         return path
-    beside = find_spec(LARGE_SETS)
-    for place in [] if beside is None else beside.submodule_search_locations or []:
-        if (large := Path(place, "data", family, path.name)).exists():
+    for place in _large_folders():
+        if (large := place / family / path.name).exists():
             return large
     raise NotAvailable(
-        f"the {family} sets of n={n} in d={d} are in the package evenroad-sets, which is not installed:"
-        " pip install evenroad-sets, in a clone ./sets"
+        f"the {family} sets of n={n} in d={d} are in the package evenroad-studies, which is not installed:"
+        " pip install evenroad-studies, in a clone ./studies"
     )
 
 
 def has_large_sets() -> bool:
-    """Return whether the sets that the wheel leaves out are here, in a checkout or by their package."""
-    return any(DATA.glob(f"*/{cell_name(1024, 2)}")) or find_spec(LARGE_SETS) is not None
+    """Return whether the sets of more than 256 points are here: those of the studies."""
+    return bool(_large_folders())
+
+
+def _large_folders() -> list[Path]:
+    """Return where the studies, if they are installed, keep the large sets."""
+    studies = find_spec(STUDIES)
+    places = [] if studies is None else studies.submodule_search_locations or []
+    return [folder for place in places if (folder := Path(place, LARGE_SETS)).is_dir()]
 
 
 def cell_name(n: int, d: int) -> str:

@@ -1,4 +1,4 @@
-"""How even a set of points is: L2 discrepancies and dispersion.
+"""How even a set of points is: discrepancies, dispersion, separation and energy.
 
 ``MEASURES`` holds the L2 discrepancies by name: ``MEASURES["hickernell"].rooted(points)``.
 """
@@ -10,3 +10,6 @@ from evenroad.points.measures.dispersion import dispersion_linf as dispersion_li
 from evenroad.points.measures.dispersion import dispersion_lower_bound as dispersion_lower_bound
 from evenroad.points.measures.measure import MEASURES as MEASURES
 from evenroad.points.measures.measure import Measure as Measure
+from evenroad.points.measures.separation import riesz_rooted as riesz_rooted
+from evenroad.points.measures.separation import separation as separation
+from evenroad.points.measures.star import star_discrepancy as star_discrepancy

@@ -1,0 +1,133 @@
+"""How far apart points are: the separation, and the Riesz energy, which close pairs raise."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from evenroad._arrays import Floats
+from evenroad._checks import require_count
+from evenroad._njit import njit
+from evenroad.errors import InvalidValue
+from evenroad.points.pointset import as_unit_points
+
+
+def separation(points: object, periodic: bool = False) -> float:
+    """Return the smallest Euclidean distance between two of the points; large is spread out.
+
+    `points`, (n, d), have coordinates in [0, 1), n >= 2, else InvalidValue; `periodic` measures on the torus, each
+    coordinate wrapping modulo 1.
+    """
+    coordinates = _checked(points, "separation")
+    n, d = coordinates.shape
+    if np.unique(coordinates, axis=0).shape[0] < n:
+        return 0.0
+    tree = cKDTree(coordinates, boxsize=np.ones(d)) if periodic else cKDTree(coordinates)
+    distances = np.asarray(tree.query(coordinates, k=2)[0])
+    return float(distances[:, 1].min())
+
+
+def riesz_rooted(points: object, s: int | None = None, periodic: bool = True) -> float:
+    """Return the Riesz s-energy to the power 1/s: as s grows, the spacing n^(-1/d) over the smallest distance.
+
+    The energy is (1/n) sum over i and j != i of (spacing / distance_ij)^s, and so hardly depends on n.  The distance of
+    coincident points counts as 10^-100.  `points` and `periodic` are as for :func:`separation`; the exponent `s`, >= 1,
+    is 2d if not given, which makes close pairs count and far ones not.  Bad arguments are an InvalidValue.
+    """
+    coordinates = _checked(points, "an energy")
+    exponent = 2 * coordinates.shape[1] if s is None else require_count("s", s)
+    columns = np.ascontiguousarray(coordinates.T)
+    return math.exp(log_riesz_of_columns(columns, exponent, periodic, want_gradient=False)[0] / exponent)
+
+
+def log_riesz_of_columns(
+    columns: Floats, s: int, periodic: bool, want_gradient: bool
+) -> tuple[float, Floats]:
+    """Return the log of the Riesz energy and its gradient, shape (d, n), at checked points of shape (d, n).
+
+    Every power is taken relative to the largest of its row, and rows are joined in the log: nothing
+    overflows, whatever d.  The distance of coincident points counts as 10^-100, and they do not push each other:
+    there is no direction.  Sums run as vectors, so another kind of processor gives last digits of its own (2e-16).
+    """
+    d, n = columns.shape
+    nearest, rows, pushes = _row_energies(columns, s, periodic, want_gradient)
+    row_logs = np.log(rows) - (0.5 * s) * np.log(nearest)
+    largest = row_logs.max()
+    total_log = largest + math.log(np.exp(row_logs - largest).sum())
+    logarithm = total_log - math.log(n) - (s / d) * math.log(n)
+    if want_gradient:
+        # A pair stands in the sum twice, so a point's own row holds half of what its coordinates change.
+        pushes *= -2.0 * s * np.exp(row_logs - np.log(rows) - total_log)
+    return logarithm, pushes
+
+
+def _checked(points: object, what: str) -> Floats:
+    coordinates = as_unit_points(points)
+    if len(coordinates) < 2:
+        raise InvalidValue(f"{what} needs at least 2 points, got {len(coordinates)}")
+    return coordinates
+
+
+SMALLEST_SQUARED = 1e-200
+"""Squared distance that coincident points count as: far below any real one, and its ratio to itself is 1."""
+
+
+@njit(cache=True, fastmath=True)
+def _row_energies(columns, s, periodic, want_gradient):  # type: ignore[no-untyped-def]
+    """Row sums of (nearest / distance^2)^(s/2), the nearest squared distances, and the rows' gradients."""
+    d, n = columns.shape
+    nearest, rows, pushes = np.empty(n), np.empty(n), np.zeros((d, n))
+    squared, inverse, power, base = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    wrap = 1.0 if periodic else 0.0
+    for i in range(n):
+        squared[:] = 0.0
+        for k in range(d):
+            at, others = columns[k, i], columns[k]
+            for j in range(n):
+                gap = abs(at - others[j])
+                gap = min(gap, abs(wrap - gap)) if periodic else gap
+                squared[j] += gap * gap
+        squared[i] = 1e300
+        smallest = 1e300
+        for j in range(n):
+            squared[j] = max(squared[j], SMALLEST_SQUARED)
+            smallest = min(smallest, squared[j])
+        for j in range(n):
+            inverse[j] = 1.0 / squared[j]
+            base[j] = smallest * inverse[j]
+            power[j] = 1.0
+        # Powers by repeated squaring of whole rows: a few multiplications, no exp or log in the pair loop.
+        if s % 2 == 1:
+            for j in range(n):
+                power[j] = math.sqrt(base[j])
+        half = s // 2
+        while half > 0:
+            odd = half % 2
+            half //= 2
+            if odd == 1:
+                for j in range(n):
+                    power[j] *= base[j]
+            if half > 0:
+                for j in range(n):
+                    base[j] *= base[j]
+        power[i] = 0.0
+        row = 0.0
+        for j in range(n):
+            row += power[j]
+        rows[i] = row
+        nearest[i] = smallest
+        if want_gradient:
+            for j in range(n):
+                power[j] *= inverse[j]
+            for k in range(d):
+                at, others = columns[k, i], columns[k]
+                push = 0.0
+                for j in range(n):
+                    step = at - others[j]
+                    if periodic:
+                        step -= math.copysign(1.0, step) if abs(step) > 0.5 else 0.0
+                    push += power[j] * step
+                pushes[k, i] = push
+    return nearest, rows, pushes

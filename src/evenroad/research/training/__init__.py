@@ -1,5 +1,0 @@
-"""Making many sets, in parallel and resumable, and the bank of shipped ones."""
-
-from evenroad.research.training.many import anneal_many as anneal_many
-from evenroad.research.training.many import order_many as order_many
-from evenroad.research.training.many import train_many as train_many

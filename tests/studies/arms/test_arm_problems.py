@@ -1,0 +1,72 @@
+"""Problems for arms: they can be solved, but not by chance; what chooses constants and what is reported are apart."""
+
+import numpy as np
+import pytest
+
+from evenroad.robot import ArmWorld
+from evenroad_studies.arms.problems import (
+    ARM_ROBOTS,
+    PREFIXES,
+    draw_problem,
+    problem_name,
+    robot_and_generator,
+)
+from evenroad_studies.arms.roadmaps import BOX_SAMPLERS, cell_of, roadmap_of
+from evenroad_studies.arms.robots import ARMS, arm_named
+from evenroad_studies.arms.scenes import GENERATORS, RANGES
+from evenroad_studies.problems import PROBLEMS
+
+
+@pytest.mark.parametrize("robot", ["scara", "twoarm"])
+@pytest.mark.parametrize("generator", ["shelf", "boxes"])
+def test_a_problem_has_free_ends_that_no_straight_motion_joins_and_that_trees_do(robot, generator):
+    problem = draw_problem(robot, generator, "tune", 0)
+    ends = np.stack([problem.start, problem.goal])
+    assert problem.world.valid(ends).all()
+    assert not problem.world.motion_valid(ends[:1], ends[1:])[0]
+    found = problem.world.connect(problem.start, problem.goal[np.newaxis])
+    assert found.goal == 0
+    assert problem.world.recheck(found.path).all()
+
+
+def test_the_same_number_is_the_same_problem_and_another_one_is_not():
+    first, other = (draw_problem.__wrapped__("scara", "clutter", "tune", i) for i in (0, 1))
+    again = draw_problem.__wrapped__("scara", "clutter", "tune", 0)
+    assert again.start.tolist() == first.start.tolist()
+    assert again.world.scene == first.world.scene
+    assert first.start.tolist() != other.start.tolist()
+
+
+def test_the_two_streams_differ_in_every_parameter_or_in_none_that_counts():
+    tune, report = RANGES["tune"], RANGES["report"]
+    same = [name for name in tune._fields if getattr(tune, name) == getattr(report, name)]
+    assert same == []
+
+
+def test_names_of_problems_say_whose_they_are():
+    for stream in PREFIXES:
+        for robot in ARM_ROBOTS:
+            for generator in GENERATORS:
+                name = problem_name(robot, generator, stream)
+                assert robot_and_generator(name) == (robot, generator)
+                assert PROBLEMS[name].set_dim == ARM_ROBOTS[robot]
+
+
+@pytest.mark.parametrize("robot", ARMS)
+def test_robots_have_the_joints_that_lists_say_and_are_free_somewhere_in_their_cell(robot):
+    arm = arm_named(robot)
+    world = ArmWorld(arm, cell_of(arm))
+    assert world.space.dim == ARM_ROBOTS[robot]
+    q = world.space.from_cube(np.random.default_rng(0).random((400, world.space.dim)))
+    assert 0.1 < world.valid(q).mean() <= 1.0
+
+
+@pytest.mark.parametrize("sampler", ["sobol scrambled", "rejection", "control", "roadmap"])
+def test_every_roadmap_has_n_milestones_and_edges_that_are_free_in_the_cell(sampler):
+    roadmap, _ = roadmap_of("scara", sampler, 32, 4, 0, 1)
+    assert roadmap.milestones.shape == (32, 4)
+    a, b = (roadmap.milestones[roadmap.edges[:, i]] for i in (0, 1))
+    assert len(a)
+    assert roadmap.world.motion_valid(a, b).all()
+    if sampler not in BOX_SAMPLERS:
+        assert roadmap.world.valid(roadmap.milestones).all()

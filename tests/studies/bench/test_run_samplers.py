@@ -1,0 +1,125 @@
+"""Which set the run of a benchmark gets."""
+
+import numpy as np
+import pytest
+
+from evenroad.errors import NotAvailable, UnknownName
+from evenroad.points import draw
+from evenroad.points.bank import Bank
+from evenroad.points.samplers import Halton, Sobol
+from evenroad.points.samplers.even import drawn_in
+from evenroad.roadmap import KNearest
+from evenroad.roadmap.query import even_points
+from evenroad.space import SE3, BoxSpace
+from evenroad_studies.bench.samplers import SAMPLERS, draw_set, why_not
+
+
+def _draw(name, n, d, run=0, seed=0):
+    return draw_set(name, n, d, run, np.random.default_rng(seed))
+
+
+@pytest.mark.parametrize("name", SAMPLERS)
+def test_every_sampler_draws_a_set_of_the_size_asked_for_and_the_same_one_again(name):
+    if why_not(name, 64, 2):
+        pytest.skip(why_not(name, 64, 2))
+    points, set_id = _draw(name, 64, 2, run=3, seed=5)
+    assert (points.n, points.d) == (64, 2)
+    assert (points, set_id) == _draw(name, 64, 2, run=3, seed=5)
+
+
+@pytest.mark.parametrize("name", ["uniform", "halton scrambled", "sobol scrambled", "lattice", "even"])
+def test_samplers_drawn_afresh_differ_by_seed_and_name_no_set(name):
+    first, set_id = _draw(name, 32, 3, seed=1)
+    second, _ = _draw(name, 32, 3, seed=2)
+    assert set_id == ""
+    assert not np.array_equal(first.points, second.points)
+
+
+@pytest.mark.parametrize(("name", "family"), [("halton", Halton), ("sobol", Sobol)])
+@pytest.mark.parametrize("run", [0, 1, 31, 32, 100])
+def test_a_block_is_what_the_paper_takes_whatever_the_seed(name, family, run):
+    points, set_id = _draw(f"{name} paper-blocks", 50, 4, run=run, seed=run)
+    assert points == family(scramble=False, start=run * 50 + 1).draw(50, 4)
+    assert set_id == ""
+
+
+def test_runs_of_a_block_protocol_follow_each_other_in_the_sequence():
+    blocks = [_draw("halton paper-blocks", 10, 2, run=run)[0].points for run in range(3)]
+    sequence = Halton(scramble=False, start=1).draw(30, 2).points
+    np.testing.assert_array_equal(np.concatenate(blocks), sequence)
+
+
+def test_a_pool_set_is_named_by_its_number():
+    points, set_id = _draw("hickernell", 64, 3, seed=4)
+    stored = Bank().cell("hickernell", 64, 3).load()
+    np.testing.assert_array_equal(points.points, stored[int(set_id)])
+
+
+def test_many_runs_take_many_sets_of_the_pool():
+    assert len({_draw("hickernell", 64, 2, seed=seed)[1] for seed in range(100)}) > 30
+
+
+def test_from_five_dimensions_on_a_pool_set_comes_with_permuted_coordinates():
+    points, set_id = _draw("hickernell", 64, 5, seed=4)
+    stored = Bank().cell("hickernell", 64, 5).load()[int(set_id)]
+    columns = {column.tobytes() for column in stored.T.astype(np.float64)}
+    assert {column.tobytes() for column in points.points.T} == columns
+    assert "permuted" in points.origin.method
+
+
+@pytest.mark.parametrize("d", [2, 3, 4, 7])
+def test_even_is_constructed_and_so_a_set_of_its_own_each_time(d):
+    first, set_id = _draw("even", 100, d, seed=1)
+    assert set_id == ""
+    assert first.origin.family == "even"
+    assert not np.array_equal(first.points, _draw("even", 100, d, seed=2)[0].points)
+
+
+def test_the_grid_is_one_set_where_it_exists():
+    points, set_id = _draw("sukharev", 64, 3)
+    assert set_id == "grid"
+    np.testing.assert_array_equal(points.points, draw("sukharev", 64, 3).points)
+    assert "nearest are 27 and 64" in why_not("sukharev", 63, 3)
+
+
+def test_a_pool_that_is_not_in_the_bank_says_which_n_there_are():
+    assert "it has n = 16, 32" in why_not("hickernell", 100, 2)
+    with pytest.raises(NotAvailable, match="it has n = 16, 32"):
+        _draw("hickernell", 100, 2)
+
+
+def test_the_lattice_ends_at_twelve_dimensions():
+    assert why_not("lattice", 10, 12) == ""
+    assert "12" in why_not("lattice", 10, 13)
+
+
+def test_an_unknown_sampler_gets_the_list():
+    with pytest.raises(UnknownName, match="known: even, halton paper-blocks"):
+        why_not("nonsense", 10, 2)
+
+
+SPACE = SE3((0.0, 0.0, 0.0), (1.0, 1.0, 1.0), weights=(1.0, 0.3))
+CUBE = BoxSpace([0.0] * 10, [1.0] * 10)
+
+
+@pytest.mark.parametrize(
+    ("space", "rule"), [(SPACE, KNearest(4)), (BoxSpace([0.0] * 9, [1.0] * 9), KNearest(10))]
+)
+def test_even_is_drawn_for_the_space_and_the_rule_as_a_planner_draws_it(space, rule):
+    d = space.cube_dim
+    given, _ = draw_set("even", 30, d, 0, np.random.default_rng(2), (space, rule))
+    assert given == even_points(30, space, rule, rng=np.random.default_rng(2).spawn(2)[0])
+    assert (given == _draw("even", 30, d, seed=2)[0]) == (space is not SPACE)
+
+
+@pytest.mark.parametrize(("use", "d"), [((SPACE, KNearest(20)), 6), ((CUBE, KNearest(10)), 10), (None, 12)])
+def test_where_even_is_sobol_points_they_are_those_of_the_row_of_sobol(use, d):
+    given, _ = draw_set("even", 30, d, 0, np.random.default_rng(2), use)
+    other, _ = draw_set("sobol scrambled", 30, d, 0, np.random.default_rng(2), use)
+    np.testing.assert_array_equal(given.points, other.points)
+
+
+def test_where_even_is_sobol_points_drawn_in_they_are_those_of_the_row_of_sobol_drawn_in():
+    given, _ = draw_set("even", 30, 10, 0, np.random.default_rng(2), (CUBE, KNearest(4)))
+    other, _ = draw_set("sobol scrambled", 30, 10, 0, np.random.default_rng(2))
+    np.testing.assert_array_equal(given.points, drawn_in(other).points)

@@ -1,0 +1,66 @@
+import json
+from dataclasses import asdict
+
+import numpy as np
+import pytest
+
+from evenroad.errors import InvalidValue, UnknownName
+from evenroad_studies.network import NetworkConfig
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("n", 1),
+        ("n", 2.0),
+        ("d", 0),
+        ("width", 0),
+        ("layers", 0),
+        ("k", True),
+        ("steps", 0),
+        ("rate", 0.0),
+        ("rate", float("inf")),
+        ("noise", -1e-6),
+        ("noise", float("nan")),
+    ],
+)
+def test_a_value_out_of_range_is_refused_by_name(name, value):
+    with pytest.raises(InvalidValue, match=f"{name} must be .*, got"):
+        NetworkConfig(**{"n": 16, "d": 2, name: value})
+
+
+def test_names_that_nobody_knows_are_refused():
+    with pytest.raises(UnknownName, match="column 4.*'nonsense'"):
+        NetworkConfig(16, 2, objective="2 *nonsense")
+    with pytest.raises(UnknownName, match="start.*'grid'.*sobol"):
+        NetworkConfig(16, 2, start="grid")
+    with pytest.raises(UnknownName, match="judge.*'me'.*star"):
+        NetworkConfig(16, 2, judge="me")
+
+
+def test_the_start_is_kronecker_in_the_plane_but_for_prefixes_unless_it_is_asked_for():
+    assert {NetworkConfig(16, 2).start, NetworkConfig(16, 2, "star").start} == {"kronecker"}
+    assert NetworkConfig(16, 2, "star", start="sobol").start == "sobol"
+    assert NetworkConfig(16, 2, "prefixes(hickernell)").start == "sobol"
+    assert {NetworkConfig(16, 3, "star").start, NetworkConfig(16, 1).start} == {"sobol"}
+
+
+def test_the_exact_star_discrepancy_judges_in_the_plane_alone():
+    with pytest.raises(InvalidValue, match="in d = 2 alone, not in d = 3"):
+        NetworkConfig(16, 3, judge="star")
+
+
+def test_two_spellings_of_an_objective_are_the_same_config():
+    assert NetworkConfig(16, 2, "hickernell+10*riesz") == NetworkConfig(
+        16, 2, "log(hickernell) + 10*log(riesz)"
+    )
+
+
+def test_a_config_survives_json_and_keeps_plain_numbers():
+    config = NetworkConfig(np.int64(16), np.int32(2), "star", rate=np.float32(0.5), noise=1)
+    assert NetworkConfig(**json.loads(json.dumps(asdict(config)))) == config
+
+
+def test_noise_is_taken_as_asked_or_chosen_by_the_dimension():
+    assert NetworkConfig(16, 10, noise=0.2).drift == 0.2
+    assert NetworkConfig(16, 2).drift == 0.0 < NetworkConfig(16, 10).drift

@@ -1,0 +1,235 @@
+"""The written report: which files, what stands in them, and what is refused."""
+
+import csv
+import math
+import os
+import re
+import stat
+from html.parser import HTMLParser
+
+import pytest
+
+from evenroad.errors import BrokenFile, NotAvailable, UnknownName
+from evenroad_studies.bench.task import Outcome
+from evenroad_studies.report import page as module
+from evenroad_studies.report import write_report
+from evenroad_studies.report.charts import new_figure
+from tests.studies.report.stores import made_up, solved, task, write_store
+
+LEGACY = {"rule": "k=10 earlier", "search": "stock"}
+FAILED = Outcome("failed", error="Traceback (most recent call last):\n  boo\nValueError: <script> | 50%\n")
+
+
+def _rows():
+    rows = made_up("maze-1", runs=20) + made_up("hypercube-legacy6", runs=20, **LEGACY)
+    rows += [(task("maze-1", "uniform", 128, 99), FAILED)]
+    for place, sampler in enumerate(("uniform", "lattice")):
+        for run in range(36):
+            where = task("fair-balls-3d-50", sampler, 256, run, instance=run // 3)
+            rows.append((where, solved((run + place) % 3 > 0)))
+    return rows
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory):
+    return write_store(tmp_path_factory.mktemp("store") / "results.db", _rows())
+
+
+@pytest.fixture(scope="module")
+def report(store, tmp_path_factory):
+    return write_report(
+        store, tmp_path_factory.mktemp("report") / "out", command="evenroad report results.db"
+    )
+
+
+class _Page(HTMLParser):
+    """Collects ids, links and sources, and sees that every element is closed."""
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.ids, self.links, self.sources, self.text = [], [], [], [], ""
+
+    def handle_starttag(self, tag, attributes):
+        of = dict(attributes)
+        self.ids += [of["id"]] if "id" in of else []
+        self.links += [of["href"]] if tag == "a" else []
+        self.sources += [of["src"]] if "src" in of else []
+        if tag not in ("meta", "img"):
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.text += data
+
+
+@pytest.fixture(scope="module")
+def page(report):
+    page = _Page()
+    page.feed(report.files[0].read_text(encoding="utf-8"))
+    assert page.open == []
+    return page
+
+
+def test_the_page_needs_no_other_file(page, report):
+    html = report.files[0].read_text(encoding="utf-8")
+    assert page.sources
+    assert all(source.startswith("data:image/png;base64,") for source in page.sources)
+    assert "http" not in html
+    assert "<link" not in html
+    assert "<script" not in html
+
+
+def test_every_link_of_the_contents_has_its_section_once(page):
+    assert len(set(page.ids)) == len(page.ids)
+    assert {link.removeprefix("#") for link in page.links} <= set(page.ids)
+
+
+def test_the_page_says_where_its_numbers_come_from(page):
+    for fact in (
+        "evenroad report results.db",
+        "553 rows",
+        "1 (1 failed)",
+        "numpy",
+        "seeds",
+        "protocol",
+        "paper",
+    ):
+        assert fact in page.text
+
+
+def test_failures_are_listed_with_their_last_line(page):
+    assert "ValueError: <script> | 50%" in page.text
+    assert "1 failed" in page.text
+
+
+def test_the_page_has_tables_of_every_kind(page):
+    for title in (
+        "Table 1 of the paper beside ours",
+        "Independent measurement beside ours",
+        "Fair suite by generator",
+        "maze-1, k=10 symmetrised, connect: success [%]",
+        "difference from uniform [points]",
+        "difference from halton scrambled [points]",
+        "success of single sets [%]",
+        "N for 90 %",
+    ):
+        assert title in page.text
+
+
+def test_every_table_names_its_connection_rule(report):
+    titles = re.split(r"^### ", (report.files[0].parent / "tables.md").read_text("utf-8"), flags=re.M)[1:]
+    assert len(titles) > 10
+    for table in titles:
+        named = re.search(r"k=\d+(, \d+)* (symmetrised|earlier)", table.split("\n\n")[0])
+        assert named or "connection" in table or " rule " in table, table.splitlines()[0]
+
+
+def test_fair_problems_are_pooled_and_have_no_section_of_their_own(page):
+    assert not [each for each in page.ids if each.startswith("fair-balls")]
+
+
+def test_cells_as_csv_hold_every_cell_with_its_counts(report):
+    (path,) = [path for path in report.files if path.name == "cells.csv"]
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == len(report.analysis.cells) == 12 + 12 + 2
+    (uniform,) = [r for r in rows if (r["problem"], r["sampler"], r["n"]) == ("maze-1", "uniform", "128")]
+    assert (uniform["runs"], uniform["failures"], uniform["interval"]) == ("21", "1", "wilson")
+    assert float(uniform["success"]) == int(uniform["solved"]) / 21
+    assert (uniform["unit"], uniform["units"], uniform["sets"]) == ("runs", "21", "0")
+    assert math.isfinite(float(uniform["mean_seconds"]))
+
+
+def test_milestones_are_counted_as_the_paper_does_only_where_the_search_stops_as_its_planner(report):
+    (path,) = [path for path in report.files if path.name == "cells.csv"]
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(file))
+    for row in rows:
+        expected = str(float(row["mean_valid"]) + 3) if row["search"] == "stock" else ""
+        assert row["mean_paper_v"] == expected
+    assert {row["search"] for row in rows} == {"stock", "connect"}
+
+
+def test_pictures_are_files_as_well(report):
+    pictures = [path for path in report.files if path.suffix == ".png"]
+    assert {path.name for path in pictures} >= {"maze-1-k-10-symmetrised-connect.png", "point-sets.png"}
+    assert all(path.read_bytes().startswith(b"\x89PNG") for path in pictures)
+
+
+def test_the_same_store_gives_the_same_bytes(store, report, tmp_path):
+    again = write_report(store, tmp_path, command="evenroad report results.db")
+    assert [path.name for path in again.files] == [path.name for path in report.files]
+    for ours, theirs in zip(again.files, report.files, strict=True):
+        assert ours.read_bytes() == theirs.read_bytes(), ours.name
+
+
+@pytest.fixture
+def _without_pictures(monkeypatch):
+    """Pictures are most of the time, and not what these tests look at."""
+    monkeypatch.setattr(module, "draw_curves", lambda cells, title: new_figure(1, 1))
+    monkeypatch.setattr(module, "draw_scene", lambda problem: new_figure(1, 1))
+    monkeypatch.setattr(module, "draw_point_sets", lambda: new_figure(1, 1))
+
+
+@pytest.mark.usefixtures("_without_pictures")
+def test_a_report_can_be_of_some_problems_only(store, tmp_path):
+    report = write_report(store, tmp_path / "out", only=["maze-1"])
+    assert {cell.setting.problem for cell in report.analysis.cells} == {"maze-1"}
+    assert not (tmp_path / "out" / "expected.csv").exists()
+
+
+def test_an_unknown_problem_is_refused_with_those_there_are(store, tmp_path):
+    with pytest.raises(UnknownName, match="'maze-9'; known: fair-balls-3d-50, hypercube-legacy6, maze-1"):
+        write_report(store, tmp_path / "out", only=["maze-9"])
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_store_without_rows_is_refused(tmp_path):
+    with pytest.raises(NotAvailable, match="no rows"):
+        write_report(write_store(tmp_path / "empty.db", []), tmp_path / "out")
+
+
+@pytest.mark.parametrize("content", [b"", b"no database at all, but long enough to be looked at " * 9])
+def test_a_broken_store_is_refused(tmp_path, content):
+    (tmp_path / "broken.db").write_bytes(content)
+    with pytest.raises(BrokenFile):
+        write_report(tmp_path / "broken.db", tmp_path / "out")
+
+
+def test_a_missing_store_is_refused(tmp_path):
+    with pytest.raises(BrokenFile, match="no such store"):
+        write_report(tmp_path / "none.db", tmp_path / "out")
+
+
+def test_a_folder_that_cannot_be_made_is_refused(store, tmp_path):
+    (tmp_path / "file").write_text("mine")
+    for folder in (tmp_path / "no" / "such", tmp_path / "file"):
+        with pytest.raises(BrokenFile, match="folder"):
+            write_report(store, folder)
+    assert (tmp_path / "file").read_text() == "mine"
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
+def test_a_folder_without_permission_is_refused(store, tmp_path):
+    (tmp_path / "out").mkdir(mode=stat.S_IRUSR | stat.S_IXUSR)
+    with pytest.raises(BrokenFile):
+        write_report(store, tmp_path / "out")
+
+
+@pytest.mark.usefixtures("_without_pictures")
+@pytest.mark.parametrize("samplers", [("uniform",), ("lattice",), ("of another version",)])
+def test_one_sampler_and_one_run_are_enough(tmp_path, samplers):
+    rows = [(task("of another version", sampler), solved()) for sampler in samplers]
+    report = write_report(write_store(tmp_path / "a.db", rows), tmp_path / "out")
+    assert len(report.analysis.cells) == 1
+    assert "≤ 128" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.usefixtures("_without_pictures")
+def test_a_store_of_failures_only_is_reported(tmp_path):
+    rows = [(task(run=run), FAILED) for run in range(3)]
+    report = write_report(write_store(tmp_path / "a.db", rows), tmp_path / "out")
+    assert report.analysis.failures[0].runs == 3
+    assert "ValueError" in (tmp_path / "out" / "tables.md").read_text(encoding="utf-8")

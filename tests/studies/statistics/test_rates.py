@@ -1,0 +1,155 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy import stats
+
+from evenroad.errors import InvalidValue
+from evenroad_studies.statistics.rates import bonett_price, fisher_exact, holm, mcnemar_exact, wilson
+from evenroad_studies.statistics.units import spread_over_sets
+
+counts = st.integers(1, 400).flatmap(lambda runs: st.tuples(st.integers(0, runs), st.just(runs)))
+
+
+@given(counts)
+def test_wilson_agrees_with_scipy(counted):
+    solved, runs = counted
+    theirs = stats.binomtest(solved, runs).proportion_ci(method="wilson")
+    assert np.array(wilson(solved, runs)) == pytest.approx(np.array(theirs), abs=1e-12)
+
+
+def test_wilson_takes_whole_tables_at_once():
+    low, high = wilson([[0, 5], [10, 3]], 10)
+    assert low.shape == high.shape == (2, 2)
+    assert (low[0, 0], high[1, 0]) == (0.0, 1.0)
+    assert low[1, 1] == wilson(3, 10)[0]
+
+
+@pytest.mark.parametrize(("solved", "runs"), [(-1, 5), (6, 5), (0, 0), (0.5, 3), (math.nan, 3)])
+def test_impossible_counts_are_refused(solved, runs):
+    with pytest.raises(InvalidValue):
+        wilson(solved, runs)
+
+
+def _mcnemar_by_counting(first, second):
+    """Sum the chances of all splits that are no likelier than the one seen."""
+    n = first + second
+    chances = [math.comb(n, i) / 2**n for i in range(n + 1)]
+    return sum(chance for chance in chances if chance <= chances[first] * (1 + 1e-9))
+
+
+@given(st.integers(0, 60), st.integers(0, 60))
+def test_mcnemar_counts_the_splits_that_are_no_likelier(first, second):
+    assert mcnemar_exact(first, second) == pytest.approx(_mcnemar_by_counting(first, second), rel=1e-9)
+
+
+def test_mcnemar_agrees_with_scipy_on_a_whole_table():
+    first, second = np.array([0, 3, 40, 200]), np.array([0, 9, 41, 120])
+    theirs = [
+        1.0,
+        *(stats.binomtest(int(a), int(a + b)).pvalue for a, b in zip(first[1:], second[1:], strict=True)),
+    ]
+    assert mcnemar_exact(first, second) == pytest.approx(theirs, rel=1e-9)
+
+
+def test_the_paired_interval_is_the_published_formula():
+    """Worked by hand: 9 and 1 of 50 pairs give (10 - 2) / 52 +- 1.96 sqrt((12 / 52 - (8 / 52)^2) / 52)."""
+    interval = bonett_price(9, 1, 50)
+    half = 1.959963985 * math.sqrt((12 / 52 - (8 / 52) ** 2) / 52)
+    assert (interval.low, interval.high) == pytest.approx((8 / 52 - half, 8 / 52 + half))
+
+
+def test_the_paired_interval_covers_the_truth_about_95_times_in_100():
+    rng = np.random.default_rng(1)
+    only_first, only_second, pairs = 0.15, 0.05, 60
+    tables = rng.multinomial(pairs, [only_first, only_second, 1 - only_first - only_second], size=2000)
+    intervals = [bonett_price(int(b), int(c), pairs) for b, c, _ in tables]
+    covered = np.mean([each.low <= only_first - only_second <= each.high for each in intervals])
+    assert 0.93 <= covered <= 0.975
+
+
+def test_more_discordant_pairs_than_pairs_are_refused():
+    with pytest.raises(InvalidValue, match="pairs"):
+        bonett_price(6, 5, 10)
+
+
+def _fisher_by_counting(first, second):
+    """Sum the chances of all tables with these totals that are no likelier than the one seen."""
+    (a, m), (b, n) = first, second
+    total = a + b
+    chance = {
+        i: math.comb(m, i) * math.comb(n, total - i) / math.comb(m + n, total)
+        for i in range(max(0, total - n), min(m, total) + 1)
+    }
+    return sum(value for value in chance.values() if value <= chance[a] * (1 + 1e-7))
+
+
+small = st.integers(1, 60).flatmap(lambda runs: st.tuples(st.integers(0, runs), st.just(runs)))
+
+
+@given(small, small)
+def test_fisher_counts_the_tables_that_are_no_likelier(first, second):
+    assert fisher_exact(first, second) == pytest.approx(_fisher_by_counting(first, second), rel=1e-6)
+
+
+@given(counts, counts)
+def test_fisher_agrees_with_scipy(first, second):
+    table = [[first[0], second[0]], [first[1] - first[0], second[1] - second[0]]]
+    assert fisher_exact(first, second) == pytest.approx(stats.fisher_exact(table).pvalue, rel=1e-6, abs=1e-12)
+
+
+def test_fisher_takes_the_numbers_of_runs_of_a_large_benchmark():
+    assert fisher_exact((9330, 10_000), (933, 1000)) == pytest.approx(1.0)
+    assert 0 < fisher_exact((5280, 10_000), (400, 1000)) < 1e-12
+
+
+def test_fisher_reproduces_published_comparisons():
+    """Table 1 of Chahine et al.: MPMC 40 of 50 against Halton's 28, and 50 of 50 against uniform's 44."""
+    assert fisher_exact((40, 50), (28, 50)) == pytest.approx(0.018, abs=5e-4)
+    assert fisher_exact((50, 50), (44, 50)) == pytest.approx(0.027, abs=5e-4)
+
+
+def _holm_step_by_step(values):
+    order = sorted(range(len(values)), key=lambda i: values[i])
+    corrected, largest = [0.0] * len(values), 0.0
+    for place, i in enumerate(order):
+        largest = max(largest, min(1.0, (len(values) - place) * values[i]))
+        corrected[i] = largest
+    return corrected
+
+
+@given(st.lists(st.floats(0, 1), max_size=30))
+def test_holm_is_the_step_down_procedure(values):
+    assert holm(values) == pytest.approx(_holm_step_by_step(values))
+
+
+def test_holm_of_a_worked_example():
+    assert holm([0.01, 0.04, 0.03, 0.005]) == pytest.approx([0.03, 0.06, 0.06, 0.02])
+
+
+@pytest.mark.parametrize("values", [[math.nan], [1.5], [-0.1], [[0.5]]])
+def test_holm_refuses_what_is_no_p_value(values):
+    with pytest.raises(InvalidValue, match="p-values"):
+        holm(values)
+
+
+def test_spread_over_sets_of_a_worked_example():
+    spread = spread_over_sets([10, 0, 5], [10, 10, 10])
+    assert (spread.mean, spread.lowest, spread.highest) == (0.5, 0.0, 1.0)
+    assert spread.sd == pytest.approx(0.5)
+    assert spread.sd_by_chance == pytest.approx(math.sqrt(0.25 / 10))
+
+
+def test_sets_that_are_alike_spread_as_chance_says():
+    rng = np.random.default_rng(3)
+    runs = np.full(4000, 12)
+    spread = spread_over_sets(rng.binomial(runs, 0.4), runs)
+    assert spread.sd == pytest.approx(spread.sd_by_chance, rel=0.05)
+
+
+def test_one_set_has_no_spread():
+    assert spread_over_sets([3], [4]).sd == 0.0
+    with pytest.raises(InvalidValue):
+        spread_over_sets([], [])
