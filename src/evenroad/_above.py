@@ -11,6 +11,8 @@ from typing import Any
 
 FUNCTIONS = {
     "Scene": "evenroad.robot.scene_file:scene_of",
+    "ArmWorld.robot": "evenroad.robot.load:load_robot",
+    "ArmWorld.scene": "evenroad.robot.scene_file:load_scene",
     "Robot.limits": "evenroad.robot.robot_questions:joint_limits",
     "Robot.fk": "evenroad.robot.robot_questions:pose_of_link",
     "Robot.ik": "evenroad.robot.robot_questions:configurations_at",

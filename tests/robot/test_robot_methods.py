@@ -80,3 +80,29 @@ def test_an_error_says_what_to_write_instead(call, words):
 
 def test_a_robot_shows_itself_in_one_line():
     assert repr(ARM) == "Robot('ur5', 6 joints, 8 links)"
+
+
+def test_a_world_is_made_of_names_files_and_shapes(tmp_path):
+    named = er.ArmWorld("ur5", "box-reach")
+    assert named.fingerprint() == er.ArmWorld(ARM, er.load_scene("box-reach")).fingerprint()
+    assert er.ArmWorld(ARM).scene.obstacles == ()
+    assert er.ArmWorld("ur5", [er.Sphere(0.1, xyz=(0.4, 0, 0.4))]).dim == 6
+    for wrong in ((7, er.Scene()), (ARM, 7), ("ur6", er.Scene())):
+        with pytest.raises(er.EvenroadError):
+            er.ArmWorld(*wrong)
+    assert "\n" not in repr(named)
+
+
+def test_a_world_answers_of_one_configuration_as_of_many():
+    world = er.ArmWorld("ur5", "box-reach")
+    rows = np.concatenate([ARM.random(4, 40), er.configuration(ARM, "home")[np.newaxis]])
+    verdicts = [world.valid(row) for row in rows]
+    assert verdicts == world.valid(rows).tolist() and len(set(verdicts)) == 2  # noqa: PT018
+    assert all(type(each) is bool for each in verdicts)
+    assert [world.motion_valid(rows[-1], row) for row in rows] == world.motion_valid(
+        np.repeat(rows[-1:], len(rows), axis=0), rows
+    ).tolist()
+    assert world.valid("home") is world.valid(ARM.states["home"]) is True
+    assert world.explain("home") == "it is free"
+    with pytest.raises(er.InvalidValue, match="6 finite numbers"):
+        world.valid((0.0, 1.0))

@@ -378,7 +378,7 @@ def test_one_query_in_a_new_scene_goes_by_trees_and_many_along_the_roadmap(roadm
 
 
 def test_where_trees_do_not_grow_the_roadmap_is_asked_at_once(roadmap, monkeypatch):
-    monkeypatch.setattr("evenroad.robot.arm_world._chosen", lambda backend: "scalar")
+    monkeypatch.setattr("evenroad.robot.arm_world.chosen_backend", lambda backend: "scalar")
     result = roadmap.plan(box_scene(), [0.0, -1.5, 0.0], [2.0, -1.0, 1.0])
     assert (result.solved, result.planner) == (True, "robot roadmap")
 

@@ -96,7 +96,7 @@ def test_a_motion_too_long_for_one_batch_is_handed_out_in_parts():
 @pytest.mark.parametrize("length", [0.0, 0.05, 0.1, 0.101, 0.75])
 def test_states_are_those_of_the_protocol(length):
     asked = Asked()
-    world = FunctionWorld(BoxSpace([0.0], [1.0]), asked, 0.1)
+    world = FunctionWorld(BoxSpace([0.0], [1.0]), asked, 0.1, vectorised=True)
     assert world.motion_valid([[0.0]], [[length]])[0]
     n = max(1, math.ceil(length / 0.1))
     np.testing.assert_allclose(np.sort(asked.states[:, 0]), np.linspace(0.0, length, n + 1), atol=1e-15)
@@ -106,7 +106,7 @@ def test_neighbouring_states_are_at_most_the_resolution_apart_in_the_metric_of_t
     space = JointSpace([-math.pi, 0.0], [math.pi, 5.0], wrapping=[True, False], weights=[1.0, 3.0])
     asked = Asked()
     a, b = np.array([[3.0, 1.0]]), np.array([[-2.0, 2.0]])
-    FunctionWorld(space, asked, 0.07).motion_valid(a, b)
+    FunctionWorld(space, asked, 0.07, vectorised=True).motion_valid(a, b)
     along = asked.states[np.argsort(asked.states[:, 1])]
     steps = space.distance(along[:-1], along[1:])
     assert len(steps) == math.ceil(space.distance(a, b)[0] / 0.07)
@@ -116,7 +116,7 @@ def test_neighbouring_states_are_at_most_the_resolution_apart_in_the_metric_of_t
 def test_with_a_resolution_a_part_the_finer_division_counts():
     asked = Asked()
     space = Product([BoxSpace([0.0], [10.0]), Circle()])
-    world = FunctionWorld(space, asked, [0.5, 0.1])
+    world = FunctionWorld(space, asked, [0.5, 0.1], vectorised=True)
     for b, n in (([4.0, 0.0], 8), ([4.0, 1.05], 11), ([0.0, 0.35], 4)):
         asked.batches.clear()
         world.motion_valid([[0.0, 0.0]], [b])
@@ -125,14 +125,14 @@ def test_with_a_resolution_a_part_the_finer_division_counts():
 
 def test_a_blocked_middle_is_found_with_the_third_state():
     asked = Asked(lambda q: np.abs(q[:, 0] - 0.5) > 0.01)
-    world = FunctionWorld(SQUARE, asked, 0.001)
+    world = FunctionWorld(SQUARE, asked, 0.001, vectorised=True)
     assert not world.motion_valid([[0.0, 0.0]], [[1.0, 0.0]])[0]
     assert len(asked.states) == 3
 
 
 def test_a_blocked_end_is_found_before_any_state_between():
     asked = Asked(lambda q: q[:, 0] > 0.5)
-    world = FunctionWorld(SQUARE, asked, 0.001)
+    world = FunctionWorld(SQUARE, asked, 0.001, vectorised=True)
     assert not world.motion_valid([[0.0, 0.0]], [[1.0, 0.0]])[0]
     assert len(asked.states) == 1
     assert not world.motion_valid([[1.0, 0.0]], [[0.0, 0.0]])[0]
@@ -155,7 +155,7 @@ def test_motions_of_a_batch_share_the_calls():
     rng = np.random.default_rng(0)
     asked = Asked(outside_a_disk)
     a, b = rng.random((500, 2)), rng.random((500, 2))
-    FunctionWorld(SQUARE, asked, 0.01).motion_valid(a, b)
+    FunctionWorld(SQUARE, asked, 0.01, vectorised=True).motion_valid(a, b)
     assert len(asked.batches) <= 2 + math.ceil(math.log2(math.sqrt(2) / 0.01))
 
 
@@ -170,7 +170,7 @@ def test_a_corridor_as_a_function_gives_what_the_corridor_gives():
 
 def test_outside_the_space_nothing_is_free_and_the_function_is_not_asked():
     asked = Asked()
-    world = FunctionWorld(SQUARE, asked, 0.1)
+    world = FunctionWorld(SQUARE, asked, 0.1, vectorised=True)
     assert world.valid([[0.5, 0.5], [1.5, 0.5], [0.5, -1e9]]).tolist() == [True, False, False]
     assert asked.states.tolist() == [[0.5, 0.5]]
     assert not world.motion_valid([[0.5, 0.5]], [[0.5, 2.0]])[0]
@@ -188,7 +188,6 @@ def test_a_function_cannot_write_into_the_callers_configurations():
 @pytest.mark.parametrize(
     "answer",
     [
-        lambda q: True,
         lambda q: np.ones(len(q)),
         lambda q: np.ones(len(q), dtype=int),
         lambda q: np.ones((len(q), 1), dtype=bool),
@@ -280,7 +279,7 @@ def test_a_single_place_makes_no_difference_to_how_a_fingerprint_is_computed():
 
 def test_the_strict_check_of_a_path_asks_for_states_twenty_times_as_dense():
     asked = Asked()
-    world = FunctionWorld(BoxSpace([0.0], [10.0]), asked, 1.0)
+    world = FunctionWorld(BoxSpace([0.0], [10.0]), asked, 1.0, vectorised=True)
     path = np.array([[0.0], [3.0], [3.0], [5.0]])
     assert world.motion_valid(path[:-1], path[1:]).all()
     asked.batches.clear()
@@ -297,3 +296,49 @@ def test_a_wall_between_two_states_is_found_by_the_strict_check_alone():
     assert world.recheck(path).tolist() == [False, True, False]
     assert world.recheck(path[:1]).shape == (0,)
     assert (world.proof, isinstance(world, Rechecks)) == ("resolution", True)
+
+
+ONE_AT_A_TIME = {
+    "unpacks": lambda q: bool(sum(x * x for x in q) > 0.25),
+    "a scalar of all": lambda q: np.linalg.norm(q) > 0.5,
+    "compares coordinates": lambda q: q[0] > q[1],
+    "plain comparison": lambda q: (q > 0.25).all(),
+    "a chain of words": lambda q: q[0] > 0.5 or q[1] < 0.0,
+}
+
+
+@pytest.mark.parametrize("name", ONE_AT_A_TIME)
+@pytest.mark.parametrize("d", [2, 3])
+def test_a_function_of_one_configuration_needs_no_flag(name, d):
+    function, space = ONE_AT_A_TIME[name], BoxSpace([-1.0] * d, [1.0] * d)
+    told = FunctionWorld(space, lambda q: bool(function(q)), 0.05, vectorised=False)
+    for n in (1, d, d + 1, 40):
+        q = np.random.default_rng(n).uniform(-1, 1, (n, d))
+        world = FunctionWorld(space, function, 0.05)
+        expected = [bool(function(row)) for row in q]
+        assert world.valid(q).tolist() == told.valid(q).tolist() == expected
+        assert np.array_equal(world.motion_valid(q, q[::-1]), told.motion_valid(q, q[::-1]))
+        assert [world.valid(row) for row in q] == expected
+    assert "one configuration at a time" in repr(world)
+    assert "once a batch" in world.explain(np.full(d, -0.01))
+
+
+def test_a_function_that_takes_both_is_asked_about_many():
+    calls = []
+
+    def free(q):
+        calls.append(np.shape(q))
+        return np.hypot(q[..., 0], q[..., 1]) > 0.5
+
+    world = FunctionWorld([(-1, 1), (-1, 1)], free, 0.05)
+    assert world.valid(np.eye(2)).all()
+    assert calls == [(3, 2), (2, 2)]
+    assert "one configuration" not in repr(world)
+    assert world.valid((1, 0)) is True
+    assert world.motion_valid((-1, 0), (1, 0)) is False
+
+
+@pytest.mark.parametrize("space", ["abc", 3, [(0, 1, 2)], None, [(1, 0)]])
+def test_what_is_no_space_is_told_so(space):
+    with pytest.raises(InvalidValue):
+        FunctionWorld(space, np.isfinite, 0.1)

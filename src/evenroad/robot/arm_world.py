@@ -9,11 +9,12 @@ from functools import cached_property
 
 import numpy as np
 
-from evenroad._arrays import Bools, Floats, Ints
+from evenroad._arrays import Bools, Floats, Ints, set_fields
 from evenroad._checks import require_positive
 from evenroad._fingerprint import fingerprint_of
-from evenroad.errors import InvalidValue, NotAvailable, UnknownName
+from evenroad.errors import InvalidValue
 from evenroad.geometry.shapes import PointCloud
+from evenroad.robot.given import as_robot, as_scene
 from evenroad.robot.kernel import scalar
 from evenroad.robot.kernel.certify import motions_certified
 from evenroad.robot.kernel.lane_world import LaneWorld
@@ -21,13 +22,14 @@ from evenroad.robot.kernel.obstacles import obstacle_rows, refuse, tested_contac
 from evenroad.robot.kernel.robot_tables import RobotTables, enlarged
 from evenroad.robot.kernel.scene_surfaces import scene_surfaces
 from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
-from evenroad.robot.kernel.selftest import lanes_failure
+from evenroad.robot.kernel.selftest import chosen_backend, lanes_failure
 from evenroad.robot.kernel.surface_scalar import fixed_contact, scalar_check_address
 from evenroad.robot.known_robots import prepared
 from evenroad.robot.planes import with_planes
 from evenroad.robot.robot import Robot, within_scene
 from evenroad.robot.scene import Scene, limits_in_words
 from evenroad.robot.separated import apart
+from evenroad.robot.states import as_configuration
 from evenroad.robot.tree_sequences import shifted_cube_points
 from evenroad.robot.trees import MOST_MOTIONS, SECONDS, connect, shorten
 from evenroad.space import JointSpace
@@ -35,9 +37,8 @@ from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.space.joints import SLACK
 from evenroad.world.bisection import require_few_segments
 from evenroad.world.clearance import largest_kept
+from evenroad.world.one_or_many import OneOrMany, one_or_many
 from evenroad.world.protocol import Apart, Connection
-
-_BACKENDS = ("auto", "lanes", "scalar")
 
 MOST_CLEARANCE = 1.0
 """No robot of this world is asked to keep farther from obstacles [m]."""
@@ -48,8 +49,8 @@ twice that clear of contact, so that it refuses hardly a motion that touches not
 """
 
 
-@dataclass(frozen=True, eq=False)
-class ArmWorld:
+@dataclass(frozen=True, eq=False, repr=False)
+class ArmWorld(OneOrMany):
     """The configurations in which a robot touches neither a scene's obstacles nor itself.
 
     Configurations hold the values of the robot's group, in its order [rad or m].  Links are tested against each other
@@ -62,8 +63,9 @@ class ArmWorld:
 
     Parameters
     ----------
-    robot, scene : Robot, Scene
-        The robot, and what stands around it; where the scene has narrower ranges to plan in, the robot keeps to these.
+    robot, scene : Robot, Scene; or the names or files that `load_robot` and `load_scene` take
+        The robot, and what stands around it, by default nothing; where the scene has narrower ranges to plan in, the
+        robot keeps to these.
     resolution : float
         Largest Euclidean distance between neighbouring states of a motion, > 0 [rad].
     clearance : float
@@ -94,7 +96,7 @@ class ArmWorld:
     """
 
     robot: Robot
-    scene: Scene
+    scene: Scene = field(default_factory=Scene)
     resolution: float = 0.05
     backend: str = "auto"
     clearance: float = 0.0
@@ -105,13 +107,11 @@ class ArmWorld:
     lanes: LaneWorld = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "robot", within_scene(self.robot, self.scene))
-        object.__setattr__(self, "resolution", require_positive("resolution", self.resolution))
-        object.__setattr__(
-            self,
-            "clearance",
-            require_positive("clearance", self.clearance, or_zero=True, at_most=MOST_CLEARANCE),
-        )
+        scene = as_scene(self.scene)
+        apart = require_positive("clearance", self.clearance, or_zero=True, at_most=MOST_CLEARANCE)
+        resolution = require_positive("resolution", self.resolution)
+        robot = within_scene(as_robot(self.robot), scene)
+        set_fields(self, robot=robot, scene=scene, resolution=resolution, clearance=apart)
         for held in self.scene.attached:
             if held.name not in self.robot.holds:
                 raise InvalidValue(
@@ -144,7 +144,7 @@ class ArmWorld:
             robot_tables=of_robot,
             tables=tables,
             lanes=lanes,
-            backend=_chosen(self.backend),
+            backend=chosen_backend(self.backend),
         )
 
     @property
@@ -168,8 +168,17 @@ class ArmWorld:
         """How many spheres stand for the capsules where obstacles are concerned."""
         return sum(len(capsule.cover.places) for capsule in self.robot_tables.capsules)
 
+    def _row(self, q: object) -> Floats:
+        return as_configuration(self.robot, q, self.scene)  # type: ignore[arg-type]
+
+    def __repr__(self) -> str:
+        return f"ArmWorld({self.robot!r}, {self.scene!r})"
+
+    @one_or_many
     def valid(self, q: Floats) -> Bools:
         """Return which configurations, (n, dim), are within the limits, up to 1e-5, and touch nothing: (n,).
+
+        Of one configuration, (dim,), joint -> value, or a named state, a bool; `motion_valid`, too.
 
         Raises InvalidValue if `q` has another shape or an entry that is not finite.
         """
@@ -184,6 +193,7 @@ class ArmWorld:
 
         return configurations_free(self.lanes, configurations)
 
+    @one_or_many
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
 
@@ -247,12 +257,7 @@ class ArmWorld:
         return "trees"
 
     def connect(
-        self,
-        start: Floats,
-        goals: Floats,
-        *,
-        most_motions: int = MOST_MOTIONS,
-        seconds: float = SECONDS,
+        self, start: Floats, goals: Floats, *, most_motions: int = MOST_MOTIONS, seconds: float = SECONDS
     ) -> Connection:
         """Join a start, (dim,), to one of the goals, (g, dim), by motions that are proved free.
 
@@ -318,7 +323,7 @@ class ArmWorld:
 
     def explain(self, q: Floats) -> str:
         """Return in words why one configuration, (dim,), is not free: a joint outside its limits, or what touches."""
-        batch = as_batch("q", np.asarray(q, dtype=np.float64)[np.newaxis], self._space.dim)
+        batch = as_batch("q", self._row(q)[np.newaxis], self._space.dim)
         # To itself: brings wrapping joints into their ranges.
         row = self._space.interpolate(batch, batch, 0.0)[0]
         for name, value, low, high, period in zip(self.robot.group, row, *self.bounds, strict=True):
@@ -385,15 +390,3 @@ class ArmWorld:
             first, second = of_robot.capsule_pairs[other]
             return of_capsules[first].link, of_capsules[second].link
         return None
-
-
-def _chosen(backend: str) -> str:
-    """Return which of the two backends `backend` stands for here."""
-    if backend not in _BACKENDS:
-        raise UnknownName.among("backend", backend, _BACKENDS)
-    if backend == "scalar":
-        return "scalar"
-    failure = lanes_failure()
-    if failure is not None and backend == "lanes":
-        raise NotAvailable(f"the lanes do not work on this machine ({failure}); backend='scalar' does")
-    return "lanes" if failure is None else "scalar"

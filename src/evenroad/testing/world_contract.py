@@ -89,7 +89,7 @@ class WorldContract:
 
     def test_a_wrong_shape_is_refused(self) -> None:
         q = self.places()
-        for wrong in (q[0], np.hstack([q, q[:, :1]]), q[np.newaxis]):
+        for wrong in (np.hstack([q, q[:, :1]]), q[np.newaxis], np.append(q[0], 0.0)):
             with pytest.raises(InvalidValue):
                 self.world.valid(wrong)
             with pytest.raises(InvalidValue):

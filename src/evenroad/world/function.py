@@ -4,26 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, cast
 
 import numpy as np
 
 from evenroad._arrays import Bools, Floats, Ints, set_fields
-from evenroad._checks import as_row, require_positive
+from evenroad._checks import as_row, counted, require_positive
 from evenroad._fingerprint import fingerprint_of
-from evenroad.errors import InvalidValue, NotAvailable
-from evenroad.space import Product, Space
+from evenroad.errors import InvalidValue, NotAvailable, shown
+from evenroad.space import BoxSpace, Product, Space
 from evenroad.space.batch import as_batch, as_batch_pair
 from evenroad.world.bisection import MOST_SEGMENTS, between_ends, require_few_segments
+from evenroad.world.one_or_many import OneOrMany, one_or_many
 
 OUTSIDE = "it lies outside the bounds of the space"
 """Why a configuration is not free that the space does not contain."""
+ONE_BY_ONE = "asked about one configuration at a time: from (n, dim) to (n,) it would be asked once a batch"
+"""What is told of a function that takes one configuration."""
 FINER = 20
 """How many times as densely `FunctionWorld.recheck` looks at states."""
 
 
-@dataclass(frozen=True, eq=False)
-class FunctionWorld:
+@dataclass(frozen=True, eq=False, repr=False)
+class FunctionWorld(OneOrMany):
     """The configurations that a function calls free, and motions that are free at states close together.
 
     A motion is divided into ``n = ceil(distance / resolution)`` segments of one length and free if all n + 1 ends of
@@ -35,16 +38,18 @@ class FunctionWorld:
 
     Parameters
     ----------
-    space : Space
-        Where the configurations live.  What it does not contain is not free; the function is not asked.
+    space : Space, or a sequence of (low, high)
+        Where the configurations live: what it does not contain is not free, and the function is not asked.  Bounds,
+        one pair a coordinate, stand for a BoxSpace.
     is_valid : callable
-        Vectorised: from configurations, a read-only float64 (n, dim) array, to a bool array (n,).  Else: from
-        one configuration (dim,) to a bool.  Must give equal answers to equal configurations.
+        From configurations, a read-only float64 (n, dim) array, to a bool array (n,); or from one configuration (dim,)
+        to a bool, which costs a call each.  Must give equal answers to equal configurations.
     resolution : float, or a sequence of floats for a Product
         The largest distance between neighbouring states, > 0, in the space's metric.  Several: one for each
         part in the part's own metric; n is then the largest that any part asks for.
-    vectorised : bool
-        Whether `is_valid` takes many configurations at once.
+    vectorised : bool, optional
+        Whether `is_valid` takes many configurations at once.  Default: it is asked about many first, and about one
+        after the other where it has no answer to that.
     name : str, optional
         What the function tests, with all that its answers depend on, for example ``"cell 7, tool v2"``.  Only with a
         name can a roadmap of this world be saved with what is known: a function cannot be compared.
@@ -58,18 +63,26 @@ class FunctionWorld:
     space: Space
     is_valid: Callable[[Floats], Any]
     resolution: float | Sequence[float]
-    vectorised: bool = True
+    vectorised: bool | None = None
     name: str | None = None
 
     def __post_init__(self) -> None:
         if not callable(self.is_valid):
             raise InvalidValue(f"is_valid must be a function, got {self.is_valid!r}")
+        set_fields(self, space=_as_space(self.space))
         set_fields(self, resolution=_as_resolution(self.resolution, self.space))
 
+    def __repr__(self) -> str:
+        slow = "" if self.vectorised is not False else f"; {ONE_BY_ONE}"
+        what = f"{self._name}, {counted(self.dim, 'coordinate')}, resolution {self.resolution}"
+        return f"FunctionWorld({what}{slow})"
+
+    @one_or_many
     def valid(self, q: Floats) -> Bools:
         """Return which configurations, (n, dim), the space contains and the function calls free: (n,).
 
-        Raises InvalidValue if `q` is no such batch, or the function's answer is not of the kind described above.
+        Of one configuration, (dim,), a bool; `motion_valid`, too.  Raises InvalidValue if `q` is no such batch, or the
+        function's answer is not of the kind described above.
         """
         batch = as_batch("q", q, self.space.dim)
         free = self.space.contains(batch)
@@ -77,6 +90,7 @@ class FunctionWorld:
         self._clear_blocked(free, inside, batch[inside])
         return free
 
+    @one_or_many
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return which motions, from each row of `a` to that of `b`, two (m, dim) arrays, are free: (m,).
 
@@ -115,7 +129,8 @@ class FunctionWorld:
         """Return in words why one configuration, (dim,), is not free."""
         if not self.space.contains(np.asarray(q, dtype=np.float64)[np.newaxis])[0]:
             return OUTSIDE
-        return f"{self._name} does not call it free"
+        slow = "" if self.vectorised is not False else f" ({ONE_BY_ONE})"
+        return f"{self._name} does not call it free{slow}"
 
     @property
     def _name(self) -> str:
@@ -137,12 +152,30 @@ class FunctionWorld:
             return
         states = states.view()
         states.setflags(write=False)
+        if self.vectorised is None:
+            set_fields(self, vectorised=self._takes_many(states))
         if self.vectorised:
             free[owner[~self._ask(states)]] = False
             return
         for i, state in zip(owner, states, strict=True):
             if free[i]:
                 free[i] = self._ask_one(state)
+
+    def _takes_many(self, states: Floats) -> bool:
+        """Return whether the function answers for many at once; where it answers neither way, as if it did."""
+        # As many rows as columns would look right where a function of one row compares columns.
+        rows = np.repeat(states[:1], self.space.dim + 1, axis=0)
+        rows.setflags(write=False)
+        try:
+            answer = np.asarray(self.is_valid(rows))
+            if answer.shape == (len(rows),) and answer.dtype == np.bool_:
+                return True
+        except Exception:
+            pass
+        try:
+            return not isinstance(self.is_valid(states[0]), bool | np.bool_)
+        except Exception:
+            return True
 
     def _ask(self, states: Floats) -> Bools:
         answer = np.asarray(self.is_valid(states))
@@ -161,18 +194,33 @@ class FunctionWorld:
         return bool(answer)
 
 
-class TestedAtStates:
+class TestedAtStates(OneOrMany):
     """Base of worlds that test motions as :class:`FunctionWorld` does; a subclass sets `_states`."""
 
     _states: FunctionWorld
 
+    @one_or_many
     def valid(self, q: Floats) -> Bools:
         """Return which configurations, (n, dim), lie in the space and are free: (n,)."""
         return self._states.valid(q)
 
+    @one_or_many
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return which motions, two (m, dim) arrays, are free at all states: (m,)."""
         return self._states.motion_valid(a, b)
+
+
+def _as_space(space: Any) -> Space:
+    """Return a space, or the box of bounds (low, high), one pair a coordinate."""
+    if hasattr(space, "from_cube"):
+        return cast(Space, space)
+    try:
+        low, high = np.asarray(space, dtype=np.float64).reshape(-1, 2).T.tolist()
+    except (TypeError, ValueError):
+        raise InvalidValue(
+            f"space must be a Space, such as BoxSpace(low, high), or a list of (low, high), got {shown(space)}"
+        ) from None
+    return BoxSpace(low, high)
 
 
 def _as_resolution(resolution: object, space: Space) -> float | tuple[float, ...]:

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad._shared import once
+from evenroad.errors import NotAvailable, UnknownName
 from evenroad.geometry.shapes import Capsule
 from evenroad.robot.joint import Joint
 from evenroad.robot.kernel.lane_world import LaneWorld
@@ -14,6 +15,8 @@ from evenroad.robot.kernel.robot_tables import robot_tables
 from evenroad.robot.kernel.scene_tables import ArmTables, arm_tables
 from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle, Scene
+
+BACKENDS = ("auto", "lanes", "scalar")
 
 _STRAIGHT = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 _ROTATED = (0.8, -0.6, 0.0, 0.6, 0.8, 0.0, 0.0, 0.0, 1.0)
@@ -86,3 +89,15 @@ def _read_only(array: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """Return `array` as worlds pass theirs: code is compiled anew for each mix of read-only and other arrays."""
     array.setflags(write=False)
     return array
+
+
+def chosen_backend(backend: str) -> str:
+    """Return which of the two backends `backend` stands for here."""
+    if backend not in BACKENDS:
+        raise UnknownName.among("backend", backend, BACKENDS)
+    if backend == "scalar":
+        return "scalar"
+    failure = lanes_failure()
+    if failure is not None and backend == "lanes":
+        raise NotAvailable(f"the lanes do not work on this machine ({failure}); backend='scalar' does")
+    return "lanes" if failure is None else "scalar"

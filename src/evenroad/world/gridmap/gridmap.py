@@ -26,6 +26,7 @@ from evenroad.world.gridmap.kernel import (
     points_are_free,
 )
 from evenroad.world.gridmap.search import find_path, straighten
+from evenroad.world.one_or_many import OneOrMany, one_or_many
 from evenroad.world.protocol import Connection
 
 _SPREADS = (32, 96)
@@ -113,8 +114,8 @@ def _as_cells(name: str, value: Bools) -> Bools:
     return cells
 
 
-@dataclass(frozen=True, eq=False)
-class DiskWorld:
+@dataclass(frozen=True, eq=False, repr=False)
+class DiskWorld(OneOrMany):
     """A disk of one radius on one map: what `GridMap.world` returns.
 
     Obstacles are the closed squares of the occupied cells and everything outside the map; a disk is free if its centre
@@ -142,10 +143,19 @@ class DiskWorld:
         """The map's rectangle, in map units."""
         return self.grid.space
 
+    def __repr__(self) -> str:
+        rows, cols = self.grid.occupied.shape
+        return f"DiskWorld(radius {self.radius:g}, {rows} x {cols} cells)"
+
+    @one_or_many
     def valid(self, q: Floats) -> Bools:
-        """Return whether the disk is free at each map point, (n, 2) -> (n,); False outside the map."""
+        """Return whether the disk is free at each map point, (n, 2) -> (n,); False outside the map.
+
+        Of one point, (2,), a bool; `motion_valid`, too.
+        """
         return points_are_free(as_batch("q", q, 2), self._tables)
 
+    @one_or_many
     def motion_valid(self, a: Floats, b: Floats) -> Bools:
         """Return whether the disk can move straight from each row of `a` to that of `b`: two (m, 2) -> (m,)."""
         return motions_are_free(*as_batch_pair(a, b, 2), self._tables)
