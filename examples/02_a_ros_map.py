@@ -16,7 +16,7 @@ Path("office.yaml").write_text(
     "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
 )
 
-world = er.load_map("office.yaml").world(robot_radius=0.25, clearance=0.05)
+world = er.load_map("office.yaml").world(radius=0.25, clearance=0.05)
 start, goal = world.space.from_cube(np.array([[0.5, 0.1], [0.1, 0.9]]))
 result = er.plan(world, start, goal, er.draw("even", n=256, d=2))
 print(result.status, f"{result.cost:.2f} m")

@@ -17,7 +17,7 @@ def answer(
     make: Make, grid: Any, start: Any, goal: Any, radius: float, stamp: tuple[int, int]
 ) -> tuple[Any, str]:
     """Return a nav_msgs/Path from one geometry_msgs/Pose to another on an OccupancyGrid, or None; and why."""
-    world = grid_map(grid).world(robot_radius=radius)
+    world = grid_map(grid).world(radius=radius)
     ends = [(pose.position.x, pose.position.y) for pose in (start, goal)]
     result = er.find_path(world, *ends)
     if result.path is None:

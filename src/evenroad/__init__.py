@@ -16,11 +16,11 @@ __version__ = "0.1.0"
 _compiled.provide_cache()
 
 
-def _read_homes() -> dict[str, str]:
-    """Return the module of each public name: the lines ``from MODULE import NAME as NAME`` of the stub."""
+def _read_homes() -> dict[str, tuple[str, str]]:
+    """Return where each public name is: module and name there, of the lines ``from MODULE import X as NAME``."""
     with open(__file__.removesuffix(".py") + ".pyi", encoding="utf-8") as stub:
         words = [line.split() for line in stub if line.startswith("from ")]
-    return {name: module for _, module, _, name, *_ in words}
+    return {name: (module, there) for _, module, _, there, _, name, *_ in words}
 
 
 _HOMES = _read_homes()
@@ -29,11 +29,15 @@ __all__ = ["__version__", *_HOMES]
 
 def __getattr__(name: str) -> Any:
     if name not in _HOMES:
-        raise AttributeError(f"module 'evenroad' has no attribute {name!r}")
-    home = _HOMES[name]
+        from difflib import get_close_matches
+
+        near = get_close_matches(name, _HOMES, 1)
+        hint = f"; did you mean {near[0]}?" if near else ""
+        raise AttributeError(f"module 'evenroad' has no attribute {name!r}{hint}")
+    home, there = _HOMES[name]
     if home == "evenroad":
-        return importlib.import_module(f"evenroad.{name}")
-    return getattr(importlib.import_module(home), name)
+        return importlib.import_module(f"evenroad.{there}")
+    return getattr(importlib.import_module(home), there)
 
 
 def __dir__() -> list[str]:

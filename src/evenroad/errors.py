@@ -77,8 +77,13 @@ class UnknownName(EvenroadError, ValueError):
 
     @classmethod
     def among(cls, what: str, name: object, known: object) -> "UnknownName":
-        """Build the usual sentence: ``unknown sampler 'x'; known: a, b, c``."""
-        return cls(f"unknown {what} {shown(name)}; known: {', '.join(map(str, sorted(known)))}")  # type: ignore[call-overload]
+        """Build the usual sentence: ``unknown sampler 'evn'; did you mean 'even'? known: a, b, c``."""
+        from difflib import get_close_matches
+
+        names = [str(each) for each in sorted(known)]  # type: ignore[call-overload]
+        near = get_close_matches(name, names, 1) if isinstance(name, str) and len(name) < SHOWN else []
+        hint = f"did you mean {near[0]!r}? " if near else ""
+        return cls(f"unknown {what} {shown(name)}; {hint}known: {', '.join(names)}")
 
 
 class NotAvailable(EvenroadError, LookupError):

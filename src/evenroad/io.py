@@ -8,6 +8,7 @@ import platform
 from collections.abc import Sequence
 from dataclasses import asdict
 from importlib import metadata
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,8 +16,9 @@ import numpy.typing as npt
 
 from evenroad import __version__
 from evenroad._arrays import set_fields
+from evenroad._checks import require_known
 from evenroad._files import atomic_write, read_json_file
-from evenroad.errors import BrokenFile
+from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.points import Origin
 from evenroad.roadmap import PlanResult, Status
 
@@ -51,6 +53,23 @@ def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
         "origin": asdict(result.origin),
         "versions": versions(),
     }
+
+
+def save_result(result: PlanResult, path: str | os.PathLike[str]) -> None:
+    """Do what :meth:`PlanResult.save` does."""
+    suffix = Path(path).suffix.lower()
+    require_known(f"kind of file for a plan, {os.fspath(path)!r}: suffix", suffix, (".json", ".csv", ".png"))
+    if suffix == ".png":
+        result.plot(path)
+    elif suffix == ".json":
+        save_json(path, plan_record(result, {}))
+    elif result.path is None:
+        raise InvalidValue(f"there is no path that could be saved: {result.message}")
+    else:
+        count = result.path.shape[1]
+        robot = getattr(result.world, "robot", None)
+        names = ("x", "y") if count == 2 else tuple(f"q{i}" for i in range(count))
+        save_path_csv(path, result.path, names if robot is None else robot.joint_names)
 
 
 def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]:

@@ -6,6 +6,9 @@
 >>> Korobov(d=3, n=64, rng=1).random(10).shape
 (10, 3)
 
+SciPy's own engines, measures and `scale` are handed on as they are: ``evenroad.qmc`` takes the place of
+``scipy.stats.qmc``.
+
 Threads may share an engine: each point is handed out once, in its order, to whoever asks first.
 """
 
@@ -14,7 +17,14 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from scipy.stats.qmc import QMCEngine
+from scipy.stats.qmc import Halton as Halton
+from scipy.stats.qmc import LatinHypercube as LatinHypercube
+from scipy.stats.qmc import PoissonDisk as PoissonDisk
+from scipy.stats.qmc import QMCEngine as QMCEngine
+from scipy.stats.qmc import Sobol as Sobol
+from scipy.stats.qmc import discrepancy as discrepancy
+from scipy.stats.qmc import geometric_discrepancy as geometric_discrepancy
+from scipy.stats.qmc import scale as scale
 
 from evenroad._arrays import Floats
 from evenroad._checks import require_count

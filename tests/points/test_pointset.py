@@ -154,10 +154,27 @@ def test_a_missing_file_is_refused_by_name(tmp_path):
         load_points(tmp_path / "nothing.npz")
 
 
-def test_a_plain_array_is_refused(tmp_path):
-    np.save(tmp_path / "array.npy", np.zeros((2, 2)))
+def test_a_plain_array_under_another_name_is_refused(tmp_path):
+    with open(tmp_path / "array.npz", "wb") as file:
+        np.save(file, np.zeros((2, 2)))
     with pytest.raises(BrokenFile, match="plain array"):
-        load_points(tmp_path / "array.npy")
+        load_points(tmp_path / "array.npz")
+
+
+@pytest.mark.parametrize("name", ["set.npz", "set.npy", "set.csv"])
+def test_points_save_themselves_and_are_read_again(tmp_path, name):
+    points = draw("halton", 20, 3, rng=1)
+    points.save(tmp_path / name)
+    again = load_points(tmp_path / name)
+    assert np.array_equal(again.points, points.points)
+    assert (again.origin == points.origin) is (name == "set.npz")
+    assert np.array_equal([row for row in again], points[:])  # noqa: C416
+    assert again.shape == (20, 3)
+
+
+def test_a_suffix_that_is_not_known_is_told(tmp_path):
+    with pytest.raises(UnknownName, match=r"\.csv, \.npy, \.npz"):
+        draw("halton", 20, 3).save(tmp_path / "set.txt")
 
 
 def test_a_truncated_file_is_refused(saved):

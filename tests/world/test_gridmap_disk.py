@@ -43,7 +43,7 @@ def test_the_text_of_an_error_names_the_place():
     world = GridMap(scattered()).world(2.5)
     q = world.space.from_cube(np.random.default_rng(0).random((10, 2)))
     with pytest.raises(InvalidValue, match="shape"):
-        world.valid(q[0])
+        world.valid(np.append(q[0], 1.0))
     with pytest.raises(InvalidValue, match="length"):
         world.motion_valid(q[:3], q[:4])
     wrong = q.copy()

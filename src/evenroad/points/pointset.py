@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import hashlib
+import os
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from numbers import Real
@@ -12,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from evenroad import __version__
+from evenroad._above import above
 from evenroad._arrays import Floats, set_fields
 from evenroad.errors import InvalidValue, shown
 
@@ -72,6 +75,27 @@ class PointSet:
         return self.points.shape[1]
 
     @property
+    def shape(self) -> tuple[int, int]:
+        """The number of points and the dimension, as of the array."""
+        return self.n, self.d
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the points to a file, atomically: ``.npz``, with their origin; ``.npy`` or ``.csv``, the bare array.
+
+        Raises UnknownName for another suffix; BrokenFile if the file cannot be written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import evenroad as er
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     er.draw("even", 512, 6).save(f"{folder}/set.npz")
+        ...     er.load_points(f"{folder}/set.npz").shape
+        (512, 6)
+        """
+        above("PointSet.save")(self, path)
+
+    @property
     def hash(self) -> str:
         """SHA-256 (hex) of shape and coordinates as little-endian float64: the identity of the set."""
         digest = hashlib.sha256(f"{self.n}x{self.d}:".encode())
@@ -84,6 +108,12 @@ class PointSet:
 
     def __len__(self) -> int:
         return self.n
+
+    def __getitem__(self, index: Any) -> Any:
+        return self.points[index]
+
+    def __iter__(self) -> Iterator[Floats]:
+        return iter(self.points)
 
     def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
         return np.array(self.points, dtype=dtype, copy=True) if copy else np.asarray(self.points, dtype=dtype)

@@ -175,7 +175,6 @@ def _with_path(
         cost=length,
         milestone_cost=raw_cost,
         counts=counts,
-        world=world,
     )
     return require_ends(world.space, result)
 
@@ -250,6 +249,7 @@ def _result(attempt: Attempt, status: Status, message: str, **more: Any) -> Plan
         links=attempt.query.links,
         planner=attempt.planner,
         seconds=attempt.watch.seconds,
+        world=attempt.world,
         **more,
     )
 

@@ -13,6 +13,7 @@ from evenroad._arrays import Floats, Ints32
 from evenroad.points.pointset import Origin
 from evenroad.roadmap.certificate import Certificate
 from evenroad.roadmap.notebook import as_html
+from evenroad.roadmap.result_methods import ResultMethods
 from evenroad.space import Space
 from evenroad.world import MeasuresPaths, World
 
@@ -64,8 +65,8 @@ class Stage:
     seconds: float = field(default=0.0, compare=False)
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class PlanResult:
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
+class PlanResult(ResultMethods):
     """The answer to one query.
 
     Attributes
@@ -119,7 +120,7 @@ class PlanResult:
     roadmap : SearchedGraph or None
         What was searched; None when start or goal is invalid, and where a reused roadmap was asked.
     world : World or None
-        Where the path was found; None without a path, or in a plan that was read from a file.
+        Where it was planned; None in a plan that was read from a file.
     """
 
     status: Status

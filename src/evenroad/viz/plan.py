@@ -29,13 +29,19 @@ DPI = 130
 
 def save_plan_picture(path: str | os.PathLike[str], result: PlanResult, world: DiskWorld) -> None:
     """Draw a plan as PNG, atomically; see :func:`draw_plan`."""
+    figure = plan_figure(result, world)
+    with atomic_write(path) as file:
+        figure.savefig(file, format="png")
+
+
+def plan_figure(result: PlanResult, world: DiskWorld) -> Figure:
+    """Return the picture of a plan as a figure of matplotlib."""
     low, high = _shown(result, world)
     width, height = LONG_SIDE_INCHES * (high - low) / (high - low).max()
     figure = Figure(figsize=(max(4.0, width), max(3.0, height) + 0.8), dpi=DPI, layout="constrained")
     FigureCanvasAgg(figure)
     draw_plan(figure.add_subplot(), result, world)
-    with atomic_write(path) as file:
-        figure.savefig(file, format="png")
+    return figure
 
 
 def draw_plan(axes: Axes, result: PlanResult, world: DiskWorld) -> None:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import math
+import os
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
+from evenroad._above import above
 from evenroad._arrays import Bools, Floats, set_fields
 from evenroad._checks import require_positive
 from evenroad.errors import InvalidValue
@@ -37,7 +39,7 @@ _SMALLEST_RADIUS = 1e-150
 """In pixels: its square is still above 0, so that a disk of any size touches what its centre lies on."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, init=False, repr=False)
 class GridMap:
     """Which cells of a map are occupied, and where the map lies; InvalidValue if the arrays are not of one size.
 
@@ -49,25 +51,67 @@ class GridMap:
         Where the cells lie; by default that of a bare image of this size: x right, y down, unit = pixel.
     unknown : array_like of bool, shape (rows, cols), optional
         Cells of which a map says nothing; whether they are obstacles, `occupied` says.  Default: none.
+    resolution : float, optional
+        In place of `frame`: side of a cell, > 0 [m], of a map as ROS has them, y up, the origin in the lower left.
     """
 
     occupied: Bools
-    frame: MapFrame = None  # type: ignore[assignment]
-    unknown: Bools = None  # type: ignore[assignment]
+    frame: MapFrame
+    unknown: Bools
 
-    def __post_init__(self) -> None:
-        occupied = _as_cells("occupied", self.occupied)
+    def __init__(
+        self,
+        occupied: Bools,
+        frame: MapFrame | None = None,
+        unknown: Bools | None = None,
+        *,
+        resolution: float | None = None,
+    ) -> None:
+        occupied = _as_cells("occupied", occupied)
         rows, cols = occupied.shape
-        unknown = np.zeros_like(occupied) if self.unknown is None else _as_cells("unknown", self.unknown)
+        unknown = np.zeros_like(occupied) if unknown is None else _as_cells("unknown", unknown)
         if unknown.shape != (rows, cols):
             raise InvalidValue(f"unknown has shape {unknown.shape}, but occupied {(rows, cols)}")
-        frame = MapFrame(rows=rows, cols=cols) if self.frame is None else self.frame
+        if frame is not None and resolution is not None:
+            raise InvalidValue("a map must have one of frame and resolution, got both")
+        if frame is None and resolution is not None:
+            frame = MapFrame(rows=rows, cols=cols, resolution=resolution, y_up=True)
+        frame = frame or MapFrame(rows=rows, cols=cols)
         if (frame.rows, frame.cols) != (rows, cols):
             raise InvalidValue(
                 f"the frame is for {frame.rows} rows and {frame.cols} columns,"
                 f" but occupied has {rows} and {cols}"
             )
         set_fields(self, occupied=occupied, unknown=unknown, frame=frame)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        return self.frame.rows, self.frame.cols
+
+    @property
+    def resolution(self) -> float:
+        """Side of a cell, in map units."""
+        return self.frame.resolution
+
+    @property
+    def origin(self) -> tuple[float, float]:
+        """Where the map begins, in map units: see :class:`MapFrame`."""
+        return self.frame.origin
+
+    @property
+    def bounds(self) -> tuple[Floats, Floats]:
+        """Least and largest x and y of the map, (2,) each, in map units."""
+        corners = self.space.from_cube(np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]]))
+        return corners.min(axis=0), corners.max(axis=0)
+
+    def plot(self, path: str | os.PathLike[str] | None = None) -> Any:
+        """Return a picture of the map, a PIL image of a pixel a cell or more; and save it where a ``.png`` is named."""
+        return above("GridMap.plot")(self, path)
+
+    def __repr__(self) -> str:
+        rows, cols = self.shape
+        return f"GridMap({rows} x {cols} cells of {self.resolution:g}, {self.occupied.mean():.0%} occupied)"
 
     @property
     def space(self) -> Rectangle:
@@ -94,14 +138,14 @@ class GridMap:
         inside = slice(top, bottom), slice(left, right)
         return GridMap(self.occupied[inside], frame, self.unknown[inside])
 
-    def world(self, robot_radius: float, clearance: float = 0.0) -> DiskWorld:
-        """Return the world of a disk of `robot_radius`, > 0, that keeps a `clearance`, >= 0, from every obstacle.
+    def world(self, radius: float, clearance: float = 0.0) -> DiskWorld:
+        """Return the world of a disk of `radius`, > 0, that keeps a `clearance`, >= 0, from every obstacle.
 
         Both are in map units, pixels for a bare image, metres for a ROS map; else InvalidValue.
         """
-        radius = require_positive("robot_radius", robot_radius)
+        own = require_positive("radius", radius)
         room = require_positive("clearance", clearance, or_zero=True)
-        return DiskWorld(self, require_positive("robot_radius + clearance", radius + room), room)
+        return DiskWorld(self, require_positive("radius + clearance", own + room), room)
 
 
 def _as_cells(name: str, value: Bools) -> Bools:

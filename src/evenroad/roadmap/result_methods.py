@@ -1,0 +1,110 @@
+"""What one does with a plan: look at it, keep it, walk along it, drive it."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any
+
+from evenroad._above import above
+from evenroad._arrays import Floats
+from evenroad.errors import InvalidValue
+from evenroad.space.path import resample
+from evenroad.world import World
+
+
+class ResultMethods:
+    """Methods of :class:`evenroad.PlanResult`."""
+
+    if TYPE_CHECKING:
+        status: Any
+        message: str
+        path: Floats | None
+        cost: float | None
+        proof: str | None
+        seconds: dict[str, float]
+        world: World | None
+
+    def resample(self, step: float) -> Floats:
+        """Return states along the path, (s, dim), at most `step` apart in the metric of the space; waypoints stay.
+
+        Raises InvalidValue if `step` is not a finite number > 0, or there is no path.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import evenroad as er
+        >>> world = er.GridMap(np.zeros((20, 30), dtype=bool)).world(2)
+        >>> er.find_path(world, (3, 3), (27, 17)).resample(0.5).shape
+        (57, 2)
+        """
+        path, world = self._required("resampled")
+        return resample(path, world.space, step)[0]
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the plan to a file, atomically: ``.json``, all of it; ``.csv``, the waypoints; ``.png``, a picture.
+
+        Raises UnknownName for another suffix; InvalidValue if waypoints are asked for where there is no path;
+        BrokenFile if the file cannot be written.
+        """
+        above("PlanResult.save")(self, path)
+
+    def plot(self, path: str | os.PathLike[str] | None = None, *, world: World | None = None) -> Any:
+        """Return a picture of the plan, a PIL image, which a notebook shows; and save it where a file is named.
+
+        Parameters
+        ----------
+        path : str or path-like, optional
+            A ``.png``.
+        world : World, optional
+            Default: the one that the plan was made in.  Disks on maps and arms can be drawn.
+
+        Returns
+        -------
+        PIL.Image.Image
+
+        Raises
+        ------
+        NotAvailable
+            If it is another world, or none is known.
+        BrokenFile
+            If the file cannot be written.
+        """
+        return above("PlanResult.plot")(self, path, world)
+
+    def trajectory(self, limits: Any = None, *, speed: float = 1.0, **options: Any) -> Any:
+        """Return the path with times: a :class:`evenroad.trajectory.Trajectory`, checked as it is driven.
+
+        Parameters
+        ----------
+        limits : Limits, or the file of a ``joint_limits.yaml``, optional
+            Default: those of the robot.  Of other worlds they have to be given.
+        speed : float
+            0 < speed <= 1: takes ``1 / speed`` as long as at full speed.
+        **options
+            As :func:`evenroad.trajectory.arm_trajectory` takes them.
+
+        Raises
+        ------
+        InvalidValue
+            If there is no path, or there are no limits; else as :func:`evenroad.trajectory.make_trajectory`.
+        """
+        path, world = self._required("driven")
+        return above("PlanResult.trajectory")(world, path, limits, speed=speed, **options)
+
+    def _required(self, how: str) -> tuple[Floats, World]:
+        """Return path and world, or raise InvalidValue: without them a plan cannot be `how`."""
+        if self.path is None:
+            raise InvalidValue(f"there is no path that could be {how}: {self.message}")
+        if self.world is None:
+            raise InvalidValue(f"this plan does not know its world, without which it cannot be {how}")
+        return self.path, self.world
+
+    def __repr__(self) -> str:
+        parts = [str(self.status)]
+        if self.path is not None:
+            parts += [f"{len(self.path)} waypoints", str(self.proof)]
+        if self.cost is not None:
+            parts.insert(1, f"cost {self.cost:.4g}")
+        took = sum(self.seconds.values())
+        parts.append(f"{took:.3g} s" if took >= 1.0 else f"{1e3 * took:.3g} ms")
+        return f"{type(self).__name__}({', '.join(parts)})"

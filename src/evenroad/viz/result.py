@@ -1,0 +1,62 @@
+"""Pictures of plans, whatever they were planned for, and of maps."""
+
+from __future__ import annotations
+
+import os
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+from evenroad._files import atomic_write
+from evenroad.errors import NotAvailable
+from evenroad.roadmap import PlanResult
+from evenroad.robot import ArmWorld
+from evenroad.viz.arm import draw_arm_plan
+from evenroad.viz.plan import plan_figure
+from evenroad.world.gridmap import DiskWorld, GridMap
+
+_FREE, _UNKNOWN, _OCCUPIED = 254, 205, 40
+"""Shades of cells."""
+_LONG_SIDE = 600
+"""Pixels of the long side of a map's picture, where it has fewer cells."""
+
+
+def plot_result(
+    result: PlanResult, path: str | os.PathLike[str] | None = None, world: Any = None
+) -> Image.Image:
+    """Return what :meth:`PlanResult.plot` does."""
+    world = result.world if world is None else world
+    if isinstance(world, DiskWorld):
+        file = BytesIO()
+        plan_figure(result, world).savefig(file, format="png")
+        picture: Image.Image = Image.open(file)
+        picture.load()
+    elif isinstance(world, ArmWorld):
+        picture = draw_arm_plan(result, world)
+    else:
+        known = (
+            "its world is not known: plot(world=...)"
+            if world is None
+            else f"its world is a {type(world).__name__}"
+        )
+        raise NotAvailable(f"plans of disks on maps and of arms can be drawn, but of this one {known}")
+    return _kept(picture, path)
+
+
+def plot_map(gridmap: GridMap, path: str | os.PathLike[str] | None = None) -> Image.Image:
+    """Return what :meth:`GridMap.plot` does."""
+    shades = np.where(gridmap.unknown, _UNKNOWN, np.where(gridmap.occupied, _OCCUPIED, _FREE)).astype(
+        np.uint8
+    )
+    times = max(1, _LONG_SIDE // max(gridmap.shape))
+    return _kept(Image.fromarray(np.kron(shades, np.ones((times, times), dtype=np.uint8))), path)
+
+
+def _kept(picture: Image.Image, path: str | os.PathLike[str] | None) -> Image.Image:
+    """Return a picture, saved where a file is named."""
+    if path is not None:
+        with atomic_write(path) as out:
+            picture.save(out, format="png", compress_level=1)
+    return picture

@@ -1,0 +1,93 @@
+"""What one does with a plan: look at it, keep it, walk along it, drive it."""
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import evenroad as er
+from evenroad.io import load_plan
+from evenroad.trajectory.limits import Limits
+
+CELLS = np.zeros((40, 60), dtype=bool)
+CELLS[:25, 30:34] = True
+WORLD = er.GridMap(CELLS, resolution=0.1).world(radius=0.2)
+RESULT = er.find_path(WORLD, (0.5, 3.5), (5.5, 3.5))
+BLOCKED = er.find_path(WORLD, (3.2, 3.5), (5.5, 3.5))
+
+
+def test_states_along_the_path_lie_on_it_and_close_together():
+    states = RESULT.resample(0.05)
+    gaps = np.linalg.norm(np.diff(states, axis=0), axis=1)
+    assert gaps.max() <= 0.05 * (1 + 1e-9)
+    assert gaps.sum() == pytest.approx(RESULT.cost)
+    assert {tuple(row) for row in RESULT.path} <= {tuple(row) for row in states}
+
+
+def test_what_is_saved_is_read_again(tmp_path):
+    for name in ("way.json", "way.csv", "way.png"):
+        RESULT.save(tmp_path / name)
+    again, _ = load_plan(tmp_path / "way.json")
+    assert np.array_equal(again.path, RESULT.path)
+    assert again.cost == RESULT.cost
+    rows = np.loadtxt(tmp_path / "way.csv", delimiter=",", skiprows=1)
+    assert np.array_equal(rows, RESULT.path)
+    assert np.array_equal(np.asarray(Image.open(tmp_path / "way.png")), np.asarray(RESULT.plot()))
+
+
+def test_a_plan_that_failed_is_drawn_too():
+    assert BLOCKED.path is None
+    assert BLOCKED.plot().size > (100, 100)
+
+
+def test_a_path_gets_times_by_the_limits_that_are_given():
+    limits = Limits((1.0, 1.0), (2.0, 2.0))
+    fast, slow = RESULT.trajectory(limits), RESULT.trajectory(limits, speed=0.5)
+    assert slow.duration == pytest.approx(2 * fast.duration, rel=0.02)
+    assert fast.duration >= np.abs(np.diff(RESULT.path[[0, -1]], axis=0)).max()
+
+
+def test_the_path_of_an_arm_has_the_limits_of_its_robot():
+    world = er.ArmWorld("ur5")
+    result = er.find_path(world, (0, -1.5, 0, -1.5, 0, 0), (1, -1.5, 0.5, -1.5, 0, 0))
+    trajectory = result.trajectory(speed=0.3)
+    assert trajectory.names[:6] == world.robot.joint_names
+    assert trajectory.duration > 0.0
+
+
+def test_a_result_is_one_line():
+    assert repr(RESULT).startswith(
+        f"PlanResult(solved, cost {RESULT.cost:.4g}, {len(RESULT.path)} waypoints, exact, "
+    )
+    assert repr(BLOCKED).startswith("PlanResult(start_invalid, ")
+    assert "\n" not in repr(RESULT) + repr(WORLD) + repr(WORLD.grid)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: BLOCKED.resample(0.1), "no path"),
+        (lambda: BLOCKED.trajectory(), "no path"),
+        (lambda: BLOCKED.save("way.csv"), "no path"),
+        (lambda: RESULT.save("way.txt"), "known: .csv, .json, .png"),
+        (lambda: RESULT.resample(0), "step must be"),
+        (lambda: RESULT.trajectory(), "Limits(velocity"),
+        (lambda: RESULT.plot(world=3), "a int"),
+    ],
+)
+def test_what_cannot_be_done_is_told(call, words, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(er.EvenroadError) as error:
+        call()
+    assert words in str(error.value)
+
+
+def test_a_map_of_an_array_lies_as_ros_has_them():
+    grid = WORLD.grid
+    low, high = grid.bounds
+    assert grid.shape == (40, 60)
+    assert grid.resolution == 0.1
+    assert low.tolist() == [0, 0] == list(grid.origin)
+    assert np.allclose(high, (6, 4))
+    assert not WORLD.valid((3.2, 3.5))
+    assert WORLD.valid((3.2, 0.5))
+    assert np.asarray(grid.plot()).shape == (400, 600)
