@@ -21,6 +21,7 @@ BASE = {
 MAY_IMPORT = {
     "points": BASE,
     "space": BASE,
+    "spaces": BASE | {"space"},
     "geometry": BASE,
     "world": BASE | {"space", "geometry"},
     "roadmap": BASE | {"points", "space", "world"},

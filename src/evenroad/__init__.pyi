@@ -1,5 +1,5 @@
 from evenroad import qmc as qmc
-from evenroad import space as spaces  # noqa: F401 - named as it is asked for
+from evenroad import spaces as spaces
 from evenroad.arms import plan_arm as plan_arm
 from evenroad.errors import BrokenFile as BrokenFile
 from evenroad.errors import EvenroadError as EvenroadError
