@@ -77,13 +77,13 @@ class UnknownName(EvenroadError, ValueError):
 
     @classmethod
     def among(cls, what: str, name: object, known: object) -> "UnknownName":
-        """Build the usual sentence: ``unknown sampler 'evn'; did you mean 'even'? known: a, b, c``."""
+        """Build the usual sentence: ``unknown sampler 'evn'; known: even, halton; did you mean 'even'?``."""
         from difflib import get_close_matches
 
         names = [str(each) for each in sorted(known)]  # type: ignore[call-overload]
         near = get_close_matches(name, names, 1) if isinstance(name, str) and len(name) < SHOWN else []
-        hint = f"did you mean {near[0]!r}? " if near else ""
-        return cls(f"unknown {what} {shown(name)}; {hint}known: {', '.join(names)}")
+        hint = f"; did you mean {near[0]!r}?" if near else ""
+        return cls(f"unknown {what} {shown(name)}; known: {', '.join(names)}{hint}")
 
 
 class NotAvailable(EvenroadError, LookupError):
