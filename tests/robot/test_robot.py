@@ -122,7 +122,6 @@ def test_a_rigid_tool_is_capsules_as_they_are():
 @pytest.mark.parametrize(
     "called",
     [
-        lambda robot: ArmWorld(robot, Scene("nothing")),
         lambda robot: make_roadmap(robot, None, 8),
         lambda robot: load_robot_roadmap("some.roadmap", robot),
         lambda robot: in_scene(robot, Scene("nothing")),
