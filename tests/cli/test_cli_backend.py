@@ -5,6 +5,7 @@ import json
 import pytest
 
 from evenroad.robot import arm_world
+from evenroad.robot.kernel import selftest
 from tests.robot.urdf_texts import two_joints
 
 
@@ -28,7 +29,8 @@ def test_the_lanes_are_named_where_they_work(run, desk):
 
 
 def test_the_fallback_is_said_aloud_with_its_reason(run, desk, monkeypatch):
-    monkeypatch.setattr(arm_world, "lanes_failure", lambda: "OSError: no vectors")
+    for module in (selftest, arm_world):
+        monkeypatch.setattr(module, "lanes_failure", lambda: "OSError: no vectors")
     said = "scalar (lanes do not work here: OSError: no vectors)"
     _, out, _ = run(*PLAN)
     assert f"checked by {said}" in " ".join(out.split())

@@ -247,7 +247,7 @@ BAD = {
     "a goal outside the map": ({"goal": (5, -1)}, "goal 5 -1 lies outside the map"),
     "a start that is not a number": ({"start": ("nan", 5)}, "finite"),
     "a radius of zero": ({"radius": 0}, "radius must be a finite number > 0, got 0"),
-    "a negative radius": ({"radius": -1}, "robot_radius"),
+    "a negative radius": ({"radius": -1}, "radius must be a finite number > 0, got -1"),
     "a negative clearance": ({"clearance": -1}, "clearance"),
     "no points": ({"n": 0}, "n must be an integer >= 1, got 0"),
     "k of zero": ({"k": 0}, "k must be"),

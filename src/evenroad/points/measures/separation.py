@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from evenroad._arrays import Floats
 from evenroad._checks import require_count
@@ -24,6 +23,9 @@ def separation(points: object, periodic: bool = False) -> float:
     n, d = coordinates.shape
     if np.unique(coordinates, axis=0).shape[0] < n:
         return 0.0
+    # Here, as plans import the measures and do not wait for SciPy.
+    from scipy.spatial import cKDTree
+
     tree = cKDTree(coordinates, boxsize=np.ones(d)) if periodic else cKDTree(coordinates)
     distances = np.asarray(tree.query(coordinates, k=2)[0])
     return float(distances[:, 1].min())
