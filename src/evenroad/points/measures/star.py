@@ -16,7 +16,7 @@ STAR_BUDGET = 1e10
 
 
 def star_discrepancy(points: object, budget: float = STAR_BUDGET) -> float:
-    """Return the exact star discrepancy: the largest |share of the points in [0, y) - volume| over all boxes.
+    """Return the exact star discrepancy: the largest gap between the share of points in a box [0, y) and its volume.
 
     The supremum is reached at boxes whose upper sides pass through points (or are 1), counted once without and
     once with the points on those sides (Niederreiter 1972; Gnewuch, Srivastav and Winzen 2009).  They are
