@@ -90,7 +90,7 @@ def test_make_targets_and_benchmarks_that_a_page_names_exist():
         assert {each.split()[1] for each in COMMANDS if each.startswith("make ")} <= targets
         for name in re.findall(r"python\s+-m\s+benchmarks\.(\w+)", text):
             assert (ROOT / "benchmarks" / f"{name}.py").exists(), f"{page.name} names benchmarks.{name}"
-        for name in re.findall(r"python\s+((?:tools|examples)/\w+\.py)", text):
+        for name in re.findall(r"python\s+((?:studies/)?(?:tools|examples)/\w+\.py)", text):
             assert (ROOT / name).exists(), f"{page.name} names {name}"
 
 

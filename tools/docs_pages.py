@@ -59,7 +59,7 @@ REFERENCE = {
     ),
     "trajectories": ("Trajectories", ("evenroad.trajectory",)),
     "pictures": ("Pictures", ("evenroad.viz.plan", "evenroad.viz.arm")),
-    "mazes": ("Mazes", ("evenroad_studies.mazes",)),
+    "mazes": ("Mazes", ("evenroad.world.gridmap.shipped",)),
     "adapters": ("Adapters", ("evenroad.adapters.ompl", "evenroad.adapters.klampt")),
     "errors": ("Errors", ("evenroad.errors",)),
 }
@@ -164,6 +164,10 @@ def _reference() -> Iterator[tuple[str, str]]:
         yield f"reference/{page}.rst", "\n".join(parts)
         if page == "qmc":
             rows = [f"   * - :doc:`qmc <reference/qmc>`\n     - {_first_line(evenroad.qmc)}\n"]
+        if page == "worlds":
+            rows.insert(
+                0, f"   * - :py:mod:`spaces <evenroad.spaces>`\n     - {_first_line(evenroad.spaces)}\n"
+            )
         if rows:
             first.append(_heading(f":doc:`reference/{page}`", "-"))
             first.append(".. list-table::\n   :widths: 30 70\n\n" + "".join(rows))

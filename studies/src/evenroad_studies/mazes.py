@@ -1,4 +1,4 @@
-"""Random mazes for a disk robot; the three that ship with evenroad were drawn with them (``tools/draw_mazes.py``)."""
+"""Random mazes for a disk robot; the three that ship were drawn with them (``studies/tools/draw_mazes.py``)."""
 
 from __future__ import annotations
 

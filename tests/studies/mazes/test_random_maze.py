@@ -7,7 +7,8 @@ import pytest
 from scipy import ndimage
 
 from evenroad.errors import InvalidValue
-from evenroad_studies.mazes import FOLDER, LEVELS, MazeDesign, draw_maze, load_maze
+from evenroad.world.gridmap.shipped import FOLDER, LEVELS, load_maze
+from evenroad_studies.mazes import MazeDesign, draw_maze
 
 SMALL = MazeDesign(cols=5, rows=4, wall=8, door=30, loops=0.2, width=300, height=240)
 
