@@ -384,5 +384,12 @@ def _read(path: str) -> tuple[str, frozenset[str]]:
 @cache
 def _files_of(name: str) -> tuple[str, ...]:
     """Return the file of a module, or of a package that hands on names; nothing for what is no module."""
-    place = os.path.join(_ROOT, *name.split(".")[1:])
+    top, *inside = name.split(".")
+    # Of another package that compiles with this one, as the studies do, the folder that it was loaded from.
+    root = (
+        _ROOT
+        if top == "evenroad"
+        else os.path.dirname(getattr(sys.modules.get(top), "__file__", None) or _ROOT)
+    )
+    place = os.path.join(root, *inside)
     return tuple(file for file in (f"{place}.py", os.path.join(place, "__init__.py")) if os.path.isfile(file))
