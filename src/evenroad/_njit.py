@@ -257,6 +257,7 @@ class _Files(IndexDataCacheFile):
     def _read(self, name: str) -> Any:
         """Return what is kept in a file; None where there is none, or it was damaged."""
         content = read_sealed(self._data_path(name), name, "compiled code")
+        # Numba keeps machine code in this form; the digest was checked before a byte of it is read.
         return None if content is None else pickle.loads(content)
 
     def _write(self, name: str, value: Any) -> None:

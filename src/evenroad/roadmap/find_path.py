@@ -52,8 +52,8 @@ def find_path(
     """Plan until there is a path, it is proved that there is none, or the budget is spent.
 
     A world that connects itself plans; trees are led to the nearest of several goals first, for a short while, then to
-    all.  Where it finds nothing, one that can tell is asked whether there can be a path
-    at all.  Then, and with any other world, points are added until they suffice.
+    all.  Where it finds nothing, one that can tell is asked whether there can be a path at all.  Then, and with any
+    other world, points are added until they suffice.
 
     Parameters
     ----------

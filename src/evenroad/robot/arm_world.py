@@ -289,7 +289,10 @@ class ArmWorld(OneOrMany):
 
     def path_clearance(self, path: Floats) -> float | None:
         """Return what distance from obstacles a path, (p, dim), is proved to keep, to .1 mm; None if none [m]."""
-        keeps = lambda room: bool(replace(self, clearance=room).recheck(path).all())  # noqa: E731
+
+        def keeps(room: float) -> bool:
+            return bool(replace(self, clearance=room).recheck(path).all())
+
         return largest_kept(keeps, self.clearance, MOST_CLEARANCE, 1e-4)
 
     def may_connect(self, a: Floats, b: Floats) -> bool:
