@@ -66,7 +66,7 @@ def main() -> None:
         )
         result = ask()
         motions = result.counts["edges_checked"]
-        ours_alone = result.seconds["motions"] / motions
+        ours_alone = result.timings["motions"] / motions
         states = peer[0][1]
         print(
             f"  a motion, neither skipping work: OMPL {1e6 * theirs / motions:.1f} us (with sampling and neighbours),"

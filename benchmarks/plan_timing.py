@@ -27,7 +27,7 @@ def query(level: int, n: int) -> dict[str, float]:
     """Return the median milliseconds of each phase, and of their sum without shortcutting."""
     maze = load_maze(level)
     world, points = maze.world(), draw("hickernell", n, 2)
-    answers = [plan(world, maze.start, maze.goal, points).seconds for _ in range(REPEATS)][3:]
+    answers = [plan(world, maze.start, maze.goal, points).timings for _ in range(REPEATS)][3:]
     phases = {phase: 1e3 * statistics.median(each[phase] for each in answers) for phase in answers[0]}
     needed = [sum(value for phase, value in each.items() if phase != "shortcut") for each in answers]
     return phases | {"without shortcut": 1e3 * statistics.median(needed)}

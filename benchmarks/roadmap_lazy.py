@@ -47,7 +47,7 @@ def row(level: int, n: int, k: int, name: str, answers: list[dict[str, PlanResul
     checks = [result.counts["edges_checked"] for result in here]
     share = [100 * mine / theirs.counts["edges_checked"] for mine, theirs in zip(checks, full, strict=True)]
     configurations = [result.counts["configurations_checked"] for result in here]
-    seconds = [sum(result.seconds[phase] for phase in PHASES) for result in here]
+    seconds = [sum(result.timings[phase] for phase in PHASES) for result in here]
     longer = [
         100 * (mine.cost / theirs.cost - 1)
         for mine, theirs in zip(here, full, strict=True)

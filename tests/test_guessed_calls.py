@@ -227,8 +227,6 @@ NOT_YET: dict[str, str] = {
     "map plan by PRM": "module 'evenroad' has no attribute 'PRM'",
     "map plan straight": "plan() got an unexpected keyword argument 'radius'",
     "map other robots": "GridMap.world() got an unexpected keyword argument 'footprint'",
-    "result seconds": "'>=' not supported between instances of 'dict' and 'int'",
-    "result length": "'PlanResult' object has no attribute 'length'",
     "result trajectory": "limits must be given where there is no robot that has them: Limits(velocity",
     "scene of a cloud": "the cloud 'cloud 0' must have a radius > 0: between points it would be open",
     "scene of a dict": "obstacles in scene must consist of 'key: value' entries, got [{'box': {'siz",

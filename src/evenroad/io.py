@@ -32,6 +32,7 @@ def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
     paths = {name: getattr(result, name) for name in ("path", "milestone_path")}
     same = (
         "cost",
+        "length",
         "milestone_cost",
         "proof",
         "clearance",
@@ -48,7 +49,8 @@ def plan_record(result: PlanResult, query: dict[str, Any]) -> dict[str, Any]:
         "query": places | query,
         **{name: None if path is None else path.tolist() for name, path in paths.items()},
         **{name: getattr(result, name) for name in same},
-        "seconds": {phase: round(value, 6) for phase, value in result.seconds.items()},
+        "seconds": round(result.seconds, 6),
+        "timings": {phase: round(value, 6) for phase, value in result.timings.items()},
         "stages": [asdict(stage) for stage in result.stages],
         "origin": asdict(result.origin),
         "versions": versions(),
@@ -103,10 +105,10 @@ def load_plan(path: str | os.PathLike[str]) -> tuple[PlanResult, dict[str, Any]]
             proof=record["proof"],
             cost=record["cost"],
             planner=str(record["planner"]),
-            seconds={str(phase): float(value) for phase, value in record["seconds"].items()},
+            timings={str(phase): float(value) for phase, value in record["timings"].items()},
         )
         # A file has no world to ask.
-        set_fields(result, clearance=record.get("clearance"))
+        set_fields(result, clearance=record.get("clearance"), length=record.get("length"))
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         why = f"it lacks {error}" if isinstance(error, KeyError) else str(error)
         raise BrokenFile(f"{path} is not a plan of evenroad: {why}") from error

@@ -171,7 +171,7 @@ def test_a_pose_is_a_goal_and_the_path_ends_there():
     assert result.solved
     assert "(tool0 at (0.65, 0, 0.2))" in result.message
     assert np.abs(tip_of(er.load_robot("ur5"), result.path[-1], "tool0") - pose.matrix).max() < 1e-6
-    assert "goals" in result.seconds
+    assert "goals" in result.timings
 
 
 def test_of_poses_and_configurations_the_path_ends_at_one_and_the_cheapest_where_that_is_asked_for():

@@ -46,7 +46,7 @@ def test_a_solved_plan_writes_picture_and_json_and_exits_with_0(run, tmp_path):
     assert (code, err) == (0, "")
     record = json.loads((tmp_path / "result.json").read_text())
     assert {
-        "status", "path", "milestone_path", "cost", "counts", "seconds", "origin", "versions",
+        "status", "path", "milestone_path", "cost", "length", "counts", "seconds", "timings", "origin", "versions",
     } <= set(record)  # fmt: skip
     assert record["status"] == "solved"
     assert record["path"][0] == list(MAZE.start)

@@ -122,7 +122,7 @@ def test_the_record_survives_json_and_holds_what_was_asked():
     assert record["query"] == {"start": [2, 2], "goal": [18, 18], "goals": [[18, 18]], "map": "x.png"}
     assert record["origin"]["family"] == "halton"
     assert {"evenroad", "python", "numpy", "numba", "scipy"} == set(record["versions"])
-    assert set(record["seconds"]) == {"validity", "neighbours", "motions", "search", "shortcut"}
+    assert set(record["timings"]) == {"validity", "neighbours", "motions", "search", "shortcut"}
 
 
 def test_numbers_that_are_not_json_are_refused_and_the_old_file_stays(tmp_path):

@@ -189,8 +189,8 @@ def test_lazily_not_connected_speaks_of_what_could_be_reached():
 
 def test_every_phase_is_timed_and_none_twice():
     result = plan(ChanceWorld(3), START, GOAL, draw("sobol", 64, 2), search="lazy")
-    assert set(result.seconds) == {"validity", "neighbours", "motions", "search", "shortcut"}
-    assert min(result.seconds.values()) > 0
+    assert set(result.timings) == {"validity", "neighbours", "motions", "search", "shortcut"}
+    assert min(result.timings.values()) > 0
 
 
 def test_the_shortcut_keeps_to_the_edge_cost():

@@ -165,7 +165,7 @@ def test_the_path_agrees_with_a_plain_reading_of_algorithm_1():
 def test_without_shortcut_the_path_is_the_milestone_path():
     result = plan(GAP.world(1.0), (2, 2), (2, 18), draw("halton", 200, 2), shorten=False)
     np.testing.assert_array_equal(result.path, result.milestone_path)
-    assert "shortcut" not in result.seconds
+    assert "shortcut" not in result.timings
 
 
 def test_no_points_at_all_still_joins_ends_that_see_each_other():

@@ -71,7 +71,7 @@ def test_a_post_beside_the_upper_arm_locks_it():
     assert result.status == "not_connected"
     assert result.message.startswith("proved: there is no path: joint joint0 alone cannot get there")
     assert "shown for the robot's capsules" in result.message
-    assert result.seconds["proof"] > 0.0
+    assert result.timings["proof"] > 0.0
 
 
 def test_a_post_that_only_the_forearm_meets_locks_nothing():

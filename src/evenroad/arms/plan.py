@@ -179,7 +179,7 @@ def finished(
     where there is no path, or nothing to ask.
     """
     if query.given.poses:
-        result = replace(result, seconds={"goals": query.given.seconds, **result.seconds})
+        result = replace(result, timings={"goals": query.given.seconds, **result.timings})
     name = "" if result.goal_index is None else query.goal_names[result.goal_index]
     if name and len(query.goals) > 1:
         to = f"to goal {result.goal_index}"

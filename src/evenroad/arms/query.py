@@ -134,7 +134,7 @@ def unreached(query: ArmQuery) -> PlanResult | None:
     if not given.unreached:
         return None
     status = Status.GOAL_INVALID if given.in_collision else Status.GOAL_UNREACHABLE
-    return replace(query.ends.refused(status, given.unreached), seconds={"goals": given.seconds})
+    return replace(query.ends.refused(status, given.unreached), timings={"goals": given.seconds})
 
 
 def mesh_check(query: ArmQuery, path: Floats) -> MeshCheck | None:

@@ -175,7 +175,7 @@ def print_plan(result: PlanResult, files: Iterable[Path], more: Sequence[tuple[s
     if result.clearance is not None:
         rows.append(("clearance", f"{result.clearance:.6g} at least"))
     # Without digits that say nothing, so that all phases fit into one line.
-    times = {phase: 1e3 * seconds for phase, seconds in result.seconds.items()}
+    times = {phase: 1e3 * seconds for phase, seconds in result.timings.items()}
     if times:
         spent = ", ".join(f"{phase} {ms:.{int(ms < 10)}f}" for phase, ms in times.items())
         rows.append(("time [ms]", spent))

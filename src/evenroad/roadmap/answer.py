@@ -248,7 +248,7 @@ def _result(attempt: Attempt, status: Status, message: str, **more: Any) -> Plan
         rule=attempt.rule,
         links=attempt.query.links,
         planner=attempt.planner,
-        seconds=attempt.watch.seconds,
+        timings=attempt.watch.seconds,
         world=attempt.world,
         **more,
     )

@@ -159,7 +159,7 @@ def _by_rounds(attempt: Attempt, world: ConnectsAnew, first: PlanResult, stage: 
             stages.append(Stage(nodes, nodes, attempt.motions_checked, best.cost, attempt.elapsed()))
     counts |= {"nodes": nodes, "edges_checked": attempt.motions_checked, "rounds": done}
     message = f"{best.message}, the best of {done + 1}" if done else best.message
-    return replace(best, message=message, counts=counts, stages=tuple(stages), seconds=attempt.watch.seconds)
+    return replace(best, message=message, counts=counts, stages=tuple(stages), timings=attempt.watch.seconds)
 
 
 def _by_growth(attempt: Attempt, first: PlanResult, stage: Stage) -> PlanResult:

@@ -97,8 +97,8 @@ class PlanResult(ResultMethods):
         ``shortcut_motions``, ``nodes`` (of trees), ``rounds`` (of a planner that improves) and, when not connected,
         ``start_component`` and ``goal_component`` (milestones that start and goals can reach over what is not known
         to be blocked).
-    seconds : dict of str to float
-        Wall time of each phase: ``validity``, ``neighbours``, ``motions``, ``search``, ``shortcut``.
+    timings : dict of str to float
+        Wall time of each phase [s]: ``validity``, ``neighbours``, ``motions``, ``search``, ``shortcut``.
     origin : Origin
         Where the points came from.
     rule : str
@@ -138,7 +138,7 @@ class PlanResult(ResultMethods):
     cost: float | None = None
     milestone_cost: float | None = None
     counts: dict[str, int] = field(default_factory=dict)
-    seconds: dict[str, float] = field(default_factory=dict)
+    timings: dict[str, float] = field(default_factory=dict)
     deviation: dict[str, float] = field(default_factory=dict)
     stages: tuple[Stage, ...] = ()
     certificate: Certificate | None = None
@@ -171,7 +171,7 @@ class PlanResult(ResultMethods):
         rows = {"status": f"{self.status}: {self.message}", "planner": self.planner}
         if self.cost is not None:
             rows |= {"cost": f"{self.cost:.6g}", "proved": str(self.proof)}
-        rows["time"] = f"{1e3 * sum(self.seconds.values()):.1f} ms"
+        rows["time"] = f"{1e3 * self.seconds:.1f} ms"
         return as_html(rows, self.path)
 
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from evenroad._above import above
 from evenroad._arrays import Floats
 from evenroad.errors import InvalidValue
-from evenroad.space.path import resample
+from evenroad.space.path import path_length, resample
 from evenroad.world import World
 
 
@@ -21,8 +22,20 @@ class ResultMethods:
         path: Floats | None
         cost: float | None
         proof: str | None
-        seconds: dict[str, float]
+        timings: dict[str, float]
         world: World | None
+
+    @property
+    def seconds(self) -> float:
+        """Wall time of the query [s]: the sum of `timings`."""
+        return sum(self.timings.values())
+
+    @cached_property
+    def length(self) -> float | None:
+        """Length of `path` in the metric of the space; None without a path, and where no world is known."""
+        if self.path is None or self.world is None:
+            return None
+        return path_length(self.path, self.world.space)
 
     def resample(self, step: float) -> Floats:
         """Return states along the path, (s, dim), at most `step` apart in the metric of the space; waypoints stay.
@@ -105,6 +118,6 @@ class ResultMethods:
             parts += [f"{len(self.path)} waypoints", str(self.proof)]
         if self.cost is not None:
             parts.insert(1, f"cost {self.cost:.4g}")
-        took = sum(self.seconds.values())
+        took = self.seconds
         parts.append(f"{took:.3g} s" if took >= 1.0 else f"{1e3 * took:.3g} ms")
         return f"{type(self).__name__}({', '.join(parts)})"

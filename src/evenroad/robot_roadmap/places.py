@@ -45,7 +45,7 @@ def read_ends(
         origin=NO_POINTS,
         rule="none",
         planner="none",
-        seconds={"goals": given.seconds},
+        timings={"goals": given.seconds},
     )
 
 

@@ -331,7 +331,7 @@ class SceneRoadmap:
             cost=length,
             milestone_cost=raw_length,
             counts=counts,
-            seconds=seconds,
+            timings=seconds,
             world=world,
         )
         return require_ends(world.space, result)

@@ -183,7 +183,7 @@ class ArmPage:
             place, wxyz = _place(self.world, q, self._tip)
             if not self._busy.locked():
                 self._hands[end].position, self._hands[end].wxyz = place, wxyz
-        seconds = sum(self.result.seconds.values())
+        seconds = self.result.seconds
         self.status.content = f"**{self.result.status}** in {1e3 * seconds:.1f} ms: {self.result.message}"
         scene = self._server.scene
         if self.result.path is None:
