@@ -1,6 +1,6 @@
 """Draw the three shipped mazes, and measure how hard they are for uniform points.
 
-    python studies/tools/draw_mazes.py          # draw: src/evenroad/world/gridmap/mazes/level{1,2,3}.png and mazes.json
+    python studies/tools/draw_mazes.py          # draw: src/evenroad/world/gridmap/maps/maze{1,2,3}.png and mazes.json
     python studies/tools/draw_mazes.py --measure # success of uniform points on the drawn mazes, 400 runs a cell
 
 The design rule: only the success of *uniform* points may guide it, so that no sampler is favoured.  With k = 10
@@ -19,7 +19,7 @@ from PIL import Image
 
 from evenroad_studies.mazes import DrawnMaze, MazeDesign, draw_maze
 
-FOLDER = Path(__file__).parents[2] / "src" / "evenroad" / "world" / "gridmap" / "mazes"
+FOLDER = Path(__file__).parents[2] / "src" / "evenroad" / "world" / "gridmap" / "maps"
 ROBOT_RADIUS = 6.0
 TUNING_SEED = 900_000
 
@@ -57,10 +57,10 @@ def main() -> None:
             print(f"level {level}: " + "  ".join(f"N={n} {100 * rate:.1f} %" for n, rate in rates.items()))
             continue
         Image.fromarray(np.where(maze.map.occupied, 0, 255).astype(np.uint8)).save(
-            FOLDER / f"level{level}.png", optimize=True
+            FOLDER / f"maze{level}.png", optimize=True
         )
         records[str(level)] = {
-            "image": f"level{level}.png",
+            "image": f"maze{level}.png",
             "start": maze.start,
             "goal": maze.goal,
             "robot_radius": ROBOT_RADIUS,

@@ -114,7 +114,7 @@ def test_csv_has_one_waypoint_a_row(run, tmp_path):
 
 def test_the_default_name_is_the_maps_stem_in_the_current_folder(run, tmp_path):
     run(*plan_arguments())
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["level1.json", "level1.png"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["maze1.json", "maze1.png"]
 
 
 @pytest.mark.parametrize("out", ["way", "way.json", "way.png"])
@@ -373,7 +373,7 @@ def test_the_demo_solves_the_level_3_maze(run, tmp_path):
     assert code == 0
     record = json.loads((tmp_path / "demo.json").read_text())
     assert record["status"] == "solved"
-    assert record["query"]["map"].endswith("level3.png")
+    assert record["query"]["map"].endswith("maze3.png")
 
 
 COMMAND = [sys.executable, "-c", "from evenroad.cli import main; raise SystemExit(main())"]

@@ -182,7 +182,7 @@ def test_a_map_longer_than_the_longest_run_is_no_problem():
     tall = GridMap(np.zeros((70_000, 3), dtype=np.bool_)).world(1.5)
     assert tall.motion_valid([[1.5, 1.5]], [[1.5, 69_998.5]])[0]
     assert not tall.motion_valid([[1.5, 1.5]], [[1.5, 69_998.6]])[0]
-    assert tall.clearance([[1.0, 35_000.0]])[0] == 1.0
+    assert tall.distance([[1.0, 35_000.0]])[0] == -0.5
 
 
 def test_an_open_space_wider_than_the_largest_slack_is_free():
@@ -202,35 +202,37 @@ def test_motions_too_short_to_measure_are_as_free_as_their_ends():
 # ---- distance and nearest point
 
 
-def test_clearance_is_the_distance_to_the_nearest_obstacle():
+def test_the_distance_is_from_the_disk_to_the_nearest_obstacle_and_negative_where_it_overlaps():
     world = GridMap(with_cells(empty(), (20, 30))).world(1.0)
     q = [[30.5, 15.0], [27.0, 16.0], [3.0, 20.0], [30.5, 20.5], [-5.0, 1.0], [30.0, 15.0]]
-    np.testing.assert_array_equal(world.clearance(q), [5.0, 5.0, 3.0, 0.0, 0.0, 5.0])
+    np.testing.assert_array_equal(world.distance(q), [4.0, 4.0, 2.0, -1.0, -1.0, 4.0])
+    assert repr(world.distance(q[0])) == "4.0"
+    assert GridMap(with_cells(empty(), (20, 30))).world(1.0, clearance=0.5).distance(q[0]) == 4.0
     np.testing.assert_array_equal(
         world.nearest_obstacle(q),
         [[30.5, 20.0], [30.0, 20.0], [0.0, 20.0], [30.5, 20.5], [-5.0, 1.0], [30.0, 20.0]],
     )
 
 
-def test_the_nearest_obstacle_point_is_an_obstacle_at_the_clearance_and_decides_validity():
+def test_the_nearest_obstacle_point_is_an_obstacle_at_the_distance_and_decides_validity():
     frame = MapFrame(rows=48, cols=64, resolution=0.05, origin=(-3.0, 7.0), yaw=0.7, y_up=True)
     grid = GridMap(scattered(), frame)
     world = grid.world(0.12)
     q = grid.space.from_cube(np.random.default_rng(2).random((500, 2)))
-    clearance, nearest = world.clearance(q), world.nearest_obstacle(q)
-    np.testing.assert_allclose(np.hypot(*(q - nearest).T), clearance, atol=1e-12)
-    np.testing.assert_array_equal(world.valid(q), clearance >= world.radius)
-    np.testing.assert_allclose(world.clearance(nearest), 0.0, atol=1e-12)
+    distance, nearest = world.distance(q), world.nearest_obstacle(q)
+    np.testing.assert_allclose(np.hypot(*(q - nearest).T), distance + world.radius, atol=1e-12)
+    np.testing.assert_array_equal(world.valid(q), distance >= 0.0)
+    np.testing.assert_allclose(world.distance(nearest), -world.radius, atol=1e-12)
 
 
-def test_clearance_agrees_with_the_oracle():
+def test_distance_agrees_with_the_oracle():
     rng = np.random.default_rng(8)
     for _ in range(60):
         rows, cols = rng.integers(1, 15, 2)
         occupied = rng.random((rows, cols)) < rng.choice([0.0, 0.02, 0.2])
         q = rng.random((8, 2)) * [cols, rows]
-        expected = [distance_to_obstacles(p, p, occupied) for p in q.tolist()]
-        np.testing.assert_allclose(GridMap(occupied).world(1.0).clearance(q), expected, atol=1e-12)
+        expected = [distance_to_obstacles(p, p, occupied) - 1.0 for p in q.tolist()]
+        np.testing.assert_allclose(GridMap(occupied).world(1.0).distance(q), expected, atol=1e-12)
 
 
 # ---- bad input

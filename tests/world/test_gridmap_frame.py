@@ -27,7 +27,7 @@ def test_in_a_bare_image_pixel_c_r_is_the_square_from_c_r_with_y_down():
     occupied = np.zeros((4, 6), dtype=np.bool_)
     occupied[1, 4] = True
     world = GridMap(occupied).world(0.1)
-    assert world.clearance([[4.5, 1.5]])[0] == 0.0
+    assert world.distance((4.5, 1.5)) == -0.1
     np.testing.assert_array_equal(world.nearest_obstacle([[3.5, 1.5], [4.5, 2.5]]), [[4.0, 1.5], [4.5, 2.0]])
 
 
@@ -37,7 +37,7 @@ def test_in_a_ros_map_the_origin_is_the_lower_left_corner_of_the_lower_left_pixe
     frame = MapFrame(rows=4, cols=6, resolution=0.5, origin=(10.0, -2.0), y_up=True)
     world = GridMap(occupied, frame).world(0.01)
     np.testing.assert_array_equal(
-        world.clearance([[10.25, -1.75], [10.75, -1.75], [10.25, -1.25]]), [0, 0.25, 0.25]
+        world.distance([[10.25, -1.75], [10.75, -1.75], [10.25, -1.25]]), [-0.01, 0.24, 0.24]
     )
     np.testing.assert_array_equal(world.nearest_obstacle([[10.625, -1.75]]), [[10.5, -1.75]])
 
@@ -83,7 +83,7 @@ def test_a_turned_map_gives_turned_points_the_verdicts_of_the_upright_one():
     assert 100 < verdicts.sum() < 1900
     np.testing.assert_array_equal(rotated.valid(turned_a), plain.valid(a))
     np.testing.assert_array_equal(rotated.motion_valid(turned_a, turned_b), verdicts)
-    np.testing.assert_allclose(rotated.clearance(turned_a), plain.clearance(a), atol=1e-12)
+    np.testing.assert_allclose(rotated.distance(turned_a), plain.distance(a), atol=1e-12)
 
 
 def test_an_upright_ros_map_is_its_image_upside_down():

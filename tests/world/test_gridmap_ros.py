@@ -281,3 +281,24 @@ def test_keys_that_are_no_text_are_refused_by_name(tmp_path):
     path.write_text(path.read_text() + "7: x\n[1, 2]: y\n")
     with pytest.raises(EvenroadError):
         load_map(path)
+
+
+# ---- maps that ship
+
+
+def test_shipped_maps_are_found_by_name_and_a_file_of_that_name_goes_before_them(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name in ("maze1", "maze2.png", "maze3", "office", "office.yaml"):
+        assert load_map(name).shape in ((480, 640), (160, 240))
+    with pytest.raises(UnknownName, match="maze4"):
+        load_map("maze4")
+    assert load_map(written(tmp_path, row(0, 255)).rename("office.yaml")).shape == (1, 2)
+    assert [file.name for file in map_files("office")] == ["office.yaml", "office.png"]
+
+
+def test_in_the_office_a_robot_gets_from_a_room_to_the_other_side_of_the_corridor():
+    world = load_map("office.yaml").world(radius=0.25)
+    for goal in ((8.5, 3.0), (1.0, 6.0), (6.0, 7.5), (9.3, 6.5), (11.0, 0.6)):
+        assert world.valid(goal)
+        assert world.may_connect((1.0, 2.0), goal)
+    assert not world.motion_valid((1.0, 2.0), (8.5, 3.0))

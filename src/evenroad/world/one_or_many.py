@@ -37,14 +37,14 @@ class OneOrMany:
 
 
 def one_or_many(check: Check) -> Check:
-    """Return a check that answers a bool for one configuration, (dim,), or for one motion between two."""
+    """Return a check that answers one bool or number for one configuration, (dim,), or one motion between two."""
 
     @wraps(check)
     def checked(self: OneOrMany, *q: Any, **named: Any) -> Any:
         if not (q and all(map(_is_one, q))):
             return check(self, *q, **named)
         rows = [self._row(each)[np.newaxis] for each in q]
-        return bool(check(self, *rows, **named)[0])
+        return check(self, *rows, **named)[0].item()
 
     return checked  # type: ignore[return-value]
 

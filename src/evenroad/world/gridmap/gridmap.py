@@ -204,19 +204,31 @@ class DiskWorld(OneOrMany):
         """Return whether the disk can move straight from each row of `a` to that of `b`: two (m, 2) -> (m,)."""
         return motions_are_free(*as_batch_pair(a, b, 2), self._tables)
 
-    def clearance(self, q: Floats) -> Floats:
-        """Return the distance from each map point, (n, 2), to the nearest obstacle, (n,), in map units.
+    @one_or_many
+    def distance(self, q: Floats) -> Floats:
+        """Return the signed distance between the disk and the nearest obstacle, in map units (metres in a ROS map).
 
-        It is measured from the disk's centre, so the disk is free where it is at least `radius`; it is 0 in
-        an obstacle and outside the map.
+        Parameters
+        ----------
+        q : array_like, shape (n, 2) or (2,)
+            Centres of the disk; of one, the distance is a float.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Negative where the disk overlaps an obstacle, at least minus its radius: there the centre lies in an
+            obstacle or outside the map.  The disk is free where it is at least the clearance asked for, by default 0.
         """
-        _, distance = nearest_obstacle_points(as_batch("q", q, 2), self._tables)
-        return distance * self.grid.frame.resolution
+        return self._from_centre(as_batch("q", q, 2)) - (self.radius - self.margin)
+
+    def _from_centre(self, q: Floats) -> Floats:
+        """Return the distance from the disk's centre, (n, 2), to the nearest obstacle, (n,)."""
+        return nearest_obstacle_points(q, self._tables)[1] * self.grid.frame.resolution
 
     def path_clearance(self, path: Floats) -> float:
         """Return how far the disk stays from all obstacles along a path, (p, 2), within 1e-3 pixels and never more."""
         points = as_batch("path", path, 2)
-        nearest = least_distance(points, self.clearance, _CLOSE * self.grid.frame.resolution)
+        nearest = least_distance(points, self._from_centre, _CLOSE * self.grid.frame.resolution)
         return max(0.0, nearest - (self.radius - self.margin))
 
     def nearest_obstacle(self, q: Floats) -> Floats:
@@ -309,7 +321,7 @@ class DiskWorld(OneOrMany):
     def explain(self, q: Floats) -> str:
         """Return in words how near an obstacle is to a disk at the map point `q`, (2,)."""
         centre = np.asarray(q, dtype=np.float64)[np.newaxis]
-        distance = float(self.clearance(centre)[0])
+        distance = float(self._from_centre(centre)[0])
         reason = "its centre lies in an obstacle or outside the map"
         if distance > 0.0:
             x, y = self.nearest_obstacle(centre)[0]

@@ -23,6 +23,9 @@ from evenroad.errors import BrokenFile, InvalidValue, UnknownName
 from evenroad.world.gridmap.frame import MapFrame
 from evenroad.world.gridmap.gridmap import GridMap
 
+MAPS = Path(__file__).parent / "maps"
+SHIPPED = ("maze1.png", "maze2.png", "maze3.png", "office.yaml")
+"""Maps that ship with evenroad, by name."""
 _IMAGES = (".png", ".pgm")
 _ROS_MAPS = (".yaml", ".yml")
 _REQUIRED = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
@@ -47,20 +50,55 @@ class RosMapMeta(NamedTuple):
 def load_map(path: str | os.PathLike[str], *, unknown_is_free: bool = False) -> GridMap:
     """Read a map: a bare image (.png, .pgm) or a ROS map_server file (.yaml, .yml).
 
-    `load_image` and `load_ros_map` say what the pixels mean, where the map then lies, and what they raise; with
-    `unknown_is_free` the unknown cells of a ROS map are free.  UnknownName if the suffix is another one.
+    `load_image` and `load_ros_map` say what the pixels mean, where the map then lies, and what they raise.
+
+    Parameters
+    ----------
+    path : path
+        The file; where there is none, the name of a shipped map: ``office.yaml``, 12 m by 8 m, or ``maze1``,
+        ``maze2`` and ``maze3``, images of 640 by 480 pixels.
+    unknown_is_free : bool
+        Whether the unknown cells of a ROS map are free.
+
+    Returns
+    -------
+    GridMap
+
+    Raises
+    ------
+    UnknownName
+        If the suffix is another one.
+    BrokenFile, InvalidValue
+        As `load_image` and `load_ros_map`.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.load_map("office.yaml")
+    GridMap(160 x 240 cells of 0.05, 26% occupied)
     """
-    suffix = Path(path).suffix.lower()
+    file = find_map(path)
+    suffix = file.suffix.lower()
     if suffix in _IMAGES:
-        return load_image(path)
+        return load_image(file)
     if suffix in _ROS_MAPS:
-        return load_ros_map(path, unknown_is_free=unknown_is_free)
+        return load_ros_map(file, unknown_is_free=unknown_is_free)
     raise UnknownName.among(f"kind of map file {os.fspath(path)!r}: suffix", suffix, _IMAGES + _ROS_MAPS)
+
+
+def find_map(source: str | os.PathLike[str]) -> Path:
+    """Return the file of a map: `source` itself or, where there is no such file, the shipped one of that name."""
+    path = Path(source)
+    if not path.is_file() and path.parent == Path():
+        for name in SHIPPED:
+            if str(path) in (name, Path(name).stem):
+                return MAPS / name
+    return path
 
 
 def map_files(path: str | os.PathLike[str]) -> tuple[Path, ...]:
     """Return the files that `load_map` reads for `path`: itself and, for a ROS map, its image."""
-    file = Path(path)
+    file = find_map(path)
     return (file, read_ros_meta(file).image) if file.suffix.lower() in _ROS_MAPS else (file,)
 
 

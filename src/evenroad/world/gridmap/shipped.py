@@ -8,9 +8,8 @@ from pathlib import Path
 
 from evenroad._checks import require_known
 from evenroad.world.gridmap.gridmap import DiskWorld, GridMap
-from evenroad.world.gridmap.load import load_map
+from evenroad.world.gridmap.load import MAPS, load_map
 
-FOLDER = Path(__file__).parent / "mazes"
 LEVELS = (1, 2, 3)
 
 
@@ -36,6 +35,6 @@ class Maze:
 def load_maze(level: int) -> Maze:
     """Return the maze of level 1, 2 or 3, harder and harder for uniform points; else an UnknownName."""
     require_known("maze level", level, LEVELS)
-    record = json.loads((FOLDER / "mazes.json").read_text(encoding="utf-8"))[str(level)]
+    record = json.loads((MAPS / "mazes.json").read_text(encoding="utf-8"))[str(level)]
     start, goal = tuple(record["start"]), tuple(record["goal"])
-    return Maze(level, FOLDER / record["image"], start, goal, record["robot_radius"])
+    return Maze(level, MAPS / record["image"], start, goal, record["robot_radius"])
