@@ -53,7 +53,7 @@ docs: $(VENV)/.dev
 
 bench: $(VENV)/.peers
 	@mkdir -p out/bench
-	$(BIN)/python -m benchmarks --out out/bench
+	$(BIN)/python -m studies.benchmarks --out out/bench
 	$(BIN)/evenroad bench paper --runs 400 --store out/bench/paper.db
 	$(BIN)/evenroad bench fair --runs 400 --store out/bench/fair.db
 	$(BIN)/evenroad report out/bench/paper.db -o out/bench/paper

@@ -125,7 +125,7 @@ def _link_names(app, doctree, document):
 
 
 def _lead_to_pages(app, document, source):
-    """Let links to an example lead to its page; folders of files, which are no pages, are only named.
+    """Let links to an example or a study lead to its page; folders of files, which are no pages, are only named.
 
     A page of its own in docs/ that the first page does not list yet comes beside the examples.
     """
@@ -137,6 +137,8 @@ def _lead_to_pages(app, document, source):
             if name != document and not re.search(rf"^(?:.* <)?{name}>?$", source[0], re.M)
         ]
         source[0] = source[0].replace("\nexamples\n", "\n" + "\n".join([*new, "examples"]) + "\n")
+    source[0] = re.sub(r"\]\((?:\.\./)+studies/docs/", r"](/generated/studies/", source[0])
+    source[0] = re.sub(r"\]\((?:\.\./)+docs/", r"](/", source[0])
     source[0] = re.sub(r"\[([^\]]+)\]\((?:\.\./)+examples/?\w*\)", r"`\1`", source[0])
     source[0] = re.sub(r"\]\((?:\.\./)+examples/(\w+)\.py\)", r"](/generated/examples/\1.md)", source[0])
 

@@ -70,7 +70,7 @@ COMMANDS = [
 @pytest.mark.parametrize("pattern", INSTEAD)
 def test_a_command_that_is_run_otherwise_is_still_there(pattern):
     known = [each for each in COMMANDS if run_pages.instead_of(each) is INSTEAD[pattern]]
-    if not known and pattern not in ("python -m benchmarks*",):
+    if not known and pattern not in ("python -m studies.benchmarks*",):
         pytest.fail(f"no page has it any more: {pattern}")
     if INSTEAD[pattern].command is None:
         pytest.skip(f"slow, or not here: {INSTEAD[pattern].why}")
@@ -88,8 +88,10 @@ def test_make_targets_and_benchmarks_that_a_page_names_exist():
     for page in PAGES:
         text = page.read_text()
         assert {each.split()[1] for each in COMMANDS if each.startswith("make ")} <= targets
-        for name in re.findall(r"python\s+-m\s+benchmarks\.(\w+)", text):
-            assert (ROOT / "benchmarks" / f"{name}.py").exists(), f"{page.name} names benchmarks.{name}"
+        for name in re.findall(r"\bstudies\.benchmarks\.(\w+)", text):
+            assert (ROOT / "studies" / "benchmarks" / f"{name}.py").exists(), f"{page.name}: {name}"
+        if re.search(r"(?<!studies\.)\bbenchmarks\.\w+", text):
+            assert OLD_BENCHMARKS in text, f"{page.name} names a benchmark that left, without its commit"
         for name in re.findall(r"python\s+((?:studies/)?(?:tools|examples)/\w+\.py)", text):
             assert (ROOT / name).exists(), f"{page.name} names {name}"
 
@@ -107,6 +109,9 @@ def test_the_readme_is_short_and_its_python_five_lines_long():
     (code,) = [each.code for each in run_pages.blocks(ROOT / "README.md") if each.language == "python"]
     assert len([line for line in code.splitlines() if line.strip()]) <= 5
 
+
+OLD_BENCHMARKS = "git switch -d 5e2a3ee"
+"""The last commit with the benchmarks that have left, as pages with their figures name it."""
 
 LEAVES = {
     "01": ("maze.json", "maze-plan.png"),

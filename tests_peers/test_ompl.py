@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from benchmarks.ompl_peer import ompl_prm
+from studies.benchmarks.ompl_peer import ompl_prm
 
 from evenroad.points import draw
 from evenroad.roadmap import KEarlier, plan
@@ -58,7 +58,7 @@ def test_random_worlds_are_both_solved_and_not():
 
 @pytest.mark.parametrize(("d", "lam", "n"), [(2, 0.1, 128), (3, 0.2, 128), (3, 0.15, 256)])
 def test_success_agrees_in_corridors(d, lam, n):
-    from benchmarks.ompl_corridor import corridor_checker
+    from studies.benchmarks.ompl_corridor import corridor_checker
 
     world = Corridor(d, lam)
     for seed in range(4):

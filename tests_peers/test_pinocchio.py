@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from benchmarks.robots import robots_in
+from studies.benchmarks.robots import robots_in
 from tests.robot.kernel_arms import random_scene, random_tree, seven_joint_arm
 from tests.robot.mesh_arms import write_fork_arm
 from tests.robot.urdf_texts import LIMIT, joint, link, urdf, write

@@ -30,6 +30,8 @@ from evenroad.cli.verbs import ABOUT
 ROOT = Path(__file__).parents[1]
 SHOWN = ROOT / "docs" / "examples"
 """What the examples print and draw, kept by ``python tools/run_examples.py``."""
+STUDIES = ROOT / "studies" / "docs"
+"""Pages of the studies, which become a section of the site."""
 
 REFERENCE = {
     "planning": ("Planning", ("evenroad.roadmap", "evenroad.io")),
@@ -92,13 +94,14 @@ def home_of(name: str) -> ModuleType:
 def write_pages(folder: Path) -> None:
     """Write all of them below `folder`, leaving alone what would not change, so that Sphinx need not read it again."""
     pages = dict(_reference()) | dict(_examples()) | {"commands.md": _commands(), "changes.md": _changes()}
-    for name, text in pages.items():
+    files = {name: text.encode() for name, text in pages.items()} | dict(_studies())
+    for name, content in files.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
-        if not path.exists() or path.read_text() != text:
-            path.write_text(text)
+        if not path.exists() or path.read_bytes() != content:
+            path.write_bytes(content)
     for path in folder.rglob("*.*"):
-        if path.is_file() and str(path.relative_to(folder)) not in pages:
+        if path.is_file() and str(path.relative_to(folder)) not in files:
             path.unlink()
 
 
@@ -236,6 +239,12 @@ def _commands() -> str:
 
 def _changes() -> str:
     return (ROOT / "CHANGELOG.md").read_text()
+
+
+def _studies() -> Iterator[tuple[str, bytes]]:
+    for path in sorted(STUDIES.rglob("*.*")):
+        if path.is_file():
+            yield f"studies/{path.relative_to(STUDIES)}", path.read_bytes()
 
 
 def _examples() -> Iterator[tuple[str, str]]:

@@ -87,7 +87,7 @@ INSTEAD = {
     "python3 -m venv *": Instead(None, "an environment: the release check makes one"),
     "pip install *": Instead(None, "needs a network: the release check tries it"),
     "python examples/ros2/*": Instead(None, "nodes of ROS 2: tests_peers feeds them messages"),
-    "python -m benchmarks*": Instead(None, "minutes to hours: that there is such a one is tested"),
+    "python -m studies.benchmarks*": Instead(None, "minutes to hours: that there is such a one is tested"),
     "evenroad bench paper --runs 400 *": Instead(f"evenroad bench paper {TASTE} paper.db", "18 minutes"),
     "evenroad bench fair --runs 400 *": Instead(
         "evenroad bench fair --only fair-balls-2d-50 --runs 1 --jobs 1 --store fair.db", "42 minutes"
@@ -96,6 +96,13 @@ INSTEAD = {
     "evenroad bench arms --runs 300 *": Instead(f"evenroad bench paper {TASTE} results.db", "days"),
     "evenroad train -n 100 -d 2 --objective star *": Instead(
         "evenroad train -n 12 -d 2 --objective star --sets 1 --steps 20 -o sets", "minutes"
+    ),
+    "evenroad train -n 256 -d 2 --method mpmc *": Instead(
+        "evenroad train -n 16 -d 2 --method mpmc --sets 1 --steps 2 -o plane", "minutes"
+    ),
+    "evenroad train -n 100 -d 2 --method mpmc *": Instead(
+        "evenroad train -n 12 -d 2 --method mpmc --objective star --judge star --sets 1 --steps 2 -o stars",
+        "minutes",
     ),
     "evenroad train -n 256 -d 3 --method mpmc *": Instead(
         'evenroad train -n 16 -d 3 --method mpmc --objective "prefixes(hickernell)" --sets 1 --steps 2 -o prefix-sets',
@@ -129,6 +136,7 @@ def pages() -> list[Path]:
     return [
         ROOT / "README.md",
         *(each for each in sorted(folder.rglob("*.md")) if "generated" not in each.parts),
+        *sorted((ROOT / "studies" / "docs").glob("*.md")),
     ]
 
 

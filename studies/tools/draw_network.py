@@ -1,6 +1,6 @@
 """Draw the schematic of the MPMC network, after figure 1 of Chahine et al. (2025), from real points.
 
-    python tools/draw_network.py        # docs/network.png
+    python studies/tools/draw_network.py        # studies/docs/network.png
 
 Left: the Kronecker points that a training starts from, with the graph of nearest neighbours that stays fixed.
 Right: the points that the trained network makes of them.
@@ -23,7 +23,7 @@ from evenroad_studies.network import NetworkConfig, train
 from evenroad_studies.network.train import kronecker
 
 N = 64
-OUT = Path(__file__).parents[2] / "docs" / "network.png"
+OUT = Path(__file__).parents[1] / "docs" / "network.png"
 BLUE, RED, GREY = "#2f5fd0", "#d1343b", "#b9c6d3"
 
 
@@ -77,7 +77,7 @@ def boxes(axes: Axes) -> None:
 
 
 def main() -> None:
-    """Draw docs/network.png."""
+    """Draw studies/docs/network.png."""
     figure = Figure(figsize=(12.5, 3.3), dpi=130)
     FigureCanvasAgg(figure)
     scatter(

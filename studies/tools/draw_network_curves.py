@@ -1,6 +1,6 @@
-"""Draw how the network's discrepancy falls with the steps, beside annealing's: docs/network_curves.png.
+"""Draw how the network's discrepancy falls with the steps, beside annealing's: studies/docs/network_curves.png.
 
-python tools/draw_network_curves.py        # half a minute
+python studies/tools/draw_network_curves.py        # half a minute
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from evenroad.points.bank.anneal import anneal
 from evenroad.points.measures import MEASURES
 from evenroad_studies.network import NetworkConfig, train
 
-OUT = Path(__file__).parents[2] / "docs" / "network_curves.png"
+OUT = Path(__file__).parents[1] / "docs" / "network_curves.png"
 STEPS, N, SETS = 10_000, 128, 2
 
 
@@ -31,7 +31,7 @@ def curve(run: Callable[[int, Callable[[int, int, float], object]], object]) -> 
 
 
 def main() -> None:
-    """Draw docs/network_curves.png."""
+    """Draw studies/docs/network_curves.png."""
     measure = MEASURES["hickernell"]
     figure = Figure(figsize=(10, 3.8), dpi=130, layout="constrained")
     FigureCanvasAgg(figure)

@@ -1,7 +1,7 @@
 """The tables of the fair suite in docs/results.md, in Markdown, out of a store and what `evenroad report` made of it.
 
     evenroad report fair.db -o fair
-    python tools/fair_tables.py fair.db fair/fair.csv --write docs/results.md
+    python studies/tools/fair_tables.py fair.db fair/fair.csv --write studies/docs/results.md
 
 Three tables say what samplers gain on uniform points: by kind of world, by dimension, by k.  A fourth has the bar of
 `even`: its difference from scrambled Sobol, in percentage points, with a standard error paired by world.  `--write`

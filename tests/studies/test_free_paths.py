@@ -1,6 +1,6 @@
 """Free means free: every public planner's paths, shortened or not, beside independent oracles.
 
-The large version is ``python -m benchmarks.paths_oracle``.
+The large version is ``python -m studies.benchmarks.paths_oracle``.
 """
 
 import pytest

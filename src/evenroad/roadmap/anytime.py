@@ -24,7 +24,7 @@ from evenroad.world import World
 
 UNTIL = ("solved", "settled", "budget")
 GROWING = 5
-"""Largest dimension in which a lattice that grows was compared with Sobol's points (docs/sequences.md)."""
+"""Largest dimension in which a lattice that grows was compared with Sobol's points (studies/docs/sequences.md)."""
 
 SETTLED = 0.01
 """A path counts as settled when doubling the points has shortened it by no more than this share."""

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from benchmarks.arm_tables import PAGES, all_tables, few_table, with_tables
+from studies.benchmarks.arm_tables import PAGES, all_tables, few_table, with_tables
 
 from evenroad._npz import digest
 from evenroad.errors import BrokenFile, InvalidValue
@@ -15,7 +15,7 @@ from evenroad_studies.arms.results import HEADER, csv_of, lines_of
 from evenroad_studies.bench.store import open_store, read_rows
 from evenroad_studies.bench.task import Outcome, Task
 
-DOCS = Path(__file__).parents[3] / "docs"
+DOCS = Path(__file__).parents[3] / "studies" / "docs"
 TASK = Task("arm-scara-shelf", 0, "uniform", 64, "k=10 ends=64", "kept", 0, 1)
 UNIFORM = Way("scara", "10", 64, "uniform", "k=10 ends=64", "kept")
 

@@ -30,8 +30,8 @@ DRAWN_IN = 0.85
 class Even(Korobov):
     """Our default: a Korobov lattice, from ten dimensions on scrambled Sobol points.
 
-    ``benchmarks/decide_even.py`` has the evidence for the lattice.  Where n has so few multipliers that even the best
-    is poor, as many multiples of 24, the generating vector is one of numbers that are no powers
+    ``studies/benchmarks/decide_even.py`` has the evidence for the lattice.  Where n has so few multipliers that the
+    best is poor, as many multiples of 24, the generating vector is one of numbers that are no powers
     (:func:`~evenroad.points.samplers.rank_one_search.rank_one_vector`).  From six dimensions on axes hardly ever count
     alike: those of an arm's joints, those of rotations.  The few short vectors of the lattice may then lie in axes that
     count little, and with k < 2 d neighbours the roadmap falls apart into sheets.  No one order of the axes is good
@@ -63,7 +63,7 @@ def drawn_in(points: PointSet, share: float = DRAWN_IN) -> PointSet:
     """Return the points, each moved towards the middle of the cube to this share of its distance, 0 < share <= 1.
 
     Motions between them are shorter by that share.  Where each point has few neighbours, that is worth more than to
-    reach the corners: ``benchmarks/drawn_in.py`` has the evidence.
+    reach the corners: ``studies/docs/sparse-roadmaps.md`` has the evidence.
     """
     method = f"{points.origin.method}, drawn in to {share:g}"
     return PointSet(0.5 + share * (points.points - 0.5), points.origin).with_origin(method=method)

@@ -54,7 +54,7 @@ class Korobov:
     """The points i (1, a, a^2, ..., a^(d-1)) / n modulo 1 (Korobov 1959), under one random shift modulo 1.
 
     The multiplier a is :func:`korobov_generator`, chosen by its energy unless `by` and `k` say otherwise: in planning
-    nothing else is better (``benchmarks/lattice_graphs.py``).  It has no common divisor with n, so each coordinate
+    nothing else is better (``studies/docs/lattices.md``).  It has no common divisor with n, so each coordinate
     takes n equally spaced values, each once.
     """
 

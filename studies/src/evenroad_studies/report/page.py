@@ -130,7 +130,7 @@ def _point_sets() -> Section:
     picture = _picture("point-sets", "Point sets in the unit square", draw_point_sets())
     text = (
         "The first set of each sampler in two dimensions. Discrepancies in ten dimensions are drawn by"
-        " `python -m benchmarks.discrepancy_d10`."
+        " `python -m studies.benchmarks.discrepancy_d10`."
     )
     return Section("point-sets", "Point sets", text, (picture,))
 

@@ -1,0 +1,233 @@
+"""Verdicts on robots' self-collision against pinocchio and coal on the files' own shapes.
+
+    python -m studies.benchmarks.robot_truth OUT.csv ROBOT.urdf FOLDER ...
+
+For each robot: how many configurations that we call free collide in truth (uniform ones, others bisected to our edge
+of contact, and states of paths), how many are blocked here and there, and how many are blocked here alone.  True pairs
+are all links with shapes that a moving joint is between, but neighbours and those that touch in every uniform
+configuration, nor are among those that the loader names because one goes into the other as drawn.
+"""
+
+from __future__ import annotations
+
+import csv
+import sys
+import time
+import xml.etree.ElementTree as ET
+from itertools import combinations
+from pathlib import Path
+
+import coal
+import numpy as np
+import pinocchio
+
+from evenroad.robot import ArmWorld, Scene, load_model
+from evenroad.robot.pairs import CONTAINED
+from evenroad.space.path import resample
+
+COUNT = 2000
+PATHS = 10
+FIELDS = (
+    *(
+        "robot",
+        "dim",
+        "links",
+        "tested",
+        "dropped_touching",
+        "configurations",
+        "truth_blocked",
+        "blocked",
+        "beyond",
+    ),
+    *(
+        "free_that_collide",
+        "at_contact",
+        "at_contact_that_collide",
+        "path_states",
+        "path_states_that_collide",
+    ),
+    *("hulls", "load_s", "us_per_configuration", "note"),
+)
+
+
+class Truth:
+    """A URDF in pinocchio, its collision shapes in coal."""
+
+    def __init__(self, file: Path, group: tuple[str, ...], held: dict[str, float]) -> None:
+        folders = [str(folder) for folder in file.resolve().parents][:8]
+        self.model = pinocchio.buildModelFromUrdf(str(file))
+        self.geometry = pinocchio.buildGeomFromUrdf(
+            self.model, str(file), pinocchio.GeometryType.COLLISION, package_dirs=folders
+        )
+        self.data = self.model.createData()
+        self.group, self.held = group, held
+        self.mimics = {
+            joint.get("name"): joint.find("mimic") for joint in ET.parse(file).getroot().findall("joint")
+        }
+        self.of_link: dict[str, list[int]] = {}
+        for i, item in enumerate(self.geometry.geometryObjects):
+            self.of_link.setdefault(self.model.frames[item.parentFrame].name, []).append(i)
+        self.pairs = self._pairs(ET.parse(file).getroot())
+
+    def _pairs(self, root: ET.Element) -> list[tuple[str, str]]:
+        above, moves = {}, {}
+        for joint in root.findall("joint"):
+            child = joint.find("child").get("link")
+            above[child], moves[child] = joint.find("parent").get("link"), joint.get("type") != "fixed"
+
+        def way(link: str) -> list[str]:
+            return [link] + (way(above[link]) if link in above else [])
+
+        pairs = []
+        for first, second in combinations(self.of_link, 2):
+            up, down = way(first), way(second)
+            between = [link for link in up if link not in down] + [link for link in down if link not in up]
+            moving = sum(moves[link] for link in between)
+            # What lies between them, both ends of the way left out.
+            lower, upper = (
+                (second, first) if first in down else (first, second) if second in up else (None, None)
+            )
+            inner = [link for link in way(lower)[1:] if link in between and link != upper] if lower else []
+            neighbours = lower is not None and moving == 1 and not any(link in self.of_link for link in inner)
+            if moving and not neighbours:
+                pairs.append((first, second))
+        return pairs
+
+    def touching(self, q: np.ndarray) -> np.ndarray:
+        """Return which pairs touch in which configurations, (n, pairs)."""
+        hits = np.zeros((len(q), len(self.pairs)), dtype=bool)
+        items = self.geometry.geometryObjects
+        request, result = coal.CollisionRequest(), coal.CollisionResult()
+        request.enable_contact = True
+        for item in items:
+            item.geometry.computeLocalAABB()
+        middles = [np.array(item.geometry.aabb_center) for item in items]
+        radii = np.array([item.geometry.aabb_radius for item in items])
+        every = [
+            (column, i, k)
+            for column, (first, second) in enumerate(self.pairs)
+            for i in self.of_link[first]
+            for k in self.of_link[second]
+        ]
+        _, one, two = np.array(every).T
+        for row, values in enumerate(q):
+            pinocchio.framesForwardKinematics(self.model, self.data, self._state(values))
+            places = [self.data.oMi[item.parentJoint] * item.placement for item in items]
+            centres = np.array([place.act(middle) for place, middle in zip(places, middles, strict=True)])
+            solid = [coal.Transform3s(place.rotation, place.translation) for place in places]
+            near = np.linalg.norm(centres[one] - centres[two], axis=1) <= radii[one] + radii[two]
+            for column, i, k in np.array(every)[near].tolist():
+                result.clear()
+                if not hits[row, column]:
+                    pair = items[i].geometry, solid[i], items[k].geometry, solid[k]
+                    hits[row, column] = bool(coal.collide(*pair, request, result))
+        return hits
+
+    def _state(self, values: np.ndarray) -> np.ndarray:
+        known = dict(zip(self.group, values.tolist(), strict=True)) | self.held
+        state = pinocchio.neutral(self.model)
+        for joint in list(self.model.joints)[1:]:
+            name, value = self.model.names[joint.id], 0.0
+            mimic = self.mimics.get(name)
+            if mimic is not None:
+                value = float(mimic.get("multiplier", 1)) * known.get(mimic.get("joint"), 0.0)
+                value += float(mimic.get("offset", 0))
+            value = known.get(name, value)
+            if joint.nq == 2:
+                state[joint.idx_q : joint.idx_q + 2] = np.cos(value), np.sin(value)
+            elif joint.nq == 1:
+                state[joint.idx_q] = value
+        return state
+
+
+def measured(file: Path, rng: np.random.Generator) -> dict[str, object]:
+    """Return the row of one robot."""
+    row: dict[str, object] = {"robot": file.stem}
+    began = time.perf_counter()
+    model = load_model(file)
+    row["load_s"] = round(time.perf_counter() - began, 1)
+    robot = model.robot
+    world = ArmWorld(robot, Scene("empty", ()))
+    held = {
+        joint.name: robot.held.get(joint.name, joint.neutral)
+        for joint in robot.joints
+        if joint.kind != "fixed" and joint.mimic is None and joint.name not in robot.group
+    }
+    truth = Truth(file, robot.group, held)
+    q = world.space.from_cube(rng.random((COUNT, world.space.cube_dim)))
+    free = world.valid(q)
+    began = time.perf_counter()
+    world.valid(q)
+    row["us_per_configuration"] = round(1e6 * (time.perf_counter() - began) / COUNT, 2)
+    hits = truth.touching(q)
+    contained = {frozenset((first, second)) for first, second, why in model.dropped if why == CONTAINED}
+    counted = ~hits.all(axis=0) & [frozenset(pair) not in contained for pair in truth.pairs]
+    collides = hits[:, counted].any(axis=1)
+    row |= {
+        "dim": len(robot.group),
+        "links": len(robot.links),
+        "tested": len(robot.pairs),
+        "dropped_touching": sum("touch" in why for _, _, why in model.dropped),
+        "hulls": len(robot.hulls),
+        "configurations": COUNT,
+        "truth_blocked": round(100 * collides.mean(), 2),
+        "blocked": round(100 * (~free).mean(), 2),
+        "beyond": round(100 * (~free & ~collides).mean(), 2),
+        "free_that_collide": int((free & collides).sum()),
+    }
+    if free.any() and not free.all():
+        edge = at_contact(world, q[free], q[~free], COUNT, rng)
+        row["at_contact"] = len(edge)
+        row["at_contact_that_collide"] = int(truth.touching(edge)[:, counted].any(axis=1).sum())
+    if free.sum() > 1:
+        states = path_states(world, q[free])
+        row["path_states"] = len(states)
+        row["path_states_that_collide"] = int(truth.touching(states)[:, counted].any(axis=1).sum())
+    return row
+
+
+def at_contact(
+    world: ArmWorld, free: np.ndarray, blocked: np.ndarray, count: int, rng: np.random.Generator
+) -> np.ndarray:
+    """Return free configurations within a billionth of the way of blocked ones."""
+    a = free[rng.integers(len(free), size=count)]
+    b = blocked[rng.integers(len(blocked), size=count)]
+    for _ in range(30):
+        middle = 0.5 * (a + b)
+        ok = world.valid(middle)[:, np.newaxis]
+        a, b = np.where(ok, middle, a), np.where(ok, b, middle)
+    return a[world.valid(a)]
+
+
+def path_states(world: ArmWorld, free: np.ndarray) -> np.ndarray:
+    """Return states of shortened paths between free configurations."""
+    found = []
+    for k in range(min(PATHS, len(free) - 1)):
+        connection = world.connect(free[k], free[k + 1 : k + 2], seconds=2.0)
+        if len(connection.path) > 1:
+            path, _ = world.shorten(connection.path)
+            found.append(resample(path, world.space, 0.02)[0])
+    return np.concatenate(found)[: 2 * COUNT] if found else free[:0]
+
+
+def main() -> None:
+    """Write a row for each robot as soon as it is there."""
+    out, given = Path(sys.argv[1]), list(map(Path, sys.argv[2:]))
+    files = [file for path in given for file in (sorted(path.rglob("*.urdf")) if path.is_dir() else [path])]
+    with out.open("a", newline="") as stream:
+        writer = csv.DictWriter(stream, FIELDS)
+        if out.stat().st_size == 0:
+            writer.writeheader()
+        for file in files:
+            try:
+                row = measured(file, np.random.default_rng(0))
+            # One robot that fails says why in its row; the others are measured.
+            except Exception as error:
+                row = {"robot": file.stem, "note": f"{type(error).__name__}: {error}"[:200]}
+            writer.writerow(row)
+            stream.flush()
+            print(row, flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,140 @@
+"""Timing of an arm's paths: how long it takes to find, how long the robot drives, how near to its limits it comes.
+
+    python -m studies.benchmarks.trajectories [--problems 40]
+
+Plans, shortens and times paths of a UR5 on the reporting problems; toppra, on the same rounded path with a grid as
+fine, is beside it where it is installed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Callable
+from importlib import import_module
+from itertools import chain
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from studies.benchmarks.arm_problems import REPORTING, Pool, arm, problems
+
+from evenroad.arms import arm_query
+from evenroad.errors import NotAvailable
+from evenroad.roadmap import Budget
+from evenroad.roadmap.find_path import find_path
+from evenroad.robot.arm_world import ArmWorld
+from evenroad.trajectory import Limits, arm_trajectory, limits_of
+from evenroad.trajectory.blends import rounded
+from evenroad.trajectory.timing import INTERVALS
+
+REPEATS = 3
+Path = npt.NDArray[np.float64]
+
+
+def best_ms(task: Callable[[], Any]) -> float:
+    """Return the least CPU time of some runs [ms]."""
+    times = []
+    for _ in range(REPEATS):
+        began = time.process_time()
+        task()
+        times.append(1e3 * (time.process_time() - began))
+    return min(times)
+
+
+def bound(path: Path, limits: Limits) -> float:
+    """Return the time that the slowest joint needs alone for its way, bang-bang with rest where it turns back [s]."""
+    most = 0.0
+    for way, velocity, push in zip(path.T, limits.velocity, limits.acceleration, strict=True):
+        steps = np.diff(way)
+        turns = np.flatnonzero(np.diff(np.sign(steps[steps != 0.0])) != 0.0)
+        runs = (
+            np.add.reduceat(steps[steps != 0.0], np.concatenate([[0], turns + 1])) if np.any(steps) else [0.0]
+        )
+        times = [
+            2.0 * np.sqrt(run / push) if run < velocity**2 / push else run / velocity + velocity / push
+            for run in np.abs(runs)
+        ]
+        most = max(most, float(sum(times)))
+    return most
+
+
+def toppra_ms(path: Path, limits: Limits) -> float:
+    """Return the CPU time that toppra takes for the same rounded path [ms]; NaN where it is not installed."""
+    try:
+        toppra = import_module("toppra")
+    except ImportError:
+        return float("nan")
+    velocity, push = np.array(limits.velocity), np.array(limits.acceleration)
+
+    def run() -> None:
+        curve = rounded(path, np.full(len(path), 0.05))
+        s = np.linspace(0.0, curve.length, INTERVALS)
+        constraints = [
+            toppra.constraint.JointVelocityConstraint(np.column_stack([-velocity, velocity])),
+            toppra.constraint.JointAccelerationConstraint(np.column_stack([-push, push])),
+        ]
+        spline = toppra.SplineInterpolator(s, curve.at(s)[0])
+        toppra.algorithm.TOPPRA(constraints, spline, gridpoints=s).compute_trajectory()
+
+    return best_ms(run)
+
+
+def measure(name: str, world: ArmWorld, start: Path, goal: Path) -> dict[str, Any] | None:
+    """Return a row of one problem; None where there is no path, or none to drive."""
+    result = find_path(world, start, goal[np.newaxis], budget=Budget(seconds=5.0))
+    if not (result.solved and result.cost) or result.path is None or result.milestone_path is None:
+        return None
+    raw, path, limits = result.milestone_path, result.path, limits_of(world.robot)
+    try:
+        made = arm_trajectory(world, path, limits)
+    except NotAvailable as reason:
+        return {"name": name, "refused": str(reason)}
+    shares = np.linspace(0.0, 1.0, 10)[:-1, None, None]
+    between = made.positions[:-1] + shares * np.diff(made.positions, axis=0)
+    return {
+        "name": name,
+        "refused": "",
+        "touching": int(np.sum(~world.valid(between.reshape(-1, path.shape[1])))),
+        "shorten_ms": best_ms(lambda: world.shorten(raw)),
+        "timing_ms": best_ms(lambda: arm_trajectory(world, path, limits)),
+        "toppra_ms": toppra_ms(path, limits),
+        "seconds": made.duration,
+        "stopping": arm_trajectory(world, path, limits, deviation=0.0).duration / made.duration,
+        "bound": made.duration / bound(path, limits),
+        "stops": made.stops,
+        "deviation": made.deviation,
+        "velocity": made.highest["velocity"],
+        "acceleration": made.highest["acceleration"],
+    }
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--problems", type=int, default=40, help="of each kind")
+    count = parser.parse_args().problems
+    query = arm_query("ur5", "box-reach", "home", "inside")
+    scene_c = [("scene c", query.world, query.start, query.goals[0])]
+    pool = Pool(arm("ur5"))
+    random = (
+        (f"{each.kind} {each.seed}", ArmWorld(each.robot, each.scene, resolution=0.05), each.start, each.goal)
+        for each in problems(pool, REPORTING[:count])
+    )
+    measure(*scene_c[0])
+    rows = [measure(*each) for each in chain(scene_c, random)]
+    solved = [row for row in rows if row is not None]
+    made = [row for row in solved if not row["refused"]]
+    print(f"{len(rows)} problems, {len(solved)} solved, {len(made)} with a trajectory")
+    for row in solved:
+        if row["refused"]:
+            print(f"  {row['name']}: {row['refused']}")
+    print(f"{'':14} {'scene c':>9} {'median':>9} {'95 %':>9} {'worst':>9}")
+    for name in list(made[0])[2:]:
+        values = np.array([row[name] for row in made], dtype=float)
+        numbers = (values[0], np.median(values[1:]), np.quantile(values[1:], 0.95), np.max(values))
+        print(f"{name:14} " + " ".join(f"{value:9.4g}" for value in numbers))
+
+
+if __name__ == "__main__":
+    main()
