@@ -17,7 +17,6 @@ def board(name, size, x, y, z):
 
 
 shelf = Scene(
-    "shelf",
     (
         board("table", (0.5, 0.6, 0.04), 0.0, -0.62, 0.02),
         board("lower board", (0.32, 0.7, 0.02), 0.76, 0.1, 0.20),
@@ -26,6 +25,7 @@ shelf = Scene(
         board("right side", (0.32, 0.02, 0.62), 0.76, -0.26, 0.31),
         board("back", (0.02, 0.7, 0.62), 0.93, 0.1, 0.31),
     ),
+    name="shelf",
 )
 
 # A gripper that points into the shelf, and stops before the box; it may be turned about its own axis.
@@ -37,7 +37,7 @@ print("into the shelf:", into.message)
 flange = Pose.from_matrix(link_poses(ROBOT, into.path[-1:])[0, ROBOT.links.index("tool0")])
 here = flange.inverse() @ Pose((0.70, 0.1, 0.30))
 box = HeldObject("box", Box(SIZE, pose=here), "tool0", touches=("wrist_2_link", "wrist_3_link"))
-carrying = Scene("shelf", shelf.obstacles, frozenset({("box", "lower board")}), attached=(box,))
+carrying = Scene(shelf.obstacles, name="shelf", allowed=frozenset({("box", "lower board")}), attached=(box,))
 
 # The goal is where the box is to be, not the flange: upright on the table, turned about its own z axis as it may.
 place = er.PoseGoal(Pose((0.0, -0.6, 0.18)), tip="box", free_axis="z")

@@ -15,12 +15,12 @@ BOTH = ARM.with_tool(ARM, "base_link", pose=ACROSS, prefix="left_")
 BOTH = with_group(BOTH, (*ARM.group, *(f"left_{joint}" for joint in ARM.group)))
 
 table = Scene(
-    "one table",
     (
         Obstacle.of("table", "box", (1.2, 1.9, 0.04), (0.3, 0.45, -0.03)),
         Obstacle.of("post", "box", (0.08, 0.08, 0.35), (0.45, 0.45, 0.175)),
     ),
-    frozenset(
+    name="one table",
+    allowed=frozenset(
         (prefix + link, "table") for prefix in ("", "left_") for link in ("base_link", "shoulder_link")
     ),
 )

@@ -44,7 +44,7 @@ points = (eye + depth[:, None] * rays)[depth < 3.0]
 # As np.save("scan.npy", points) and, in a scene's file:
 #   scan: {shape: cloud, file: scan.npy, radius: 0.008, seen_at: "0,-1.57,0,-1.57,0,0"}
 scan = Obstacle("scan", PointCloud(points, radius=0.008), seen=Seen(home))
-scene = Scene("scanned table", (scan,))
+scene = Scene((scan,), name="scanned table")
 start, goal = "-1.2,-0.9,1.3,-1.9,-1.57,0", "0.75,-0.8,1.2,-1.9,-1.57,0"
 query = arm_query("ur5", scene, start, goal)
 print(f"{len(points)} points, {len(query.world.scene.obstacles[0].body.points)} of them not the arm's own")

@@ -16,7 +16,7 @@ ROOT = Path(evenroad.__file__).parent
 BASE = {
     *("errors", "_checks", "_rng", "_files", "_seal", "_npz", "_yaml"),
     *("_arrays", "_clock", "_terminal", "_compiled", "_fingerprint", "_njit", "_shared", "_threads"),
-    "_above",
+    *("_above", "_call"),
 }
 MAY_IMPORT = {
     "points": BASE,

@@ -134,7 +134,8 @@ def balls(count=8, radius=0.06):
     )
     places[:, 2] += 0.4
     return Scene(
-        "balls", tuple(Obstacle.of(f"ball {i}", "sphere", (radius,), tuple(p)) for i, p in enumerate(places))
+        tuple(Obstacle.of(f"ball {i}", "sphere", (radius,), tuple(p)) for i, p in enumerate(places)),
+        name="balls",
     )
 
 
@@ -188,7 +189,7 @@ def test_a_mesh_is_not_made_convex_and_no_prong_is_lost(engine, fork_arm):
 
     def verdict(y):
         place = frame[:3, :3] @ (0.0, y, 0.6 * LONG) + frame[:3, 3]
-        scene = Scene("ball", (Obstacle.of("ball", "sphere", (0.05,), tuple(place)),))
+        scene = Scene((Obstacle.of("ball", "sphere", (0.05,), tuple(place)),), name="ball")
         return engine(replace(robot, pairs=()), scene, shapes).valid(q)[0]
 
     assert verdict(0.0)
@@ -205,14 +206,17 @@ def test_a_capsule_that_lies_in_the_end_of_a_cylinder_touches_it(engine, fork_ar
         [[turn, -0.5 * math.pi + off, 0.1] for turn in np.linspace(-3, 3, 50) for off in (-2e-3, 0.0, 2e-3)]
     )
     assert ("arm", "nose") in robot.pairs
-    assert not engine(replace(robot, pairs=(("arm", "nose"),)), Scene("nothing", ()), shapes).valid(q).any()
+    assert (
+        not engine(replace(robot, pairs=(("arm", "nose"),)), Scene((), name="nothing"), shapes).valid(q).any()
+    )
 
 
 def test_self_collisions_of_meshes_are_found_by_all(fork_arm):
     robot, shapes = fork_arm
     assert ("base", "fork") in robot.pairs
     worlds = [
-        engine(robot, Scene("nothing", ()), shapes) for engine in (CoalWorld, PinocchioWorld, KlamptWorld)
+        engine(robot, Scene((), name="nothing"), shapes)
+        for engine in (CoalWorld, PinocchioWorld, KlamptWorld)
     ]
     q = worlds[0].space.from_cube(np.random.default_rng(8).random((3_000, 3)))
     coal, pinocchio, klampt = (world.valid(q) for world in worlds)

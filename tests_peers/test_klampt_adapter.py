@@ -174,7 +174,7 @@ def test_their_prm_finds_nothing_where_there_is_nothing():
 
 
 def test_their_planners_take_our_arm_and_end_with_the_points():
-    world = er.ArmWorld(load_robot("ur5"), Scene("nothing", ()))
+    world = er.ArmWorld(load_robot("ur5"), Scene((), name="nothing"))
     start, goal = [0.0, -1.9, 1.6, -1.3, -1.57, 0.0], [1.0, -1.5, 1.2, -1.3, -1.57, 0.5]
     path = plan_on_points(world, start, goal, er.draw("even", 32, 6))
     assert world.recheck(path).all()

@@ -141,7 +141,7 @@ def test_an_arm_of_an_mjcf_is_planned_for(tmp_path):
         "<body name='hand' pos='.6 0 0'><joint name='bend' axis='0 0 1' range='-170 170'/>"
         "<geom type='capsule' fromto='.1 0 0 .4 0 0' size='.04'/></body></body>"
     )
-    result = plan_arm(write(tmp_path, arm), Scene("empty"), "0,0", "2,1")
+    result = plan_arm(write(tmp_path, arm), Scene(name="empty"), "0,0", "2,1")
     assert result.solved
 
 
@@ -219,7 +219,7 @@ ROBOTS = {
 @pytest.mark.parametrize("name", ROBOTS)
 def test_what_is_free_has_no_contact_in_mujoco(tmp_path, name):
     hook(tmp_path)
-    world = ArmWorld(load_robot(path := write(tmp_path, *ROBOTS[name])), Scene("empty"))
+    world = ArmWorld(load_robot(path := write(tmp_path, *ROBOTS[name])), Scene(name="empty"))
     free, blocked = near_contact(world)
     assert not contacts(path, free).any()
     # And not much less is free: what is blocked a billionth of the way further is in contact, or nearly.
@@ -285,9 +285,9 @@ def test_a_robot_of_which_nothing_collides_by_its_file_says_so(tmp_path):
 def test_a_plane_stands_in_every_scene_and_what_stands_still_may_touch_it(tmp_path):
     plane = "<geom name='floor' type='plane' size='1 1 1'/>"
     robot = load_robot(write(tmp_path, plane + FORK.format(left=BAR, right=BAR)))
-    assert ("base", "floor") in ArmWorld(robot, Scene("empty")).scene.allowed
+    assert ("base", "floor") in ArmWorld(robot, Scene(name="empty")).scene.allowed
     # A box that stands on the floor, and a file that says what the planner knows.
-    scene = Scene("box", (Obstacle("box", Box((0.1, 0.1, 0.1), pose=Pose((0, 0, 0.6)))),))
+    scene = Scene((Obstacle("box", Box((0.1, 0.1, 0.1), pose=Pose((0, 0, 0.6)))),), name="box")
     world = ArmWorld(robot, scene)
     assert [obstacle.name for obstacle in world.scene.obstacles] == ["box", "floor"]
     assert ArmWorld(robot, world.scene).scene == world.scene
@@ -295,7 +295,7 @@ def test_a_plane_stands_in_every_scene_and_what_stands_still_may_touch_it(tmp_pa
     assert load_robot(tmp_path / "robot.xml").fingerprint() == robot.fingerprint()
     assert replace(robot, planes=()).fingerprint() != robot.fingerprint()
     with pytest.raises(InvalidValue, match="'floor', which is the name of a plane in the robot's"):
-        ArmWorld(robot, Scene("box", (Obstacle("floor", Box((1.0, 1.0, 0.1))),)))
+        ArmWorld(robot, Scene((Obstacle("floor", Box((1.0, 1.0, 0.1))),), name="box"))
 
 
 LOOP = (

@@ -43,7 +43,7 @@ def _beside(robot, q, radius=0.02):
     middle = capsule_ends(robot, q[np.newaxis])[0, at].mean(axis=0)
     for place in middle + np.random.default_rng(0).uniform(-0.15, 0.15, (1000, 3)):
         ball = Obstacle.of("ball", "sphere", (radius,), tuple(place.tolist()))
-        scene = Scene("ball", (ball,))
+        scene = Scene((ball,), name="ball")
         touching = not ArmWorld(robot, scene).valid(q[np.newaxis])[0]
         if touching and CoalWorld(robot, scene, _thin(robot)).valid(q[np.newaxis])[0]:
             return ball
@@ -61,7 +61,7 @@ def _fine(world, path):
 
 def test_shapes_decide_where_capsules_touch(robot, roadmap):
     ball = _beside(robot, START)
-    scene = Scene("beside", (ball, Obstacle.of("post", "box", (0.1, 0.1, 0.5), (0.35, 0.45, 0.4))))
+    scene = Scene((ball, Obstacle.of("post", "box", (0.1, 0.1, 0.5), (0.35, 0.45, 0.4))), name="beside")
     blocked = roadmap.in_scene(scene).plan(START, GOAL)
     assert blocked.status == "start_invalid"
     result = roadmap.in_scene(scene, _thin(robot)).plan(START, GOAL)
@@ -75,7 +75,7 @@ def test_what_capsules_prove_is_not_asked(robot, roadmap, monkeypatch):
     def asked(*_):
         raise AssertionError("coal was asked")
 
-    known = roadmap.in_scene(Scene("nothing"), _thin(robot))
+    known = roadmap.in_scene(Scene(name="nothing"), _thin(robot))
     monkeypatch.setattr(CoalWorld, "valid", asked)
     monkeypatch.setattr(
         CoalWorld, "motion_valid", lambda self, a, b: asked() if len(a) else np.empty(0, bool)
@@ -91,7 +91,7 @@ def test_verdicts_are_those_of_either(robot):
     boxes = [
         Obstacle.of(str(i), "box", (0.15, 0.15, 0.15), tuple(rng.uniform(-0.6, 0.6, 3))) for i in range(8)
     ]
-    scene = Scene("boxes", tuple(boxes))
+    scene = Scene(tuple(boxes), name="boxes")
     capsules, shapes = ArmWorld(robot, scene), CoalWorld(robot, scene, _thin(robot))
     both = OwnShapesWorld(capsules, _thin(robot))
     q = capsules.space.from_cube(rng.random((1500, 6)))
@@ -108,18 +108,18 @@ def test_verdicts_are_those_of_either(robot):
 def test_clouds_block_as_they_do_for_capsules(robot, roadmap):
     ball = _beside(robot, START)
     cloud = Obstacle("ball", PointCloud(np.array([ball.xyz]), 0.02))
-    result = roadmap.in_scene(Scene("scanned", (cloud,)), _thin(robot)).plan(START, GOAL)
+    result = roadmap.in_scene(Scene((cloud,), name="scanned"), _thin(robot)).plan(START, GOAL)
     assert result.status == "start_invalid"
     assert "ball" in result.message
 
 
 def test_later_queries_go_on_from_what_earlier_ones_found(robot, roadmap):
     scene = Scene(
-        "posts",
         tuple(
             Obstacle.of(f"post {i}", "box", (0.08, 0.08, 0.6), (0.45 * np.cos(t), 0.45 * np.sin(t), 0.4))
             for i, t in enumerate((0.5, 1.0))
         ),
+        name="posts",
     )
     known = roadmap.in_scene(scene, _thin(robot))
     first = known.plan(START, GOAL)

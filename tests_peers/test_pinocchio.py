@@ -130,7 +130,7 @@ def test_pinocchio_reads_the_same_bodies_out_of_the_urdf_as_we_do(tmp_path, scal
     for first, second in robot.pairs:
         bodies.addCollisionPair(pinocchio.CollisionPair(of_link[first], of_link[second]))
     data, shapes = model.createData(), bodies.createData()
-    world = CoalWorld(robot, Scene("nothing", ()), original_shapes(path, robot))
+    world = CoalWorld(robot, Scene((), name="nothing"), original_shapes(path, robot))
     q = world.space.from_cube(np.random.default_rng(8).random((1_000, 3)))
     theirs = [
         not pinocchio.computeCollisions(

@@ -18,7 +18,7 @@ from evenroad.space.path import resample
 
 pytest.importorskip("coal")
 
-NOTHING = Scene("nothing", ())
+NOTHING = Scene((), name="nothing")
 
 
 @pytest.fixture
@@ -67,7 +67,7 @@ def test_a_path_that_is_free_for_the_capsules_is_free_for_the_meshes(arm):
 
 def test_a_contact_is_named_with_its_motion_and_its_state(arm):
     robot = load_robot(arm)
-    scene = Scene("wall", (Obstacle.of("wall", "box", (1.0, 0.02, 1.0), (0.3, 0.15, 0.6)),))
+    scene = Scene((Obstacle.of("wall", "box", (1.0, 0.02, 1.0), (0.3, 0.15, 0.6)),), name="wall")
     path = np.array([[-0.4, 0.0, 0.0], [-0.2, 0.0, 0.0], [1.5, 0.0, 0.0]])
     check = recheck(arm, robot, scene, path)
     assert check.verdict == "in collision"
@@ -124,7 +124,7 @@ def test_a_graze_between_the_states_of_the_planner_is_found(arm):
     between = 0.5 * (coarse[0] + coarse[1])
     corner = link_poses(robot, between[np.newaxis])[0, robot.links.index("fork")]
     place = corner[:3, :3] @ (0.05, 0.0, 0.02) + corner[:3, 3]
-    scene = Scene("needle", (Obstacle.of("needle", "sphere", (1e-3,), tuple(place)),))
+    scene = Scene((Obstacle.of("needle", "sphere", (1e-3,), tuple(place)),), name="needle")
     assert CoalWorld(robot, scene, original_shapes(arm, robot)).valid(coarse).all()
     check = recheck(arm, robot, scene, path, resolution=0.951)
     assert check.verdict == "in collision"
@@ -223,7 +223,7 @@ def test_a_mesh_between_whose_triangles_there_is_room_is_not_filled(arm, tmp_pat
     q = np.array([[0.0, 0.0, 0.1]])
     frame = link_poses(robot, q)[0, robot.links.index("fork")]
     middle = frame[:3, :3] @ (0.05, 0.0, 0.12) + frame[:3, 3]
-    scene = Scene("ball", (Obstacle.of("ball", "sphere", (0.04,), tuple(middle)),))
+    scene = Scene((Obstacle.of("ball", "sphere", (0.04,), tuple(middle)),), name="ball")
     assert recheck(arm, robot, scene, q).verdict == "free"
     hull.export(tmp_path / "meshes" / "fork.stl")
     assert recheck(arm, robot, scene, q).verdict == "in collision"

@@ -235,14 +235,14 @@ def test_the_arm_planner_answers_with_a_trajectory_that_is_free(store, make):
     # The scene once more, written down by hand.
     c, s = math.cos(0.5), math.sin(0.5)
     scene = Scene(
-        "by hand",
         (
             Obstacle.of("table", "box", (1.0, 2.0, 0.04), (0.3, 0.0, -0.03)),
             Obstacle.of("post", "cylinder", (0.05, 0.5), (0.45, 0.3, 0.25)),
             Obstacle.of("ball", "sphere", (0.06,), (0.45 + 0.1 * c - 0.2 * s, 0.3 + 0.1 * s + 0.2 * c, 0.3)),
             Obstacle.of("wedge", "box", (0.1, 0.1, 0.1), (0.65, -0.35, 0.15)),
         ),
-        frozenset({("base_link", "table")}),
+        name="by hand",
+        allowed=frozenset({("base_link", "table")}),
     )
     assert ArmWorld(robot, scene).recheck(q[::4]).all()
 

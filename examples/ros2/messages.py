@@ -110,7 +110,7 @@ def planning_scene(message: Any, robot: Robot) -> Scene:
         for link, name in allowed
         if part.name.split("/")[0] == name
     ]
-    return Scene(scene.name, scene.obstacles, frozenset(pairs), attached=tuple(held))
+    return Scene(scene.obstacles, name=scene.name, allowed=frozenset(pairs), attached=tuple(held))
 
 
 def _scene(objects: Sequence[Any], name: str, frame: str) -> Scene:

@@ -17,6 +17,7 @@ FUNCTIONS = {
     "PlanResult.plot": "evenroad.viz.result:plot_result",
     "PlanResult.save": "evenroad.io:save_result",
     "PlanResult.trajectory": "evenroad.trajectory.of_plan:trajectory_of",
+    "PointSet.discrepancy": "scipy.stats.qmc:discrepancy",
     "PointSet.save": "evenroad.points.npz:write_points",
     "Robot.limits": "evenroad.robot.robot_questions:joint_limits",
     "Robot.fk": "evenroad.robot.robot_questions:pose_of_link",

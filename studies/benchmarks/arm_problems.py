@@ -50,7 +50,7 @@ class Pool:
 
     def __init__(self, robot: Robot) -> None:
         self.robot = robot
-        space = ArmWorld(robot, Scene("nothing", ())).space
+        space = ArmWorld(robot, Scene((), name="nothing")).space
         self.q = space.from_cube(np.random.default_rng(0).random((POOL, space.dim)))
         last = robot.links.index("tool0") if "tool0" in robot.links else len(robot.links) - 1
         self.tool = np.concatenate([link_poses(robot, q)[:, last, :3, 3] for q in np.array_split(self.q, 40)])
@@ -87,7 +87,7 @@ def _problem(pool: Pool, kind: str, seed: int) -> Problem:
     robot = pool.robot
     while True:
         obstacles, regions = _SCENES[kind](rng)
-        scene = Scene(f"{kind}{seed}", (_table(), *obstacles), _on_table(robot))
+        scene = Scene((_table(), *obstacles), name=f"{kind}{seed}", allowed=_on_table(robot))
         world = ArmWorld(robot, scene)
         ends: list[Vector] = []
         for region in rng.permutation(len(regions))[:2]:
@@ -110,7 +110,9 @@ def queries(pool: Pool, kind: str, seed: int, count: int) -> tuple[ArmWorld, Vec
     rng = np.random.default_rng([KINDS.index(kind), seed])
     while True:
         obstacles, regions = _SCENES[kind](rng)
-        world = ArmWorld(pool.robot, Scene(f"{kind}{seed}", (_table(), *obstacles), _on_table(pool.robot)))
+        world = ArmWorld(
+            pool.robot, Scene((_table(), *obstacles), name=f"{kind}{seed}", allowed=_on_table(pool.robot))
+        )
         inside = [pool.within(region) for region in regions]
         free = [q[world.valid(q)] for q in inside]
         free = [q for q in free if len(q) > 0]

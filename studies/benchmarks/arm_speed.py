@@ -56,7 +56,9 @@ def ur5_world(scene_name: str) -> ArmWorld:
 
 def box_for(robot: Robot, scene: Scene) -> Scene:
     """Return the obstacles of `scene`, with the table allowed to touch the first two links of `robot`."""
-    return Scene(scene.name, scene.obstacles, frozenset((link, "table") for link in robot.links[:2]))
+    return Scene(
+        scene.obstacles, name=scene.name, allowed=frozenset((link, "table") for link in robot.links[:2])
+    )
 
 
 def random_boxes(count: int = 100) -> Scene:
@@ -67,7 +69,7 @@ def random_boxes(count: int = 100) -> Scene:
         place, size = rng.uniform(-1.0, 1.0, 3), rng.uniform(0.05, 0.2, 3)
         if np.linalg.norm(place) > 0.35:
             boxes.append(Obstacle.of(f"box {len(boxes)}", "box", tuple(size), tuple(place)))
-    return Scene(f"{count} boxes", tuple(boxes))
+    return Scene(tuple(boxes), name=f"{count} boxes")
 
 
 def seconds(task: Callable[[], object], repeats: int = REPEATS) -> float:

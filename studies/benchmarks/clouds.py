@@ -165,13 +165,15 @@ def main() -> None:
     }
     worlds = {"six boxes": boxes}
     for name, body in bodies.items():
-        scene = Scene(name, (Obstacle("scan", body),), frozenset((link, "scan") for link in base))
+        scene = Scene(
+            (Obstacle("scan", body),), name=name, allowed=frozenset((link, "scan") for link in base)
+        )
         worlds[name] = ArmWorld(boxes.robot, scene)
     # Each box a mesh of its own, or four, with a grid around all of them and without it.
     for name, parts in (("6 meshes", 1), ("24 meshes", 4), ("24 meshes, no grid", 4)):
         each = tuple(piece for box in boxes.scene.obstacles for piece in in_pieces(box, parts))
         allowed = frozenset((link, piece.name) for link in base for piece in each)
-        worlds[name] = ArmWorld(boxes.robot, Scene(name, each, allowed))
+        worlds[name] = ArmWorld(boxes.robot, Scene(each, name=name, allowed=allowed))
     surfaces = worlds[name].lanes.surfaces
     assert surfaces is not None
     assert surfaces.around is not None
@@ -185,7 +187,7 @@ def main() -> None:
         made = build_time(body, boxes.robot_tables.reach)
         print(f"{name:<28}{made:>12.1f}{f'{np.median(kept):.1f} / {kept.max():.1f}':>44}")
     shelf = bookshelf()
-    scene = Scene("bookshelf", (Obstacle("shelf", Mesh(shelf)),))
+    scene = Scene((Obstacle("shelf", Mesh(shelf)),), name="bookshelf")
     robot = load_robot("ur5")
     ends = [0.0, -1.57, 0.0, -1.57, 0.0, 0.0], [-0.3, -0.9, 1.4, -2.0, -1.5, 0.0]
     result = plan_arm(robot, scene, *ends)

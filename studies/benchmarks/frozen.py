@@ -100,11 +100,11 @@ def surface_worlds(kind: str) -> Iterator[ArmWorld]:
         table = [each for each in problem.scene.obstacles if each.name == "table"]
         rng = np.random.default_rng(problem.seed)
         if kind == "points":
-            cloud = PointCloud(points_on(Scene("boxes", tuple(boxes)), 20_000, rng), 0.005)
+            cloud = PointCloud(points_on(Scene(tuple(boxes), name="boxes"), 20_000, rng), 0.005)
             things = [Obstacle("cloud", cloud)]
         else:
             things = [Obstacle(each.name, Mesh(triangles_of(each, 2))) for each in boxes]
-        scene = Scene(problem.scene.name, (*table, *things), problem.scene.allowed)
+        scene = Scene((*table, *things), name=problem.scene.name, allowed=problem.scene.allowed)
         yield ArmWorld(problem.robot, scene)
 
 

@@ -75,7 +75,7 @@ def measured(file: Path, rng: np.random.Generator) -> dict[str, object]:
     model = load_model(file)
     load_s = time.perf_counter() - began
     robot = model.robot
-    world = ArmWorld(robot, Scene("empty", ()))
+    world = ArmWorld(robot, Scene((), name="empty"))
     truth = Truth(file, robot)
     q = world.space.from_cube(rng.random((COUNT, world.space.cube_dim)))
     free = world.valid(q)

@@ -37,7 +37,7 @@ def row(source: str, count: int, seed: int) -> dict[str, object]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         robot = load_robot(file, group=joints or None)
-    world = ArmWorld(robot, Scene("empty space"))
+    world = ArmWorld(robot, Scene(name="empty space"))
     tip = tip or default_tip(robot)
     rng, low, high = np.random.default_rng(seed), np.array(world.space.low), np.array(world.space.high)
     rows: list[np.ndarray] = []

@@ -47,7 +47,7 @@ def problems(robot: Robot, tip: str, count: int, seed: int) -> Iterator[tuple[Sc
                 xyz, size = rng.uniform([-0.8, -0.8, 0.0], [0.8, 0.8, 0.8]), rng.uniform(0.08, 0.3, 3)
                 if math.hypot(xyz[0], xyz[1]) > 0.35 + 0.5 * math.hypot(size[0], size[1]):
                     boxes.append(Obstacle.of(f"box {len(boxes)}", "box", tuple(size), tuple(xyz)))
-            scene = Scene(f"boxes {number}", tuple(boxes))
+            scene = Scene(tuple(boxes), name=f"boxes {number}")
             world, ends = ArmWorld(robot, scene), []
             zero = np.zeros(world.space.dim)
             for _ in range(40):

@@ -147,7 +147,7 @@ def measured(file: Path, rng: np.random.Generator) -> dict[str, object]:
     model = load_model(file)
     row["load_s"] = round(time.perf_counter() - began, 1)
     robot = model.robot
-    world = ArmWorld(robot, Scene("empty", ()))
+    world = ArmWorld(robot, Scene((), name="empty"))
     held = {
         joint.name: robot.held.get(joint.name, joint.neutral)
         for joint in robot.joints

@@ -72,7 +72,7 @@ def tried(path: Path) -> dict[str, object]:
     from evenroad.roadmap import Budget
     from evenroad.robot import ArmWorld, Scene, load_model
 
-    scene, options = Scene("empty space"), {}
+    scene, options = Scene(name="empty space"), {}
     try:
         try:
             model = load_model(path)

@@ -153,7 +153,7 @@ def test_a_goal_that_an_arm_cannot_leave_is_explained():
     ]
     start = [0.0, -1.0, *home[2:]]
     for points in (None, 64):
-        result = er.plan_arm("ur5", er.Scene("balls", tuple(posts)), start, goal, points, seconds=0.2)
+        result = er.plan_arm("ur5", er.Scene(tuple(posts), name="balls"), start, goal, points, seconds=0.2)
         assert not result.solved
         assert "The goal can" in result.message
         assert "leave its place: " in result.message

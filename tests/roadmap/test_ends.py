@@ -114,7 +114,7 @@ def test_what_a_world_made_shorter_is_looked_at():
 
 
 def test_what_a_robot_roadmap_found_is_looked_at(monkeypatch):
-    known = make_roadmap(ur5(joints=3), TABLE, 40, k=4, gamma=0.0, ends=100).in_scene(Scene("today"))
+    known = make_roadmap(ur5(joints=3), TABLE, 40, k=4, gamma=0.0, ends=100).in_scene(Scene(name="today"))
     a, b, c = known.roadmap.milestones[:3]
     ask = known._ask
     monkeypatch.setattr(known, "_ask", lambda start, goals, *rest, **more: ask(c, goals, *rest, **more))
@@ -145,6 +145,6 @@ def test_ends_of_joints_that_turn_for_ever_may_be_asked_for_after_any_turns():
     body = Capsule((0.1, 0.0, 0.0), (0.4, 0.0, 0.0), 0.02, link="link")
     robot = Robot("hand", ("base", "link"), (turning,), (body,), (), ("joint",))
     for turns in (0, 1, -3, 1000):
-        found = er.plan_arm(robot, Scene("empty"), [0.3 + turns * math.tau], [2.0 - turns * math.tau])
+        found = er.plan_arm(robot, Scene(name="empty"), [0.3 + turns * math.tau], [2.0 - turns * math.tau])
         assert found.solved
         assert np.sin(found.path[[0, -1], 0]) == pytest.approx(np.sin([0.3, 2.0]), abs=1e-9)

@@ -28,7 +28,8 @@ def test_what_is_saved_is_read_again(tmp_path):
         RESULT.save(tmp_path / name)
     again, _ = load_plan(tmp_path / "way.json")
     assert np.array_equal(again.path, RESULT.path)
-    assert again.cost == RESULT.cost
+    assert (again.cost, again.length) == (RESULT.cost, RESULT.length)
+    assert again.seconds == pytest.approx(RESULT.seconds, abs=1e-5)
     rows = np.loadtxt(tmp_path / "way.csv", delimiter=",", skiprows=1)
     assert np.array_equal(rows, RESULT.path)
     assert np.array_equal(np.asarray(Image.open(tmp_path / "way.png")), np.asarray(RESULT.plot()))
@@ -44,6 +45,12 @@ def test_a_path_gets_times_by_the_limits_that_are_given():
     fast, slow = RESULT.trajectory(limits), RESULT.trajectory(limits, speed=0.5)
     assert slow.duration == pytest.approx(2 * fast.duration, rel=0.02)
     assert fast.duration >= np.abs(np.diff(RESULT.path[[0, -1]], axis=0)).max()
+
+
+def test_on_a_map_the_speed_is_that_along_the_path():
+    speeds = np.linalg.norm(RESULT.trajectory(speed=0.5).velocities, axis=1)
+    assert 0.99 * 0.5 <= speeds.max() <= 0.5 * (1 + 1e-9)
+    assert RESULT.trajectory(speed=2.5).duration < RESULT.length
 
 
 def test_the_path_of_an_arm_has_the_limits_of_its_robot():
@@ -70,7 +77,8 @@ def test_a_result_is_one_line():
         (lambda: BLOCKED.save("way.csv"), "no path"),
         (lambda: RESULT.save("way.txt"), "known: .csv, .json, .png"),
         (lambda: RESULT.resample(0), "step must be"),
-        (lambda: RESULT.trajectory(), "Limits(velocity"),
+        (lambda: RESULT.trajectory("limits.yaml"), "Limits(velocity"),
+        (lambda: RESULT.trajectory(speed=0), "speed must be"),
         (lambda: RESULT.plot(world=3), "a int"),
     ],
 )

@@ -69,13 +69,13 @@ def box_scene(inner=0.36):
         ),
     )
     allowed = frozenset({("base", "table"), ("shoulder", "table")})
-    return Scene("box", obstacles, allowed)
+    return Scene(obstacles, name="box", allowed=allowed)
 
 
 TABLE = Scene(
-    "cell",
     (Obstacle.of("table", "box", (1.0, 1.2, 0.05), (0.25, 0.0, -0.025), cell=True),),
-    frozenset({("base", "table"), ("shoulder", "table")}),
+    name="cell",
+    allowed=frozenset({("base", "table"), ("shoulder", "table")}),
 )
 """The cell of a UR5 on its table."""
 
@@ -183,7 +183,7 @@ def random_scene(seed, count=12, spread=0.8, sizes=(0.05, 0.2), clear=0.3):
         place = rng.uniform(-spread, spread, 3)
         if np.linalg.norm(place) > clear:
             obstacles.append(Obstacle.of(f"obstacle{len(obstacles)}", shape, size, tuple(place), rotation))
-    return Scene(f"random{seed}", tuple(obstacles))
+    return Scene(tuple(obstacles), name=f"random{seed}")
 
 
 def edge(world, q, most=2_000):

@@ -36,7 +36,7 @@ START = [0.5, -1.9, 1.8, -1.5, -1.57, 0.0]
 
 def placed(xyz):
     """A configuration with the tool there, pointing down."""
-    result = er.plan_arm(UR5, Scene("air"), START, Pose.from_rpy(xyz, DOWN), tip="tool0")
+    result = er.plan_arm(UR5, Scene(name="air"), START, Pose.from_rpy(xyz, DOWN), tip="tool0")
     assert result.solved
     return result.path[-1]
 
@@ -55,13 +55,13 @@ def scanned(seed=0):
 
 
 def scene(**more):
-    return Scene("desk", (Obstacle("scan", PointCloud(scanned(), RADIUS)),), attached=(BLOCK,), **more)
+    return Scene((Obstacle("scan", PointCloud(scanned(), RADIUS)),), name="desk", attached=(BLOCK,), **more)
 
 
 def poses_along(path):
     """Poses of the block at states close together, (s, 4, 4)."""
-    robot = in_scene(UR5, Scene("air", attached=(BLOCK,)))
-    world = ArmWorld(robot, Scene("air"))
+    robot = in_scene(UR5, Scene(name="air", attached=(BLOCK,)))
+    world = ArmWorld(robot, Scene(name="air"))
     return link_poses(robot, resample(path, world.space, 0.01)[0])[:, robot.links.index("block")]
 
 
@@ -162,7 +162,7 @@ def test_what_is_allowed_with_a_cloud_stays_allowed_with_its_parts():
 
 
 def test_a_part_of_anything_else_is_refused():
-    table = Scene("desk", (Obstacle.of("table", "box", (1, 1, 0.1)),), attached=(BLOCK,))
+    table = Scene((Obstacle.of("table", "box", (1, 1, 0.1)),), name="desk", attached=(BLOCK,))
     with pytest.raises(er.InvalidValue, match="'table' cannot be allowed, since it is a box and no cloud"):
         allowed_within(table, "block", "table", Sphere(0.1))
     with pytest.raises(er.UnknownName, match="obstacle of scene 'desk': 'desk'"):
@@ -191,14 +191,16 @@ def test_what_is_held_is_cut_out_of_the_scan_where_it_is_grasped(ends):
     text = ",".join(map(repr, ends[0].tolist()))
     cloud = PointCloud(np.concatenate([scanned(), seen]), RADIUS)
     grown = Obstacle("scan", cloud, cuts=(Cut("block", text, 0.025),))
-    left = scene_seen_by(robot, Scene("desk", (grown,), attached=(BLOCK,)))
+    left = scene_seen_by(robot, Scene((grown,), name="desk", attached=(BLOCK,)))
     assert left.obstacles[0].cuts == ()
     points = left.obstacles[0].body.points
     assert away(pose, points).min() > 0.025
     assert len(points) == (away(pose, cloud.points) > 0.025).sum()
     assert ArmWorld(robot, left).valid(ends[:1])[0]
     with pytest.raises(er.UnknownName, match="attached, to be cut out of 'scan': 'cup'"):
-        scene_seen_by(robot, Scene("desk", (replace(grown, cuts=(Cut("cup", text),)),), attached=(BLOCK,)))
+        scene_seen_by(
+            robot, Scene((replace(grown, cuts=(Cut("cup", text),)),), name="desk", attached=(BLOCK,))
+        )
 
 
 def test_a_start_inside_of_the_scan_is_said_to_be_one():
@@ -206,12 +208,15 @@ def test_a_start_inside_of_the_scan_is_said_to_be_one():
     poses = link_poses(UR5, q[np.newaxis])[0]
     cloud = PointCloud(np.concatenate([scanned(), poses[[UR5.links.index("forearm_link")], :3, 3]]), RADIUS)
     scan = Obstacle("scan", cloud)
-    result = er.plan_arm(UR5, Scene("desk", (scan,)), q, [0.0, -1.57, 0, -1.57, 0, 0])
+    result = er.plan_arm(UR5, Scene((scan,), name="desk"), q, [0.0, -1.57, 0, -1.57, 0, 0])
     assert result.status == "start_invalid"
     assert "the robot stands in its scan, " in result.message
     assert "touches 'scan': seen_at" in result.message
     seen = replace(scan, seen=Seen(",".join(map(str, START))))
-    assert er.plan_arm(UR5, Scene("desk", (seen,)), q, [0.0, -1.57, 0, -1.57, 0, 0]).status != "start_invalid"
+    assert (
+        er.plan_arm(UR5, Scene((seen,), name="desk"), q, [0.0, -1.57, 0, -1.57, 0, 0]).status
+        != "start_invalid"
+    )
 
 
 def test_scene_files_say_all_of_this(tmp_path, ends):

@@ -42,7 +42,7 @@ def test_free_is_what_keeps_the_clearance_from_obstacles_and_does_not_touch_itse
     q = np.concatenate([q[:500], *edge(world, q, 300)])
     free = world.valid(q)
     obstacles = clearance(replace(robot, pairs=()), scene, q)
-    itself = clearance(robot, Scene("nothing"), q)
+    itself = clearance(robot, Scene(name="nothing"), q)
     assert not free[(obstacles < kept - ROUNDING) | (itself < -ROUNDING)].any()
     assert free[(obstacles > kept + BAND) & (itself > BAND)].all()
     assert np.sum(free & (obstacles < kept + 10.0 * BAND)) > 10
@@ -95,7 +95,7 @@ def test_clouds_and_meshes_are_kept_clear_of(kind, backend):
         points[np.arange(300), rng.integers(0, 3, 300)] = rng.choice([-0.15, 0.15], 300)
     else:
         body, radius = PointCloud(points, 0.01, pose=box.pose), 0.01
-    scene = Scene("s", (Obstacle("it", body),))
+    scene = Scene((Obstacle("it", body),), name="s")
     world = ArmWorld(robot, scene, clearance=kept, backend=backend)
     q = world.space.from_cube(rng.random((3000, 6)))
     free, plain = world.valid(q), ArmWorld(robot, scene, backend=backend).valid(q)
@@ -108,7 +108,10 @@ def test_clouds_and_meshes_are_kept_clear_of(kind, backend):
 
 
 def test_what_is_nearer_than_the_clearance_is_told_so_and_what_touches_is_told_that():
-    robot, scene = ur5(np.pi), Scene("s", (Obstacle.of("wall", "box", (0.1, 2.0, 2.0), (0.9, 0.0, 0.5)),))
+    robot, scene = (
+        ur5(np.pi),
+        Scene((Obstacle.of("wall", "box", (0.1, 2.0, 2.0), (0.9, 0.0, 0.5)),), name="s"),
+    )
     world, plain = ArmWorld(robot, scene, clearance=0.3), ArmWorld(robot, scene)
     q = world.space.from_cube(np.random.default_rng(0).random((600, 6)))
     told = [world.explain(each) for each in q]

@@ -53,12 +53,12 @@ def test_what_decides_verdicts_changes_a_scenes_fingerprint(other):
 
 def test_names_and_orders_do_not_count():
     assert replace(UR5, name="it", states={"home": {}}).fingerprint() == UR5.fingerprint()
-    backwards = Scene("another", CELL.obstacles[::-1], CELL.allowed)
+    backwards = Scene(CELL.obstacles[::-1], name="another", allowed=CELL.allowed)
     assert backwards.fingerprint() == CELL.fingerprint()
 
 
 def test_zeros_of_both_signs_are_one_number():
     plus, minus = (
-        Scene("s", (Obstacle("a", Box((1, 1, 1), pose=Pose((zero, 0, 0)))),)) for zero in (0.0, -0.0)
+        Scene((Obstacle("a", Box((1, 1, 1), pose=Pose((zero, 0, 0)))),), name="s") for zero in (0.0, -0.0)
     )
     assert plus.fingerprint() == minus.fingerprint()

@@ -91,7 +91,7 @@ def test_the_robot_itself_stays_as_it_was_and_can_put_the_object_down():
 
 
 def test_a_verdict_names_what_is_held():
-    scene = Scene("s", (Obstacle.of("wall", "box", (0.02, 4.0, 4.0), (0.9, 0.0, 0.0)),))
+    scene = Scene((Obstacle.of("wall", "box", (0.02, 4.0, 4.0), (0.9, 0.0, 0.0)),), name="s")
     q = np.array([0.0, -0.3, 0.2, 0.1, math.pi / 2, 0.0])
     for length in (0.05, 0.6):
         world = ArmWorld(
@@ -124,7 +124,7 @@ def test_an_attached_object_of_a_scene_file_is_held_and_may_touch_what_it_says(t
 
 
 def test_a_world_of_a_robot_that_does_not_hold_what_its_scene_attaches_is_refused():
-    scene = Scene("pick", attached=(HeldObject("crate", BOX, "tool0"),))
+    scene = Scene(name="pick", attached=(HeldObject("crate", BOX, "tool0"),))
     with pytest.raises(
         InvalidValue, match=r"attaches 'crate', which the robot does not hold: give .* in_scene"
     ):
@@ -137,12 +137,12 @@ def test_what_is_attached_twice_or_to_nothing_is_refused():
     with pytest.raises(InvalidValue, match="attached twice under one name"):
         UR5.holding(crate).holding(crate)
     with pytest.raises(InvalidValue, match="attached twice: crate"):
-        Scene("pick", attached=(crate, crate))
+        Scene(name="pick", attached=(crate, crate))
     other = HeldObject("crate", Sphere(0.1), "tool0")
     with pytest.raises(InvalidValue, match="have two bodies of that name"):
-        in_scene(UR5.holding(other), Scene("pick", attached=(crate,)))
+        in_scene(UR5.holding(other), Scene(name="pick", attached=(crate,)))
     with pytest.raises(InvalidValue, match="attached and as an obstacle"):
-        Scene("pick", (Obstacle.of("crate", "sphere", (0.1,)),), attached=(crate,))
+        Scene((Obstacle.of("crate", "sphere", (0.1,)),), name="pick", attached=(crate,))
     with pytest.raises(UnknownName, match="'hand'; known: base_link"):
         UR5.holding(BOX, "hand")
     with pytest.raises(UnknownName, match="'finger'; known: base_link"):
@@ -172,14 +172,16 @@ def test_what_is_wrong_with_an_attached_object_is_said(tmp_path, entry, match):
 def test_a_robots_roadmap_serves_a_robot_with_its_hands_full():
     robot = load_robot("ur5")
     cell = Scene(
-        "cell",
         (Obstacle.of("table", "box", (1.0, 1.2, 0.05), (0.25, 0, -0.025)),),
-        frozenset({("base_link", "table"), ("shoulder_link", "table")}),
+        name="cell",
+        allowed=frozenset({("base_link", "table"), ("shoulder_link", "table")}),
         limits=dict.fromkeys(robot.group, (-math.pi, math.pi)),
     )
     roadmap = make_roadmap(robot, cell, 32, ends=100, rng=0)
     rod = HeldObject("rod", Cylinder(0.03, 0.5, pose=Pose((0, 0, 0.25))), "tool0", ("wrist_2_link",))
-    scene = Scene("today", (Obstacle.of("post", "box", (0.1, 0.1, 0.8), (0.5, 0.4, 0.4)),), attached=(rod,))
+    scene = Scene(
+        (Obstacle.of("post", "box", (0.1, 0.1, 0.8), (0.5, 0.4, 0.4)),), name="today", attached=(rod,)
+    )
     known = roadmap.in_scene(scene)
     assert known.world.robot.holds == ("rod",)
     q = known.world.space.from_cube(np.random.default_rng(2).random((400, 6)))
@@ -198,7 +200,7 @@ def test_a_robots_roadmap_serves_a_robot_with_its_hands_full():
 
 def test_a_roadmap_is_made_of_a_robot_with_empty_hands():
     with pytest.raises(InvalidValue, match="empty hands"):
-        make_roadmap(UR5.holding(BOX, "tool0"), Scene("nothing"), 8)
+        make_roadmap(UR5.holding(BOX, "tool0"), Scene(name="nothing"), 8)
 
 
 def test_a_file_that_attaches_something_twice_is_refused(tmp_path):
@@ -217,9 +219,9 @@ def test_a_goal_pose_may_be_that_of_what_is_held():
     )
     goal = Pose.from_rpy((0.4, 0.2, 0.5), (0.0, 2.5, 0.0))
     start = [0.5, -1.9, 1.2, -0.8, -1.57, 0.0]
-    result = er.plan_arm("ur5", Scene("air", attached=(held,)), start, goal, tip="crate")
+    result = er.plan_arm("ur5", Scene(name="air", attached=(held,)), start, goal, tip="crate")
     assert result.solved
-    robot = in_scene(UR5, Scene("air", attached=(held,)))
+    robot = in_scene(UR5, Scene(name="air", attached=(held,)))
     at = link_poses(robot, result.path[-1:])[0]
     assert np.abs(at[robot.links.index("crate")] - goal.matrix).max() < 1e-6
     tool = at[robot.links.index("tool0")] @ held.body.pose.matrix

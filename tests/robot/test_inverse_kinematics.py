@@ -15,7 +15,7 @@ from evenroad.robot.inverse_kinematics import MOST, misses, reach, task_of
 from evenroad.robot.pose_goal import PoseGoal, as_axis, pose_of
 from tests.robot.kernel_arms import random_tree
 
-EMPTY = Scene("empty")
+EMPTY = Scene(name="empty")
 UR5, ARM7 = load_robot("ur5"), load_robot("arm7")
 
 

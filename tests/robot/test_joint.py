@@ -109,7 +109,7 @@ def test_no_configuration_of_a_loaded_robot_takes_a_mimic_out_of_its_limits(tmp_
         joint("c", "y", "z", inside=inside + "<mimic joint='b' multiplier='-1' offset='0.1'/>"),
     )
     robot = load_robot(write(tmp_path, text))
-    world = ArmWorld(robot, Scene("nothing", ()))
+    world = ArmWorld(robot, Scene((), name="nothing"))
     q = world.space.from_cube(np.linspace(0.0, 1.0, 200)[:, np.newaxis])
     values = joint_values(robot, q)
     for name in "bc":

@@ -88,12 +88,14 @@ def test_every_state_of_a_motion_is_looked_at(segments):
     for state in range(segments + 1):
         angle = length * state / segments
         post = Obstacle.of("post", "sphere", (1e-3,), (math.cos(angle), math.sin(angle), 0.0))
-        world = ArmWorld(robot, Scene("one post", (post,)), resolution=length / segments * (1.0 + 1e-9))
+        world = ArmWorld(robot, Scene((post,), name="one post"), resolution=length / segments * (1.0 + 1e-9))
         assert not world.motion_valid([[0.0]], [[length]])[0], state
         between = angle + 0.5 * length / segments
         if state < segments:
             beside = post.at(Pose((math.cos(between), math.sin(between), 0.0)))
-            world = ArmWorld(robot, Scene("beside", (beside,)), resolution=length / segments * (1.0 + 1e-9))
+            world = ArmWorld(
+                robot, Scene((beside,), name="beside"), resolution=length / segments * (1.0 + 1e-9)
+            )
             assert world.motion_valid([[0.0]], [[length]])[0], state
 
 
@@ -137,7 +139,7 @@ def test_explain_has_a_reason_for_what_only_rounding_brings_into_contact():
     """The corner of a turned floor of 2 km: single precision knows its surface to a fraction of a millimetre."""
     tilt = (0.8, 0.0, 0.6, 0.0, 1.0, 0.0, -0.6, 0.0, 0.8)
     floor = Obstacle.of("floor", "box", (2000.0, 2000.0, 1.0), (-0.7, 0.0, -0.9), tilt)
-    world = ArmWorld(ur5(math.pi, joints=5), Scene("hill", (floor,)), backend="lanes")
+    world = ArmWorld(ur5(math.pi, joints=5), Scene((floor,), name="hill"), backend="lanes")
     q = world.space.from_cube(np.random.default_rng(12).random((500, 5)))
     _, blocked = edge(world, q)
     assert all("touches" in world.explain(row) for row in blocked)
@@ -177,7 +179,9 @@ def test_an_obstacle_out_of_reach_changes_nothing():
 def test_a_floor_of_a_hundred_kilometres_costs_no_digits():
     def floor(width):
         slab = Obstacle.of("floor", "box", (width, width, 0.2), (0.3 * width, 0.0, -0.1))
-        return ArmWorld(ur5(), Scene("floor", (slab,), frozenset({("base", "floor"), ("shoulder", "floor")})))
+        return ArmWorld(
+            ur5(), Scene((slab,), name="floor", allowed=frozenset({("base", "floor"), ("shoulder", "floor")}))
+        )
 
     q = floor(10.0).space.from_cube(np.random.default_rng(10).random((20_000, 6)))
     free = floor(10.0).valid(q)
@@ -191,7 +195,7 @@ def test_a_robot_that_no_joint_moves_about_obstacles_only_has_limits():
         "wheel", ("base", "wheel"), (turn,), (Capsule((0, 0, 0), (0, 0, 1), 0.1, link="base"),), (), ("turn",)
     )
     for backend in ("lanes", "scalar"):
-        world = ArmWorld(robot, Scene("empty", ()), backend=backend)
+        world = ArmWorld(robot, Scene((), name="empty"), backend=backend)
         np.testing.assert_array_equal(world.valid([[-0.1], [0.0], [2.0], [2.1]]), [False, True, True, False])
 
 
@@ -321,7 +325,7 @@ def test_a_mimic_that_a_full_turn_brings_elsewhere_is_refused():
         "gear", ("a", "b", "c"), (turn, half), (Capsule((0, 0, 0), (1, 0, 0), 0.1, link="c"),), (), ("turn",)
     )
     with pytest.raises(InvalidValue, match="whole multiple"):
-        ArmWorld(robot, Scene("empty", ()))
+        ArmWorld(robot, Scene((), name="empty"))
 
 
 @pytest.mark.parametrize("mimic", [Mimic("turn", 1e39), Mimic("turn", -1.0, 2e9)], ids=["times", "plus"])
@@ -333,13 +337,13 @@ def test_a_mimic_beyond_what_single_precision_holds_is_refused(mimic):
         "gear", ("a", "b", "c"), (turn, wild), (Capsule((0, 0, 0), (1, 0, 0), 0.1, link="c"),), (), ("turn",)
     )
     with pytest.raises(InvalidValue, match=r"'turn' must do so .* at most 1e\+09"):
-        ArmWorld(robot, Scene("empty", ()))
+        ArmWorld(robot, Scene((), name="empty"))
 
 
 def test_an_obstacle_farther_away_than_single_precision_holds_is_refused():
     far = Obstacle.of("x", "sphere", (1e8,), (0, 1e8, 0))
     with pytest.raises(InvalidValue, match=r"'x' must be within 1e[+]06 m"):
-        ArmWorld(ur5(), Scene("x", (far,)))
+        ArmWorld(ur5(), Scene((far,), name="x"))
 
 
 @pytest.mark.parametrize("pair", [("hand", "table"), ("base", "chair")])

@@ -90,7 +90,7 @@ def needle(gap, half_width=1e-3):
     robot = Robot("wheel", ("base", "wheel"), (turn,), (rim,), (), ("turn",))
     reach = 1.0 - 1e-3 - half_width - gap
     post = Obstacle.of("post", "sphere", (half_width,), (reach * math.cos(0.97), reach * math.sin(0.97), 0.0))
-    return ArmWorld(robot, Scene("post", (post,)), resolution=0.05)
+    return ArmWorld(robot, Scene((post,), name="post"), resolution=0.05)
 
 
 def test_a_post_between_two_states_is_missed_by_them_but_not_by_the_proof():

@@ -43,13 +43,13 @@ def cloud_scene(seed, n, radius=0.02, spread=0.9, clear=0.35, pose=Pose()):
         points = np.concatenate([points, some[np.linalg.norm(some, axis=1) > clear]])
     turn, shift = np.reshape(pose.rotation, (3, 3)), np.array(pose.xyz)
     cloud = PointCloud((points[:n] - shift) @ turn, radius, pose=pose)
-    return Scene(f"cloud{seed}", (Obstacle("cloud", cloud),))
+    return Scene((Obstacle("cloud", cloud),), name=f"cloud{seed}")
 
 
 WORLDS = {
     "ur5, one point": (
         ur5(np.pi),
-        Scene("one", (Obstacle("cloud", PointCloud([[0.4, 0.2, 0.4]], 0.15)),)),
+        Scene((Obstacle("cloud", PointCloud([[0.4, 0.2, 0.4]], 0.15)),), name="one"),
         3000,
     ),
     "ur5, sixteen points": (ur5(np.pi), cloud_scene(1, 16, 0.06), 3000),
@@ -64,12 +64,12 @@ WORLDS = {
     "two clouds, of which one may be touched": (
         ur5(np.pi),
         Scene(
-            "two",
             (
                 replace(cloud_scene(6, 400).obstacles[0], name="first"),
                 replace(cloud_scene(7, 400).obstacles[0], name="second"),
             ),
-            frozenset({("forearm", "first"), ("wrist1", "second")}),
+            name="two",
+            allowed=frozenset({("forearm", "first"), ("wrist1", "second")}),
         ),
         1500,
     ),
@@ -155,7 +155,8 @@ def test_points_are_as_spheres_of_their_radius_but_tighter_against_long_capsules
     scene = cloud_scene(13, 60, 0.04)
     points, radius = scene.obstacles[0].body.points, scene.obstacles[0].body.radius
     spheres = Scene(
-        "spheres", tuple(Obstacle(str(i), Sphere(radius, pose=Pose(point))) for i, point in enumerate(points))
+        tuple(Obstacle(str(i), Sphere(radius, pose=Pose(point))) for i, point in enumerate(points)),
+        name="spheres",
     )
     balls, capsules = as_balls(ur5(np.pi)), ur5(np.pi)
     q = ArmWorld(balls, scene).space.from_cube(np.random.default_rng(3).random((5_000, 6)))
@@ -169,17 +170,17 @@ def test_points_beyond_reach_change_nothing():
     near = cloud_scene(14, 100)
     cloud = near.obstacles[0].body
     far = replace(cloud, points=np.concatenate([cloud.points, [[50.0, 0.0, 0.0], [0.0, 1e6, 0.0]]]))
-    worlds = [ArmWorld(ur5(np.pi), Scene("s", (Obstacle("cloud", body),))) for body in (cloud, far)]
+    worlds = [ArmWorld(ur5(np.pi), Scene((Obstacle("cloud", body),), name="s")) for body in (cloud, far)]
     np.testing.assert_array_equal(worlds[0].lanes.surfaces.arrays[0], worlds[1].lanes.surfaces.arrays[0])
-    only_far = Scene("s", (Obstacle("cloud", PointCloud([[50.0, 0.0, 0.0]], 0.1)),))
+    only_far = Scene((Obstacle("cloud", PointCloud([[50.0, 0.0, 0.0]], 0.1)),), name="s")
     assert ArmWorld(ur5(np.pi), only_far).lanes.surfaces is None
 
 
 def test_it_is_told_which_link_touches_which_cloud():
     scene = Scene(
-        "one",
         (Obstacle("wall", PointCloud([[0.3, 0.0, 0.8]], 0.1)), *box_scene().obstacles),
-        box_scene().allowed,
+        name="one",
+        allowed=box_scene().allowed,
     )
     world = ArmWorld(ur5(np.pi), scene, backend="lanes")
     q = world.space.from_cube(np.random.default_rng(5).random((4000, 6)))
@@ -191,11 +192,14 @@ def test_it_is_told_which_link_touches_which_cloud():
 
 def test_what_does_not_move_is_looked_at_once():
     cloud = Obstacle("wall", PointCloud([[0.0, 0.0, 0.0]], 0.1))
-    world = ArmWorld(ur5(), Scene("one", (cloud,)))
+    world = ArmWorld(ur5(), Scene((cloud,), name="one"))
     assert world.fixed_contact == ("base", "wall")
     assert not world.valid(np.zeros((2, 6))).any()
     assert "'base' touches 'wall'" in world.explain(np.zeros(6))
-    assert ArmWorld(ur5(), Scene("one", (cloud,), frozenset({("base", "wall")}))).fixed_contact is None
+    assert (
+        ArmWorld(ur5(), Scene((cloud,), name="one", allowed=frozenset({("base", "wall")}))).fixed_contact
+        is None
+    )
 
 
 def test_copies_of_a_world_find_its_clouds_again():

@@ -14,7 +14,7 @@ from evenroad.robot.kinematics import link_poses
 from tests.robot.mesh_arms import FORK, fork
 from tests.robot.urdf_texts import joint, link, urdf
 
-EMPTY = Scene("empty", ())
+EMPTY = Scene((), name="empty")
 
 
 def gap(first, second):

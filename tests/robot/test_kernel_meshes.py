@@ -58,7 +58,7 @@ def thin(robot, radius=0.004):
 
 def scene_of(*meshes, pose=Pose()):
     return Scene(
-        "meshes", tuple(Obstacle(f"mesh{i}", Mesh(mesh, pose=pose)) for i, mesh in enumerate(meshes))
+        tuple(Obstacle(f"mesh{i}", Mesh(mesh, pose=pose)) for i, mesh in enumerate(meshes)), name="meshes"
     )
 
 

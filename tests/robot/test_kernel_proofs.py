@@ -12,7 +12,7 @@ from evenroad.robot.scene import Scene
 from tests.robot.kernel_arms import as_balls, random_scene, random_tree, seven_joint_arm, ur5
 from tests.robot.oracle import clearance
 
-NOTHING = Scene("nothing", ())
+NOTHING = Scene((), name="nothing")
 WORLDS = {
     "capsules among obstacles": (ur5(np.pi), random_scene(5)),
     "balls among obstacles": (as_balls(ur5(np.pi)), random_scene(5)),

@@ -27,7 +27,7 @@ def squared_distance(point, form, floats, data):
 
 
 def point_to_obstacle(point, obstacle):
-    tables = ArmWorld(LONG, Scene("one", (obstacle,))).tables
+    tables = ArmWorld(LONG, Scene((obstacle,), name="one")).tables
     form, data = tables.ints[tables.ints[layout.OBSTACLE_INTS]], tables.ints[layout.OBSTACLE_FLOATS]
     apart = math.sqrt(squared_distance(point, form, tables.floats, data))
     return max(apart - tables.floats[data + 15], 0.0)
@@ -125,7 +125,9 @@ def crowded(seed):
     )
     obstacles = (*some.obstacles, floor) if seed % 4 else some.obstacles
     contacts = [(link, obstacle.name) for link in robot.links for obstacle in obstacles]
-    return robot, Scene("crowded", obstacles, frozenset(c for c in contacts if rng.random() < 0.1))
+    return robot, Scene(
+        obstacles, name="crowded", allowed=frozenset(c for c in contacts if rng.random() < 0.1)
+    )
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -168,10 +170,10 @@ def test_a_robots_tables_are_made_once_for_robots_of_one_value():
     held = replace(ur5(joints=5), held={"wrist_3_joint": 0.1})
     assert (
         ArmWorld(held, random_scene(1)).robot_tables
-        is not ArmWorld(ur5(joints=5), Scene("", ())).robot_tables
+        is not ArmWorld(ur5(joints=5), Scene((), name="")).robot_tables
     )
-    assert ArmWorld(replace(held, held={"wrist_3_joint": 0.1}), Scene("", ())).robot_tables is (
-        ArmWorld(held, Scene("", ())).robot_tables
+    assert ArmWorld(replace(held, held={"wrist_3_joint": 0.1}), Scene((), name="")).robot_tables is (
+        ArmWorld(held, Scene((), name="")).robot_tables
     )
 
 

@@ -26,7 +26,7 @@ SCENES = {
     "closed ones that overlap": scene_of(*BALLS, *BOXES),
     "one turned inside out in another": scene_of(BALLS[0], INSIDE_OUT, ball(0.6, 0.2, 0.4, 0.1), pose=TURNED),
     "open ones, a soup and a cloud": Scene(
-        "all", (*scene_of(half_open(BALLS[1]), soup(2, 200)).obstacles, Obstacle("cloud", CLOUD.body))
+        (*scene_of(half_open(BALLS[1]), soup(2, 200)).obstacles, Obstacle("cloud", CLOUD.body)), name="all"
     ),
     "some that may be touched": replace(
         scene_of(*BALLS),

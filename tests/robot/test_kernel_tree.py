@@ -16,7 +16,7 @@ from evenroad.robot.scene import Scene
 from tests.robot.kernel_arms import STRAIGHT, Y, Z, random_tree, seven_joint_arm, ur5
 from tests.robot.oracle import link_poses
 
-EMPTY = Scene("empty", ())
+EMPTY = Scene((), name="empty")
 ROBOTS = {"ur5": ur5(), "seven": seven_joint_arm()} | {
     f"tree {seed}": random_tree(seed) for seed in range(12)
 }

@@ -114,7 +114,9 @@ def test_large_angles_cost_no_digits(robot):
 def test_a_turned_floor_of_kilometres_is_never_called_farther_than_it_is():
     tilt = (0.8, 0.0, 0.6, 0.0, 1.0, 0.0, -0.6, 0.0, 0.8)
     # Its middle lies 850 m down the hill; its face passes 0.4 m below the robot.
-    scene = Scene("hill", (Obstacle.of("floor", "box", (2000.0, 2000.0, 1.0), (679.7, 0.0, -510.9), tilt),))
+    scene = Scene(
+        (Obstacle.of("floor", "box", (2000.0, 2000.0, 1.0), (679.7, 0.0, -510.9), tilt),), name="hill"
+    )
     q = ArmWorld(ur5(), scene).space.from_cube(np.random.default_rng(6).random((4_000, 6)))
     assert (clearance(ur5(), scene, free_edge(ur5(), scene, q)) > 0.0).all()
 
@@ -137,7 +139,7 @@ def test_thin_and_nearly_parallel_rods_are_never_called_free_where_they_touch(tu
     )
     rods = tuple(Capsule((-1.0, 0.0, 0.0), (1.0, 0.0, 0.0), radius, link=link) for link in ("base", "rod"))
     links, group = ("root", *(way[3] for way in ways)), tuple(way[0] for way in ways)
-    robot, scene = Robot("rods", links, joints, rods, (("base", "rod"),), group), Scene("empty", ())
+    robot, scene = Robot("rods", links, joints, rods, (("base", "rod"),), group), Scene((), name="empty")
     space = ArmWorld(robot, scene).space
     q = space.from_cube(np.random.default_rng(5).random((10_000, 5)))
     assert (clearance(robot, scene, free_edge(robot, scene, q)) > 0.0).all()
@@ -177,5 +179,5 @@ def test_one_joint_brings_two_parallel_capsules_together_within_the_padding():
     robot = Robot("slider", ("base", "hand"), (slide,), capsules, (("base", "hand"),), ("slide",))
     q = np.array([[0.2], [0.2499], [0.25001], [0.3], [0.9]])
     for backend in ("lanes", "scalar"):
-        free = ArmWorld(robot, Scene("empty", ()), backend=backend).valid(q)
+        free = ArmWorld(robot, Scene((), name="empty"), backend=backend).valid(q)
         np.testing.assert_array_equal(free, [False, False, True, True, True])

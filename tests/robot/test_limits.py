@@ -15,7 +15,7 @@ from evenroad.robot.robot import with_limits
 from tests.robot.kernel_arms import ur5
 from tests.robot.urdf_texts import joint, link, urdf, write
 
-NARROW = Scene("cell 7", limits={"elbow_joint": (-1.0, 1.0)})
+NARROW = Scene(name="cell 7", limits={"elbow_joint": (-1.0, 1.0)})
 BENT = np.array([0.0, -1.5, 2.0, 0.0, 0.0, 0.0])
 FREE = np.array([0.0, -1.5, 0.5, 0.0, 0.0, 0.0])
 FAR = np.array([1.0, -1.5, -0.5, 0.0, 0.0, 0.0])
@@ -40,12 +40,12 @@ def test_a_world_keeps_to_the_limits_of_its_scene():
 
 def test_limits_that_narrow_nothing_leave_the_robot_the_same_value():
     robot = ur5()
-    assert ArmWorld(robot, Scene("wide", limits={"elbow_joint": (-9.0, 9.0)})).robot is robot
+    assert ArmWorld(robot, Scene(name="wide", limits={"elbow_joint": (-9.0, 9.0)})).robot is robot
 
 
 def test_limits_of_a_joint_that_is_not_there_are_refused():
     with pytest.raises(er.UnknownName, match="limits of scene 'cell 7': 'knee'"):
-        ArmWorld(ur5(), Scene("cell 7", limits={"knee": (0.0, 1.0)}))
+        ArmWorld(ur5(), Scene(name="cell 7", limits={"knee": (0.0, 1.0)}))
 
 
 @pytest.mark.parametrize("plan", planners())
@@ -56,7 +56,7 @@ def test_outside_the_limits_is_a_status_of_its_own_that_names_the_scene_which_na
     assert "'elbow_joint' is at 2, 1 outside the limits of scene 'cell 7' [-1, 1]" in result.message
     assert "collision" not in result.message
     assert plan(world, BENT, FREE).status == "start_outside_limits"
-    own = plan(ArmWorld(ur5(), Scene("empty")), FREE, [4.0] * 6)
+    own = plan(ArmWorld(ur5(), Scene(name="empty")), FREE, [4.0] * 6)
     assert own.status == "goal_outside_limits"
     assert "0.858 outside its limits" in own.message
 
@@ -99,7 +99,7 @@ TURNED = np.array([0.5, -1.2, math.pi, 0.4, 0.3, -2.705263])
 
 @pytest.mark.parametrize("backend", ["auto", "scalar"])
 def test_a_value_beyond_a_limit_by_less_than_five_decimals_is_within_it(backend):
-    world = ArmWorld(written(), Scene("empty"), backend=backend)
+    world = ArmWorld(written(), Scene(name="empty"), backend=backend)
     world = replace(world, robot=replace(world.robot, pairs=()))
     for beyond, within in ((0.0, True), (2.65e-6, True), (0.99e-5, True), (1.01e-5, False), (1e-3, False)):
         q = FREE.copy()
@@ -114,7 +114,7 @@ def test_a_value_beyond_a_limit_by_less_than_five_decimals_is_within_it(backend)
 
 @pytest.mark.parametrize("plan", planners())
 def test_a_path_ends_where_it_was_asked_to_to_the_last_bit(plan):
-    world = ArmWorld(replace(written(), pairs=()), Scene("empty"))
+    world = ArmWorld(replace(written(), pairs=()), Scene(name="empty"))
     for start, goal in ((FREE, TURNED), (TURNED, FREE), (TURNED, -TURNED)):
         result = plan(world, start, goal)
         assert result.solved, result.message
@@ -126,7 +126,7 @@ def test_a_path_ends_where_it_was_asked_to_to_the_last_bit(plan):
 
 def test_trees_around_obstacles_end_there_as_well():
     post = Obstacle.of("post", "box", (0.1, 0.1, 0.6), (0.5, 0.0, 0.4))
-    world = ArmWorld(replace(written(), pairs=()), Scene("post", (post,)))
+    world = ArmWorld(replace(written(), pairs=()), Scene((post,), name="post"))
     q = world.space.from_cube(np.random.default_rng(1).random((4000, 6)))
     q[::2, 2], q[1::2, 5] = WRITTEN + 9e-6, -2.70526 - 9e-6
     starts, goals = (part[world.valid(part)] for part in (q[::2], q[1::2]))
@@ -141,7 +141,7 @@ def test_trees_around_obstacles_end_there_as_well():
 
 
 def test_no_proof_of_absence_comes_from_an_end_that_exceeds_a_limit_by_rounding():
-    world = ArmWorld(with_limits(ur5(), {"shoulder_pan_joint": (-WRITTEN, WRITTEN)}), Scene("empty"))
+    world = ArmWorld(with_limits(ur5(), {"shoulder_pan_joint": (-WRITTEN, WRITTEN)}), Scene(name="empty"))
     rng = np.random.default_rng(3)
     for sign in (-1.0, 1.0):
         a, b = FREE.copy(), FREE.copy()
@@ -166,7 +166,7 @@ def test_states_texts_and_the_command_take_such_values_alike(tmp_path, monkeypat
     )
     path = write(tmp_path, text)
     robot = er.load_robot(path, srdf=tmp_path / "arm.srdf")
-    scene = Scene("s", states={"there": {"a": -math.pi, "b": 0.0}})
+    scene = Scene(name="s", states={"there": {"a": -math.pi, "b": 0.0}})
     assert configuration(robot, "round").tolist() == [3.1415927, 3.1415927]
     assert configuration(robot, "there", scene).tolist() == [-math.pi, 0.0]
     assert configuration(robot, "180,0", degrees=True)[0] == math.pi
@@ -190,7 +190,7 @@ def test_an_endless_joint_that_a_scene_ends_at_pi_as_it_is_written_takes_pi():
         replace(each, kind="continuous", lower=-math.inf, upper=math.inf) if "wrist" in each.name else each
         for each in robot.joints
     )
-    scene = Scene("problem", limits={f"wrist_{k}_joint": (-WRITTEN, WRITTEN) for k in (1, 2, 3)})
+    scene = Scene(name="problem", limits={f"wrist_{k}_joint": (-WRITTEN, WRITTEN) for k in (1, 2, 3)})
     goal = np.array([0.5, -1.2, 0.5, math.pi, -math.pi, 3.1415927])
     result = er.plan_arm(replace(robot, joints=joints, pairs=()), scene, FREE, goal)
     assert result.solved, result.message

@@ -358,13 +358,13 @@ def test_a_continuous_joint_that_gets_limits_is_a_revolute_one(tmp_path):
 
 def test_a_scene_can_only_narrow_a_joints_range():
     robot = load_robot("ur5")
-    scene = Scene("s", (), limits={"elbow_joint": (-1.0, 9.0)})
+    scene = Scene((), name="s", limits={"elbow_joint": (-1.0, 9.0)})
     elbow = in_scene(robot, scene).joints[2]
     assert (elbow.lower, elbow.upper) == (-1.0, np.pi)
     with pytest.raises(InvalidValue, match="limits of joint 'elbow_joint' must satisfy lower < upper"):
-        in_scene(robot, Scene("s", (), limits={"elbow_joint": (4.0, 9.0)}))
+        in_scene(robot, Scene((), name="s", limits={"elbow_joint": (4.0, 9.0)}))
     with pytest.raises(UnknownName, match="limits of scene 's': 'knee'"):
-        in_scene(robot, Scene("s", (), limits={"knee": (4.0, 9.0)}))
+        in_scene(robot, Scene((), name="s", limits={"knee": (4.0, 9.0)}))
 
 
 @pytest.mark.parametrize(

@@ -40,8 +40,8 @@ def flat_arm(kind="revolute", joints=2, limit=3.0):
 
 def posts(*places, radius=0.05):
     return Scene(
-        "posts",
         tuple(Obstacle.of(f"post{i}", "sphere", (radius,), (x, y, 0.0)) for i, (x, y) in enumerate(places)),
+        name="posts",
     )
 
 
@@ -197,7 +197,7 @@ def test_a_joint_that_turns_on_is_one_piece_all_the_way_round(turn):
         capsules=(Capsule((0.0, 0.0, 0.0), (0.5, 0.0, 0.0), 0.05, link="link1"),),
     )
     ring = [Obstacle.of(f"ball{i}", "sphere", (0.06,), (*at(0.2 * i, 0.4), 0.0)) for i in range(32)]
-    world = ArmWorld(robot, Scene("ring", tuple(ring)))
+    world = ArmWorld(robot, Scene(tuple(ring), name="ring"))
     up, down = np.array([turn, 0.8]), np.array([turn + 2.0, -0.8])
     assert not world.may_connect(up, down)
     assert world.may_connect(up, np.array([turn + 3.1, 0.7]))
@@ -223,7 +223,7 @@ def test_a_scene_that_narrows_a_range_narrows_what_is_proved():
     world = ArmWorld(robot, posts(at(1.0, 0.3)))
     assert world.may_connect(a, around)
     assert not world.may_connect(a, b)
-    narrow = Scene("narrow", world.scene.obstacles, limits={"joint0": (-2.0, 3.0)})
+    narrow = Scene(world.scene.obstacles, name="narrow", limits={"joint0": (-2.0, 3.0)})
     world = ArmWorld(in_scene(robot, narrow), narrow)
     assert not world.may_connect(a, b)
 
@@ -233,12 +233,12 @@ def test_links_of_the_first_joints_block_each_other_where_the_pair_is_tested():
     robot = flat_arm(limit=6.0)
     base = Capsule((0.3, -0.3, -0.2), (0.3, -0.3, 0.2), 0.05, link="base")
     robot = replace(robot, capsules=(*robot.capsules, base), pairs=(("base", "link0"),))
-    world = ArmWorld(robot, Scene("empty"))
+    world = ArmWorld(robot, Scene(name="empty"))
     a, b = np.array([0.0, 0.5]), np.array([-1.6, 0.5])
     assert apart(world, a, b[np.newaxis], quickly=True).proved
     result = find_path(world, a, b)
     assert result.status == "not_connected"
-    free = ArmWorld(replace(robot, pairs=()), Scene("empty"))
+    free = ArmWorld(replace(robot, pairs=()), Scene(name="empty"))
     assert free.may_connect(a, b)
 
 

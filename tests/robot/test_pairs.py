@@ -143,7 +143,7 @@ def test_a_pair_that_an_srdf_leaves_and_that_always_touches_is_named_when_the_ro
 
 def test_a_pair_is_tested_whose_capsules_always_touch_but_not_its_shapes(tmp_path):
     robot = load_model(write_plate_arm(tmp_path)).robot
-    world = ArmWorld(robot, Scene("empty", ()))
+    world = ArmWorld(robot, Scene((), name="empty"))
     turn, bend = np.zeros((90, 3)), np.zeros((90, 3))
     turn[:, 0], bend[:, 1] = np.linspace(-2.8, 2.8, 90), np.linspace(-2.8, 2.8, 90)
     assert world.valid(turn).all()
@@ -171,10 +171,10 @@ def test_fingers_that_touch_where_they_are_held_do_not_block_the_arm_that_holds_
     path = write(tmp_path, _gripper(opening=0.03))
     robot = load_model(path, group="j,w").robot
     assert ("left", "right") not in robot.pairs
-    assert ArmWorld(robot, Scene("empty", ())).valid(np.zeros((1, 2))).all()
+    assert ArmWorld(robot, Scene((), name="empty")).valid(np.zeros((1, 2))).all()
     opened = with_group(robot, robot.group, {"l": 0.02, "r": 0.02})
-    assert ArmWorld(opened, Scene("empty", ())).valid(np.zeros((1, 2))).all()
-    whole = ArmWorld(with_group(robot, ("j", "w", "l", "r")), Scene("empty", ()))
+    assert ArmWorld(opened, Scene((), name="empty")).valid(np.zeros((1, 2))).all()
+    whole = ArmWorld(with_group(robot, ("j", "w", "l", "r")), Scene((), name="empty"))
     assert not whole.valid(np.zeros((1, 4))).any()
     assert whole.valid(np.array([[0, 0, 0.01, 0.01]])).all()
 
@@ -184,9 +184,9 @@ def test_two_links_that_an_srdf_lets_be_tested_block_the_arm_where_they_are_held
     path = write(tmp_path, _gripper(opening=0.03))
     robot = load_model(path, srdf=write(tmp_path, srdf, "arm.srdf"), group="j,w").robot
     closed = with_group(robot, robot.group, {"l": 0.0, "r": 0.0})
-    assert ArmWorld(closed, Scene("empty", ())).fixed_contact == ("left", "right")
+    assert ArmWorld(closed, Scene((), name="empty")).fixed_contact == ("left", "right")
     # Where nobody says how, they are held open.
-    assert ArmWorld(robot, Scene("empty", ())).fixed_contact is None
+    assert ArmWorld(robot, Scene((), name="empty")).fixed_contact is None
 
 
 def test_a_robot_of_which_no_configuration_is_free_says_so_and_names_the_pair_that_blocks_most(tmp_path):
@@ -227,7 +227,7 @@ def test_a_pair_that_touches_only_where_another_joint_is_held_comes_back_when_th
     assert with_group(robot, ("turn", "nod"), {"lift": 0.0}).pairs == robot.pairs
     lifted = with_group(robot, ("turn", "nod"), {"lift": 0.5})
     assert set(lifted.pairs) == {("base", "tip"), ("base", "arm")}
-    assert ArmWorld(lifted, Scene("empty", ())).valid(np.zeros((1, 2))).all()
+    assert ArmWorld(lifted, Scene((), name="empty")).valid(np.zeros((1, 2))).all()
     assert ("base", "arm") in with_group(robot, ("lift", "turn", "nod")).pairs
     assert ("base", "arm") in load_model(path).robot.pairs
 
@@ -243,7 +243,7 @@ def _crossing(tmp_path, outer):
         joint("across", "outer", "rod", "prismatic", slide, "0 0 0", "1 0 0"),
         joint("up", "rod", "block", "prismatic", slide, "0 0 0", "0 0 1"),
     )  # fmt: skip
-    return ArmWorld(load_model(write(tmp_path, text)).robot, Scene("empty", ()))
+    return ArmWorld(load_model(write(tmp_path, text)).robot, Scene((), name="empty"))
 
 
 BESIDE = np.stack(np.meshgrid(np.linspace(-0.9, 0.9, 37), np.linspace(-0.9, 0.9, 37)), axis=-1).reshape(-1, 2)
@@ -297,9 +297,9 @@ def test_a_bellows_that_goes_into_its_base_as_drawn_is_named_and_left_out_unless
         " that disables other pairs alone has them tested",
     )
     assert load_model(path) == model, "as it comes out of the cache"
-    space = ArmWorld(model.robot, Scene("empty")).space
+    space = ArmWorld(model.robot, Scene(name="empty")).space
     assert (
-        ArmWorld(model.robot, Scene("empty"))
+        ArmWorld(model.robot, Scene(name="empty"))
         .valid(space.from_cube(np.random.default_rng(0).random((50, 2))))
         .all()
     )

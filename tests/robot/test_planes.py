@@ -15,7 +15,7 @@ UR5 = load_robot("ur5")
 TILTED = Pose.from_quaternion((0.1, -0.2, -0.3), xyzw=(np.sin(0.2), 0.0, 0.0, np.cos(0.2)))
 FLOOR = Plane("floor", TILTED.xyz, TILTED.rotation, ("base_link", "shoulder_link", "upper_arm_link"))
 ON_FLOOR = replace(UR5, planes=(FLOOR,))
-EMPTY = Scene("empty")
+EMPTY = Scene(name="empty")
 
 
 def test_what_reaches_below_a_plane_is_blocked_and_nothing_else_is_by_it():

@@ -71,7 +71,7 @@ def test_a_tool_of_shapes_collides_where_the_bare_arm_does_not():
     arm = UR5.with_tool([Box((0.02, 0.02, 0.3), pose=Pose((0, 0, 0.15)))], at="tool0")
     q = np.array([[0.0, -1.5, 1.0, 0.0, 0.5, 0.0]])
     place = (link_poses(UR5, q)[0, UR5.links.index("tool0")] @ (0, 0, 0.25, 1))[:3]
-    scene = Scene("ball", (Obstacle.of("ball", "sphere", (0.02,), place),))
+    scene = Scene((Obstacle.of("ball", "sphere", (0.02,), place),), name="ball")
     assert ArmWorld(UR5, scene).valid(q)[0]
     assert not ArmWorld(arm, scene).valid(q)[0]
     assert ArmWorld(arm, scene).explain(q[0]) == "'tool' touches 'ball'"
@@ -111,7 +111,7 @@ def test_a_rigid_tool_is_loaded_like_a_robot(tmp_path):
     assert tool.group == ()
     assert UR5.with_tool(tool, at="tool0").capsules[-1] == tool.capsules[0]
     with pytest.raises(InvalidValue, match="one joint or more"):
-        ArmWorld(tool, Scene("empty"))
+        ArmWorld(tool, Scene(name="empty"))
 
 
 def test_a_rigid_tool_is_capsules_as_they_are():
@@ -124,7 +124,7 @@ def test_a_rigid_tool_is_capsules_as_they_are():
     [
         lambda robot: make_roadmap(robot, None, 8),
         lambda robot: load_robot_roadmap("some.roadmap", robot),
-        lambda robot: in_scene(robot, Scene("nothing")),
+        lambda robot: in_scene(robot, Scene(name="nothing")),
         lambda robot: with_limits(robot, {}),
         lambda robot: with_group(robot, ()),
         lambda robot: named_states(robot),

@@ -119,19 +119,19 @@ def test_the_robots_own_points_go_and_the_others_stay(ur5):
 def test_where_it_was_seen_the_robot_is_free_with_the_margin_to_spare(ur5):
     q = np.array([0.3, -1.2, 0.9, -0.4, 0.2, 0.0])
     cloud = PointCloud(np.concatenate([skin(ur5, q), table()]), 0.005)
-    scan = Scene("s", (Obstacle("scan", cloud, seen=Seen("0.3,-1.2,0.9,-0.4,0.2,0", 0.02)),))
+    scan = Scene((Obstacle("scan", cloud, seen=Seen("0.3,-1.2,0.9,-0.4,0.2,0", 0.02)),), name="s")
     assert not ArmWorld(ur5, scan).valid(q[None])[0]
     seen = scene_seen_by(ur5, scan)
     assert ArmWorld(ur5, seen).valid(q[None])[0]
     wider = Obstacle("scan", PointCloud(seen.obstacles[0].body.points, 0.005 + 0.0199))
-    assert ArmWorld(ur5, Scene("s", (wider,))).valid(q[None])[0]
+    assert ArmWorld(ur5, Scene((wider,), name="s")).valid(q[None])[0]
 
 
 def test_a_cloud_of_the_robot_alone_leaves_nothing(ur5):
     q = np.zeros(6)
     scan = Obstacle("scan", PointCloud(skin(ur5, q), 0.01), seen=Seen("0,0,0,0,0,0"))
-    scene = Scene("s", (scan,), frozenset({("base_link", "scan")}))
-    assert scene_seen_by(ur5, scene) == Scene("s")
+    scene = Scene((scan,), name="s", allowed=frozenset({("base_link", "scan")}))
+    assert scene_seen_by(ur5, scene) == Scene(name="s")
 
 
 @pytest.mark.parametrize(
@@ -139,7 +139,7 @@ def test_a_cloud_of_the_robot_alone_leaves_nothing(ur5):
     [("nowhere", UnknownName, "unknown state"), ("1,2", InvalidValue, "6 numbers")],
 )
 def test_where_a_robot_cannot_stand_it_has_seen_nothing(ur5, seen_at, error, says):
-    scan = Scene("s", (Obstacle("scan", PointCloud(table(10), 0.01), seen=Seen(seen_at)),))
+    scan = Scene((Obstacle("scan", PointCloud(table(10), 0.01), seen=Seen(seen_at)),), name="s")
     with pytest.raises(error, match=says):
         arm_query(ur5, scan, UPRIGHT, UPRIGHT)
 
@@ -184,7 +184,7 @@ def test_a_roadmap_of_a_robot_serves_in_a_scan(ur5):
     home = [0, -np.pi / 2, 0, -np.pi / 2, 0, 0]
     roadmap = make_roadmap(ur5, None, n=32, ends=100, rng=0)
     cloud = PointCloud(np.concatenate([table(), skin(ur5, home)]), 0.006)
-    scene = scene_seen_by(ur5, Scene("s", (Obstacle("scan", cloud, seen=Seen(UPRIGHT)),)))
+    scene = scene_seen_by(ur5, Scene((Obstacle("scan", cloud, seen=Seen(UPRIGHT)),), name="s"))
     result = roadmap.plan(scene, home, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0])
     assert result.solved
     assert ArmWorld(ur5, scene).recheck(result.path).all()
@@ -193,18 +193,20 @@ def test_a_roadmap_of_a_robot_serves_in_a_scan(ur5):
 def test_a_cell_that_was_scanned_is_made_without_the_robot_in_it(ur5):
     home = [0, -np.pi / 2, 0, -np.pi / 2, 0, 0]
     cloud = PointCloud(np.concatenate([table(), skin(ur5, home)]), 0.006)
-    cell = Scene("s", (Obstacle("scan", cloud, seen=Seen(UPRIGHT)),))
+    cell = Scene((Obstacle("scan", cloud, seen=Seen(UPRIGHT)),), name="s")
     roadmap = make_roadmap(ur5, cell, n=32, ends=20, rng=0)
     without = scene_seen_by(ur5, cell)
     assert roadmap.cell == without
     assert all_clearance(ur5, without, roadmap.milestones).min() > 0.0
-    result = roadmap.plan(Scene("nothing else"), home, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0])
+    result = roadmap.plan(Scene(name="nothing else"), home, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0])
     assert result.solved
     assert ArmWorld(ur5, without).recheck(result.path).all()
 
 
 def test_clouds_tell_scenes_apart(ur5):
-    scenes = [Scene("s", (Obstacle("scan", PointCloud(table(50), radius)),)) for radius in (0.01, 0.01, 0.02)]
+    scenes = [
+        Scene((Obstacle("scan", PointCloud(table(50), radius)),), name="s") for radius in (0.01, 0.01, 0.02)
+    ]
     first, again, other = (scene.fingerprint() for scene in scenes)
     assert first == again != other
     assert er.plan_arm(ur5, scenes[0].without("scan"), UPRIGHT, [0.5, -1.0, 0.7, -0.5, 0.3, 0.0]).solved
@@ -226,7 +228,7 @@ def test_meshes_of_every_format_are_the_box_that_they_are(tmp_path, ur5, suffix)
     )
     scene = load_scene(write_scene(tmp_path, entry))
     board = Obstacle("scan", Box((0.4, 0.6, 0.02), pose=Pose.from_rpy((0.6, 0, 0.3), (0, 0, 0.5))))
-    of_mesh, of_box = ArmWorld(ur5, scene), ArmWorld(ur5, Scene("s", (board,)))
+    of_mesh, of_box = ArmWorld(ur5, scene), ArmWorld(ur5, Scene((board,), name="s"))
     q = of_box.space.from_cube(np.random.default_rng(2).random((2000, 6)))
     # A box is met by the spheres that cover a capsule, a mesh by the capsule.
     assert (of_mesh.valid(q) >= of_box.valid(q)).all()
@@ -270,5 +272,5 @@ def test_meshes_are_equal_by_value_and_tell_scenes_apart():
     assert first == again != other
     assert hash(meshes[0]) == hash(meshes[1])
     assert meshes[0] != "mesh"
-    prints = [Scene("s", (each,)).fingerprint() for each in (first, again, other)]
+    prints = [Scene((each,), name="s").fingerprint() for each in (first, again, other)]
     assert prints[0] == prints[1] != prints[2]

@@ -193,7 +193,7 @@ def test_what_is_merged_into_an_obstacle_may_be_said_again(tmp_path):
 def test_two_obstacles_of_one_name_are_no_scene():
     balls = [Obstacle.of(name, "sphere", (0.1,), (0, 0, 0)) for name in ("a", "b", "a")]
     with pytest.raises(InvalidValue, match=r"scene 's' must have names of their own, twice: \['a'\]"):
-        Scene("s", tuple(balls))
+        Scene(tuple(balls), name="s")
 
 
 def test_a_scene_that_is_missing_gets_the_list_of_shipped_ones():
@@ -249,13 +249,13 @@ QUARTER = [[0, -1, 0, 1], [1, 0, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]]
 
 
 def test_a_scene_with_and_without_an_obstacle_is_another_scene():
-    scene = Scene("s", (BALL,), frozenset({("base", "ball")}), {"home": {"a": 1.0}})
+    scene = Scene((BALL,), name="s", allowed=frozenset({("base", "ball")}), states={"home": {"a": 1.0}})
     wall = Obstacle("wall", Box((1, 1, 0.1)), cell=True)
     both = scene.with_(wall, allowed=[("base", "wall")])
     assert both.obstacles == (BALL, wall)
     assert both.allowed == {("base", "ball"), ("base", "wall")}
     assert both.without("wall") == scene
-    assert both.without("wall", "ball") == Scene("s", states=scene.states)
+    assert both.without("wall", "ball") == Scene(name="s", states=scene.states)
     with pytest.raises(InvalidValue, match=r"twice: \['ball'\]"):
         scene.with_(BALL)
     with pytest.raises(UnknownName, match="obstacle of scene 's': 'table'; known: ball"):
@@ -303,9 +303,9 @@ def test_a_capsule_as_an_obstacle_is_along_z_whatever_its_ends():
         (lambda: Obstacle.of("x", "sphere", (1.0,), (0, np.inf, 0)), InvalidValue, "'x': xyz .*inf"),
         (lambda: Obstacle.of("x", "sphere", (1.0,), (0, 0, 0), (2.0,) * 9), InvalidValue, "'x': rotation"),
         (
-            lambda: Obstacle("x", PointCloud(np.zeros((1, 3)))),
+            lambda: Obstacle("x", PointCloud(np.zeros((1, 3)), 0.0)),
             InvalidValue,
-            "cloud 'x' must have a radius > 0",
+            "radius of a cloud must be a finite number > 0",
         ),
         (lambda: Obstacle("x", Mesh("part.stl")), BrokenFile, "mesh part.stl is missing"),
         (lambda: Obstacle("x", "box"), InvalidValue, "cylinder, capsule, cloud, mesh, got a box"),
@@ -329,21 +329,39 @@ def test_a_scene_is_made_of_shapes_which_get_names_where_they_have_none():
     assert [each.name for each in more.obstacles[5:]] == ["box 2", "box 3", "o"]
 
 
-def test_both_orders_of_name_and_obstacles_make_the_same_scene():
+def test_a_scene_is_made_of_shapes_of_obstacles_or_of_a_mapping():
     obstacle, allowed = Obstacle("table", TABLE), frozenset([("base_link", "table")])
     scenes = [
-        Scene("cell", (obstacle,), allowed),
-        Scene("cell", [TABLE], allowed=allowed),
+        Scene((obstacle,), name="cell", allowed=allowed),
         Scene([TABLE], name="cell", allowed=allowed),
         Scene(obstacles=(obstacle,), name="cell", allowed=allowed),
         Scene({"name": "cell", "obstacles": MAPPING, "allowed": {"table": ["base_link"]}}),
+        Scene({"obstacles": [LISTED], "allowed": {"table": ["base_link"]}}, name="cell"),
     ]
     assert all(each == scenes[0] and each.fingerprint() == scenes[0].fingerprint() for each in scenes)
     assert replace(scenes[0], limits={"a": (0, 1)}).obstacles == scenes[0].obstacles
-    assert Scene().obstacles == Scene([]).obstacles == Scene("nothing").obstacles == ()
+    assert Scene().obstacles == Scene([]).obstacles == Scene(name="nothing").obstacles == ()
 
 
 MAPPING = {"table": {"shape": "box", "size": (0.8, 1.2, 0.04), "xyz": np.array([0.5, 0, -0.02])}}
+LISTED = {"name": "table", "box": {"size": (0.8, 1.2, 0.04)}, "xyz": [0.5, 0, -0.02]}
+BALLS = {"obstacles": [{"sphere": 0.1}, {"shape": "sphere", "radius": 0.1, "xyz": [1, 0, 0]}]}
+
+
+def test_obstacles_of_a_list_without_names_get_one_as_shapes_do():
+    assert [each.name for each in Scene(BALLS).obstacles] == ["sphere 0", "sphere 1"]
+    twice = {"obstacles": [LISTED, LISTED]}
+    with pytest.raises(InvalidValue, match="of their own, twice: 'table'"):
+        Scene(twice)
+
+
+def test_a_planning_scene_of_moveit_is_a_scene_without_a_file():
+    box = {"type": "box", "dimensions": [0.8, 1.2, 0.04]}
+    pose = {"position": [0.5, 0, -0.02], "orientation": [0, 0, 0, 1]}
+    scene = Scene(
+        {"world": {"collision_objects": [{"id": "table", "primitives": [box], "primitive_poses": [pose]}]}}
+    )
+    assert scene.obstacles == Scene([TABLE]).obstacles
 
 
 def test_two_scenes_share_nothing_that_can_change():
@@ -355,13 +373,16 @@ def test_two_scenes_share_nothing_that_can_change():
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: Scene("table.yaml"), "load_scene('table.yaml')"),
-        (lambda: Scene([TABLE], obstacle=1), "known: allowed, attached"),
-        (lambda: Scene([TABLE], obstacles=[TABLE]), "obstacles twice"),
-        (lambda: Scene([TABLE], "cell"), "Scene(obstacles, name=...)"),
+        (lambda: Scene("table.yaml"), "is read from its file by load_scene"),
+        (
+            lambda: Scene([TABLE], obstacle=1),
+            "states; did you mean 'obstacles'",
+        ),
+        (lambda: Scene([TABLE], obstacles=[TABLE]), "Scene is called as Scene(obstacles, *, name, allowed"),
+        (lambda: Scene("cell", [TABLE]), "Scene is called as Scene(obstacles, *, name, allowed"),
         (lambda: Scene(["table"]), "er.Box((x, y, z), xyz=...)"),
         (lambda: Scene([np.zeros(3)]), "er.Box((x, y, z), xyz=...)"),
-        (lambda: Scene("cell", "table"), "must be a list of shapes"),
+        (lambda: Scene("table", name="cell"), "must be a list of shapes"),
         (lambda: Scene(7), "must be a list of shapes"),
         (lambda: Scene([TABLE], name=3), "must be a text"),
         (lambda: Scene([TABLE, TABLE]), "names of their own"),

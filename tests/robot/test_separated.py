@@ -46,7 +46,7 @@ def barred(arm7):
         )
         for k, (away, along) in enumerate([(side, other), (-side, other), (other, side), (-other, side)])
     ]
-    return ArmWorld(arm7, Scene("bars", tuple(bars)))
+    return ArmWorld(arm7, Scene(tuple(bars), name="bars"))
 
 
 def bodies(world):
@@ -101,7 +101,7 @@ def test_no_pose_is_beyond_a_piece_that_holds_a_posture_of_it(seed):
     """Of every kind of joint, for poses with and without rotation, by cells of any size."""
     rng = np.random.default_rng(seed)
     robot = random_tree(seed)
-    world = ArmWorld(robot, Scene("empty"))
+    world = ArmWorld(robot, Scene(name="empty"))
     for link in robot.links[::-1][:3]:
         try:
             chain = chain_of(robot, link)
@@ -151,7 +151,7 @@ def slot(gap, half=0.05):
         Obstacle.of(f"plate{sign}", "box", (2 * half, 1.0, 0.2), (0.0, 0.0, sign * (0.5 * gap + 0.1)))
         for sign in (-1, 1)
     ]
-    return Scene("slot", tuple(plates))
+    return Scene(tuple(plates), name="slot")
 
 
 A, B = np.array([-0.6]), np.array([0.6])
@@ -239,9 +239,9 @@ def test_a_clouds_balls_and_a_closed_mesh_block_as_they_are(tmp_path):
     robot = flat_link(tmp_path, '<sphere radius=".05"/>')
     cloud = er.geometry.PointCloud(np.array([[0.0, 0.0, z] for z in (-0.12, 0.12)]), 0.06)
     wider = er.geometry.PointCloud(cloud.points, 0.08)
-    assert ArmWorld(robot, Scene("cloud", (Obstacle("cloud", cloud),))).may_connect(A, B)
-    assert not ArmWorld(robot, Scene("cloud", (Obstacle("cloud", wider),))).may_connect(A, B)
+    assert ArmWorld(robot, Scene((Obstacle("cloud", cloud),), name="cloud")).may_connect(A, B)
+    assert not ArmWorld(robot, Scene((Obstacle("cloud", wider),), name="cloud")).may_connect(A, B)
     found = apart(
-        ArmWorld(robot, Scene("cloud", (Obstacle("cloud", wider),))), A, B[np.newaxis], quickly=True
+        ArmWorld(robot, Scene((Obstacle("cloud", wider),), name="cloud")), A, B[np.newaxis], quickly=True
     )
     assert found.proved

@@ -98,7 +98,7 @@ def test_a_joint_locked_by_its_limits_is_in_no_group(tmp_path):
     )
     assert robot.group == ("b",)
     assert held_values(robot) == {"a": 0.25}
-    assert ArmWorld(robot, Scene("empty", ())).space.dim == 1
+    assert ArmWorld(robot, Scene((), name="empty")).space.dim == 1
 
 
 BROKEN = {
@@ -234,7 +234,7 @@ def test_states_of_one_name_of_several_groups_are_one(tmp_path):
 def test_two_groups_plan_together_in_the_order_of_the_wish(tmp_path):
     text = ARM.replace("radius='0.05'", "radius='0.02'")
     path, srdf = write(tmp_path, text), write(tmp_path, f"<robot name='a'>{TWO_GROUPS}</robot>", "arm.srdf")
-    turned = plan_arm(path, Scene("s"), "home", "0.1,0.3,0.5", srdf=srdf, group=("fingers", "arm"))
+    turned = plan_arm(path, Scene(name="s"), "home", "0.1,0.3,0.5", srdf=srdf, group=("fingers", "arm"))
     assert turned.solved, turned.message
     np.testing.assert_allclose(turned.path[0], [0.3, 0.1, 0.2])
     np.testing.assert_allclose(turned.path[-1], [0.1, 0.3, 0.5])
@@ -324,11 +324,11 @@ def test_the_srdf_of_an_arm_with_a_hand_is_read_again_and_planned_with(tmp_path)
     assert model.robot.group == ("shoulder", "elbow")
     assert not model.always_touching
     assert any("planned for is the group 'hand'" in note for note in model.notes)
-    assert plan_arm(path, Scene("nothing"), "home", "0.5,0.5", srdf=srdf).solved
+    assert plan_arm(path, Scene(name="nothing"), "home", "0.5,0.5", srdf=srdf).solved
     everything = load_model(path, srdf=srdf, group="planned").robot
     home = configuration(everything, "home")
     np.testing.assert_array_equal(home, [0.0, 0.0, 0.02])
-    assert ArmWorld(everything, Scene("nothing")).valid(home[np.newaxis]).all()
+    assert ArmWorld(everything, Scene(name="nothing")).valid(home[np.newaxis]).all()
 
 
 def test_pairs_that_always_touch_are_disabled_in_what_is_written(tmp_path):

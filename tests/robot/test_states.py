@@ -35,7 +35,7 @@ def test_named_joints_move_and_the_others_stay(ur5):
 
 
 def test_a_state_of_the_scene_goes_before_one_of_the_robot(ur5):
-    scene = Scene("s", (), states={"home": dict.fromkeys(ur5.group, 0.25)})
+    scene = Scene((), name="s", states={"home": dict.fromkeys(ur5.group, 0.25)})
     assert configuration(ur5, "home")[1] == -math.pi / 2
     assert configuration(ur5, "home", scene)[1] == 0.25
     assert set(named_states(ur5, load_scene("box-reach"))) == {"home", "inside", "zero"}
@@ -89,7 +89,7 @@ def test_what_is_no_configuration_is_refused_in_one_line(ur5, text, kind, says):
 
 
 def test_a_state_that_lacks_a_joint_or_breaks_a_limit_is_refused(ur5):
-    scene = Scene("s", (), states={"half": {"elbow_joint": 1.0}, "far": dict.fromkeys(ur5.group, 4.0)})
+    scene = Scene((), name="s", states={"half": {"elbow_joint": 1.0}, "far": dict.fromkeys(ur5.group, 4.0)})
     with pytest.raises(
         InvalidValue, match="the state 'half' has no value for shoulder_pan_joint, shoulder_lift_joint"
     ):
@@ -112,7 +112,9 @@ def only_a(tmp_path):
 
 
 UP = Scene(
-    "s", (), states={"up": {"a": 0.25, "b": 0.5, "f": 0.5}, "down": {"a": -0.5}, "bent": {"a": 0.5, "b": 1}}
+    (),
+    name="s",
+    states={"up": {"a": 0.25, "b": 0.5, "f": 0.5}, "down": {"a": -0.5}, "bent": {"a": 0.5, "b": 1}},
 )
 
 
@@ -146,7 +148,7 @@ def test_a_state_is_never_taken_for_the_posture_that_it_is_not(only_a):
 
 
 def test_a_state_cannot_hold_a_joint_outside_its_limits_nor_one_that_is_not_there(only_a):
-    scene = Scene("s", (), states={"far": {"a": 0, "b": 99}, "odd": {"a": 0, "knee": 1}})
+    scene = Scene((), name="s", states={"far": {"a": 0, "b": 99}, "odd": {"a": 0, "knee": 1}})
     with pytest.raises(
         InvalidValue, match="the state 'far' puts joint 'b' at 99 rad, 98 rad outside its limits"
     ):
@@ -156,7 +158,7 @@ def test_a_state_cannot_hold_a_joint_outside_its_limits_nor_one_that_is_not_ther
 
 
 def test_a_state_beyond_a_limit_by_rounding_holds_the_joint_there(only_a):
-    scene = Scene("s", (), states={"up": {"a": 0.5, "b": 1.0000001}})
+    scene = Scene((), name="s", states={"up": {"a": 0.5, "b": 1.0000001}})
     robot = at_states(only_a, ("up", "0"), scene)
     assert held_values(robot) == {"b": 1.0000001}
     np.testing.assert_array_equal(configuration(robot, "up", scene), [0.5])

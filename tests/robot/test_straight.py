@@ -15,7 +15,7 @@ from evenroad.robot.straight import line_from
 
 UR5, ARM7 = load_robot("ur5"), load_robot("arm7")
 BENT = {"ur5": [0.3, -1.2, 1.4, -0.8, 0.9, 0.2], "arm7": [0.3, 0.6, 0.1, 1.2, 0.3, 0.7, -0.4]}
-EMPTY = Scene("empty")
+EMPTY = Scene(name="empty")
 START = [0.5, -1.9, 1.2, -0.8, -1.57, 0.0]
 """Above the box of ``box-reach``."""
 
@@ -53,7 +53,7 @@ def test_a_line_that_is_blocked_says_where_and_by_what():
     q = np.array(BENT["ur5"])
     at = link_poses(UR5, q[None])[0, UR5.links.index("tool0")]
     wall = Obstacle.of("wall", "sphere", (0.05,), tuple(at[:3, 3] + 0.2 * at[:3, 2]))
-    world = ArmWorld(UR5, Scene("s", (wall,)))
+    world = ArmWorld(UR5, Scene((wall,), name="s"))
     assert world.valid(q[None])[0]
     line = line_from(world, chain_of(UR5, "tool0"), Straight(0.15, away="z"), q, 0.15)
     assert len(line.path) == 1

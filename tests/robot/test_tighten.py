@@ -312,7 +312,7 @@ def with_ball_beside(world, q, away, place):
     for _ in range(60):
         middle = 0.5 * (near + far)
         ball = Obstacle.of("ball", "sphere", (0.05,), tuple(tip + towards * middle))
-        apart = clearance(robot, Scene("ball", (ball,)), q[np.newaxis])[0]
+        apart = clearance(robot, Scene((ball,), name="ball"), q[np.newaxis])[0]
         near, far = (middle, far) if apart < away else (near, middle)
     ball = Obstacle.of("ball", "sphere", (0.05,), tuple(tip + towards * far))
     return replace(world, scene=world.scene.with_(ball), robot=robot)
@@ -450,7 +450,7 @@ def test_larger_bodies_keep_so_far_from_obstacles_and_as_near_to_each_other(kind
     some = some[: len(some) // 16 * 16]
     plain = world.lanes.places[1] + 8 * int(world.lanes.tables[at.INTEGERS])
     obstacles = clearance(replace(robot, pairs=()), scene, some)
-    itself = clearance(robot, Scene("nothing"), some)
+    itself = clearance(robot, Scene(name="nothing"), some)
     for grown, table in ((0.0, plain), (margin, world.lanes.wider(margin))):
         free, apart = lane_verdicts(world, some, table), np.minimum(obstacles - grown, itself)
         sure = np.abs(apart) > BAND

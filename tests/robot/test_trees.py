@@ -98,7 +98,7 @@ ABOVE, BELOW = np.array([[0.0, -1.5, 0.0, 0.0, 0.0, 0.0], [0.0, 4.78, 0.0, 0.0, 
 def split():
     """A UR5 on a large plate, which keeps `ABOVE` from `BELOW`; there is room to move at both."""
     plate = Obstacle.of("plate", "box", (4.0, 4.0, 0.05), (0.0, 0.0, -0.25))
-    return ArmWorld(ur5(), Scene("plate", (plate,), frozenset({("base", "plate")})))
+    return ArmWorld(ur5(), Scene((plate,), name="plate", allowed=frozenset({("base", "plate")})))
 
 
 def test_slices_change_nothing(split, monkeypatch):
@@ -210,7 +210,7 @@ def test_any_robot_gets_from_place_to_place(seed, backend):
 def test_joints_that_wrap_go_the_short_way_round():
     robot = ur5()
     pan = replace(robot.joints[0], kind="continuous", lower=-np.inf, upper=np.inf)
-    world = ArmWorld(replace(robot, joints=(pan, *robot.joints[1:])), Scene("nothing", ()))
+    world = ArmWorld(replace(robot, joints=(pan, *robot.joints[1:])), Scene((), name="nothing"))
     start, goal = np.array([3.0, -1.5, 0.5, 0.0, 0.0, 0.0]), np.array([-3.0, -1.5, 0.5, 0.0, 0.0, 0.0])
     path = connect(world, start, [goal]).path
     assert world.space.distance(path[:-1], path[1:]).sum() == pytest.approx(2 * np.pi - 6.0)
@@ -218,7 +218,7 @@ def test_joints_that_wrap_go_the_short_way_round():
 
 def test_one_joint_is_enough():
     robot = ur5(joints=1)
-    world = ArmWorld(robot, Scene("nothing", ()))
+    world = ArmWorld(robot, Scene((), name="nothing"))
     assert connect(world, [0.3], [[2.0]]).goal == 0
 
 
@@ -269,13 +269,13 @@ def sleeves(robot, q, gap=0.04):
             sides = (0.02, 2.0 * half, 0.16) if x else (2.0 * half, 0.02, 0.16)
             pose = Pose(tuple(at), tuple(hand[:3, :3].ravel()))
             obstacles.append(Obstacle(f"{side}{number}", Box(sides, pose=pose)))
-    return Scene("sleeves", tuple(obstacles))
+    return Scene(tuple(obstacles), name="sleeves")
 
 
 def test_two_arms_get_both_hands_out_of_their_sleeves():
     # With steps of the full length alone, as 14 dimensions have them, none of these is solved.
     robot = two_arms()
-    alone = ArmWorld(robot, Scene("nothing"))
+    alone = ArmWorld(robot, Scene(name="nothing"))
     q = alone.space.from_cube(np.random.default_rng(1).random((1000, 14)))
     q, solved = q[alone.valid(q)], 0
     for start, goal in zip(q[0:200:2], q[1:200:2], strict=True):

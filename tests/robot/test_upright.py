@@ -60,7 +60,7 @@ def test_a_path_keeps_the_axis_upright_where_one_that_is_not_told_to_does_not(to
 
 @pytest.fixture(scope="module")
 def world():
-    arm = ArmWorld(ARM7, Scene("empty"))
+    arm = ArmWorld(ARM7, Scene(name="empty"))
     start = reach(arm, PoseGoal(Pose.from_rpy((0.4, 0.1, 0.4), DOWN)), np.zeros(7)).configurations[0]
     return upright_world(arm, chain_of(ARM7, "flange"), Upright(0.1), start)
 
@@ -95,10 +95,10 @@ def test_a_start_or_goals_that_are_tilted_are_refused():
     _, start, _ = problem(1)
     tilted = start.copy()
     tilted[5] += 0.4
-    result = er.plan_arm(ARM7, Scene("empty"), tilted, start, upright=Upright(0.1, axis="z"))
+    result = er.plan_arm(ARM7, Scene(name="empty"), tilted, start, upright=Upright(0.1, axis="z"))
     assert result.status is er.Status.START_INVALID
     assert "at the start axis z of 'flange' is tilted by" in result.message
-    result = er.plan_arm(ARM7, Scene("empty"), start, tilted, upright=Upright(0.1))
+    result = er.plan_arm(ARM7, Scene(name="empty"), start, tilted, upright=Upright(0.1))
     assert result.status is er.Status.GOAL_INVALID
     assert "more than 0.1" in result.message
 
@@ -121,7 +121,7 @@ def test_lines_keep_another_link_upright_too():
     def plan(tolerance):
         line = Straight(retreat=0.4, away=(1.6, -1.3, -0.6), tip="tool0")
         upright = Upright(tolerance, axis, tip="forearm_link")
-        return er.plan_arm(robot, Scene("empty"), start, goal, straight=line, upright=upright)
+        return er.plan_arm(robot, Scene(name="empty"), start, goal, straight=line, upright=upright)
 
     refused = plan(0.1)
     assert "from the start: along it axis (" in refused.message

@@ -183,9 +183,9 @@ def test_a_joint_of_huge_limits_turns_without_end(tmp_path, limit):
     assert model.notes == (
         f"joint 'a' with the limits -{float(limit):g}, {float(limit):g} turns without end",
     )
-    assert ArmWorld(model.robot, Scene("s")).space.wrapping == (True,)
-    limited = in_scene(model.robot, Scene("s", limits={"a": (-1.0, 2.0)}))
-    assert ArmWorld(limited, Scene("s")).bounds[:2].tolist() == [[-1.0], [2.0]]
+    assert ArmWorld(model.robot, Scene(name="s")).space.wrapping == (True,)
+    limited = in_scene(model.robot, Scene(name="s", limits={"a": (-1.0, 2.0)}))
+    assert ArmWorld(limited, Scene(name="s")).bounds[:2].tolist() == [[-1.0], [2.0]]
 
 
 def test_a_slide_of_huge_limits_is_held_until_a_scene_limits_it(tmp_path):
@@ -195,7 +195,7 @@ def test_a_slide_of_huge_limits_is_held_until_a_scene_limits_it(tmp_path):
     assert model.robot.group == ("a",)
     assert "joint 'b' with the limits -1e+06, 1e+06 slides without end: it is held" in model.notes[0]
     both = load_model(write(tmp_path, text), group="a,b").robot
-    assert ArmWorld(in_scene(both, Scene("s", limits={"b": (0.0, 0.5)})), Scene("s")).space.dim == 2
+    assert ArmWorld(in_scene(both, Scene(name="s", limits={"b": (0.0, 0.5)})), Scene(name="s")).space.dim == 2
 
 
 @pytest.mark.parametrize(

@@ -48,27 +48,27 @@ def _wall(gap):
 @pytest.mark.parametrize("names", BODIES.values(), ids=BODIES)
 def test_a_body_has_a_roadmap_and_goes_through_a_window(names):
     robot = _body(*names)
-    cell = Scene("room", (Obstacle.of("pillar", "box", (0.3, 0.3, 3.0), (0.8, 0.8, 0.0)),))
+    cell = Scene((Obstacle.of("pillar", "box", (0.3, 0.3, 3.0), (0.8, 0.8, 0.0)),), name="room")
     roadmap = make_roadmap(robot, cell, 64, ends=20)
     assert clearance(robot, cell, roadmap.milestones).min() > 0.0
     start, goal = np.zeros((2, len(names)))
     start[0], goal[0] = -0.9, 0.9
-    scene = Scene("wall", _wall(0.8))
+    scene = Scene(_wall(0.8), name="wall")
     result = roadmap.plan(scene, start, goal)
     assert result.solved
     assert result.proof == "certified"
-    whole = ArmWorld(robot, Scene("all", (*cell.obstacles, *scene.obstacles)))
+    whole = ArmWorld(robot, Scene((*cell.obstacles, *scene.obstacles), name="all"))
     states = [
         whole.space.interpolate(np.tile(a, (50, 1)), np.tile(b, (50, 1)), np.linspace(0.0, 1.0, 50))
         for a, b in zip(result.path[:-1], result.path[1:], strict=True)
     ]
     assert clearance(robot, whole.scene, np.concatenate(states)).min() > 0.0
-    assert not roadmap.plan(Scene("shut", _wall(0.02)), start, goal, budget=SHORT).solved
+    assert not roadmap.plan(Scene(_wall(0.02), name="shut"), start, goal, budget=SHORT).solved
 
 
 def test_turning_on_is_a_way_for_a_body():
     """From a heading of 170 to one of -170 degrees it is 20 degrees."""
     roadmap = make_roadmap(_body("x", "y", "yaw"), None, 64, ends=20)
     start, goal = np.array([-0.9, 0.0, np.radians(170)]), np.array([0.9, 0.0, np.radians(-170)])
-    result = roadmap.plan(Scene("nothing"), start, goal)
+    result = roadmap.plan(Scene(name="nothing"), start, goal)
     assert result.cost < 1.9

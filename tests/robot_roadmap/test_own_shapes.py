@@ -37,7 +37,7 @@ def world_with(*obstacles, pairs=()):
     shapes = [Mesh(block(0.1, 0.5), link="link")]
     if pairs:
         shapes.append(Mesh(block(0.02, 0.3), link="base"))
-    return OwnShapesWorld(ArmWorld(robot, Scene("scene", obstacles)), shapes)
+    return OwnShapesWorld(ArmWorld(robot, Scene(obstacles, name="scene")), shapes)
 
 
 @pytest.mark.parametrize(

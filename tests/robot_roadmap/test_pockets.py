@@ -14,11 +14,11 @@ from evenroad.robot_roadmap.pockets import ends_in_pockets, links_of
 from evenroad.robot_roadmap.spread import spread_order
 from tests.robot.kernel_arms import ur5
 
-NOTHING = Scene("nothing")
+NOTHING = Scene(name="nothing")
 TABLE = Scene(
-    "cell",
     (Obstacle.of("table", "box", (1.6, 1.6, 0.05), (0.3, 0.0, -0.03)),),
-    frozenset({("base_link", "table"), ("shoulder_link", "table")}),
+    name="cell",
+    allowed=frozenset({("base_link", "table"), ("shoulder_link", "table")}),
 )
 
 
@@ -62,7 +62,7 @@ def test_what_is_passed_over_before_a_world_is_made_touches_a_wall(arm, pool):
     drawn = pockets.pockets_around(tips[:300, 0], around, rng)
     passed = drawn.touched_by(body[:300], radii)
     free = np.array(
-        [ArmWorld(arm, Scene("pocket", drawn.walls(i))).valid(pool[i : i + 1])[0] for i in range(300)]
+        [ArmWorld(arm, Scene(drawn.walls(i), name="pocket")).valid(pool[i : i + 1])[0] for i in range(300)]
     )
     assert not (passed & free).any()
     touching, passed = np.sum(~free), np.sum(passed)
@@ -72,7 +72,7 @@ def test_what_is_passed_over_before_a_world_is_made_touches_a_wall(arm, pool):
 def test_ends_see_what_straight_motions_reach_and_never_themselves(arm, pool, monkeypatch):
     monkeypatch.setattr(pockets, "FIRST", 150)
     monkeypatch.setattr(pockets, "NEAR", 60)
-    cell = Scene("post", (Obstacle.of("post", "box", (0.1, 0.1, 1.0), (0.5, 0.3, 0.5)),))
+    cell = Scene((Obstacle.of("post", "box", (0.1, 0.1, 1.0), (0.5, 0.3, 0.5)),), name="post")
     pool = pool[ArmWorld(arm, cell).valid(pool)]
     kept = []
     seen_of = pockets._seen
@@ -126,8 +126,8 @@ def test_looks_at_sixteen_motions_at_once_only_find_sooner_what_each_motion_touc
         arm = replace(arm, joints=(replace(first, kind="continuous", lower=-np.inf, upper=np.inf), *others))
     wall = Obstacle.of("wall", "box", (0.05, 1.0, 1.0), (0.45, 0.2, 0.3))
     post = Obstacle.of("post", "box", (0.1, 0.1, 1.0), (-0.4, 0.3, 0.5))
-    inside = ArmWorld(arm, Scene("cell", (post,)), resolution=0.2)
-    pocket = ArmWorld(replace(arm, pairs=()), Scene("pocket", (wall,)), resolution=0.2)
+    inside = ArmWorld(arm, Scene((post,), name="cell"), resolution=0.2)
+    pocket = ArmWorld(replace(arm, pairs=()), Scene((wall,), name="pocket"), resolution=0.2)
     pool = inside.space.from_cube(np.random.default_rng(5).random((3000, 4)))
     pool = pool[inside.valid(pool)]
     rows, count = np.arange(len(pool)), 0

@@ -57,7 +57,7 @@ def test_clouds_and_meshes_of_a_cell_are_kept_in_its_file(tmp_path):
     again = er.load_robot_roadmap(tmp_path / "a.roadmap", robot, cell)
     assert again.cell == cell
     np.testing.assert_array_equal(again.edges, made.edges)
-    known = again.in_scene(Scene("today", (Obstacle.of("ball", "sphere", (0.05,), (0.5, 0.3, 0.4)),)))
+    known = again.in_scene(Scene((Obstacle.of("ball", "sphere", (0.05,), (0.5, 0.3, 0.4)),), name="today"))
     assert [each.name for each in known.world.scene.obstacles] == ["table", "wedge", "scan", "ball"]
     solved = 0
     for start, goal in zip(made.milestones[:8], made.milestones[8:16], strict=True):
@@ -100,7 +100,7 @@ def test_random_scenes_leave_more_room_to_an_arm_that_is_folded(monkeypatch):
 def test_one_milestone_and_ones_that_cannot_be_made():
     one = make_roadmap(ur5(joints=3), TABLE, 1, gamma=0.0, ends=100)
     assert one.edges.shape == (0, 2)
-    assert one.plan(Scene("today"), [0.0, -1.5, 0.0], [1.0, -1.5, 0.0]).solved
+    assert one.plan(Scene(name="today"), [0.0, -1.5, 0.0], [1.0, -1.5, 0.0]).solved
     for n in (0, -3, 1.5, 1 << 16):
         with pytest.raises(er.InvalidValue, match="n must be"):
             make_roadmap(ur5(), TABLE, n)
@@ -117,7 +117,9 @@ def test_a_robot_that_is_never_free_is_refused_with_what_blocks():
     with pytest.raises(
         er.InvalidValue, match=r"never free in its cell: of \d+ .* in .* of the last 100 .* touches 'room'"
     ):
-        make_roadmap(ur5(joints=3), Scene("full", (wall,), frozenset((link, "room") for link in links)), 8)
+        make_roadmap(
+            ur5(joints=3), Scene((wall,), name="full", allowed=frozenset((link, "room") for link in links)), 8
+        )
 
 
 def test_a_turn_of_a_joint_that_others_follow_is_not_nothing():
@@ -150,7 +152,7 @@ def test_a_slider_that_goes_straight_up_has_a_roadmap():
     )
     roadmap = make_roadmap(robot, None, 16, ends=100)
     assert displacement_weights(robot, roadmap.milestones).tolist() == [1.0]
-    lid = Scene("lid", (Obstacle.of("lid", "box", (1, 1, 0.1), (0, 0, 0.8)),))
+    lid = Scene((Obstacle.of("lid", "box", (1, 1, 0.1), (0, 0, 0.8)),), name="lid")
     assert roadmap.plan(lid, [0.0], [0.5]).solved
     assert roadmap.plan(lid, [0.0], [0.9]).status == "goal_invalid"
 
@@ -166,9 +168,9 @@ def test_several_goals_and_none_that_is_free(roadmap):
 
 
 def test_the_cell_is_there_even_where_the_scene_does_not_name_it(roadmap):
-    assert roadmap.plan(Scene("today"), [0.0, -1.5, 0.0], [0.0, 0.6, 0.0]).status == "goal_invalid"
+    assert roadmap.plan(Scene(name="today"), [0.0, -1.5, 0.0], [0.0, 0.6, 0.0]).status == "goal_invalid"
     named = roadmap.plan(TABLE, [0.0, -1.5, 0.0], [1.0, -1.5, 0.0])
-    unnamed = roadmap.plan(Scene("today"), [0.0, -1.5, 0.0], [1.0, -1.5, 0.0])
+    unnamed = roadmap.plan(Scene(name="today"), [0.0, -1.5, 0.0], [1.0, -1.5, 0.0])
     np.testing.assert_array_equal(named.path, unnamed.path)
 
 
@@ -184,8 +186,8 @@ def test_a_scene_that_contradicts_the_cell_is_refused(roadmap):
 
 def test_ranges_of_cell_and_scene_both_hold():
     cell, scene = (
-        Scene("cell", limits={"a": (-1.0, 1.0), "b": (0.0, 1.0)}),
-        Scene("today", limits={"a": (0.0, 3.0)}),
+        Scene(name="cell", limits={"a": (-1.0, 1.0), "b": (0.0, 1.0)}),
+        Scene(name="today", limits={"a": (0.0, 3.0)}),
     )
     assert day_and_all(cell, scene)[1].limits == {"a": (0.0, 1.0), "b": (0.0, 1.0)}
 
@@ -235,12 +237,12 @@ def test_a_joint_that_turns_on_may_have_limits_in_the_cell_but_none_of_a_day(roa
     joint = Joint("turn", "continuous", "base", "arm", (0, 0, 0), STRAIGHT, Z, -np.inf, np.inf)
     body = Capsule((0.2, 0, 0.1), (0.6, 0, 0.1), 0.05, link="arm")
     robot = er.Robot("turner", ("base", "arm"), (joint,), (body,), (), ("turn",))
-    limited = Scene("limited", limits={"turn": (-1.0, 2.0)})
+    limited = Scene(name="limited", limits={"turn": (-1.0, 2.0)})
     endless, kept = make_roadmap(robot, None, 8, ends=20), make_roadmap(robot, limited, 8, ends=20)
     er.save_robot_roadmap(tmp_path / "a.roadmap", kept)
     assert er.load_robot_roadmap(tmp_path / "a.roadmap", robot, limited).milestones.min() >= -1.0
-    assert SceneRoadmap(kept, Scene("today"), robot).world.space.high == (2.0,)
-    post = Scene("post", (Obstacle.of("post", "box", (0.1, 0.1, 1.0), (0.5, 0.0, 0.0)),))
+    assert SceneRoadmap(kept, Scene(name="today"), robot).world.space.high == (2.0,)
+    post = Scene((Obstacle.of("post", "box", (0.1, 0.1, 1.0), (0.5, 0.0, 0.0)),), name="post")
     result = endless.plan(post, [-0.5], [0.5])
     assert result.solved
     assert endless.in_scene(post).world.recheck(result.path).all()
@@ -335,7 +337,7 @@ def test_shapes_are_asked_within_what_the_capsules_left_of_the_budget(roadmap):
 
 
 def test_a_pose_is_a_goal_as_it_is_elsewhere(roadmap):
-    scene, robot = roadmap.in_scene(Scene("today")), roadmap.robot
+    scene, robot = roadmap.in_scene(Scene(name="today")), roadmap.robot
     tip, (start, end) = robot.links[-1], roadmap.milestones[[0, 1]]
     xyz = link_poses(robot, end[np.newaxis])[0, -1, :3, 3]
     pose = er.PoseGoal(er.Pose(tuple(xyz)), tip=tip, position_only=True)
@@ -359,7 +361,7 @@ def test_what_touches_the_base_leaves_no_configuration_free(roadmap, cloud):
         if cloud
         else Box((0.02, 0.02, 0.02), pose=Pose((0.0, 0.0, 0.02)))
     )
-    known = roadmap.in_scene(Scene("today", (Obstacle("clamp", body),)))
+    known = roadmap.in_scene(Scene((Obstacle("clamp", body),), name="today"))
     assert known.world.fixed_contact is not None
     for trees in (True, False):
         result = known.plan(roadmap.milestones[0], roadmap.milestones[1], trees=trees)
@@ -384,7 +386,7 @@ def test_where_trees_do_not_grow_the_roadmap_is_asked_at_once(roadmap, monkeypat
 
 
 def test_a_spent_budget_is_not_a_roadmap_that_leads_nowhere(roadmap):
-    known = roadmap.in_scene(Scene("today", (Obstacle.of("ball", "sphere", (0.05,), (0.5, 0.3, 0.4)),)))
+    known = roadmap.in_scene(Scene((Obstacle.of("ball", "sphere", (0.05,), (0.5, 0.3, 0.4)),), name="today"))
     statuses = []
     for start, goal in zip(roadmap.milestones[:12], roadmap.milestones[12:24], strict=True):
         fresh = roadmap.in_scene(known.world.scene)

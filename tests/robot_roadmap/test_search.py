@@ -197,7 +197,9 @@ def test_joints_of_very_many_turns_are_followed_over_some_of_them():
     assert one.lifts.tolist() == [True, False]
     assert one.limits[:, 0].tolist() == pytest.approx([-(MOST_TURNS + 0.5) * TURN, (MOST_TURNS + 0.5) * TURN])
     robot = with_limits(ur5(joints=2), {"shoulder_pan_joint": (-200.0, 200.0)})
-    known = make_roadmap(robot, Scene("nothing"), 32, gamma=0.0, ends=100).in_scene(Scene("nothing"))
+    known = make_roadmap(robot, Scene(name="nothing"), 32, gamma=0.0, ends=100).in_scene(
+        Scene(name="nothing")
+    )
     start = np.array([-60.0, -1.5])
     for turned in (-20.0, 39.0, 70.0):
         result = known.plan(start, [turned, -1.5], shorten=False)

@@ -139,7 +139,7 @@ def test_what_leads_to_the_goal_within_one_turn_is_not_lost_where_joints_turn_tw
     assert kept >= set(map(tuple, narrow.edges.tolist()))
     # Ends are linked to milestones as these are, once those that were turned did not do.
     start, goal = np.array([5.0, -1.5, 0.0]), np.array([[-5.0, -1.5, 0.0]])
-    known = SceneRoadmap(wide, Scene("nothing"))
+    known = SceneRoadmap(wide, Scene(name="nothing"))
     for unturned in (False, True):
         known._ask(start, goal, 0, np.inf, 24, unturned=unturned)
         assert known._graph.turns[:2].any() == (not unturned)
@@ -158,7 +158,7 @@ def test_what_leads_to_the_goal_within_one_turn_is_not_lost_where_joints_turn_tw
 
 def test_motions_of_many_turns_are_not_learned():
     robot = with_limits(ur5(joints=3), {"shoulder_pan_joint": (-60.0, 60.0)})
-    graph = SceneRoadmap(make_roadmap(robot, None, 24, k=4, gamma=0.0, ends=0), Scene("nothing"))._graph
+    graph = SceneRoadmap(make_roadmap(robot, None, 24, k=4, gamma=0.0, ends=0), Scene(name="nothing"))._graph
     count = int(graph.desk[NODES])
     # Sixteen turns look like none, and seven turns out is not followed.
     for far in ([[-50.0, 0.1, 0.2], [50.0, 0.3, 0.4]], [[46.0, 0.1, 0.2], [47.0, 0.3, 0.4]]):

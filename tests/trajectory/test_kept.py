@@ -26,7 +26,7 @@ TURNING = """<robot name="turning">
 
 
 def free_world():
-    return arm_query("ur5", Scene("nothing", ()), DOWN, DOWN).world
+    return arm_query("ur5", Scene((), name="nothing"), DOWN, DOWN).world
 
 
 @pytest.mark.parametrize(("tilt", "kept"), [(0.04, True), (0.2, False)])

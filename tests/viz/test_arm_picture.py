@@ -95,7 +95,7 @@ def _view(world, result, pair):
 def test_the_arm_is_drawn_where_its_capsules_are(reach):
     """Pixels are as bright as paper outside of all that is shown, and are not within the goal's capsules."""
     result = plan(reach, *[configuration(reach.robot, "home", reach.scene)] * 2, draw("korobov", 8, 6))
-    bare = ArmWorld(reach.robot, Scene("bare", ()))
+    bare = ArmWorld(reach.robot, Scene((), name="bare"))
     shown, place = _view(bare, result, (0, 2))
     ends = capsule_ends(reach.robot, result.goal[np.newaxis])[0][:, :, [0, 2]]
     radii = np.array([each.radius for each in reach.robot.capsules])
@@ -182,7 +182,7 @@ def test_dollars_in_names_are_dollars(tmp_path):
     ball = Obstacle.of("$\\frac{$", "sphere", (0.5,), (0, 0, 0.5))
     far = Obstacle.of("$\\frac{$", "sphere", (0.05,), (9, 9, 9))
     for obstacle, status in ((ball, "start_invalid"), (far, "solved")):
-        world = ArmWorld(named, Scene("$\\sqrt{$", (obstacle,)))
+        world = ArmWorld(named, Scene((obstacle,), name="$\\sqrt{$"))
         result = plan(world, np.zeros(7), np.full(7, 0.05), draw("halton", 8, 7))
         assert result.status == status
         save_arm_picture(tmp_path / "a.png", result, world)
@@ -191,7 +191,10 @@ def test_dollars_in_names_are_dollars(tmp_path):
 def test_an_empty_scene_and_a_huge_floor_are_drawn_too(tmp_path):
     robot = load_robot("arm7")
     floor = Obstacle.of("floor", "box", (100.0, 100.0, 0.1), (0, 0, -0.05), cell=True)
-    for scene in (Scene("empty", ()), Scene("floor", (floor,), frozenset({("base_link", "floor")}))):
+    for scene in (
+        Scene((), name="empty"),
+        Scene((floor,), name="floor", allowed=frozenset({("base_link", "floor")})),
+    ):
         world = ArmWorld(robot, scene)
         goal = np.full(7, 0.5)
         save_arm_picture(tmp_path / "a.png", plan(world, np.zeros(7), goal, draw("halton", 8, 7)), world)

@@ -227,7 +227,21 @@ def test_why_a_configuration_is_not_free_is_said():
     assert "outside_a_disk" in world.explain(np.array([0.5, 0.5]))
 
 
-@pytest.mark.parametrize("resolution", [0.0, -1.0, math.nan, math.inf, "fine", None, [0.1], (0.1, 0.1)])
+@pytest.mark.parametrize(
+    ("space", "extent"),
+    [
+        (BoxSpace((-1, -2), (2, 2)), 5.0),
+        (Circle(), np.pi),
+        (SE2((-5, -5), (5, 5)), math.sqrt(200)),
+        (SE3((0, 0, 0), (1, 1, 1)), math.sqrt(3)),
+    ],
+)
+def test_without_a_resolution_a_hundredth_of_the_extent_is_taken(space, extent):
+    resolution = FunctionWorld(space, lambda q: np.ones(len(q), dtype=bool)).resolution
+    assert 0.9 * extent <= 100 * resolution <= 1.6 * extent
+
+
+@pytest.mark.parametrize("resolution", [0.0, -1.0, math.nan, math.inf, "fine", [0.1], (0.1, 0.1)])
 def test_a_resolution_that_is_none_is_refused(resolution):
     with pytest.raises(InvalidValue, match="resolution"):
         FunctionWorld(SQUARE, outside_a_disk, resolution)

@@ -61,7 +61,7 @@ class MakeRoadmap(RobotOptions):
         if out.resolve() in {path.resolve() for path in inputs if path is not None}:
             raise InvalidValue(f"--out {out} would overwrite one of the files that it is made from")
         require_writable_folder(out)
-        cell = Scene("nothing") if self.cell is None else load_scene(self.cell)
+        cell = Scene(name="nothing") if self.cell is None else load_scene(self.cell)
         say_if_compiling("evenroad.robot.kernel.batch", "check_configurations", 10)
         model = load_model(self.robot, **self.options())
         began = time.perf_counter()

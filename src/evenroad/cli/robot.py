@@ -49,7 +49,7 @@ class Robot(RobotOptions):
             require_writable_folder(self.write_srdf)
         model = load_model(self.robot, **self.options())
         say_if_compiling("evenroad.robot.kernel.batch", "check_configurations", 10)
-        scene = Scene("empty space", ()) if self.scene is None else load_scene(self.scene)
+        scene = Scene((), name="empty space") if self.scene is None else load_scene(self.scene)
         # No path, no ends: contacts that are allowed near them are none here.
         scene = replace(scene, near_ends=frozenset())
         world = ArmWorld(in_scene(model.robot, scene), scene)

@@ -27,6 +27,9 @@ from evenroad.geometry.shape import WORLD as WORLD
 from evenroad.geometry.shape import Placed as Placed
 from evenroad.geometry.shape import Shape as Shape
 
+CLOUD_RADIUS = 0.01
+"""Radius of the balls of a point cloud where nothing is said [m]."""
+
 
 @dataclass(frozen=True, init=False, repr=False)
 class Box(Shape):
@@ -226,9 +229,17 @@ def _surface(source: Any) -> Path | TriangleMesh:
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
 class PointCloud(Shape):
-    """Balls of one radius around points, (n, 3) [m], as a depth camera sees them; of radius 0: the points alone.
+    """Balls of one radius around points, (n, 3) [m], as a depth camera sees them.
 
-    `points` may be a file, too, see :func:`evenroad.geometry.load_cloud`.  Equal by value.
+    `points` may be a file, too, see :func:`evenroad.geometry.load_cloud`.  The default radius, 0.01 m, suits a camera
+    whose points lie at most 0.02 m apart: a robot may pass between points that lie further apart.  Equal
+    by value.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> er.PointCloud([(0.5, 0, 0.1), (0.5, 0.01, 0.1)])
+    PointCloud(2 points, radius=0.01)
     """
 
     kind: ClassVar[str] = "cloud"
@@ -236,7 +247,7 @@ class PointCloud(Shape):
     points: Floats
     radius: float
 
-    def __init__(self, points: Any, radius: float = 0.0, **placed: Unpack[Placed]) -> None:
+    def __init__(self, points: Any, radius: float = CLOUD_RADIUS, **placed: Unpack[Placed]) -> None:
         points = load_cloud(points) if isinstance(points, str | os.PathLike) else points
         points = np.array(as_batch("points of a cloud", points, 3))
         if len(points) == 0:
@@ -245,7 +256,7 @@ class PointCloud(Shape):
             raise InvalidValue(
                 f"points of a cloud must lie within {FARTHEST:g} m, got {np.abs(points).max():g}"
             )
-        radius = require_positive("the radius of a cloud", radius, or_zero=True, at_most=FARTHEST)
+        radius = require_positive("the radius of a cloud", radius, at_most=FARTHEST)
         set_fields(self, points=points, radius=radius)
         self._place(placed)
 

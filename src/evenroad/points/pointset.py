@@ -16,6 +16,7 @@ import numpy.typing as npt
 from evenroad import __version__
 from evenroad._above import above
 from evenroad._arrays import Floats, set_fields
+from evenroad._checks import require_known
 from evenroad.errors import InvalidValue, shown
 
 BELOW_ONE = float(np.nextafter(np.float32(1.0), np.float32(0.0)))
@@ -75,6 +76,11 @@ class PointSet:
         return self.points.shape[1]
 
     @property
+    def dim(self) -> int:
+        """Dimension of the cube, as worlds and spaces call it."""
+        return self.d
+
+    @property
     def shape(self) -> tuple[int, int]:
         """The number of points and the dimension, as of the array."""
         return self.n, self.d
@@ -94,6 +100,33 @@ class PointSet:
         (512, 6)
         """
         above("PointSet.save")(self, path)
+
+    def discrepancy(self, method: str = "CD") -> float:
+        """Return the squared L2 discrepancy of the points; 0 is perfectly even.
+
+        Parameters
+        ----------
+        method : {"CD", "WD", "MD", "L2-star"}
+            As :func:`scipy.stats.qmc.discrepancy` calls it: centered (Hickernell's), wrap-around, mixture, or star.
+
+        Returns
+        -------
+        float
+            The number that SciPy gives, >= 0.
+
+        Raises
+        ------
+        UnknownName
+            For another method; :mod:`evenroad.points.measures` has more measures.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.draw("even", 64, 2).discrepancy() < er.draw("uniform", 64, 2).discrepancy()
+        True
+        """
+        require_known("discrepancy", method, ("CD", "WD", "MD", "L2-star"))
+        return float(above("PointSet.discrepancy")(self.points, method=method))
 
     @property
     def hash(self) -> str:

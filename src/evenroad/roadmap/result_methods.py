@@ -90,9 +90,10 @@ class ResultMethods:
         Parameters
         ----------
         limits : Limits, or the file of a ``joint_limits.yaml``, optional
-            Default: those of the robot.  Of other worlds they have to be given.
+            Default: those of the robot; of worlds without one as `speed` says.
         speed : float
-            0 < speed <= 1: takes ``1 / speed`` as long as at full speed.
+            With limits, 0 < speed <= 1: takes ``1 / speed`` as long as at full speed.  Without, as on a map: the
+            largest speed along the path, > 0 [units of the map per second], which is reached in half a second.
         **options
             As :func:`evenroad.trajectory.arm_trajectory` takes them.
 

@@ -39,7 +39,7 @@ def read_scene_text(path: Path) -> Scene:
         lines = path.read_text(encoding="utf-8").splitlines()
     except (OSError, ValueError) as error:
         raise BrokenFile(f"cannot read scene {path}: {getattr(error, 'strerror', None) or error}") from error
-    return Scene(lines[0].strip() or path.stem if lines else path.stem, tuple(_from_text(lines, path)))
+    return Scene(tuple(_from_text(lines, path)), name=lines[0].strip() or path.stem if lines else path.stem)
 
 
 def _from_text(lines: list[str], path: Path) -> Iterator[Obstacle]:
@@ -130,7 +130,7 @@ def read_planning_scene(document: Mapping[str, Any], path: Path) -> Scene:
             body = Mesh(mesh, pose=frame @ _pose(pose, name, path))
             alone = len(meshes) == 1 and not shapes
             obstacles.append(Obstacle(name if alone else f"{name}/mesh{i}", body))
-    return Scene(str(document.get("name") or path.stem), tuple(obstacles))
+    return Scene(tuple(obstacles), name=str(document.get("name") or path.stem))
 
 
 def _mesh(entry: object, name: str, path: Path) -> TriangleMesh:

@@ -2,34 +2,25 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from itertools import count
 from struct import Struct
-from types import MappingProxyType
-from typing import Any, TypeAlias, TypedDict, Unpack, overload
+from typing import Any, TypeAlias
 
 from evenroad._above import above
 from evenroad._arrays import set_fields
+from evenroad._call import explains_calls
 from evenroad._checks import counted, require_known, require_positive
 from evenroad._fingerprint import fingerprint_of
-from evenroad.errors import InvalidValue, UnknownName, shown
+from evenroad.errors import InvalidValue, shown
 from evenroad.geometry.pose import NO_ROTATION, Pose, Vector
 from evenroad.geometry.shapes import PRIMITIVES, Capsule, Mesh, PointCloud, Shape, along_z, shape_of
 from evenroad.robot.held import HeldObject
 
 MARGIN = 0.02
 """How near to the robot points of a scan are taken for its own, where nothing else is said [m]."""
-
-
-class _More(TypedDict, total=False):
-    """What a scene may have besides its obstacles."""
-
-    allowed: frozenset[tuple[str, str]]
-    states: Mapping[str, Mapping[str, float]]
-    limits: Mapping[str, tuple[float, float]]
-    attached: tuple[HeldObject, ...]
-    near_ends: frozenset[tuple[str, str, float]]
 
 
 _ROW = Struct("16d")
@@ -90,10 +81,6 @@ class Obstacle:
         kinds = (*PRIMITIVES, PointCloud.kind, Mesh.kind)
         if getattr(body, "kind", None) not in kinds:
             raise InvalidValue(f"obstacle {self.name!r} must be one of {', '.join(kinds)}, got a {body}")
-        if isinstance(body, PointCloud) and body.radius == 0.0:
-            raise InvalidValue(
-                f"the cloud {self.name!r} must have a radius > 0: between points it would be open"
-            )
         if isinstance(body, Mesh):
             # Read now: a file may change, or be gone, before its triangles are asked for.
             body = replace(body, source=body.triangles, scale=(1.0, 1.0, 1.0))
@@ -158,11 +145,10 @@ class Obstacle:
 Bodies: TypeAlias = "Sequence[Obstacle | Shape]"
 
 
+@explains_calls
 @dataclass(frozen=True, init=False, repr=False)
 class Scene:
     """Obstacles, no two of one name; allowed contacts and named configurations.
-
-    ``Scene(obstacles, name=...)`` or ``Scene(name, obstacles)``.
 
     Parameters
     ----------
@@ -206,41 +192,35 @@ class Scene:
     attached: tuple[HeldObject, ...]
     near_ends: frozenset[tuple[str, str, float]]
 
-    @overload
-    def __init__(
-        self, obstacles: Bodies | Mapping[str, Any] = (), *, name: str = "scene", **more: Unpack[_More]
-    ) -> None: ...
-    @overload
     def __init__(
         self,
-        name: str,
-        obstacles: Bodies = (),
+        obstacles: Bodies | Mapping[str, Any] = (),
+        *,
+        name: str = "scene",
         allowed: frozenset[tuple[str, str]] = frozenset(),
-        states: Mapping[str, Mapping[str, float]] = ...,
-        limits: Mapping[str, tuple[float, float]] = ...,
+        states: Mapping[str, Mapping[str, float]] | None = None,
+        limits: Mapping[str, tuple[float, float]] | None = None,
         attached: tuple[HeldObject, ...] = (),
         near_ends: frozenset[tuple[str, str, float]] = frozenset(),
-    ) -> None: ...
-    def __init__(self, *given: Any, **named: Any) -> None:
-        order = [each.name for each in fields(self)]
-        if given and not isinstance(given[0], str):
-            order = ["obstacles"]
-        if len(given) > len(order) or (twice := set(order[: len(given)]) & set(named)):
-            what = f"{', '.join(sorted(twice))} twice" if len(given) <= len(order) else f"{len(given)} values"
-            raise InvalidValue(f"a scene is Scene(obstacles, name=...) or Scene(name, obstacles), got {what}")
-        values = {**_NOTHING, "states": {}, "limits": {}, **dict(zip(order, given, strict=False)), **named}
-        if strange := sorted(set(values) - set(_NOTHING)):
-            raise UnknownName.among("keyword of a scene:", strange[0], _NOTHING)
-        if isinstance(values["obstacles"], Mapping):
-            values = _of_mapping(values)
-        name, bodies = values["name"], values["obstacles"]
+    ) -> None:
         if not isinstance(name, str):
             raise InvalidValue(f"the name of a scene must be a text, got {shown(name)}")
-        if given[:1] == (name,) and not bodies and name.endswith((".yaml", ".yml", ".scene")):
-            raise InvalidValue(
-                f"a scene is read from its file by load_scene({name!r}), not by Scene({name!r})"
-            )
-        set_fields(self, **{**values, "obstacles": _as_obstacles(bodies, (), name)})
+        values: dict[str, Any] = {
+            "allowed": allowed,
+            "states": {} if states is None else states,
+            "limits": {} if limits is None else limits,
+            "attached": attached,
+            "near_ends": near_ends,
+        }
+        if isinstance(obstacles, Mapping):
+            if more := sorted(key for key in values if values[key]):
+                raise InvalidValue(
+                    f"a scene of a mapping has what the mapping says: put {', '.join(more)} into it, too"
+                )
+            scene = above("Scene")(obstacles, name)
+            set_fields(self, **{each.name: getattr(scene, each.name) for each in fields(scene)})
+            return
+        set_fields(self, name=name, obstacles=_as_obstacles(obstacles, (), name), **values)
         self._require_names()
 
     def __repr__(self) -> str:
@@ -308,33 +288,16 @@ class Scene:
         )
 
 
-_NOTHING: dict[str, Any] = {
-    "name": "scene",
-    "obstacles": (),
-    "allowed": frozenset(),
-    "states": MappingProxyType({}),
-    "limits": MappingProxyType({}),
-    "attached": (),
-    "near_ends": frozenset(),
-}
-
-
-def _of_mapping(values: dict[str, Any]) -> dict[str, Any]:
-    """Return the fields of a scene that a mapping describes."""
-    more = sorted(key for key in _NOTHING if key not in ("name", "obstacles") and values[key])
-    if more:
-        raise InvalidValue(
-            f"a scene of a mapping has what the mapping says: put {', '.join(more)} into it, too"
-        )
-    scene = above("Scene")(values["obstacles"], values["name"])
-    return {each.name: getattr(scene, each.name) for each in fields(scene)}
-
-
 def _as_obstacles(bodies: object, others: Sequence[Obstacle], scene: str) -> tuple[Obstacle, ...]:
     """Return shapes and obstacles as obstacles; a shape without a name gets one that neither they nor `others` have."""
     if isinstance(bodies, Shape | Obstacle):
         bodies = [bodies]
-    if isinstance(bodies, str) or not isinstance(bodies, Iterable):
+    if isinstance(bodies, str | os.PathLike):
+        raise InvalidValue(
+            f"obstacles of scene {scene!r} must be a list of shapes, got {shown(bodies)}; a scene is read from its file"
+            " by load_scene, and its name is name=..."
+        )
+    if not isinstance(bodies, Iterable):
         raise InvalidValue(f"obstacles of scene {scene!r} must be a list of shapes, got {shown(bodies)}")
     listed = tuple(bodies)
     for each in listed:

@@ -13,7 +13,7 @@ from evenroad._yaml import numbers, read_mapping, require_keys
 from evenroad.errors import BrokenFile, InvalidValue, UnknownName, shown
 from evenroad.geometry.cloud_file import load_cloud
 from evenroad.geometry.pose import Pose
-from evenroad.geometry.shapes import PRIMITIVES, Mesh, PointCloud, Shape, shape_of
+from evenroad.geometry.shapes import CLOUD_RADIUS, PRIMITIVES, Mesh, PointCloud, Shape, shape_of
 from evenroad.robot.held import HeldObject
 from evenroad.robot.load import DATA
 from evenroad.robot.moveit_scene import read_planning_scene, read_scene_text
@@ -68,9 +68,10 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
         attach:                                   # what the robot holds: a shape in the frame of a link
           crate: {shape: box, size: [0.1, 0.1, 0.2], link: tool0, xyz: [0, 0, 0.1], touches: [wrist_3_link, table]}
 
-    The length of a capsule is without its caps; ``xyzw: [x, y, z, w]``, a quaternion, may stand for ``rpy``; ``cell:
-    true`` marks what belongs to the fixed cell.  Files of clouds (:func:`evenroad.geometry.load_cloud`) and meshes
-    (:func:`evenroad.geometry.load_mesh`) are looked for beside the scene; points within `margin` of the robot, where it
+    Obstacles may also be a list whose entries have a ``name``, and ``box: {size: [1, 1, 1]}`` stands for ``shape: box,
+    size: [1, 1, 1]``.  The length of a capsule is without its caps; ``xyzw: [x, y, z, w]``, a quaternion, may stand for
+    ``rpy``; ``cell: true`` marks what belongs to the fixed cell.  Files of clouds
+    (:func:`evenroad.geometry.load_cloud`) and meshes (:func:`evenroad.geometry.load_mesh`) are looked for beside the scene; points within `margin` of the robot, where it
     stood when it was `seen_at`, are left out when one plans.  So are those that a cloud's ``cut`` names, a list of
     shapes, ``{shape: box, size: [0.1, 0.1, 0.2], xyz: [0.5, 0, 0.1], grow: 0.01}``, and of what is attached where the
     robot stands, ``{attached: crate, at: grasp, grow: 0.01}``.  MoveIt's scenes are read, too
@@ -87,6 +88,10 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
     if path.suffix == ".scene":
         return read_scene_text(path)
     document = read_mapping(path, "scene")
+    return _of_document(document, path)
+
+
+def _of_document(document: dict[str, Any], path: Path) -> Scene:
     if "obstacles" not in document and "world" in document:
         return read_planning_scene(document, path)
     return _scene(document, path)
@@ -94,16 +99,13 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
 
 def scene_of(document: Mapping[str, Any], name: str) -> Scene:
     """Return the scene that a mapping describes as a file does; errors as :func:`load_scene`."""
-    return _scene({"name": name, **document}, Path("scene"))
+    return _of_document({"name": name, **document}, Path("scene"))
 
 
 def _scene(document: dict[str, Any], path: Path) -> Scene:
     require_keys(document, ("obstacles",), _SECTIONS, f"the scene {path}")
-    entries = _mapping(document["obstacles"], f"obstacles in {path}")
-    obstacles = tuple(
-        _obstacle(name, _mapping(entry, f"obstacle {name!r} in {path}"), path)
-        for name, entry in entries.items()
-    )
+    entries = _entries(document["obstacles"], path)
+    obstacles = tuple(_obstacle(name, entry, path) for name, entry in entries.items())
     allowed: set[tuple[str, str]] = set()
     parts: list[tuple[str, str, dict[str, Any]]] = []
     for obstacle, links in _mapping(document.get("allowed"), f"allowed in {path}").items():
@@ -131,8 +133,42 @@ def _scene(document: dict[str, Any], path: Path) -> Scene:
         attached.append(held)
         allowed.update((name, obstacle) for obstacle in obstacles_touched)
     name = str(document.get("name", path.stem))
-    scene = Scene(name, obstacles, frozenset(allowed), states, limits, tuple(attached))
+    scene = Scene(
+        obstacles,
+        name=name,
+        allowed=frozenset(allowed),
+        states=states,
+        limits=limits,
+        attached=tuple(attached),
+    )
     return _with_parts(scene, parts, path)
+
+
+def _entries(obstacles: object, path: Path) -> dict[str, dict[str, Any]]:
+    """Return name -> entry of the obstacles of a file: a mapping, or a list whose entries say their own names."""
+    if not isinstance(obstacles, list | tuple):
+        named = _mapping(obstacles, f"obstacles in {path}")
+        return {name: _in_full(entry, f"obstacle {name!r} in {path}") for name, entry in named.items()}
+    entries: dict[str, dict[str, Any]] = {}
+    for i, each in enumerate(obstacles):
+        entry = _in_full(each, f"obstacle {i} in {path}")
+        name = str(entry.pop("name", f"{entry.get('shape')} {i}"))
+        if name in entries:
+            raise InvalidValue(f"obstacles in {path} must have names of their own, twice: {name!r}")
+        entries[name] = entry
+    return entries
+
+
+def _in_full(value: object, where: str) -> dict[str, Any]:
+    """Return an entry as ``shape: box, size: ...``; ``box: {size: ...}`` and ``sphere: 0.1`` say the same."""
+    entry = _mapping(value, where)
+    kinds = [key for key in entry if key in PRIMITIVES]
+    if "shape" in entry or len(kinds) != 1:
+        return entry
+    given, dimensions = entry.pop(kinds[0]), PRIMITIVES[kinds[0]].dimensions
+    if not isinstance(given, Mapping) and len(dimensions) == 1:
+        given = {dimensions[0][0]: given}
+    return {"shape": kinds[0], **_mapping(given, f"{kinds[0]} of {where}"), **entry}
 
 
 def _part(cloud: str, entry: dict[str, Any], path: Path) -> tuple[str, str, dict[str, Any]]:
@@ -220,8 +256,8 @@ def _obstacle(name: str, entry: dict[str, Any], path: Path, where: str = "") -> 
 
 def _cloud(name: str, entry: dict[str, Any], path: Path, cell: bool) -> Obstacle:
     where = f"obstacle {name!r} in {path}"
-    require_keys(entry, ("shape", "file", "radius"), (*_OPTIONAL, *_OF_A_CLOUD), where)
-    (radius,) = numbers(entry["radius"], 1, f"radius of {where}")
+    require_keys(entry, ("shape", "file"), ("radius", *_OPTIONAL, *_OF_A_CLOUD), where)
+    (radius,) = numbers(entry.get("radius", CLOUD_RADIUS), 1, f"radius of {where}")
     require_positive(f"the radius of {where}", radius)
     (margin,) = numbers(entry.get("margin", MARGIN), 1, f"margin of {where}")
     seen_at = entry.get("seen_at")
@@ -282,6 +318,6 @@ def _range(value: object, what: str) -> tuple[float, float]:
 def _mapping(value: object, where: str) -> dict[str, Any]:
     if value is None:
         return {}
-    if not isinstance(value, dict):
+    if not isinstance(value, Mapping):
         raise BrokenFile(f"{where} must consist of 'key: value' entries, got {value!r}")
     return {str(key): entry for key, entry in value.items()}

@@ -88,4 +88,4 @@ def random_scene(base: Floats, low: Floats, high: Floats, reach: float, rng: np.
         if volume > FULL * reach**3:
             break
         boxes.append(Obstacle.of(f"box {len(boxes)}", "box", tuple(2.0 * half), tuple(centre)))
-    return Scene("random", tuple(boxes))
+    return Scene(tuple(boxes), name="random")

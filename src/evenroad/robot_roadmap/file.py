@@ -178,11 +178,11 @@ def _cell(path: Path, arrays: Arrays) -> Scene:
         return Obstacle.of(name, shape, size, xyz, rotation, cell)
 
     return Scene(
-        record["name"],
         tuple(obstacle(*fields) for fields in record["obstacles"]),
-        frozenset((link, name) for link, name in record["allowed"]),
-        record["states"],
-        {joint: (lower, upper) for joint, (lower, upper) in record["limits"].items()},
+        name=record["name"],
+        allowed=frozenset((link, name) for link, name in record["allowed"]),
+        states=record["states"],
+        limits={joint: (lower, upper) for joint, (lower, upper) in record["limits"].items()},
     )
 
 

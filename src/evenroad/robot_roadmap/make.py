@@ -75,7 +75,7 @@ def make_roadmap(
     require_settings(n, k, gamma, resolution)
     n, k, gamma = int(n), int(k), float(gamma)
     ends = ends_for(robot) if ends is None else require_count("ends", ends, at_least=0)
-    cell = Scene("nothing") if cell is None else cell
+    cell = Scene(name="nothing") if cell is None else cell
     robot = in_scene(robot, cell)
     cell = scene_seen_by(robot, cell)
     if robot.holds:

@@ -120,7 +120,7 @@ def ends_in_pockets(
                     return
                 own = int(owns[i])
                 # What the pool is free of already is not asked about again.
-                world = ArmWorld(bare, Scene("pocket", batch.walls(i)), resolution=STEP)
+                world = ArmWorld(bare, Scene(batch.walls(i), name="pocket"), resolution=STEP)
                 if not world.valid(pool[own : own + 1])[0]:
                     continue
                 others = np.flatnonzero(batch.holds(i, tips[:, which[i]]))

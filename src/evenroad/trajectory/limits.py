@@ -29,11 +29,14 @@ class Limits:
         > 0, one a joint [rad/s, rad/s^2; m where it slides].
     jerk : tuple of float or None
         > 0, one a joint [rad/s^3]; None where it may be anything.
+    along_path : float or None
+        > 0, of all coordinates together, as the speed of a vehicle [m/s]; None where it may be anything.
     """
 
     velocity: tuple[float, ...]
     acceleration: tuple[float, ...]
     jerk: tuple[float, ...] | None = None
+    along_path: float | None = None
 
     def __post_init__(self) -> None:
         for kind in _KINDS:
@@ -44,6 +47,8 @@ class Limits:
             if min(row) <= 0.0:
                 raise InvalidValue(f"{kind} must be > 0 for every joint, got {values!r}")
             object.__setattr__(self, kind, row)
+        if self.along_path is not None:
+            require_positive("along_path", self.along_path)
 
     def at_speed(self, speed: float) -> Limits:
         """Return the limits with which everything takes ``1 / speed`` as long, 0 < speed <= 1."""
@@ -54,7 +59,8 @@ class Limits:
             return tuple(value * speed**power for value in row)
 
         jerk = None if self.jerk is None else scaled(self.jerk, 3)
-        return Limits(scaled(self.velocity, 1), scaled(self.acceleration, 2), jerk)
+        along = None if self.along_path is None else self.along_path * speed
+        return Limits(scaled(self.velocity, 1), scaled(self.acceleration, 2), jerk, along)
 
 
 def limits_of(robot: Robot, file: str | os.PathLike[str] | None = None) -> Limits:

@@ -6,10 +6,11 @@ import os
 from typing import Any
 
 from evenroad._arrays import Floats
-from evenroad.errors import InvalidValue
+from evenroad._checks import require_positive
+from evenroad.errors import InvalidValue, shown
 from evenroad.robot import ArmWorld
 from evenroad.trajectory.arm import arm_trajectory
-from evenroad.trajectory.limits import Limits, limits_of
+from evenroad.trajectory.limits import SECONDS_TO_FULL_SPEED, Limits, limits_of
 from evenroad.trajectory.trajectory import Trajectory, make_trajectory
 from evenroad.world import World
 
@@ -27,8 +28,14 @@ def trajectory_of(
         if isinstance(limits, str | os.PathLike):
             limits = limits_of(world.robot, limits)
         return arm_trajectory(world, path, limits, speed=speed, **options)
-    if not isinstance(limits, Limits):
+    if limits is None:
+        fastest = require_positive("speed", speed)
+        each = (fastest,) * path.shape[1]
+        at_speed = Limits(each, tuple(v / SECONDS_TO_FULL_SPEED for v in each), along_path=fastest)
+    elif isinstance(limits, Limits):
+        at_speed = limits.at_speed(speed)
+    else:
         raise InvalidValue(
-            "limits must be given where there is no robot that has them: Limits(velocity=..., acceleration=...)"
+            f"limits must be Limits(velocity=..., acceleration=...) where there is no robot, got {shown(limits)}"
         )
-    return make_trajectory(path, limits.at_speed(speed), world=world, **options)
+    return make_trajectory(path, at_speed, world=world, **options)

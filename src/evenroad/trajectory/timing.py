@@ -77,6 +77,8 @@ def fastest(path: RoundedPath, limits: Limits) -> TimeLaw:
         most = [np.min(velocity / np.abs(side), axis=1) ** 2 for side in (ahead, behind)]
     ceiling = np.zeros(len(grid))
     ceiling[1:-1] = np.minimum(most[0][1:], most[1][:-1])
+    if limits.along_path is not None:
+        ceiling = np.minimum(ceiling, limits.along_path**2)
     ceiling[np.isin(grid, path.stops)] = 0.0
     squares = _squared_speeds(ahead, ahead_bend, behind, behind_bend, np.diff(grid), ceiling, acceleration)
     speeds, steps = np.sqrt(squares), np.diff(grid)

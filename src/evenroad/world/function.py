@@ -14,6 +14,7 @@ from evenroad._fingerprint import fingerprint_of
 from evenroad.errors import InvalidValue, NotAvailable, shown
 from evenroad.space import BoxSpace, Product, Space
 from evenroad.space.batch import as_batch, as_batch_pair
+from evenroad.space.protocol import all_distances
 from evenroad.world.bisection import MOST_SEGMENTS, between_ends, require_few_segments
 from evenroad.world.one_or_many import OneOrMany, one_or_many
 
@@ -21,6 +22,8 @@ OUTSIDE = "it lies outside the bounds of the space"
 """Why a configuration is not free that the space does not contain."""
 ONE_BY_ONE = "asked about one configuration at a time: from (n, dim) to (n,) it would be asked once a batch"
 """What is told of a function that takes one configuration."""
+SHARE_OF_EXTENT = 0.01
+"""Resolution where nothing is said, as a share of the extent of the space."""
 FINER = 20
 """How many times as densely `FunctionWorld.recheck` looks at states."""
 
@@ -44,9 +47,10 @@ class FunctionWorld(OneOrMany):
     is_valid : callable
         From configurations, a read-only float64 (n, dim) array, to a bool array (n,); or from one configuration (dim,)
         to a bool, which costs a call each.  Must give equal answers to equal configurations.
-    resolution : float, or a sequence of floats for a Product
+    resolution : float, or a sequence of floats for a Product, optional
         The largest distance between neighbouring states, > 0, in the space's metric.  Several: one for each
-        part in the part's own metric; n is then the largest that any part asks for.
+        part in the part's own metric; n is then the largest that any part asks for.  Default: a hundredth of the
+        space's extent, the largest distance that 65 configurations spread over the space have from each other.
     vectorised : bool, optional
         Whether `is_valid` takes many configurations at once.  Default: it is asked about many first, and about one
         after the other where it has no answer to that.
@@ -62,7 +66,7 @@ class FunctionWorld(OneOrMany):
 
     space: Space
     is_valid: Callable[[Floats], Any]
-    resolution: float | Sequence[float]
+    resolution: float | Sequence[float] | None = None
     vectorised: bool | None = None
     name: str | None = None
 
@@ -224,6 +228,8 @@ def _as_space(space: Any) -> Space:
 
 
 def _as_resolution(resolution: object, space: Space) -> float | tuple[float, ...]:
+    if resolution is None:
+        return SHARE_OF_EXTENT * _extent(space)
     if not isinstance(resolution, Sequence | np.ndarray) or isinstance(resolution, str):
         return require_positive("resolution", resolution)
     if not isinstance(space, Product):
@@ -232,6 +238,14 @@ def _as_resolution(resolution: object, space: Space) -> float | tuple[float, ...
     for value in row:
         require_positive("resolution", value)
     return row
+
+
+def _extent(space: Space) -> float:
+    """Return the largest distance between configurations that are spread over a space, its corners among them."""
+    steps = 2.0 ** (np.arange(1, space.cube_dim + 1) / (space.cube_dim + 1))
+    last = np.full((1, space.cube_dim), np.nextafter(1.0, 0.0))
+    q = space.from_cube(np.vstack([np.arange(64)[:, np.newaxis] * steps % 1.0, last]))
+    return float(all_distances(space, q, q).max())
 
 
 def _in_fixed_order(a: Floats, b: Floats) -> tuple[Floats, Floats]:

@@ -58,6 +58,9 @@ SAMPLERS: dict[str, Callable[..., KnownSampler]] = {
 } | {family: partial(Trained, family) for family in TRAINED_FAMILIES}
 """Name -> how to make the sampler from its options; without any it says what it is, and what keeps its sets even."""
 
+ALIASES = {"random": "uniform"}
+"""Other names that people know samplers by."""
+
 
 def make_sampler(name: str, **options: Any) -> KnownSampler:
     """Return the sampler of this name, one of :data:`SAMPLERS`, with its own parameters as options.
@@ -65,10 +68,11 @@ def make_sampler(name: str, **options: Any) -> KnownSampler:
     Raises UnknownName, which lists the samplers, if there is none of this name; InvalidValue if it does not take an
     option.
     """
-    if not isinstance(name, str) or name not in SAMPLERS:
+    known = ALIASES.get(name, name) if isinstance(name, str) else None
+    if known not in SAMPLERS:
         raise UnknownName.among("sampler", name, SAMPLERS)
     try:
-        return SAMPLERS[name](**options)
+        return SAMPLERS[known](**options)
     except TypeError as error:
         raise InvalidValue(f"sampler {name!r} does not take these options: {error}") from None
 

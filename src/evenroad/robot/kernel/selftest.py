@@ -81,7 +81,7 @@ def small_tables() -> ArmTables:
         Obstacle.of("post", "cylinder", (0.08, 0.6), (-0.45, -0.2, 0.1), _ROTATED),
         Obstacle.of("pipe", "capsule", (0.05, 0.4), (0.4, -0.4, 0.2), _STRAIGHT),
     )
-    tables, scene = robot_tables(robot), Scene("small", obstacles)
+    tables, scene = robot_tables(robot), Scene(obstacles, name="small")
     return arm_tables(tables, obstacle_rows(scene), tested_contacts(tables.capsules, links, scene))[0]
 
 

@@ -78,7 +78,7 @@ def _drawn(robot: str, generator: str, stream: str, rng: np.random.Generator) ->
     cell = cell_of(arm)
     obstacles, regions = places_of(generator, stream, rng)
     named = tuple(replace(each, name=f"{generator} {i}") for i, each in enumerate(obstacles))
-    scene = Scene(f"{robot} {generator}", (*cell.obstacles, *named), cell.allowed)
+    scene = Scene((*cell.obstacles, *named), name=f"{robot} {generator}", allowed=cell.allowed)
     world = ArmWorld(arm, scene)
     pool, tools = _pool(robot)
     ends: list[Floats] = []

@@ -34,7 +34,7 @@ def cell_of(robot: Robot) -> Scene:
     """Return the cell that all problems share: the table that the robot stands on."""
     table = Obstacle.of("table", "box", (1.6, 1.6, 0.05), (0.3, 0.0, -0.03))
     bodied = [link for link in robot.links if any(capsule.link == link for capsule in robot.capsules)]
-    return Scene("table", (table,), frozenset((link, "table") for link in bodied[:2]))
+    return Scene((table,), name="table", allowed=frozenset((link, "table") for link in bodied[:2]))
 
 
 def why_no_roadmap(sampler: str, n: int, dim: int) -> str:

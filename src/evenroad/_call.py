@@ -1,0 +1,51 @@
+"""Calls with arguments that a function does not take: errors of ours that say what it takes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from inspect import Parameter, signature
+from types import FunctionType
+from typing import Any, TypeVar
+
+from evenroad.errors import EvenroadError, InvalidValue, UnknownName
+
+Called = TypeVar("Called", bound=Callable[..., Any])
+
+
+def explains_calls(called: Called) -> Called:
+    """Return a function, or a class with its methods, that answers a wrong call with UnknownName or InvalidValue.
+
+    Python's own TypeError names a wrong keyword, but not those that there are.
+    """
+    if isinstance(called, type):
+        for name, each in vars(called).copy().items():
+            if isinstance(each, FunctionType) and (name == "__init__" or not name.startswith("_")):
+                setattr(called, name, explains_calls(each))
+        return called
+
+    @wraps(called)
+    def explained(*given: Any, **named: Any) -> Any:
+        try:
+            return called(*given, **named)
+        except TypeError as error:
+            # One that was raised within the function has a frame of its own.
+            if error.__traceback__ is None or error.__traceback__.tb_next is not None:
+                raise
+            raise _explained(called, named, str(error)) from None
+
+    return explained  # type: ignore[return-value]
+
+
+def _explained(function: Callable[..., Any], named: dict[str, Any], text: str) -> EvenroadError:
+    """Return what is wrong with a call, of which Python says `text`."""
+    name = function.__qualname__.removesuffix(".__init__")
+    taken = {key: each for key, each in signature(function).parameters.items() if key != "self"}
+    keywords = [key for key, each in taken.items() if each.kind is not Parameter.POSITIONAL_ONLY]
+    strange = [key for key in named if key not in keywords]
+    if strange:
+        return UnknownName.among(f"keyword of {name}:", strange[0], keywords)
+    alone = [key for key, each in taken.items() if each.kind is Parameter.KEYWORD_ONLY]
+    first = [key for key in taken if key not in alone]
+    words = ", ".join([*first, *(["*", *alone] if alone else [])])
+    return InvalidValue(f"{name} is called as {name}({words}): {text.partition('() ')[2] or text}")
