@@ -215,15 +215,6 @@ CALLS = {
 }
 
 NOT_YET: dict[str, str] = {
-<<<<<<< HEAD
-    "draw random": "unknown sampler 'random'",
-    "points know their dimension": "'PointSet' object has no attribute 'dim'",
-    "points have a discrepancy": "'PointSet' object has no attribute 'discrepancy'",
-=======
-    "map by name": "unknown kind of map file 'maze3': suffix ''",
-    "map by the name of a file": "cannot read the map office.yaml: No such file or directory",
-    "map distance": "'DiskWorld' object has no attribute 'distance'",
->>>>>>> 0c35713 (A scene takes its arguments in one order; points, scenes, own worlds and trajectories take what one guesses)
     "map plan": "plan() missing 1 required positional argument: 'points'",
     "map plan by keyword": "plan() got an unexpected keyword argument 'seconds'",
     "map plan by RRTConnect": "module 'evenroad' has no attribute 'RRTConnect'",

@@ -70,12 +70,12 @@ def load_scene(source: str | os.PathLike[str]) -> Scene:
 
     Obstacles may also be a list whose entries have a ``name``, and ``box: {size: [1, 1, 1]}`` stands for ``shape: box,
     size: [1, 1, 1]``.  The length of a capsule is without its caps; ``xyzw: [x, y, z, w]``, a quaternion, may stand for
-    ``rpy``; ``cell: true`` marks what belongs to the fixed cell.  Files of clouds
-    (:func:`evenroad.geometry.load_cloud`) and meshes (:func:`evenroad.geometry.load_mesh`) are looked for beside the scene; points within `margin` of the robot, where it
-    stood when it was `seen_at`, are left out when one plans.  So are those that a cloud's ``cut`` names, a list of
-    shapes, ``{shape: box, size: [0.1, 0.1, 0.2], xyz: [0.5, 0, 0.1], grow: 0.01}``, and of what is attached where the
-    robot stands, ``{attached: crate, at: grasp, grow: 0.01}``.  MoveIt's scenes are read, too
-    (:mod:`evenroad.robot.moveit_scene`).
+    ``rpy``; ``cell: true`` marks what belongs to the fixed cell.  Files of
+    clouds (:func:`evenroad.geometry.load_cloud`) and meshes (:func:`evenroad.geometry.load_mesh`) are looked for beside
+    the scene; points within `margin` of the robot, where it stood when it was `seen_at`, are left out when one plans.
+    So are those that a cloud's ``cut`` names, a list of shapes, ``{shape: box, size: [0.1, 0.1, 0.2], xyz: [0.5, 0,
+    0.1], grow: 0.01}``, and of what is attached where the robot stands, ``{attached: crate, at: grasp, grow: 0.01}``.
+    MoveIt's scenes are read, too (:mod:`evenroad.robot.moveit_scene`).
 
     Raises BrokenFile if the file is missing, not YAML, lacks something, or has a key twice; UnknownName for a key, a
     shape or an obstacle that there is not; InvalidValue for a value of the wrong type or range.
