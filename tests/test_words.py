@@ -1,0 +1,144 @@
+"""The words of the field: identifiers that are out, and the style of the guides."""
+
+import re
+import tokenize
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+import evenroad
+
+PACKAGE = Path(evenroad.__file__).parent
+ROOT = Path(__file__).parents[1]
+
+FIELD = {
+    "ask asks asking hear tell told question questions": "query, or evaluate an edge",
+    "day today": "scene, dynamic",
+    "dear dearly": "expensive",
+    "desk": "state or workspace",
+    "doubt doubtful": "uncertain",
+    "explored learn learned hub hubs": "cache, precomputed or experience",
+    "lifted": "winding numbers",
+    "places": "configurations, positions or indices",
+    "pocket pockets": "narrow passage",
+    "price prices": "edge weight",
+    "recheck rechecks": "validate",
+    "room": "buffer or capacity",
+    "separates": "infeasibility proof",
+    "sight sees": "visibility",
+    "stretch stretches": "interval",
+    "tight tighten tightened": "smoothing",
+    "verdict verdicts": "result",
+    "way ways": "path or direction",
+}
+"""Words that are out -> what the field says."""
+
+STILL_THERE = {
+    "ask": 7,
+    "asks": 1,
+    "asking": 2,
+    "hear": 1,
+    "tell": 1,
+    "told": 3,
+    "question": 4,
+    "questions": 2,
+    "day": 7,
+    "today": 1,
+    "dear": 6,
+    "dearly": 2,
+    "desk": 3,
+    "doubt": 1,
+    "doubtful": 1,
+    "learn": 4,
+    "learned": 1,
+    "lifted": 4,
+    "places": 8,
+    "pocket": 2,
+    "pockets": 4,
+    "price": 2,
+    "prices": 3,
+    "recheck": 2,
+    "rechecks": 1,
+    "room": 11,
+    "separates": 1,
+    "sight": 1,
+    "stretch": 1,
+    "stretches": 1,
+    "tight": 1,
+    "tighten": 4,
+    "verdict": 4,
+    "verdicts": 4,
+    "way": 11,
+    "ways": 9,
+}
+"""Word that is out -> number of identifiers of the package that still have it; it must not grow."""
+
+
+def words_of(identifier):
+    """Return the words of a name in snake_case or CamelCase, in small letters."""
+    return [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+", identifier)]
+
+
+@cache
+def identifiers():
+    """Return every name in the package's sources, and those of its modules, with a file that has it."""
+    found = {}
+    for path in sorted(PACKAGE.rglob("*.py")):
+        found.setdefault(path.stem, path)
+        with open(path, "rb") as source:
+            for token in tokenize.tokenize(source.readline):
+                if token.type == tokenize.NAME:
+                    found.setdefault(token.string, path)
+    return found
+
+
+@pytest.mark.parametrize("words", FIELD)
+def test_identifiers_speak_the_words_of_the_field(words):
+    for word in words.split():
+        named = sorted(name for name in identifiers() if word in words_of(name))
+        assert len(named) <= STILL_THERE.get(word, 0), f"{word} in {named}: the field says {FIELD[words]}"
+
+
+def test_names_are_split_into_words():
+    assert words_of("_ASK_GOALS") == ["ask", "goals"]
+    assert words_of("KnownGraph2") == ["known", "graph"]
+    assert words_of("URDFRobot") == ["urdf", "robot"]
+
+
+GUIDES = [
+    ROOT / "README.md",
+    ROOT / "CONTRIBUTING.md",
+    *(path for path in sorted((ROOT / "docs").rglob("*.md")) if "generated" not in path.parts),
+]
+CODE = re.compile(r"```.*?```|`[^`]*`", re.DOTALL)
+
+
+def prose(path):
+    """Return a page without its code."""
+    return CODE.sub("", path.read_text())
+
+
+@pytest.mark.parametrize("path", GUIDES, ids=lambda path: path.name)
+def test_guides_are_short_and_have_one_table(path):
+    lines = path.read_text().splitlines()
+    assert len(lines) <= (225 if path.name == "design.md" else 150)
+    tables = [line for line in lines if re.fullmatch(r"\|[ :|-]*--[ :|-]*\|", line)]
+    assert len(tables) <= 1
+
+
+@pytest.mark.parametrize("path", GUIDES, ids=lambda path: path.name)
+def test_guides_write_numbers_in_full_and_use_the_words_of_the_field(path):
+    text = prose(path)
+    assert re.findall(r"(?<![\w.)/])\.\d\S*", text) == [], "0.12, not .12"
+    assert "+-" not in text, "±, not +-"
+    out = r"\b(?:drawn (?:in|tight)|pockets?|dear(?:ly)?|lifted|rechecks?|hears?)\b"
+    assert re.findall(out, text) == []
+
+
+def test_no_file_names_the_host_of_a_package_registry():
+    host = re.compile(r"\b(?:py" + r"pi|pythonhosted|ana" + r"conda)\.org\b")
+    for folder in ("docs", "src", "studies", "tests", "tests_peers", "tools", "examples"):
+        for path in (ROOT / folder).rglob("*.*"):
+            if path.suffix in (".md", ".py", ".toml", ".txt", ".yaml", ".pyi"):
+                assert not host.search(path.read_text(encoding="utf-8")), path
