@@ -10,7 +10,6 @@ from evenroad.robot import ArmWorld, load_robot, load_scene
 from evenroad.robot.certified import CertifiedWorld
 from evenroad.space import SE2, SE3, BoxSpace, Circle, JointSpace, Rectangle
 from evenroad.world import FunctionWorld, GridMap
-from evenroad_studies.worlds.rigid import OrientedBox, SolidWorld
 from tests.counting import Counting
 
 
@@ -111,19 +110,6 @@ def test_a_function_has_a_fingerprint_by_the_name_that_its_user_gives():
     assert len({world.fingerprint() for world in (one, *others)}) == 4
     with pytest.raises(NotAvailable, match="only with a name"):
         FunctionWorld(space, _free, 0.1).fingerprint()
-
-
-def test_solid_worlds_are_told_apart_by_all_that_decides_their_verdicts():
-    body, far = [OrientedBox((0, 0), (0.1, 0.1))], [OrientedBox((0.8, 0.8), (0.1, 0.1))]
-    space = SE2((0, 0), (1, 1))
-    worlds = [
-        SolidWorld(space, body, far, (0.1, 0.1)),
-        SolidWorld(space, body, far, (0.1, 0.2)),
-        SolidWorld(space, body, [], (0.1, 0.1)),
-        SolidWorld(space, far, body, (0.1, 0.1)),
-    ]
-    assert len({world.fingerprint() for world in worlds}) == 4
-    assert SolidWorld(space, list(body), tuple(far), (0.1, 0.1)).fingerprint() == worlds[0].fingerprint()
 
 
 def test_an_arm_whose_motions_are_proved_is_another_world_than_the_arm():

@@ -297,14 +297,3 @@ def test_what_only_compiled_code_calls_is_compiled_into_its_callers_and_no_furth
         assert not _njit.JITCodeLibrary.codegen.fget(code)._engine.is_symbol_defined(name)
     code, name = compiled(caller)
     assert code.codegen._engine.is_symbol_defined(name)
-
-
-def test_edits_of_what_the_studies_import_of_themselves_are_noticed():
-    import evenroad_studies.worlds.chain as chain
-    from evenroad import _njit
-
-    _files_of = _njit._files_of
-
-    assert _files_of("evenroad_studies.worlds.chain") == (chain.__file__,)
-    assert _files_of("evenroad._njit") == (_njit.__file__,)
-    assert _files_of("evenroad_studies.no_such_module") == ()

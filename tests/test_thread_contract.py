@@ -19,7 +19,6 @@ from evenroad.robot.upright import upright_world
 from evenroad.space.path import subdivide
 from evenroad.trajectory import Limits, load_trajectory, make_trajectory, save_trajectory
 from evenroad.world.gridmap.shipped import load_maze
-from evenroad_studies.worlds.chain import ChainWorld
 from tests.robot.kernel_arms import TABLE, box_scene, ur5
 from tests.robot.oracle import clearance
 from tests.threads import together
@@ -157,11 +156,6 @@ def a_function():
     return [*verdicts(world, q[:2]), lambda: er.plan(world, *q[0], 40, search="lazy")]
 
 
-def a_chain():
-    world = ChainWorld(6)
-    return verdicts(world, ends(world))
-
-
 @cache
 def known():
     """A robot's roadmap on its table."""
@@ -222,7 +216,6 @@ VALUES = [
     a_kept_roadmap,
     a_disk_on_a_map,
     a_function,
-    a_chain,
     a_robot_roadmap,
     samplers,
     trajectories,

@@ -10,12 +10,8 @@ HELPERS = {
     "__main__",
     "arm_problems",
     "mjcf_truth",
-    "nested_k",
-    "ompl_peer",
     "robot_truth",
 }
-DECISIONS = {"decide_even"}
-"""They chose what is in the package; run by name when that is to be chosen again."""
 ASKED = {"arm_tables"}
 """They want to be told what to do, or what to read; the pages say how."""
 
@@ -27,9 +23,7 @@ def main() -> int:
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     names = sorted(
-        path.stem
-        for path in Path(__file__).parent.glob("*.py")
-        if path.stem not in HELPERS | DECISIONS | ASKED
+        path.stem for path in Path(__file__).parent.glob("*.py") if path.stem not in HELPERS | ASKED
     )
     failed = []
     for name in options.only or names:

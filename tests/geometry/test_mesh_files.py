@@ -10,9 +10,10 @@ import pytest
 from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 from evenroad.geometry import TriangleMesh, load_mesh
 from evenroad.geometry.mesh import merged
-from evenroad_studies.worlds.rigid import OrientedBox, surface_of
 
-CUBE = surface_of(OrientedBox.spanning((0, 0, 0), (1, 2, 3), name="cube"))
+CORNERS = np.array([(x, y, z) for x in (0, 1) for y in (0, 2) for z in (0, 3)], dtype=np.float64)
+SIDES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+CUBE = TriangleMesh(CORNERS, [t for a, b, c, d in SIDES for t in ((a, b, c), (a, c, d))], "cube")
 
 ASCII_STL = """solid one
 facet normal 0 0 1

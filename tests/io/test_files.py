@@ -3,8 +3,6 @@ import os
 import signal
 import subprocess
 import sys
-import threading
-import time
 
 import numpy as np
 import pytest
@@ -16,7 +14,6 @@ from evenroad.io import plan_record, save_json, save_path_csv
 from evenroad.points import draw
 from evenroad.roadmap import plan
 from evenroad.world import GridMap
-from evenroad_studies.training.folder import one_at_a_time
 
 
 def test_a_reader_sees_the_old_file_until_the_new_one_is_whole(tmp_path):
@@ -140,21 +137,3 @@ def test_csv_floats_come_back_bit_for_bit(tmp_path):
     assert rows[0] == "a,b,c"
     back = np.array([[float(x) for x in row.split(",")] for row in rows[1:]])
     assert back.tobytes() == waypoints.tobytes()
-
-
-def test_a_lock_makes_others_wait_until_it_is_let_go(tmp_path):
-    inside, turns = threading.Event(), []
-
-    def second():
-        inside.wait()
-        with one_at_a_time(tmp_path / "lock"):
-            turns.append("second")
-
-    other = threading.Thread(target=second)
-    other.start()
-    with one_at_a_time(tmp_path / "lock"):
-        inside.set()
-        time.sleep(0.2)
-        turns.append("first")
-    other.join()
-    assert turns == ["first", "second"]

@@ -11,13 +11,23 @@ from evenroad.roadmap import KEarlier, KNearest, Radius, Roadmap, fmt, plan, pla
 from evenroad.roadmap.query import even_points
 from evenroad.space import SE2, SE3, SO3, BoxSpace, JointSpace, Product
 from evenroad.world import FunctionWorld
-from evenroad_studies.worlds import Corridor
 from tests.counting import Counting
 
 
 def _slit(q):
     """The middle may be passed only with a small turn."""
     return (np.abs(q[:, 0] - 0.5) > 0.1) | (np.abs(q[:, -1]) < 0.5)
+
+
+def _corridor(d, width):
+    """Along the edges of the unit cube: once a coordinate is beyond the width, all after it are near 1."""
+    space = BoxSpace(np.zeros(d), np.ones(d))
+
+    def free(q):
+        passed = np.cumsum(q > width, axis=1) - (q > width) > 0
+        return np.all(~passed | (q >= 1.0 - width), axis=1)
+
+    return FunctionWorld(space, free, 0.02)
 
 
 JOINTS = JointSpace([-np.pi, -1.0, -np.pi], [np.pi, 1.0, np.pi], wrapping=[True, False, True])
@@ -30,7 +40,7 @@ CASES = {
         (0.9, 0.5, 0.5, -1.0, 0.0, 0.0, 0.0),
         6,
     ),
-    "corridor": (Corridor(3, 0.35), (0.0, 0.0, 0.0), (1.0, 1.0, 1.0), 3),
+    "corridor": (_corridor(3, 0.35), (0.0, 0.0, 0.0), (1.0, 1.0, 1.0), 3),
 }
 
 
@@ -69,8 +79,7 @@ def test_growing_solves_them_all(case):
 @pytest.mark.parametrize(("d", "k"), [(2, 10), (5, 10), (6, 20), (10, 20)])
 @pytest.mark.parametrize("planner", [plan, fmt])
 def test_the_default_k_grows_with_the_dimension(planner, d, k):
-    world = Corridor(d, 0.4)
-    result = planner(world, world.start, world.goal, draw("sobol", 16, d))
+    result = planner(_corridor(d, 0.4), np.zeros(d), np.ones(d), draw("sobol", 16, d))
     assert result.rule == f"k={k} symmetrised"
 
 

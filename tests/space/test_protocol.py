@@ -10,7 +10,6 @@ import pytest
 from evenroad.errors import InvalidValue
 from evenroad.space import SE2, SE3, SO3, BoxSpace, Circle, JointSpace, Product, Rectangle
 from evenroad.space.protocol import all_distances
-from evenroad_studies.worlds.chain import ChainSpace
 
 SPACES = {
     "box": BoxSpace([-1, 0, 2], [1, 5, 3], weights=[1.0, 2.0, 0.5]),
@@ -21,7 +20,6 @@ SPACES = {
     "SE3": SE3([0, 0, 0], [9, 9, 9], weights=[1.0, 3.0]),
     "SE3 of squares": SE3([0, 0, 0], [9, 9, 9], combine="l2"),
     "product with a space that has none": Product([Rectangle((0, 0), (1, 0), (0, 2)), Circle()]),
-    "chain": ChainSpace(5),
     "none": Rectangle((0, 0), (1, 0), (0, 2)),
 }
 

@@ -9,15 +9,15 @@ import textwrap
 import numpy as np
 import pytest
 
+from evenroad.space import BoxSpace
 from evenroad.testing import WorldContract
-from evenroad_studies.worlds import Corridor
 
 
 class Good:
     """A square with a round hole; motions are tested at 101 states."""
 
     def __init__(self):
-        self.space = Corridor(2, 0.3).space
+        self.space = BoxSpace([0, 0], [1, 1])
 
     def valid(self, q):
         return np.hypot(q[:, 0] - 0.5, q[:, 1] - 0.5) > 0.3
@@ -97,15 +97,15 @@ def test_a_user_runs_both_contracts_from_a_file_of_their_own(tmp_path):
     (tmp_path / "test_mine.py").write_text(
         textwrap.dedent(
             """
-            from evenroad.space import Circle
+            from evenroad.space import BoxSpace, Circle
             from evenroad.testing import SpaceContract, WorldContract
-            from evenroad_studies.worlds import Corridor
+            from evenroad.world import FunctionWorld
 
             class TestSpace(SpaceContract):
                 space = Circle()
 
             class TestWorld(WorldContract):
-                world = Corridor(1, 0.3)  # everything is free: one verdict only
+                world = FunctionWorld(BoxSpace([0], [1]), lambda q: q[:, 0] >= 0, 0.1)  # one verdict only
             """
         )
     )

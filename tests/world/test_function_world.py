@@ -16,7 +16,6 @@ from evenroad.testing import WorldContract
 from evenroad.world import Explains, FunctionWorld
 from evenroad.world.bisection import between_ends
 from evenroad.world.protocol import Rechecks
-from evenroad_studies.worlds import Corridor
 
 SQUARE = BoxSpace([0.0, 0.0], [1.0, 1.0])
 
@@ -157,15 +156,6 @@ def test_motions_of_a_batch_share_the_calls():
     a, b = rng.random((500, 2)), rng.random((500, 2))
     FunctionWorld(SQUARE, asked, 0.01, vectorised=True).motion_valid(a, b)
     assert len(asked.batches) <= 2 + math.ceil(math.log2(math.sqrt(2) / 0.01))
-
-
-def test_a_corridor_as_a_function_gives_what_the_corridor_gives():
-    world = Corridor(3, 0.3)
-    q = np.random.default_rng(1).random((20_000, 3))
-    q = q[world.valid(q)][:600]
-    function = FunctionWorld(world.space, world.valid, world.resolution)
-    motions = q, np.roll(q, 1, axis=0)
-    np.testing.assert_array_equal(function.motion_valid(*motions), world.motion_valid(*motions))
 
 
 def test_outside_the_space_nothing_is_free_and_the_function_is_not_asked():

@@ -7,10 +7,13 @@ import math
 import numpy as np
 import pytest
 
+from evenroad import _njit
 from evenroad.errors import InvalidValue
 from evenroad.testing import WorldContract
 from evenroad.world import FunctionWorld
+from evenroad_studies.worlds import chain
 from evenroad_studies.worlds.chain import ChainWorld, horn
+from tests.threads import together
 
 TEN = ChainWorld()
 TOUCHING = 1.1920929e-07
@@ -147,3 +150,16 @@ def test_chains_that_are_none_are_refused():
     for wrong in (0, 1, 10.0, 10**6):
         with pytest.raises(InvalidValue, match="links"):
             ChainWorld(wrong)
+
+
+def test_threads_give_the_verdicts_of_one():
+    q = np.random.default_rng(3).uniform(-math.pi, math.pi, (64, 10))
+    asked = [lambda i=i: TEN.motion_valid(q[i : i + 8], q[i + 8 : i + 16]).tolist() for i in range(0, 48, 8)]
+    alone = [ask() for ask in asked]
+    assert all(each == alone for each in together(*asked))
+
+
+def test_edits_of_what_the_studies_import_of_themselves_are_noticed():
+    assert _njit._files_of("evenroad_studies.worlds.chain") == (chain.__file__,)
+    assert _njit._files_of("evenroad._njit") == (_njit.__file__,)
+    assert _njit._files_of("evenroad_studies.no_such_module") == ()

@@ -10,6 +10,7 @@ import pytest
 
 from evenroad.errors import InvalidValue, UnknownName
 from evenroad.testing import WorldContract
+from evenroad.world import FunctionWorld
 from evenroad_studies.problems import source_named
 from evenroad_studies.worlds import Corridor
 
@@ -174,3 +175,12 @@ def test_the_legacy_problem_is_the_one_of_the_paper():
 def test_parameters_that_make_no_corridor_are_refused(arguments, error, text):
     with pytest.raises(error, match=text):
         Corridor(*arguments)
+
+
+def test_a_corridor_as_a_function_gives_what_the_corridor_gives():
+    world = Corridor(3, 0.3)
+    q = np.random.default_rng(1).random((20_000, 3))
+    q = q[world.valid(q)][:600]
+    function = FunctionWorld(world.space, world.valid, world.resolution)
+    motions = q, np.roll(q, 1, axis=0)
+    np.testing.assert_array_equal(function.motion_valid(*motions), world.motion_valid(*motions))

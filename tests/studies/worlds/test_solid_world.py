@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
@@ -91,15 +92,16 @@ def penetration(centre, matrix, half, obstacle):
 
 
 def deepest(world, q):
+    """The largest penetration; boxes whose balls are apart are apart."""
     dim = len(world.body[0].centre)
     position, matrix = pose_of(q, dim)
-    return max(
-        penetration(
-            position + matrix @ np.array(part.centre), matrix @ part.matrix, part.half_extents, obstacle
-        )
-        for part in world.body
-        for obstacle in world.obstacles
-    )
+    found = [-1.0]
+    for part, obstacle in product(world.body, world.obstacles):
+        centre = position + matrix @ np.array(part.centre)
+        reach = np.linalg.norm(part.half_extents) + np.linalg.norm(obstacle.half_extents)
+        if np.linalg.norm(centre - np.array(obstacle.centre)) < reach:
+            found.append(penetration(centre, matrix @ part.matrix, part.half_extents, obstacle))
+    return max(found)
 
 
 @pytest.mark.parametrize("world", WORLDS, ids=["SE3", "SE2", "3-D", "2-D"])
@@ -249,3 +251,16 @@ def test_a_box_of_geometry_is_the_same_box_with_its_pose():
     box = OrientedBox.of(shapes.Box((0.2, 0.4, 0.6), pose=place))
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     np.testing.assert_allclose(box.corners, place.apply(signs * (0.1, 0.2, 0.3)), atol=1e-15)
+
+
+def test_solid_worlds_are_told_apart_by_all_that_decides_their_verdicts():
+    body, far = [OrientedBox((0, 0), (0.1, 0.1))], [OrientedBox((0.8, 0.8), (0.1, 0.1))]
+    space = SE2((0, 0), (1, 1))
+    worlds = [
+        SolidWorld(space, body, far, (0.1, 0.1)),
+        SolidWorld(space, body, far, (0.1, 0.2)),
+        SolidWorld(space, body, [], (0.1, 0.1)),
+        SolidWorld(space, far, body, (0.1, 0.1)),
+    ]
+    assert len({world.fingerprint() for world in worlds}) == 4
+    assert SolidWorld(space, list(body), tuple(far), (0.1, 0.1)).fingerprint() == worlds[0].fingerprint()

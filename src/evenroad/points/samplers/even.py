@@ -30,8 +30,8 @@ DRAWN_IN = 0.85
 class Even(Korobov):
     """Our default: a Korobov lattice, from ten dimensions on scrambled Sobol points.
 
-    ``studies/benchmarks/decide_even.py`` has the evidence for the lattice.  Where n has so few multipliers that the
-    best is poor, as many multiples of 24, the generating vector is one of numbers that are no powers
+    ``studies/docs/results.md`` has the evidence for the lattice.  Where n has so few multipliers that the best
+    is poor, as many multiples of 24, the generating vector is one of numbers that are no powers
     (:func:`~evenroad.points.samplers.rank_one_search.rank_one_vector`).  From six dimensions on axes hardly ever count
     alike: those of an arm's joints, those of rotations.  The few short vectors of the lattice may then lie in axes that
     count little, and with k < 2 d neighbours the roadmap falls apart into sheets.  No one order of the axes is good
