@@ -16,7 +16,7 @@ from matplotlib.patches import Circle, Rectangle
 from scipy.spatial import cKDTree
 
 import evenroad as er
-from evenroad.points.measures import dispersion_l2
+from evenroad.points.measures import dispersion_bounds
 from evenroad.viz import style
 from evenroad.world.gridmap.shipped import Maze, load_maze
 from evenroad_studies.statistics.rates import wilson
@@ -56,7 +56,7 @@ def draw_even_points() -> None:
     figure.savefig(OUT / "even-points.png", bbox_inches="tight", pil_kwargs={"optimize": True})
     for sampler, name in SAMPLERS.items():
         sets = [er.draw(sampler, 128, 2, rng=run).points for run in range(100)]
-        holes = [dispersion_l2(each) for each in sets]
+        holes = [dispersion_bounds(each).upper for each in sets]
         pairs = [cKDTree(each).query(each, k=2)[0][:, 1].min() for each in sets]
         text = "; ".join(
             f"{of} {np.mean(values):.4f} (standard error {np.std(values, ddof=1) / 10:.4f})"
@@ -163,7 +163,7 @@ def share(count: int) -> str:
 def draw_guarantees() -> None:
     """Draw why a path with room is found: places along it, each with a milestone within the largest hole."""
     points = er.draw("cover", 150, 2).points
-    beta = dispersion_l2(points)
+    beta = dispersion_bounds(points).upper
     t = np.linspace(0.0, 1.0, 2000)
     path = np.stack([0.08 + 0.84 * t, 0.5 + 0.26 * np.sin(2 * np.pi * t)], axis=1)
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])

@@ -123,7 +123,7 @@ def test_measures_are_printed_as_a_table_within_100_columns(run):
         "star_rooted",
         "star_squared",
         "star_discrepancy",
-        "dispersion_l2",
+        "dispersion_upper",
         "riesz_rooted",
     ):
         assert name in out
@@ -147,16 +147,15 @@ def test_a_lattice_is_recognised_by_its_points_and_others_are_none(run):
     record = json.loads(run("measure", "set.npy", "--json")[1])
     assert record["lattice_neighbours"] == 7
     assert 1.0 < record["lattice_minima_ratio"] < 1.3
-    assert record["lattice_projected_minimum"] < record["separation_periodic"] * 128**0.5
     np.save("set.npy", draw("sobol", 128, 3).points)
     assert not [name for name in json.loads(run("measure", "set.npy", "--json")[1]) if "lattice" in name]
 
 
-def test_in_high_dimensions_the_dispersion_is_called_a_lower_bound(run):
-    np.save("set.npy", draw("halton", 64, 6).points)
+@pytest.mark.parametrize(("d", "wider"), [(2, 1.00001), (6, 1.001), (12, 1.5)])
+def test_the_dispersion_is_told_from_both_sides(run, d, wider):
+    np.save("set.npy", draw("halton", 64, d).points)
     record = json.loads(run("measure", "set.npy", "--json")[1])
-    assert "dispersion_l2_lower_bound" in record
-    assert "dispersion_l2" not in record
+    assert 0.0 < record["dispersion_lower"] <= record["dispersion_upper"] < wider * record["dispersion_lower"]
 
 
 def test_a_measure_that_cannot_be_had_is_empty_and_says_why(run):

@@ -8,7 +8,7 @@ import pytest
 
 from evenroad.errors import InvalidValue, NotAvailable
 from evenroad.points import PointSet, draw
-from evenroad.points.measures import dispersion_bounds, dispersion_l2, dispersion_linf, star_discrepancy
+from evenroad.points.measures import dispersion_bounds, star_discrepancy
 from evenroad.roadmap import (
     Certificate,
     Complete,
@@ -25,6 +25,7 @@ from evenroad.roadmap import (
 from evenroad.space import SO3, BoxSpace, JointSpace
 from evenroad.world import FunctionWorld
 from tests.clear_paths import DiscWorld, Plane, shortest_around
+from tests.points.measures.dispersion_oracle import dispersion_l2, dispersion_linf
 
 SQUARE = BoxSpace([0.0, 0.0], [1.0, 1.0])
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from evenroad.errors import InvalidValue, NotAvailable, UnknownName
 from evenroad.points import draw
-from evenroad.points.measures import dispersion_linf, star_discrepancy
+from evenroad.points.measures import star_discrepancy
 from evenroad.roadmap import (
     Complete,
     KEarlier,
@@ -22,6 +22,7 @@ from evenroad.roadmap import (
     rule_named,
 )
 from evenroad.space import BoxSpace, Rectangle
+from tests.points.measures.dispersion_oracle import dispersion_linf
 from tests.roadmap.clouds import clouds, nearest_by_sorting
 from tests.roadmap.spaces import Great, Torus
 

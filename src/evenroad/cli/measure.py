@@ -17,7 +17,7 @@ from evenroad.errors import EvenroadError, InvalidValue
 from evenroad.points import PointSet
 from evenroad.points.measures import (
     MEASURES,
-    dispersion,
+    dispersion_bounds,
     rank_one,
     riesz_rooted,
     separation,
@@ -25,6 +25,9 @@ from evenroad.points.measures import (
 )
 from evenroad.points.measures.short_vectors import MOST_AXES
 from evenroad.points.npz import read_points
+
+WORK = 3e8
+"""Coordinates that may be looked at to bound the dispersion: about a second."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,27 +70,16 @@ def measure_all(points: PointSet) -> list[tuple[str, float | None, str]]:
         add(f"{measure.name}_rooted", "L2 discrepancy", partial(measure.rooted, points))
         add(f"{measure.name}_squared", "its square", partial(measure.squared, points))
     add("star_discrepancy", "L-infinity, exact", lambda: star_discrepancy(points))
-    for norm in ("l2", "linf"):
-        if points.d <= dispersion.EXACT_UP_TO:
-            exact = partial(getattr(dispersion, f"dispersion_{norm}"), points)
-            add(f"dispersion_{norm}", "largest hole, exact", exact)
-        else:
-            bound = partial(dispersion.dispersion_lower_bound, points, norm)
-            add(f"dispersion_{norm}_lower_bound", "by search", bound)
+    for side, bound in dispersion_bounds(points, work=WORK)._asdict().items():
+        add(f"dispersion_{side}", f"largest hole, {side} bound", partial(float, bound))
     add("separation", "smallest distance", lambda: separation(points))
     add("separation_periodic", "on the torus", lambda: separation(points, periodic=True))
     add("riesz_rooted", "periodic, s = 2d", lambda: riesz_rooted(points))
     add("riesz_open_rooted", "not periodic, s = 2d", lambda: riesz_rooted(points, periodic=False))
     z = rank_one.generating_vector(points)
     if z is not None and points.d <= MOST_AXES:
-        n, pairs = points.n, min(2, points.d)
-        projected = partial(rank_one.projected_minima, n, z, pairs)
+        n = points.n
         add("lattice_minima_ratio", "last successive minimum / first", partial(rank_one.minima_ratio, n, z))
-        add(
-            "lattice_projected_minimum",
-            f"of any {pairs} axes, times n^(1/{pairs})",
-            lambda: min(projected().values()),
-        )
         add("lattice_neighbours", "least k that leads everywhere", lambda: rank_one.least_neighbours(n, z))
     return [_finite(*row) for row in rows]
 

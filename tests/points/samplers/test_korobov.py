@@ -1,6 +1,5 @@
 """Korobov lattices against a search that trusts nothing but the Riesz energy of the points."""
 
-from itertools import combinations
 from math import gcd
 
 import numpy as np
@@ -8,14 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from evenroad.errors import EvenroadError, InvalidValue
+from evenroad.errors import InvalidValue
 from evenroad.points import SAMPLERS, draw
 from evenroad.points.measures import MEASURES, riesz_rooted, separation
-from evenroad.points.measures.rank_one import (
-    generating_vector,
-    neighbour_directions,
-    successive_minima,
-)
 from evenroad.points.samplers import korobov
 from evenroad.points.samplers.korobov import Korobov, korobov_generator
 from tests.points.samplers.sampler_contract import SamplerContract
@@ -147,78 +141,3 @@ def test_more_points_than_floats_can_tell_apart_are_refused():
 def test_it_is_known_by_name():
     assert "korobov" in SAMPLERS
     assert draw("korobov", 20, 3, rng=6) == Korobov().draw(20, 3, rng=6)
-
-
-def finalists(n, d):
-    """Return the multipliers of the 64 lattices of least energy, best first, by the energy of their points."""
-    tried = {min(a, n - a, pow(a, -1, n), n - pow(a, -1, n)) for a in range(1, n) if gcd(a, n) == 1}
-    energy = {a: np.log(riesz_rooted(lattice_points(a, n, d))) for a in tried}
-    return sorted(tried, key=lambda a: (round(energy[a], 10), a))[: korobov.FINALISTS]
-
-
-@pytest.mark.parametrize(("n", "d"), [(90, 3), (128, 5), (250, 2)])
-def test_lattices_chosen_by_their_minima_or_graph_are_those_of_a_slow_search(n, d):
-    def vector(a):
-        return [pow(a, i, n) for i in range(d)]
-
-    def ratio(a):
-        minima = successive_minima(n, vector(a))
-        return round(minima[-1] / minima[0], 9)
-
-    def graph(a):
-        found = neighbour_directions(n, vector(a), 6)
-        return -found.rank, found.sheets
-
-    def width(a):
-        found = neighbour_directions(n, vector(a), 10)
-        return -found.rank, found.sheets, round(-found.width, 9)
-
-    assert korobov_generator(n, d, "minima") == min(finalists(n, d), key=ratio)
-    assert korobov_generator(n, d, "graph", 6) == min(finalists(n, d), key=graph)
-    assert korobov_generator(n, d, "width", 10) == min(finalists(n, d), key=width)
-
-
-@pytest.mark.parametrize(("n", "d"), [(61, 3), (80, 4)])
-def test_a_lattice_chosen_by_its_projections_has_the_least_mean_energy_of_theirs(n, d):
-    def score(a):
-        points = lattice_points(a, n, d)
-        sizes = [[list(c) for c in combinations(range(d), size)] for size in sorted({2, 3, d})]
-        return sum(np.mean([2 * np.log(riesz_rooted(points[:, c])) for c in each]) for each in sizes)
-
-    best = min(map(score, finalists(n, d)))
-    assert score(korobov_generator(n, d, "projections")) == pytest.approx(best, abs=1e-9)
-
-
-def test_a_graph_of_six_neighbours_in_space_is_connected_where_that_of_least_energy_is_not():
-    z = [pow(korobov_generator(128, 3), i, 128) for i in range(3)]
-    assert not neighbour_directions(128, z, 6).connected
-    points = draw("korobov", 128, 3, rng=2, by="graph", k=6)
-    assert neighbour_directions(128, generating_vector(points), 6).connected
-    assert points.origin.objective == "graph k=6"
-
-
-def test_other_objectives_are_cheap_for_usual_sets_and_the_same_again():
-    assert korobov_generator(1, 3, "minima") == korobov_generator(2, 2, "graph", 3) == 1
-    assert draw("korobov", 60, 4, by="minima") == draw("korobov", 60, 4, by="minima")
-    assert draw("korobov", 60, 4, by="minima").origin.objective == "minima"
-
-
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        ((8, 2, "beauty"), "objective of a Korobov lattice"),
-        ((8, 2, "graph"), "k goes with by='graph' and 'width' alone, and has to, got"),
-        ((8, 2, "energy", 4), "k goes with by='graph' and 'width' alone"),
-        ((8, 2, "graph", 0), "k must be"),
-        ((2**16 + 1, 2, "minima"), "n at most 65536 and d at most 16, got n=65537"),
-        ((8, 17, "minima"), "n at most 65536 and d at most 16, got n=8 and d=17"),
-    ],
-)
-def test_objectives_that_cannot_be_are_refused(arguments, said):
-    with pytest.raises(EvenroadError, match=said):
-        korobov_generator(*arguments)
-
-
-def test_the_default_set_has_no_other_objective():
-    with pytest.raises(InvalidValue, match="does not take"):
-        draw("even", 20, 3, by="minima")

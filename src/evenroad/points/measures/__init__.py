@@ -5,9 +5,6 @@
 
 from evenroad.points.measures.covering import DispersionBounds as DispersionBounds
 from evenroad.points.measures.covering import dispersion_bounds as dispersion_bounds
-from evenroad.points.measures.dispersion import dispersion_l2 as dispersion_l2
-from evenroad.points.measures.dispersion import dispersion_linf as dispersion_linf
-from evenroad.points.measures.dispersion import dispersion_lower_bound as dispersion_lower_bound
 from evenroad.points.measures.measure import MEASURES as MEASURES
 from evenroad.points.measures.measure import Measure as Measure
 from evenroad.points.measures.separation import riesz_rooted as riesz_rooted

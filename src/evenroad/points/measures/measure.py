@@ -46,13 +46,6 @@ class Measure:
         """Return the discrepancy, the square root of :meth:`squared`; same parameters and errors."""
         return math.sqrt(self.squared(points, weights))
 
-    def rooted_with_gradient(
-        self, points: object, weights: npt.ArrayLike | None = None
-    ) -> tuple[float, Floats]:
-        """Return :meth:`rooted` and its gradient, shape (n, d)."""
-        value, gradient = self.of_columns(*self._checked(points, weights))
-        return value, np.ascontiguousarray(gradient.T)
-
     def of_columns(self, columns: Floats, weights: Floats | None = None) -> tuple[float, Floats]:
         """Return the rooted measure and its gradient, (d, n), at checked points of shape (d, n): for inner loops.
 

@@ -1,4 +1,4 @@
-"""What a rank-1 lattice is to a roadmap: its successive minima, its projections, and what k neighbours span.
+"""What a rank-1 lattice is to a roadmap: its successive minima, and what k neighbours span.
 
 Lengths are those of the unit cube, or of the box of which `scale` gives what a unit of each axis counts.  `n`, `vector`
 and `scale`, and what is refused, are those of :func:`~evenroad.points.measures.short_vectors.lattice_basis`.
@@ -8,15 +8,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from itertools import combinations
 from typing import Any
 
 import numpy as np
 
 from evenroad._arrays import Floats, Ints, set_fields
 from evenroad._checks import require_count
-from evenroad.errors import InvalidValue
-from evenroad.points.measures.short_vectors import lattice_basis, short_vectors, squared_lengths
+from evenroad.points.measures.short_vectors import short_vectors, squared_lengths
 from evenroad.points.pointset import as_unit_points
 
 EXACT = 1e-5
@@ -51,48 +49,18 @@ def minima_ratio(n: int, vector: Any, scale: Any = None) -> float:
     return float(minima[-1] / minima[0])
 
 
-def covering_bounds(n: int, vector: Any, scale: Any = None) -> tuple[float, float]:
-    """Return lengths between which the covering radius is: the largest distance of a place on the torus from a point.
-
-    Half the last minimum, and half the diagonal of the box that the reduced basis leaves when it is made orthogonal
-    (Babai 1986).  Over half the first minimum they bound the mesh ratio.
-    """
-    basis = lattice_basis(n, vector, scale)
-    left = np.diagonal(np.linalg.qr((basis * _weights(basis, scale)).T / n, mode="r"))
-    return 0.5 * float(successive_minima(n, vector, scale)[-1]), 0.5 * math.hypot(*left)
-
-
-def projected_minima(n: int, vector: Any, axes: int) -> dict[tuple[int, ...], float]:
-    """Return the first minimum of the projection on each choice of so many axes, times n^(1/axes).
-
-    What n points have at best hardly depends on n then: 1.07, 1.12, 1.19 and 1.23 for 2, 3, 4 and 5 axes, the densest
-    lattices'.  InvalidValue also unless axes is 1 .. d.
-    """
-    z, axes = np.asarray(vector), require_count("axes", axes)
-    if axes > z.size:
-        raise InvalidValue(f"axes must be 1 .. {z.size}, as many as the vector has at most, got {axes}")
-    return {
-        chosen: float(successive_minima(n, z[list(chosen)])[0]) * n ** (1.0 / axes)
-        for chosen in combinations(range(z.size), axes)
-    }
-
-
 @dataclass(frozen=True, eq=False)
 class Directions:
     """Where the k nearest neighbours of a lattice's points lie, far from faces.
 
     `vectors`, (m, d) in units of 1/n, one of each opposite pair, are all that may join: among equally long ones any.
     They span `rank` dimensions; where these are all d, the graph without obstacles falls apart into `sheets` (else
-    inf), one if the vectors generate the lattice, and on the torus into `pieces`.  `width` is their smallest singular
-    value over the spacing n^(-1/d), 0 where directions are left out: how well the worst direction is served.
+    inf), one if the vectors generate the lattice: then the neighbours are `connected`.
     """
 
-    k: int
     vectors: Ints
     rank: int
     sheets: float
-    pieces: int
-    width: float
 
     def __post_init__(self) -> None:
         set_fields(self, vectors=self.vectors)
@@ -107,19 +75,12 @@ def neighbour_directions(n: int, vector: Any, k: int, scale: Any = None) -> Dire
     """Return what the k >= 1 nearest neighbours span, symmetrised: of opposite neighbours one is enough."""
     pairs = (require_count("k", k) + 1) // 2
     vectors, rank = short_vectors(n, vector, pairs, scale)
-    vectors, weights = vectors[rank <= rank[pairs - 1]], _weights(vectors, scale)
+    vectors = vectors[rank <= rank[pairs - 1]]
     d = vectors.shape[1]
-    span, on_torus = _Span(d), _Span(d)
-    for each in (*vectors.tolist(), *(n * np.eye(d, dtype=np.int64)).tolist()):
-        on_torus.add(each)
+    span = _Span(d)
     for each in vectors.tolist():
         span.add(each)
-    cell = n ** (d - 1)
-    spacing = (float(np.prod(weights)) * n ** (d - 1)) ** (1.0 / d)
-    full = span.rank == d
-    width = float(np.linalg.svd(vectors * weights / spacing, compute_uv=False)[-1]) if full else 0.0
-    sheets = span.volume // cell if full else math.inf
-    return Directions(k, vectors, span.rank, sheets, on_torus.volume // cell, width)
+    return Directions(vectors, span.rank, span.volume // n ** (d - 1) if span.rank == d else math.inf)
 
 
 def least_neighbours(n: int, vector: Any, scale: Any = None) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from evenroad._checks import require_count
 from evenroad._rng import RngLike
@@ -43,8 +43,6 @@ class Even(Korobov):
     # Sobol's; a lattice is shifted as it is drawn.
     symmetries = frozenset({Symmetry.PERMUTATION})
     turned_from = TURNED_FROM
-    by: str = field(default="energy", init=False)
-    k: int | None = field(default=None, init=False)
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
         """Return n points, shape (n, d); limits are those of :class:`Korobov`, of :class:`Sobol` from d = 10 on."""

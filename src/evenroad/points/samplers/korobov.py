@@ -10,17 +10,15 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import combinations, islice
+from itertools import islice
 from math import gcd
 
 import numpy as np
 
 from evenroad._arrays import Floats, Ints
-from evenroad._checks import require_count, require_known
+from evenroad._checks import require_count
 from evenroad._rng import RngLike, generator, seed_of
 from evenroad.errors import InvalidValue
-from evenroad.points.measures.rank_one import minima_ratio, neighbour_directions
-from evenroad.points.measures.short_vectors import MOST_AXES
 from evenroad.points.pointset import Origin, PointSet
 from evenroad.points.randomise import ALL_SYMMETRIES
 
@@ -39,36 +37,20 @@ BLOCK = 2**14
 TIE = 1e-9
 """Energies closer than this, relatively, are equal: rounding does not choose between mirrored lattices."""
 
-OBJECTIVES = {"energy": False, "minima": False, "projections": False, "graph": True, "width": True}
-"""What :func:`korobov_generator` may choose by -> whether it depends on the number of neighbours."""
-
-FINALISTS = 64
-"""Lattices of least energy among which the other objectives choose."""
-
-FINALISTS_UP_TO = 2**16
-"""Points up to which they do: each finalist is looked at in whole."""
-
 
 @dataclass(frozen=True)
 class Korobov:
     """The points i (1, a, a^2, ..., a^(d-1)) / n modulo 1 (Korobov 1959), under one random shift modulo 1.
 
-    The multiplier a is :func:`korobov_generator`, chosen by its energy unless `by` and `k` say otherwise: in planning
-    nothing else is better (``studies/docs/lattices.md``).  It has no common divisor with n, so each coordinate
-    takes n equally spaced values, each once.
+    The multiplier a is :func:`korobov_generator`, of the least energy: no other objective was better in planning.  It
+    has no common divisor with n, so each coordinate takes n equally spaced values, each once.
     """
-
-    by: str = "energy"
-    k: int | None = None
 
     name = "korobov"
     about = "best Korobov lattice, randomly shifted"
     any_n = True
     symmetries = ALL_SYMMETRIES
     turned_from = math.inf
-
-    def __post_init__(self) -> None:
-        _require_objective(self.by, self.k)
 
     def draw(self, n: int, d: int, *, rng: RngLike = 0) -> PointSet:
         """Return n lattice points, shape (n, d), in the order of i; see :class:`~evenroad.points.Sampler`.
@@ -85,79 +67,31 @@ class Korobov:
         # Both summands are >= 0, so the remainder is exact and below 1.
         points = (lattice + shift) % 1.0
         method = f"rank-1 lattice {method}, {how}"
-        objective = "riesz" if self.by == "energy" else self.by if self.k is None else f"{self.by} k={self.k}"
-        return PointSet(
-            points, Origin(family=self.name, method=method, objective=objective, seed=seed_of(rng))
-        )
+        return PointSet(points, Origin(family=self.name, method=method, objective="riesz", seed=seed_of(rng)))
 
     def _vector(self, n: int, d: int) -> tuple[Sequence[int], str]:
         """Return the generating vector, and how it is told."""
-        multiplier = korobov_generator(n, d, self.by, self.k)
+        multiplier = korobov_generator(n, d)
         return [pow(multiplier, axis, n) for axis in range(d)], f"a={multiplier}"
 
 
-def korobov_generator(n: int, d: int, by: str = "energy", k: int | None = None) -> int:
+def korobov_generator(n: int, d: int) -> int:
     """Return the multiplier a whose Korobov lattice of n points has the smallest periodic Riesz energy, s = 2d.
-
-    `by` names another objective, decided among the 64 lattices of least energy, ties by energy: "minima" the smallest
-    ratio of the last successive minimum to the first, "projections" the smallest mean log energy of the projections on
-    2, on 3 and on all axes, "graph" what the `k` nearest neighbours span: most dimensions, then fewest sheets; "width"
-    the same, then the largest width (:func:`~evenroad.points.measures.rank_one.neighbour_directions`).
 
     a, n - a and the inverse of a modulo n give the same lattice up to a reflection or the order of the axes; one
     of the four is tried, and the smallest is returned.  While n^2 d <= 10^8 all multipliers without a common
     divisor with n are tried, so a is the best one; above that a fixed choice of them spread over 1 .. n/2, as
-    many as :data:`WORK` allows.  Raises InvalidValue unless n is 1 .. 2**26 and d >= 1, for other objectives than the
-    energy 1 .. 2**16 and d <= 16; if there is no such objective; and unless k is given just where it counts.
+    many as :data:`WORK` allows.  Raises InvalidValue unless n is 1 .. 2**26 and d >= 1.
     """
     n, d = require_count("n", n), require_count("d", d)
-    _require_objective(by, k)
     if n > MAX_N:
         raise InvalidValue(f"n must be at most {MAX_N} for the korobov sampler, got {n}")
-    if by != "energy" and (n > FINALISTS_UP_TO or d > MOST_AXES):
-        most = f"n at most {FINALISTS_UP_TO} and d at most {MOST_AXES}"
-        raise InvalidValue(f"a lattice chosen by its {by} has {most}, got n={n} and d={d}")
-    return _searched(n, d) if by == "energy" else _chosen(n, d, by, k)
-
-
-def _require_objective(by: str, k: int | None) -> None:
-    require_known("objective of a Korobov lattice", by, OBJECTIVES)
-    if (k is None) == OBJECTIVES[by]:
-        raise InvalidValue(f"k goes with by='graph' and 'width' alone, and has to, got by={by!r} and k={k!r}")
-    if k is not None:
-        require_count("k", k)
+    return _searched(n, d)
 
 
 @lru_cache(maxsize=1024)
 def _searched(n: int, d: int) -> int:
     return 1 if n <= 2 or d == 1 else _least_energy(_candidates(n, d), n, d)
-
-
-@lru_cache(maxsize=1024)
-def _chosen(n: int, d: int, by: str, k: int | None) -> int:
-    """Return the multiplier of the finalist that another objective likes best."""
-    if n <= 2 or d == 1:
-        return 1
-    candidates = _candidates(n, d)
-    energies = _energies(_powers(candidates, n, d), n)
-    finalists = candidates[np.argsort(np.floor(energies / TIE), kind="stable")[:FINALISTS]]
-    vectors = _powers(finalists, n, d)
-    if by == "projections":
-        sizes = [list(combinations(range(d), size)) for size in sorted({min(2, d), min(3, d), d})]
-        scores = sum(
-            np.mean([_energies(vectors[:, chosen], n) / len(chosen) for chosen in each], 0) for each in sizes
-        )
-        return int(finalists[np.argmin(np.floor(scores / TIE))])
-    best = min(range(len(finalists)), key=lambda i: _score(n, vectors[i].astype(np.int64), by, k))
-    return int(finalists[best])
-
-
-def _score(n: int, vector: Ints, by: str, k: int | None) -> tuple[float, ...]:
-    """Return what is to be small: the ratio of the minima, or what is wrong with the graph of k neighbours."""
-    if k is None:
-        return (round(minima_ratio(n, vector), 9),)
-    directions = neighbour_directions(n, vector, k)
-    return -directions.rank, directions.sheets, round(-directions.width, 9) if by == "width" else 0.0
 
 
 def _candidates(n: int, d: int) -> Ints:
@@ -175,15 +109,6 @@ def _powers(multipliers: Ints, n: int, d: int) -> Floats:
         vectors[:, k] = power
         power = power * multipliers % n
     return vectors
-
-
-def _energies(vectors: Floats, n: int) -> Floats:
-    """Return the log of each lattice's energy, up to what is the same for all."""
-    half, step = n // 2, max(1, BLOCK // len(vectors))
-    log_sums = np.full(len(vectors), -np.inf)
-    for first in range(1, half + 1, step):
-        log_sums = np.logaddexp(log_sums, _log_energies(vectors, n, first, min(half, first + step - 1)))
-    return log_sums
 
 
 def _multipliers(n: int) -> Iterator[int]:
