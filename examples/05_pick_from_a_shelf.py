@@ -3,7 +3,6 @@
 import math
 
 import evenroad as er
-from evenroad.arms import arm_query
 from evenroad.geometry import Box, Pose
 from evenroad.robot import HeldObject, Obstacle, Scene, Straight, link_poses
 
@@ -43,4 +42,4 @@ carrying = Scene(shelf.obstacles, name="shelf", allowed=frozenset({("box", "lowe
 place = er.PoseGoal(Pose((0.0, -0.6, 0.18)), tip="box", free_axis="z")
 out = er.plan_arm(ROBOT, carrying, into.path[-1], place, straight=Straight(retreat=0.2, away="-x"))
 print("out of the shelf, box in hand:", out.message)
-er.save_arm_picture("pick.png", out, arm_query(ROBOT, carrying, into.path[-1], out.path[-1]).world)
+out.plot("pick.png")

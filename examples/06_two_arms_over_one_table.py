@@ -3,7 +3,6 @@
 import math
 
 import evenroad as er
-from evenroad.arms import arm_query
 from evenroad.geometry import Pose
 from evenroad.robot import ArmWorld, Obstacle, Scene, with_group
 from evenroad.robot.inverse_kinematics import reach
@@ -42,4 +41,4 @@ start = both_at((0.35, 0.25, 0.15), (0.35, 0.75, 0.15), HOME)
 goal = both_at((0.39, 0.71, 0.29), (0.34, 0.38, 0.18), HOME)
 result = er.plan_arm(BOTH, table, start, goal, seconds=20)
 print(result.message, "proof:", result.proof)
-er.save_arm_picture("two-arms.png", result, arm_query(BOTH, table, start, goal).world)
+result.plot("two-arms.png")

@@ -32,7 +32,7 @@ def theirs_on_ours() -> None:
 
 def ours_on_theirs() -> None:
     """A disk in the plane as a program that uses OMPL has it: its space and its checker are all that we get."""
-    information = ob.SpaceInformation(ompl_space(er.SE2((0, 0), (1, 1), combine="sum")))
+    information = ob.SpaceInformation(ompl_space(er.spaces.SE2((0, 0), (1, 1), combine="sum")))
     information.setStateValidityChecker(
         lambda state: (state.getX() - 0.5) ** 2 + (state.getY() - 0.5) ** 2 > 0.09
     )

@@ -262,7 +262,7 @@ def _made(name):
     if name == "robot":
         return er.load_robot("ur5")
     if name == "robot_home":
-        return er.configuration(_made("robot"), "home")
+        return _made("robot").configuration("home")
     if name == "scene":
         return er.load_scene("box-reach")
     if name == "arm":

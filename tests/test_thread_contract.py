@@ -117,7 +117,7 @@ def one_call():
         lambda: er.plan_arm("ur5", "box-reach", "home", "inside", certified=True),
         lambda: er.plan_arm(arm, box_scene(), ends()[0, 0], pose),
         lambda: er.plan_arm(arm, box_scene(), *ends()[2], 200),
-        lambda: er.configuration(er.load_robot("ur5"), "home", er.load_scene("box-reach")),
+        lambda: er.load_robot("ur5").configuration("home", er.load_scene("box-reach")),
     ]
 
 
@@ -151,7 +151,9 @@ def a_disk_on_a_map():
 
 
 def a_function():
-    world = er.FunctionWorld(er.SE2((0, 0), (1, 1)), lambda q: np.abs(q[:, 0] - 0.5) > 0.1 * q[:, 1], 0.02)
+    world = er.FunctionWorld(
+        er.spaces.SE2((0, 0), (1, 1)), lambda q: np.abs(q[:, 0] - 0.5) > 0.1 * q[:, 1], 0.02
+    )
     q = ends(world)
     return [*verdicts(world, q[:2]), lambda: er.plan(world, *q[0], 40, search="lazy")]
 
@@ -190,7 +192,7 @@ def trajectories():
 def files(folder):
     """Saved once, loaded by all, and saved by all."""
     world = load_maze(2).world()
-    er.save_points(folder / "p.npz", er.draw("uniform", 64, 2, rng=2))
+    er.draw("uniform", 64, 2, rng=2).save(folder / "p.npz")
     er.save_roadmap(folder / "r.npz", er.Roadmap.build(world.space, 64))
     er.save_robot_roadmap(folder / "r.roadmap", known())
     save_trajectory(folder / "t.json", make_trajectory(ends()[0], Limits((1.0,) * 3, (4.0,) * 3)))
@@ -201,7 +203,7 @@ def files(folder):
         lambda: load_trajectory(folder / "t.json").positions,
         lambda: er.load_robot("arm7") == er.load_robot("arm7"),
         lambda: er.load_scene("box-reach") == er.load_scene("box-reach"),
-        lambda: er.save_points(folder / "again.npz", er.draw("uniform", 64, 2, rng=2)),
+        lambda: er.draw("uniform", 64, 2, rng=2).save(folder / "again.npz"),
     ]
 
 

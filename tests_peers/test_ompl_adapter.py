@@ -147,7 +147,7 @@ def test_their_planners_on_our_map_make_paths_that_our_map_calls_free():
 def test_their_planner_on_our_arm_makes_a_path_that_is_proved_free():
     robot, scene = load_robot("ur5"), load_scene("box-reach")
     world = er.ArmWorld(robot, scene)
-    start, goal = (er.configuration(robot, name, scene) for name in ("home", "inside"))
+    start, goal = (robot.configuration(name, scene) for name in ("home", "inside"))
     path = solve(og.RRTConnect(space_information(world)), start, goal, seconds=30.0)
     assert path is not None
     assert world.recheck(path).all()

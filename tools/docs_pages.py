@@ -60,12 +60,21 @@ REFERENCE = {
         ),
     ),
     "trajectories": ("Trajectories", ("evenroad.trajectory",)),
-    "pictures": ("Pictures", ("evenroad.viz.plan", "evenroad.viz.arm")),
+    "pictures": ("Pictures", ("evenroad.viz.show", "evenroad.viz.plan", "evenroad.viz.arm")),
     "mazes": ("Mazes", ("evenroad.world.gridmap.shipped",)),
     "adapters": ("Adapters", ("evenroad.adapters.ompl", "evenroad.adapters.klampt")),
     "errors": ("Errors", ("evenroad.errors",)),
 }
 """Page -> its title, and the modules whose public names it holds."""
+
+MODULES = {
+    "planning": ("io",),
+    "qmc": ("qmc",),
+    "worlds": ("spaces", "testing"),
+    "adapters": ("adapters",),
+    "errors": ("errors",),
+}
+"""Page -> modules of the root that it holds."""
 
 FOR_THE_COMMAND = {
     "evenroad.arms": {
@@ -165,12 +174,9 @@ def _reference() -> Iterator[tuple[str, str]]:
                 if shown.count(".") == 1:
                     rows.append(f"   * - :py:obj:`{name} <{shown}>`\n     - {_first_line(each)}\n")
         yield f"reference/{page}.rst", "\n".join(parts)
-        if page == "qmc":
-            rows = [f"   * - :doc:`qmc <reference/qmc>`\n     - {_first_line(evenroad.qmc)}\n"]
-        if page == "worlds":
-            rows.insert(
-                0, f"   * - :py:mod:`spaces <evenroad.spaces>`\n     - {_first_line(evenroad.spaces)}\n"
-            )
+        for name in MODULES.get(page, ()):
+            said = _first_line(getattr(evenroad, name))
+            rows.append(f"   * - :doc:`{name} <reference/{page}>`\n     - {said}\n")
         if rows:
             first.append(_heading(f":doc:`reference/{page}`", "-"))
             first.append(".. list-table::\n   :widths: 30 70\n\n" + "".join(rows))

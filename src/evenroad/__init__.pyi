@@ -1,13 +1,10 @@
+from evenroad import adapters as adapters
+from evenroad import errors as errors
+from evenroad import io as io
 from evenroad import qmc as qmc
 from evenroad import spaces as spaces
+from evenroad import testing as testing
 from evenroad.arms import plan_arm as plan_arm
-from evenroad.errors import BrokenFile as BrokenFile
-from evenroad.errors import EvenroadError as EvenroadError
-from evenroad.errors import Exhausted as Exhausted
-from evenroad.errors import InvalidValue as InvalidValue
-from evenroad.errors import NotAvailable as NotAvailable
-from evenroad.errors import UnknownName as UnknownName
-from evenroad.errors import WorkerLost as WorkerLost
 from evenroad.geometry import Box as Box
 from evenroad.geometry import Capsule as Capsule
 from evenroad.geometry import Cylinder as Cylinder
@@ -15,11 +12,9 @@ from evenroad.geometry import Mesh as Mesh
 from evenroad.geometry import PointCloud as PointCloud
 from evenroad.geometry import Pose as Pose
 from evenroad.geometry import Sphere as Sphere
-from evenroad.points import Origin as Origin
 from evenroad.points import PointSet as PointSet
 from evenroad.points import draw as draw
 from evenroad.points import load_points as load_points
-from evenroad.points import save_points as save_points
 from evenroad.roadmap import Budget as Budget
 from evenroad.roadmap import KNearest as KNearest
 from evenroad.roadmap import PlanResult as PlanResult
@@ -37,20 +32,15 @@ from evenroad.robot import Robot as Robot
 from evenroad.robot import Scene as Scene
 from evenroad.robot import Straight as Straight
 from evenroad.robot import Upright as Upright
-from evenroad.robot import configuration as configuration
 from evenroad.robot import load_robot as load_robot
 from evenroad.robot import load_scene as load_scene
 from evenroad.robot_roadmap.file import load_robot_roadmap as load_robot_roadmap
 from evenroad.robot_roadmap.file import save_robot_roadmap as save_robot_roadmap
 from evenroad.robot_roadmap.make import make_roadmap as make_roadmap
-from evenroad.space import SE2 as SE2
-from evenroad.space import SE3 as SE3
-from evenroad.space import Space as Space
-from evenroad.viz.arm import save_arm_picture as save_arm_picture
-from evenroad.viz.plan import save_plan_picture as save_plan_picture
+from evenroad.trajectory import Trajectory as Trajectory
+from evenroad.viz.show import show as show
 from evenroad.world import FunctionWorld as FunctionWorld
 from evenroad.world import GridMap as GridMap
-from evenroad.world import World as World
 from evenroad.world import load_map as load_map
 
 __version__: str

@@ -19,6 +19,7 @@ FUNCTIONS = {
     "PlanResult.trajectory": "evenroad.trajectory.of_plan:trajectory_of",
     "PointSet.discrepancy": "scipy.stats.qmc:discrepancy",
     "PointSet.save": "evenroad.points.npz:write_points",
+    "Robot.configuration": "evenroad.robot.states:as_configuration",
     "Robot.limits": "evenroad.robot.robot_questions:joint_limits",
     "Robot.fk": "evenroad.robot.robot_questions:pose_of_link",
     "Robot.ik": "evenroad.robot.robot_questions:configurations_at",

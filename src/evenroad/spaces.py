@@ -8,3 +8,4 @@ from evenroad.space import Circle as Circle
 from evenroad.space import JointSpace as JointSpace
 from evenroad.space import Product as Product
 from evenroad.space import Rectangle as Rectangle
+from evenroad.space import Space as Space

@@ -42,14 +42,14 @@ def test_with_points_the_path_is_that_of_the_command_with_so_many(tmp_path, monk
 
 
 def test_options_of_files_do_not_go_with_a_robot_that_is_a_value():
-    with pytest.raises(er.InvalidValue, match="with the file of a robot"):
+    with pytest.raises(er.errors.InvalidValue, match="with the file of a robot"):
         er.plan_arm(er.load_robot("ur5"), "box-reach", "home", "inside", group="a")
 
 
 def test_an_end_that_is_no_configuration_is_refused():
-    with pytest.raises(er.InvalidValue, match="start must be 6 finite numbers"):
+    with pytest.raises(er.errors.InvalidValue, match="start must be 6 finite numbers"):
         er.plan_arm("ur5", "box-reach", [0.0, 0.0], "inside")
-    with pytest.raises(er.UnknownName, match="unknown state 'outside'"):
+    with pytest.raises(er.errors.UnknownName, match="unknown state 'outside'"):
         er.plan_arm("ur5", "box-reach", "home", "outside")
 
 
@@ -129,14 +129,14 @@ def test_joint_values_within_five_decimals_of_a_limit_stay_what_they_are():
     query = arms.arm_query("ur5", "box-reach", [high[0] + 2e-5, *home[1:]], "home")
     assert query.start[0] == high[0] + 2e-5
     assert er.plan_arm("ur5", "box-reach", query.start, "home").status == "start_outside_limits"
-    with pytest.raises(er.InvalidValue, match="outside the limits of scene 'box-reach'"):
+    with pytest.raises(er.errors.InvalidValue, match="outside the limits of scene 'box-reach'"):
         arms.arm_query("ur5", "box-reach", f"{float(high[0]) + 2e-5},0,0,0,0,0", "home")
 
 
 def test_what_speaks_of_points_is_refused_without_them():
-    with pytest.raises(er.InvalidValue, match="rule says how points are joined"):
+    with pytest.raises(er.errors.InvalidValue, match="rule says how points are joined"):
         er.plan_arm("ur5", "box-reach", "home", "inside", rule=er.KNearest(5))
-    with pytest.raises(er.InvalidValue, match="improve goes without points"):
+    with pytest.raises(er.errors.InvalidValue, match="improve goes without points"):
         er.plan_arm("ur5", "box-reach", "home", "inside", 64, improve=True)
 
 

@@ -54,8 +54,8 @@ def test_a_nearest_goal_that_is_not_reached_soon_gives_way_to_all(monkeypatch):
 def test_a_goal_that_is_near_and_cannot_be_reached_does_not_keep_from_others():
     scene = load_scene("box-reach")
     world = ArmWorld(in_scene(load_robot("ur5"), scene), scene)
-    start = er.configuration(world.robot, "home", scene)
-    inside = er.configuration(world.robot, "inside", scene)
+    start = world.robot.configuration("home", scene)
+    inside = world.robot.configuration("inside", scene)
     blocked = start + 0.01
     blocked[2] = 3.0
     assert not world.valid(blocked[None])[0]
@@ -77,8 +77,8 @@ def test_the_same_goals_give_the_same_path_in_any_order(shorten):
 def test_a_start_in_collision_and_motions_that_do_not_suffice_are_answers():
     scene = load_scene("box-reach")
     world = ArmWorld(in_scene(load_robot("ur5"), scene), scene)
-    start = er.configuration(world.robot, "home", scene)
-    inside = er.configuration(world.robot, "inside", scene)
+    start = world.robot.configuration("home", scene)
+    inside = world.robot.configuration("inside", scene)
     goals = np.array([inside, inside])
     few = find_path(world, start, goals, budget=Budget(motions=2, seconds=9))
     assert few.status is er.Status.BUDGET_SPENT

@@ -84,7 +84,7 @@ def test_a_result_is_one_line():
 )
 def test_what_cannot_be_done_is_told(call, words, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(er.EvenroadError) as error:
+    with pytest.raises(er.errors.EvenroadError) as error:
         call()
     assert words in str(error.value)
 

@@ -163,16 +163,20 @@ def test_what_is_allowed_with_a_cloud_stays_allowed_with_its_parts():
 
 def test_a_part_of_anything_else_is_refused():
     table = Scene((Obstacle.of("table", "box", (1, 1, 0.1)),), name="desk", attached=(BLOCK,))
-    with pytest.raises(er.InvalidValue, match="'table' cannot be allowed, since it is a box and no cloud"):
+    with pytest.raises(
+        er.errors.InvalidValue, match="'table' cannot be allowed, since it is a box and no cloud"
+    ):
         allowed_within(table, "block", "table", Sphere(0.1))
-    with pytest.raises(er.UnknownName, match="obstacle of scene 'desk': 'desk'"):
+    with pytest.raises(er.errors.UnknownName, match="obstacle of scene 'desk': 'desk'"):
         allowed_within(table, "block", "desk", Sphere(0.1))
 
 
 def test_a_world_that_does_not_know_the_ends_says_so(ends):
     near = scene(near_ends=frozenset({("block", "scan", NEAR)}))
     robot = in_scene(UR5, near)
-    with pytest.raises(er.InvalidValue, match="allows contacts near the ends, which a world does not know"):
+    with pytest.raises(
+        er.errors.InvalidValue, match="allows contacts near the ends, which a world does not know"
+    ):
         ArmWorld(robot, near)
     divided = allowed_near_ends(robot, near, ends)
     assert ArmWorld(robot, divided).valid(ends).all()
@@ -197,7 +201,7 @@ def test_what_is_held_is_cut_out_of_the_scan_where_it_is_grasped(ends):
     assert away(pose, points).min() > 0.025
     assert len(points) == (away(pose, cloud.points) > 0.025).sum()
     assert ArmWorld(robot, left).valid(ends[:1])[0]
-    with pytest.raises(er.UnknownName, match="attached, to be cut out of 'scan': 'cup'"):
+    with pytest.raises(er.errors.UnknownName, match="attached, to be cut out of 'scan': 'cup'"):
         scene_seen_by(
             robot, Scene((replace(grown, cuts=(Cut("cup", text),)),), name="desk", attached=(BLOCK,))
         )
@@ -251,17 +255,29 @@ def test_scene_files_say_all_of_this(tmp_path, ends):
     box = Box((0.1, 0.1, 0.1), pose=Pose((0.4, 0.25, 0.1)))
     assert len(points) == (point_distance(box, scanned()) > 0.01).sum() < len(scanned())
     for change, error, says in (
-        ({"allowed": {"scan": [{"link": "block"}]}}, er.InvalidValue, "one of near_ends and within"),
-        ({"allowed": {"scan": [{"near_ends": 1}]}}, er.BrokenFile, "link"),
-        ({"allowed": {"scan": [{"link": "block", "near_ends": -1}]}}, er.InvalidValue, "near_ends .* got -1"),
+        ({"allowed": {"scan": [{"link": "block"}]}}, er.errors.InvalidValue, "one of near_ends and within"),
+        ({"allowed": {"scan": [{"near_ends": 1}]}}, er.errors.BrokenFile, "link"),
+        (
+            {"allowed": {"scan": [{"link": "block", "near_ends": -1}]}},
+            er.errors.InvalidValue,
+            "near_ends .* got -1",
+        ),
         (
             {"allowed": {"scan": [{"link": "block", "within": {"shape": "mesh"}}]}},
-            er.UnknownName,
+            er.errors.UnknownName,
             "within of",
         ),
-        ({"obstacles": {"scan": scan | {"cut": [cut | {"grow": 9}]}}}, er.InvalidValue, "leaves nothing"),
-        ({"obstacles": {"scan": scan | {"cut": "block"}}}, er.InvalidValue, "must be a list"),
-        ({"obstacles": {"scan": {"shape": "sphere", "radius": 1}}}, er.InvalidValue, "of a cloud alone"),
+        (
+            {"obstacles": {"scan": scan | {"cut": [cut | {"grow": 9}]}}},
+            er.errors.InvalidValue,
+            "leaves nothing",
+        ),
+        ({"obstacles": {"scan": scan | {"cut": "block"}}}, er.errors.InvalidValue, "must be a list"),
+        (
+            {"obstacles": {"scan": {"shape": "sphere", "radius": 1}}},
+            er.errors.InvalidValue,
+            "of a cloud alone",
+        ),
     ):
         file.write_text(yaml.safe_dump(document | change))
         with pytest.raises(error, match=says):
@@ -304,5 +320,5 @@ def test_distances_from_shapes_are_those_from_all_that_is_in_them(shape):
 
 def test_nothing_is_left_where_all_is_cut():
     assert without_shapes(PointCloud([[0, 0, 0]], 0.1), [Sphere(0.1)]) is None
-    with pytest.raises(er.InvalidValue, match="a region must be one of box"):
+    with pytest.raises(er.errors.InvalidValue, match="a region must be one of box"):
         without_shapes(PointCloud([[0, 0, 0]], 0.1), [PointCloud([[0, 0, 0]])])

@@ -44,7 +44,7 @@ def test_limits_that_narrow_nothing_leave_the_robot_the_same_value():
 
 
 def test_limits_of_a_joint_that_is_not_there_are_refused():
-    with pytest.raises(er.UnknownName, match="limits of scene 'cell 7': 'knee'"):
+    with pytest.raises(er.errors.UnknownName, match="limits of scene 'cell 7': 'knee'"):
         ArmWorld(ur5(), Scene(name="cell 7", limits={"knee": (0.0, 1.0)}))
 
 
@@ -81,7 +81,7 @@ def test_plan_arm_gives_the_status_and_texts_name_the_scene(tmp_path):
     result = er.plan_arm(ur5(), NARROW, FREE, BENT)
     assert result.status == "goal_outside_limits"
     with pytest.raises(
-        er.InvalidValue, match=r"elbow_joint' at 2 rad, 1 rad outside the limits of scene 'cell 7'"
+        er.errors.InvalidValue, match=r"elbow_joint' at 2 rad, 1 rad outside the limits of scene 'cell 7'"
     ):
         er.plan_arm(ur5(), NARROW, FREE, "elbow_joint=2")
 

@@ -19,7 +19,7 @@ def test_limits_are_those_of_the_joints_in_the_order_of_the_group(robot):
 
 
 def test_a_configuration_may_be_numbers_a_mapping_or_the_name_of_a_state():
-    row = er.configuration(ARM, "home")
+    row = ARM.configuration("home")
     places = [row, row.tolist(), dict(zip(ARM.joint_names, row, strict=True)), "home", ARM.states["home"]]
     (pose,) = {ARM.fk(place, "tool0") for place in places}
     frame = link_poses(ARM, row[np.newaxis])[0, ARM.links.index("tool0")]
@@ -73,7 +73,7 @@ def test_random_configurations_lie_within_the_limits_and_are_those_of_their_seed
     ],
 )
 def test_an_error_says_what_to_write_instead(call, words):
-    with pytest.raises(er.EvenroadError) as error:
+    with pytest.raises(er.errors.EvenroadError) as error:
         call()
     assert words in str(error.value)
 
@@ -88,14 +88,14 @@ def test_a_world_is_made_of_names_files_and_shapes(tmp_path):
     assert er.ArmWorld(ARM).scene.obstacles == ()
     assert er.ArmWorld("ur5", [er.Sphere(0.1, xyz=(0.4, 0, 0.4))]).dim == 6
     for wrong in ((7, er.Scene()), (ARM, 7), ("ur6", er.Scene())):
-        with pytest.raises(er.EvenroadError):
+        with pytest.raises(er.errors.EvenroadError):
             er.ArmWorld(*wrong)
     assert "\n" not in repr(named)
 
 
 def test_a_world_answers_of_one_configuration_as_of_many():
     world = er.ArmWorld("ur5", "box-reach")
-    rows = np.concatenate([ARM.random(4, 40), er.configuration(ARM, "home")[np.newaxis]])
+    rows = np.concatenate([ARM.random(4, 40), ARM.configuration("home")[np.newaxis]])
     verdicts = [world.valid(row) for row in rows]
     assert verdicts == world.valid(rows).tolist() and len(set(verdicts)) == 2  # noqa: PT018
     assert all(type(each) is bool for each in verdicts)
@@ -104,5 +104,5 @@ def test_a_world_answers_of_one_configuration_as_of_many():
     ).tolist()
     assert world.valid("home") is world.valid(ARM.states["home"]) is True
     assert world.explain("home") == "it is free"
-    with pytest.raises(er.InvalidValue, match="6 finite numbers"):
+    with pytest.raises(er.errors.InvalidValue, match="6 finite numbers"):
         world.valid((0.0, 1.0))

@@ -105,7 +105,7 @@ def test_no_pose_is_beyond_a_piece_that_holds_a_posture_of_it(seed):
     for link in robot.links[::-1][:3]:
         try:
             chain = chain_of(robot, link)
-        except er.InvalidValue:
+        except er.errors.InvalidValue:
             continue
         for q in world.space.from_cube(rng.random((20, world.space.dim))):
             place = chain.places(q[np.newaxis])[0]

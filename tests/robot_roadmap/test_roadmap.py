@@ -67,7 +67,7 @@ def test_clouds_and_meshes_of_a_cell_are_kept_in_its_file(tmp_path):
             assert known.world.recheck(result.path).all()
     assert solved >= 4
     moved = cell.without("wedge").with_(Obstacle("wedge", Mesh(wedge), cell=True))
-    with pytest.raises(er.InvalidValue, match="'wedge' of scene 'cell' is a mesh"):
+    with pytest.raises(er.errors.InvalidValue, match="'wedge' of scene 'cell' is a mesh"):
         er.load_robot_roadmap(tmp_path / "a.roadmap", cell=moved)
 
 
@@ -102,20 +102,21 @@ def test_one_milestone_and_ones_that_cannot_be_made():
     assert one.edges.shape == (0, 2)
     assert one.plan(Scene(name="today"), [0.0, -1.5, 0.0], [1.0, -1.5, 0.0]).solved
     for n in (0, -3, 1.5, 1 << 16):
-        with pytest.raises(er.InvalidValue, match="n must be"):
+        with pytest.raises(er.errors.InvalidValue, match="n must be"):
             make_roadmap(ur5(), TABLE, n)
     for wrong in ({"k": 0}, {"gamma": -1.0}, {"gamma": np.nan}, {"resolution": 0.0}):
-        with pytest.raises(er.InvalidValue, match=next(iter(wrong))):
+        with pytest.raises(er.errors.InvalidValue, match=next(iter(wrong))):
             make_roadmap(ur5(), TABLE, 8, **wrong)
 
 
 def test_a_robot_that_is_never_free_is_refused_with_what_blocks():
-    with pytest.raises(er.InvalidValue, match="never free in its cell: 'base' always touches 'table'"):
+    with pytest.raises(er.errors.InvalidValue, match="never free in its cell: 'base' always touches 'table'"):
         make_roadmap(ur5(), replace(TABLE, allowed=frozenset()), 8)
     wall = Obstacle.of("room", "box", (4.0, 4.0, 4.0))
     links = ("base", "shoulder", "upperarm")
     with pytest.raises(
-        er.InvalidValue, match=r"never free in its cell: of \d+ .* in .* of the last 100 .* touches 'room'"
+        er.errors.InvalidValue,
+        match=r"never free in its cell: of \d+ .* in .* of the last 100 .* touches 'room'",
     ):
         make_roadmap(
             ur5(joints=3), Scene((wall,), name="full", allowed=frozenset((link, "room") for link in links)), 8
@@ -177,10 +178,10 @@ def test_the_cell_is_there_even_where_the_scene_does_not_name_it(roadmap):
 def test_a_scene_that_contradicts_the_cell_is_refused(roadmap):
     higher = TABLE.obstacles[0].at(replace(TABLE.obstacles[0].body.pose, xyz=(0.25, 0.0, 0.1)))
     with pytest.raises(
-        er.InvalidValue, match=r"'table' of scene 'cell' is a box of 1, 1.2, 0.05 at \(0.25, 0, 0.1\)"
+        er.errors.InvalidValue, match=r"'table' of scene 'cell' is a box of 1, 1.2, 0.05 at \(0.25, 0, 0.1\)"
     ):
         roadmap.in_scene(replace(TABLE, obstacles=(higher,)))
-    with pytest.raises(er.InvalidValue, match="does not allow 'base' to touch it"):
+    with pytest.raises(er.errors.InvalidValue, match="does not allow 'base' to touch it"):
         roadmap.in_scene(replace(TABLE, allowed=frozenset({("shoulder", "table")})))
 
 
@@ -227,9 +228,9 @@ def lifted(joint):
 def test_another_robot_is_refused_with_what_differs(roadmap, tmp_path, change, said):
     file = tmp_path / "arm.roadmap"
     er.save_robot_roadmap(file, roadmap)
-    with pytest.raises(er.InvalidValue, match=said):
+    with pytest.raises(er.errors.InvalidValue, match=said):
         er.load_robot_roadmap(file, change(ur5(joints=3)))
-    with pytest.raises(er.InvalidValue, match=said):
+    with pytest.raises(er.errors.InvalidValue, match=said):
         SceneRoadmap(roadmap, TABLE, change(ur5(joints=3)))
 
 
@@ -247,7 +248,7 @@ def test_a_joint_that_turns_on_may_have_limits_in_the_cell_but_none_of_a_day(roa
     assert result.solved
     assert endless.in_scene(post).world.recheck(result.path).all()
     assert len(result.path) > 2
-    with pytest.raises(er.InvalidValue, match="'turn' had kind continuous, now revolute"):
+    with pytest.raises(er.errors.InvalidValue, match="'turn' had kind continuous, now revolute"):
         endless.in_scene(limited)
 
 
@@ -270,9 +271,9 @@ def test_a_file_gives_back_all_of_it(roadmap, tmp_path):
 def test_another_cell_is_refused_with_what_differs(roadmap, tmp_path):
     file = tmp_path / "arm.roadmap"
     er.save_robot_roadmap(file, roadmap)
-    with pytest.raises(er.InvalidValue, match="with left, right, .* among its obstacles"):
+    with pytest.raises(er.errors.InvalidValue, match="with left, right, .* among its obstacles"):
         er.load_robot_roadmap(file, cell=box_scene())
-    with pytest.raises(er.InvalidValue, match="limits"):
+    with pytest.raises(er.errors.InvalidValue, match="limits"):
         er.load_robot_roadmap(file, cell=replace(TABLE, limits={"elbow_joint": (0.0, 1.0)}))
 
 
@@ -282,19 +283,19 @@ def test_a_damaged_file_and_one_of_another_version_are_broken(roadmap, tmp_path,
     content = file.read_bytes()
     for damaged in (b"", content[:-30], content[:200] + b"\0" + content[201:], b"obstacles: {}"):
         file.write_bytes(damaged)
-        with pytest.raises(er.BrokenFile):
+        with pytest.raises(er.errors.BrokenFile):
             er.load_robot_roadmap(file)
-    with pytest.raises(er.BrokenFile, match="no such file"):
+    with pytest.raises(er.errors.BrokenFile, match="no such file"):
         er.load_robot_roadmap(tmp_path / "other.roadmap")
     monkeypatch.setattr("evenroad.robot_roadmap.file.__version__", "0.0.1")
     er.save_robot_roadmap(file, roadmap)
     monkeypatch.undo()
-    with pytest.raises(er.BrokenFile, match="of evenroad 0.0.1, this is"):
+    with pytest.raises(er.errors.BrokenFile, match="of evenroad 0.0.1, this is"):
         er.load_robot_roadmap(file)
     monkeypatch.setattr("evenroad.robot_roadmap.file.FORMAT", 2)
     er.save_robot_roadmap(file, roadmap)
     monkeypatch.undo()
-    with pytest.raises(er.BrokenFile, match=r"format 2 .* make the roadmap anew"):
+    with pytest.raises(er.errors.BrokenFile, match=r"format 2 .* make the roadmap anew"):
         er.load_robot_roadmap(file)
 
 
@@ -313,7 +314,7 @@ def test_a_damaged_file_and_one_of_another_version_are_broken(roadmap, tmp_path,
 def test_content_that_no_roadmap_has_is_broken(roadmap, tmp_path, field, value, said):
     file = tmp_path / "arm.roadmap"
     er.save_robot_roadmap(file, replace(roadmap, **{field: value(getattr(roadmap, field))}))
-    with pytest.raises(er.BrokenFile, match=said):
+    with pytest.raises(er.errors.BrokenFile, match=said):
         er.load_robot_roadmap(file)
 
 

@@ -14,6 +14,7 @@ from evenroad.geometry.pose import Pose
 
 if TYPE_CHECKING:
     from evenroad.robot.pose_goal import PoseGoal
+    from evenroad.robot.scene import Scene
 
 
 class RobotMethods:
@@ -39,6 +40,40 @@ class RobotMethods:
         limits: Floats = above("Robot.limits")(self)
         return limits
 
+    def configuration(
+        self, q: npt.ArrayLike | Mapping[str, float] | str, scene: Scene | None = None
+    ) -> Floats:
+        """Return a configuration as numbers, from whatever one has it in.
+
+        Parameters
+        ----------
+        q : array_like, shape (dof,), mapping or str
+            Numbers in the order of `joint_names` [rad or m]; joint -> value, where joints that are left out are at 0,
+            or the nearest to it within limits; or a text: the name of a state, ``"0,-1.57,..."`` or ``"elbow=1,..."``.
+        scene : Scene, optional
+            Whose states are known, too.
+
+        Returns
+        -------
+        ndarray, shape (dof,)
+            In rad or m.
+
+        Raises
+        ------
+        InvalidValue
+            If it is not so many finite numbers, or a text has a value outside of the limits.
+        UnknownName
+            If there is no such state or joint.
+
+        Examples
+        --------
+        >>> import evenroad as er
+        >>> er.load_robot("ur5").configuration({"elbow_joint": -1.5}).tolist()
+        [0.0, 0.0, -1.5, 0.0, 0.0, 0.0]
+        """
+        row: Floats = above("Robot.configuration")(self, q, scene)
+        return row
+
     def fk(self, q: npt.ArrayLike | Mapping[str, float] | str, link: str = "") -> Pose:
         """Return where a link is: forward kinematics.
 
@@ -46,7 +81,7 @@ class RobotMethods:
         ----------
         q : array_like, shape (dof,), mapping or str
             A configuration [rad or m].  Joints that a mapping leaves out are at 0, or the nearest to it within limits;
-            a text is the name of a state, or as :func:`evenroad.configuration` takes it.
+            a text is as :meth:`configuration` takes it.
         link : str
             Default: the link at the end of what the group moves.
 

@@ -1,0 +1,90 @@
+"""Showing a plan or a map to somebody who sits in front of a screen: in the browser, or below a notebook's cell."""
+
+from __future__ import annotations
+
+import sys
+import webbrowser
+from typing import Any
+
+from evenroad._arrays import Floats
+from evenroad._checks import require_extra
+from evenroad.errors import InvalidValue, NotAvailable, shown
+from evenroad.roadmap import PlanResult
+from evenroad.roadmap.find_path import find_path
+from evenroad.robot import ArmWorld
+from evenroad.viz.page import ArmPage
+from evenroad.world.gridmap import GridMap
+
+HEIGHT = 600
+"""Height of the page below a notebook's cell [pixels]."""
+
+
+def show(what: PlanResult | GridMap, *, port: int = 0) -> Any:
+    """Show a plan: of an arm as a page in the browser, with its path under a slider; others and maps as a picture.
+
+    In a notebook it appears below the cell.  Elsewhere a page is served until Ctrl-C.
+
+    Parameters
+    ----------
+    what : PlanResult or GridMap
+        A plan that knows its world, or a map.
+    port : int
+        Where the page of an arm is served, on this computer alone; 0 takes any that is free.
+
+    Returns
+    -------
+    ArmPage or PIL.Image.Image
+        The page, which is closed unless it is shown in a notebook; or the picture.
+
+    Raises
+    ------
+    InvalidValue
+        If it is neither a plan nor a map.
+    NotAvailable
+        If its world cannot be drawn, viser is not installed, or there is no browser.
+
+    Examples
+    --------
+    >>> import evenroad as er
+    >>> result = er.find_path(er.ArmWorld("ur5"), "home", (1, -1.5, 0.5, -1.5, 0, 0))
+    >>> er.show(result)  # doctest: +SKIP
+    """
+    if not isinstance(what, PlanResult | GridMap):
+        raise InvalidValue(
+            f"a plan or a map can be shown, as er.plan and er.load_map give it, got {shown(what)}"
+        )
+    notebook = _notebook()
+    if not isinstance(what, PlanResult) or not isinstance(what.world, ArmWorld):
+        picture = what.plot()
+        if notebook is None:
+            picture.show()
+        else:
+            notebook.display(picture)
+        return picture
+    world = what.world
+
+    def plan(start: Floats, goal: Floats) -> PlanResult:
+        return find_path(world, start, goal)
+
+    page = ArmPage(world, what, plan, port=port)
+    if notebook is not None:
+        notebook.display(notebook.IFrame(page.address, "100%", HEIGHT))
+        return page
+    try:
+        if not webbrowser.open(page.address):
+            raise NotAvailable("there is no browser on this computer: result.plot('plan.png') draws the plan")
+        page.serve()
+    except KeyboardInterrupt:
+        pass
+    finally:
+        page.close()
+    return page
+
+
+def _notebook() -> Any:
+    """Return what displays things in a notebook, None outside of one."""
+    module = sys.modules.get("IPython")
+    shell = None if module is None else module.get_ipython()
+    if type(shell).__name__ != "ZMQInteractiveShell":
+        return None
+    return require_extra("IPython.display", "view", "a picture in a notebook")
