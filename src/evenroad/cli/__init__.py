@@ -16,7 +16,7 @@ INTERRUPTED = 130
 INTERNAL_ERROR = 70
 """Exit code after an error of evenroad itself; Python's own would be 1, which is an answer here."""
 SOON = 0.05
-"""Seconds after which an interrupt that was dropped comes again."""
+"""Time after which a dropped interrupt is sent again [s]."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -18,7 +18,7 @@ from evenroad.roadmap import Certificate, KNearest, Radius, Rule, certify, defau
 from evenroad.space import BoxSpace
 
 FACTORS = (3.0, 2.0, 1.5, 1.2)
-"""Times the best path, for which the clearance is said that they take."""
+"""Factors on the best path's length for which the necessary clearance is printed."""
 
 
 @dataclass(frozen=True, kw_only=True)

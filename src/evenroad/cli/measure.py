@@ -27,7 +27,7 @@ from evenroad.points.measures.short_vectors import MOST_AXES
 from evenroad.points.npz import read_points
 
 WORK = 3e8
-"""Coordinates that may be looked at to bound the dispersion: about a second."""
+"""Limit on the coordinates examined to bound the dispersion: about a second."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -35,11 +35,11 @@ NUMBERS = {int: "a whole number", float: "a number"}
 RULES = ConstructorRegistry()
 AXES = ("-x", "-y", "-z")
 EARLIER = {"--family": "--sampler", "--certify": "--guarantees"}
-"""Names that options once had, and are still taken by, where a verb has none of the name itself."""
+"""Earlier name of an option -> its name; the earlier one is taken where a verb has none of that name."""
 _INSIDE: list[StructTypeInfo] = []
-"""The verb whose options tyro lists by its own rule, at the moment."""
+"""The verb whose options tyro lists now."""
 UNSAID = (None, False, "", ())
-"""Defaults that the help does not repeat: its text says what is done without the option."""
+"""Defaults that the help does not print: its text describes them."""
 
 
 def read_options(verb: str, kind: type, words: Sequence[str]) -> Any:

@@ -31,7 +31,7 @@ PROOFS = {
 }
 
 _FEW = 16
-"""Points of a plan that only loads compiled code."""
+"""Number of points of a plan that only loads compiled code."""
 
 
 def chosen_rule(plan: PlanOptions, default_k: int) -> Rule:

@@ -99,7 +99,7 @@ _UNTIL = {
     "pockets": 0.9,
     "choosing and joining milestones": 1.0,
 }
-"""Up to which share of the time what is done takes, in its order; about."""
+"""Stage -> share of the time that is over when it ends, about; in order."""
 
 
 def _progress(shown: Callable[..., None]) -> Callable[[str, float], None]:

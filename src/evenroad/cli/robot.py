@@ -26,7 +26,7 @@ from evenroad.robot.srdf import srdf_text
 _CONFIGURATIONS = 4096
 _MOTIONS = 256
 _MOST_SEGMENTS = 1000
-"""Motions that are timed are cut off there: between limits of a million radians each would take ten seconds."""
+"""Largest number of segments of a timed motion: between limits of a million radians each would take ten seconds."""
 _SECONDS = 0.2
 
 

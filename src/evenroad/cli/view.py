@@ -30,9 +30,9 @@ FILES = {
     "packages": dict | None,
     "arguments": dict | None,
 }
-"""What a plan says of how its robot was made of files, and of which kind it is; plans of earlier versions said less."""
+"""Fields of a plan about its robot's files, and their types; plans of earlier versions have fewer."""
 SECONDS = 0.5
-"""To plan again at most, while somebody moves an end by hand."""
+"""Time limit for planning again while a start or goal is dragged [s]."""
 
 
 @dataclass(frozen=True, kw_only=True)

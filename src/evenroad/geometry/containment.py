@@ -10,7 +10,7 @@ from evenroad._arrays import Bools, Floats
 from evenroad.geometry.hulls import Piece
 
 _ACROSS = 8
-"""Points along each side of the box around a body."""
+"""Number of points along each side of the box around a body."""
 
 
 def share_inside(body: Sequence[Piece], other: Sequence[Piece], poses: Floats) -> Floats:

@@ -15,16 +15,16 @@ from evenroad.geometry.fit_points import Fitted, capsule_around, rough_capsule_a
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
 
 MOST_SIDE_BY_SIDE = 4
-"""Most capsules that a box is covered with."""
+"""Largest number of capsules that cover a box."""
 MOST_CAPSULES = 4
-"""Most capsules of a mesh."""
+"""Largest number of capsules of a mesh."""
 WORTHWHILE = 0.9
-"""Every further capsule must bring the sum of volumes below this share, on average."""
+"""Factor by which each further capsule must reduce the sum of volumes, on average."""
 _CUTS = (0.15, 0.3, 0.5, 0.7, 0.85)
 _LONGEST_EDGE = 1.0 / 6.0
-"""Longer edges, in parts of the mesh's extent, are divided, so that large triangles can be shared out, too."""
+"""Largest length of an edge, in parts of the mesh's extent; longer ones are divided."""
 _LOOKED_AT = 300
-"""Triangles by which splits are compared."""
+"""Number of triangles by which splits are compared."""
 
 
 def fit_capsules(shape: Shape) -> tuple[Capsule, ...]:

@@ -15,7 +15,7 @@ from evenroad.geometry.shapes import Capsule
 Fitted = tuple[Floats, Floats, float]
 """End points a and b, each (3,), and radius of a capsule."""
 SAMPLES = 1 << 15
-"""Points that estimate the volume of a union: a standard error of about half a per cent."""
+"""Number of points that estimate the volume of a union: a standard error of about half a per cent."""
 _LEAST_RADIUS = 1e-6
 """Radius around points in a line [m]."""
 

@@ -16,17 +16,17 @@ from evenroad.geometry.mesh import TriangleMesh, closed_parts
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
 
 SIDES = 32
-"""Of the prism that stands for a cylinder: it reaches half a per cent of the radius beyond."""
+"""Number of sides of the prism around a cylinder, which reaches half a per cent of the radius beyond."""
 _FEW = 64
-"""A hull of more corners is thinned."""
+"""Largest number of corners of a hull that is not thinned."""
 _THINNED, _SHARE = 3e-4, 5e-3
-"""Thinned away is what sticks out of a hull by no more [m], or by no more in parts of its extent."""
+"""Largest height of a corner that thinning removes [m], and in parts of the hull's extent."""
 _MOST_CORNERS = 2048
-"""A convex mesh of more keeps the hull that it got first: a nearer one would take gigabytes."""
+"""Largest number of corners of a convex mesh that gets a closer hull: of more, one would take gigabytes."""
 _SIDES_TRIED = 8
 _ROUNDING = 1e-9
 _AS_LARGE = 1e-4
-"""By no larger share of its hull's volume a mesh differs from that where it is convex."""
+"""Largest share of its hull's volume by which a convex mesh differs from the hull."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,19 +15,19 @@ from evenroad.geometry.mesh import closed_parts
 from evenroad.geometry.shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
 
 MOST_SIDE_BY_SIDE = 8
-"""Most capsules of a box; between those of a wider one there are gaps."""
+"""Largest number of capsules of a box; between those of a wider one there are gaps."""
 MOST_BALLS = 12
-"""Most balls of a mesh."""
+"""Largest number of balls of a mesh."""
 _ACROSS = 20
-"""Planes along each axis between which middles of balls are looked for."""
+"""Number of planes along each axis between which centres of balls are sought."""
 _SMALLEST = 0.25
-"""A ball is worth its while whose radius is at least this share of the largest one's."""
+"""Least radius of a ball, as a share of the largest one's."""
 _APART = 0.9
-"""Middles of balls lie outside of the others, which count as so large for that."""
+"""Factor on the radii of balls outside of which further centres lie."""
 _FINE = 1.0 / 24.0
-"""Sides of triangles, in parts of the mesh's extent, by whose corners middles are chosen."""
+"""Length of the sides of triangles by whose corners centres are chosen, in parts of the mesh's extent."""
 _SHRUNK = 1e-9
-"""Of a length: rounding must not carry a capsule out of its shape."""
+"""Share of a length by which capsules shrink: rounding must not carry one out of its shape."""
 
 
 def capsules_inside(shape: Shape) -> tuple[Capsule, ...]:

@@ -21,7 +21,7 @@ from evenroad.errors import BrokenFile, InvalidValue, NotAvailable
 from evenroad.geometry.mesh_bounds import require_bounded, require_few_triangles
 
 _FLAT = 5e-7
-"""Half of what a flat mesh is made thick, where its hull is asked for [m]."""
+"""Half of the thickness that a flat mesh gets for its hull [m]."""
 
 
 @dataclass(frozen=True, eq=False)

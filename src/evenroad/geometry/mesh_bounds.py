@@ -12,10 +12,10 @@ from evenroad.errors import BrokenFile
 
 _PACKED = (".gz", ".tgz", ".bz2", ".xz", ".zst")
 _MOST_TIMES = 10
-"""Entries and triangles that there may be for each byte of a file; of files that people make it is less than one."""
+"""Largest number of entries and triangles per byte of a file; files that people make have less than one."""
 _FEW_TRIANGLES = 1_000_000
 _FEW_INSTANCES = 20
-"""With so few, parts of parts of a COLLADA file cannot become many."""
+"""Number of instances up to which the parts of a COLLADA file cannot multiply."""
 
 
 def require_bounded(file: Path) -> None:

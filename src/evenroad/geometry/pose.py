@@ -23,7 +23,7 @@ from evenroad.errors import InvalidValue
 Vector = tuple[float, float, float]
 NO_ROTATION = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 _ORTHONORMAL = 1e-6
-"""How far products of rows may be from those of a rotation: room for matrices read from text."""
+"""Largest error of the products of a rotation's rows: a margin for matrices read from text."""
 _BY_KEYWORD = "a quaternion must be given as xyzw=(x, y, z, w), by its keyword: others have w first"
 
 

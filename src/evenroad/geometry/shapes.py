@@ -28,7 +28,7 @@ from evenroad.geometry.shape import Placed as Placed
 from evenroad.geometry.shape import Shape as Shape
 
 CLOUD_RADIUS = 0.01
-"""Radius of the balls of a point cloud where nothing is said [m]."""
+"""Default radius of the balls of a point cloud [m]."""
 
 
 @dataclass(frozen=True, init=False, repr=False)

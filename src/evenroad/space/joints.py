@@ -15,7 +15,7 @@ from evenroad.space.flat import FlatMetric
 from evenroad.space.protocol import Space
 
 SLACK = 1e-5
-"""A joint's value may exceed a limit by so much, and stays what it is: those of five printed decimals do [rad or m]."""
+"""Largest excess of a joint's value over its limit: values of five printed decimals have it [rad or m]."""
 
 
 class FlatSpace(Space):

@@ -15,9 +15,9 @@ from evenroad.space.flat import FlatMetric
 from evenroad.space.protocol import Space
 
 _LARGEST_COSINE = 1e-9
-"""Edges count as perpendicular up to this cosine: room for the rounding of a yaw, not for a slanted frame."""
+"""Largest cosine between perpendicular edges: a margin for the rounding of a yaw, not for a slanted frame."""
 _ROUNDING = 1e-9
-"""Share of an edge by which a point may be outside: room for the rounding of a rotated frame far from the origin."""
+"""Share of an edge by which a point may be outside: a margin for the rounding of a frame far from the origin."""
 
 
 @dataclass(frozen=True)

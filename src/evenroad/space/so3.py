@@ -14,9 +14,9 @@ from evenroad.space.batch import as_batch, as_batch_pair, as_cube_batch, as_frac
 from evenroad.space.protocol import Space
 
 _UNIT_TOLERANCE = 1e-6
-"""How far a norm may be from 1: room for quaternions read from a text file with seven digits."""
+"""Largest distance of a norm from 1: a margin for quaternions read from a text file with seven digits."""
 SMALL_ANGLE = 1e-8
-"""Below it a chord and its arc agree to the last bit, and sin(angle) is too small to divide by safely."""
+"""Angle below which a chord and its arc agree to the last bit, and sin(angle) is too small to divide by safely."""
 
 
 @dataclass(frozen=True)

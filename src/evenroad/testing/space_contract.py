@@ -15,9 +15,9 @@ from evenroad.errors import InvalidValue
 from evenroad.space import Space
 
 _TOLERANCE = 1e-7
-"""Of distances, as a share of the largest: arccos and the like lose half of their digits near zero."""
+"""Tolerance of distances, as a share of the largest: arccos and the like lose half of their digits near zero."""
 _VOLUME_TOLERANCE = 0.06
-"""Of volumes found from 20000 directions: at most 0.03 off for products of up to 12 coordinates."""
+"""Tolerance of volumes found from 20000 directions: at most 0.03 off for products of up to 12 coordinates."""
 
 
 class SpaceContract:

@@ -9,7 +9,7 @@ import numpy as np
 from evenroad._arrays import Floats, Ints
 
 _STRAIGHT = 1e-6
-"""Turns smaller than this are driven through as if they were none [rad]; the next arc is that much off, at most."""
+"""Angle below which a corner counts as straight [rad]; the next arc is that much off, at most."""
 
 
 @dataclass(frozen=True, eq=False)

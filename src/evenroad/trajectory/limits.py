@@ -14,7 +14,7 @@ from evenroad.errors import BrokenFile, InvalidValue
 from evenroad.robot import Robot
 
 SECONDS_TO_FULL_SPEED = 0.5
-"""Where nobody says how fast a joint speeds up, it takes so long to its full speed: URDF has no acceleration."""
+"""Default time in which a joint reaches its full speed [s]: URDF has no acceleration."""
 
 _KINDS = ("velocity", "acceleration", "jerk")
 

@@ -17,22 +17,22 @@ from evenroad.trajectory.trajectory import Trajectory
 from evenroad.trajectory.urscript import CYCLES, LOOKAHEAD, columns_of_ur, held_cycles
 
 AT_START = 0.01
-"""With a joint farther from the start than this nothing moves [rad]."""
+"""Largest distance of a joint from the start at which a program begins [rad]."""
 
 ASTRAY = 0.3
-"""With a joint farther from where it should be than this the arm is stopped [rad]."""
+"""Largest distance of a joint from its set value; beyond it the arm is stopped [rad]."""
 
 _RUNNING, _NORMAL, _REDUCED = 7, 1, 2
-"""Modes of a robot whose brakes are released, and of its safety."""
+"""Mode of a robot whose brakes are released, and its two safety modes in which it may move."""
 
 _READ = ["timestamp", "actual_q", "robot_mode", "safety_mode", "runtime_state"]
 _PATIENCE = 8.0
-"""Seconds without a word after which the connection is taken for lost."""
+"""Time without a message after which the connection counts as lost [s]."""
 
 _ERRORS = {kind.__name__: kind for kind in (InvalidValue, NotAvailable)}
 _GAIN = 300.0
 _STOP = 2.0
-"""At the end, and when something is wrong [rad/s^2]."""
+"""Deceleration at the end, and when something is wrong [rad/s^2]."""
 
 
 @dataclass(frozen=True)

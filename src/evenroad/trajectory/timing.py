@@ -12,12 +12,12 @@ from evenroad.trajectory.blends import RoundedPath
 from evenroad.trajectory.limits import Limits
 
 INTERVALS = 600
-"""Of a whole path, about: the acceleration along it is constant in each."""
+"""Number of intervals of a whole path, about: the acceleration along it is constant in each."""
 
 _PER_ARC, _PER_LINE = 8, 4
 _HALVINGS = 40
 _WITHIN = 1.0 - 1e-3
-"""Of the acceleration limits: between two places of the grid a bend may take a little more."""
+"""Share of the acceleration limits that is used: between two grid points a bend may take a little more."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,22 +20,22 @@ from evenroad.trajectory.timing import TimeLaw, fastest, paused, stretched
 from evenroad.world import Rechecks, World
 
 STEP = 0.008
-"""Between two states of a trajectory [s]: the cycle of a UR controller, 125 Hz."""
+"""Time between two states of a trajectory [s]: the cycle of a UR controller, 125 Hz."""
 
 DEVIATION = 0.05
-"""How far a corner may be cut when nothing else is said [rad or m]."""
+"""Default for the largest deviation at a corner [rad or m]."""
 
 _FINER = 8
-"""Limits are checked at so many places a step."""
+"""Number of states per step at which limits are checked."""
 
 _SAME = 1e-9
-"""Waypoints nearer than this in every joint are one [rad or m]."""
+"""Distance in every joint below which two waypoints are one [rad or m]."""
 
 _MOST_STATES = 1_000_000
-"""More than two hours at 125 Hz: a slip of the keyboard, and gigabytes."""
+"""Largest number of states, more than two hours at 125 Hz: beyond it the input is a slip."""
 
 _HALVINGS = 6
-"""So often is a corner that touches cut half as much; then the robot stops there."""
+"""Number of times that a blend in collision is halved; then the robot stops at the corner."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

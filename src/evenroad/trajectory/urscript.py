@@ -14,20 +14,20 @@ from evenroad.trajectory.trajectory import Trajectory, drivable
 from evenroad.world import World
 
 CYCLES = (0.008, 0.002)
-"""Of the controllers [s]: CB3 (125 Hz) and e-Series (500 Hz)."""
+"""Cycle times of the controllers [s]: CB3 (125 Hz) and e-Series (500 Hz)."""
 
 LOOKAHEAD = 0.1
-"""Over so long the controller smooths what ``servoj`` is told [s]."""
+"""Time over which the controller smooths ``servoj`` commands [s]."""
 
 _JOINTS = 6
 _AT_START = 0.01
-"""With a joint farther from the start than this the program does not begin [rad]."""
+"""Largest distance of a joint from the start at which the program begins [rad]."""
 
 _FASTEST = 3.14
-"""The controller takes no ``movej`` that is faster [rad/s]."""
+"""Largest speed of a ``movej`` that the controller takes [rad/s]."""
 
 _SHARES = (0.45, 0.2, 0.1, 0.05)
-"""Of the shorter motion at a corner, tried in turn; two corners never share a place."""
+"""Shares of the shorter motion at a corner, tried in turn as blends; two corners never overlap."""
 
 _CHORDS = 16
 

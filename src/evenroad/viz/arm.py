@@ -24,16 +24,16 @@ if TYPE_CHECKING:
 VIEWS = (("from above", (0, 1)), ("from the side", (0, 2)), ("from the front", (1, 2)))
 """Title of a view, and the two axes of the robot's root link that it shows."""
 SIZE = (1920, 744)
-"""Pixels of the picture."""
+"""Width and height of the picture [pixels]."""
 _AXES = "xyz"
 _TOWARDS = (1.0, -1.0, 1.0)
-"""Along x, y and z: the sign of what is nearer to the eye, where the other two point to the right and up."""
+"""Signs along x, y and z of what is nearer to the eye, where the other two axes point right and up."""
 _FRAMES, _FRAME, _PAUSE = 48, 60, 800
-"""Of a moving picture; milliseconds of each, and of the first and the last."""
+"""Number of frames of a moving picture, and milliseconds of each, and of the first and the last."""
 _BETWEEN = 7
-"""Places between start and goal at which the arm is shown."""
+"""Number of configurations between start and goal at which the arm is shown."""
 _STEP = 0.05
-"""Between places of the tip that are joined by a line, in the metric of the joints."""
+"""Step between configurations whose tips are joined by a line, in the metric of the joints."""
 
 
 def save_arm_picture(path: str | os.PathLike[str], result: PlanResult, world: ArmWorld) -> None:

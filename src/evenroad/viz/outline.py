@@ -11,7 +11,7 @@ from evenroad.geometry.shapes import Mesh, PointCloud
 from evenroad.robot.scene import Obstacle
 
 _ROUND = 32
-"""Corners that stand for a circle."""
+"""Number of corners of a circle's polygon."""
 
 
 def stadium(a: Floats, b: Floats, radius: float) -> Floats:

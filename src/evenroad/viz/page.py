@@ -24,17 +24,17 @@ from evenroad.viz.outline import obstacle_bounds
 from evenroad.viz.surfaces import link_surfaces, surface_of
 
 PLACES = 200
-"""Of the slider, evenly along the path."""
+"""Number of positions of the slider, evenly along the path."""
 
 _SECONDS = 4.0
-"""The path takes so long when it is played."""
+"""Duration of the path when it is played [s]."""
 
 _ARM, _LINE = "#8fa3b8", 3.0
 _SOFTENED, _ROUNDS, _NEAR = 0.05, 12, 1e-3
-"""Damping of the steps by which an arm follows a hand; how many; and how near is near enough [m, rad]."""
+"""Damping and number of the steps by which an arm follows a handle, and the error that ends them [m, rad]."""
 
 Planner = Callable[[Floats, Floats], PlanResult]
-"""Returns a plan from a start to a goal, (dim,) each."""
+"""Function that returns a plan from a start to a goal, (dim,) each."""
 
 
 class ArmPage:

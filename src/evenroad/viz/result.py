@@ -18,9 +18,9 @@ from evenroad.viz.plan import plan_figure
 from evenroad.world.gridmap import DiskWorld, GridMap
 
 _FREE, _UNKNOWN, _OCCUPIED = 254, 205, 40
-"""Shades of cells."""
+"""Grey values of free, unknown and occupied cells."""
 _LONG_SIDE = 600
-"""Pixels of the long side of a map's picture, where it has fewer cells."""
+"""Least length of the long side of a map's picture [pixels]."""
 
 
 def plot_result(

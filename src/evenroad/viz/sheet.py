@@ -12,7 +12,7 @@ from PIL import Image, ImageDraw, ImageFont
 from evenroad._arrays import Floats
 
 FINER = 2
-"""Bodies are drawn so many times as large, and shrunk: their edges are smooth then."""
+"""Factor by which bodies are drawn larger, then shrunk, so that their edges are smooth."""
 TEXT, GRID = "#000000", "#e3e9ee"
 _LEFT, _BETWEEN, _TOP, _BOTTOM = 95, 105, 105, 125
 """Margins in pixels; ticks and labels of a view are left of it and below."""

@@ -16,9 +16,9 @@ from evenroad._njit import njit
 from evenroad.errors import InvalidValue
 
 MOST_SEGMENTS = 2**30
-"""More of them in one motion would take hours: then the resolution is a slip."""
+"""Largest number of segments of a motion: more would take hours, so the resolution is a slip."""
 _STATES_AT_ONCE = 65536
-"""States handed out at a time: many enough to hide the cost of a call, few enough to stay in memory."""
+"""Number of states handed out at a time: many enough to hide the cost of a call, few enough to stay in memory."""
 
 
 def require_few_segments(resolution: object, segments: float) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from evenroad._arrays import Floats
 
 _MOST_PIECES = 200_000
-"""Pieces of a path that are looked at before a bound is good enough as it is."""
+"""Largest number of pieces of a path that are examined to tighten a bound."""
 
 
 def least_distance(path: Floats, distance: Callable[[Floats], Floats], tolerance: float) -> float:

@@ -19,13 +19,13 @@ from evenroad.world.bisection import MOST_SEGMENTS, between_ends, require_few_se
 from evenroad.world.one_or_many import OneOrMany, one_or_many
 
 OUTSIDE = "it lies outside the bounds of the space"
-"""Why a configuration is not free that the space does not contain."""
+"""Reason why a configuration outside of the space is not free."""
 ONE_BY_ONE = "asked about one configuration at a time: from (n, dim) to (n,) it would be asked once a batch"
-"""What is told of a function that takes one configuration."""
+"""Note on a function that takes one configuration."""
 SHARE_OF_EXTENT = 0.01
-"""Resolution where nothing is said, as a share of the extent of the space."""
+"""Default resolution, as a share of the extent of the space."""
 FINER = 20
-"""How many times as densely `FunctionWorld.recheck` looks at states."""
+"""Factor by which `FunctionWorld.recheck` checks states more densely."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -23,15 +23,15 @@ Callback = Callable[[int, int, float], object]
 """``callback(step, steps, best)`` after every step."""
 
 SCHEDULE = 2
-"""Version of the schedule of rates and noise, and of the start: another one makes other sets of the same seed."""
+"""Version of the start and of the schedule of rates and noise: another one makes other sets of the same seed."""
 
 LARGEST_RATE, LAST_OVER_FIRST, HOTTEST = 0.02, 1 / 2000, 0.3
 
 FIRST_DECAY, SECOND_DECAY = 0.9, 0.999
-"""Of Adam's moments."""
+"""Decay rates of Adam's two moments."""
 
 TINY = 1e-30
-"""Keeps 0/0 away and nothing more, so that the scale of the objective does not matter."""
+"""Term that avoids 0/0 and nothing more, so that the scale of the objective does not matter."""
 
 
 class Minimised(Protocol):

@@ -31,9 +31,9 @@ INDEX = "index.json"
 STUDIES, LARGE_SETS = "evenroad_studies", "sets"
 """The package with the files of larger sets, and their folder in it."""
 MOST_IN_THE_CORE = 256
-"""Points of the largest sets that evenroad's own wheel carries."""
+"""Number of points of the largest sets in evenroad's own wheel."""
 SEED = 20261121
-"""Set i of every cell is annealed with ``SeedSequence(SEED, spawn_key=(i,))``."""
+"""Seed of the bank: set i of every cell is annealed with ``SeedSequence(SEED, spawn_key=(i,))``."""
 
 
 @dataclass(frozen=True)

@@ -17,16 +17,16 @@ from evenroad.errors import InvalidValue
 from evenroad.points.pointset import as_unit_points
 
 SHARES = (1.0, 0.5, 0.25, 0.12, 0.06, 0.03, 0.01, 1e-3, 1e-6)
-"""By how much the bound may exceed the dispersion, one pass after the other; each starts from what the last one showed.
+"""Shares by which the bound may exceed the dispersion, one per pass; each pass starts from the last one's result.
 
-With the last of them the bound is the dispersion for all that it is used for.
+With the last one the bound serves as the dispersion.
 """
 
 WORK = 3e9
-"""Default limit on coordinates looked at: some seconds."""
+"""Default limit on the coordinates examined: some seconds."""
 
 ROUNDING = 1e-12
-"""Share of the bound, and of the box, by which it is made larger: halving and adding lose a thousandth of it."""
+"""Share by which the bound and the box are enlarged: halving and adding lose a thousandth of it."""
 
 
 class DispersionBounds(NamedTuple):

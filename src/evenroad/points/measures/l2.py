@@ -19,7 +19,7 @@ from evenroad._arrays import Floats
 from evenroad._njit import njit
 
 TILE = 512
-"""Points in a tile: small enough for the first cache, large enough to keep the vector units busy."""
+"""Number of points in a tile: small enough for the first cache, large enough to keep the vector units busy."""
 
 
 class MaximumPairs(NamedTuple):

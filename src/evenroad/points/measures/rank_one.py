@@ -18,7 +18,7 @@ from evenroad.points.measures.short_vectors import short_vectors, squared_length
 from evenroad.points.pointset import as_unit_points
 
 EXACT = 1e-5
-"""How far from whole numbers, in units of 1/n, differences of points of a lattice may be rounded."""
+"""Largest distance from whole numbers, in units of 1/n, of the differences of a lattice's points."""
 
 
 def generating_vector(points: object) -> Ints | None:

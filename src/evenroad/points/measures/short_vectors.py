@@ -18,16 +18,16 @@ from evenroad._checks import require_count
 from evenroad.errors import InvalidValue, NotAvailable, shown
 
 LARGEST_N = 2**26
-"""Up to here squared lengths are whole in float64, or nearly."""
+"""Largest n for which squared lengths are whole in float64, or nearly."""
 
 MOST_AXES = 16
-"""Beyond this a ball that holds a basis may hold too many vectors; of usual lattices it holds a few dozen here."""
+"""Largest dimension: beyond it a ball that holds a basis may hold too many vectors; here it holds a few dozen."""
 
 MOST_VECTORS = 10**6
-"""Vectors that are looked at, at most: seconds."""
+"""Largest number of vectors to examine: seconds."""
 
 SAME = 1e-9
-"""Squared lengths closer than this, relatively, are equal."""
+"""Relative difference below which squared lengths are equal."""
 
 
 def lattice_basis(n: int, vector: Any, scale: Any = None) -> Ints:

@@ -16,10 +16,10 @@ from evenroad.points.randomise import Symmetry
 from evenroad.points.samplers.lattice import around_cube
 
 MARGINS = (0.0, 0.2, 0.35, 0.5, 0.6, 0.7, 0.85, 1.0)
-"""How much wider than the cube, on each side, the lattice is cut out: shares of its covering radius."""
+"""Margins beyond the cube, on each side, within which the lattice is cut out: shares of its covering radius."""
 
 WORK = 2e8
-"""Coordinates that may be looked at to measure one of them: a fifth of a second at most."""
+"""Limit on the coordinates examined to measure one margin: a fifth of a second at most."""
 
 
 @dataclass(frozen=True)

@@ -20,10 +20,10 @@ SOBOL_FROM = 10
 """Dimension from which on `even` is scrambled Sobol points: there no lattice solves more."""
 
 DRAWN_IN_FROM = 7
-"""Dimension from which on points of a sparse roadmap are drawn in to the middle of a box."""
+"""Dimension from which on the points of a sparse roadmap are contracted to the middle of a box."""
 
 DRAWN_IN = 0.85
-"""To which share of their distance from the middle points of a sparse roadmap are drawn in."""
+"""Factor by which the points of a sparse roadmap are contracted to the middle."""
 
 
 @dataclass(frozen=True)

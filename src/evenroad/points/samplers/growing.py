@@ -21,25 +21,25 @@ from evenroad.points.randomise import ALL_SYMMETRIES
 
 DIGITS = 30
 LONGEST = 2**DIGITS
-"""Where the sequence ends."""
+"""Number of points of the whole sequence."""
 
 SEARCHED, TOGETHER = 20, 11
-"""Digits of z that are searched, and those that are searched together; further ones are drawn once and for all."""
+"""Number of digits of z that are searched, and of those searched together; further digits are drawn once."""
 
 KEPT, TRIED = 48, 32
-"""Vectors that are kept from one digit to the next, and ways to go on that are tried for each."""
+"""Number of vectors kept from one digit to the next, and of continuations tried for each."""
 
 WORK = 2 * 10**7
-"""Coordinates that are looked at to choose one of the digits that are not searched together."""
+"""Number of coordinates examined to choose a digit that is not searched together."""
 
 SPREAD, EVENNESS = 1.0, 0.3
 """Weights of the energy and of the discrepancy, both as logs: the second keeps projections even."""
 
 PARTS = (0.25, 0.5, 0.75, 1.0)
-"""Beginnings of 2^(m-1) (1 + part) points are looked at for digit m."""
+"""Parts of a doubling: for digit m, the first 2^(m-1) (1 + part) points are scored."""
 
 TIE = 1e-9
-"""Scores closer than this are equal: rounding does not choose between mirrored lattices."""
+"""Difference below which scores are equal: rounding does not choose between mirrored lattices."""
 
 
 @dataclass(frozen=True)

@@ -23,19 +23,19 @@ from evenroad.points.pointset import Origin, PointSet
 from evenroad.points.randomise import ALL_SYMMETRIES
 
 MAX_N = 2**26
-"""Up to here products of two residues, and the multiple of n next to them, are exact in float64."""
+"""Largest n for which products of two residues, and the multiple of n next to them, are exact in float64."""
 
 WORK = 3 * 10**7
-"""Coordinates of lattice points that a search may look at: it limits how many multipliers are tried."""
+"""Limit on the coordinates that a search examines: it bounds the number of multipliers tried."""
 
 FEWEST_TRIED = 32
-"""Multipliers that are tried however large n and d are."""
+"""Least number of multipliers to try, however large n and d are."""
 
 BLOCK = 2**14
-"""Lattice points, of all multipliers together, between two looks at which multipliers can still win."""
+"""Number of lattice points, of all multipliers, between two checks of which multipliers can still win."""
 
 TIE = 1e-9
-"""Energies closer than this, relatively, are equal: rounding does not choose between mirrored lattices."""
+"""Relative difference below which energies are equal: rounding does not choose between mirrored lattices."""
 
 
 @dataclass(frozen=True)

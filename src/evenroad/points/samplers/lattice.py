@@ -14,7 +14,7 @@ from evenroad.points.pointset import Origin, PointSet
 from evenroad.points.randomise import Symmetry
 
 MAX_D = 12
-"""Beyond this the ball around the cube holds thousands of lattice points for each one inside the cube."""
+"""Largest dimension: beyond it the ball around the cube holds thousands of lattice points for each one in the cube."""
 
 
 @dataclass(frozen=True)

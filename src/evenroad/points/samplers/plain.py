@@ -15,7 +15,7 @@ from evenroad.points.pointset import Origin, PointSet
 from evenroad.points.randomise import ALL_SYMMETRIES, Symmetry
 
 SOBOL_LENGTH = 2**30
-"""How many distinct points SciPy's Sobol engine has at its default 30 bits."""
+"""Number of distinct points of SciPy's Sobol engine at its default 30 bits."""
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ POOR = 1.5
 """Ratio of the last successive minimum to the first above which a Korobov lattice is not good enough."""
 
 STARTS, SWEEPS = 4, 20
-"""Descents, the first from the Korobov lattice; and how often each goes through all axes, at most."""
+"""Number of descents, the first from the Korobov lattice, and the most sweeps over all axes in each."""
 
 
 @lru_cache(maxsize=1024)

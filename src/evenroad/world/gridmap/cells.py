@@ -15,11 +15,11 @@ from evenroad._arrays import Bools, Floats
 from evenroad._njit import njit
 
 BLOCKED = 0
-"""Every point of the closed cell is nearer than `radius` to an obstacle."""
+"""State of a cell whose every point is nearer than `radius` to an obstacle."""
 UNDECIDED = 1
-"""The cell needs the exact test."""
+"""State of a cell that needs the exact test."""
 FREE = 2
-"""FREE + s: every point of the closed cell is at least `radius` + s from every obstacle."""
+"""State of a free cell: with FREE + s every point is at least `radius` + s from every obstacle."""
 
 
 Runs: TypeAlias = npt.NDArray[np.uint16]

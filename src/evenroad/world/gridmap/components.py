@@ -17,9 +17,9 @@ from evenroad.world.gridmap.cells import BLOCKED, FREE, UNDECIDED, DiskTables
 from evenroad.world.gridmap.kernel import squared_gap
 
 _AROUND = 3
-"""Cells around a place where two components come close that belong to the gate."""
+"""Number of cells around a near contact of two components that belong to the gate."""
 PARTS = 16
-"""A cell at a gate is looked at in so many by so many parts, to tell whether the gate is shut."""
+"""Number of parts, along each side, into which a cell at a gate is divided to decide whether the gate is shut."""
 
 
 @njit(cache=True, nogil=True)

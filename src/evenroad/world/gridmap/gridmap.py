@@ -32,11 +32,11 @@ from evenroad.world.one_or_many import OneOrMany, one_or_many
 from evenroad.world.protocol import Connection
 
 _SPREADS = (32, 96)
-"""Points that a path is offered to be straightened with, in the coarse rounds and in the fine ones."""
+"""Number of points along a path between which shortcuts are tried, in the coarse rounds and in the fine ones."""
 _CLOSE = 1e-3
-"""Pixels by which a path's clearance may be told too small."""
+"""Largest error of a reported clearance, which is too small by it [pixels]."""
 _SMALLEST_RADIUS = 1e-150
-"""In pixels: its square is still above 0, so that a disk of any size touches what its centre lies on."""
+"""Smallest radius, whose square is above 0: a disk of any size touches what its centre lies on [pixels]."""
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)

@@ -200,11 +200,11 @@ def _summed_channels(image: Image.Image, *, with_alpha: bool) -> tuple[npt.NDArr
 
 
 LARGEST_IMAGE = 100_000_000
-"""Most pixels that a map may have: 10 000 x 10 000.  Its world then takes about 0.6 GB."""
+"""Largest number of pixels of a map: 10 000 x 10 000.  Its world then takes about 0.6 GB."""
 DARK = 128.0
-"""A bare image's cell is an obstacle if its luminance, of 255, is below this."""
+"""Luminance, of 255, below which a bare image's cell is an obstacle."""
 _FORMATS = ("PNG", "PPM")
-"""The only decoders let loose on a file; PPM is Pillow's name for the family of PGM."""
+"""Formats that are read; PPM is Pillow's name for the family of PGM."""
 
 
 def load_image(path: str | os.PathLike[str], *, dark: float = DARK) -> GridMap:

@@ -19,7 +19,7 @@ from evenroad.world.gridmap.cells import BLOCKED, FREE, DiskTables
 from evenroad.world.gridmap.kernel import free_between, to_padded
 
 _BUCKETS = 64
-"""More than the largest step of the key of A*, twice the dearest step: a key names its bucket."""
+"""Number of buckets of A*'s queue: more than the largest step of a key, twice the costliest step."""
 
 STEPS = np.array(
     [
@@ -31,9 +31,9 @@ STEPS = np.array(
 """Columns and rows of each step on the half lattice; the first eight lead from cell to cell."""
 
 COSTS = np.array([10] * 4 + [14] * 4 + [5] * 4 + [7] * 4 + [11] * 8)
-"""Of the steps: about ten times their lengths in pixels."""
+"""Costs of the steps: about ten times their lengths in pixels."""
 _LINKS = 24
-"""Lattice points that an end is linked to."""
+"""Number of lattice points that a start or goal is linked to."""
 
 
 @njit(cache=True, nogil=True)
