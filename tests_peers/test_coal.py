@@ -13,8 +13,8 @@ from evenroad.space import SE3, BoxSpace
 from evenroad.testing import WorldContract
 from evenroad_studies.problems import source_named
 from evenroad_studies.worlds.rigid import OrientedBox, SolidWorld, shell, surface_of
-from evenroad_studies.worlds.rigid.mesh_world import Collider, MeshWorld
 from evenroad_studies.worlds.rigid.solid_world import as_poses
+from tests_peers.engines.mesh_world import Collider, MeshWorld
 
 NEAR = 1e-5
 """Poses this near to contact may be judged differently: coal's tolerance is 1e-6."""

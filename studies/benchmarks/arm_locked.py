@@ -10,7 +10,7 @@ from __future__ import annotations
 import argparse
 
 import numpy as np
-from studies.benchmarks.arm_problems import REPORTING, Pool, Problem, arm, problems
+from studies.benchmarks.arm_problems import REPORTING, Pool, Problem, arm_named, problems
 
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.separated import THOROUGH, outer_bodies, shown_by
@@ -43,7 +43,7 @@ def main() -> None:
     options = parser.parse_args()
     for name in options.arms:
         unsolved, solved = {}, 0
-        for problem in problems(Pool(arm(name)), REPORTING[: options.count], ("cage",)):
+        for problem in problems(Pool(arm_named(name)), REPORTING[: options.count], ("cage",)):
             world = ArmWorld(problem.robot, problem.scene)
             goals = problem.goal[np.newaxis]
             if connect(world, problem.start, goals, most_motions=MOST_MOTIONS, seconds=60).goal >= 0:

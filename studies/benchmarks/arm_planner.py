@@ -27,7 +27,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 from numba import njit
-from studies.benchmarks.arm_problems import KINDS, REPORTING, TUNING, Pool, Problem, arm, problems
+from studies.benchmarks.arm_problems import KINDS, REPORTING, TUNING, Pool, Problem, arm_named, problems
 
 from evenroad.roadmap.shortcut import shortcut
 from evenroad.robot.arm_world import ArmWorld
@@ -240,7 +240,7 @@ def main() -> None:
     if options.compilation:
         measure_compilation()
     for name in options.arms:
-        pool = Pool(arm(name))
+        pool = Pool(arm_named(name))
         rows: dict[str, list[dict[str, float]]] = defaultdict(list)
         unsolved: list[Problem] = []
         for problem in problems(pool, (TUNING if options.tuning else REPORTING)[: options.count]):

@@ -14,9 +14,10 @@ import numpy.typing as npt
 
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.kinematics import link_poses
-from evenroad.robot.load import load_robot
-from evenroad.robot.robot import Robot, with_limits
+from evenroad.robot.robot import Robot
 from evenroad.robot.scene import Obstacle, Scene
+from evenroad_studies.arms.roadmaps import cell_of
+from evenroad_studies.arms.robots import arm_named as arm_named
 
 KINDS = ("shelf", "box", "cage", "table")
 TUNING, REPORTING = range(1_000, 1_100), range(2_000, 2_100)
@@ -65,16 +66,6 @@ class Pool:
         return self.q[inside]
 
 
-def arm(name: str) -> Robot:
-    """Return a shipped robot with ranges as on a table: the shoulder does not go through it."""
-    robot = load_robot(name)
-    if name == "ur5":
-        turn = (-np.pi, np.pi)
-        wide = dict.fromkeys(robot.group, turn)
-        return with_limits(robot, wide | {"shoulder_lift_joint": (-1.3 * np.pi, 0.3 * np.pi)})
-    return robot
-
-
 def problems(pool: Pool, seeds: range, kinds: tuple[str, ...] = KINDS) -> Iterator[Problem]:
     """Yield a problem of each kind for each seed."""
     for seed in seeds:
@@ -87,7 +78,8 @@ def _problem(pool: Pool, kind: str, seed: int) -> Problem:
     robot = pool.robot
     while True:
         obstacles, regions = _SCENES[kind](rng)
-        scene = Scene((_table(), *obstacles), name=f"{kind}{seed}", allowed=_on_table(robot))
+        cell = cell_of(robot)
+        scene = Scene((*cell.obstacles, *obstacles), name=f"{kind}{seed}", allowed=cell.allowed)
         world = ArmWorld(robot, scene)
         ends: list[Vector] = []
         for region in rng.permutation(len(regions))[:2]:
@@ -103,35 +95,6 @@ def _problem(pool: Pool, kind: str, seed: int) -> Problem:
         # Else another scene: this one cannot be reached into.
         if len(ends) == 2:
             return Problem(kind, seed, robot, scene, ends[0], ends[1])
-
-
-def queries(pool: Pool, kind: str, seed: int, count: int) -> tuple[ArmWorld, Vector]:
-    """Return a scene of a kind, and starts and goals in it from different places of the tool, (count, 2, dim)."""
-    rng = np.random.default_rng([KINDS.index(kind), seed])
-    while True:
-        obstacles, regions = _SCENES[kind](rng)
-        world = ArmWorld(
-            pool.robot, Scene((_table(), *obstacles), name=f"{kind}{seed}", allowed=_on_table(pool.robot))
-        )
-        inside = [pool.within(region) for region in regions]
-        free = [q[world.valid(q)] for q in inside]
-        free = [q for q in free if len(q) > 0]
-        if len(free) > 1:
-            break
-    pairs = []
-    for _ in range(count):
-        first, second = rng.choice(len(free), size=2, replace=False)
-        pairs.append([free[i][rng.integers(len(free[i]))] for i in (first, second)])
-    return world, np.array(pairs)
-
-
-def _on_table(robot: Robot) -> frozenset[tuple[str, str]]:
-    bodied = [link for link in robot.links if any(capsule.link == link for capsule in robot.capsules)]
-    return frozenset((link, "table") for link in bodied[:2])
-
-
-def _table() -> Obstacle:
-    return Obstacle.of("table", "box", (1.6, 1.6, 0.05), (0.3, 0.0, -0.03))
 
 
 def _about_z(angle: float) -> tuple[float, ...]:

@@ -1,10 +1,9 @@
-"""Configurations and motions a second of arms, on one core; beside Klamp't, coal and pinocchio where there are any.
+"""Configurations and motions a second of arms, on one core.
 
     python -m studies.benchmarks.arm_speed
 
 Rates are the best of several repeats: what else runs on the machine only ever takes away.  Motions are between
-random free configurations, blocked ones included, at 0.05 rad.  Klamp't gets triangles made of our capsules and
-boxes, not the maker's meshes; coal and pinocchio get the capsules.  All are asked in the same process.
+random free configurations, blocked ones included, at 0.05 rad.
 """
 
 from __future__ import annotations
@@ -20,15 +19,10 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 from tests.robot.kernel_arms import as_balls
-from tests_peers.engines.klampt_world import KlamptWorld
-from tests_peers.engines.pinocchio_world import PinocchioWorld
 
-from evenroad.errors import NotAvailable
 from evenroad.robot.arm_world import ArmWorld
 from evenroad.robot.certified import CertifiedWorld
-from evenroad.robot.kernel import batch
 from evenroad.robot.load import load_robot
-from evenroad.robot.reference.coal_world import CoalWorld, EngineWorld
 from evenroad.robot.robot import Robot, in_scene, with_group
 from evenroad.robot.scene import Obstacle, Scene
 from evenroad.robot.scene_file import load_scene
@@ -90,8 +84,8 @@ def motions(world: World, count: int) -> tuple[npt.NDArray[np.float64], npt.NDAr
     return q[:count], q[count : 2 * count]
 
 
-def measure(name: str, world: ArmWorld) -> tuple[float, float]:
-    """Print and return configurations and motions a second."""
+def measure(name: str, world: ArmWorld) -> None:
+    """Print configurations and motions a second."""
     q = world.space.from_cube(np.random.default_rng(0).random((60_000, world.space.dim)))
     free = world.valid(q)
     clear = q[free]
@@ -106,7 +100,6 @@ def measure(name: str, world: ArmWorld) -> tuple[float, float]:
         f" {motion_rate / 1e3:.0f} k motions/s ({passed.mean():.1%} free, mean length"
         f" {world.space.distance(a, b).mean():.2f} rad; {free_rate / 1e3:.0f} k/s of free ones)"
     )
-    return rate, motion_rate
 
 
 def measure_certified(world: ArmWorld) -> None:
@@ -118,44 +111,6 @@ def measure_certified(world: ArmWorld) -> None:
     print(
         f"certified: {proved.sum()} of {sampled.sum()} motions that states call free, {1e6 * each:.0f} us each"
     )
-
-
-def measure_engine(engine: type[EngineWorld], world: ArmWorld, rates: tuple[float, float]) -> None:
-    """Print the rates of another engine on the same configurations and motions, and ours as multiples of them."""
-    try:
-        other = engine(world.robot, world.scene)
-    except NotAvailable as error:
-        print(error)
-        return
-    q = world.space.from_cube(np.random.default_rng(0).random((10_000, world.space.dim)))
-    a, b = (end[:400] for end in motions(world, 4_000))
-    rate = len(q) / seconds(partial(other.valid, q), 3)
-    motion_rate = len(a) / seconds(partial(other.motion_valid, a, b), 3)
-    ours, theirs = world.valid(q), other.valid(q)
-    print(
-        f"{engine.__name__}, scene a: {rate / 1e3:.1f} k configurations/s, {motion_rate:.0f} motions/s; ours are"
-        f" {rates[0] / rate:.0f} and {rates[1] / motion_rate:.0f} times that; verdicts differ for"
-        f" {(ours != theirs).mean():.2%}, ours free and theirs not: {(ours & ~theirs).sum()}"
-    )
-
-
-def measure_call(world: ArmWorld) -> None:
-    """Print what a call costs: of the kernel with no configuration, with one, and of the world with one."""
-    none, one = np.empty((0, 5)), np.zeros((1, 5))
-    for q in (none, one):
-        q.setflags(write=False)
-    calls = {
-        "kernel, no configuration": partial(batch.configurations_free, world.lanes, none),
-        "kernel, one": partial(batch.configurations_free, world.lanes, one),
-        "world.valid, one": partial(world.valid, one),
-    }
-    for name, call in calls.items():
-        print(f"one call, {name}: {1e6 * seconds(partial(_thousand_times, call)) / 1e3:.2f} us")
-
-
-def _thousand_times(call: Callable[[], object]) -> None:
-    for _ in range(1_000):
-        call()
 
 
 def measure_first_check() -> None:
@@ -181,15 +136,12 @@ def main() -> None:
         f"{wide.backend}, {wide.spheres} spheres that exceed their capsules by {1e3 * wide.excess:.1f} mm at most"
     )
     measure("UR5, scene c", wide)
-    rates = measure("UR5, scene a", narrow)
+    measure("UR5, scene a", narrow)
     seven = load_robot("arm7")
     measure("arm of 7 joints, boxes of scene a", ArmWorld(seven, box_for(seven, narrow.scene)))
     measure("UR5, 100 random boxes", ArmWorld(wide.robot, random_boxes()))
     measure("UR5 of 42 balls, scene c", ArmWorld(as_balls(wide.robot), wide.scene))
     measure_certified(wide)
-    measure_call(wide)
-    for engine in (KlamptWorld, CoalWorld, PinocchioWorld):
-        measure_engine(engine, narrow, rates)
     print(f"load average of the last minute: {os.getloadavg()[0]:.1f}")
 
 

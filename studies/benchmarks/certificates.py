@@ -1,9 +1,7 @@
 """Certified claims against brute force: is one of them false, and how much do they leave?
 
     python -m studies.benchmarks.certificates --csv docs/data/certificates.csv
-    python -m studies.benchmarks.certificates --worlds 0 --read docs/data/certificates.csv --picture docs/guarantees.png
-
-The second line draws what the first wrote, and prints the largest holes and the least k by dimension.
+    python -m studies.benchmarks.certificates --holes      # the largest holes and the least k by dimension alone
 
 Random discs in planes of the cube, d = 2, 3, 4, in which the shortest path of any clearance is known (tests/
 clear_paths.py).  A roadmap is asked once; its certificate then makes claims, each of them a row:
@@ -57,16 +55,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--worlds", type=int, default=26, help="of each kind and dimension; half in d = 4")
     parser.add_argument("--csv", type=Path)
-    parser.add_argument("--read", type=Path, help="claims of an earlier run")
-    parser.add_argument("--picture", type=Path)
+    parser.add_argument("--holes", action="store_true", help="no claims: the largest holes and the least k")
     options = parser.parse_args()
     rows: list[dict[str, Any]] = []
     began = time.process_time()
-    if options.read:
-        with open(options.read, newline="") as file:
-            rows = [{name: _read(text) for name, text in row.items()} for row in csv.DictReader(file)]
+    if options.holes:
+        print_holes()
+        return
     for d in SETS:
-        rules = {sampler: rules_for(d, sampler) for sampler in FAMILIES[d] if options.worlds}
+        rules = {sampler: rules_for(d, sampler) for sampler in FAMILIES[d]}
         for world in range(options.worlds if d < 4 else options.worlds // 2):
             for kind in ("field", "wall"):
                 rows += claims(d, world, kind, rules)
@@ -78,13 +75,10 @@ def main() -> None:
                 writer.writerows({name: _short(row[name]) for name in FIELDS} for row in rows)
     false = sum(row["verdict"] == "false" for row in rows)
     print(f"{len(rows)} claims, {false} false; {time.process_time() - began:.0f} s of processor time")
-    if options.picture:
-        draw_picture(options.picture, rows, print_holes())
 
 
-def print_holes() -> dict[tuple[str, int, int], float]:
-    """Print and return the certified dispersion by sampler, N and dimension, and the least k that is complete."""
-    holes: dict[tuple[str, int, int], float] = {}
+def print_holes() -> None:
+    """Print the certified dispersion by sampler, N and dimension, and the least k that is complete."""
     print(
         "largest hole of the unit cube, certified; in brackets the least k, symmetrised, that is complete with it"
     )
@@ -93,11 +87,10 @@ def print_holes() -> dict[tuple[str, int, int], float]:
             texts = []
             for d in (2, 3, 4, 5, 6, 7):
                 points, space = draw(sampler, n, d), BoxSpace([0.0] * d, [1.0] * d)
-                beta = holes[sampler, n, d] = certify(points, Radius(1.0), space).dispersion
+                beta = certify(points, Radius(1.0), space).dispersion
                 k = "" if beta > 0.5 else f" ({_least_k(points, space)})"
                 texts.append(f"d={d} {beta:.3f}{k}")
             print(f"{sampler:8} N={n:4}: " + "  ".join(texts), flush=True)
-    return holes
 
 
 def _least_k(points: PointSet, space: BoxSpace) -> int:
@@ -106,13 +99,6 @@ def _least_k(points: PointSet, space: BoxSpace) -> int:
     while not certify(points, KNearest(k), space).complete:
         k += max(1, k // 10)
     return k
-
-
-def _read(text: str) -> Any:
-    try:
-        return float(text) if text else None
-    except ValueError:
-        return text
 
 
 def rules_for(d: int, sampler: str) -> list[Rule]:
@@ -240,40 +226,6 @@ def summarise(d: int, rows: list[dict[str, Any]]) -> None:
                         f" optimum is claimed (median), {np.median(paid):.3f} paid (median), {max(paid):.3f} (worst);"
                         f" cost / bound {np.median(tight):.2f} (median), {max(tight):.2f} (worst)"
                     )
-
-
-def draw_picture(path: Path, rows: list[dict[str, Any]], holes: dict[tuple[str, int, int], float]) -> None:
-    """Draw what was claimed beside what was paid, and the least clearance that can be certified by dimension."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.2), constrained_layout=True)
-    cost = [row for row in rows if row["claim"] == "cost"]
-    for d, colour in zip(SETS, ("C0", "C1", "C2"), strict=True):
-        mine = [row for row in cost if row["d"] == d]
-        said = [row["bound"] / row["optimum"] for row in mine]
-        left.plot(
-            said, [row["cost"] / row["optimum"] for row in mine], ".", ms=3, color=colour, label=f"d = {d}"
-        )
-    most = max(row["bound"] / row["optimum"] for row in cost)
-    left.plot([1, most], [1, most], "k-", lw=0.8)
-    left.annotate("above this line\na claim is false", (1.2, 2.6), fontsize=8)
-    left.set(
-        xlabel="certified: at most so many times the optimum", ylabel="the roadmap's path, times the optimum"
-    )
-    left.set(xlim=(1.0, 1.02 * most), ylim=(0.0, 4.0))
-    left.legend(loc="upper right", markerscale=3)
-    dimensions = sorted({d for _, _, d in holes})
-    for sampler, colour in (("cover", "C3"), ("even", "C0"), ("uniform", "C7")):
-        for n, style in ((256, ":"), (1024, "-")):
-            beta = [holes[sampler, n, d] for d in dimensions]
-            right.plot(dimensions, beta, style, marker="o", ms=3, color=colour, label=f"{sampler}, N = {n}")
-    right.axhline(0.5, color="k", lw=0.8, label="half the side of the cube")
-    right.set(xlabel="dimension", ylabel="beta: the least clearance that is certified", ylim=(0, 1.0))
-    right.legend(loc="upper left", fontsize=8, bbox_to_anchor=(0, 0.98))
-    figure.savefig(path, dpi=110)
 
 
 if __name__ == "__main__":

@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from studies.benchmarks.arm_problems import KINDS, Pool, Problem, arm, problems
+from studies.benchmarks.arm_problems import KINDS, Pool, Problem, arm_named, problems
 from studies.benchmarks.clouds import points_on, triangles_of
 
 from evenroad import Budget, draw, find_path, plan, plan_anytime, plan_arm
@@ -71,7 +71,7 @@ def verdicts(world: World, states: int, motions: int, *, seed: int = 0) -> Bools
 def arm_problems() -> Iterator[Problem]:
     """Yield problems of two arms among shelves, boxes, cages and tables."""
     for name in ("ur5", "arm7"):
-        yield from problems(Pool(arm(name)), SEEDS)
+        yield from problems(Pool(arm_named(name)), SEEDS)
 
 
 def map_verdicts() -> Bools:
@@ -184,7 +184,7 @@ def arm_plans() -> Lines:
 def robot_roadmap_plans() -> Lines:
     lines = []
     for name in ("ur5", "arm7"):
-        pool = Pool(arm(name))
+        pool = Pool(arm_named(name))
         made = make_roadmap(pool.robot, None, 128)
         lines.append(f"milestones {name}: {hashlib.sha256(made.milestones.tobytes()).hexdigest()[:16]}")
         for problem in problems(pool, SEEDS):

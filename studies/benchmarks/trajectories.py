@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from studies.benchmarks.arm_problems import REPORTING, Pool, arm, problems
+from studies.benchmarks.arm_problems import REPORTING, Pool, arm_named, problems
 
 from evenroad.arms import arm_query
 from evenroad.errors import NotAvailable
@@ -116,7 +116,7 @@ def main() -> None:
     count = parser.parse_args().problems
     query = arm_query("ur5", "box-reach", "home", "inside")
     scene_c = [("scene c", query.world, query.start, query.goals[0])]
-    pool = Pool(arm("ur5"))
+    pool = Pool(arm_named("ur5"))
     random = (
         (f"{each.kind} {each.seed}", ArmWorld(each.robot, each.scene, resolution=0.05), each.start, each.goal)
         for each in problems(pool, REPORTING[:count])

@@ -1,6 +1,5 @@
-"""Rigid bodies: of boxes, with compiled checks, or of users' meshes, checked by coal."""
+"""Rigid bodies of boxes, with compiled checks."""
 
-from evenroad_studies.worlds.rigid.mesh_world import MeshWorld as MeshWorld
 from evenroad_studies.worlds.rigid.oriented_box import OrientedBox as OrientedBox
 from evenroad_studies.worlds.rigid.oriented_box import shell as shell
 from evenroad_studies.worlds.rigid.oriented_box import surface_of as surface_of
