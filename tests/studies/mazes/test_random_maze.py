@@ -7,7 +7,7 @@ import pytest
 from scipy import ndimage
 
 from evenroad.errors import InvalidValue
-from evenroad.world.gridmap.shipped import FOLDER, LEVELS, load_maze
+from evenroad.world.gridmap.shipped import LEVELS, load_maze
 from evenroad_studies.mazes import MazeDesign, draw_maze
 
 SMALL = MazeDesign(cols=5, rows=4, wall=8, door=30, loops=0.2, width=300, height=240)
@@ -45,7 +45,7 @@ def test_the_shipped_mazes_are_what_the_generator_draws():
         2: (MazeDesign(cols=8, rows=6, wall=8, door=54, loops=0.15), 15),
         3: (MazeDesign(cols=10, rows=8, wall=8, door=32, loops=0.10), 13),
     }
-    records = json.loads((FOLDER / "mazes.json").read_text())
+    records = json.loads(load_maze(1).path.with_name("mazes.json").read_text())
     for level in LEVELS:
         design, seed = designs[level]
         drawn = draw_maze(design, rng=seed)

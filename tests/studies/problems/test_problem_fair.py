@@ -28,7 +28,7 @@ from evenroad_studies.problems.fair import (
 )
 from evenroad_studies.worlds import Corridor
 
-CALIBRATION = Path(__file__).parents[3] / "docs" / "data" / "fair_calibration.csv"
+CALIBRATION = Path(__file__).parents[3] / "studies" / "docs" / "data" / "fair_calibration.csv"
 ONE_OF_EACH = ["fair-balls-5d-50", "fair-boxes-5d-50", "fair-maze-50", "fair-se2-50", "fair-se3-50"]
 
 
