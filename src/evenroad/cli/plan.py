@@ -1,4 +1,4 @@
-"""``evenroad plan``, for a disk on a map or for an arm in a scene, and ``evenroad demo``: what they are told."""
+"""The options of ``evenroad plan``, for a disk on a map or for an arm in a scene, and of ``evenroad demo``."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from evenroad.errors import InvalidValue
 
 @dataclass(frozen=True, kw_only=True)
 class PlanOptions(SamplerOptions):
-    """What every plan is told."""
+    """The options of every plan."""
 
     planner: ClassVar[str]
-    """The function that plans, loaded when it is asked to."""
+    """The function that plans, loaded when it is called."""
 
     world: tyro.conf.Positional[Path]
     """The file of the world."""
@@ -30,14 +30,14 @@ class PlanOptions(SamplerOptions):
     goal: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]]
     """Where to go."""
     n: Annotated[int | None, tyro.conf.arg(aliases=["-n"])] = None
-    """Plan on a roadmap of exactly so many points (ps-PRM); where only other options speak of points: 512.
-    Default: no points, but until there is a path or a proof that there is none, or the time is over."""
+    """Plan on a roadmap of exactly this many points (PRM); 512 if only other options name points.
+    Without -n, plan until a path, a proof that there is none, or the end of the time."""
     time: float | None = None
-    """Seconds to plan at most, > 0 (default 5; with points 60)."""
+    """Time limit in seconds, > 0 (default 5; with points 60)."""
     improve: bool = False
-    """Use up the time: plan again in other ways, and keep the shortest path.  Not with points."""
+    """Plan again with other choices until the time is over, and keep the shortest path.  Not with points."""
     certified: bool = False
-    """The path must be proved free throughout; else the answer says which of its motions is not."""
+    """Require a proof that the whole path is free; without one, the answer names the motion."""
     k: Annotated[int | None, tyro.conf.arg(aliases=["-k"])] = None
     """Connect each milestone with its k nearest, symmetrised (default 10; 20 from six joints on)."""
     connect_radius: float | None = None
@@ -45,9 +45,9 @@ class PlanOptions(SamplerOptions):
     seed: int = 0
     """Seed of everything random; the same command gives the same path."""
     raw: bool = False
-    """Leave the path as it was found, without shortcutting it."""
+    """Leave the path as it was found, without smoothing."""
     out: Annotated[Path | None, tyro.conf.arg(aliases=["-o"])] = None
-    """Where results go: OUT.json, OUT.png and, for an arm, OUT.csv; OUT may end in one of these.
+    """Files to write: OUT.json, OUT.png and, for an arm, OUT.csv; OUT may end in one of these.
     Default: the world's stem in the current folder, with -plan added where that would overwrite an input."""
     no_picture: bool = False
     """Draw no picture."""
@@ -76,39 +76,38 @@ class PlanDisk(PlanOptions):
     start: tuple[str, ...]
     """x y in map units."""
     goal: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]]
-    """As start.  Given more than once, the path ends at the first one that is reached.
-    With points or --improve at the cheapest."""
+    """As start.  You can give several: the path ends at the first one reached, with points or --improve at the
+    cheapest."""
     robot_radius: float
     """Plan for a disk of this radius, > 0, in map units."""
     clearance: float = 0.0
     """Margin to keep from every obstacle, added to the radius, >= 0."""
     unknown_is_free: bool = False
-    """May pass through unknown cells of a ROS map."""
+    """Treat unknown cells of a ROS map as free."""
     csv: bool = False
     """Also write the path as OUT.csv."""
     guarantees: bool = False
-    """Say what the roadmap guarantees: from which clearance on it has a path wherever there is one, and how long it is
-    at most.  With points; the sampler cover guarantees most."""
+    """Print the roadmap's certificate: the clearance from which it has a path wherever one exists, and the largest
+    length of its path.  With points; the sampler cover guarantees most."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class RobotOptions:
-    """How a robot is made of its file."""
+    """The options of a robot's file."""
 
     srdf: Path | None = None
     """Its SRDF, with groups, named states and pairs of links that need no test."""
     group: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
-    """Groups of the SRDF, or joints, with commas between them, planned for together in this order; may be given more
-    than once.  The others are held where the named states of start and goal have them, else at 0, or where they
-  do not touch."""
+    """Groups of the SRDF, or joints, separated by commas, planned for together in this order; you can give several.
+    Other joints stay where the named states of start and goal have them, else at 0, or where they do not touch."""
     bodies: Path | None = None
     """A YAML file of capsules and spheres in place of the robot's collision geometry."""
     use_visuals: bool = False
-    """Links without collision geometry get what is drawn of them."""
+    """Use the visual geometry of links that have no collision geometry."""
     package: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
-    """NAME=FOLDER: where a ROS package is that meshes are in; may be given more than once."""
+    """NAME=FOLDER: the folder of a ROS package with meshes; you can give several."""
     xacro: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
-    """NAME=VALUE: an argument of a xacro; may be given more than once."""
+    """NAME=VALUE: an argument of a xacro; you can give several."""
 
     def options(self) -> dict[str, Any]:
         """Return what `load_model` takes; the bodies that are fitted are said on standard error."""
@@ -154,54 +153,55 @@ class PlanArm(PlanOptions, RobotOptions):
     world: tyro.conf.Positional[Path]
     """A scene (.yaml; shipped: box-reach.yaml, box-reach-narrow.yaml)."""
     start: tuple[str, ...]
-    """One number a joint with commas between them, name=value,..., or a named state."""
+    """One number per joint, separated by commas, name=value,..., or a named state."""
     robot: str | None = None
     """Plan for this arm: a URDF, xacro or MJCF file, or the name of a shipped one (ur5, arm7)."""
     roadmap: Path | None = None
-    """Plan along this roadmap, which ``evenroad roadmap`` made and which knows its arm and its cell; --robot may be
-    given, too, and then has to be that arm."""
+    """Plan along this roadmap, made by ``evenroad roadmap``, which holds its arm and its cell; if you give --robot
+    too, it has to be that arm."""
     goal: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]] = ()
-    """As start.  Given more than once, also with --goal-pose, the path ends at the nearest, where that is soon reached.
-    With points or --improve at the cheapest."""
+    """As start.  You can give several, also with --goal-pose: the path ends at the nearest if that is soon reached,
+    with points or --improve at the cheapest."""
     goal_pose: tyro.conf.UseAppendAction[tuple[tuple[str, ...], ...]] = ()
-    """Where a link is to be: "x y z qx qy qz qw" or "x y z roll pitch yaw" (metres, radians), or "x y z", turned at
-    will.  All configurations found that bring it there are goals; may be given more than once."""
+    """The pose of a link: "x y z qx qy qz qw" or "x y z roll pitch yaw" (metres, radians), or "x y z" with any
+    rotation.  All configurations found that reach it are goals; you can give several."""
     tip: str = ""
-    """The link that goal poses, --straight and --upright are of (default: the last one)."""
+    """The link of goal poses, --straight and --upright (default: the last one)."""
     frame: str = ""
-    """The link in the frame of which they are, which stands still (default: the root)."""
+    """The frame of goal poses: a link that does not move (default: the root)."""
     free_axis: str | None = None
-    """The tip may be turned about this axis of its own frame at will: x, y, z or "x y z"."""
+    """Axis of the tip about which its rotation is free: x, y, z or "x y z"."""
     tolerance: str | None = None
-    """By how much goal poses may be missed: "0.002" (metres) or "0.002 0.01" (metres and radians)."""
+    """Largest error at goal poses: "0.002" (metres) or "0.002 0.01" (metres and radians)."""
     straight: str | None = None
-    """The tip comes to its goal, and leaves its start, in straight lines: "0.1" (metres) or "0.1 0.05", goal first."""
+    """Length of the straight lines in which the tip approaches its goal and leaves its start: "0.1" (metres) or
+    "0.1 0.05", goal first."""
     away: str | None = None
-    """In which direction it leaves, and from where it comes: x, -x, ... or "x y z" of the tip's frame, or up
+    """Direction of these lines, away from start and goal: x, -x, ... or "x y z" of the tip's frame, or up
     (default: -z)."""
     upright: float | None = None
-    """An axis of the tip is tilted by no more than this along the whole path, in radians."""
+    """Largest tilt of an axis of the tip along the whole path, in radians."""
     upright_axis: str | None = None
     """That axis, in the tip's frame (default: the one that is most upright at the start)."""
     deg: bool = False
-    """Angles are in degrees: of start, goal, "roll pitch yaw" and --upright."""
+    """Read angles in degrees: of start, goal, "roll pitch yaw" and --upright."""
     resolution: float = 0.05
     """Largest step of a motion check, > 0, in radians."""
     clearance: float = 0.0
-    """How far the arm keeps from all obstacles, 0 to 1, in metres; not from itself, and not with --roadmap."""
+    """Distance to keep from all obstacles, 0 to 1, in metres; not from the arm itself, and not with --roadmap."""
     trajectory: tyro.conf.UseAppendAction[tuple[Path, ...]] = ()
-    """Give the path times, and write it here, too: .json, .csv, .yaml (ROS 2 JointTrajectory), .mcap (the same as a
-    bag), .script (URScript, by the clock) or .movej.script (waypoint by waypoint).  May be given more than once."""
+    """Write a trajectory: .json, .csv, .yaml (ROS 2 JointTrajectory), .mcap (the same as a bag), .script (URScript,
+    by the clock) or .movej.script (waypoint by waypoint).  You can give several."""
     speed: float = 1.0
     """With --trajectory: share of full speed, > 0 and at most 1."""
     limits: Path | None = None
-    """With --trajectory: a MoveIt joint_limits.yaml.  Default: velocities of the URDF, full speed after .5 s."""
+    """With --trajectory: a MoveIt joint_limits.yaml.  Default: velocities of the URDF, full speed after 0.5 s."""
     deviation: float = 0.05
-    """With --trajectory: how far from the path it may round off a corner, >= 0, in radians."""
+    """With --trajectory: largest deviation at a rounded corner, >= 0, in radians."""
     step: float = 0.008
-    """With --trajectory: seconds between two states, > 0; 0.002 for a UR of the e-Series."""
+    """With --trajectory: time between two states in seconds, > 0; 0.002 for a UR of the e-Series."""
     controller_joints: str | None = None
-    """With --trajectory: all joints of the controller, in its order, with commas between them."""
+    """With --trajectory: all joints of the controller, in its order, separated by commas."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -211,9 +211,9 @@ class Demo:
     level: int = 3
     """Which maze: 1, 2 or 3, of rising difficulty."""
     n: Annotated[int, tyro.conf.arg(aliases=["-n"])] = 1024
-    """How many points to draw."""
+    """Number of points to draw."""
     out: Annotated[Path, tyro.conf.arg(aliases=["-o"])] = Path("demo")
-    """Where results go: OUT.png and OUT.json."""
+    """Files to write: OUT.png and OUT.json."""
 
     def run(self) -> int:
         """Run ``evenroad plan`` on the maze with its own start and goal."""

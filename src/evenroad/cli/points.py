@@ -21,9 +21,9 @@ class Points(SamplerOptions):
     """Write a point set: shipped, constructed, from the cache, or annealed on demand."""
 
     n: Annotated[int, tyro.conf.arg(aliases=["-n"])]
-    """How many points."""
+    """Number of points."""
     d: Annotated[int, tyro.conf.arg(aliases=["-d"])]
-    """How many dimensions."""
+    """Number of dimensions."""
     out: Annotated[Path, tyro.conf.arg(aliases=["-o"])]
     """The file: .npy for the plain array, .npz to keep the origin."""
     no_train: bool = False

@@ -17,7 +17,7 @@ TAKES = {"plain": ("halton", "sobol"), "skip": ("halton", "sobol"), "allow_fewer
 
 @dataclass(frozen=True, kw_only=True)
 class SamplerOptions:
-    """Which points are drawn."""
+    """The options of a point set."""
 
     sampler: str | None = None
     """even, growing, hickernell, mpmc, korobov, lattice, cover, halton, sobol, sukharev or uniform
@@ -29,7 +29,7 @@ class SamplerOptions:
     allow_fewer: bool = False
     """sukharev: take the largest grid with at most n points."""
     seed: int = 0
-    """Which set of the sampler, and every other random choice."""
+    """Seed of the sampler's set, and of every other random choice."""
 
 
 def speaks_of_points(options: SamplerOptions) -> bool:

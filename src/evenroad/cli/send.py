@@ -25,16 +25,16 @@ class Send:
     host: str
     """Address of the controller."""
     model: str
-    """Of the arm, as its controller says it: UR5."""
+    """Model of the arm, as its controller names it: UR5."""
     fastest: float = 1.0
-    """Most speed of a joint that is allowed, > 0, in radians a second."""
+    """Largest speed of a joint, > 0, in radians per second."""
     controller_joints: str | None = None
-    """All joints of the controller, in its order, with commas between them."""
+    """All joints of the controller, in its order, separated by commas."""
     go: bool = False
     """Move the arm.  Default: a dry run."""
 
     def run(self) -> int:
-        """Check, and move if told to; return 0."""
+        """Check, and move with --go; return 0."""
         trajectory = load_trajectory(self.trajectory)
         order = (
             None if self.controller_joints is None else [*map(str.strip, self.controller_joints.split(","))]
