@@ -133,7 +133,7 @@ def compare(worlds: dict[str, ArmWorld], repeats: int, count: int) -> None:
         cells = [f"{np.median(rates[:, 0]):.3g}"]
         for k in range(1, len(worlds)):
             error = ratios[:, k].std(ddof=1) / np.sqrt(repeats)
-            cells.append(f"{np.median(rates[:, k]):.3g} {np.median(ratios[:, k]):.2f} +-{error:.3f}")
+            cells.append(f"{np.median(rates[:, k]):.3g} {np.median(ratios[:, k]):.2f} ± {error:.3f}")
         print(f"{task:<26}" + "".join(f"{cell:>24}" for cell in cells))
 
 

@@ -221,7 +221,7 @@ class Pose:
 
     @property
     def rpy(self) -> Vector:
-        """Roll, pitch and yaw of the rotation [rad]; at a pitch of +-pi/2 the roll is 0."""
+        """Roll, pitch and yaw of the rotation [rad]; at a pitch of ±pi/2 the roll is 0."""
         (xx, xy, _), (yx, yy, _), (zx, zy, zz) = (self.rotation[i : i + 3] for i in (0, 3, 6))
         flat = math.hypot(xx, yx)
         if flat < 1e-9:

@@ -39,7 +39,7 @@ def ball_points(dim: int) -> Floats:
     """Return 2048 points in the unit ball, (2048, dim): the steps that trees try around their nodes.
 
     Directions are spread evenly.  So is the ball's volume in up to 7 dimensions; in more, where hardly a point of such
-    a ball would be near its centre, the logarithm of the length is, from .1 to 1.
+    a ball would be near its centre, the logarithm of the length is, from 0.1 to 1.
     """
     even = reversed_halton(_STEPS, 2 * (-(-dim // 2)) + 1)
     radius, others = even[:, :1], even[:, 1:]

@@ -72,7 +72,7 @@ def limits_of(robot: Robot, file: str | os.PathLike[str] | None = None) -> Limit
         Its joints have the velocities of the URDF.
     file : str or path-like, optional
         MoveIt's ``joint_limits.yaml``; ``max_velocity``, ``max_acceleration`` and ``max_jerk`` replace what is there.
-        A joint without acceleration gets to its full speed in .5 s; jerk is limited if it is given for every joint.
+        A joint without acceleration gets to its full speed in 0.5 s; jerk is limited if it is given for every joint.
 
     Raises
     ------

@@ -70,7 +70,7 @@ def anneal(
 ) -> Annealed:
     """Make the objective of n points in [0, 1)^d small, on one thread; the same seed gives the same bits.
 
-    Adam (.9, .999) with a learning rate that falls 2000-fold along a half cosine, plus Gaussian noise in
+    Adam (0.9, 0.999) with a learning rate that falls 2000-fold along a half cosine, plus Gaussian noise in
     proportion to the rate: the noise is what finds a good basin.  The best points seen are kept.  The bits are those of
     one kind of processor and one version of numpy and numba: sums run as vectors, whose width, and so the order of
     additions, is the processor's.  Arguments out of range are an InvalidValue.
@@ -134,9 +134,9 @@ def learning_rate(step: int, steps: int, first: float) -> float:
 
 
 def first_rate(n: int, d: int) -> float:
-    """Return the learning rate of the first step: .02, or a fifth of the spacing n^(-1/d) where that is less.
+    """Return the learning rate of the first step: 0.02, or a fifth of the spacing n^(-1/d) where that is less.
 
-    A step of Adam is about as long as its rate: one of half a spacing, as .02 is at d = 2, n = 512, never settles.
+    A step of Adam is about as long as its rate: one of half a spacing, as 0.02 is at d = 2, n = 512, never settles.
     """
     return min(LARGEST_RATE, 0.2 * n ** (-1.0 / d))
 

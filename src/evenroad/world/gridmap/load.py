@@ -210,7 +210,7 @@ _FORMATS = ("PNG", "PPM")
 def load_image(path: str | os.PathLike[str], *, dark: float = DARK) -> GridMap:
     """Read a bare PNG or PGM image as a map: pixels whose luminance, of 255, is below `dark` are obstacles.
 
-    Colours count by ITU-R BT.601 (.299 R + .587 G + .114 B, rounded), transparent pixels as if on white paper.  The
+    Colours count by ITU-R BT.601 (0.299 R + 0.587 G + 0.114 B, rounded), transparent pixels as if on white paper.  The
     frame is the image's own: x right, y down, origin in the top-left corner, unit = pixel.  Raises BrokenFile if the
     file is missing, is not a whole PNG or PGM image, or has more than 100 million pixels; InvalidValue if `dark` is not
     in (0, 255].

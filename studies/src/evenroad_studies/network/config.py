@@ -39,7 +39,7 @@ class NetworkConfig:
         Steps of Adam, over which the rate falls to zero along a half cosine.
     noise : float or None
         The starts drift, by Gaussian noise that cools with the rate, as this share of an annealing's noise.
-        None: 0 in the plane and .5 in d = 10.
+        None: 0 in the plane and 0.5 in d = 10.
     judge : str
         What decides which step made the best points: the ``objective``, or in the plane their exact ``star``
         discrepancy.

@@ -205,7 +205,7 @@ def _normalise_back(slope, normal, last, scale, bias_slope):  # type: ignore[no-
 
 @njit(cache=True, fastmath=True)
 def adam_step(weights, slope, first, second, step, rate):  # type: ignore[no-untyped-def]
-    """Move flat `weights` by Adam (.9, .999; Kingma and Ba 2015) and update both moments; `step` counts from 1."""
+    """Move flat `weights` by Adam (0.9, 0.999; Kingma and Ba 2015) and update both moments; `step` counts from 1."""
     fast, slow, tiny = np.float32(0.9), np.float32(0.999), np.float32(1e-15)
     first_scale = np.float32(rate / (1.0 - 0.9**step))
     second_scale = np.float32(1.0 / (1.0 - 0.999**step))

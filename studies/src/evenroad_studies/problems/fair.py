@@ -133,7 +133,7 @@ def draw_balls(d: int, radius: float, rng: np.random.Generator) -> PeriodicBalls
 
 
 def draw_boxes(d: int, half_extent: float, rng: np.random.Generator) -> PeriodicBoxes:
-    """Return boxes with uniform centres, in random axes, with half extents uniform in [.5, 1.5] times the given one."""
+    """Return boxes with uniform centres, in random axes, half extents uniform in [0.5, 1.5] times the given one."""
     count, bounded = BOXES[d], min(BOUNDED_AXES, d)
     axes = np.argsort(rng.random((count, d)), axis=1)[:, :bounded]
     centres = rng.random((count, bounded))
@@ -181,7 +181,7 @@ ROTATION_WEIGHT = {2: 0.15, 3: 0.3}
 
 
 def draw_clutter(dim: int, size: float, rng: np.random.Generator) -> SolidWorld:
-    """Return a body in the unit square or cube among randomly rotated boxes, half extents in [.4, 1.6] times `size`."""
+    """Return a body in the unit square or cube among rotated boxes, half extents in [0.4, 1.6] times `size`."""
     margin = BODY_REACH[dim] + 1.6 * size * np.sqrt(dim)
     count = rng.poisson(DENSITY[dim] * (1.0 + 2.0 * margin) ** dim)
     centres = -margin + (1.0 + 2.0 * margin) * rng.random((count, dim))

@@ -31,7 +31,7 @@ REFERENCES = ("uniform", "halton scrambled")
 SIGNIFICANT = 0.05
 """Corrected p-value below which a difference is marked."""
 FEW_TO_TEST = 6
-"""Smallest number of units that is tested: with fewer, no choice of signs has a p-value below .05."""
+"""Smallest number of units that is tested: with fewer, no choice of signs has a p-value below 0.05."""
 
 
 def differences_from(runs: Runs, reference: str) -> tuple[Bools, Ints]:

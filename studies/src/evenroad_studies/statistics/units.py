@@ -94,7 +94,7 @@ def _as_if_one_pair_a_unit(shares: Floats, unit: str) -> Interval:
 def sign_flip_test(sums: npt.ArrayLike) -> float:
     """Return the two-sided p-value that units' differences are as likely to have either sign (Fisher 1935, section 21).
 
-    The exact distribution of ``|sum of +-s_u|`` over all choices of signs, of the `sums` of
+    The exact distribution of ``|sum of ±s_u|`` over all choices of signs, of the `sums` of
     :func:`clustered_difference`.  With one pair a unit (all s_u are -1, 0 or 1) this is McNemar's exact test; with
     more it keeps the pairs of a unit together.  Exact where the two samplers are exchangeable inside a unit, which
     holds for draws in one random world; for runs of a pool's sets it is the usual large-sample test of a mean.

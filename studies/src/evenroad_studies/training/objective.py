@@ -6,7 +6,7 @@ As text it is ``hickernell`` or ``log(average_squared) + 10*log(riesz)``:
     term       := [ number "*" ] ( name | "log(" name ")" | "prefixes(" name ")" )
 
 A discrepancy D falls with n and an energy is an inverse length, so the weight of a plain sum of the two would
-mean something else for every n and d: at d = 2, n = 128, D is .005 and the rooted energy 1.5.  In the sum of
+mean something else for every n and d: at d = 2, n = 128, D is 0.005 and the rooted energy 1.5.  In the sum of
 their logs a weight is a ratio of relative changes, whatever the units.  So where an energy stands without ``log``
 beside other terms, all terms are taken in the log: ``hickernell+10*riesz`` is short for
 ``log(hickernell) + 10*log(riesz)``, that is log D + 10 log(E)/s with s = 2d, and its ``str`` says so.

@@ -112,7 +112,7 @@ class ChainWorld(CompiledWorld):
     """A planar chain of equal links that must cross neither itself nor the walls of :func:`horn`.
 
     OMPL's kinematic chain benchmark.  A configuration is free if no two of the segments (the links, 2 to 1000, and a
-    piece of .001 that goes on after the last) and no segment and wall cross.  Segments that are parallel or only touch
+    piece of 0.001 that goes on after the last) and no segment and wall cross.  Segments that are parallel or only touch
     do not cross.  A motion turns all joints the short way; it is divided into ``ceil(distance / resolution)`` segments,
     whose ends are tested in bisection order.
     """
@@ -138,7 +138,7 @@ class ChainWorld(CompiledWorld):
 
     @property
     def resolution(self) -> float:
-        """Largest distance between tested states, ``.01 sqrt(links) 2 pi``: a hundredth of the angles' range."""
+        """Largest distance between tested states, ``0.01 sqrt(links) 2 pi``: a hundredth of the angles' range."""
         return 0.01 * math.sqrt(self.links) * 2.0 * math.pi
 
     @property
@@ -148,7 +148,7 @@ class ChainWorld(CompiledWorld):
 
     @property
     def goal(self) -> Floats:
-        """The chain stretched out to the other side: (pi - .001, 0, .., 0)."""
+        """The chain stretched out to the other side: (pi - 0.001, 0, .., 0)."""
         return np.array([math.pi - 0.001] + [0.0] * (self.links - 1))
 
     def _valid(self, q: Floats) -> Bools:
