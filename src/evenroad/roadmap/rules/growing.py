@@ -91,7 +91,7 @@ class TheoryRadius(Rule):
     ``1 + 1 / (alpha - 1)`` of it.  The bound D is either the `dispersion` itself or ``2 star_discrepancy^(1/d)``: the
     dispersion is at most the d-th root of the discrepancy over *all* boxes (Niederreiter 1992), which is at most
     ``2^d`` times that over boxes at the origin.  Without the 2, as the paper could be read, it is false: the points
-    (0, 0.375) and (0.55, 0.975) leave a hole of 0.975 with a star discrepancy of 0.5.  In a space with sides other than 1,
+    (0, 0.375) and (0.55, 0.975) leave a hole of 0.975 with a star discrepancy of 0.5.  If a side is not 1,
     ``sqrt(d)`` becomes the length of the diagonal.
 
     `alpha` is above 1, and exactly one of the others is given, in (0, 1], of the points in the unit cube.  InvalidValue
